@@ -1,0 +1,24 @@
+"""Friction of a vibrated Hertz contact, resolved by boundary elements.
+
+``solve`` answers for one point, ``history`` and ``traction_field`` show what happens inside.  The
+solver is imported when it is first asked for, so that importing the package costs next to nothing.
+"""
+
+from importlib import import_module as _import_module
+
+_WHERE = {
+    "solve": "microslip.point",
+    "Result": "microslip.point",
+    "warm_up": "microslip.point",
+    "history": "microslip.inside",
+    "History": "microslip.inside",
+    "traction_field": "microslip.inside",
+}
+__all__ = ["History", "Result", "history", "solve", "traction_field", "warm_up"]
+__version__ = "0.1.0"
+
+
+def __getattr__(name):
+    if name in _WHERE:
+        return getattr(_import_module(_WHERE[name]), name)
+    raise AttributeError(f"module 'microslip' has no attribute {name!r}")

@@ -1,0 +1,119 @@
+"""The store of results: one file for each result, found by the hash of what it answers.
+
+A file holds one line of JSON, {"checksum": ..., "record": ...}, written beside its place, flushed
+to disk and renamed, so a reader sees all of it or nothing. On reading, the text must be exactly
+what its record writes, checksum included; any other file counts as absent and is written anew.
+"""
+
+import json
+import logging
+import os
+from contextlib import contextmanager
+from pathlib import Path
+
+from .keys import canonical_json, sha256
+
+log = logging.getLogger(__name__)
+
+
+class CacheError(RuntimeError):
+    """The results folder cannot be used. The message is one line that says what to do."""
+
+
+class Store:
+    """Results under one folder. Several processes may read and write it at the same time."""
+
+    def __init__(self, folder):
+        """folder: str or Path. It is made when the first result is written."""
+        self.folder = Path(folder)
+
+    def path(self, group, key):
+        """Path of the result `key`; group is a subfolder that keeps scenes apart."""
+        return self.folder / group / key[:2] / f"{key}.json"
+
+    def read(self, group, key):
+        """Return the record (dict) stored under `key`, or None if there is none to be trusted.
+
+        A damaged file is reported through logging. Raises CacheError if reading is not allowed.
+        """
+        path = self.path(group, key)
+        try:
+            text = path.read_bytes()
+        except FileNotFoundError:
+            return None
+        except OSError as error:
+            raise CacheError(_advice("read", path, error)) from error
+        record = _parse(text)
+        if record is None or record.get("key") != key:
+            log.warning("damaged result %s: computed again", path)
+            return None
+        return record
+
+    def write(self, group, key, record):
+        """Store `record`, a dict of plain JSON values without NaN, and return its path.
+
+        The same key always holds the same answer, so a file that is there is replaced. Raises
+        CacheError on a full disk, a read-only folder and the like; no partial file stays behind.
+        """
+        path = self.path(group, key)
+        write_atomically(path, _text({**record, "key": key}))
+        return path
+
+
+def write_atomically(path, content):
+    """Write bytes to `path` so that it holds all of them or what it held before.
+
+    Raises CacheError, one line that says what to do, where the system refuses.
+    """
+    with writing_beside(path) as beside:
+        beside.write_bytes(content)
+
+
+@contextmanager
+def writing_beside(path):
+    """Context that yields a Path beside `path` to write to, and puts it in place at its end.
+
+    The file is flushed to disk before it is renamed. After an error or an interrupt `path` is
+    what it was. Raises CacheError, one line that says what to do, where the system refuses.
+    """
+    path = Path(path)
+    # The process number keeps two writers of one result apart.
+    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        yield beside
+        with open(beside, "rb") as file:
+            os.fsync(file.fileno())
+        os.replace(beside, path)
+    except OSError as error:
+        raise CacheError(_advice("write", path, error)) from error
+    finally:
+        # Gone already after the rename; an interrupt or an error leaves it.
+        _remove(beside)
+
+
+def _remove(path):
+    try:
+        path.unlink(missing_ok=True)
+    except OSError:
+        pass  # a read-only folder: the reason has been reported
+
+
+def _text(record):
+    checksum = sha256(canonical_json(record))
+    return f"{canonical_json({'checksum': checksum, 'record': record})}\n".encode()
+
+
+def _parse(text):
+    try:
+        record = json.loads(text)["record"]
+        return record if _text(record) == text else None
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return None
+
+
+def _advice(verb, path, error):
+    return (
+        f"cannot {verb} {path}: {error.strerror or error}; make room or set permissions there, or "
+        "choose another folder for results, and run again: finished points are kept"
+    )

@@ -1,0 +1,283 @@
+"""Constants and closed forms of one Hertz contact: normal load, tangential load and torsion.
+
+Working units unless a docstring says otherwise: contact radius a = 1, mu*F_z = 1 and
+u_lim = 1 (the displacement at which the whole contact slides). Then the reduced shear modulus
+is 3/4, tractions are in mu*F_z/a^2, torques in mu*F_z*a and angles in u_lim/a.
+
+Every function takes floats or arrays, broadcasts, and raises ValueError for an argument that is
+not finite or lies outside the range stated with it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import ellipe, ellipkm1, elliprd, elliprf
+
+G_STAR = 0.75
+"""Reduced shear modulus 4G/(2-nu), dimensionless (from u_lim = 3 mu F_z / (4 G* a))."""
+TORQUE_FULL_SLIP = 3 * np.pi / 16
+"""Torque of a contact that slips everywhere about its centre, in mu*F_z*a."""
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
+_UNIT_NODES, _UNIT_WEIGHTS = (_NODES + 1) / 2, _WEIGHTS / 2
+
+
+def checked(name, values, low=0.0, high=np.inf, low_open=False):
+    """Return `values` as a float array, or raise ValueError naming what is wrong.
+
+    Allowed are finite numbers with low <= value <= high (low < value where `low_open`).
+    """
+    array = np.asarray(values, dtype=float)
+    good = np.isfinite(array) & (array <= high) & ((array > low) if low_open else (array >= low))
+    if not np.all(good):
+        bad = float(array[~good].flat[0])
+        upper = "" if high == np.inf else f" <= {high:g}"
+        sign = "<" if low_open else "<="
+        raise ValueError(f"{name} = {bad!r}: allowed is a finite {low:g} {sign} {name}{upper}")
+    return array
+
+
+def friction_bound(r):
+    """Largest shear traction the contact can carry, g(r) = mu p(r) = 3/(2 pi) sqrt(1 - r^2).
+
+    r >= 0: distance from the centre (any shape), else ValueError. Dimensionless, 0 outside the
+    contact. Hertz.
+    """
+    r = checked("r", r)
+    return 1.5 / np.pi * np.sqrt(np.maximum((1 - r) * (1 + r), 0.0))
+
+
+def load_inside(r):
+    """Fraction of the normal load carried within radius r, 1 - (1 - r^2)^(3/2).
+
+    r >= 0 (any shape), else ValueError; 1 from the edge outwards. Dimensionless. Integral of
+    Hertz's pressure.
+    """
+    return mindlin_force(np.minimum(checked("r", r), 1.0) ** 2)
+
+
+def ring_bounds(edges):
+    """Mean friction bound of each ring between consecutive radii.
+
+    edges: n + 1 radii, strictly increasing in 0..1. Returns n values, dimensionless; times the
+    ring areas they sum to the load between the first and the last edge. Raises ValueError also
+    when the edges are not one increasing row.
+    """
+    edges = checked("edges", edges, high=1.0)
+    if edges.ndim != 1 or edges.size < 2 or not np.all(np.diff(edges) > 0):
+        raise ValueError(f"edges = {edges}: allowed is one row of at least two increasing radii")
+    # With y = sqrt(1 - r^2) the mean is (y1^3 - y2^3) / (pi (y1^2 - y2^2)); the common factor
+    # y1 - y2 is divided out so that thin rings lose no digits.
+    y = np.sqrt((1 - edges) * (1 + edges))
+    inner, outer = y[:-1], y[1:]
+    return (inner**2 + inner * outer + outer**2) / (np.pi * (inner + outer))
+
+
+def D(c):
+    """Complete elliptic integrals K(k) - E(k) at the modulus k = sqrt(1 - c^2) (Eqs 25, 26).
+
+    0 < c <= 1 (any shape), else ValueError. Dimensionless; falls from infinity (as ln(4/c) - 1) to
+    D(1) = 0.
+    """
+    return _D_of_log(np.log(checked("c", c, high=1.0, low_open=True)))[()]
+
+
+def _D_of_log(log_c):
+    """D as a function of ln c <= 0: accurate for c next to 1 and for c that underflows."""
+    k_squared = 0.0 - np.expm1(2 * log_c)
+    near = k_squared / 3 * elliprd(0.0, np.exp(2 * np.maximum(log_c, -20.0)), 1.0)
+    return np.where(log_c < -20.0, np.log(4.0) - 1 - log_c, near)
+
+
+D_HALF = float(D(0.5))
+"""D(1/2), the unit of the bore amplitude."""
+
+
+def lubkin_angle(stick_radius, poisson=0.0):
+    """Angle of pure torsion, from rest, that leaves a stick circle of this radius (Eq 24).
+
+    0 < stick_radius <= 1, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns u_lim/a.
+    """
+    stick_radius = checked("stick_radius", stick_radius, high=1.0, low_open=True)
+    return _twist_unit(poisson) * D(stick_radius)
+
+
+def lubkin_stick_radius(angle, poisson=0.0):
+    """Stick radius left by pure torsion through `angle` from rest (inverse of Eq 24).
+
+    angle >= 0 in u_lim/a, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns 0 < c <= 1:
+    angle 0 gives 1, and where c would underflow the smallest normal float, since the centre never
+    slips.
+    """
+    target = checked("angle", angle) / _twist_unit(poisson)
+    # Newton in ln c. There D falls with slope -E(k), between -pi/2 and -1, and is concave, so
+    # that from the tangent at c = 1 the iterates approach the root from one side.
+    log_c = -2 / np.pi * target
+    for _ in range(30):
+        slope = ellipe(-np.expm1(2 * log_c))
+        change = (_D_of_log(log_c) - target) / slope
+        log_c = np.minimum(log_c + change, 0.0)
+        if np.all(np.abs(change) <= 1e-8 * np.abs(log_c)):
+            break  # Newton squares the error, so this last step was exact
+    return np.maximum(np.exp(log_c), np.finfo(float).tiny)
+
+
+def bore_angle(amplitude, poisson=0.0):
+    """Angle of a bore amplitude, phi0 = phi~ phi_lk(1/2) (Eq 27).
+
+    amplitude >= 0, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns u_lim/a.
+    """
+    return checked("amplitude", amplitude) * _twist_unit(poisson) * D_HALF
+
+
+def bore_amplitude(angle, poisson=0.0):
+    """Bore amplitude of an angle, phi~ = phi0 / phi_lk(1/2) (Eq 27, inverse of bore_angle).
+
+    angle >= 0 in u_lim/a, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns a
+    dimensionless array.
+    """
+    return checked("angle", angle) / (_twist_unit(poisson) * D_HALF)
+
+
+def _twist_unit(poisson):
+    """Factor between D and the angle: torsion feels G alone, u_lim feels G* = 4G/(2-nu)."""
+    return 4 / (np.pi * (2 - checked("poisson", poisson, high=0.5)))
+
+
+def mindlin_force(u):
+    """Tangential force over mu*F_z after the displacement u from rest, 1 - (1 - u)^(3/2).
+
+    u >= 0 in u_lim (any shape), else ValueError; 1 from u = 1 on. Dimensionless. Cattaneo and
+    Mindlin.
+    """
+    u = np.minimum(checked("u", u), 1.0)
+    with np.errstate(divide="ignore"):  # ln 0 = -inf is right: everything slides
+        return -np.expm1(1.5 * np.log1p(-u))
+
+
+def mindlin_stick_radius(u):
+    """Stick radius after the displacement u from rest, sqrt(1 - u) (Eq 8).
+
+    u >= 0 in u_lim (any shape), else ValueError; 0 from u = 1 on. Dimensionless (in a).
+    """
+    return np.sqrt(1 - np.minimum(checked("u", u), 1.0))
+
+
+def mindlin_traction(r, u):
+    """Shear traction at radius r after the displacement u from rest: g, less g_c in the stick zone.
+
+    r >= 0, u >= 0 in u_lim (broadcast), else ValueError. Dimensionless. The bound of the inner
+    contact of radius c = sqrt(1 - u) is g_c = 3/(2 pi) sqrt(c^2 - r^2). Cattaneo and Mindlin;
+    exact for nu = 0.
+    """
+    r, u = np.broadcast_arrays(checked("r", r), np.minimum(checked("u", u), 1.0))
+    gap = 1 - u - r * r
+    sticks = gap > 0
+    # The difference of the two roots, written so that a small u loses no digits.
+    roots = np.sqrt(np.where(sticks, gap + u, 1.0)) + np.sqrt(np.where(sticks, gap, 0.0))
+    return np.where(sticks, 1.5 / np.pi * u / roots, friction_bound(r))[()]
+
+
+def lubkin_share(r, stick_radius):
+    """Share tau/g of the friction bound that pure torsion from rest uses at radius r.
+
+    r >= 0, 0 <= stick_radius <= 1 (broadcast; 0: slip everywhere), else ValueError. In 0..1, 1
+    from the stick radius outwards, the same for every Poisson's ratio. Lubkin (1951): the
+    rigid-rotation punches of all radii s from c to 1, each turned by -d phi_lk(s), summed in
+    closed form.
+    """
+    r, c = np.broadcast_arrays(checked("r", r), checked("stick_radius", stick_radius, high=1.0))
+    sticks = r < c
+    c = np.where(sticks, c, 0.5)
+    rho = np.where(sticks, r, 0.0) / c
+    # The sum is 1 - Lambda0 (Heuman), with incomplete integrals of modulus c at the angle
+    # arcsin(rho). Of the two complementary angles this one keeps the share exact at r = 0.
+    cos2, delta2 = (1 - rho) * (1 + rho), (1 - c * rho) * (1 + c * rho)
+    first = rho * elliprf(cos2, delta2, 1.0)
+    rest = rho**3 / 3 * elliprd(cos2, delta2, 1.0) + rho * np.sqrt(cos2 / delta2)
+    # c^2 K(k) tends to 0 with c, though c^2 alone underflows first.
+    k_term = np.where(c > 1e-150, c * c * ellipkm1(np.maximum(c * c, 1e-300)), 0.0)
+    share = 2 / np.pi * (ellipe((1 - c) * (1 + c)) * first - k_term * rest)
+    return np.where(sticks, np.clip(share, 0.0, 1.0), 1.0)[()]
+
+
+def lubkin_traction(r, stick_radius):
+    """Circumferential traction of pure torsion from rest with this stick radius.
+
+    r >= 0, 0 <= stick_radius <= 1 (broadcast), else ValueError. Dimensionless; the friction bound
+    in the slip ring. Lubkin (1951), see lubkin_share.
+    """
+    return lubkin_share(r, stick_radius) * friction_bound(r)
+
+
+def lubkin_torque(stick_radius):
+    """Torque of pure torsion from rest with this stick radius (integral of lubkin_traction).
+
+    0 <= stick_radius <= 1 (any shape), else ValueError. Returns mu*F_z*a: 0 at 1, TORQUE_FULL_SLIP
+    at 0; the same for every Poisson's ratio. Lubkin (1951), as the sum of the punch torques
+    (16/3) G s^3 (-d phi_lk(s)) from s = c to 1.
+    """
+    c = checked("stick_radius", stick_radius, high=1.0)[..., None]
+    # d D/ds = -E(k)/s leaves s^2 E(k). With s = t^2 its only singular point, s^4 ln s at 0, is
+    # flat enough for a fixed Gauss rule.
+    start = np.sqrt(c)
+    length = (1 - c) / (1 + start)
+    t = start + length * _UNIT_NODES
+    integral = np.sum(_UNIT_WEIGHTS * 2 * t**5 * ellipe((1 - t) * (1 + t) * (1 + t * t)), axis=-1)
+    return 4 / np.pi * length[..., 0] * integral
+
+
+@dataclass(frozen=True)
+class HertzContact:
+    """An elastic sphere pressed on a rigid flat, in SI units (Eqs 2 and 3 and Hertz's theory).
+
+    radius: of the sphere, m. load: F_z, N. young: Pa. poisson: 0..0.5. mu: coefficient of
+    friction. The normal and the tangential problem are taken as uncoupled. Raises ValueError for a
+    value that is not finite or not positive, or poisson outside 0..0.5.
+    """
+
+    radius: float
+    load: float
+    young: float
+    poisson: float
+    mu: float
+
+    def __post_init__(self):
+        for name in ("radius", "load", "young", "mu"):
+            checked(name, getattr(self, name), low_open=True)
+        checked("poisson", self.poisson, high=0.5)
+
+    @property
+    def E_star(self):
+        """Reduced modulus of elasticity E/(1 - nu^2), Pa (Eq 3)."""
+        return self.young / (1 - self.poisson**2)
+
+    @property
+    def G(self):
+        """Shear modulus E/(2 (1 + nu)), Pa."""
+        return self.young / (2 * (1 + self.poisson))
+
+    @property
+    def G_star(self):
+        """Reduced shear modulus 4G/(2 - nu), Pa (Eq 3)."""
+        return 4 * self.G / (2 - self.poisson)
+
+    @property
+    def contact_radius(self):
+        """Contact radius a, m (Hertz)."""
+        return (0.75 * self.load * self.radius / self.E_star) ** (1 / 3)
+
+    @property
+    def depth(self):
+        """Indentation depth d = a^2/R, m (Hertz)."""
+        return self.contact_radius**2 / self.radius
+
+    @property
+    def u_lim(self):
+        """Displacement at which the whole contact slides, mu d E*/G*, m (below Eq 2)."""
+        return self.mu * self.depth * self.E_star / self.G_star
+
+    def pressure(self, r):
+        """Normal pressure at the distance r >= 0 (m, any shape) from the centre, Pa (Hertz)."""
+        a = self.contact_radius
+        return self.load / a**2 * friction_bound(checked("r", r) / a)

@@ -1,0 +1,90 @@
+"""The model hierarchy: which model resolves which scene, and how well.
+
+| model     | transverse, nu = 0 | transverse, nu > 0 | bore (oscillating, continuous) |
+|-----------|--------------------|--------------------|--------------------------------|
+| rigid     | approximate, Eq 6  | approximate, Eq 6  | approximate, Eq 29; exact when continuous and steady |
+| slider    | approximate, Eq 7  | approximate        | not applicable: it cannot turn |
+| radial    | exact (rings)      | not applicable     | not applicable                 |
+| polar     | exact              | exact              | exact (rings x angular modes)  |
+| cartesian | exact              | exact              | exact (squares, any outline)   |
+
+"Exact" means: converges to the solution of the contact problem as its cells and steps are refined;
+"approximate": leaves out elasticity or partial slip, and no refinement brings it back.
+
+Every model that marches keeps the contract of ``models.contact.Contact``.  A new one is a file
+beside these and a row in ``MODELS``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from microslip.models.cartesian import CartesianContact
+from microslip.models.polar import PolarContact
+from microslip.models.radial import RadialContact
+from microslip.models.rigid import RigidContact
+from microslip.models.slider import slider_contact
+
+
+@dataclass(frozen=True)
+class Model:
+    """How a model is built and where it applies.
+
+    build(scene, poisson, cells, angles, focus) -> Contact; refuses(scene, poisson) -> reason or "";
+    exact(scene) -> whether refinement converges to the truth; cells, angles: coarsest resolution
+    that is worth running (1: there is nothing to refine).
+    """
+
+    build: Callable
+    refuses: Callable
+    exact: Callable
+    cells: int
+    angles: int = 1
+
+
+def _refuse_rotation_and_poisson(scene, poisson):
+    if scene.rotates:
+        return "rings alone cannot resolve a rotation"
+    return "rings alone cannot resolve nu > 0" if poisson > 0.0 else ""
+
+
+MODELS = {
+    "rigid": Model(
+        build=lambda scene, poisson, cells, angles, focus: RigidContact(
+            cells, angles, scene.rotates, focus
+        ),
+        refuses=lambda scene, poisson: "",
+        exact=lambda scene: not scene.periodic,
+        cells=8,
+        angles=8,
+    ),
+    "slider": Model(
+        build=lambda scene, poisson, cells, angles, focus: slider_contact(),
+        refuses=lambda scene, poisson: "a single slider cannot turn" if scene.rotates else "",
+        exact=lambda scene: False,
+        cells=1,
+    ),
+    "radial": Model(
+        build=lambda scene, poisson, cells, angles, focus: RadialContact.resolved(cells, focus),
+        refuses=_refuse_rotation_and_poisson,
+        exact=lambda scene: True,
+        cells=8,
+    ),
+    "polar": Model(
+        build=lambda scene, poisson, cells, angles, focus: PolarContact(
+            cells, angles, scene.rotates, poisson, focus
+        ),
+        refuses=lambda scene, poisson: "",
+        exact=lambda scene: True,
+        cells=8,
+        angles=4,
+    ),
+    "cartesian": Model(
+        build=lambda scene, poisson, cells, angles, focus: CartesianContact(cells, poisson),
+        refuses=lambda scene, poisson: "",
+        exact=lambda scene: True,
+        cells=16,
+    ),
+}
+"""Models by name."""

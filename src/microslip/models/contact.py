@@ -1,0 +1,78 @@
+"""The one contract of the models that march: what a contact is, and what a march returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+UNIT_STIFFNESS = 1.5
+"""Force over mu F_z per uniform displacement u_lim without slip, 2 G* a: turns an energy norm into
+a bound on a force, |dF| <= sqrt(1.5 <dq, A dq>)."""
+
+
+@dataclass(frozen=True, eq=False)
+class March:
+    """What one march along a path gives.
+
+    state: tractions at the end, shape (2, n_angles, n_radii) or (2, n, n), forward and lateral;
+    forces: forward force, lateral force, torque at each phase, shape (steps + 1, 3), over mu F_z
+    and mu F_z a; residual: sum over the stages of what the step solver left (force over mu F_z);
+    iterations, solves: step-solver iterations and stages; sensitivity: derivative of the end state
+    with respect to the start, shape (state.size, state.size), or None if it was not asked for.
+    """
+
+    state: np.ndarray
+    forces: np.ndarray
+    residual: float
+    iterations: int
+    solves: int
+    sensitivity: np.ndarray | None = None
+
+
+class Contact(Protocol):
+    """A discretised contact under given pressure.
+
+    bound, weight: friction bound and area of each point, broadcast to state[0];
+    compliance: displacement of a point under unit traction on itself, broadcast likewise;
+    forward_position, lateral_position: where the points are (units a), same shape;
+    has_sensitivity: whether ``march(..., sensitivity=True)`` is to be had cheaply.
+    """
+
+    bound: np.ndarray
+    weight: np.ndarray
+    compliance: np.ndarray
+    forward_position: np.ndarray
+    lateral_position: np.ndarray
+    has_sensitivity: bool
+
+    def displacement(self, state) -> np.ndarray:
+        """A q: elastic displacement of each point, same shape as the state."""
+
+    def mirrored(self, state) -> np.ndarray:
+        """The state after lateral -> -lateral (lateral traction negated)."""
+
+    def march(self, path, state, tolerance, sensitivity=False) -> March:
+        """March along a path from a state; every stage is solved to ``tolerance`` (a force)."""
+
+
+def energy_norm(contact, change):
+    """Bound on the force (over mu F_z) that a change of tractions carries, from its energy."""
+    energy = np.sum(contact.weight * (change * contact.displacement(change)).sum(axis=0))
+    return float(np.sqrt(UNIT_STIFFNESS * max(energy, 0.0)))
+
+
+def full_slip(contact, forward, lateral):
+    """Tractions on the bound along the field (forward, lateral); zero field: no traction."""
+    size = np.hypot(forward, lateral)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        unit = np.where(size > 0, np.stack([forward, lateral]) / size, 0.0)
+    return unit * contact.bound
+
+
+def forces(contact, state):
+    """Forward force, lateral force (mu F_z) and torque (mu F_z a) of tractions, shape (3,)."""
+    forward, lateral = contact.weight * state
+    torque = contact.lateral_position * forward - contact.forward_position * lateral
+    return np.array([forward.sum(), lateral.sum(), torque.sum()])

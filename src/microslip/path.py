@@ -1,0 +1,89 @@
+"""The path in time: phases, the integrator's stages, and the rigid displacement at each of them.
+
+With z = A q - w (A q: elastic displacement, w: rigid displacement) the contact obeys
+dz = -(slip), slip and traction bound by Coulomb's law: a differential inclusion, rate-independent.
+Stiffly accurate diagonally implicit Runge-Kutta methods suit it: every stage is one Coulomb step,
+
+    A q_i + r_i = b_i,     b_i = z + w(t + c_i h) - Sum_{j<i} (a_ij / gamma) r_j,
+
+with r_i = gamma h (slip rate), and the last stage is the end of the step, so that tractions there
+never leave the friction bound.  Backward Euler is the one with a single stage.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+_GAMMA = 1.0 - np.sqrt(0.5)
+
+
+@dataclass(frozen=True)
+class Integrator:
+    """A stiffly accurate DIRK method: stage times c and the carried slips a_ij / gamma (j < i)."""
+
+    name: str
+    order: int
+    times: tuple[float, ...]
+    carried: tuple[tuple[float, ...], ...]
+
+    def carry_matrix(self):
+        """Carried slips as an array of shape (stages, stages), zero on and above the diagonal."""
+        out = np.zeros((len(self.times), len(self.times)))
+        for i, row in enumerate(self.carried):
+            out[i, : len(row)] = row
+        return out
+
+
+EULER = Integrator("euler", 1, (1.0,), ((),))
+SDIRK2 = Integrator("sdirk2", 2, (_GAMMA, 1.0), ((), ((1.0 - _GAMMA) / _GAMMA,)))
+"""Two stages, L-stable, second order; the default: at equal work far ahead of backward Euler."""
+
+INTEGRATORS = {method.name: method for method in (EULER, SDIRK2)}
+
+TURNING_POINT_GRADING = 0.4
+"""Steps shrink to 1 - 0.4 of the mean at the turning points, where the direction turns fastest."""
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """A stretch of rigid motion cut into steps.
+
+    phase: shape (steps + 1,); start: displacement at the first phase, shape (3,) (forward, lateral,
+    angle); stages: displacement at every stage, shape (steps, stages, 3), the last one at the end
+    of the step; carry: shape (stages, stages).
+    """
+
+    phase: np.ndarray
+    start: np.ndarray
+    stages: np.ndarray
+    carry: np.ndarray
+
+    @property
+    def steps(self):
+        return len(self.phase) - 1
+
+    def positions(self):
+        """Rigid displacement at every phase, shape (steps + 1, 3)."""
+        return np.concatenate([self.start[None], self.stages[:, -1]])
+
+    def mean(self, values):
+        """Time average of values at the phases (first axis), by the trapezoidal rule."""
+        return np.trapezoid(values, self.phase, axis=0) / (self.phase[-1] - self.phase[0])
+
+
+def make_path(displacement, phase, integrator=SDIRK2):
+    """Path through the given phases; displacement(phase) -> (forward, lateral, angle)."""
+    phase = np.asarray(phase, dtype=float)
+    times = phase[:-1, None] + np.asarray(integrator.times) * np.diff(phase)[:, None]
+    times[:, -1] = phase[1:]
+    stages = np.stack(displacement(times), axis=-1)
+    start = np.stack(displacement(phase[:1]), axis=-1)[0]
+    return Path(phase, start, stages, integrator.carry_matrix())
+
+
+def half_period_phases(steps, grading=TURNING_POINT_GRADING):
+    """Phases from one turning point (-pi/2) to the next, shape (steps + 1,), finer at both."""
+    t = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
+    return t + 0.5 * grading * np.sin(2 * t)

@@ -1,0 +1,124 @@
+"""The periodic state: a fixed point of "march one (half) period", found without waiting for it.
+
+The plain march forgets its start only after about 1/(2 pi v~) periods.  Here the map of the
+tractions over one period is solved for its fixed point: by Newton's method where the model gives
+the derivative of its march, else by Anderson acceleration.  Both start from full forward slip: from
+there the mean tractions relax towards the periodic ones without losing slip on the way, which is
+what keeps an accelerated map from settling where nothing moves.  The verdict is always that of the
+plain map: its residual, and the distance to the fixed point that the last correction measured.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from microslip.friction import project
+from microslip.models.contact import energy_norm
+
+PLAIN_PERIODS = 2
+ANDERSON_DEPTH = 12
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicState:
+    """Result of the search.
+
+    forces: (steps + 1, 3) over the last (half) period marched; start: tractions at its beginning;
+    residual: what the plain map still changed, distance: estimated distance from the fixed point
+    (both bounds on a force over mu F_z); solver_residual: sum over the stages of the last period;
+    periods: maps marched; iterations, solves: of the step solver, over all of them.
+    """
+
+    forces: np.ndarray
+    start: np.ndarray
+    residual: float
+    distance: float
+    solver_residual: float
+    periods: int
+    iterations: int
+    solves: int
+    converged: bool
+
+
+def find_periodic_state(contact, path, start, tolerance, step_tolerance, max_periods=400):
+    """March half periods until the state is periodic to ``tolerance`` (a force over mu F_z).
+
+    contact: models.contact.Contact; path: half a period, from turning point to turning point, whose
+    second half is its lateral mirror image; start: state, shape of the contact.  The returned
+    forces belong to a march from ``start`` whose distance from the periodic state is ``distance``.
+    Never raises for want of convergence: see ``converged``.
+    """
+    newton = contact.has_sensitivity
+    accelerate = _newton_correction if newton else Anderson(contact, ANDERSON_DEPTH)
+    state, best = start, None
+    iterations = solves = 0
+    distance = np.inf
+    for period in range(1, max_periods + 1):
+        use_newton = newton and period > PLAIN_PERIODS
+        march = contact.march(path, state, step_tolerance, sensitivity=use_newton)
+        iterations += march.iterations
+        solves += march.solves
+        image = contact.mirrored(march.state)
+        change = image - state
+        residual = energy_norm(contact, change)
+        if newton and not use_newton:
+            proposal = image
+        elif newton:
+            proposal = accelerate(contact, march, state, change)
+        else:
+            proposal = accelerate(state, image)
+        proposal = project(proposal, contact.bound)
+        distance = max(energy_norm(contact, proposal - state), residual)
+        converged = distance <= tolerance and (use_newton or not newton)
+        if best is None or distance < best.distance or converged:
+            best = PeriodicState(
+                march.forces,
+                state,
+                residual,
+                distance,
+                march.residual,
+                period,
+                iterations,
+                solves,
+                converged,
+            )
+        if converged:
+            return best
+        state = proposal
+    return best
+
+
+def _newton_correction(contact, march, state, change):
+    """Newton's next state for the fixed point of the mirrored march (derivative from the march)."""
+    size = state.size
+    jacobian = march.sensitivity
+    mirrored = contact.mirrored(np.ones_like(state)).reshape(size)  # signs; points map to themselves
+    system = np.eye(size) - mirrored[:, None] * jacobian
+    step = np.linalg.lstsq(system, change.reshape(size), rcond=1e-13)[0]
+    return state + step.reshape(state.shape)
+
+
+class Anderson:
+    """Anderson acceleration of a fixed-point map on tractions, least squares in a force metric."""
+
+    def __init__(self, contact, depth):
+        self.scale = np.sqrt(contact.weight * contact.compliance)
+        self.depth = depth
+        self.images, self.changes = [], []
+
+    def __call__(self, state, image):
+        """Next state from the pairs (state, image) seen so far."""
+        self.images.append(image)
+        self.changes.append(image - state)
+        if len(self.changes) > self.depth + 1:
+            self.images.pop(0)
+            self.changes.pop(0)
+        if len(self.changes) == 1:
+            return image
+        scaled = [(change * self.scale).ravel() for change in self.changes]
+        differences = np.stack([b - a for a, b in zip(scaled, scaled[1:])], axis=1)
+        weights = np.linalg.lstsq(differences, scaled[-1], rcond=1e-9)[0]
+        moves = [b - a for a, b in zip(self.images, self.images[1:])]
+        return image - sum(w * move for w, move in zip(weights, moves))

@@ -1,0 +1,97 @@
+"""Datasets to figures.
+
+The figures draw what the datasets hold and compute nothing: every curve, theory included, is a
+variable of a dataset. One module draws one kind of figure; `style` holds the look, `data` the
+checks on what a dataset holds.
+
+    figure = draw("fig2_transverse_map", {"transverse": xr.open_dataset("results/transverse.nc")})
+    save(figure, "results/figures/fig2_transverse_map.pdf")
+
+Importing this package is cheap: matplotlib is loaded by the first `draw` or `save`.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+#: Every figure and the datasets it is drawn from.
+FIGURES: dict[str, tuple[str, ...]] = {
+    "fig1_force_history": ("transverse",),
+    "fig2_transverse_map": ("transverse",),
+    "fig3_traction_field": ("continuous_bore",),
+    "fig4_continuous_bore": ("continuous_bore",),
+    "fig5_transients": ("continuous_bore",),
+    "fig6_bore_map": ("bore",),
+}
+
+#: File formats `save` can write, with the metadata that would otherwise hold dates or versions.
+FORMATS: dict[str, dict[str, None]] = {
+    "png": {"Software": None},
+    "pdf": {"Creator": None, "Producer": None, "CreationDate": None},
+}
+
+_MODULES = {
+    "fig1_force_history": "history",
+    "fig2_transverse_map": "maps",
+    "fig3_traction_field": "field",
+    "fig4_continuous_bore": "steady",
+    "fig5_transients": "transients",
+    "fig6_bore_map": "maps",
+}
+
+__all__ = ["FIGURES", "FORMATS", "draw", "save"]
+
+
+def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
+    """Draw one figure.
+
+    name: a key of `FIGURES`. datasets: at least the datasets that `FIGURES[name]` lists, by their
+    key; others are ignored. Raises ValueError if the name is unknown or a dataset, variable or
+    dimension the figure needs is missing. The figure belongs to no window and no global state.
+    """
+    if name not in FIGURES:
+        raise ValueError(f"unknown figure {name!r}; known figures: {', '.join(FIGURES)}")
+    missing = [key for key in FIGURES[name] if key not in datasets]
+    if missing:
+        given = ", ".join(map(repr, datasets)) or "none"
+        raise ValueError(f"figure {name} needs the dataset {missing[0]!r}; given: {given}")
+    from microslip.plot.style import style
+
+    module = importlib.import_module(f"microslip.plot.{_MODULES[name]}")
+    with style():
+        figure = module.draw(name, *(datasets[key] for key in FIGURES[name]))
+        for _ in range(2):  # the layout settles, and is then fixed: every save gives the same
+            figure.draw_without_rendering()
+        figure.set_layout_engine("none")
+    return figure
+
+
+def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
+    """Write a figure as `.png` (200 dpi) or `.pdf`, whole or not at all, and return its path.
+
+    The same figure gives the same bytes: no date and no version is written. The folder is made if
+    it is not there.
+    """
+    from microslip.plot.style import style
+
+    path = Path(path)
+    kind = path.suffix.lower().removeprefix(".")
+    if kind not in FORMATS:
+        raise ValueError(f"cannot write {path.name!r}: the name must end in .png or .pdf")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        with style():
+            figure.savefig(beside, format=kind, metadata=dict(FORMATS[kind]))
+        os.replace(beside, path)
+    finally:
+        beside.unlink(missing_ok=True)
+    return path

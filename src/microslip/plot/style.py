@@ -1,0 +1,125 @@
+"""The look of all figures, in one place: sizes, fonts, colours, labels of quantities."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager
+
+import matplotlib.style
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+#: Journal column widths in inches (86 mm and 180 mm).
+SINGLE, DOUBLE = 3.39, 7.09
+
+# Okabe and Ito's colours, which all common kinds of colour vision tell apart.
+BLACK, BLUE, VERMILLION = "#000000", "#0072B2", "#D55E00"
+GREEN, ORANGE, PURPLE = "#009E73", "#E69F00", "#CC79A7"
+GREY, PALE = "#6E6E6E", "#D4D4D4"
+
+#: Perceptually even and readable in grey and by colour-blind readers.
+COLOURMAP = "cividis"
+
+# Line styles, so that curves differ without colour as well.
+SOLID = "-"
+DASHED = (0, (5.0, 2.0))
+DASHDOT = (0, (6.0, 1.6, 1.2, 1.6))
+DOTTED = (0, (1.0, 1.6))
+
+#: Computed values: the same marker in every figure.
+COMPUTED = {
+    "linestyle": "none",
+    "marker": "o",
+    "markersize": 3.2,
+    "color": BLACK,
+    "markeredgewidth": 0.7,
+    "zorder": 5,
+}
+
+RC = {
+    "figure.dpi": 200,  # the layout is solved for the PNG that is written
+    "savefig.dpi": 200,
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],  # ships with matplotlib: the same on every machine
+    "mathtext.fontset": "dejavusans",
+    "font.size": 8,
+    "axes.labelsize": 8.5,
+    "axes.titlesize": 8.5,
+    "xtick.labelsize": 8,
+    "ytick.labelsize": 8,
+    "legend.fontsize": 8,
+    "legend.frameon": False,
+    "legend.handlelength": 2.6,
+    "legend.borderaxespad": 0.4,
+    "legend.labelspacing": 0.35,
+    "axes.linewidth": 0.7,
+    "lines.linewidth": 1.3,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.top": True,
+    "ytick.right": True,
+    "xtick.major.width": 0.7,
+    "ytick.major.width": 0.7,
+    "xtick.minor.width": 0.5,
+    "ytick.minor.width": 0.5,
+    "hatch.linewidth": 0.6,
+    "pdf.fonttype": 42,
+    "figure.constrained_layout.h_pad": 0.04,
+    "figure.constrained_layout.w_pad": 0.05,
+}
+
+# Labels of quantities (mathtext).
+MU_MACRO = r"$\tilde{\mu}_\mathrm{macro}$"
+FORCE_FORWARD = r"$F_\mathrm{forward}/(\mu F_z)$"
+FORCE_LATERAL = r"$F_\mathrm{lateral}/(\mu F_z)$"
+
+
+def style() -> AbstractContextManager[None]:
+    """A context with the look of the figures; the user's own settings play no part in it."""
+    return matplotlib.style.context(RC, after_reset=True)
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure of that size in inches which places its own panels without overlap."""
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def number(value: float) -> str:
+    """A number for a label, inside mathtext: three digits, powers of ten written out."""
+    text = f"{value:.3g}"
+    if "e" not in text:
+        return text
+    mantissa, exponent = text.split("e")
+    power = f"10^{{{int(exponent)}}}"
+    return power if mantissa == "1" else rf"{mantissa}\times {power}"
+
+
+def letter(axes: Axes, which: str, note: str = "") -> None:
+    """Head a panel with its letter and an optional note, above its left corner."""
+    axes.set_title(_heading(which, note), loc="left", pad=5)
+
+
+def legend_above(axes: Axes, which: str, note: str) -> None:
+    """Head a panel with its letter, a note and its legend, where it can hide nothing."""
+    legend = axes.legend(
+        title=_heading(which, note),
+        alignment="left",
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        ncols=2,
+        handlelength=2.3,
+        columnspacing=1.0,
+        borderaxespad=0.0,
+        borderpad=0.2,
+    )
+    legend.get_title().set_fontsize(RC["axes.titlesize"])
+
+
+def _heading(which: str, note: str) -> str:
+    return rf"$\bf{{{which}}}$" + (f"   {note}" if note else "")
+
+
+def unit_range(axes: Axes, low: float = 0.0, high: float = 1.0, margin: float = 0.04) -> None:
+    """The same vertical range, with a margin, for every panel that shows shares of mu F_z."""
+    span = (high - low) * margin
+    axes.set_ylim(low - span, high + span)
+    axes.set_yticks([low + i * (high - low) / 5 for i in range(6)])

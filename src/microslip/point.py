@@ -1,0 +1,268 @@
+"""The public question and answer: one point, certified; a force history; a traction field."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from microslip import hertz, theory
+from microslip.accuracy import certify
+from microslip.models import MODELS
+from microslip.models.contact import full_slip
+from microslip.path import SDIRK2, make_path
+from microslip.scenes import scene_named
+from microslip.simulate import STEADY_TRAVEL, Resolution, forward_slip, simulate
+
+PERIODICITY_SHARE = 0.03
+"""Share of the tolerance that the distance from the periodic state may take."""
+SMALLEST_TOLERANCE = 1e-6
+COARSEST_STEPS = 24
+CLOSED_FORM = "closed-form"
+
+
+@dataclass(frozen=True)
+class Result:
+    """Friction at one point, and how far to trust it.  All numbers dimensionless.
+
+    mu_macro: mean forward force over mu F_z; mu_macro_error: sum of the four error estimates that
+    follow it; mu_torque, mu_torque_error: torque over its value at zero forward velocity (steady
+    scenes only, else None); cells, angles, steps_per_period: finest resolution used (angles: points
+    on half the disc, 1 where rings or squares suffice); periods: longest march, in half periods;
+    iterations, work: step-solver iterations, and step solves x unknowns, over all runs.
+    """
+
+    scene: str
+    velocity: float
+    amplitude: float | None
+    poisson: float
+    model: str
+    tolerance: float
+    mu_macro: float
+    mu_macro_error: float
+    error_space: float
+    error_time: float
+    error_periodicity: float
+    error_solver: float
+    mu_torque: float | None
+    mu_torque_error: float | None
+    converged: bool
+    reason: str
+    cells: int
+    angles: int
+    steps_per_period: int
+    periods: int
+    iterations: int
+    work: int
+    solve_time_s: float
+
+    def to_dict(self):
+        """Fields as a plain dict, without those that the scene does not have."""
+        fields = asdict(self)
+        return {k: v for k, v in fields.items() if v is not None}
+
+
+def solve(
+    scene,
+    velocity,
+    amplitude=None,
+    *,
+    poisson=0.0,
+    model="auto",
+    tolerance=1e-3,
+    cells=None,
+    steps=None,
+):
+    """Macroscopic friction of a vibrated contact at one point.
+
+    scene: "transverse", "bore" or "continuous-bore"; velocity, amplitude: the paper's dimensionless
+    groups (amplitude: None for continuous-bore; velocity 0: the limit v -> 0); poisson: nu;
+    model: "auto" or a name in models.MODELS; tolerance: absolute, on mu_macro; cells, steps (in a
+    full period): impose a resolution instead of letting the tolerance choose.
+    Returns a Result; ``converged`` is False, with the reason, where the tolerance was not met.
+    Raises ValueError, naming the argument, for input out of range or a model that does not apply.
+    """
+    kind, velocity, amplitude, poisson = checked_point(scene, velocity, amplitude, poisson)
+    tolerance = _number("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
+    cells, steps = _count("cells", cells, 4), _count("steps", steps, 8)
+    name = choose_model(kind, poisson, model)
+    started = time.perf_counter()
+    point = dict(
+        scene=kind.name, velocity=velocity, amplitude=amplitude, poisson=poisson, tolerance=tolerance
+    )
+    exact = _closed_form(kind, velocity, amplitude, poisson) if model == "auto" else None
+    if exact is not None:
+        return _exact_result(point, exact, time.perf_counter() - started)
+    if velocity == 0.0:
+        raise ValueError(
+            f"velocity = 0: model {name!r} marches forward; allowed is velocity > 0, or model 'auto'"
+        )
+    if kind.periodic and amplitude == 0.0:
+        return _exact_result(point | {"model": name}, (1.0, None), time.perf_counter() - started)
+    base, axes, imposed = _plan(kind, name, tolerance, cells, steps)
+    certified = certify(
+        lambda resolution: simulate(
+            kind, velocity, amplitude, poisson, name, resolution, PERIODICITY_SHARE * tolerance
+        ),
+        base,
+        axes,
+        tolerance,
+        imposed,
+    )
+    steady = not kind.periodic
+    within = certified.error <= tolerance or bool(imposed)
+    reason = certified.reason
+    if certified.converged and not within:
+        reason = f"estimated error {certified.error:.1e} above the tolerance"
+    return Result(
+        **point,
+        model=name,
+        mu_macro=certified.mu if certified.converged else _or_nan(certified.mu),
+        mu_macro_error=certified.error,
+        **{f"error_{source}": error for source, error in certified.errors.items()},
+        mu_torque=certified.torque if steady else None,
+        mu_torque_error=certified.torque_error + certified.errors["periodicity"] if steady else None,
+        converged=bool(certified.converged and within),
+        reason=reason,
+        cells=certified.finest.cells,
+        angles=certified.finest.angles,
+        steps_per_period=2 * certified.finest.steps if kind.periodic else 0,
+        periods=certified.periods,
+        iterations=certified.iterations,
+        work=certified.work,
+        solve_time_s=time.perf_counter() - started,
+    )
+
+
+def choose_model(scene, poisson, model="auto"):
+    """The model to use: the cheapest that is exact for the scene, or the one asked for.
+
+    Rings where the traction depends on the radius alone (translation at nu = 0), angular modes
+    otherwise: squares are never cheaper on a circular contact.  Raises ValueError for an unknown
+    model or one that does not apply.
+    """
+    if model == "auto":
+        return "polar" if scene.rotates or poisson > 0.0 else "radial"
+    if model not in MODELS:
+        raise ValueError(f"model = {model!r}: allowed is one of auto, {', '.join(MODELS)}")
+    refusal = MODELS[model].refuses(scene, poisson)
+    if refusal:
+        raise ValueError(f"model = {model!r}: does not apply to {scene.name}: {refusal}")
+    return model
+
+
+def checked_point(scene, velocity, amplitude, poisson):
+    """Scene record and numbers of a point; raises ValueError naming the argument at fault."""
+    kind = scene_named(scene)
+    velocity = _number("velocity", velocity, 0.0)
+    poisson = _number("poisson", poisson, 0.0, 0.5)
+    if kind.periodic:
+        if amplitude is None:
+            raise ValueError(f"amplitude = None: {kind.name} needs an amplitude >= 0")
+        amplitude = _number("amplitude", amplitude, 0.0)
+    elif amplitude is not None:
+        raise ValueError(f"amplitude = {amplitude}: {kind.name} has no amplitude")
+    return kind, velocity, amplitude, poisson
+
+
+def _number(name, value, low, high=math.inf):
+    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+        raise ValueError(f"{name} = {value!r}: allowed is a number")
+    value = float(value)
+    if not (math.isfinite(value) and low <= value <= high):
+        upper = f" and at most {high:g}" if high < math.inf else ""
+        raise ValueError(f"{name} = {value!r}: allowed is a finite number of at least {low:g}{upper}")
+    return value
+
+
+def _count(name, value, low):
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < low:
+        raise ValueError(f"{name} = {value!r}: allowed is a whole number of at least {low}")
+    if value % 2:
+        raise ValueError(f"{name} = {value!r}: allowed is an even number (half of it is run beside)")
+    return int(value)
+
+
+def _plan(scene, name, tolerance, cells, steps):
+    """Base resolution, axes to refine, and those among them that the caller imposed."""
+    model = MODELS[name]
+    angles = model.angles if _has_angles(scene, name) else 1
+    base_steps = COARSEST_STEPS * max(1.0, (1e-3 / tolerance) ** 0.5)
+    base = Resolution(
+        cells=model.cells if cells is None else cells,
+        angles=angles,
+        steps=3 * round(base_steps / 3) if steps is None else steps // 2,
+    )
+    axes = {
+        "cells": model.cells > 1 and (scene.rotates or name != "rigid"),
+        "angles": angles > 1,
+        "steps": scene.periodic,
+    }
+    imposed = {"cells": cells is not None, "steps": steps is not None}
+    return (
+        base,
+        tuple(axis for axis, there in axes.items() if there),
+        tuple(axis for axis, set_ in imposed.items() if set_ and axes[axis]),
+    )
+
+
+def _has_angles(scene, name):
+    return MODELS[name].angles > 1 and (name != "rigid" or scene.rotates)
+
+
+def _closed_form(scene, velocity, amplitude, poisson):
+    """(mu, torque) where nothing has to be computed, else None."""
+    if scene.periodic and amplitude == 0.0:
+        return 1.0, None
+    if velocity > 0.0:
+        return None
+    if not scene.periodic:
+        return 0.0, 1.0
+    if scene.name == "bore":
+        return float(theory.static_limit_bore(amplitude)), None
+    if poisson == 0.0:
+        return float(theory.static_limit_transverse(amplitude)), None
+    raise ValueError(
+        f"velocity = 0: the limit of the {scene.name} scene is known for poisson = 0 only"
+    )
+
+
+def _exact_result(point, values, seconds):
+    mu, torque = values
+    return Result(
+        **{"model": CLOSED_FORM} | point,
+        mu_macro=mu,
+        mu_macro_error=1e-12,
+        error_space=0.0,
+        error_time=0.0,
+        error_periodicity=0.0,
+        error_solver=1e-12,
+        mu_torque=torque,
+        mu_torque_error=None if torque is None else 1e-12,
+        converged=True,
+        reason="",
+        cells=0,
+        angles=0,
+        steps_per_period=0,
+        periods=0,
+        iterations=0,
+        work=0,
+        solve_time_s=seconds,
+    )
+
+
+def _or_nan(mu):
+    return mu if math.isfinite(mu) else math.nan
+
+
+def warm_up():
+    """Compile every kernel once (and leave it in Numba's cache); takes seconds the first time."""
+    solve("transverse", 0.5, 0.5, tolerance=1e-2)
+    solve("transverse", 0.5, 0.5, poisson=0.3, tolerance=1e-2)
+    solve("bore", 0.5, 0.5, tolerance=1e-2)
+    solve("transverse", 0.5, 0.5, model="cartesian", cells=4, steps=8, tolerance=1e-1)
+    solve("continuous-bore", 0.5, tolerance=1e-2)

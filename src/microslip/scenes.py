@@ -1,0 +1,112 @@
+"""What moves: the rigid in-plane motions of the counterbody and their dimensionless groups.
+
+Names do not depend on the paper's axes: *forward* is the direction of sliding, *lateral* the one
+across it, with forward x lateral such that a positive angle moves points on the positive lateral
+side forward.  Displacements are in u_lim, angles in u_lim / a, time is the phase omega t.
+
+A scene is one ``Scene`` record.  To add a motion write its displacement and say which symmetries
+it has; nothing else in the package names a scene.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from microslip import hertz
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One kind of motion.
+
+    displacement(phase, velocity, amplitude, poisson) -> (forward, lateral, angle), arrays of the
+    shape of ``phase``.
+    periodic: the motion oscillates with period 2 pi and needs an amplitude; otherwise it is steady.
+    rotates: the angle is not zero, so tractions depend on the angle around the contact, with mirror
+    symmetry across the lateral axis; without it they have point symmetry.
+    half_period_mirror: half a period later the motion is its own image under lateral -> -lateral.
+    focus(velocity, amplitude): radius where the traction has its kink (None: nowhere special).
+    """
+
+    name: str
+    summary: str
+    displacement: Callable
+    periodic: bool
+    rotates: bool
+    half_period_mirror: bool
+    focus: Callable
+    velocity_label: str
+    amplitude_label: str = ""
+
+
+def _transverse(phase, velocity, amplitude, poisson):
+    """Eq 1 with Eqs 2 and 4: forward v~ t, lateral y~ sin t."""
+    return velocity * phase, amplitude * np.sin(phase), np.zeros_like(phase)
+
+
+def _bore(phase, velocity, amplitude, poisson):
+    """Eq 23 with Eqs 27 and 28: forward v~ phi_0 t, angle phi_0 sin t."""
+    angle = hertz.bore_angle(amplitude, poisson)
+    return velocity * angle * phase, np.zeros_like(phase), angle * np.sin(phase)
+
+
+def _continuous_bore(phase, velocity, amplitude, poisson):
+    """Eqs 12 and 13: forward v~ and angle 1 for each unit of turned angle (in u_lim / a)."""
+    return velocity * phase, np.zeros_like(phase), phase + 0.0
+
+
+def _transverse_focus(velocity, amplitude):
+    """Mindlin's stick radius of the oscillation alone (Eq 8); nowhere once it slides fully."""
+    return float(np.sqrt(1.0 - amplitude)) if amplitude < 1.0 else None
+
+
+def _bore_focus(velocity, amplitude):
+    """Lubkin's stick radius of the oscillation alone (Eq 30)."""
+    return float(hertz.lubkin_stick_radius(hertz.bore_angle(amplitude)))
+
+
+TRANSVERSE = Scene(
+    name="transverse",
+    summary="forward sliding with a lateral oscillation",
+    displacement=_transverse,
+    periodic=True,
+    rotates=False,
+    half_period_mirror=True,
+    focus=_transverse_focus,
+    velocity_label="v0 / (omega u_lim)",
+    amplitude_label="y0 / u_lim",
+)
+BORE = Scene(
+    name="bore",
+    summary="forward sliding with an oscillating rotation about the contact normal",
+    displacement=_bore,
+    periodic=True,
+    rotates=True,
+    half_period_mirror=True,
+    focus=_bore_focus,
+    velocity_label="v0 / (Omega phi0 a)",
+    amplitude_label="phi0 / phi_lk(a/2)",
+)
+CONTINUOUS_BORE = Scene(
+    name="continuous-bore",
+    summary="forward sliding with a steady rotation about the contact normal",
+    displacement=_continuous_bore,
+    periodic=False,
+    rotates=True,
+    half_period_mirror=False,
+    focus=lambda velocity, amplitude: velocity if velocity < 1.0 else None,
+    velocity_label="v0 / (omega a)",
+)
+
+SCENES = {scene.name: scene for scene in (TRANSVERSE, BORE, CONTINUOUS_BORE)}
+
+
+def scene_named(name):
+    """The scene of this name; raises ValueError listing the known ones."""
+    try:
+        return SCENES[name]
+    except (KeyError, TypeError):
+        raise ValueError(f"scene = {name!r}: allowed is one of {', '.join(SCENES)}") from None

@@ -1,0 +1,135 @@
+"""One run at one resolution: build the contact and the path, find the state that repeats itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from microslip import hertz
+from microslip.models import MODELS
+from microslip.models.contact import energy_norm, full_slip
+from microslip.path import SDIRK2, half_period_phases, make_path
+from microslip.periodic import find_periodic_state
+
+STEADY_STRETCH = 8
+"""Steps marched between two looks at whether a steady motion has reached its steady state."""
+STEADY_TRAVEL = 0.5
+"""Largest rigid displacement of a steady motion in one step, in u_lim."""
+MAX_STRETCHES = 200
+
+
+@dataclass(frozen=True, order=True)
+class Resolution:
+    """Cells (rings, or squares along a side), angular points on half the disc, steps a half period
+    (steady motion: not used)."""
+
+    cells: int
+    angles: int
+    steps: int
+
+
+@dataclass(frozen=True)
+class Run:
+    """Outcome of one run: forward friction and torque over their full-slip values, and the effort.
+
+    distance: estimated distance from the periodic (steady) state; solver_residual: summed over the
+    last period; both forces over mu F_z.  work: step solves x unknowns.
+    """
+
+    mu: float
+    torque: float
+    distance: float
+    solver_residual: float
+    periods: int
+    iterations: int
+    solves: int
+    work: int
+    converged: bool
+    reason: str
+
+
+def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance):
+    """Run ``model`` on a scene at one resolution to its periodic (or steady) state.
+
+    scene: scenes.Scene; velocity > 0, amplitude > 0 (None for steady scenes), poisson in 0..0.5:
+    checked by the caller; tolerance: of the periodic state, a force over mu F_z, steps are solved
+    ten thousand times tighter.  Returns a Run; never raises for want of convergence.
+    """
+    focus = scene.focus(velocity, amplitude)
+    contact = MODELS[model].build(scene, poisson, resolution.cells, resolution.angles, focus)
+
+    def displacement(phase):
+        return scene.displacement(phase, velocity, amplitude, poisson)
+
+    step_tolerance = 1e-3 * tolerance
+    if not scene.periodic:
+        return _steady(contact, displacement, velocity, tolerance, step_tolerance)
+    grading = {"grading": contact.grading} if hasattr(contact, "grading") else {}
+    path = make_path(displacement, half_period_phases(resolution.steps, **grading), SDIRK2)
+    start = forward_slip(contact)
+    found = find_periodic_state(contact, path, start, tolerance, step_tolerance)
+    mean = path.mean(found.forces)
+    solved = found.solver_residual <= found_limit(path, step_tolerance)
+    reason = ""
+    if not found.converged:
+        reason = f"no periodic state within {found.periods} half periods: {found.distance:.1e} left"
+    elif not solved:
+        reason = f"a step was left unsolved: residual {found.solver_residual:.1e}"
+    return Run(
+        mu=float(mean[0]),
+        torque=float(mean[2]) / hertz.TORQUE_FULL_SLIP,
+        distance=found.distance,
+        solver_residual=found.solver_residual,
+        periods=found.periods,
+        iterations=found.iterations,
+        solves=found.solves,
+        work=found.solves * start.size,
+        converged=found.converged and solved,
+        reason=reason,
+    )
+
+
+def found_limit(path, step_tolerance):
+    """Largest sum of residuals that a march solved to ``step_tolerance`` can leave."""
+    return path.stages.shape[0] * path.stages.shape[1] * step_tolerance
+
+
+def forward_slip(contact):
+    """Every point on its bound, forward: the state that the search for periodicity starts from."""
+    ones = np.ones_like(contact.forward_position)
+    return full_slip(contact, ones, 0.0 * ones)
+
+
+def _steady(contact, displacement, velocity, tolerance, step_tolerance):
+    """March a steady motion until its tractions stand still."""
+    step = STEADY_TRAVEL / max(1.0, velocity)
+    state, periods, iterations, solves = forward_slip(contact), 0, 0, 0
+    previous, distance = np.inf, np.inf
+    for stretch in range(MAX_STRETCHES):
+        phase = step * (stretch * STEADY_STRETCH + np.arange(STEADY_STRETCH + 1))
+        march = contact.march(make_path(displacement, phase), state, step_tolerance)
+        change = energy_norm(contact, march.state - state)
+        state = march.state
+        periods, iterations = periods + 1, iterations + march.iterations
+        solves += march.solves
+        # the changes of a contraction fall geometrically; what is left is their tail
+        ratio = min(change / previous, 0.9) if previous > 0.0 else 0.0
+        distance = change / (1.0 - ratio) if np.isfinite(previous) else np.inf
+        previous = change
+        if distance <= tolerance:
+            break
+    solved = march.residual <= march.solves * step_tolerance
+    converged = bool(distance <= tolerance and solved)
+    return Run(
+        mu=float(march.forces[-1, 0]),
+        torque=float(march.forces[-1, 2]) / hertz.TORQUE_FULL_SLIP,
+        distance=distance,
+        solver_residual=march.residual,
+        periods=periods,
+        iterations=iterations,
+        solves=solves,
+        work=solves * state.size,
+        converged=converged,
+        reason="" if converged else f"no steady state after {periods} stretches",
+    )

@@ -1,0 +1,298 @@
+"""Figures: every one draws what its dataset holds, and saves whole and reproducibly."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.legend import Legend
+from matplotlib.text import Text
+
+from microslip import plot, theory
+
+
+def fake_transverse(n: int = 9) -> xr.Dataset:
+    """A transverse sweep: between the exact static limit and Eq 6, with a slider's history."""
+    amplitude, velocity = np.linspace(0, 3, n), np.geomspace(1e-3, 10, n)
+    large = theory.large_amplitude_transverse(velocity, amplitude[:, None])
+    exact = theory.static_limit_transverse(amplitude)
+    phase = np.linspace(0, 8 * np.pi, 401)
+    path, force = 0.2 * phase + 1j * np.sin(phase), np.ones(phase.size, complex)
+    for i in range(1, phase.size):  # a single elastic slider
+        force[i] = force[i - 1] + path[i] - path[i - 1]
+        force[i] /= max(1.0, abs(force[i]))
+    both, one = ("amplitude", "velocity"), ("amplitude",)
+    return xr.Dataset(
+        {
+            **fake_map(exact[:, None] + (1 - exact[:, None]) * large),
+            "mu_large_amplitude": (both, large),
+            "mu_static_slider": (one, theory.static_slider(amplitude)),
+            "mu_static_stick_zone": (one, theory.static_transverse(amplitude)),
+            "mu_static": (one, exact),
+            "history_phase": ("history_step", phase, {"units": "rad"}),
+            "history_force_forward": ("history_step", force.real),
+            "history_force_lateral": ("history_step", force.imag),
+            "history_velocity": 0.2,
+            "history_amplitude": 1.0,
+        },
+        coords={"amplitude": amplitude, "velocity": velocity},
+        attrs={"tolerance": 1e-3},
+    )
+
+
+def fake_bore(n: int = 9) -> xr.Dataset:
+    """A bore sweep that runs between the exact static limit and Eq 29."""
+    amplitude, velocity = np.linspace(0, 5, n), np.geomspace(1e-3, 10, n)
+    large, exact = theory.large_amplitude_bore(velocity), theory.static_limit_bore(amplitude)
+    return xr.Dataset(
+        {
+            **fake_map(exact[:, None] + (1 - exact[:, None]) * large),
+            "mu_large_amplitude": (("velocity",), large),
+            "mu_static_stick_zone": (("amplitude",), theory.static_bore(amplitude)),
+            "mu_static_stick_zone_printed": (("amplitude",), theory.static_bore_printed(amplitude)),
+            "mu_static": (("amplitude",), exact),
+        },
+        coords={"amplitude": amplitude, "velocity": velocity},
+    )
+
+
+def fake_map(mu: np.ndarray) -> dict:
+    """mu_macro with its certificates, every point converged."""
+    both = ("amplitude", "velocity")
+    return {
+        "mu_macro": (both, mu),
+        "mu_macro_error": (both, np.full_like(mu, 8e-4)),
+        "converged": (both, np.ones(mu.shape, np.int8)),
+    }
+
+
+def fake_continuous_bore(n: int = 9, rings: int = 8) -> xr.Dataset:
+    """A steady bore: Eqs 15, 21 and 22, and starts that decay to them."""
+    velocity = np.geomspace(0.1, 10, n)
+    force, torque = theory.bore_forward(velocity), theory.bore_torque(velocity)
+    end = theory.bore_forward(0.8), theory.bore_torque(0.8)
+    r = np.sin((np.arange(rings) + 0.5) / rings * np.pi / 2)
+    turn = (np.arange(3 * rings) + 0.5) * 2 * np.pi / (3 * rings)
+    x, y = (np.outer(r, f(turn)).ravel() for f in (np.cos, np.sin))
+    bound = 1.5 / np.pi * np.sqrt(1 - x**2 - y**2)
+    away = np.hypot(y, x + 0.8)
+    travel = np.linspace(0, 3, 61)
+    first = np.array([[0, 0], [0, 1], [1, 0]])
+    gone = [f + (first[:, [i]] - f) * np.exp(-3 * travel) for i, f in enumerate(end)]
+    step = ("start", "transient_step")
+    return xr.Dataset(
+        {
+            "mu_macro": ("velocity", force + 1e-3 * (-1.0) ** np.arange(n)),
+            "mu_torque": ("velocity", torque),
+            "mu_macro_error": ("velocity", np.full(n, 1e-3)),
+            "mu_torque_error": ("velocity", np.full(n, 1e-3)),
+            "converged": ("velocity", np.ones(n, np.int8)),
+            "mu_forward_theory": ("velocity", force),
+            "mu_torque_theory": ("velocity", torque),
+            "field_lateral_position": ("cell", x),
+            "field_forward_position": ("cell", y),
+            "field_traction_lateral": ("cell", bound * y / away),
+            "field_traction_forward": ("cell", -bound * (x + 0.8) / away),
+            "field_bound": ("cell", bound),
+            "field_velocity": 0.8,
+            "field_centre_lateral": -0.8,
+            "transient_displacement": (step, np.tile(travel, (3, 1))),
+            "transient_force_forward": (step, gone[0]),
+            "transient_torque": (step, gone[1]),
+            "transient_velocity": 0.8,
+            "transient_force_theory": end[0],
+            "transient_torque_theory": end[1],
+        },
+        coords={"velocity": velocity, "start": ["stress-free", "full-rotation", "full-slip"]},
+    )
+
+
+@pytest.fixture(scope="module")
+def datasets() -> dict[str, xr.Dataset]:
+    """Small datasets with every variable the figures need."""
+    return {
+        "transverse": fake_transverse(),
+        "bore": fake_bore(),
+        "continuous_bore": fake_continuous_bore(),
+    }
+
+
+@pytest.fixture(scope="module")
+def figures(datasets):
+    """All six figures, drawn once."""
+    return {name: plot.draw(name, datasets) for name in plot.FIGURES}
+
+
+def artists(figure, gid: str) -> list:
+    """The artists of a figure with that id."""
+    return figure.findobj(lambda artist: artist.get_gid() == gid)
+
+
+def check_nothing_cut_off(figure) -> None:
+    """Everything drawn is inside the figure, and no panel is squeezed to make room."""
+    size, edges = figure.get_size_inches(), figure.get_tightbbox().extents
+    assert np.all(edges[:2] > -0.02)
+    assert np.all(edges[2:] < size + 0.02)
+    for axes in figure.findobj(Axes):
+        if axes.get_label() != "<colorbar>":
+            assert axes.get_position().width * axes.figure.bbox.width > 0.26 * figure.bbox.width
+
+
+@pytest.mark.parametrize("name", plot.FIGURES)
+def test_saves_whole_and_reproducibly(name, datasets, figures, tmp_path):
+    redrawn = plot.draw(name, datasets)
+    for kind, start in (("png", b"\x89PNG"), ("pdf", b"%PDF")):
+        first = plot.save(figures[name], tmp_path / "new" / f"first.{kind}")
+        again = plot.save(redrawn, tmp_path / "new" / f"again.{kind}")
+        content = first.read_bytes()
+        assert content.startswith(start)
+        assert content == again.read_bytes()
+        assert b"Date" not in content
+    assert len(list((tmp_path / "new").iterdir())) == 4
+
+
+@pytest.mark.parametrize("name", plot.FIGURES)
+def test_labels_exist_and_nothing_is_cut_off_or_hidden(name, figures):
+    figure = figures[name]
+    check_nothing_cut_off(figure)
+    panels = [axes for axes in figure.findobj(Axes) if axes.get_label() != "<colorbar>"]
+    assert panels[-1].get_xlabel() or any(axes.get_xlabel() for axes in panels)
+    for axes in panels:
+        alone = not (axes.get_shared_x_axes().get_siblings(axes)[1:])
+        assert not alone or (axes.get_xlabel() and axes.get_ylabel())
+    inside = [axes.get_window_extent().padded(-2) for axes in panels]
+    for legend in figure.findobj(Legend):
+        assert not any(legend.get_window_extent().overlaps(box) for box in inside)
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "overlays", "at"),
+    [
+        ("fig2_transverse_map", "transverse", ["slider", "stick_zone", ""], -1),
+        ("fig6_bore_map", "bore", ["stick_zone_printed", "stick_zone", ""], None),
+    ],
+)
+def test_cuts_show_the_dataset(name, key, overlays, at, datasets, figures):
+    dataset = datasets[key]
+    for overlay in overlays:
+        variable = f"mu_static_{overlay}".rstrip("_")
+        (line,) = artists(figures[name], variable)
+        np.testing.assert_array_equal(line.get_xdata(), dataset["amplitude"])
+        np.testing.assert_array_equal(line.get_ydata(), dataset[variable])
+    (line,) = artists(figures[name], "mu_large_amplitude")
+    large = dataset["mu_large_amplitude"].values
+    np.testing.assert_array_equal(line.get_ydata(), large if at is None else large[at])
+    static, top = artists(figures[name], "computed")
+    np.testing.assert_array_equal(static.get_ydata(), dataset["mu_macro"][:, 0])
+    np.testing.assert_array_equal(top.get_ydata(), dataset["mu_macro"][-1])
+    assert not artists(figures[name], "unconverged")
+    assert not artists(figures[name], "error-band")
+
+
+def test_steady_curves_and_transients_show_the_dataset(datasets, figures):
+    dataset = datasets["continuous_bore"]
+    for variable in ("mu_forward_theory", "mu_torque_theory"):
+        (line,) = artists(figures["fig4_continuous_bore"], variable)
+        np.testing.assert_array_equal(line.get_ydata(), dataset[variable])
+    for variable in ("transient_force_forward", "transient_torque"):
+        lines = artists(figures["fig5_transients"], variable)
+        np.testing.assert_array_equal([line.get_ydata() for line in lines], dataset[variable])
+    (centre,) = artists(figures["fig3_traction_field"], "centre")
+    assert centre.get_xdata()[0] == -0.8
+
+
+def test_arrows_follow_the_traction_of_the_cells(figures):
+    (arrows,) = artists(figures["fig3_traction_field"], "traction")
+    x, y = arrows.XY.T
+    away = np.hypot(y, x + 0.8)
+    far = away > 0.3
+    bound = 1.5 / np.pi * np.sqrt(1 - x**2 - y**2)
+    assert far.sum() > 80
+    np.testing.assert_allclose(arrows.U[far], (bound * y / away)[far], atol=0.03)
+    np.testing.assert_allclose(arrows.V[far], (-bound * (x + 0.8) / away)[far], atol=0.03)
+
+
+def test_points_that_are_not_converged_are_hatched_and_hollow(datasets):
+    bad = datasets["bore"].copy(deep=True)
+    bad["converged"][2:4, 0:2] = 0
+    bad["mu_macro_error"][2, 0], bad["mu_macro_error"][3, 0] = 0.1, np.inf
+    bad["mu_macro"][2, 1] = np.nan
+    figure = plot.draw("fig6_bore_map", {"bore": bad})
+    check_nothing_cut_off(figure)
+    (cells,) = [a for a in artists(figure, "unconverged") if isinstance(a, PolyCollection)]
+    assert cells.get_hatch()
+    assert len(cells.get_paths()) == 4
+    (points,) = [a for a in artists(figure, "unconverged") if not isinstance(a, PolyCollection)]
+    np.testing.assert_array_equal(points.get_xdata(), bad["amplitude"][2:4])
+    assert artists(figure, "error-band")
+    assert any("4 of 81" in text.get_text() for text in figure.findobj(Text))
+
+
+def test_history_mean_and_phase(datasets):
+    dataset = datasets["transverse"].copy()
+    (mean,) = artists(plot.draw("fig1_force_history", {"transverse": dataset}), "mean")
+    last = dataset["history_force_forward"].values[-101:]
+    assert mean.get_ydata()[0] == pytest.approx((last[1:].mean() + last[:-1].mean()) / 2)
+    turns = (dataset["history_phase"] / (2 * np.pi)).assign_attrs(units="periods")
+    figure = plot.draw("fig1_force_history", {"transverse": dataset.assign(history_phase=turns)})
+    assert artists(figure, "forward")[0].get_xdata()[-1] == pytest.approx(4.0)
+
+
+def test_the_poisson_ratio_nearest_zero_is_drawn(datasets):
+    first, other = datasets["bore"], datasets["bore"].copy(deep=True)
+    other["mu_macro"] += 0.1
+    both = xr.concat([other, first], xr.Variable("poisson", [0.3, 0.0]), data_vars="all")
+    figure = plot.draw("fig6_bore_map", {"bore": both})
+    np.testing.assert_array_equal(
+        artists(figure, "computed")[0].get_ydata(), first["mu_macro"][:, 0]
+    )
+
+
+def test_a_theory_curve_may_have_a_finer_axis_of_its_own(datasets):
+    fine = np.linspace(0, 1, 50)
+    line = xr.DataArray(1 - fine**1.5, {"amplitude_fine": fine}, "amplitude_fine")
+    dataset = datasets["transverse"].assign(mu_static_stick_zone=line)
+    figure = plot.draw("fig2_transverse_map", {"transverse": dataset})
+    np.testing.assert_array_equal(artists(figure, "mu_static_stick_zone")[0].get_xdata(), fine)
+
+
+def test_what_is_missing_is_named(datasets, figures, tmp_path):
+    with pytest.raises(ValueError, match=r"unknown figure 'fig7'.*fig6_bore_map"):
+        plot.draw("fig7", datasets)
+    with pytest.raises(ValueError, match="fig6_bore_map needs the dataset 'bore'"):
+        plot.draw("fig6_bore_map", {"transverse": datasets["transverse"]})
+    lacking = datasets["transverse"].drop_vars("mu_static_slider")
+    with pytest.raises(ValueError, match="'transverse' has no variable 'mu_static_slider'"):
+        plot.draw("fig2_transverse_map", {"transverse": lacking})
+    with pytest.raises(ValueError, match="two amplitudes"):
+        plot.draw("fig6_bore_map", {"bore": datasets["bore"].isel(amplitude=[0])})
+    with pytest.raises(ValueError, match=r"\.png or \.pdf"):
+        plot.save(figures["fig5_transients"], tmp_path / "figure.svg")
+
+
+def test_a_failed_save_leaves_the_old_file(figures, tmp_path, monkeypatch):
+    figure, path = figures["fig4_continuous_bore"], tmp_path / "figure.png"
+    path.write_text("old")
+
+    def fail(target, **_):
+        Path(target).write_text("half")
+        raise OSError("disk full")
+
+    monkeypatch.setattr(figure, "savefig", fail)
+    with pytest.raises(OSError, match="disk full"):
+        plot.save(figure, path)
+    assert [file.read_text() for file in tmp_path.iterdir()] == ["old"]
+
+
+def test_the_users_settings_play_no_part_and_stay(datasets, figures, tmp_path):
+    name = "fig5_transients"
+    expected = plot.save(figures[name], tmp_path / "expected.png").read_bytes()
+    with matplotlib.rc_context({"font.size": 20, "savefig.dpi": 50, "lines.linewidth": 9}):
+        found = plot.save(plot.draw(name, datasets), tmp_path / "found.png").read_bytes()
+        assert matplotlib.rcParams["font.size"] == 20
+    assert found == expected

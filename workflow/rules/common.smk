@@ -1,0 +1,61 @@
+# What the rules share: the package, the checked configuration, and the batches it leads to.
+
+import os
+import sys
+from pathlib import Path
+
+# The package beside the Snakefile is the one that runs, whether it is installed or not.
+SOURCE = Path(workflow.basedir, "src")
+if SOURCE.is_dir():
+    sys.path.insert(0, str(SOURCE))
+    os.environ.update(PYTHONPATH=os.pathsep.join([str(SOURCE), os.environ.get("PYTHONPATH", "")]))
+
+# Jobs inherit this. Parallel work is many points at a time, one thread each.
+os.environ.update(
+    dict.fromkeys(
+        ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"], "1"
+    )
+)
+
+from microslip import config as microslip_config
+from microslip import keys, plot, sweep
+
+try:
+    for file in workflow.configfiles:
+        microslip_config.read_yaml(file)  # refuses a key that occurs twice
+    CONFIGURATION = microslip_config.from_mapping(
+        config, source=", ".join(map(str, workflow.configfiles)) or "configuration"
+    )
+except microslip_config.ConfigError as error:
+    sys.exit(f"Error in {error}")
+
+RESULTS = os.path.normpath(CONFIGURATION.results)
+DIGEST = keys.source_digest()
+PACKAGE = os.path.relpath(Path(keys.__file__).parent)
+
+# BATCHES[group][name]: requests of that batch. A group is a sweep, or the single runs beside it.
+BATCHES = {}
+for name, grid in CONFIGURATION.sweeps.items():
+    size = CONFIGURATION.points_per_job
+    BATCHES[name] = sweep.batches(sweep.point_requests(grid), size, DIGEST)
+    histories = sweep.history_requests(CONFIGURATION, name)
+    BATCHES[f"{name}_histories"] = sweep.batches(histories, size, DIGEST)
+
+# The figures that the configured sweeps have data for, each with the name of its dataset.
+FIGURES = {figure: name for figure, (name,) in plot.FIGURES.items() if name in CONFIGURATION.sweeps}
+
+
+def batches_of(name):
+    """Index files of a sweep's points and of the single runs in the same dataset."""
+    return [
+        f"{RESULTS}/batches/{group}/{batch}.json"
+        for group in (name, f"{name}_histories")
+        for batch in BATCHES[group]
+    ]
+
+
+wildcard_constraints:
+    sweep="|".join(CONFIGURATION.sweeps),
+    group="|".join(BATCHES),
+    batch="[0-9a-f]+",
+    figure="|".join(FIGURES),

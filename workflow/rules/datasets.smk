@@ -1,0 +1,22 @@
+# Datasets: the points of a sweep, the limits from theory and the single runs beside them.
+
+
+rule collect:
+    input:
+        batches=lambda wildcards: batches_of(wildcards.sweep),
+        code=[f"{PACKAGE}/dataset.py", f"{PACKAGE}/theory.py"],
+    output:
+        f"{RESULTS}/{{sweep}}.nc",
+    log:
+        f"{RESULTS}/logs/collect/{{sweep}}.log",
+    conda:
+        "../envs/microslip.yaml"
+    resources:
+        mem_mb=500,
+        runtime=10,
+    params:
+        # Not read by the script; it makes Snakemake notice a change.
+        settings=lambda wildcards: keys.canonical_json(CONFIGURATION.of_sweep(wildcards.sweep)),
+        store=lambda wildcards, output: str(Path(output[0]).parent),
+    script:
+        "../scripts/collect.py"

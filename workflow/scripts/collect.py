@@ -1,0 +1,32 @@
+"""Assemble the dataset of one sweep from the store.
+
+Output: netCDF-4, CF conventions, all quantities dimensionless (units 1, phases in rad).
+  transverse.nc       dims (amplitude, velocity), history_step
+  bore.nc             dims (amplitude, velocity)
+  continuous_bore.nc  dims (velocity), cell, (start, transient_step)
+A sweep with a list of Poisson's ratios has the dim poisson before these.
+"""
+
+import logging
+
+from microslip import config, dataset, sweep
+from microslip.cache import Store
+from microslip.jobs import job_log
+
+name = snakemake.wildcards.sweep
+
+with job_log(snakemake.log[0], shown=logging.INFO) as log:
+    configuration = config.from_mapping(snakemake.config)
+    store = Store(snakemake.params.store)
+    grid = configuration.sweeps[name]
+    points = (sweep.answer(request, store)[0] for request in sweep.point_requests(grid))
+    histories = sweep.history_requests(configuration, name)
+    data = dataset.build(
+        grid,
+        points,
+        [sweep.answer(request, store)[0] for request in histories],
+        configuration.of_sweep(name),
+    )
+    dataset.write(data, snakemake.output[0])
+    for line in dataset.report(data):
+        log.info(line)

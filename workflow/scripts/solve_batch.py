@@ -1,0 +1,22 @@
+"""Answer a batch of requests: points of a sweep, or single runs for a figure.
+
+Output: JSON with `keys`, the names of the results in the order of the requests, and
+`not_converged`, a count. The results themselves are files of their own under the store's folders
+points and histories; all numbers in them are dimensionless.
+"""
+
+import json
+
+from microslip import sweep
+from microslip.cache import Store, write_atomically
+from microslip.jobs import job_log, progress
+from microslip.keys import canonical_json
+
+with job_log(snakemake.log[0]) as log:
+    index, done = sweep.run_batch(
+        json.loads(snakemake.params.requests),
+        Store(snakemake.params.store),
+        lambda requests: progress(requests, snakemake.wildcards.group),
+    )
+    write_atomically(snakemake.output[0], canonical_json(index).encode())
+    log.info("%(points)d points, %(computed)d computed in %(solver_seconds).2f s", done)
