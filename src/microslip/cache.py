@@ -8,7 +8,7 @@ what its record writes, checksum included; any other file counts as absent and i
 import json
 import logging
 import os
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from .keys import canonical_json, sha256
@@ -88,15 +88,9 @@ def writing_beside(path):
     except OSError as error:
         raise CacheError(_advice("write", path, error)) from error
     finally:
-        # Gone already after the rename; an interrupt or an error leaves it.
-        _remove(beside)
-
-
-def _remove(path):
-    try:
-        path.unlink(missing_ok=True)
-    except OSError:
-        pass  # a read-only folder: the reason has been reported
+        # Gone already after the rename, left by an interrupt; in a read-only folder never made.
+        with suppress(OSError):
+            beside.unlink()
 
 
 def _text(record):

@@ -30,6 +30,7 @@ HISTORIES_OF_SWEEP = {
     "bore": (),
     "continuous_bore": ("field", "transients"),
 }
+# What microslip.models refuses, which takes too long to import here; a test keeps them the same.
 MODELS_OF_SCENE = {
     "transverse": ("auto", "rigid", "slider", "radial", "polar", "cartesian"),
     "bore": ("auto", "rigid", "polar", "cartesian"),
@@ -141,7 +142,7 @@ def _sweep(name, given, source):
         cells=given["cells"],
         steps=given["steps"],
     )
-    _refuse_model(sweep, where)
+    _refuse_mismatch(sweep, where)
     return sweep
 
 
@@ -170,7 +171,8 @@ def _spaced(spacing, spec, where):
     return [float(f"{value:.6g}") for value in values]
 
 
-def _refuse_model(sweep, where):
+def _refuse_mismatch(sweep, where):
+    """Refuse settings that are fine one by one but not together."""
     known = MODELS_OF_SCENE[sweep.scene]
     if sweep.model not in known:
         raise ConfigError(
@@ -180,6 +182,17 @@ def _refuse_model(sweep, where):
     if sweep.model == "radial" and sweep.poisson[-1] > 0:
         raise ConfigError(
             f"{where}.poisson: {sweep.poisson[-1]:g} does not go with model radial; allowed: 0"
+        )
+    static = sweep.velocity[0] == 0
+    if static and sweep.model != "auto":
+        raise ConfigError(
+            f"{where}.velocity: 0, the static limit, does not go with model {sweep.model}; "
+            "allowed: numbers > 0, or model auto"
+        )
+    if static and sweep.scene == "transverse" and sweep.poisson[-1] > 0:
+        raise ConfigError(
+            f"{where}.velocity: 0, the static limit, is known for poisson 0 only; "
+            "allowed: numbers > 0"
         )
 
 
@@ -272,6 +285,8 @@ def _allowed(rule):
     words |= {"string": "text for a folder, without braces, * and ?", "null": "or null"}
     limits = {"minimum": ">=", "exclusiveMinimum": ">", "maximum": "<="}
     ranges = [f"{sign} {rule[key]:g}" for key, sign in limits.items() if key in rule]
+    if rule.get("multipleOf") == 2:
+        words["integer"] = "an even number"
     first, *others = [words[kind] for kind in kinds]
     return " ".join([first, " and ".join(ranges), *others]).replace("  ", " ").strip()
 

@@ -37,10 +37,11 @@ POINT_VARIABLES = {
     "error_solver": (float, "part of mu_macro_error from the iteration in each step"),
     "converged": (bool, "mu_macro_error is within the tolerance"),
     "cells": (np.int32, "rings, or squares across the contact"),
-    "angles": (np.int32, "angular points of a ring"),
+    "angles": (np.int32, "angular points on half a ring"),
     "steps_per_period": (np.int32, "time steps in a period"),
-    "periods": (np.int32, "periods computed until the state was periodic"),
-    "iterations": (np.int32, "iterations of the contact solver in all"),
+    "periods": (np.int32, "longest march to the periodic state, in half periods"),
+    "iterations": (np.int32, "iterations of the step solver in all runs"),
+    "work": (np.int64, "step solves times unknowns, summed over all runs"),
     "model": (str, "contact model that was used"),
     "reason": (str, "why the point did not converge, empty if it did"),
 }
@@ -156,7 +157,7 @@ def _from_points(sweep, points, dims, shape):
     return variables, versions
 
 
-_MISSING = {float: np.nan, bool: False, np.int32: 0, str: ""}
+_MISSING = {float: np.nan, bool: False, np.int32: 0, np.int64: 0, str: ""}
 
 
 def _attributes(kind, long_name):

@@ -94,7 +94,9 @@ def _newton_correction(contact, march, state, change):
     """Newton's next state for the fixed point of the mirrored march (derivative from the march)."""
     size = state.size
     jacobian = march.sensitivity
-    mirrored = contact.mirrored(np.ones_like(state)).reshape(size)  # signs; points map to themselves
+    mirrored = contact.mirrored(np.ones_like(state)).reshape(
+        size
+    )  # signs; points map to themselves
     system = np.eye(size) - mirrored[:, None] * jacobian
     step = np.linalg.lstsq(system, change.reshape(size), rcond=1e-13)[0]
     return state + step.reshape(state.shape)

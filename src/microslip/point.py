@@ -8,13 +8,11 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from microslip import hertz, theory
+from microslip import theory
 from microslip.accuracy import certify
 from microslip.models import MODELS
-from microslip.models.contact import full_slip
-from microslip.path import SDIRK2, make_path
 from microslip.scenes import scene_named
-from microslip.simulate import STEADY_TRAVEL, Resolution, forward_slip, simulate
+from microslip.simulate import Resolution, simulate
 
 PERIODICITY_SHARE = 0.03
 """Share of the tolerance that the distance from the periodic state may take."""
@@ -74,13 +72,15 @@ def solve(
     tolerance=1e-3,
     cells=None,
     steps=None,
+    progress=None,
 ):
     """Macroscopic friction of a vibrated contact at one point.
 
     scene: "transverse", "bore" or "continuous-bore"; velocity, amplitude: the paper's dimensionless
     groups (amplitude: None for continuous-bore; velocity 0: the limit v -> 0); poisson: nu;
     model: "auto" or a name in models.MODELS; tolerance: absolute, on mu_macro; cells, steps (in a
-    full period): impose a resolution instead of letting the tolerance choose.
+    full period): impose a resolution instead of letting the tolerance choose; progress: called with
+    the Resolution of every run before it starts.
     Returns a Result; ``converged`` is False, with the reason, where the tolerance was not met.
     Raises ValueError, naming the argument, for input out of range or a model that does not apply.
     """
@@ -90,7 +90,11 @@ def solve(
     name = choose_model(kind, poisson, model)
     started = time.perf_counter()
     point = dict(
-        scene=kind.name, velocity=velocity, amplitude=amplitude, poisson=poisson, tolerance=tolerance
+        scene=kind.name,
+        velocity=velocity,
+        amplitude=amplitude,
+        poisson=poisson,
+        tolerance=tolerance,
     )
     exact = _closed_form(kind, velocity, amplitude, poisson) if model == "auto" else None
     if exact is not None:
@@ -102,15 +106,14 @@ def solve(
     if kind.periodic and amplitude == 0.0:
         return _exact_result(point | {"model": name}, (1.0, None), time.perf_counter() - started)
     base, axes, imposed = _plan(kind, name, tolerance, cells, steps)
-    certified = certify(
-        lambda resolution: simulate(
-            kind, velocity, amplitude, poisson, name, resolution, PERIODICITY_SHARE * tolerance
-        ),
-        base,
-        axes,
-        tolerance,
-        imposed,
-    )
+    share = PERIODICITY_SHARE * tolerance
+
+    def run(resolution):
+        if progress is not None:
+            progress(resolution)
+        return simulate(kind, velocity, amplitude, poisson, name, resolution, share)
+
+    certified = certify(run, base, axes, tolerance, imposed)
     steady = not kind.periodic
     within = certified.error <= tolerance or bool(imposed)
     reason = certified.reason
@@ -123,7 +126,9 @@ def solve(
         mu_macro_error=certified.error,
         **{f"error_{source}": error for source, error in certified.errors.items()},
         mu_torque=certified.torque if steady else None,
-        mu_torque_error=certified.torque_error + certified.errors["periodicity"] if steady else None,
+        mu_torque_error=certified.torque_error + certified.errors["periodicity"]
+        if steady
+        else None,
         converged=bool(certified.converged and within),
         reason=reason,
         cells=certified.finest.cells,
@@ -173,7 +178,9 @@ def _number(name, value, low, high=math.inf):
     value = float(value)
     if not (math.isfinite(value) and low <= value <= high):
         upper = f" and at most {high:g}" if high < math.inf else ""
-        raise ValueError(f"{name} = {value!r}: allowed is a finite number of at least {low:g}{upper}")
+        raise ValueError(
+            f"{name} = {value!r}: allowed is a finite number of at least {low:g}{upper}"
+        )
     return value
 
 
@@ -183,7 +190,9 @@ def _count(name, value, low):
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < low:
         raise ValueError(f"{name} = {value!r}: allowed is a whole number of at least {low}")
     if value % 2:
-        raise ValueError(f"{name} = {value!r}: allowed is an even number (half of it is run beside)")
+        raise ValueError(
+            f"{name} = {value!r}: allowed is an even number (half of it is run beside)"
+        )
     return int(value)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from microslip import hertz
 from microslip.models import MODELS
 from microslip.models.contact import energy_norm, full_slip
-from microslip.path import SDIRK2, half_period_phases, make_path
+from microslip.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.periodic import find_periodic_state
 
 STEADY_STRETCH = 8
@@ -64,7 +64,7 @@ def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance):
 
     step_tolerance = 1e-3 * tolerance
     if not scene.periodic:
-        return _steady(contact, displacement, velocity, tolerance, step_tolerance)
+        return _steady_run(contact, displacement, velocity, tolerance, step_tolerance)
     grading = {"grading": contact.grading} if hasattr(contact, "grading") else {}
     path = make_path(displacement, half_period_phases(resolution.steps, **grading), SDIRK2)
     start = forward_slip(contact)
@@ -101,35 +101,63 @@ def forward_slip(contact):
     return full_slip(contact, ones, 0.0 * ones)
 
 
-def _steady(contact, displacement, velocity, tolerance, step_tolerance):
-    """March a steady motion until its tractions stand still."""
+@dataclass(frozen=True, eq=False)
+class SteadyState:
+    """Where a steady motion settles: tractions, forces (3,), and the effort (see Run)."""
+
+    state: np.ndarray
+    forces: np.ndarray
+    distance: float
+    solver_residual: float
+    stretches: int
+    iterations: int
+    solves: int
+    converged: bool
+
+
+def steady_state(contact, displacement, velocity, tolerance, step_tolerance):
+    """March a steady motion until its tractions stand still to ``tolerance`` (a force)."""
     step = STEADY_TRAVEL / max(1.0, velocity)
-    state, periods, iterations, solves = forward_slip(contact), 0, 0, 0
-    previous, distance = np.inf, np.inf
-    for stretch in range(MAX_STRETCHES):
-        phase = step * (stretch * STEADY_STRETCH + np.arange(STEADY_STRETCH + 1))
-        march = contact.march(make_path(displacement, phase), state, step_tolerance)
+    state, iterations, solves = forward_slip(contact), 0, 0
+    previous = distance = np.inf
+    for stretch in range(1, MAX_STRETCHES + 1):
+        phase = step * STEADY_STRETCH * (stretch - 1) + step * np.arange(STEADY_STRETCH + 1)
+        march = contact.march(make_path(displacement, phase, EULER), state, step_tolerance)
         change = energy_norm(contact, march.state - state)
         state = march.state
-        periods, iterations = periods + 1, iterations + march.iterations
+        iterations += march.iterations
         solves += march.solves
         # the changes of a contraction fall geometrically; what is left is their tail
-        ratio = min(change / previous, 0.9) if previous > 0.0 else 0.0
-        distance = change / (1.0 - ratio) if np.isfinite(previous) else np.inf
+        if np.isfinite(previous):
+            ratio = min(change / previous, 0.9) if previous > 0.0 else 0.0
+            distance = change / (1.0 - ratio)
         previous = change
         if distance <= tolerance:
             break
     solved = march.residual <= march.solves * step_tolerance
-    converged = bool(distance <= tolerance and solved)
+    return SteadyState(
+        state,
+        march.forces[-1],
+        distance,
+        march.residual,
+        stretch,
+        iterations,
+        solves,
+        bool(distance <= tolerance and solved),
+    )
+
+
+def _steady_run(contact, displacement, velocity, tolerance, step_tolerance):
+    found = steady_state(contact, displacement, velocity, tolerance, step_tolerance)
     return Run(
-        mu=float(march.forces[-1, 0]),
-        torque=float(march.forces[-1, 2]) / hertz.TORQUE_FULL_SLIP,
-        distance=distance,
-        solver_residual=march.residual,
-        periods=periods,
-        iterations=iterations,
-        solves=solves,
-        work=solves * state.size,
-        converged=converged,
-        reason="" if converged else f"no steady state after {periods} stretches",
+        mu=float(found.forces[0]),
+        torque=float(found.forces[2]) / hertz.TORQUE_FULL_SLIP,
+        distance=found.distance,
+        solver_residual=found.solver_residual,
+        periods=found.stretches,
+        iterations=found.iterations,
+        solves=found.solves,
+        work=found.solves * found.state.size,
+        converged=found.converged,
+        reason="" if found.converged else f"no steady state: {found.distance:.1e} left",
     )

@@ -1,11 +1,10 @@
 # Points and single runs, in batches.
 
 
-# Compiles the solver once, before jobs that would do it at the same time. Made again in every run
-# that computes something, since the compiler's own cache may be gone.
+# Compiles the solver once, before jobs that would all do it at the same time.
 rule warm_up:
     output:
-        temp(f"{RESULTS}/warm_up/{DIGEST[:16]}.txt"),
+        f"{RESULTS}/warm_up/{DIGEST[:16]}.txt",
     log:
         f"{RESULTS}/logs/warm_up.log",
     conda:
@@ -19,6 +18,7 @@ rule warm_up:
 
 rule solve_batch:
     input:
+        # It only has to be there: its name holds the digest of the solver, as those of the points.
         ancient(rules.warm_up.output),
     output:
         f"{RESULTS}/batches/{{group}}/{{batch}}.json",

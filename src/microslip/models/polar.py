@@ -267,9 +267,7 @@ def _operator(cells, angles, rotates, poisson, focus):
         elif m > 2 - m:
             members.append((k, partner))
             cross = sign * far[m - 1]
-            blocks.append(
-                np.block([[near[m], cross], [cross.T * ratio.T, near[abs(2 - m)]]])
-            )
+            blocks.append(np.block([[near[m], cross], [cross.T * ratio.T, near[abs(2 - m)]]]))
     size = max(len(block) for block in blocks)
     packed = np.zeros((len(blocks), size, size))
     for k, block in enumerate(blocks):

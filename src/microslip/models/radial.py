@@ -84,9 +84,7 @@ def _factorise(influence, weight, bound, slip, direction, ring, m, matrix):
         i = ring[p]
         for s in range(p + 1):
             k = ring[s]
-            dot = (
-                direction[p].real * direction[s].real + direction[p].imag * direction[s].imag
-            )
+            dot = direction[p].real * direction[s].real + direction[p].imag * direction[s].imag
             matrix[p, s] = weight[i] * influence[i, k] * dot
         alone = (p == 0 or ring[p - 1] != i) and (p == m - 1 or ring[p + 1] != i)
         if alone:  # a slipping ring: turning the traction also turns it away from the slip

@@ -1,0 +1,172 @@
+"""The command line: ``microslip point SCENE ...`` answers for one point."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+
+from microslip import __version__
+
+SCENES = {
+    "transverse": (
+        "sliding forward while oscillating sideways",
+        "v0 / (omega u_lim): forward speed over angular frequency and u_lim, the tangential "
+        "displacement at which the whole contact slides",
+        "y0 / u_lim: half stroke of the lateral oscillation over u_lim",
+    ),
+    "bore": (
+        "sliding forward while oscillating in rotation about the contact normal",
+        "v0 / (Omega phi0 a): forward speed over the largest rotation speed of the contact's edge",
+        "phi0 / phi_lk(a/2): angular amplitude over the angle that leaves half the radius sticking",
+    ),
+    "continuous-bore": (
+        "sliding forward while rotating steadily about the contact normal",
+        "v0 / (omega a): forward speed over the rotation speed of the contact's edge",
+        None,
+    ),
+}
+
+
+class _OneLineParser(argparse.ArgumentParser):
+    """Bad input gets one line on standard error and exit code 2."""
+
+    def error(self, message):
+        print(f"{self.prog}: {message} (see {self.prog} --help)", file=sys.stderr)
+        raise SystemExit(2)
+
+
+def build_parser():
+    """Parser of the whole command line."""
+    parser = _OneLineParser(
+        allow_abbrev=False,
+        prog="microslip",
+        description="How far friction falls when a frictional contact is vibrated: an elastic "
+        "sphere on a flat (Hertz contact, Coulomb friction at every point) slides forward while "
+        "it also oscillates or rotates.  All quantities are dimensionless.",
+    )
+    parser.add_argument("--version", action="version", version=f"microslip {__version__}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    point = commands.add_parser(
+        "point",
+        help="macroscopic friction at one (velocity, amplitude)",
+        description="Mean forward friction force over mu F_z at one point, with an error estimate. "
+        "1 means that the vibration does nothing, 0 that it takes all friction away.",
+    )
+    scenes = point.add_subparsers(dest="scene", required=True, metavar="SCENE")
+    for name, (summary, velocity, amplitude) in SCENES.items():
+        scene = scenes.add_parser(
+            name, help=summary, description=f"The indenter is {summary}.", allow_abbrev=False
+        )
+        scene.add_argument(
+            "--velocity", type=float, required=True, metavar="V", help=f"{velocity}; 0: v -> 0"
+        )
+        if amplitude:
+            scene.add_argument(
+                "--amplitude", type=float, required=True, metavar="A", help=amplitude
+            )
+        _add_options(scene)
+    return parser
+
+
+def _add_options(parser):
+    parser.add_argument(
+        "--poisson", type=float, default=0.0, metavar="NU", help="Poisson's ratio, 0 to 0.5 (0)"
+    )
+    parser.add_argument(
+        "--model",
+        default="auto",
+        metavar="NAME",
+        help="auto (the cheapest that is exact), rigid, slider, radial, polar or cartesian",
+    )
+    parser.add_argument(
+        "--tolerance",
+        type=float,
+        default=1e-3,
+        metavar="T",
+        help="largest accepted error of mu_macro, absolute (1e-3)",
+    )
+    parser.add_argument(
+        "--cells", type=int, metavar="N", help="impose N rings, or N x N squares (even)"
+    )
+    parser.add_argument("--steps", type=int, metavar="N", help="impose N steps a period (even)")
+    parser.add_argument(
+        "--json", action="store_true", help="print one JSON object and nothing else"
+    )
+
+
+def main(arguments=None):
+    """Entry point.  Exit codes: 0 converged, 1 not converged, 2 bad input."""
+    options = build_parser().parse_args(arguments)
+    from microslip.point import solve  # only now: --help and bad options need no solver
+
+    progress = _Progress(enabled=sys.stderr.isatty())
+    try:
+        result = solve(
+            options.scene,
+            options.velocity,
+            getattr(options, "amplitude", None),
+            poisson=options.poisson,
+            model=options.model,
+            tolerance=options.tolerance,
+            cells=options.cells,
+            steps=options.steps,
+            progress=progress,
+        )
+    except ValueError as error:
+        progress.close()
+        print(f"microslip point {options.scene}: --{error}", file=sys.stderr)
+        return 2
+    progress.close()
+    if options.json:
+        print(json.dumps(_json_ready(result.to_dict())))
+    else:
+        print(_as_text(result))
+    return 0 if result.converged else 1
+
+
+class _Progress:
+    """A line on standard error that counts the runs; silent where nobody looks."""
+
+    def __init__(self, enabled):
+        self.enabled, self.bar = enabled, None
+
+    def __call__(self, resolution):
+        if not self.enabled:
+            return
+        if self.bar is None:
+            from tqdm import tqdm
+
+            self.bar = tqdm(unit=" runs", leave=False)
+        self.bar.set_description(
+            f"{resolution.cells} cells, {resolution.angles} angles, {resolution.steps} steps"
+        )
+        self.bar.update()
+
+    def close(self):
+        if self.bar is not None:
+            self.bar.close()
+
+
+def _json_ready(fields):
+    """NaN has no place in JSON."""
+    return {k: None if isinstance(v, float) and v != v else v for k, v in fields.items()}
+
+
+def _as_text(result):
+    lines = [f"mu_macro = {result.mu_macro:.6g} +- {result.mu_macro_error:.1g}"]
+    if result.mu_torque is not None:
+        lines.append(f"mu_torque = {result.mu_torque:.6g} +- {result.mu_torque_error:.1g}")
+    resolved = f"{result.cells} cells"
+    if result.angles > 1:
+        resolved += f" x {result.angles} angles"
+    if result.steps_per_period:
+        resolved += f", {result.steps_per_period} steps a period"
+    lines.append(f"model {result.model}" + (f" ({resolved})" if result.cells else ""))
+    if not result.converged:
+        lines.append(f"NOT CONVERGED: {result.reason}")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
