@@ -85,7 +85,6 @@ BAD = {
     "missing axis": ("    amplitude: [0, 1]\n", "", ["sweeps.transverse.amplitude: missing"]),
     "no sweeps": (GOOD, "results: here", ["sweeps: missing"]),
     "empty sweeps": (GOOD, "sweeps: {}", ["sweeps: {}", "transverse, bore, continuous_bore"]),
-    "a sweep without content": ("  bore:", "  bore:\n  b:", ["sweeps.b"]),
     "null for a sweep": ("continuous_bore:\n    velocity: [1]", "continuous_bore:", ["null"]),
     "negative amplitude": (
         "amplitude: [0, 1]",

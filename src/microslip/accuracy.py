@@ -7,8 +7,9 @@ them at once.  The answer is the base value plus the correction of every chain.
 - cells, doubled: the error falls smoothly with the second power, so the last difference is
   extrapolated by a third; half of it stays as the error, which covers any order above 1.3.
 - angles, doubled: falls fast but irregularly; no extrapolation, the last difference is the error.
-- steps, grown by 4/3 and 3/2 in turn: which step a ring starts to slip in makes the error scatter
-  about its second-power trend, so the spread of the last three runs is the error, none extrapolated.
+- steps, grown by 4/3 and 3/2 in turn: the error scatters about its second-power trend, since a
+  ring starts to slip somewhere within a step; so the spread of the last three runs is the error and
+  nothing is extrapolated.
 """
 
 from __future__ import annotations

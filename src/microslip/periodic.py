@@ -11,6 +11,7 @@ plain map: its residual, and the distance to the fixed point that the last corre
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -120,7 +121,7 @@ class Anderson:
         if len(self.changes) == 1:
             return image
         scaled = [(change * self.scale).ravel() for change in self.changes]
-        differences = np.stack([b - a for a, b in zip(scaled, scaled[1:])], axis=1)
+        differences = np.stack([b - a for a, b in pairwise(scaled)], axis=1)
         weights = np.linalg.lstsq(differences, scaled[-1], rcond=1e-9)[0]
-        moves = [b - a for a, b in zip(self.images, self.images[1:])]
-        return image - sum(w * move for w, move in zip(weights, moves))
+        moves = [b - a for a, b in pairwise(self.images)]
+        return image - sum(w * move for w, move in zip(weights, moves, strict=True))

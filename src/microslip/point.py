@@ -89,19 +89,19 @@ def solve(
     cells, steps = _count("cells", cells, 4), _count("steps", steps, 8)
     name = choose_model(kind, poisson, model)
     started = time.perf_counter()
-    point = dict(
-        scene=kind.name,
-        velocity=velocity,
-        amplitude=amplitude,
-        poisson=poisson,
-        tolerance=tolerance,
-    )
+    point = {
+        "scene": kind.name,
+        "velocity": velocity,
+        "amplitude": amplitude,
+        "poisson": poisson,
+        "tolerance": tolerance,
+    }
     exact = _closed_form(kind, velocity, amplitude, poisson) if model == "auto" else None
     if exact is not None:
         return _exact_result(point, exact, time.perf_counter() - started)
     if velocity == 0.0:
         raise ValueError(
-            f"velocity = 0: model {name!r} marches forward; allowed is velocity > 0, or model 'auto'"
+            f"velocity = 0: model {name!r} has to march; allowed is velocity > 0, or model 'auto'"
         )
     if kind.periodic and amplitude == 0.0:
         return _exact_result(point | {"model": name}, (1.0, None), time.perf_counter() - started)

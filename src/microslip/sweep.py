@@ -135,36 +135,30 @@ def versions():
 
 
 def _compute(request):
-    settings = {name: request[name] for name in ("cells", "steps")}
-    velocity = float(request["velocity"])
-    amplitude = None if request.get("amplitude") is None else float(request["amplitude"])
+    """Ask the solver; the result as a dict of plain values."""
     if request["kind"] == "point":
-        return _solved(request, velocity, amplitude, settings)
-    settings = {name: value for name, value in settings.items() if value is not None}
+        return _solved(request)
+    given = {k: float(request[k]) for k in ("velocity", "amplitude", "travel") if k in request}
+    given |= {k: request[k] for k in ("cells", "steps", "periods", "start") if k in request}
     if request["kind"] == "field":
-        field = microslip.traction_field(request["scene"], velocity, amplitude, **settings)
-        return _plain(field)
-    if "periods" in request:
-        settings["periods"] = request["periods"]
-    if "travel" in request:
-        settings["travel"] = float(request["travel"])
-    history = microslip.history(
-        request["scene"], velocity, amplitude, start=request["start"], **settings
-    )
+        return _plain(microslip.traction_field(request["scene"], **given))
+    history = microslip.history(request["scene"], **given)
     names = ("phase", "displacement_forward", "force_forward", "force_lateral", "torque")
     return _plain({name: getattr(history, name) for name in names})
 
 
-def _solved(request, velocity, amplitude, settings):
+def _solved(request):
+    amplitude = request["amplitude"]
     try:
         result = microslip.solve(
             request["scene"],
-            velocity,
-            amplitude,
+            float(request["velocity"]),
+            None if amplitude is None else float(amplitude),
             poisson=float(request["poisson"]),
             model=request["model"],
             tolerance=float(request["tolerance"]),
-            **settings,
+            cells=request["cells"],
+            steps=request["steps"],
         ).to_dict()
     except (ArithmeticError, RuntimeError) as error:
         # One point that fails is a gap in the map, not the end of the sweep.

@@ -21,11 +21,10 @@ from microslip import config as microslip_config
 from microslip import keys, plot, sweep
 
 try:
-    for file in workflow.configfiles:
+    files = [os.path.relpath(file) for file in workflow.configfiles]
+    for file in files:
         microslip_config.read_yaml(file)  # refuses a key that occurs twice
-    CONFIGURATION = microslip_config.from_mapping(
-        config, source=", ".join(map(str, workflow.configfiles)) or "configuration"
-    )
+    CONFIGURATION = microslip_config.from_mapping(config, ", ".join(files) or "configuration")
 except microslip_config.ConfigError as error:
     sys.exit(f"Error in {error}")
 

@@ -1,12 +1,12 @@
 """The model hierarchy: which model resolves which scene, and how well.
 
-| model     | transverse, nu = 0 | transverse, nu > 0 | bore (oscillating, continuous) |
-|-----------|--------------------|--------------------|--------------------------------|
-| rigid     | approximate, Eq 6  | approximate, Eq 6  | approximate, Eq 29; exact when continuous and steady |
-| slider    | approximate, Eq 7  | approximate        | not applicable: it cannot turn |
-| radial    | exact (rings)      | not applicable     | not applicable                 |
-| polar     | exact              | exact              | exact (rings x angular modes)  |
-| cartesian | exact              | exact              | exact (squares, any outline)   |
+| model     | transverse, nu = 0 | transverse, nu > 0 | bore (oscillating, continuous)     |
+|-----------|--------------------|--------------------|------------------------------------|
+| rigid     | approximate, Eq 6  | approximate, Eq 6  | approximate, Eq 29 (steady: exact) |
+| slider    | approximate, Eq 7  | approximate        | not applicable: it cannot turn     |
+| radial    | exact (rings)      | not applicable     | not applicable                     |
+| polar     | exact              | exact              | exact (rings x angular modes)      |
+| cartesian | exact              | exact              | exact (squares, any outline)       |
 
 "Exact" means: converges to the solution of the contact problem as its cells and steps are refined;
 "approximate": leaves out elasticity or partial slip, and no refinement brings it back.

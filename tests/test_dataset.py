@@ -1,0 +1,196 @@
+"""Datasets: coordinates, contents, conventions, and bytes that depend on the results alone."""
+
+import json
+import time
+
+import netCDF4
+import numpy as np
+import pytest
+import xarray as xr
+from sweep_stub import EFFORT, Solver
+
+import microslip
+from microslip import cache, config, dataset, sweep, theory
+from microslip.cache import CacheError, Store
+
+GRIDS = {
+    "transverse": {"velocity": [0.1, 1, 10], "amplitude": [0, 2]},
+    "bore": {"velocity": [0.1, 1, 10], "amplitude": [0, 2]},
+    "continuous_bore": {"velocity": [0.1, 1, 10]},
+}
+NU = {"transverse": {**GRIDS["transverse"], "poisson": [0, 0.3]}}
+
+
+def built(name, folder, grids=GRIDS):
+    configuration = config.from_mapping({"sweeps": grids})
+    store = Store(folder)
+    grid = configuration.sweeps[name]
+    requests = sweep.history_requests(configuration, name)
+    return dataset.build(
+        grid,
+        (sweep.answer(request, store)[0] for request in sweep.point_requests(grid)),
+        [sweep.answer(request, store)[0] for request in requests],
+        configuration.of_sweep(name),
+    )
+
+
+@pytest.fixture
+def solver(monkeypatch):
+    return Solver(monkeypatch)
+
+
+def on_disk(name, folder, grids=GRIDS):
+    dataset.write(built(name, folder, grids), folder / f"{name}.nc")
+    return xr.open_dataset(folder / f"{name}.nc")
+
+
+@pytest.mark.parametrize("name", ["transverse", "bore"])
+def test_points_lie_where_their_coordinates_say(name, tmp_path, solver):
+    with on_disk(name, tmp_path) as data:
+        assert data.mu_macro.dims == ("amplitude", "velocity")
+        expected = data.velocity / (1 + data.velocity + data.amplitude)
+        xr.testing.assert_allclose(data.mu_macro, expected.transpose("amplitude", "velocity"))
+        assert float(data.mu_macro.sel(velocity=10, amplitude=2)) == pytest.approx(10 / 13)
+        between = data.interp(velocity=5.5, amplitude=1.0)
+        assert 0 < float(between.mu_macro) < 1
+        assert float(data.poisson) == 0
+
+
+def test_a_continuous_bore_has_one_dimension_and_a_torque(tmp_path, solver):
+    with on_disk("continuous_bore", tmp_path) as data:
+        assert data.mu_macro.dims == data.mu_torque.dims == ("velocity",)
+        assert data.mu_torque.values == pytest.approx(1 / (1 + data.velocity.values))
+        assert float(data.mu_macro.interp(velocity=0.5)) > 0
+
+
+def test_a_list_of_poissons_ratios_is_a_dimension(tmp_path, solver):
+    with on_disk("transverse", tmp_path, NU) as data:
+        assert data.mu_macro.dims == ("poisson", "amplitude", "velocity")
+        assert data.sel(poisson=0.3, velocity=1, amplitude=2).mu_macro.size == 1
+        assert data.mu_static.dims == ("amplitude",)
+
+
+def test_errors_convergence_and_effort_are_there(tmp_path, monkeypatch):
+    Solver(monkeypatch, fails=2.0)
+    with on_disk("transverse", tmp_path) as data:
+        assert data.converged.dtype == bool
+        assert data.converged.sel(amplitude=0).all()
+        assert not data.converged.sel(amplitude=2).any()
+        assert np.isnan(data.mu_macro.sel(amplitude=2)).all()
+        assert set(data.reason.sel(amplitude=2).values) == {"no periodic state"}
+        assert set(data.model.values.flat) == {"polar"}
+        for name, value in EFFORT.items():
+            assert data[name].dtype.kind == "i"
+            assert (data[name] == value).all()
+        assert (data.mu_macro_error == 4e-5).all()
+        assert list(dataset.report(data)) == [
+            "transverse: 6 points, 3 not converged",
+            *(f"  not converged: amplitude 2, velocity {v}: no periodic state" for v in (0.1, 1, 10)),
+        ]
+    with netCDF4.Dataset(tmp_path / "transverse.nc") as raw:
+        flag = raw["converged"]
+        assert flag.dtype == np.int8
+        assert list(flag.flag_values) == [0, 1]
+        assert flag.flag_meanings == "not_converged converged"
+
+
+def test_a_point_that_the_solver_failed_at_is_a_gap(tmp_path, monkeypatch, solver):
+    def fail(*_, **__):
+        raise RuntimeError("stalled")
+
+    monkeypatch.setattr("microslip.solve", fail)
+    data = built("continuous_bore", tmp_path)
+    assert np.isnan(data.mu_macro).all()
+    assert not data.converged.any()
+    assert (data.cells == 0).all()
+
+
+def test_limits_of_the_transverse_scene(tmp_path, solver):
+    data = built("transverse", tmp_path)
+    v, a = data.velocity.values, data.amplitude.values
+    assert data.mu_large_amplitude.dims == ("amplitude", "velocity")
+    assert float(data.mu_large_amplitude.sel(velocity=1, amplitude=2)) == pytest.approx(
+        float(theory.large_amplitude_transverse(1.0, 2.0))
+    )
+    assert (data.mu_large_amplitude.sel(amplitude=0) == 1).all()
+    assert data.mu_static_slider.values == pytest.approx(theory.static_slider(a))
+    assert data.mu_static_stick_zone.values == pytest.approx(theory.static_transverse(a))
+    assert data.mu_static.values == pytest.approx(theory.static_limit_transverse(a))
+    assert v.size == 3
+
+
+def test_limits_of_the_bore_scenes(tmp_path, solver):
+    data = built("bore", tmp_path)
+    v, a = data.velocity.values, data.amplitude.values
+    assert data.mu_large_amplitude.values == pytest.approx(theory.large_amplitude_bore(v))
+    assert data.mu_static_stick_zone.values == pytest.approx(theory.static_bore(a))
+    assert data.mu_static_stick_zone_printed.values == pytest.approx(theory.static_bore_printed(a))
+    assert data.mu_static.values == pytest.approx(theory.static_limit_bore(a))
+    data = built("continuous_bore", tmp_path)
+    assert data.mu_forward_theory.values == pytest.approx(theory.bore_forward(v))
+    assert data.mu_torque_theory.values == pytest.approx(theory.bore_torque(v))
+
+
+def test_single_runs_for_the_figures_are_in_the_dataset(tmp_path, solver):
+    data = built("transverse", tmp_path)
+    assert data.history_force_forward.dims == ("history_step",)
+    assert data.history_phase.attrs["units"] == "rad"
+    assert (float(data.history_velocity), float(data.history_amplitude)) == (0.1, 1.0)
+    data = built("continuous_bore", tmp_path)
+    assert list(data.start.values) == list(sweep.STARTS)
+    assert data.transient_torque.dims == ("start", "transient_step")
+    assert data.transient_force_forward.sel(start="stress-free").values[-1] == 1
+    assert data.transient_force_forward.sel(start="full-slip").values[-1] == 0
+    assert float(data.transient_force_theory) == pytest.approx(float(theory.bore_forward(0.8)))
+    assert data.field_traction_forward.dims == ("cell",)
+    assert float(data.field_centre_lateral) == -0.5
+
+
+@pytest.mark.parametrize("name", GRIDS)
+def test_conventions_and_provenance(name, tmp_path, solver):
+    with on_disk(name, tmp_path) as data:
+        for variable in data.variables.values():
+            assert variable.attrs["long_name"]
+            if variable.dtype.kind in "if":
+                assert variable.attrs["units"] in ("1", "rad")
+                assert not np.isin("_FillValue", list(variable.encoding)) or variable.ndim == 0
+        assert data.Conventions == "CF-1.11"
+        assert data.microslip_version == microslip.__version__
+        assert len(data.source_digest) == 64
+        assert json.loads(data.configuration)["sweep"]["velocity"] == [0.1, 1, 10]
+        assert "numba" in data.library_versions
+        assert str(tmp_path) not in str(data.attrs)
+
+
+@pytest.mark.parametrize("name", GRIDS)
+def test_equal_results_give_equal_bytes(name, tmp_path, solver):
+    data = built(name, tmp_path)
+    dataset.write(data, tmp_path / "first.nc")
+    time.sleep(1.1)  # HDF5 can hold times, in seconds
+    dataset.write(built(name, tmp_path), tmp_path / "elsewhere" / "second.nc")
+    first, second = tmp_path / "first.nc", tmp_path / "elsewhere" / "second.nc"
+    assert first.read_bytes() == second.read_bytes()
+
+
+def test_a_missing_or_additional_point_is_an_error(tmp_path, solver):
+    configuration = config.from_mapping({"sweeps": GRIDS})
+    grid, store = configuration.sweeps["bore"], Store(tmp_path)
+    records = [sweep.answer(request, store)[0] for request in sweep.point_requests(grid)]
+    for wrong in (records[:-1], [*records, records[0]]):
+        with pytest.raises(ValueError, match="results for the 6 points"):
+            dataset.build(grid, wrong, [], {})
+
+
+def test_a_dataset_is_replaced_whole_or_not_at_all(tmp_path, monkeypatch, solver):
+    path = tmp_path / "bore.nc"
+    dataset.write(built("bore", tmp_path), path)
+    before = path.read_bytes()
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(cache.os, "fsync", full)
+    with pytest.raises(CacheError, match="No space left"):
+        dataset.write(built("transverse", tmp_path, NU), path)
+    assert path.read_bytes() == before
+    assert [p.name for p in tmp_path.glob("*.nc*")] == ["bore.nc"]

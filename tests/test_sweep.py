@@ -1,0 +1,129 @@
+"""Sweeps: requests, batches of them, and answers from the store or the solver."""
+
+import json
+import math
+
+import pytest
+from sweep_stub import Solver
+
+from microslip import config, sweep
+from microslip.cache import Store
+
+
+def configured(**transverse):
+    grid = {"velocity": [0.1, 1], "amplitude": [0, 1, 2], **transverse}
+    bore = {"velocity": [0.5]}
+    return config.from_mapping({"sweeps": {"transverse": grid, "continuous_bore": bore}})
+
+
+def requests_of(**transverse):
+    return sweep.point_requests(configured(**transverse).sweeps["transverse"])
+
+
+@pytest.fixture
+def store(tmp_path):
+    return Store(tmp_path)
+
+
+def test_requests_are_canonical_and_run_through_the_velocity_fastest():
+    found = [(r["amplitude"], r["velocity"]) for r in requests_of()]
+    assert found == [(a, v) for a in ("0", "1", "2") for v in ("0.1", "1")]
+    assert requests_of(amplitude=[2.0, 1, 0.0]) == requests_of()
+
+
+def test_a_scene_without_amplitude_has_none():
+    (request,) = sweep.point_requests(configured().sweeps["continuous_bore"])
+    assert request["amplitude"] is None
+
+
+def test_a_new_axis_keeps_the_old_requests():
+    with_nu = requests_of(poisson=[0, 0.3])
+    assert with_nu[:6] == requests_of()
+    assert len(with_nu) == 12
+
+
+def test_single_runs_for_the_figures():
+    kinds = [r["kind"] for r in sweep.history_requests(configured(), "continuous_bore")]
+    assert kinds == ["field", "history", "history", "history"]
+    (history,) = sweep.history_requests(configured(), "transverse")
+    assert (history["periods"], history["velocity"]) == (4, "0.1")
+    assert sweep.history_requests(configured(), "bore") == []
+
+
+@pytest.mark.parametrize("size", [1, 4, 6, 50])
+def test_batches_hold_every_request_once(size):
+    requests = requests_of()
+    batches = sweep.batches(requests, size, "digest")
+    assert [r for batch in batches.values() for r in batch] == requests
+    assert len(batches) == math.ceil(6 / size)
+
+
+def test_a_batch_is_named_by_what_it_answers():
+    requests = requests_of()
+    assert sweep.batches(requests, 6, "d") == sweep.batches(requests, 6, "d")
+    assert sweep.batches(requests, 6, "d").keys() != sweep.batches(requests, 6, "e").keys()
+    longer = requests_of(amplitude=[0, 1, 2, 3])
+    assert sweep.batches(requests, 2, "d").keys() < sweep.batches(longer, 2, "d").keys()
+
+
+def test_only_what_the_store_lacks_is_computed(monkeypatch, store):
+    solver = Solver(monkeypatch)
+    index, done = sweep.run_batch(requests_of(), store)
+    assert (done["points"], done["computed"], solver.calls) == (6, 6, 6)
+    again, done = sweep.run_batch(requests_of(), store)
+    assert (again, done["computed"], solver.calls) == (index, 0, 6)
+    _, done = sweep.run_batch(requests_of(amplitude=[0, 0.5, 1, 2]), store)
+    assert (done["computed"], solver.calls) == (2, 8)
+
+
+def test_a_damaged_result_is_computed_again_to_the_same_bytes(monkeypatch, store):
+    solver = Solver(monkeypatch)
+    request = requests_of()[3]
+    record, _ = sweep.answer(request, store)
+    path = store.path(sweep.group(request), record["key"])
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) // 2])
+    assert sweep.answer(request, store)[0] == record
+    assert solver.calls == 2
+    assert path.read_bytes() == whole  # though the solver took another time
+
+
+def test_a_record_is_the_same_computed_or_read(monkeypatch, store):
+    Solver(monkeypatch, fails=2.0)
+    for request in requests_of() + sweep.history_requests(configured(), "continuous_bore"):
+        computed, took = sweep.answer(request, store)
+        read, none = sweep.answer(request, store)
+        assert took > 0 == none
+        assert json.dumps(computed, sort_keys=True) == json.dumps(read, sort_keys=True)
+        assert "solve_time_s" not in computed["result"]
+
+
+def test_points_that_do_not_converge_are_data(monkeypatch, store):
+    Solver(monkeypatch, fails=2.0)
+    index, _ = sweep.run_batch(requests_of(), store)
+    assert index["not_converged"] == 2
+    record, _ = sweep.answer(requests_of()[-1], store)
+    assert record["result"]["mu_macro"] is None
+    assert record["result"]["reason"] == "no periodic state"
+
+
+@pytest.mark.parametrize("error", [ZeroDivisionError("division"), RuntimeError("stalled")])
+def test_a_point_at_which_the_solver_fails_is_data_too(monkeypatch, store, error):
+    def fail(*_, **__):
+        raise error
+
+    monkeypatch.setattr("microslip.solve", fail, raising=False)
+    index, _ = sweep.run_batch(requests_of(), store)
+    assert index["not_converged"] == 6
+    record, _ = sweep.answer(requests_of()[0], store)
+    assert record["result"]["reason"] == f"{type(error).__name__}: {error}"
+
+
+def test_a_mistake_in_the_request_is_not(monkeypatch, store):
+    def refuse(*_, **__):
+        raise ValueError("velocity")
+
+    monkeypatch.setattr("microslip.solve", refuse, raising=False)
+    with pytest.raises(ValueError, match="velocity"):
+        sweep.run_batch(requests_of(), store)
+    assert not list(store.folder.rglob("*.json"))

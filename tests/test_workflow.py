@@ -1,0 +1,215 @@
+"""The workflow, run by Snakemake in a copy of the project: what is computed, and what is not."""
+
+import re
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import xarray as xr
+import yaml
+
+ROOT = Path(__file__).parent.parent
+SNAKEMAKE = Path(sys.executable).with_name("snakemake")
+RUN = ["-j2", "--configfile", "tiny.yaml"]
+
+# Closed forms and the rigid model: points that cost nothing.
+AXES = {"velocity": [0.5, 2], "amplitude": [0, 1], "model": "rigid", "tolerance": 1e-2}
+TINY = {
+    "sweeps": {
+        "transverse": AXES,
+        "bore": AXES,
+        "continuous_bore": {"velocity": [0.5, 2], "model": "rigid", "tolerance": 1e-2},
+    },
+    "histories": {
+        "transverse": {"periods": 1, "cells": 4, "steps": 16},
+        "field": {"cells": 4},
+        "transients": {"travel": 1.0, "cells": 4, "steps": 16},
+    },
+    "points_per_job": 3,
+}
+ALL_JOBS = {"warm_up": 1, "solve_batch": 7, "collect": 3, "draw_figure": 6, "all": 1}
+
+
+class Project:
+    """A copy of the project to run and to edit."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        for name in ("config", "profiles", "src", "workflow"):
+            shutil.copytree(ROOT / name, folder / name)
+        shutil.copy(ROOT / "Snakefile", folder)
+        self.configure(TINY)
+
+    def configure(self, configuration):
+        (self.folder / "tiny.yaml").write_text(yaml.safe_dump(configuration))
+
+    def snakemake(self, *arguments):
+        # Nothing of the environment is activated: only the path of the executable is known.
+        return subprocess.run(
+            [SNAKEMAKE, *arguments],
+            cwd=self.folder,
+            env={"PATH": "/usr/bin:/bin", "HOME": str(self.folder)},
+            capture_output=True,
+            text=True,
+            timeout=300,
+        )
+
+    def run(self):
+        done = self.snakemake(*RUN)
+        assert done.returncode == 0, done.stderr
+        return done.stdout + done.stderr
+
+    def planned(self):
+        """Jobs that a run would do, by rule; {} if there is nothing to do."""
+        done = self.snakemake(*RUN, "--dry-run")
+        assert done.returncode == 0, done.stderr
+        table = re.search(r"^-+  -+\n(.*?)^total", done.stdout, re.MULTILINE | re.DOTALL)
+        rows = table[1].split("\n")[:-1] if table else []
+        return {name: int(count) for name, count in map(str.split, rows)}
+
+    def points(self):
+        return {p.name: p.read_bytes() for p in self.folder.glob("results/points/*/*/*.json")}
+
+    def append(self, path, text):
+        with open(self.folder / path, "a") as file:
+            file.write(text)
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """A project after its first run, and what that run said. To be left as it is."""
+    project = Project(tmp_path_factory.mktemp("finished"))
+    assert project.planned() == ALL_JOBS
+    project.said = project.run()
+    return project
+
+
+@pytest.fixture
+def project(finished, tmp_path):
+    """A copy of the finished project to edit."""
+    copy = object.__new__(Project)
+    copy.folder = tmp_path / "copy"
+    shutil.copytree(finished.folder, copy.folder)
+    return copy
+
+
+def test_one_run_makes_the_datasets_and_the_figures(finished):
+    results = finished.folder / "results"
+    assert {p.name for p in results.glob("*.nc")} == {
+        "transverse.nc",
+        "bore.nc",
+        "continuous_bore.nc",
+    }
+    assert len(list(results.glob("figures/fig*.png"))) == 6
+    assert len(list(results.glob("figures/fig*.pdf"))) == 6
+    with xr.open_dataset(results / "transverse.nc") as data:
+        assert data.converged.all()
+        assert (data.mu_macro.sel(amplitude=0) == 1).all()
+        assert data.history_force_forward.size == 17
+    assert len(finished.points()) == 10
+    assert "bore: 4 points, none not converged" in finished.said
+
+
+def test_a_second_run_has_nothing_to_do_and_soon_says_so(finished):
+    started = time.perf_counter()
+    assert "Nothing to be done" in finished.run()
+    assert time.perf_counter() - started < 10
+
+
+def test_a_new_amplitude_computes_its_points_only(project):
+    before = project.points()
+    axes = {**AXES, "amplitude": [0, 0.5, 1]}
+    project.configure({**TINY, "sweeps": {**TINY["sweeps"], "transverse": axes}})
+    planned = project.planned()
+    assert planned == {"solve_batch": 2, "collect": 1, "draw_figure": 2, "all": 1}
+    project.run()
+    after = project.points()
+    assert len(after) == len(before) + 2
+    assert {name: after[name] for name in before} == before
+    logs = project.folder.glob("results/logs/solve_batch/transverse/*.log")
+    computed = [int(n) for log in logs for n in re.findall(r"(\d+) computed", log.read_text())]
+    assert sum(computed) == 4 + 2
+    with xr.open_dataset(project.folder / "results" / "transverse.nc") as data:
+        assert list(data.amplitude.values) == [0, 0.5, 1]
+
+
+def test_editing_a_plotting_module_draws_the_figures_again(project):
+    project.append("src/microslip/plot/maps.py", "\nSPARE = 1\n")
+    assert project.planned() == {"draw_figure": 6, "all": 1}
+
+
+def test_editing_the_datasets_collects_again(project):
+    project.append("src/microslip/dataset.py", "\nSPARE = 1\n")
+    assert project.planned() == {"collect": 3, "draw_figure": 6, "all": 1}
+
+
+def test_editing_the_solver_computes_everything_again_but_a_comment_does_not(project):
+    project.append("src/microslip/halfspace.py", "\n# More to read.\n")
+    assert project.planned() == {}
+    project.append("src/microslip/halfspace.py", "\nSPARE = 1\n")
+    assert project.planned() == ALL_JOBS
+
+
+def test_touching_files_changes_nothing(project):
+    for path in (project.folder / "src").rglob("*.py"):
+        path.touch()
+    (project.folder / "tiny.yaml").touch()
+    assert project.planned() == {}
+
+
+def test_a_damaged_point_is_computed_again_where_it_is_needed(project):
+    before = project.points()
+    dataset = project.folder / "results" / "transverse.nc"
+    expected = dataset.read_bytes()
+    for path in project.folder.glob("results/points/transverse/*/*.json"):
+        path.write_bytes(path.read_bytes()[:-9])
+    dataset.unlink()
+    said = project.run()
+    assert said.count("damaged result") == 4
+    assert project.points() == before
+    assert dataset.read_bytes() == expected
+
+
+def test_points_that_do_not_converge_are_listed_and_drawn_with_a_job_a_point(project):
+    """points_per_job 1, and a resolution that the tolerance cannot be met with."""
+    axes = {**AXES, "model": "slider", "steps": 8, "tolerance": 1e-5}
+    project.configure({**TINY, "sweeps": {"transverse": axes}, "points_per_job": 1})
+    assert project.planned()["solve_batch"] == 4
+    said = project.run()
+    assert "transverse: 4 points, 2 not converged" in said
+    assert "not converged: amplitude 1, velocity 0.5: " in said
+
+
+@pytest.mark.parametrize(
+    ("change", "part"),
+    [
+        ({"velocities": [1]}, "sweeps.transverse.velocities: unknown key; did you mean velocity?"),
+        ({"amplitude": [0, -1]}, "sweeps.transverse.amplitude[1]: -1 is not allowed"),
+        ({"velocity": ["1e-8"]}, "sweeps.transverse.velocity[0]"),
+    ],
+)
+def test_a_bad_configuration_stops_before_the_first_job(change, part, tmp_path):
+    project = Project(tmp_path / "new")
+    project.configure({**TINY, "sweeps": {"transverse": {**AXES, **change}}})
+    done = project.snakemake(*RUN)
+    assert done.returncode != 0
+    message = done.stderr.strip().split("\n")[-1]
+    assert message.startswith("Error in tiny.yaml: ")
+    assert part in message
+    assert "Traceback" not in done.stderr
+    assert not (project.folder / "results").exists()
+
+
+def test_a_number_on_the_command_line_is_checked_too(finished):
+    done = finished.snakemake(*RUN, "--config", "points_per_job=none")
+    assert done.returncode != 0
+    assert 'points_per_job: "none" is text' in done.stderr
+
+
+def test_the_workflow_passes_snakemakes_own_checks(finished):
+    done = finished.snakemake("--lint")
+    assert done.returncode == 0, done.stderr
+    assert "good condition" in done.stdout + done.stderr
