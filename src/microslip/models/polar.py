@@ -26,7 +26,7 @@ from microslip.rings import make_rings
 MAX_ITERATIONS = 4000
 CHECK_EVERY = 4
 PENALTY = 1.0
-"""Augmentation over the influence of a ring on itself; iterations double at half and at twice it."""
+"""Augmentation over the self-influence of a ring; iterations double at half and at twice it."""
 RELAXATION = 1.7
 
 
