@@ -101,7 +101,8 @@ class _Chain:
 def certify(run, base, axes, tolerance, imposed=()):
     """Refine until the estimated error is within ``tolerance``.
 
-    run(resolution) -> simulate.Run; base: simulate.Resolution; axes: names that can be refined;
+    run(resolution, guess) -> simulate.Run (guess: the run at the base, or None); base:
+    simulate.Resolution; axes: names that can be refined;
     imposed: those whose resolution the caller fixed, so that their error is only reported.
     Returns a Certified; converged is False, with the reason, where a run did not converge or the
     estimate over a free axis stays too large.
@@ -110,7 +111,7 @@ def certify(run, base, axes, tolerance, imposed=()):
 
     def at(resolution):
         if resolution not in cache:
-            cache[resolution] = run(resolution)
+            cache[resolution] = run(resolution, cache.get(base))
         return cache[resolution]
 
     at(base)

@@ -108,10 +108,10 @@ def solve(
     base, axes, imposed = _plan(kind, name, tolerance, cells, steps)
     share = PERIODICITY_SHARE * tolerance
 
-    def run(resolution):
+    def run(resolution, guess):
         if progress is not None:
             progress(resolution)
-        return simulate(kind, velocity, amplitude, poisson, name, resolution, share)
+        return simulate(kind, velocity, amplitude, poisson, name, resolution, share, guess)
 
     certified = certify(run, base, axes, tolerance, imposed)
     steady = not kind.periodic

@@ -8,7 +8,7 @@ import numpy as np
 
 from microslip import hertz
 from microslip.models import MODELS
-from microslip.models.contact import energy_norm, full_slip
+from microslip.models.contact import energy_norm, full_slip, transferred
 from microslip.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.periodic import find_periodic_state
 
@@ -34,7 +34,8 @@ class Run:
     """Outcome of one run: forward friction and torque over their full-slip values, and the effort.
 
     distance: estimated distance from the periodic (steady) state; solver_residual: summed over the
-    last period; both forces over mu F_z.  work: step solves x unknowns.
+    last period; both forces over mu F_z.  work: step solves x unknowns.  contact, state: the
+    discretisation and its periodic tractions, where there are any.
     """
 
     mu: float
@@ -47,14 +48,18 @@ class Run:
     work: int
     converged: bool
     reason: str
+    contact: object = None
+    state: np.ndarray | None = None
 
 
-def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance):
+def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance, guess=None):
     """Run ``model`` on a scene at one resolution to its periodic (or steady) state.
 
     scene: scenes.Scene; velocity > 0, amplitude > 0 (None for steady scenes), poisson in 0..0.5:
     checked by the caller; tolerance: of the periodic state, a force over mu F_z, steps are solved
-    ten thousand times tighter.  Returns a Run; never raises for want of convergence.
+    a thousand times tighter; guess: a Run of the same point at another resolution, whose periodic
+    state is a better start than full forward slip.  Returns a Run; never raises for want of
+    convergence.
     """
     focus = scene.focus(velocity, amplitude)
     contact = MODELS[model].build(scene, poisson, resolution.cells, resolution.angles, focus)
@@ -67,7 +72,11 @@ def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance):
         return _steady_run(contact, displacement, velocity, tolerance, step_tolerance)
     grading = {"grading": contact.grading} if hasattr(contact, "grading") else {}
     path = make_path(displacement, half_period_phases(resolution.steps, **grading), SDIRK2)
-    start = forward_slip(contact)
+    start = None
+    if guess is not None and guess.converged:
+        start = transferred(guess.state, guess.contact, contact)
+    if start is None:
+        start = forward_slip(contact)
     found = find_periodic_state(contact, path, start, tolerance, step_tolerance)
     mean = path.mean(found.forces)
     solved = found.solver_residual <= found_limit(path, step_tolerance)
@@ -87,6 +96,8 @@ def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance):
         work=found.solves * start.size,
         converged=found.converged and solved,
         reason=reason,
+        contact=contact,
+        state=found.start,
     )
 
 

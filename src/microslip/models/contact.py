@@ -7,6 +7,8 @@ from typing import Protocol
 
 import numpy as np
 
+from microslip.friction import project
+
 UNIT_STIFFNESS = 1.5
 """Force over mu F_z per uniform displacement u_lim without slip, 2 G* a: turns an energy norm into
 a bound on a force, |dF| <= sqrt(1.5 <dq, A dq>)."""
@@ -55,6 +57,25 @@ class Contact(Protocol):
 
     def march(self, path, state, tolerance, sensitivity=False) -> March:
         """March along a path from a state; every stage is solved to ``tolerance`` (a force)."""
+
+
+def transferred(state, old, new):
+    """Tractions of one contact as a first guess for another discretisation of it, or None.
+
+    Interpolates the share of the bound that is used, linearly in the ring angle psi and in the
+    angle around the contact.  Contacts without rings only pass their states on unchanged.
+    """
+    shape = np.broadcast_shapes(np.shape(new.bound), new.forward_position.shape)
+    if state.shape[1:] == shape:
+        return state
+    if not (hasattr(old, "rings") and hasattr(new, "rings")):
+        return None
+    share = state / old.bound
+    source, target = (0.5 * (c.rings.psi[1:] + c.rings.psi[:-1]) for c in (old, new))
+    share = np.apply_along_axis(lambda row: np.interp(target, source, row), 2, share)
+    source, target = ((np.arange(c.angles) + 0.5) / c.angles for c in (old, new))
+    share = np.apply_along_axis(lambda row: np.interp(target, source, row), 1, share)
+    return project(share * new.bound, new.bound)
 
 
 def energy_norm(contact, change):

@@ -261,7 +261,9 @@ class RadialContact:
     def resolved(cls, cells, focus=None):
         """The half-space on ``cells`` rings refined around the radius ``focus``."""
         rings = make_rings(cells, focus)
-        return cls(_influence(cells, focus), rings.bound, rings.area)
+        contact = cls(_influence(cells, focus), rings.bound, rings.area)
+        contact.rings = rings
+        return contact
 
     def displacement(self, state):
         """A q; shapes (2, 1, cells)."""
