@@ -3,6 +3,8 @@
 Complex notation: q = lateral + i forward, as in PHYSICS.md and halfspace.py.
 """
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -10,6 +12,7 @@ from scipy.integrate import quad
 from microslip import hertz
 from microslip.halfspace import coupling_kernels, ring_influence, toroidal_kernels
 from microslip.models.cartesian import CartesianContact
+from microslip.models.contact import forces
 from microslip.models.polar import PolarContact
 from microslip.models.radial import RadialContact
 from microslip.rings import make_rings
@@ -46,7 +49,7 @@ def toroidal_mean(m, r, s):
 
 
 def coupling_mean(m, r, s):
-    """Mode m at (r, 0) of e^{2 i alpha} / |z - z'| under conj(e^{i (2 - m) beta}) on the circle s."""
+    """Mode m at r of the kernel e^{2 i alpha} / |z - z'| under mode 2 - m, conjugated, on s."""
 
     def kernel(beta, s):
         apart = r - s * np.exp(1j * beta)
@@ -168,6 +171,11 @@ def weights(contact):
     return np.broadcast_to(contact.weight, shape).ravel()
 
 
+@pytest.fixture
+def rng():
+    return np.random.default_rng(20201109)
+
+
 CONTACTS = {
     "radial": lambda nu: RadialContact.resolved(10, 0.7),
     "polar, translation": lambda nu: PolarContact(6, 6, False, nu, 0.7),
@@ -194,6 +202,220 @@ def test_operator_commutes_with_the_mirror(name, nu, rng):
     image = contact.mirrored(contact.displacement(state))
     assert contact.displacement(contact.mirrored(state)) == pytest.approx(image, abs=1e-12)
     assert contact.mirrored(contact.mirrored(state)) == pytest.approx(state, abs=0)
-    # what is mirrored is the lateral axis: forward force and torque stay, the rest turns over
-    kept, turned = forces(contact, state), forces(contact, contact.mirrored(state))
-    assert turned == pytest.approx(kept * [1, -1, 1 if False else -1], abs=1e-12)
+    # what turns over with the lateral axis is the lateral force and the torque
+    turned = forces(contact, contact.mirrored(state))
+    assert turned == pytest.approx(forces(contact, state) * [1, -1, -1], abs=1e-12)
+
+
+def test_square_operator_commutes_with_point_reflection_and_quarter_turn(rng):
+    contact = CartesianContact(8, 0.4)
+    state = rng.normal(size=(2, 8, 8))
+    moved = contact.displacement(state)
+    assert contact.displacement(state[:, ::-1, ::-1]) == pytest.approx(
+        moved[:, ::-1, ::-1], abs=1e-12
+    )
+
+    def quarter_turn(field):
+        """Forward turns to -lateral, lateral to forward, positions likewise."""
+        forward, lateral = field
+        return np.stack([lateral.T[:, ::-1], -forward.T[:, ::-1]])
+
+    assert contact.displacement(quarter_turn(state)) == pytest.approx(
+        quarter_turn(moved), abs=1e-12
+    )
+
+
+def smooth_traction(coefficients, z):
+    """Bound-shaped traction over its amplitude: Sum c[a, b] z^a conj(z)^b."""
+    return sum(c * z**a * z.conj() ** b for (a, b), c in np.ndenumerate(coefficients))
+
+
+def direct_displacement(coefficients, nu, z):
+    """Displacement at z inside the contact under q = g(|z'|) smooth_traction(z').
+
+    In polar coordinates about z the kernel 1/rho is gone; along each chord the square root of the
+    bound is the weight of Gauss-Chebyshev quadrature, and around z equal angles are spectral.
+    """
+    count = 16
+    k = np.arange(1, count + 1) * np.pi / (count + 1)
+    nodes, w = np.cos(k), np.pi / (count + 1) * np.sin(k) ** 2
+    alpha = (np.arange(48) + 0.5) * np.pi / 48
+    turn = np.exp(1j * alpha)[:, None]
+    middle = (z.conjugate() * turn).real
+    half = np.sqrt(middle**2 + 1 - abs(z) ** 2)
+    q = 1.5 / np.pi * smooth_traction(coefficients, z - (middle + half * nodes) * turn)
+    kappa = nu / (2 - nu)
+    chords = np.sum(w * half**2 * (q + kappa * turn**2 * q.conj()), axis=1)
+    return chords.sum() * np.pi / 48 / (np.pi * hertz.G_STAR)
+
+
+def test_direct_displacement_of_the_hertz_traction():
+    """Cattaneo: uniform shift minus a paraboloid, for nu = 0 u = 1 - |z|^2 / 2 (u_lim = 1)."""
+    for z in (0.0 + 0j, 0.6 + 0j, 0.3 - 0.7j):
+        moved = direct_displacement(np.ones((1, 1)), 0.0, z)
+        assert moved == pytest.approx(1 - abs(z) ** 2 / 2, abs=1e-13)
+
+
+def random_smooth_traction(rng, rotates):
+    """Coefficients of a traction with the symmetry that the polar contact takes for granted."""
+    c = rng.normal(size=(4, 4)) + 1j * rng.normal(size=(4, 4))
+    a, b = np.indices(c.shape)
+    if rotates:  # q(conj z) = -conj(q(z)): lateral odd, forward even across the lateral axis
+        return 1j * c.real * (a + b < 5)
+    return c * ((a + b) % 2 == 0) * (a + b < 5)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+@pytest.mark.parametrize("rotates", [True, False])
+def test_polar_operator_is_the_half_space_integral(rotates, nu, rng):
+    for _ in range(2):
+        coefficients = random_smooth_traction(rng, rotates)
+        cells, errors = np.array([8, 16, 32]), []
+        for n in cells:
+            contact = PolarContact(int(n), 8, rotates, nu)
+            z = contact.lateral_position + 1j * contact.forward_position
+            q = smooth_traction(coefficients, z) * contact.bound
+            u = contact.displacement(np.stack([q.imag, q.real]))
+            some = (slice(1, None, 3), slice(n // 8, None, n // 8))
+            exact = [direct_displacement(coefficients, nu, point) for point in z[some].ravel()]
+            error = (u[1] + 1j * u[0])[some].ravel() - exact
+            errors.append(np.sqrt(np.mean(np.abs(error) ** 2) / np.mean(np.abs(exact) ** 2)))
+        assert errors[-1] < 3e-3
+        assert fitted_order(cells, errors) == pytest.approx(2.0, abs=0.3)
+
+
+def fitted_order(counts, errors):
+    """Order of convergence: minus the slope of log(error) over log(count)."""
+    return -np.polyfit(np.log(counts), np.log(errors), 1)[0]
+
+
+# Tractions whose displacement is known
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+def test_flat_punch_traction_displaces_the_disc_uniformly(nu):
+    """q = F / (2 pi sqrt(1 - r^2)) moves the whole disc by F / (2 G* a), whatever nu."""
+    cells, errors = [16, 32, 64], []
+    for n in cells:
+        contact = PolarContact(n, 4, False, nu)
+        depth = np.cos(contact.rings.psi)
+        mean = -np.diff(depth) / contact.rings.area  # of each ring, for F = 1
+        state = np.stack([np.tile(mean, (4, 1)), np.zeros((4, n))])
+        assert forces(contact, state) == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
+        moved = contact.displacement(state)
+        inside = contact.rings.radius < 0.8
+        errors.append(np.abs(moved[0, :, inside] * 2 * hertz.G_STAR - 1).max())
+        assert np.abs(moved[1, :, inside]).max() < errors[-1]
+    assert errors[-1] < 1e-3
+    assert fitted_order(cells, errors) == pytest.approx(2.0, abs=0.5)
+
+
+@pytest.mark.parametrize("u", [0.3, 0.7])
+def test_mindlin_traction_displaces_the_stick_zone_uniformly(u):
+    stick = hertz.mindlin_stick_radius(u)
+    cells, errors = [12, 24, 48], []
+    for n in cells:
+        contact = RadialContact.resolved(n, float(stick))
+        radii = np.sin(make_rings(n, float(stick)).psi)
+        inner = stick**3 * hertz.load_inside(radii / stick)  # load of the inner contact
+        mean = np.diff(hertz.load_inside(radii) - inner) / contact.weight
+        moved = contact.displacement(np.stack([mean, 0 * mean])[:, None])[0, 0]
+        sticks = radii[1:] <= stick * (1 + 1e-12)
+        errors.append(np.abs(moved[sticks] - u).max())
+        assert np.all(moved[~sticks] < u)
+    assert errors[-1] < 1e-3
+    assert fitted_order(cells, errors) == pytest.approx(2.0, abs=0.5)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.4])
+def test_lubkin_traction_turns_the_stick_zone_rigidly(nu):
+    stick = 0.6
+    angle = hertz.lubkin_angle(stick, nu)
+    cells, errors = [12, 24, 48], []
+    for n in cells:
+        contact = PolarContact(n, 4, True, nu, stick)
+        radius, psi = contact.rings.radius, contact.rings.psi
+        t, w = unit_gauss(20)
+        nodes = psi[:-1, None] + np.diff(psi)[:, None] * t
+        w = w * np.sin(2 * nodes)
+        mean = np.sum(w * hertz.lubkin_traction(np.sin(nodes), stick), axis=1) / np.sum(w, axis=1)
+        across = np.stack([contact.lateral_position, -contact.forward_position]) / radius
+        state = across * mean
+        moved = contact.displacement(state)
+        sticks = np.sin(psi[1:]) <= stick * (1 + 1e-12)
+        errors.append(np.abs(moved - angle * across * radius)[:, :, sticks].max() / angle)
+    assert errors[-1] < 1e-3
+    assert fitted_order(cells, errors) == pytest.approx(2.0, abs=0.5)
+
+
+# Squares
+
+
+def square_displacement(nu, size, apart):
+    """Displacement at ``apart`` (complex) from the centre of a square under unit tractions.
+
+    Returns it for a lateral and for a forward unit traction, as complex numbers; angular
+    quadrature about the point where it is wanted, over the part of each ray within the square.
+    """
+    kappa = nu / (2 - nu)
+    corners = apart - size / 2 * np.array([1 + 1j, -1 + 1j, -1 - 1j, 1 - 1j])
+    bends = np.sort(np.angle(corners))
+    x, w = unit_gauss(60)
+    total = np.zeros(2, complex)
+    for start, end in zip(bends, np.append(bends[1:], bends[0] + 2 * np.pi), strict=True):
+        alpha = start + (end - start) * x
+        turn = np.exp(1j * alpha)
+        # z' = apart - rho e^{i alpha} lies within the square for near <= rho <= far
+        with np.errstate(divide="ignore"):
+            limits = [
+                ((component + sign * size / 2) / direction)
+                for component, direction in ((apart.real, turn.real), (apart.imag, turn.imag))
+                for sign in (-1, 1)
+            ]
+        near = np.maximum(np.minimum(*limits[:2]), np.minimum(*limits[2:]))
+        far = np.minimum(np.maximum(*limits[:2]), np.maximum(*limits[2:]))
+        length = np.maximum(far, 0.0) - np.maximum(near, 0.0)
+        length = np.maximum(length, 0.0) * w * (end - start)
+        for k, q in enumerate((1.0, 1j)):
+            total[k] += np.sum(length * (q + kappa * turn**2 * np.conj(q)))
+    return total / (np.pi * hertz.G_STAR)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+def test_square_coefficients_are_the_integral_over_a_square(nu):
+    """Also between opposite corners: the convolution must not wrap around."""
+    cells = 6
+    contact = CartesianContact(cells, nu)
+    z = contact.lateral_position + 1j * contact.forward_position
+    for source in [(0, 0), (2, 3), (5, 0)]:
+        exact = np.array(
+            [[square_displacement(nu, 2 / cells, point - z[source]) for point in row] for row in z]
+        )
+        for k, component in enumerate([1, 0]):  # lateral, then forward unit traction
+            state = np.zeros((2, cells, cells))
+            state[component][source] = 1.0
+            moved = contact.displacement(state)
+            assert moved[1] + 1j * moved[0] == pytest.approx(exact[:, :, k], abs=1e-9)
+    assert contact.compliance[0, 0] == pytest.approx(
+        square_displacement(0.0, 2 / cells, 0j)[0].real, rel=1e-12
+    )
+
+
+def test_square_loads_are_those_of_the_hertz_pressure():
+    contact = CartesianContact(9)
+    loads = contact.bound * contact.weight
+    assert loads.sum() == pytest.approx(1.0, rel=1e-14)
+    edges = np.linspace(-1, 1, 10)
+    for i, j in [(4, 4), (1, 4), (0, 4), (1, 1), (2, 7), (0, 0)]:
+
+        def strip(x, j=j):
+            chord = np.sqrt(max(1 - x * x, 0.0))
+            low, high = np.clip(edges[j : j + 2], -chord, chord)
+            return quad(lambda y: hertz.friction_bound(np.hypot(x, y)), low, high)[0]
+
+        kinks = np.sqrt(1 - edges**2) * np.sign(edges[i] + 0.1)
+        ends = np.unique(np.clip(kinks, edges[i], edges[i + 1]))
+        ends = np.unique([edges[i], *ends, edges[i + 1]])
+        exact = sum(quad(strip, a, b, epsabs=1e-11)[0] for a, b in pairwise(ends))
+        assert loads[i, j] == pytest.approx(exact, abs=1e-9)
+    assert loads[0, 0] == 0.0

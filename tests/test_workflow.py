@@ -57,8 +57,8 @@ class Project:
             timeout=300,
         )
 
-    def run(self):
-        done = self.snakemake(*RUN)
+    def run(self, *targets):
+        done = self.snakemake(*targets, *RUN)
         assert done.returncode == 0, done.stderr
         return done.stdout + done.stderr
 
@@ -125,7 +125,7 @@ def test_a_new_amplitude_computes_its_points_only(project):
     project.configure({**TINY, "sweeps": {**TINY["sweeps"], "transverse": axes}})
     planned = project.planned()
     assert planned == {"solve_batch": 2, "collect": 1, "draw_figure": 2, "all": 1}
-    project.run()
+    project.run("results/transverse.nc")
     after = project.points()
     assert len(after) == len(before) + 2
     assert {name: after[name] for name in before} == before
@@ -167,20 +167,37 @@ def test_a_damaged_point_is_computed_again_where_it_is_needed(project):
     for path in project.folder.glob("results/points/transverse/*/*.json"):
         path.write_bytes(path.read_bytes()[:-9])
     dataset.unlink()
-    said = project.run()
+    said = project.run("results/transverse.nc")
     assert said.count("damaged result") == 4
     assert project.points() == before
     assert dataset.read_bytes() == expected
 
 
+STALLING = """
+
+from dataclasses import replace
+_solve = solve
+
+def solve(scene, velocity, amplitude=None, **settings):
+    result = _solve(scene, velocity, amplitude, **settings)
+    return replace(result, mu_macro=math.nan, converged=False, reason="stalled")
+"""
+
+
+def test_a_sweep_too_small_for_a_map_has_no_map(project):
+    axes = {**AXES, "amplitude": [1]}
+    project.configure({**TINY, "sweeps": {"transverse": axes}})
+    assert project.planned()["draw_figure"] == 1
+
+
 def test_points_that_do_not_converge_are_listed_and_drawn_with_a_job_a_point(project):
-    """points_per_job 1, and a resolution that the tolerance cannot be met with."""
-    axes = {**AXES, "model": "slider", "steps": 8, "tolerance": 1e-5}
+    project.append("src/microslip/point.py", STALLING)
+    axes = {**AXES, "amplitude": [1, 2]}
     project.configure({**TINY, "sweeps": {"transverse": axes}, "points_per_job": 1})
-    assert project.planned()["solve_batch"] == 4
+    assert project.planned()["solve_batch"] == 5
     said = project.run()
-    assert "transverse: 4 points, 2 not converged" in said
-    assert "not converged: amplitude 1, velocity 0.5: " in said
+    assert "transverse: 4 points, 4 not converged" in said
+    assert "not converged: amplitude 1, velocity 0.5: stalled" in said
 
 
 @pytest.mark.parametrize(

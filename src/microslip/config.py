@@ -57,6 +57,12 @@ class Sweep:
     cells: int | None
     steps: int | None
 
+    @property
+    def spans_a_map(self):
+        """Whether there is an area to draw: two amplitudes and two velocities above 0 at least."""
+        positive = [velocity for velocity in self.velocity if velocity > 0]
+        return len(self.amplitude or ()) > 1 and len(positive) > 1
+
 
 @dataclass(frozen=True)
 class Configuration:

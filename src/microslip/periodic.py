@@ -20,6 +20,8 @@ from microslip.models.contact import energy_norm
 
 PLAIN_PERIODS = 2
 ANDERSON_DEPTH = 12
+NEWTON_STALL = 10
+"""Newton corrections without a better state after which the search is given up."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +87,7 @@ def find_periodic_state(contact, path, start, tolerance, step_tolerance, max_per
                 solves,
                 converged,
             )
-        if converged:
+        if converged or (newton and period - best.periods > NEWTON_STALL):
             return best
         state = proposal
     return best

@@ -17,6 +17,8 @@ STEADY_STRETCH = 8
 STEADY_TRAVEL = 0.5
 """Largest rigid displacement of a steady motion in one step, in u_lim."""
 MAX_STRETCHES = 200
+PERIODS_FROM_GUESS = 60
+"""Half periods after which a march from another run's state gives way to one from full slip."""
 
 
 @dataclass(frozen=True, order=True)
@@ -72,12 +74,16 @@ def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance, 
         return _steady_run(contact, displacement, velocity, tolerance, step_tolerance)
     grading = {"grading": contact.grading} if hasattr(contact, "grading") else {}
     path = make_path(displacement, half_period_phases(resolution.steps, **grading), SDIRK2)
-    start = None
+    found = None
     if guess is not None and guess.converged:
         start = transferred(guess.state, guess.contact, contact)
-    if start is None:
+        if start is not None:
+            found = find_periodic_state(
+                contact, path, start, tolerance, step_tolerance, PERIODS_FROM_GUESS
+            )
+    if found is None or not found.converged:
         start = forward_slip(contact)
-    found = find_periodic_state(contact, path, start, tolerance, step_tolerance)
+        found = find_periodic_state(contact, path, start, tolerance, step_tolerance)
     mean = path.mean(found.forces)
     solved = found.solver_residual <= found_limit(path, step_tolerance)
     reason = ""

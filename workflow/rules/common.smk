@@ -42,6 +42,9 @@ for name, grid in CONFIGURATION.sweeps.items():
 
 # The figures that the configured sweeps have data for, each with the name of its dataset.
 FIGURES = {figure: name for figure, (name,) in plot.FIGURES.items() if name in CONFIGURATION.sweeps}
+for figure in ("fig2_transverse_map", "fig6_bore_map"):
+    if figure in FIGURES and not CONFIGURATION.sweeps[FIGURES[figure]].spans_a_map:
+        del FIGURES[figure]
 
 
 def batches_of(name):

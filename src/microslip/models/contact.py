@@ -13,6 +13,11 @@ UNIT_STIFFNESS = 1.5
 """Force over mu F_z per uniform displacement u_lim without slip, 2 G* a: turns an energy norm into
 a bound on a force, |dF| <= sqrt(1.5 <dq, A dq>)."""
 
+FORWARD_PUSH = 0.03
+"""Forward traction added to an interpolated state, as a share of the bound.  Points that the
+interpolation leaves just short of slipping forward would stay there: near the static limit only the
+slip of states with too much forward traction tells an accelerated search which way to go."""
+
 
 @dataclass(frozen=True, eq=False)
 class March:
@@ -75,6 +80,7 @@ def transferred(state, old, new):
     share = np.apply_along_axis(lambda row: np.interp(target, source, row), 2, share)
     source, target = ((np.arange(c.angles) + 0.5) / c.angles for c in (old, new))
     share = np.apply_along_axis(lambda row: np.interp(target, source, row), 1, share)
+    share[0] += FORWARD_PUSH
     return project(share * new.bound, new.bound)
 
 

@@ -1,0 +1,127 @@
+"""Coulomb's law at points: the projection, its residual, and the bound on the energy error."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from microslip.friction import coulomb_residual, dissipation_gap, project, shrink
+
+POINTS = 4
+NUMBER = st.floats(-3.0, 3.0, allow_subnormal=False)
+VECTORS = arrays(float, (2, 1, POINTS), elements=NUMBER)
+BOUNDS = arrays(float, POINTS, elements=st.floats(1e-3, 2.0))
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+def size(q):
+    return np.hypot(q[0], q[1])
+
+
+@given(VECTORS, BOUNDS)
+def test_projection_is_the_nearest_point_of_the_disc(q, bound):
+    nearest = project(q, bound)
+    assert np.all(size(nearest) <= bound * (1 + 1e-15))
+    inside = size(q) <= bound
+    assert np.array_equal(nearest[:, inside], q[:, inside])
+    # the disc lies behind the plane through the nearest point, across the way to it
+    for angle in np.linspace(0, 2 * np.pi, 12, endpoint=False):
+        other = bound * np.array([np.cos(angle), np.sin(angle)])[:, None, None]
+        assert np.all(((q - nearest) * (other - nearest)).sum(axis=0) <= 1e-13)
+
+
+@given(NUMBER, NUMBER, st.floats(0.0, 3.0))
+def test_shrink_is_the_factor_of_the_projection(forward, lateral, bound):
+    factor = shrink(forward, lateral, bound)
+    assert 0.0 <= factor <= 1.0
+    q = np.array([[forward], [lateral]])
+    assert factor * q == pytest.approx(project(q, np.array([bound])), abs=1e-15)
+
+
+def test_zero_bound_and_zero_traction():
+    zero = np.zeros((2, 1))
+    assert np.array_equal(project(zero, np.zeros(1)), zero)
+    assert np.array_equal(project(zero + 1.0, np.zeros(1)), zero)
+    assert shrink(0.0, 0.0, 0.0) == 1.0
+
+
+@st.composite
+def solutions(draw):
+    """(q, slip, bound, scale, weight) that obey Coulomb's law by construction."""
+    bound, scale = draw(BOUNDS), draw(BOUNDS)
+    weight = draw(BOUNDS)
+    angle = draw(arrays(float, (1, POINTS), elements=st.floats(0.0, 6.3)))
+    share = draw(arrays(float, (1, POINTS), elements=st.floats(0.0, 1.0)))
+    speed = draw(arrays(float, (1, POINTS), elements=st.floats(0.0, 2.0)))
+    slips = draw(arrays(bool, (1, POINTS)))
+    unit = np.stack([np.cos(angle), np.sin(angle)])
+    return unit * bound * np.where(slips, 1, share), unit * slips * speed, bound, scale, weight
+
+
+@given(solutions())
+def test_residual_and_gap_vanish_for_solutions(solution):
+    q, slip, bound, scale, weight = solution
+    assert coulomb_residual(q, slip, bound, weight, scale) <= 1e-14
+    assert abs(dissipation_gap(q, slip, bound, weight)) <= 1e-14
+
+
+def test_residual_is_exactly_zero_where_no_rounding_enters():
+    q = np.array([[[0.5, 1.0, 0.0, -0.25]], [[0.25, 0.0, -2.0, 0.0]]])
+    slip = np.array([[[0.0, 3.0, 0.0, -2.0]], [[0.0, 0.0, -0.5, 0.0]]])
+    bound, ones = np.array([1.0, 1.0, 2.0, 0.25]), np.ones(4)
+    assert coulomb_residual(q, slip, bound, ones, ones) == 0.0
+    assert dissipation_gap(q, slip, bound, ones) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("q", "slip", "expected"),
+    [
+        ((0.5, 0.0), (0.2, 0.0), 0.2),  # slips below the bound
+        ((0.5, 0.0), (4.0, 0.0), 0.5),  # ... far enough to reach it
+        ((1.0, 0.0), (-0.3, 0.0), 0.3),  # slips backwards
+        ((1.0, 0.0), (0.0, 1.0), np.hypot(1 - 0.5**0.5, 0.5**0.5)),  # slips across
+        ((2.0, 0.0), (0.0, 0.0), 1.0),  # beyond the bound
+    ],
+)
+def test_residual_counts_every_breach(q, slip, expected):
+    """One point, unit bound and scale, area 7."""
+    q, slip = np.reshape(q, (2, 1, 1)), np.reshape(slip, (2, 1, 1))
+    one = np.ones(1)
+    assert coulomb_residual(q, slip, one, 7 * one, one) == pytest.approx(7 * expected, rel=1e-12)
+
+
+@given(VECTORS, VECTORS, BOUNDS, BOUNDS, BOUNDS)
+def test_residual_is_positive_unless_solved(q, slip, bound, weight, scale):
+    residual = coulomb_residual(q, slip, bound, weight, scale)
+    step = weight * size(project(q + slip / scale, bound) - q)
+    assert residual == pytest.approx(step.sum(), rel=1e-12, abs=1e-14)
+
+
+@given(SEEDS, SEEDS)
+def test_dissipation_gap_bounds_the_energy_error(operator_seed, traction_seed):
+    """E(q) = 1/2 <q, A q> - <b, q> exceeds its minimum by at most the gap, and by at least
+    1/2 <q - q*, A (q - q*)>.  The imposed displacement b is made to fit a known minimum q*."""
+    rng = np.random.default_rng(operator_seed)
+    weight, bound = rng.uniform(0.2, 1.0, (2, POINTS))
+    root = rng.normal(size=(2 * POINTS, 2 * POINTS))
+    areas = np.tile(weight, 2)
+    influence = (root @ root.T + 1e-3 * np.eye(2 * POINTS)) / areas[:, None]
+    rng = np.random.default_rng(traction_seed)
+    exact = project(rng.normal(size=(2, POINTS)), bound)
+    on_bound = size(exact) >= bound * (1 - 1e-12)
+    b = (influence @ exact.ravel()).reshape(2, POINTS)
+    b = b + exact * on_bound * rng.exponential(size=POINTS)
+    q = project(rng.normal(size=(2, POINTS)), bound)
+
+    def energy(q):
+        return areas @ (0.5 * q.ravel() * (influence @ q.ravel()) - b.ravel() * q.ravel())
+
+    slip = b - (influence @ q.ravel()).reshape(2, POINTS)
+    gap = dissipation_gap(q, slip, bound, weight)
+    change = (q - exact).ravel()
+    excess, distance = energy(q) - energy(exact), areas @ (0.5 * change * (influence @ change))
+    rounding = 1e-12 * (1 + abs(energy(q)) + abs(energy(exact)))
+    assert gap >= -1e-15
+    assert distance <= excess + rounding
+    assert excess <= gap + rounding
