@@ -4,7 +4,14 @@ from types import SimpleNamespace
 
 import numpy as np
 
-EFFORT = {"cells": 16, "angles": 1, "steps_per_period": 64, "periods": 3, "iterations": 9, "work": 8}
+EFFORT = {
+    "cells": 16,
+    "angles": 1,
+    "steps_per_period": 64,
+    "periods": 3,
+    "iterations": 9,
+    "work": 8,
+}
 
 
 class Solver:

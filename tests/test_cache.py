@@ -18,7 +18,10 @@ from microslip import cache
 from microslip.cache import CacheError, Store
 
 KEY = "ab" + "0" * 62
-RECORD = {"request": {"velocity": "0.1"}, "result": {"mu_macro": 0.1 + 0.2, "reason": "", "x": None}}
+RECORD = {
+    "request": {"velocity": "0.1"},
+    "result": {"mu_macro": 0.1 + 0.2, "reason": "", "x": None},
+}
 SOURCE = str(Path(microslip.__file__).parent.parent)
 
 
@@ -73,7 +76,9 @@ def test_a_file_with_any_flipped_bit_is_absent(store):
             assert store.read("a", KEY) is None
 
 
-@pytest.mark.parametrize("content", [b"", b"[]", b"null", b"{}", b'{"record": 1}', b"\xff", b"[" * 9999])
+@pytest.mark.parametrize(
+    "content", [b"", b"[]", b"null", b"{}", b'{"record": 1}', b"\xff", b"[" * 9999]
+)
 def test_a_file_with_other_content_is_absent(store, content):
     store.write("a", KEY, RECORD).write_bytes(content)
     assert store.read("a", KEY) is None
@@ -134,7 +139,7 @@ def test_a_full_disk_gives_one_message_that_says_what_to_do(store, monkeypatch):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(cache.os, "fsync", full)
-    with pytest.raises(CacheError, match="No space left on device.*make room") as caught:
+    with pytest.raises(CacheError, match=r"No space left on device.*make room") as caught:
         store.write("a", KEY, RECORD)
     assert "\n" not in str(caught.value)
     assert not leftovers(store)
@@ -142,7 +147,7 @@ def test_a_full_disk_gives_one_message_that_says_what_to_do(store, monkeypatch):
 
 def test_a_file_in_the_place_of_a_folder_gives_the_same_message(store):
     store.folder.write_text("not a folder")
-    with pytest.raises(CacheError, match="cannot write .*another folder"):
+    with pytest.raises(CacheError, match=r"cannot write .*another folder"):
         store.write("a", KEY, RECORD)
     with pytest.raises(CacheError, match="cannot read"):
         store.read("a", KEY)
@@ -152,7 +157,7 @@ def test_a_file_in_the_place_of_a_folder_gives_the_same_message(store):
 def test_a_read_only_folder_gives_the_same_message(store):
     store.folder.mkdir()
     store.folder.chmod(0o500)
-    with pytest.raises(CacheError, match="Permission denied.*set permissions"):
+    with pytest.raises(CacheError, match=r"Permission denied.*set permissions"):
         store.write("a", KEY, RECORD)
 
 

@@ -8,7 +8,7 @@ import jsonschema
 import pytest
 import yaml
 
-from microslip import config
+from microslip import config, schemas
 from microslip.config import ConfigError, load
 
 ROOT = Path(__file__).parent.parent
@@ -213,7 +213,7 @@ def test_a_bad_configuration_gives_one_line_that_names_the_key(case, tmp_path):
 def test_a_file_that_is_no_configuration(content, part, tmp_path):
     path = tmp_path / "sweep.yaml"
     path.write_bytes(content)
-    with pytest.raises(ConfigError, match="^[^\n]*$") as caught:
+    with pytest.raises(ConfigError, match=r"^[^\n]*$") as caught:
         load(path)
     assert part in str(caught.value)
 
@@ -224,12 +224,12 @@ def test_a_file_that_is_not_there(tmp_path):
 
 
 def test_the_schema_is_valid_closed_and_describes_every_key():
-    schema = config.schema()
+    schema = schemas.schema()
     jsonschema.Draft202012Validator.check_schema(schema)
 
     def check(rule, where):
         for name, inner in rule.get("properties", {}).items():
-            assert config._resolved(inner).get("description"), f"{where}.{name}"
+            assert schemas._resolved(inner).get("description"), f"{where}.{name}"
         if "properties" in rule:
             assert rule["additionalProperties"] is False, where
         for name in ("properties", "$defs"):
@@ -241,14 +241,14 @@ def test_the_schema_is_valid_closed_and_describes_every_key():
 
 def test_the_workflow_shows_the_same_schema():
     shown = ROOT / "workflow" / "schemas" / "config.schema.yaml"
-    assert yaml.safe_load(shown.read_text()) == config.schema()
+    assert yaml.safe_load(shown.read_text()) == schemas.schema()
 
 
 def test_models_are_refused_here_exactly_where_the_solver_refuses_them():
     from microslip.models import MODELS
     from microslip.scenes import scene_named
 
-    assert config.schema()["$defs"]["model"]["enum"] == ["auto", *MODELS]
+    assert schemas.schema()["$defs"]["model"]["enum"] == ["auto", *MODELS]
     for sweep, scene in config.SCENE_OF_SWEEP.items():
         for model, poisson in itertools.product(MODELS, (0.0, 0.3)):
             given = {"velocity": [1], "model": model, "poisson": poisson}

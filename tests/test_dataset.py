@@ -85,7 +85,10 @@ def test_errors_convergence_and_effort_are_there(tmp_path, monkeypatch):
         assert (data.mu_macro_error == 4e-5).all()
         assert list(dataset.report(data)) == [
             "transverse: 6 points, 3 not converged",
-            *(f"  not converged: amplitude 2, velocity {v}: no periodic state" for v in (0.1, 1, 10)),
+            *(
+                f"  not converged: amplitude 2, velocity {v}: no periodic state"
+                for v in (0.1, 1, 10)
+            ),
         ]
     with netCDF4.Dataset(tmp_path / "transverse.nc") as raw:
         flag = raw["converged"]

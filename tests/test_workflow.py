@@ -1,5 +1,6 @@
 """The workflow, run by Snakemake in a copy of the project: what is computed, and what is not."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -12,6 +13,8 @@ import xarray as xr
 import yaml
 
 ROOT = Path(__file__).parent.parent
+pytestmark = pytest.mark.slow
+
 SNAKEMAKE = Path(sys.executable).with_name("snakemake")
 RUN = ["-j2", "--configfile", "tiny.yaml"]
 
@@ -51,7 +54,7 @@ class Project:
         return subprocess.run(
             [SNAKEMAKE, *arguments],
             cwd=self.folder,
-            env={"PATH": "/usr/bin:/bin", "HOME": str(self.folder)},
+            env={"PATH": "/usr/bin:/bin", "HOME": os.environ.get("HOME", str(self.folder))},
             capture_output=True,
             text=True,
             timeout=300,

@@ -1,26 +1,20 @@
 """The configuration of a sweep: read YAML, check it, fill in defaults, expand the axes.
 
-The JSON schema beside this module (schemas/config.schema.yaml) holds the shape, the ranges, the
-defaults and a description of every key. What a schema cannot say is checked here: text that was
-meant as a number, values that are not finite, duplicates, models that do not apply to a scene.
+The JSON schema in microslip.schemas holds the shape, the ranges, the defaults and a description
+of every key. What it cannot say is checked here: duplicates, and settings that do not go together.
 
 Imports nothing heavy, since the workflow reads it whenever it is parsed.
 """
 
-import difflib
-import json
 import math
 from dataclasses import asdict, dataclass
-from functools import cache
 from itertools import pairwise
-from pathlib import Path
 
-import jsonschema
 import yaml
 
+from . import schemas
 from .keys import number
 
-SCHEMA_PATH = Path(__file__).parent / "schemas" / "config.schema.yaml"
 # Sweeps are named like their datasets, scenes as on the command line.
 SCENE_OF_SWEEP = {"transverse": "transverse", "bore": "bore", "continuous_bore": "continuous-bore"}
 
@@ -97,7 +91,9 @@ def read_yaml(path):
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path}: not valid YAML: {' '.join(str(error).split())}") from None
     if not isinstance(mapping, dict):
-        raise ConfigError(f"{path}: {_shown(mapping)} is not a mapping; allowed: keys and values")
+        raise ConfigError(
+            f"{path}: {schemas.shown(mapping)} is not a mapping; allowed: keys and values"
+        )
     return mapping
 
 
@@ -106,27 +102,16 @@ def from_mapping(mapping, source="configuration"):
 
     source: how messages name the origin, usually the file. Raises ConfigError.
     """
-    _refuse_non_finite(mapping, source, ())
-    errors = jsonschema.Draft202012Validator(schema()).iter_errors(mapping)
-    # A mistyped key is both unknown and missing; the first of the two helps more.
-    first = min(
-        errors, key=lambda e: (e.validator != "additionalProperties", _key(e)), default=None
-    )
-    if first is not None:
-        raise ConfigError(f"{source}: {_explain(first)}")
-    filled = _filled(mapping, schema())
+    problem = schemas.problem(mapping)
+    if problem is not None:
+        raise ConfigError(f"{source}: {problem}")
+    filled = schemas.filled(mapping)
     sweeps = {
         name: _sweep(name, filled["sweeps"][name], source)
         for name in SCENE_OF_SWEEP
         if name in filled["sweeps"]
     }
     return Configuration(filled["results"], filled["points_per_job"], sweeps, filled["histories"])
-
-
-@cache
-def schema():
-    """Return the JSON schema as a dict, shared by all callers: do not change it."""
-    return yaml.safe_load(SCHEMA_PATH.read_text(encoding="utf-8"))
 
 
 # From settings to sweeps
@@ -200,120 +185,6 @@ def _refuse_mismatch(sweep, where):
             f"{where}.velocity: 0, the static limit, is known for poisson 0 only; "
             "allowed: numbers > 0"
         )
-
-
-# Defaults
-
-
-def _filled(value, rule):
-    """Copy `value` with the defaults of the schema `rule` filled in, and whole floats as int."""
-    rule = _resolved(rule)
-    if isinstance(value, dict):
-        rules = rule.get("properties", {})
-        whole = {k: _resolved(r)["default"] for k, r in rules.items() if "default" in _resolved(r)}
-        return {k: _filled(v, rules[k]) for k, v in {**whole, **value}.items()}
-    if isinstance(value, list):
-        return list(value)
-    if "integer" in rule.get("type", ()) and value is not None:
-        return int(value)
-    return value
-
-
-def _resolved(rule):
-    if "$ref" not in rule:
-        return rule
-    return {**schema()["$defs"][rule["$ref"].rpartition("/")[2]], **rule}
-
-
-# Messages
-
-
-def _refuse_non_finite(value, source, path):
-    if isinstance(value, dict):
-        for key, item in value.items():
-            _refuse_non_finite(item, source, (*path, key))
-    elif isinstance(value, list):
-        for index, item in enumerate(value):
-            _refuse_non_finite(item, source, (*path, index))
-    elif isinstance(value, float) and not math.isfinite(value):
-        raise ConfigError(f"{source}: {_dotted(path)}: {value} is not allowed; allowed: finite")
-
-
-def _explain(error):
-    """One line for a jsonschema error: key, value, what is allowed."""
-    rule, value = error.schema, error.instance
-    if error.validator == "additionalProperties":
-        return _unknown_key(error)
-    if error.validator == "required":
-        missing = next(name for name in error.validator_value if name not in value)
-        path = _dotted((*error.absolute_path, missing))
-        return f"{path}: missing; required: {', '.join(error.validator_value)}"
-    where = _key(error)
-    wants_number = {"number", "integer"} & set(_types(rule))
-    if isinstance(value, str) and wants_number:
-        return f"{where}: {_shown(value)} is text; {_as_number(value)}"
-    return f"{where}: {_shown(value)} is not allowed; allowed: {_allowed(rule)}"
-
-
-def _unknown_key(error):
-    known = list(error.schema.get("properties", {}))
-    unknown = next(key for key in error.instance if key not in known)
-    near = difflib.get_close_matches(str(unknown), known, n=1)
-    hint = f"did you mean {near[0]}? " if near else ""
-    path = _dotted((*error.absolute_path, unknown))
-    return f"{path}: unknown key; {hint}allowed: {', '.join(known)}"
-
-
-def _as_number(text):
-    try:
-        value = float(text)
-    except ValueError:
-        return "allowed: a number"
-    if not math.isfinite(value):
-        return "allowed: a finite number"
-    mantissa, _, exponent = text.lower().partition("e")
-    if not exponent:
-        return f"write the number without quotes: {text}"
-    # YAML 1.1 takes it for a number only with a point before and a sign after the e.
-    mantissa = mantissa if "." in mantissa else f"{mantissa}.0"
-    return f"write {mantissa}e{int(exponent):+d}"
-
-
-def _allowed(rule):
-    if "enum" in rule:
-        return ", ".join(rule["enum"])
-    kinds = _types(rule)
-    if "array" in kinds and "object" in kinds:
-        return f"a list of {_allowed(_resolved(rule['items']))}, or linear or log spacing"
-    if kinds == ["object"]:
-        return f"a mapping with the keys {', '.join(rule['properties'])}"
-    words = {"number": "a number", "integer": "a whole number", "array": "or a list of them"}
-    words |= {"string": "text for a folder, without braces, * and ?", "null": "or null"}
-    limits = {"minimum": ">=", "exclusiveMinimum": ">", "maximum": "<="}
-    ranges = [f"{sign} {rule[key]:g}" for key, sign in limits.items() if key in rule]
-    if rule.get("multipleOf") == 2:
-        words["integer"] = "an even number"
-    first, *others = [words[kind] for kind in kinds]
-    return " ".join([first, " and ".join(ranges), *others]).replace("  ", " ").strip()
-
-
-def _types(rule):
-    kinds = rule.get("type", [])
-    return [kinds] if isinstance(kinds, str) else kinds
-
-
-def _key(error):
-    return _dotted(error.absolute_path) or "(top level)"
-
-
-def _dotted(path):
-    text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)
-    return text.removeprefix(".")
-
-
-def _shown(value):
-    text = json.dumps(value, default=str, ensure_ascii=False)
-    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 class _UniqueKeyLoader(yaml.SafeLoader):

@@ -174,13 +174,15 @@ def _attributes(kind, long_name):
     return {"long_name": long_name, "units": "1"}
 
 
-# The paper's limits: name -> (dims, function of what the dims hold, long_name)
+# The paper's limits: name -> (dims, function of the coordinates of these dims, long_name)
 
+_WHOLE_ZONE = "static friction of the whole stick zone"
+_EXACT = "static friction, exact limit of mu_macro for velocity to 0"
 
 LIMITS = {
     "transverse": {
         "mu_large_amplitude": (
-            ("amplitude", "velocity"),
+            ("velocity", "amplitude"),
             theory.large_amplitude_transverse,
             "mu_macro at large amplitude, rigid slider (Eq 6)",
         ),
@@ -192,13 +194,9 @@ LIMITS = {
         "mu_static_stick_zone": (
             ("amplitude",),
             theory.static_transverse,
-            "static friction of the whole stick zone (Eq 11)",
+            f"{_WHOLE_ZONE} (Eq 11)",
         ),
-        "mu_static": (
-            ("amplitude",),
-            theory.static_limit_transverse,
-            "static friction, exact limit of mu_macro for velocity to 0",
-        ),
+        "mu_static": (("amplitude",), theory.static_limit_transverse, _EXACT),
     },
     "bore": {
         "mu_large_amplitude": (
@@ -209,30 +207,18 @@ LIMITS = {
         "mu_static_stick_zone": (
             ("amplitude",),
             theory.static_bore,
-            "static friction of the whole stick zone (Eq 33 with the square that Eq 10 demands)",
+            f"{_WHOLE_ZONE} (Eq 33 with the square that Eq 10 demands)",
         ),
         "mu_static_stick_zone_printed": (
             ("amplitude",),
             theory.static_bore_printed,
-            "static friction of the whole stick zone (Eq 33 as printed)",
+            f"{_WHOLE_ZONE} (Eq 33 as printed)",
         ),
-        "mu_static": (
-            ("amplitude",),
-            theory.static_limit_bore,
-            "static friction, exact limit of mu_macro for velocity to 0",
-        ),
+        "mu_static": (("amplitude",), theory.static_limit_bore, _EXACT),
     },
     "continuous-bore": {
-        "mu_forward_theory": (
-            ("velocity",),
-            theory.bore_forward,
-            "mu_macro of the steady bore (Eq 21)",
-        ),
-        "mu_torque_theory": (
-            ("velocity",),
-            theory.bore_torque,
-            "mu_torque of the steady bore (Eq 22)",
-        ),
+        "mu_forward_theory": (("velocity",), theory.bore_forward, "steady mu_macro (Eq 21)"),
+        "mu_torque_theory": (("velocity",), theory.bore_torque, "steady mu_torque (Eq 22)"),
     },
 }
 
@@ -240,11 +226,9 @@ LIMITS = {
 def _limits(sweep):
     variables = {}
     for name, (dims, function, long_name) in LIMITS[sweep.scene].items():
-        if dims == ("amplitude", "velocity"):
-            values = function(np.array(sweep.velocity), np.array(sweep.amplitude)[:, None])
-        else:
-            values = function(np.array(getattr(sweep, dims[0])))
-        variables[name] = (dims, values, {"long_name": long_name, "units": "1"})
+        coordinates = np.meshgrid(*(np.array(getattr(sweep, dim)) for dim in dims))
+        # meshgrid puts the first coordinate last, as the datasets do.
+        variables[name] = _variable(dims[::-1], function(*coordinates), long_name)
     return variables
 
 
@@ -262,40 +246,32 @@ def _single_runs(sweep, records):
 
 def _force_history(record):
     result, request = record["result"], record["request"]
-    step = "history_step"
+    step, friction = "history_step", "friction force over mu F_z"
     return {
         "history_phase": _variable(step, result["phase"], "phase of the oscillation", "rad"),
-        "history_force_forward": _variable(
-            step, result["force_forward"], "forward friction force over mu F_z"
-        ),
-        "history_force_lateral": _variable(
-            step, result["force_lateral"], "lateral friction force over mu F_z"
-        ),
+        "history_force_forward": _variable(step, result["force_forward"], f"forward {friction}"),
+        "history_force_lateral": _variable(step, result["force_lateral"], f"lateral {friction}"),
         "history_velocity": _variable((), request["velocity"], "forward velocity of the history"),
         "history_amplitude": _variable((), request["amplitude"], "amplitude of the history"),
     }
 
 
+FIELD = {
+    "lateral_position": "lateral position over a",
+    "forward_position": "forward position over a",
+    "traction_lateral": "lateral traction over mu F_z/a^2",
+    "traction_forward": "forward traction over mu F_z/a^2",
+    "bound": "friction bound over mu F_z/a^2",
+}
+
+
 def _traction_field(record):
-    result = record["result"]
-    long_names = {
-        "lateral_position": "lateral position over a",
-        "forward_position": "forward position over a",
-        "traction_lateral": "lateral traction over mu F_z/a^2",
-        "traction_forward": "forward traction over mu F_z/a^2",
-        "bound": "friction bound over mu F_z/a^2",
-    }
-    variables = {
-        f"field_{name}": _variable("cell", result[name], long_name)
-        for name, long_name in long_names.items()
-    }
+    result, velocity = record["result"], record["request"]["velocity"]
+    centre = "lateral position of the centre of rotation over a"
+    variables = {f"field_{name}": _variable("cell", result[name], FIELD[name]) for name in FIELD}
     return variables | {
-        "field_velocity": _variable(
-            (), record["request"]["velocity"], "forward velocity of the traction field"
-        ),
-        "field_centre_lateral": _variable(
-            (), result["centre_lateral"], "lateral position of the centre of rotation over a"
-        ),
+        "field_velocity": _variable((), velocity, "forward velocity of the traction field"),
+        "field_centre_lateral": _variable((), result["centre_lateral"], centre),
     }
 
 

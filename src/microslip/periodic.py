@@ -101,7 +101,10 @@ def _newton_correction(contact, march, state, change):
         size
     )  # signs; points map to themselves
     system = np.eye(size) - mirrored[:, None] * jacobian
-    step = np.linalg.lstsq(system, change.reshape(size), rcond=1e-13)[0]
+    try:
+        step = np.linalg.solve(system, change.reshape(size))
+    except np.linalg.LinAlgError:  # some direction is neutral: leave it where it is
+        step = np.linalg.lstsq(system, change.reshape(size), rcond=1e-13)[0]
     return state + step.reshape(state.shape)
 
 

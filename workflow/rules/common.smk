@@ -4,11 +4,12 @@ import os
 import sys
 from pathlib import Path
 
-# The package beside the Snakefile is the one that runs, whether it is installed or not.
-SOURCE = Path(workflow.basedir, "src")
+# The package of this tree is the one that runs, whether it is installed or not.
+SOURCE = Path(workflow.current_basedir.get_path_or_uri(secret_free=True), "../../src").resolve()
 if SOURCE.is_dir():
     sys.path.insert(0, str(SOURCE))
-    os.environ.update(PYTHONPATH=os.pathsep.join([str(SOURCE), os.environ.get("PYTHONPATH", "")]))
+    search = [str(SOURCE), *filter(None, [os.environ.get("PYTHONPATH")])]
+    os.environ.update(PYTHONPATH=os.pathsep.join(search))
 
 # Jobs inherit this. Parallel work is many points at a time, one thread each.
 os.environ.update(
@@ -24,11 +25,15 @@ try:
     files = [os.path.relpath(file) for file in workflow.configfiles]
     for file in files:
         microslip_config.read_yaml(file)  # refuses a key that occurs twice
-    CONFIGURATION = microslip_config.from_mapping(config, ", ".join(files) or "configuration")
+    origin = ", ".join(files) or "configuration"
+    CONFIGURATION = microslip_config.from_mapping(config, origin)
+    RESULTS = os.path.normpath(CONFIGURATION.results)
+    for folder in (Path(RESULTS), *Path(RESULTS).parents):
+        if folder.exists() and not folder.is_dir():
+            raise microslip_config.ConfigError(f"{origin}: results: {folder} is not a folder")
 except microslip_config.ConfigError as error:
     sys.exit(f"Error in {error}")
 
-RESULTS = os.path.normpath(CONFIGURATION.results)
 DIGEST = keys.source_digest()
 PACKAGE = os.path.relpath(Path(keys.__file__).parent)
 

@@ -108,14 +108,23 @@ def _factorise(influence, weight, bound, slip, direction, ring, m, matrix):
 @njit(**JIT)
 def _back_substitute(matrix, m, x):
     """Solve L L^T x = x in place for all columns of x (first m rows)."""
+    columns = x.shape[1]
     for i in range(m):
         for k in range(i):
-            x[i] -= matrix[i, k] * x[k]
-        x[i] /= matrix[i, i]
+            factor = matrix[i, k]
+            for c in range(columns):
+                x[i, c] -= factor * x[k, c]
+        factor = 1.0 / matrix[i, i]
+        for c in range(columns):
+            x[i, c] *= factor
     for i in range(m - 1, -1, -1):
         for k in range(i + 1, m):
-            x[i] -= matrix[k, i] * x[k]
-        x[i] /= matrix[i, i]
+            factor = matrix[k, i]
+            for c in range(columns):
+                x[i, c] -= factor * x[k, c]
+        factor = 1.0 / matrix[i, i]
+        for c in range(columns):
+            x[i, c] *= factor
 
 
 @njit(**JIT)
@@ -180,13 +189,17 @@ def _carry_tangent(influence, weight, bound, q, slip, db, dq, adq, matrix, direc
     x = np.empty((m, db.shape[1]))
     for p in range(m):
         i = ring[p]
-        x[p] = weight[i] * (direction[p].real * db[i] + direction[p].imag * db[n + i])
+        along, across = weight[i] * direction[p].real, weight[i] * direction[p].imag
+        for c in range(db.shape[1]):
+            x[p, c] = along * db[i, c] + across * db[n + i, c]
     _back_substitute(matrix, m, x)
     dq[:] = 0.0
     for p in range(m):
         i = ring[p]
-        dq[i] += direction[p].real * x[p]
-        dq[n + i] += direction[p].imag * x[p]
+        along, across = direction[p].real, direction[p].imag
+        for c in range(db.shape[1]):
+            dq[i, c] += along * x[p, c]
+            dq[n + i, c] += across * x[p, c]
     adq[:n] = np.dot(influence, dq[:n])
     adq[n:] = np.dot(influence, dq[n:])
 

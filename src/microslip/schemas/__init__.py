@@ -1,0 +1,159 @@
+"""The JSON schema of a configuration, and what is wrong with one in a line.
+
+The schema, config.schema.yaml, lies beside this module, so that an installed package has it; the
+workflow's folder of schemas links to it. It is closed: a key that it does not know is an error.
+"""
+
+import difflib
+import json
+import math
+from functools import cache
+from pathlib import Path
+
+import jsonschema
+import yaml
+
+PATH = Path(__file__).parent / "config.schema.yaml"
+
+
+@cache
+def schema():
+    """Return the schema as a dict, shared by all callers: do not change it."""
+    return yaml.safe_load(PATH.read_text(encoding="utf-8"))
+
+
+def problem(mapping):
+    """Say in one line what is wrong with a configuration: key, value, what is allowed.
+
+    mapping: parsed YAML. Returns None if it fits the schema.
+    """
+    not_finite = _not_finite(mapping, ())
+    if not_finite:
+        return not_finite
+    errors = jsonschema.Draft202012Validator(schema()).iter_errors(mapping)
+    # A mistyped key is both unknown and missing; the first of the two helps more.
+    first = min(
+        errors, key=lambda e: (e.validator != "additionalProperties", _key(e)), default=None
+    )
+    return None if first is None else _explain(first)
+
+
+def filled(mapping):
+    """Copy a configuration that fits the schema, with all defaults filled in."""
+    return _filled(mapping, schema())
+
+
+# Defaults
+
+
+def _filled(value, rule):
+    """Copy `value` with the defaults of the schema `rule` filled in, and whole floats as int."""
+    rule = _resolved(rule)
+    if isinstance(value, dict):
+        rules = rule.get("properties", {})
+        whole = {k: _resolved(r)["default"] for k, r in rules.items() if "default" in _resolved(r)}
+        return {k: _filled(v, rules[k]) for k, v in {**whole, **value}.items()}
+    if isinstance(value, list):
+        return list(value)
+    if "integer" in rule.get("type", ()) and value is not None:
+        return int(value)
+    return value
+
+
+def _resolved(rule):
+    if "$ref" not in rule:
+        return rule
+    return {**schema()["$defs"][rule["$ref"].rpartition("/")[2]], **rule}
+
+
+# Messages
+
+
+def _not_finite(value, path):
+    # JSON has no such numbers, so the schema does not see them.
+    if isinstance(value, float) and not math.isfinite(value):
+        return f"{_dotted(path)}: {value} is not allowed; allowed: a finite number"
+    items = ()
+    if isinstance(value, dict):
+        items = value.items()
+    elif isinstance(value, list):
+        items = enumerate(value)
+    return next(filter(None, (_not_finite(item, (*path, key)) for key, item in items)), None)
+
+
+def _explain(error):
+    """One line for a jsonschema error: key, value, what is allowed."""
+    rule, value = error.schema, error.instance
+    if error.validator == "additionalProperties":
+        return _unknown_key(error)
+    if error.validator == "required":
+        missing = next(name for name in error.validator_value if name not in value)
+        path = _dotted((*error.absolute_path, missing))
+        return f"{path}: missing; required: {', '.join(error.validator_value)}"
+    where = _key(error)
+    wants_number = {"number", "integer"} & set(_types(rule))
+    if isinstance(value, str) and wants_number:
+        return f"{where}: {shown(value)} is text; {_as_number(value)}"
+    return f"{where}: {shown(value)} is not allowed; allowed: {_allowed(rule)}"
+
+
+def _unknown_key(error):
+    known = list(error.schema.get("properties", {}))
+    unknown = next(key for key in error.instance if key not in known)
+    near = difflib.get_close_matches(str(unknown), known, n=1)
+    hint = f"did you mean {near[0]}? " if near else ""
+    path = _dotted((*error.absolute_path, unknown))
+    return f"{path}: unknown key; {hint}allowed: {', '.join(known)}"
+
+
+def _as_number(text):
+    try:
+        value = float(text)
+    except ValueError:
+        return "allowed: a number"
+    if not math.isfinite(value):
+        return "allowed: a finite number"
+    mantissa, _, exponent = text.lower().partition("e")
+    if not exponent:
+        return f"write the number without quotes: {text}"
+    # YAML 1.1 takes it for a number only with a point before and a sign after the e.
+    mantissa = mantissa if "." in mantissa else f"{mantissa}.0"
+    return f"write {mantissa}e{int(exponent):+d}"
+
+
+def _allowed(rule):
+    if "enum" in rule:
+        return ", ".join(rule["enum"])
+    kinds = _types(rule)
+    if "array" in kinds and "object" in kinds:
+        return f"a list of {_allowed(_resolved(rule['items']))}, or linear or log spacing"
+    if kinds == ["object"]:
+        return f"a mapping with the keys {', '.join(rule['properties'])}"
+    words = {"number": "a number", "integer": "a whole number", "array": "or a list of them"}
+    words |= {"string": "text for a folder, without braces, * and ?", "null": "or null"}
+    limits = {"minimum": ">=", "exclusiveMinimum": ">", "maximum": "<="}
+    ranges = [f"{sign} {rule[key]:g}" for key, sign in limits.items() if key in rule]
+    if rule.get("multipleOf") == 2:
+        words["integer"] = "an even number"
+    first, *others = [words[kind] for kind in kinds]
+    return " ".join([first, " and ".join(ranges), *others]).replace("  ", " ").strip()
+
+
+def _types(rule):
+    kinds = rule.get("type", [])
+    return [kinds] if isinstance(kinds, str) else kinds
+
+
+def _key(error):
+    return _dotted(error.absolute_path) or "(top level)"
+
+
+def _dotted(path):
+    text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)
+    return text.removeprefix(".")
+
+
+def shown(value):
+    """Write a value as in JSON, cut to 60 characters."""
+    text = json.dumps(value, default=str, ensure_ascii=False)
+    return text if len(text) <= 60 else f"{text[:57]}..."
