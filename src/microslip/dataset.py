@@ -10,7 +10,7 @@ import xarray as xr
 
 import microslip
 
-from . import theory
+from . import limits, theory
 from .cache import writing_beside
 from .keys import canonical_json, source_digest
 
@@ -63,7 +63,7 @@ def build(sweep, points, histories, settings):
     axes = _axes(sweep)
     shape = tuple(len(values) for values in axes.values())
     variables, versions = _from_points(sweep, points, tuple(axes), shape)
-    variables |= _limits(sweep)
+    variables |= limits.variables(sweep)
     for record in histories:
         versions.add(canonical_json(record["versions"]))
     coords = {name: (name, np.array(values)) for name, values in axes.items()}
@@ -172,64 +172,6 @@ def _attributes(kind, long_name):
             "flag_meanings": "not_converged converged",
         }
     return {"long_name": long_name, "units": "1"}
-
-
-# The paper's limits: name -> (dims, function of the coordinates of these dims, long_name)
-
-_WHOLE_ZONE = "static friction of the whole stick zone"
-_EXACT = "static friction, exact limit of mu_macro for velocity to 0"
-
-LIMITS = {
-    "transverse": {
-        "mu_large_amplitude": (
-            ("velocity", "amplitude"),
-            theory.large_amplitude_transverse,
-            "mu_macro at large amplitude, rigid slider (Eq 6)",
-        ),
-        "mu_static_slider": (
-            ("amplitude",),
-            theory.static_slider,
-            "static friction of an elastic slider (Eq 7)",
-        ),
-        "mu_static_stick_zone": (
-            ("amplitude",),
-            theory.static_transverse,
-            f"{_WHOLE_ZONE} (Eq 11)",
-        ),
-        "mu_static": (("amplitude",), theory.static_limit_transverse, _EXACT),
-    },
-    "bore": {
-        "mu_large_amplitude": (
-            ("velocity",),
-            theory.large_amplitude_bore,
-            "mu_macro at large amplitude, steady at every instant (Eq 29)",
-        ),
-        "mu_static_stick_zone": (
-            ("amplitude",),
-            theory.static_bore,
-            f"{_WHOLE_ZONE} (Eq 33 with the square that Eq 10 demands)",
-        ),
-        "mu_static_stick_zone_printed": (
-            ("amplitude",),
-            theory.static_bore_printed,
-            f"{_WHOLE_ZONE} (Eq 33 as printed)",
-        ),
-        "mu_static": (("amplitude",), theory.static_limit_bore, _EXACT),
-    },
-    "continuous-bore": {
-        "mu_forward_theory": (("velocity",), theory.bore_forward, "steady mu_macro (Eq 21)"),
-        "mu_torque_theory": (("velocity",), theory.bore_torque, "steady mu_torque (Eq 22)"),
-    },
-}
-
-
-def _limits(sweep):
-    variables = {}
-    for name, (dims, function, long_name) in LIMITS[sweep.scene].items():
-        coordinates = np.meshgrid(*(np.array(getattr(sweep, dim)) for dim in dims))
-        # meshgrid puts the first coordinate last, as the datasets do.
-        variables[name] = _variable(dims[::-1], function(*coordinates), long_name)
-    return variables
 
 
 # Single runs, the data of Figures 1, 3 and 5

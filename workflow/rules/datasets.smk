@@ -4,7 +4,7 @@
 rule collect:
     input:
         batches=lambda wildcards: batches_of(wildcards.sweep),
-        code=[f"{PACKAGE}/dataset.py", f"{PACKAGE}/theory.py"],
+        code=[f"{PACKAGE}/dataset.py", f"{PACKAGE}/limits.py", f"{PACKAGE}/theory.py"],
     output:
         f"{RESULTS}/{{sweep}}.nc",
     log:

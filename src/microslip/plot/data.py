@@ -45,6 +45,11 @@ def sweep(dataset: xr.Dataset, dims: tuple[str, ...]) -> tuple[xr.Dataset, float
     return dataset.sortby(list(dims)), poisson
 
 
+def limit(dataset: xr.Dataset, name: str) -> xr.DataArray:
+    """A limit from theory: on its fine axis where the dataset has that, else on the sweep's."""
+    return dataset[f"{name}_curve"] if f"{name}_curve" in dataset else dataset[name]
+
+
 def curve(variable: xr.DataArray, **at: float) -> Curve:
     """Abscissa and ordinate of a variable along its only dimension after the selection `at`.
 

@@ -14,7 +14,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from microslip.plot import style as look
 from microslip.plot.cuts import computed
-from microslip.plot.data import curve, require, sweep
+from microslip.plot.data import curve, limit, require, sweep
 
 FILL_LEVELS = np.linspace(0.0, 1.0, 21)
 #: A cut's panel ends where all of its curves have fallen below this.
@@ -200,7 +200,7 @@ def _large_cut(axes: Axes, dataset: xr.Dataset, plan: Map) -> None:
 
 def _overlay(axes: Axes, dataset: xr.Dataset, overlay: Overlay, **at: float) -> None:
     """Draw a theory curve as the dataset holds it."""
-    x, y = curve(dataset[overlay.variable], **at)
+    x, y = curve(limit(dataset, overlay.variable), **at)
     axes.plot(
         x,
         y,

@@ -8,7 +8,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from microslip.plot import style as look
 from microslip.plot.cuts import computed
-from microslip.plot.data import curve, require, sweep
+from microslip.plot.data import curve, limit, require, sweep
 
 #: Each quantity's name, its theory, its values and their error, and its look.
 CURVES = (
@@ -30,7 +30,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     for what, equation, theory, values, color, linestyle, marker in CURVES:
         label = f"{what}, {equation}"
         line = {"color": color, "linestyle": linestyle, "label": label, "gid": theory}
-        axes.plot(*curve(dataset[theory]), **line)
+        axes.plot(*curve(limit(dataset, theory)), **line)
         columns = (values, f"{values}_error", "converged")
         computed(
             axes,

@@ -1,0 +1,96 @@
+"""The limits from theory that stand beside the computed points in a dataset.
+
+Each is a variable on the axes of the sweep, to compare with point by point, and a curve on an axis
+fine enough to draw. A formula added here appears in the dataset of its scene.
+"""
+
+import numpy as np
+
+from . import theory
+
+CURVE_POINTS = 241
+
+_WHOLE_ZONE = "static friction of the whole stick zone"
+_EXACT = "static friction, exact limit of mu_macro for velocity to 0"
+
+# scene -> name -> (dims, function of the coordinates of these dims, long_name)
+LIMITS = {
+    "transverse": {
+        "mu_large_amplitude": (
+            ("velocity", "amplitude"),
+            theory.large_amplitude_transverse,
+            "mu_macro at large amplitude, rigid slider (Eq 6)",
+        ),
+        "mu_static_slider": (
+            ("amplitude",),
+            theory.static_slider,
+            "static friction of an elastic slider (Eq 7)",
+        ),
+        "mu_static_stick_zone": (
+            ("amplitude",),
+            theory.static_transverse,
+            f"{_WHOLE_ZONE} (Eq 11)",
+        ),
+        "mu_static": (("amplitude",), theory.static_limit_transverse, _EXACT),
+    },
+    "bore": {
+        "mu_large_amplitude": (
+            ("velocity",),
+            theory.large_amplitude_bore,
+            "mu_macro at large amplitude, steady at every instant (Eq 29)",
+        ),
+        "mu_static_stick_zone": (
+            ("amplitude",),
+            theory.static_bore,
+            f"{_WHOLE_ZONE} (Eq 33 with the square that Eq 10 demands)",
+        ),
+        "mu_static_stick_zone_printed": (
+            ("amplitude",),
+            theory.static_bore_printed,
+            f"{_WHOLE_ZONE} (Eq 33 as printed)",
+        ),
+        "mu_static": (("amplitude",), theory.static_limit_bore, _EXACT),
+    },
+    "continuous-bore": {
+        "mu_forward_theory": (("velocity",), theory.bore_forward, "steady mu_macro (Eq 21)"),
+        "mu_torque_theory": (("velocity",), theory.bore_torque, "steady mu_torque (Eq 22)"),
+    },
+}
+
+
+def variables(sweep):
+    """Variables of a config.Sweep's dataset: name -> (dims, values, attributes), dimensionless.
+
+    Beside every limit stands `<name>_curve`, on the fine axis `amplitude_curve` or
+    `velocity_curve`; of a limit that depends on both it is the one at the largest amplitude.
+    """
+    found = {}
+    for name, (dims, function, long_name) in LIMITS[sweep.scene].items():
+        axes = [np.array(getattr(sweep, dim)) for dim in dims]
+        # meshgrid puts the first coordinate last, as the datasets do
+        found[name] = _variable(dims[::-1], function(*np.meshgrid(*axes)), long_name)
+        fine = _fine(dims[0], axes[0])
+        values = function(fine, *(axis[-1] for axis in axes[1:]))
+        at = f", at amplitude {axes[1][-1]:g}" if len(axes) > 1 else ""
+        found[f"{name}_curve"] = _variable((f"{dims[0]}_curve",), values, long_name + at)
+        found[f"{dims[0]}_curve"] = _variable(
+            (f"{dims[0]}_curve",), fine, f"fine {dims[0]} axis of the limits"
+        )
+    return found
+
+
+def _fine(dim, axis):
+    """A fine axis over the range of an axis; velocities in equal ratios, from the first above 0."""
+    positive = axis[axis > 0.0]
+    if dim == "velocity" and len(positive):
+        # the same digits on every machine, whatever its logarithm rounds to
+        return np.array([float(f"{v:.12g}") for v in _ratios(positive[0], axis[-1])])
+    return np.linspace(axis[0], axis[-1], CURVE_POINTS)
+
+
+def _ratios(first, last):
+    return np.geomspace(first, last, CURVE_POINTS)
+
+
+def _variable(dims, values, long_name):
+    return dims, np.array(values, float), {"long_name": long_name, "units": "1"}
