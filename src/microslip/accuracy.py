@@ -5,8 +5,9 @@ base, so that what an axis contributes is seen by itself and nothing has to be r
 them at once.  The answer is the base value plus the correction of every chain.
 
 - cells, doubled: the error falls smoothly with the second power, so the last difference is
-  extrapolated by a third; half of it stays as the error, which covers any order above 1.3.
-- angles, doubled: falls fast but irregularly; no extrapolation, the last difference is the error.
+  extrapolated by a third; half of it stays as the error, which covers any order above 1.3, or a
+  quarter where the last two differences show an order between 1.3 and 2.7.
+- angles, grown likewise in smaller steps: the error falls fast but irregularly.
 - steps, grown by 4/3 and 3/2 in turn: the error scatters about its second-power trend, since a
   ring starts to slip somewhere within a step; so the spread of the last three runs is the error and
   nothing is extrapolated.
@@ -16,19 +17,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-ERROR_SHARE = {"cells": 0.5, "angles": 1.0, "steps": 0.7}
-"""Error over the last difference (cells, angles), over the spread of the last three (steps)."""
+ERROR_SHARE = {"cells": 0.5, "angles": 0.7, "steps": 0.7}
+"""Error over the last difference (cells), over the spread of the last three (angles, steps)."""
+REGULAR = 0.25
+REGULAR_RATIOS = (2.5, 6.5)
+"""Error share of cells whose last two differences have a ratio within these bounds (4: order 2)."""
 EXTRAPOLATED_CELLS = 1.0 / 3.0
 COINCIDENCE = 1.0 / 6.0
 """Share of the difference before the last that an error does not fall below: two runs that happen
 to agree prove little."""
 LEVELS = {
     "cells": (0.5, 1, 2, 4, 8, 16, 32),
-    "angles": (1, 2, 4, 8, 16),
+    "angles": (1, 1.5, 2, 3, 4, 6, 8, 12, 16),
     "steps": (2 / 3, 1, 4 / 3, 2, 8 / 3, 4, 16 / 3, 8, 32 / 3, 16, 64 / 3, 32),
 }
 """Resolutions of each chain over the base."""
-FIRST_RUNS = {"cells": 3, "angles": 2, "steps": 3}
+FIRST_RUNS = {"cells": 3, "angles": 3, "steps": 3}
 SOURCES = {"cells": "space", "angles": "space", "steps": "time"}
 
 
@@ -91,11 +95,13 @@ class _Chain:
         values = [getattr(run, name) for run in self.runs]
         if self.imposed:
             return abs(values[1] - values[0])
-        if self.axis == "steps":
-            return ERROR_SHARE["steps"] * (max(values[-3:]) - min(values[-3:]))
-        differences = [abs(b - a) for a, b in zip(values, values[1:], strict=False)]
-        last = max(differences[-1], COINCIDENCE * max(differences[-2:]))
-        return ERROR_SHARE[self.axis] * last
+        if self.axis != "cells":
+            return ERROR_SHARE[self.axis] * (max(values[-3:]) - min(values[-3:]))
+        before, last = (values[-2] - values[-3], values[-1] - values[-2])
+        low, high = REGULAR_RATIOS
+        if low * abs(last) <= abs(before) <= high * abs(last) and before * last > 0.0:
+            return REGULAR * abs(last)
+        return ERROR_SHARE["cells"] * max(abs(last), COINCIDENCE * abs(before))
 
 
 def certify(run, base, axes, tolerance, imposed=()):

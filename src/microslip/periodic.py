@@ -2,10 +2,13 @@
 
 The plain march forgets its start only after about 1/(2 pi v~) periods.  Here the map of the
 tractions over one period is solved for its fixed point: by Newton's method where the model gives
-the derivative of its march, else by Anderson acceleration.  Both start from full forward slip: from
-there the mean tractions relax towards the periodic ones without losing slip on the way, which is
-what keeps an accelerated map from settling where nothing moves.  The verdict is always that of the
-plain map: its residual, and the distance to the fixed point that the last correction measured.
+the derivative of its march, else by Anderson acceleration.  The start should have too much forward
+traction rather than too little: from there the mean tractions relax towards the periodic ones
+without losing slip on the way, which is what keeps an accelerated map from settling where nothing
+moves.  The verdict is always that of the
+plain map: its residual, the distance to the fixed point that the last correction measured, and
+what the residual means at the pace of the motion: close to the static limit a state changes so
+little in a period that a small residual proves nothing by itself.
 """
 
 from __future__ import annotations
@@ -18,7 +21,7 @@ import numpy as np
 from microslip.friction import project
 from microslip.models.contact import energy_norm
 
-PLAIN_PERIODS = 2
+PLAIN_PERIODS = 1
 ANDERSON_DEPTH = 12
 NEWTON_STALL = 10
 """Newton corrections without a better state after which the search is given up."""
@@ -45,13 +48,34 @@ class PeriodicState:
     converged: bool
 
 
-def find_periodic_state(contact, path, start, tolerance, step_tolerance, max_periods=400):
+@dataclass(frozen=True)
+class Pace:
+    """How slowly a state can go wrong.
+
+    static_force: mean forward force of the static limit; gain: force that a contact which does not
+    slip gains in half a period.  A state whose plain map still changes a share of ``gain`` moves
+    forward at a velocity wrong by that share, and as the force depends on the velocity only through
+    its excess over the static limit, at most the same share of the excess is in doubt.
+    """
+
+    static_force: float
+    gain: float
+
+    def doubt(self, residual, force):
+        """Error of the mean forward force that a residual of the plain map stands for."""
+        return abs(force - self.static_force) * residual / self.gain
+
+
+def find_periodic_state(
+    contact, path, start, tolerance, step_tolerance, pace=None, max_periods=200
+):
     """March half periods until the state is periodic to ``tolerance`` (a force over mu F_z).
 
     contact: models.contact.Contact; path: half a period, from turning point to turning point, whose
-    second half is its lateral mirror image; start: state, shape of the contact.  The returned
-    forces belong to a march from ``start`` whose distance from the periodic state is ``distance``.
-    Never raises for want of convergence: see ``converged``.
+    second half is its lateral mirror image; start: state, shape of the contact; pace: if the motion
+    may be slow, see Pace.  The returned forces belong to a march from the returned start, whose
+    distance from the periodic state is ``distance``.  Never raises for want of convergence: see
+    ``converged``.
     """
     newton = contact.has_sensitivity
     accelerate = _newton_correction if newton else Anderson(contact, ANDERSON_DEPTH)
@@ -74,6 +98,8 @@ def find_periodic_state(contact, path, start, tolerance, step_tolerance, max_per
             proposal = accelerate(state, image)
         proposal = project(proposal, contact.bound)
         distance = max(energy_norm(contact, proposal - state), residual)
+        if pace is not None:
+            distance = max(distance, pace.doubt(residual, path.mean(march.forces[:, 0])))
         converged = distance <= tolerance and (use_newton or not newton)
         if best is None or distance < best.distance or converged:
             best = PeriodicState(

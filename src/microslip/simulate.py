@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from microslip import hertz
+from microslip.friction import project
 from microslip.models import MODELS
-from microslip.models.contact import energy_norm, full_slip, transferred
+from microslip.models.contact import UNIT_STIFFNESS, energy_norm, full_slip
 from microslip.path import EULER, SDIRK2, half_period_phases, make_path
-from microslip.periodic import find_periodic_state
+from microslip.periodic import Pace, find_periodic_state
+from microslip.static import static_state
 
 STEADY_STRETCH = 8
 """Steps marched between two looks at whether a steady motion has reached its steady state."""
 STEADY_TRAVEL = 0.5
 """Largest rigid displacement of a steady motion in one step, in u_lim."""
 MAX_STRETCHES = 200
-PERIODS_FROM_GUESS = 60
-"""Half periods after which a march from another run's state gives way to one from full slip."""
+SLOW_PUSH = 0.5
+LARGEST_PUSH = 0.1
+"""Forward traction added to the static limit's, as a share of the bound, for a start: it grows as
+the friction itself does with the creep in a radian, so that every point slips forward a little too
+much.  From there an accelerated search finds its way down; below, points would only drift."""
 
 
 @dataclass(frozen=True, order=True)
@@ -36,8 +41,8 @@ class Run:
     """Outcome of one run: forward friction and torque over their full-slip values, and the effort.
 
     distance: estimated distance from the periodic (steady) state; solver_residual: summed over the
-    last period; both forces over mu F_z.  work: step solves x unknowns.  contact, state: the
-    discretisation and its periodic tractions, where there are any.
+    last period; both forces over mu F_z.  work: step solves x unknowns.  state: the periodic
+    tractions, where there are any.
     """
 
     mu: float
@@ -50,7 +55,6 @@ class Run:
     work: int
     converged: bool
     reason: str
-    contact: object = None
     state: np.ndarray | None = None
 
 
@@ -59,9 +63,8 @@ def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance, 
 
     scene: scenes.Scene; velocity > 0, amplitude > 0 (None for steady scenes), poisson in 0..0.5:
     checked by the caller; tolerance: of the periodic state, a force over mu F_z, steps are solved
-    a thousand times tighter; guess: a Run of the same point at another resolution, whose periodic
-    state is a better start than full forward slip.  Returns a Run; never raises for want of
-    convergence.
+    a thousand times tighter; guess: a Run of the same point with the same cells and angles, if any.
+    Returns a Run; never raises for want of convergence.
     """
     focus = scene.focus(velocity, amplitude)
     contact = MODELS[model].build(scene, poisson, resolution.cells, resolution.angles, focus)
@@ -74,16 +77,7 @@ def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance, 
         return _steady_run(contact, displacement, velocity, tolerance, step_tolerance)
     grading = {"grading": contact.grading} if hasattr(contact, "grading") else {}
     path = make_path(displacement, half_period_phases(resolution.steps, **grading), SDIRK2)
-    found = None
-    if guess is not None and guess.converged:
-        start = transferred(guess.state, guess.contact, contact)
-        if start is not None:
-            found = find_periodic_state(
-                contact, path, start, tolerance, step_tolerance, PERIODS_FROM_GUESS
-            )
-    if found is None or not found.converged:
-        start = forward_slip(contact)
-        found = find_periodic_state(contact, path, start, tolerance, step_tolerance)
+    found = _search(contact, scene, displacement, path, tolerance, step_tolerance, guess)
     mean = path.mean(found.forces)
     solved = found.solver_residual <= found_limit(path, step_tolerance)
     reason = ""
@@ -99,12 +93,36 @@ def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance, 
         periods=found.periods,
         iterations=found.iterations,
         solves=found.solves,
-        work=found.solves * start.size,
+        work=found.solves * found.start.size,
         converged=found.converged and solved,
         reason=reason,
-        contact=contact,
         state=found.start,
     )
+
+
+def _search(contact, scene, displacement, path, tolerance, step_tolerance, guess):
+    """Find the periodic state, starting near the static limit or from a known state."""
+    creep = displacement(np.array([1.0]))[0][0] - displacement(np.array([0.0]))[0][0]
+    pace = Pace(0.0, UNIT_STIFFNESS * creep * np.pi)
+    start = forward_slip(contact)
+    if contact.has_memory:
+
+        def oscillation(phase):
+            forward, lateral, angle = displacement(phase)
+            return forward - creep * phase, lateral, angle
+
+        residual, oscillating = static_state(contact, oscillation, step_tolerance)
+        pace = replace(pace, static_force=float(np.sum(contact.weight * residual[0])))
+        push = min(SLOW_PUSH * creep ** (2.0 / 3.0), LARGEST_PUSH)
+        start = project(residual + oscillating + push * start, contact.bound)
+    starts = [start, forward_slip(contact)]
+    if guess is not None and guess.converged and guess.state.shape == start.shape:
+        starts.insert(0, guess.state)
+    for start in starts:
+        found = find_periodic_state(contact, path, start, tolerance, step_tolerance, pace)
+        if found.converged:
+            break
+    return found
 
 
 def found_limit(path, step_tolerance):

@@ -30,6 +30,7 @@ class CartesianContact:
     """
 
     has_sensitivity = False
+    has_memory = True
     angles = 1
 
     def __init__(self, cells, poisson=0.0):

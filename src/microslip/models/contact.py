@@ -7,16 +7,9 @@ from typing import Protocol
 
 import numpy as np
 
-from microslip.friction import project
-
 UNIT_STIFFNESS = 1.5
 """Force over mu F_z per uniform displacement u_lim without slip, 2 G* a: turns an energy norm into
 a bound on a force, |dF| <= sqrt(1.5 <dq, A dq>)."""
-
-FORWARD_PUSH = 0.03
-"""Forward traction added to an interpolated state, as a share of the bound.  Points that the
-interpolation leaves just short of slipping forward would stay there: near the static limit only the
-slip of states with too much forward traction tells an accelerated search which way to go."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +37,8 @@ class Contact(Protocol):
     bound, weight: friction bound and area of each point, broadcast to state[0];
     compliance: displacement of a point under unit traction on itself, broadcast likewise;
     forward_position, lateral_position: where the points are (units a), same shape;
-    has_sensitivity: whether ``march(..., sensitivity=True)`` is to be had cheaply.
+    has_sensitivity: whether ``march(..., sensitivity=True)`` is to be had cheaply;
+    has_memory: whether tractions depend on the history (not for the rigid contact).
     """
 
     bound: np.ndarray
@@ -53,6 +47,7 @@ class Contact(Protocol):
     forward_position: np.ndarray
     lateral_position: np.ndarray
     has_sensitivity: bool
+    has_memory: bool
 
     def displacement(self, state) -> np.ndarray:
         """A q: elastic displacement of each point, same shape as the state."""
@@ -62,26 +57,6 @@ class Contact(Protocol):
 
     def march(self, path, state, tolerance, sensitivity=False) -> March:
         """March along a path from a state; every stage is solved to ``tolerance`` (a force)."""
-
-
-def transferred(state, old, new):
-    """Tractions of one contact as a first guess for another discretisation of it, or None.
-
-    Interpolates the share of the bound that is used, linearly in the ring angle psi and in the
-    angle around the contact.  Contacts without rings only pass their states on unchanged.
-    """
-    shape = np.broadcast_shapes(np.shape(new.bound), new.forward_position.shape)
-    if state.shape[1:] == shape:
-        return state
-    if not (hasattr(old, "rings") and hasattr(new, "rings")):
-        return None
-    share = state / old.bound
-    source, target = (0.5 * (c.rings.psi[1:] + c.rings.psi[:-1]) for c in (old, new))
-    share = np.apply_along_axis(lambda row: np.interp(target, source, row), 2, share)
-    source, target = ((np.arange(c.angles) + 0.5) / c.angles for c in (old, new))
-    share = np.apply_along_axis(lambda row: np.interp(target, source, row), 1, share)
-    share[0] += FORWARD_PUSH
-    return project(share * new.bound, new.bound)
 
 
 def energy_norm(contact, change):

@@ -182,6 +182,7 @@ class PolarContact:
     """
 
     has_sensitivity = False
+    has_memory = True
 
     def __init__(self, cells, angles, rotates, poisson=0.0, focus=None):
         if angles < 2:

@@ -262,6 +262,7 @@ class RadialContact:
     """
 
     has_sensitivity = True
+    has_memory = True
     angles = 1
 
     def __init__(self, influence, bound, weight):
@@ -274,9 +275,7 @@ class RadialContact:
     def resolved(cls, cells, focus=None):
         """The half-space on ``cells`` rings refined around the radius ``focus``."""
         rings = make_rings(cells, focus)
-        contact = cls(_influence(cells, focus), rings.bound, rings.area)
-        contact.rings = rings
-        return contact
+        return cls(_influence(cells, focus), rings.bound, rings.area)
 
     def displacement(self, state):
         """A q; shapes (2, 1, cells)."""

@@ -19,6 +19,7 @@ class RigidContact:
     """Points on rings x half-circle angles (one point for translation); see models.contact."""
 
     has_sensitivity = False
+    has_memory = False
     grading = GRADING
 
     def __init__(self, cells, angles, rotates, focus=None):
