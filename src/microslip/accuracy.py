@@ -138,8 +138,8 @@ def certify(run, base, axes, tolerance, imposed=()):
     errors = dict.fromkeys(("space", "time"), 0.0)
     for axis, chain in chains.items():
         errors[SOURCES[axis]] += chain.error("mu")
-    errors["periodicity"] = max(r.distance for r in runs)
-    errors["solver"] = max(r.solver_residual for r in runs)
+    errors["periodicity"] = float(max(r.distance for r in runs))
+    errors["solver"] = float(max(r.solver_residual for r in runs))
     return Certified(
         mu=start.mu + sum(chain.correction("mu") for chain in chains.values()),
         torque=start.torque + sum(chain.correction("torque") for chain in chains.values()),
