@@ -17,12 +17,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-ERROR_SHARE = {"cells": 0.5, "angles": 0.7, "steps": 0.7}
+ERROR_SHARE = {"cells": 0.5, "angles": 0.7, "steps": 1.0}
 """Error over the last difference (cells), over the spread of the last three (angles, steps)."""
 REGULAR = 0.25
 REGULAR_RATIOS = (2.5, 6.5)
 """Error share of cells whose last two differences have a ratio within these bounds (4: order 2)."""
 EXTRAPOLATED_CELLS = 1.0 / 3.0
+RESOLVED = 0.02
+"""Share of the tolerance below which no axis claims its error to be: nothing was run to see it."""
 COINCIDENCE = 1.0 / 6.0
 """Share of the difference before the last that an error does not fall below: two runs that happen
 to agree prove little."""
@@ -137,7 +139,7 @@ def certify(run, base, axes, tolerance, imposed=()):
     start = cache[base]
     errors = dict.fromkeys(("space", "time"), 0.0)
     for axis, chain in chains.items():
-        errors[SOURCES[axis]] += chain.error("mu")
+        errors[SOURCES[axis]] += max(chain.error("mu"), RESOLVED * tolerance)
     errors["periodicity"] = float(max(r.distance for r in runs))
     errors["solver"] = float(max(r.solver_residual for r in runs))
     return Certified(

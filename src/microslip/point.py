@@ -12,13 +12,17 @@ from microslip import theory
 from microslip.accuracy import certify
 from microslip.models import MODELS
 from microslip.scenes import scene_named
-from microslip.simulate import Resolution, simulate
+from microslip.simulate import Resolution, simulate, simulate_static
 
 PERIODICITY_SHARE = 0.03
 """Share of the tolerance that the distance from the periodic state may take."""
 SMALLEST_TOLERANCE = 1e-6
 COARSEST_STEPS = 24
 CLOSED_FORM = "closed-form"
+STATIC_LIMITS = {
+    "transverse": theory.static_limit_transverse,  # nu = 0
+    "bore": theory.static_limit_bore,  # any nu: it only scales the angle
+}
 
 
 @dataclass(frozen=True)
@@ -99,18 +103,18 @@ def solve(
     exact = _closed_form(kind, velocity, amplitude, poisson) if model == "auto" else None
     if exact is not None:
         return _exact_result(point, exact, time.perf_counter() - started)
-    if velocity == 0.0:
-        raise ValueError(
-            f"velocity = 0: model {name!r} has to march; allowed is velocity > 0, or model 'auto'"
-        )
     if kind.periodic and amplitude == 0.0:
         return _exact_result(point | {"model": name}, (1.0, None), time.perf_counter() - started)
     base, axes, imposed = _plan(kind, name, tolerance, cells, steps)
     share = PERIODICITY_SHARE * tolerance
+    if velocity == 0.0:
+        axes = tuple(axis for axis in axes if axis != "steps")
 
     def run(resolution, guess):
         if progress is not None:
             progress(resolution)
+        if velocity == 0.0 and kind.periodic:
+            return simulate_static(kind, amplitude, poisson, name, resolution, share)
         return simulate(kind, velocity, amplitude, poisson, name, resolution, share, guess)
 
     certified = certify(run, base, axes, tolerance, imposed)
@@ -133,7 +137,7 @@ def solve(
         reason=reason,
         cells=certified.finest.cells,
         angles=certified.finest.angles,
-        steps_per_period=2 * certified.finest.steps if kind.periodic else 0,
+        steps_per_period=2 * certified.finest.steps if "steps" in axes else 0,
         periods=certified.periods,
         iterations=certified.iterations,
         work=certified.work,
@@ -230,14 +234,11 @@ def _closed_form(scene, velocity, amplitude, poisson):
     if velocity > 0.0:
         return None
     if not scene.periodic:
-        return 0.0, 1.0
-    if scene.name == "bore":
-        return float(theory.static_limit_bore(amplitude)), None
-    if poisson == 0.0:
-        return float(theory.static_limit_transverse(amplitude)), None
-    raise ValueError(
-        f"velocity = 0: the limit of the {scene.name} scene is known for poisson = 0 only"
-    )
+        return 0.0, 1.0  # pure rotation
+    known = STATIC_LIMITS.get(scene.name)
+    if known is None or (poisson > 0.0 and not scene.rotates):
+        return None
+    return float(known(amplitude)), None
 
 
 def _exact_result(point, values, seconds):

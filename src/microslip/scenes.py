@@ -17,6 +17,9 @@ import numpy as np
 
 from microslip import hertz
 
+FOCUS_RANGE = (0.05, 0.9995)
+"""Radii that rings may gather at; a stick zone smaller than the first carries next to no load."""
+
 
 @dataclass(frozen=True)
 class Scene:
@@ -58,14 +61,24 @@ def _continuous_bore(phase, velocity, amplitude, poisson):
     return velocity * phase, np.zeros_like(phase), phase + 0.0
 
 
+def _within(radius):
+    """The radius, kept off the centre and the edge so that no ring degenerates."""
+    return float(np.clip(radius, *FOCUS_RANGE))
+
+
 def _transverse_focus(velocity, amplitude):
     """Mindlin's stick radius of the oscillation alone (Eq 8); nowhere once it slides fully."""
-    return float(np.sqrt(1.0 - amplitude)) if amplitude < 1.0 else None
+    return _within(np.sqrt(1.0 - amplitude)) if amplitude < 1.0 else None
 
 
 def _bore_focus(velocity, amplitude):
     """Lubkin's stick radius of the oscillation alone (Eq 30)."""
-    return float(hertz.lubkin_stick_radius(hertz.bore_angle(amplitude)))
+    return _within(hertz.lubkin_stick_radius(hertz.bore_angle(amplitude)))
+
+
+def _steady_focus(velocity, amplitude):
+    """The instantaneous centre of rotation, while it lies inside the contact (Eq 14)."""
+    return _within(velocity) if velocity < 1.0 else None
 
 
 TRANSVERSE = Scene(
@@ -97,7 +110,7 @@ CONTINUOUS_BORE = Scene(
     periodic=False,
     rotates=True,
     half_period_mirror=False,
-    focus=lambda velocity, amplitude: velocity if velocity < 1.0 else None,
+    focus=_steady_focus,
     velocity_label="v0 / (omega a)",
 )
 

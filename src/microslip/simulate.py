@@ -12,7 +12,7 @@ from microslip.models import MODELS
 from microslip.models.contact import UNIT_STIFFNESS, energy_norm, full_slip
 from microslip.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.periodic import Pace, find_periodic_state
-from microslip.static import static_state
+from microslip.static import STEPS, static_state
 
 STEADY_STRETCH = 8
 """Steps marched between two looks at whether a steady motion has reached its steady state."""
@@ -97,6 +97,34 @@ def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance, 
         converged=found.converged and solved,
         reason=reason,
         state=found.start,
+    )
+
+
+def simulate_static(scene, amplitude, poisson, model, resolution, tolerance):
+    """The limit of vanishing velocity at one resolution (see static.py): a Run, without a march in
+    forward direction.  The rigid contact keeps no residual traction: 0."""
+    focus = scene.focus(0.0, amplitude)
+    contact = MODELS[model].build(scene, poisson, resolution.cells, resolution.angles, focus)
+    force, solves = 0.0, 0
+    if contact.has_memory:
+        residual, _ = static_state(
+            contact,
+            lambda phase: scene.displacement(phase, 0.0, amplitude, poisson),
+            1e-3 * tolerance,
+        )
+        force = float(np.sum(contact.weight * residual[0]))
+        solves = STEPS // 2
+    return Run(
+        mu=force,
+        torque=0.0,
+        distance=0.0,
+        solver_residual=1e-3 * tolerance * solves,
+        periods=1,
+        iterations=0,
+        solves=solves,
+        work=solves * 2 * contact.forward_position.size,
+        converged=True,
+        reason="",
     )
 
 

@@ -1,0 +1,108 @@
+"""The static limit: closed forms, the pointwise form on every model, slow marches towards it."""
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip import hertz, theory
+from microslip.models import MODELS
+from microslip.scenes import BORE, TRANSVERSE
+from microslip.static import oscillating_part, residual_part, static_state
+
+
+def contact_for(scene, amplitude, model, cells, angles=1, poisson=0.0):
+    focus = scene.focus(0.0, amplitude)
+    return MODELS[model].build(scene, poisson, cells, angles, focus)
+
+
+def oscillation(scene, amplitude, poisson=0.0):
+    return lambda phase: scene.displacement(phase, 0.0, amplitude, poisson)
+
+
+def numerical_limit(scene, amplitude, model, cells, angles=1, poisson=0.0):
+    contact = contact_for(scene, amplitude, model, cells, angles, poisson)
+    residual, _ = static_state(contact, oscillation(scene, amplitude, poisson), 1e-10)
+    return float(np.sum(contact.weight * residual[0]))
+
+
+def test_oscillating_tractions_are_those_of_mindlin_and_lubkin():
+    radial = contact_for(TRANSVERSE, 0.5, "radial", 64)
+    found = oscillating_part(radial, oscillation(TRANSVERSE, 0.5), 1e-11)
+    total = np.sum(radial.weight * found[1])
+    assert found[0] == pytest.approx(0.0, abs=1e-14)
+    assert total == pytest.approx(-hertz.mindlin_force(0.5), abs=3e-4)
+
+    polar = contact_for(BORE, 1.0, "polar", 32, 4)
+    forward, lateral = oscillating_part(polar, oscillation(BORE, 1.0), 1e-10)
+    torque = polar.lateral_position * forward - polar.forward_position * lateral
+    assert np.sum(polar.weight * torque) == pytest.approx(-hertz.lubkin_torque(0.5), abs=3e-4)
+
+
+def test_residual_is_the_furthest_point_of_the_lens():
+    # brute force over a fine grid of candidate tractions
+    rng = np.random.default_rng(3)
+    axis = np.linspace(-1.0, 1.0, 801)
+    forward, lateral = np.meshgrid(axis, axis, indexing="ij")
+    for q_forward, q_lateral in rng.uniform(-0.75, 0.75, (40, 2)):
+        oscillating = np.array([[q_forward], [q_lateral]])
+        allowed = np.maximum(
+            np.hypot(forward + q_forward, lateral + q_lateral),
+            np.hypot(forward - q_forward, lateral - q_lateral),
+        )
+        expected = forward[allowed <= 1.0].max(initial=0.0)
+        residual = residual_part(oscillating, np.ones(1))
+        if np.hypot(q_forward, q_lateral) < 1.0:
+            assert residual[0, 0] == pytest.approx(expected, abs=6e-3)
+        for sign in (1.0, -1.0):
+            inside = np.hypot(*(residual[:, 0] + sign * oscillating[:, 0]))
+            assert inside <= 1.0 + 1e-12 or not residual.any()
+
+
+@pytest.mark.parametrize("amplitude", [0.1, 0.5, 0.9])
+def test_pointwise_form_converges_to_the_closed_form_transverse(amplitude):
+    exact = float(theory.static_limit_transverse(amplitude))
+    errors = [abs(numerical_limit(TRANSVERSE, amplitude, "radial", n) - exact) for n in (8, 32)]
+    order = np.log(errors[0] / errors[1]) / np.log(4.0)
+    assert errors[1] < 3e-4
+    assert order > 1.3
+
+
+@pytest.mark.parametrize("amplitude", [0.3, 1.0, 2.0])
+@pytest.mark.parametrize("poisson", [0.0, 0.4])
+def test_pointwise_form_agrees_with_the_closed_form_bore(amplitude, poisson):
+    found = numerical_limit(BORE, amplitude, "polar", 32, 16, poisson)
+    assert found == pytest.approx(float(theory.static_limit_bore(amplitude)), abs=3e-4)
+
+
+def test_squares_find_the_same_limits():
+    found = numerical_limit(TRANSVERSE, 0.5, "cartesian", 32)
+    assert found == pytest.approx(float(theory.static_limit_transverse(0.5)), abs=5e-3)
+    found = numerical_limit(BORE, 1.0, "cartesian", 32)
+    assert found == pytest.approx(float(theory.static_limit_bore(1.0)), abs=5e-3)
+
+
+def test_slider_limit_is_eq_7():
+    found = microslip.solve("transverse", 0.0, 0.5, model="slider")
+    assert found.mu_macro == pytest.approx(float(theory.static_slider(0.5)), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("scene", "amplitude", "poisson"),
+    [("transverse", 0.5, 0.0), ("transverse", 0.5, 0.3), ("bore", 1.0, 0.0)],
+)
+def test_slow_marches_approach_the_limit(scene, amplitude, poisson):
+    limit = microslip.solve(scene, 0.0, amplitude, poisson=poisson, tolerance=1e-3)
+    velocities = [1e-3, 1e-4, 1e-5]
+    slow = [microslip.solve(scene, v, amplitude, poisson=poisson) for v in velocities]
+    excess = np.array([answer.mu_macro for answer in slow]) - limit.mu_macro
+    assert all(answer.converged for answer in slow)
+    assert np.all(np.diff(excess) < 0.0)
+    last = limit.mu_macro_error + slow[-1].mu_macro_error
+    assert -last < excess[-1] < 2e-3 + last
+
+
+def test_limits_lie_below_those_of_the_whole_stick_zone():
+    amplitude = np.linspace(0.05, 0.95, 19)
+    assert np.all(theory.static_limit_transverse(amplitude) < theory.static_transverse(amplitude))
+    amplitude = np.linspace(0.1, 4.0, 20)
+    assert np.all(theory.static_limit_bore(amplitude) < theory.static_bore(amplitude))
