@@ -5,8 +5,8 @@ base, so that what an axis contributes is seen by itself and nothing has to be r
 them at once.  The answer is the base value plus the correction of every chain.
 
 - cells, doubled: the error falls smoothly with the second power, so the last difference is
-  extrapolated by a third; half of it stays as the error, which covers any order above 1.3, or a
-  quarter where the last two differences show an order between 1.3 and 2.7.
+  extrapolated by a third; 0.6 of it stays as the error, which covers any order above 1.05, or 0.35
+  where the last two differences show an order between 1.3 and 2.7.
 - angles, grown likewise in smaller steps: the error falls fast but irregularly.
 - steps, grown by 4/3 and 3/2 in turn: the error scatters about its second-power trend, since a
   ring starts to slip somewhere within a step; so the spread of the last three runs is the error and
@@ -17,9 +17,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-ERROR_SHARE = {"cells": 0.5, "angles": 0.7, "steps": 1.0}
+ERROR_SHARE = {"cells": 0.6, "angles": 1.0, "steps": 1.0}
 """Error over the last difference (cells), over the spread of the last three (angles, steps)."""
-REGULAR = 0.25
+REGULAR = 0.35
 REGULAR_RATIOS = (2.5, 6.5)
 """Error share of cells whose last two differences have a ratio within these bounds (4: order 2)."""
 EXTRAPOLATED_CELLS = 1.0 / 3.0
@@ -28,9 +28,12 @@ RESOLVED = 0.02
 COINCIDENCE = 1.0 / 6.0
 """Share of the difference before the last that an error does not fall below: two runs that happen
 to agree prove little."""
+SCATTER = 0.5
+"""Share of the time error of the base that its scatter may reach."""
+MOST_REBASED = 5
 LEVELS = {
     "cells": (0.5, 1, 2, 4, 8, 16, 32),
-    "angles": (1, 1.5, 2, 3, 4, 6, 8, 12, 16),
+    "angles": (0.75, 1, 1.5, 2, 3, 4, 6, 8, 12),
     "steps": (2 / 3, 1, 4 / 3, 2, 8 / 3, 4, 16 / 3, 8, 32 / 3, 16, 64 / 3, 32),
 }
 """Resolutions of each chain over the base."""
@@ -106,6 +109,17 @@ class _Chain:
         return ERROR_SHARE["cells"] * max(abs(last), COINCIDENCE * abs(before))
 
 
+def _scatter(chains):
+    """What the time steps of the base may do to the differences of the other chains.
+
+    Their runs share the steps of the base, and the part of its time error that scatters from run to
+    run does not cancel.
+    """
+    if "steps" not in chains or len(chains) == 1:
+        return 0.0
+    return SCATTER * abs(chains["steps"].correction("mu"))
+
+
 def certify(run, base, axes, tolerance, imposed=()):
     """Refine until the estimated error is within ``tolerance``.
 
@@ -122,22 +136,30 @@ def certify(run, base, axes, tolerance, imposed=()):
             cache[resolution] = run(resolution, cache.get(base))
         return cache[resolution]
 
-    at(base)
-    chains = {axis: _Chain(at, base, axis, axis in imposed) for axis in axes}
-    free = [axis for axis in axes if axis not in imposed]
-    reason = ""
+    def start_chains():
+        at(base)
+        return {axis: _Chain(at, base, axis, axis in imposed) for axis in axes}
+
+    chains = start_chains()
+    rebased = 0
     while True:
         reason = next((r.reason for r in cache.values() if not r.converged), "")
-        left = {axis: chains[axis].error("mu") for axis in free}
-        if reason or sum(left.values()) <= 0.9 * tolerance:
+        left = {axis: chain.error("mu") for axis, chain in chains.items() if axis not in imposed}
+        scatter = _scatter(chains)
+        if reason or sum(left.values()) + scatter <= 0.9 * tolerance:
             break
-        worst = max(left, key=left.get)
-        if not chains[worst].refine():
+        worst = max(left, key=left.get, default="steps")
+        if scatter > left.get(worst, 0.0) and "steps" not in imposed and rebased < MOST_REBASED:
+            base = replace(base, steps=2 * base.steps)
+            chains, rebased = start_chains(), rebased + 1
+        elif not left:
+            break
+        elif not chains[worst].refine():
             reason = f"the error over {worst} is still {left[worst]:.1e} at {chains[worst].finest}"
             break
     runs = list(cache.values())
     start = cache[base]
-    errors = dict.fromkeys(("space", "time"), 0.0)
+    errors = {"space": 0.0, "time": scatter}
     for axis, chain in chains.items():
         errors[SOURCES[axis]] += max(chain.error("mu"), RESOLVED * tolerance)
     errors["periodicity"] = float(max(r.distance for r in runs))

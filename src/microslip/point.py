@@ -18,6 +18,8 @@ PERIODICITY_SHARE = 0.03
 """Share of the tolerance that the distance from the periodic state may take."""
 SMALLEST_TOLERANCE = 1e-6
 COARSEST_STEPS = 24
+LONGEST_STROKE = 16.0
+"""Stroke in u_lim beyond which more steps are left to the estimate of the error."""
 CLOSED_FORM = "closed-form"
 STATIC_LIMITS = {
     "transverse": theory.static_limit_transverse,  # nu = 0
@@ -105,7 +107,9 @@ def solve(
         return _exact_result(point, exact, time.perf_counter() - started)
     if kind.periodic and amplitude == 0.0:
         return _exact_result(point | {"model": name}, (1.0, None), time.perf_counter() - started)
-    base, axes, imposed = _plan(kind, name, tolerance, cells, steps)
+    base, axes, imposed = _plan(
+        kind, name, _stroke(kind, amplitude, poisson), tolerance, cells, steps
+    )
     share = PERIODICITY_SHARE * tolerance
     if velocity == 0.0:
         axes = tuple(axis for axis in axes if axis != "steps")
@@ -200,11 +204,18 @@ def _count(name, value, low):
     return int(value)
 
 
-def _plan(scene, name, tolerance, cells, steps):
-    """Base resolution, axes to refine, and those among them that the caller imposed."""
+def _plan(scene, name, stroke, tolerance, cells, steps):
+    """Base resolution, axes to refine, and those among them that the caller imposed.
+
+    stroke: half the way that the edge of the contact oscillates, in u_lim.
+    """
     model = MODELS[name]
     angles = model.angles if _has_angles(scene, name) else 1
+    if angles > 1 and not scene.rotates:
+        angles //= 2  # only nu > 0 makes tractions depend on the angle, and only a little
+    # second order in time, and steps that stay short against u_lim where the stroke is long
     base_steps = COARSEST_STEPS * max(1.0, (1e-3 / tolerance) ** 0.5)
+    base_steps *= min(max(1.0, stroke) ** 0.5, LONGEST_STROKE**0.5)
     base = Resolution(
         cells=model.cells if cells is None else cells,
         angles=angles,
@@ -221,6 +232,14 @@ def _plan(scene, name, tolerance, cells, steps):
         tuple(axis for axis, there in axes.items() if there),
         tuple(axis for axis, set_ in imposed.items() if set_ and axes[axis]),
     )
+
+
+def _stroke(scene, amplitude, poisson):
+    """Half the way that the edge of the contact oscillates, in u_lim; 0 for steady scenes."""
+    if not scene.periodic:
+        return 0.0
+    motion = scene.displacement(np.array([-0.5, 0.5]) * np.pi, 0.0, amplitude, poisson)
+    return 0.5 * max(float(abs(np.diff(part)[0])) for part in motion)
 
 
 def _has_angles(scene, name):

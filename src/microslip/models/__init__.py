@@ -78,7 +78,7 @@ MODELS = {
         refuses=lambda scene, poisson: "",
         exact=lambda scene: True,
         cells=8,
-        angles=4,
+        angles=8,
     ),
     "cartesian": Model(
         build=lambda scene, poisson, cells, angles, focus: CartesianContact(cells, poisson),

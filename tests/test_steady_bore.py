@@ -1,0 +1,113 @@
+"""Steady sliding with steady rotation: Eqs 15, 21 and 22 from every initial state (claims 3, 4)."""
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip import hertz, theory
+from microslip.inside import STARTS
+from microslip.models.cartesian import CartesianContact
+from microslip.models.polar import PolarContact
+from microslip.scenes import CONTINUOUS_BORE
+from microslip.simulate import steady_state
+
+VELOCITIES = np.geomspace(0.1, 10.0, 7)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3])
+@pytest.mark.parametrize("velocity", VELOCITIES)
+def test_every_initial_state_ends_in_eqs_21_and_22(velocity, nu):
+    ends = []
+    for start in STARTS:
+        history = microslip.history(
+            "continuous-bore",
+            velocity,
+            start=start,
+            poisson=nu,
+            cells=16,
+            steps=160,
+            travel=max(10.0, 4 * velocity),
+        )
+        forward, torque = history.force_forward, history.torque
+        begin = {"stress-free": (0, 0), "full-slip": (1, 0), "full-rotation": (0, 1)}[start]
+        assert (forward[0], torque[0]) == pytest.approx(begin, abs=1e-12)
+        assert history.displacement_forward[-1] == pytest.approx(max(10.0, 4 * velocity))
+        assert forward[-1] == pytest.approx(theory.bore_forward(velocity), abs=2e-3)
+        assert torque[-1] == pytest.approx(theory.bore_torque(velocity), abs=2e-3)
+        ends.append((forward[-1], torque[-1]))
+    assert np.ptp(ends, axis=0) == pytest.approx(0.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3])
+@pytest.mark.parametrize("velocity", [0.02, *VELOCITIES])
+def test_solve_agrees_with_eqs_21_and_22(velocity, nu):
+    result = microslip.solve("continuous-bore", velocity, poisson=nu)
+    assert result.converged and result.mu_macro_error <= result.tolerance == 1e-3
+    assert result.mu_macro == pytest.approx(theory.bore_forward(velocity), abs=1e-3)
+    assert result.mu_torque == pytest.approx(
+        theory.bore_torque(velocity), abs=max(result.mu_torque_error, 1e-4)
+    )
+
+
+@pytest.mark.parametrize("model", ["rigid", "cartesian"])
+@pytest.mark.parametrize("velocity", [0.2, 0.8, 3.0])
+def test_other_models_agree_with_eqs_21_and_22(velocity, model):
+    result = microslip.solve("continuous-bore", velocity, model=model, tolerance=2e-3)
+    assert result.converged and result.model == model
+    assert result.mu_macro == pytest.approx(theory.bore_forward(velocity), abs=2e-3)
+    assert result.mu_torque == pytest.approx(theory.bore_torque(velocity), abs=4e-3)
+
+
+@pytest.mark.parametrize("velocity", [0.2, 0.5, 0.8, 1.5])
+def test_steady_field_is_eq_15_and_nothing_sticks(velocity):
+    """Up to v = 1 the instantaneous centre, where the slip vanishes, is inside the contact."""
+    field = microslip.traction_field("continuous-bore", velocity, cells=16)
+    assert field["centre_lateral"] == theory.rotation_centre(velocity)[0]
+    lateral, forward = field["lateral_position"], field["forward_position"]
+    found = np.stack([field["traction_lateral"], field["traction_forward"]])
+    assert np.hypot(*found) == pytest.approx(field["bound"], rel=1e-12)
+    expected = theory.steady_bore_traction(lateral, forward, velocity)
+    direction = expected / hertz.friction_bound(np.hypot(lateral, forward))
+    # next to the centre of rotation directions settle last
+    away = np.hypot(lateral + velocity, forward) > 0.1
+    assert away.sum() > 0.9 * away.size
+    assert (found / field["bound"])[:, away] == pytest.approx(direction[:, away], abs=2e-3)
+
+
+def test_steady_field_covers_the_disc():
+    field = microslip.traction_field("continuous-bore", 0.5, cells=12)
+    lateral, forward = field["lateral_position"], field["forward_position"]
+    assert np.hypot(lateral, forward).max() < 1.0
+    for side in (lateral > 0, lateral < 0, forward > 0, forward < 0):
+        assert side.sum() == lateral.size / 2
+    assert field["bound"].max() <= hertz.friction_bound(0.0)
+
+
+@pytest.mark.parametrize(
+    "contact",
+    [PolarContact(8, 8, True, 0.3, 0.5), CartesianContact(10, 0.3)],
+    ids=["polar", "cartesian"],
+)
+def test_nothing_sticks_around_a_centre_of_rotation_inside(contact):
+    """Claim 4, from the operator: tractions that stand still slip with the rigid velocity."""
+
+    def displacement(phase):
+        return CONTINUOUS_BORE.displacement(phase, 0.5, None, 0.3)
+
+    found = steady_state(contact, displacement, 0.5, 1e-5, 1e-8)
+    assert found.converged
+    loaded = np.broadcast_to(contact.bound > 0, contact.forward_position.shape)
+    used = np.hypot(*found.state)[loaded] / np.broadcast_to(contact.bound, loaded.shape)[loaded]
+    assert used.min() > 1 - 1e-6 and used.max() <= 1 + 1e-12
+    velocity = np.stack([0.5 + contact.lateral_position, -contact.forward_position])
+    along = (found.state * velocity).sum(axis=0) / np.hypot(*velocity)
+    assert (along / np.where(loaded, contact.bound, 1.0))[loaded].min() > 1 - 1e-4
+
+
+def test_rotation_slows_the_sliding_from_any_start():
+    """Friction falls below full sliding as soon as the contact turns; it never leaves 0..1."""
+    for start in STARTS:
+        history = microslip.history("continuous-bore", 0.8, start=start, cells=12, steps=64)
+        assert np.all(history.force_forward <= 1 + 1e-12)
+        assert np.all(history.torque <= 1 + 1e-12)
+        assert history.force_forward[-1] < 0.85
