@@ -1,6 +1,6 @@
 """Influence coefficients against brute-force quadrature, closed forms and their own symmetries.
 
-Complex notation: q = lateral + i forward, as in PHYSICS.md and halfspace.py.
+Complex notation: q = lateral + i forward, as in halfspace.py.
 """
 
 from itertools import pairwise

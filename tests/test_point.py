@@ -69,19 +69,17 @@ def test_certificate_covers_a_much_finer_reference(scene, velocity, amplitude, n
     assert min(shares) >= 0.0
 
 
-@pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
 @pytest.mark.parametrize(("velocity", "amplitude"), [(0.3, 0.8), (0.05, 2.0), (2.0, 4.0)])
-def test_tighter_tolerances_come_closer(velocity, amplitude, tolerance):
-    result = microslip.solve("transverse", velocity, amplitude, tolerance=tolerance)
-    assert result.converged and result.mu_macro_error <= tolerance
-    run = simulate(
-        SCENES["transverse"], velocity, amplitude, 0.0, "radial", Resolution(64, 1, 512), 1e-7
-    )
-    assert result.mu_macro == pytest.approx(run.mu, abs=tolerance + 2e-5)
+def test_tighter_tolerances_come_closer(velocity, amplitude):
+    scene, fine = SCENES["transverse"], Resolution(48, 1, 384)
+    expected = simulate(scene, velocity, amplitude, 0.0, "radial", fine, 1e-6).mu
+    for tolerance in (1e-2, 1e-3, 2e-4):
+        result = microslip.solve("transverse", velocity, amplitude, tolerance=tolerance)
+        assert result.converged and result.mu_macro_error <= tolerance
+        assert result.mu_macro == pytest.approx(expected, abs=tolerance + 2e-5)
 
 
-@pytest.mark.parametrize("nu", [0.0, 0.3])
-@pytest.mark.parametrize("scene", ["transverse", "bore"])
+@pytest.mark.parametrize(("scene", "nu"), [("transverse", 0.3), ("bore", 0.0)])
 def test_squares_confirm_the_automatic_model(scene, nu):
     automatic = microslip.solve(scene, 0.4, 1.5, poisson=nu)
     squares = microslip.solve(scene, 0.4, 1.5, poisson=nu, model="cartesian", tolerance=4e-3)
@@ -122,7 +120,7 @@ def test_without_vibration_friction_is_exactly_one(scene, model, nu, velocity):
 def test_slow_sliding_approaches_the_static_limit(scene, amplitude, limit):
     exact = microslip.solve(scene, 0.0, amplitude)
     assert exact.converged and exact.mu_macro == pytest.approx(limit(amplitude), abs=1e-9)
-    slow = [microslip.solve(scene, v, amplitude) for v in (1e-2, 1e-3, 1e-6)]
+    slow = [microslip.solve(scene, v, amplitude, tolerance=2e-3) for v in (1e-2, 1e-3, 1e-6)]
     assert all(result.converged for result in slow)
     assert slow[0].mu_macro > slow[1].mu_macro > slow[2].mu_macro
     assert slow[1].mu_macro > exact.mu_macro
@@ -135,17 +133,17 @@ def test_pure_rotation_has_no_forward_friction_and_its_whole_torque():
 
 
 @pytest.mark.parametrize(("velocity", "amplitude"), [(1e-2, 3.0), (0.1, 0.5), (2.0, 2.0)])
-def test_rigid_model_covers_eq_6(velocity, amplitude):
+def test_rigid_model_is_eq_6(velocity, amplitude):
     result = microslip.solve("transverse", velocity, amplitude, model="rigid")
     exact = theory.large_amplitude_transverse(velocity, amplitude)
-    assert result.converged and abs(result.mu_macro - exact) <= result.mu_macro_error
+    assert result.converged and result.mu_macro == pytest.approx(exact, abs=1e-3)
 
 
 @pytest.mark.parametrize("velocity", [1e-2, 0.3, 2.0])
-def test_rigid_model_covers_eq_29(velocity):
+def test_rigid_model_is_eq_29(velocity):
     result = microslip.solve("bore", velocity, 1.0, model="rigid")
     exact = theory.large_amplitude_bore(velocity)
-    assert result.converged and abs(result.mu_macro - exact) <= result.mu_macro_error
+    assert result.converged and result.mu_macro == pytest.approx(exact, abs=1e-3)
 
 
 def test_large_amplitudes_tend_to_the_rigid_contact():

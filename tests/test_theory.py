@@ -302,7 +302,7 @@ def test_static_limit_bore_is_its_integral(amplitude):
     assert theory.static_limit_bore(amplitude) == pytest.approx(mean, rel=1e-8)
 
 
-def test_static_limits_have_the_values_of_physics_md():
+def test_static_limits_have_the_values_of_independent_integration():
     transverse = theory.static_limit_transverse([0.25, 0.5, 0.75, 0.9])
     assert transverse == pytest.approx([0.8338, 0.5644, 0.2621, 0.0887], abs=6e-5)
     bore = theory.static_limit_bore([0.5, 1.0, 2.0, 3.0])

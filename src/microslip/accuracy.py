@@ -2,7 +2,9 @@
 
 Each refinable axis (cells, angles, steps) has a chain of runs of its own, refined from a common
 base, so that what an axis contributes is seen by itself and nothing has to be run fine in all of
-them at once.  The answer is the base value plus the correction of every chain.
+them at once.  The answer is the base value plus the correction of every chain.  Where corrections
+do not add up (time scatter in the differences of other chains, mixed difference of cells and
+angles) that counts as error too, and if it is the largest one the base itself is refined.
 
 - cells, doubled: the error falls smoothly with the second power, so the last difference is
   extrapolated by a third; 0.6 of it stays as the error, which covers any order above 1.05, or 0.35
@@ -120,6 +122,15 @@ def _scatter(chains):
     return SCATTER * abs(chains["steps"].correction("mu"))
 
 
+def _mixed(chains, base, at, imposed):
+    """How far the corrections along cells and angles fail to add up: their mixed difference."""
+    if not {"cells", "angles"} <= chains.keys() or "cells" in imposed:
+        return 0.0
+    cells, angles = (chains[axis].resolutions[2] for axis in ("cells", "angles"))
+    both = at(replace(base, cells=cells.cells, angles=angles.angles))
+    return abs(both.mu - at(cells).mu - at(angles).mu + at(base).mu)
+
+
 def certify(run, base, axes, tolerance, imposed=()):
     """Refine until the estimated error is within ``tolerance``.
 
@@ -145,12 +156,13 @@ def certify(run, base, axes, tolerance, imposed=()):
     while True:
         reason = next((r.reason for r in cache.values() if not r.converged), "")
         left = {axis: chain.error("mu") for axis, chain in chains.items() if axis not in imposed}
-        scatter = _scatter(chains)
-        if reason or sum(left.values()) + scatter <= 0.9 * tolerance:
+        hidden = {"steps": _scatter(chains), "angles": _mixed(chains, base, at, imposed)}
+        if reason or sum(left.values()) + sum(hidden.values()) <= 0.9 * tolerance:
             break
         worst = max(left, key=left.get, default="steps")
-        if scatter > left.get(worst, 0.0) and "steps" not in imposed and rebased < MOST_REBASED:
-            base = replace(base, steps=2 * base.steps)
+        cause = max(hidden, key=hidden.get)
+        if hidden[cause] > left.get(worst, 0.0) and cause not in imposed and rebased < MOST_REBASED:
+            base = replace(base, **{cause: 2 * getattr(base, cause)})
             chains, rebased = start_chains(), rebased + 1
         elif not left:
             break
@@ -159,7 +171,7 @@ def certify(run, base, axes, tolerance, imposed=()):
             break
     runs = list(cache.values())
     start = cache[base]
-    errors = {"space": 0.0, "time": scatter}
+    errors = {"space": hidden["angles"], "time": hidden["steps"]}
     for axis, chain in chains.items():
         errors[SOURCES[axis]] += max(chain.error("mu"), RESOLVED * tolerance)
     errors["periodicity"] = float(max(r.distance for r in runs))

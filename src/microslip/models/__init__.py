@@ -52,7 +52,7 @@ def _refuse_rotation_and_poisson(scene, poisson):
 MODELS = {
     "rigid": Model(
         build=lambda scene, poisson, cells, angles, focus: RigidContact(
-            cells, angles, scene.rotates, focus
+            cells, angles, scene.rotates
         ),
         refuses=lambda scene, poisson: "",
         exact=lambda scene: not scene.periodic,

@@ -22,10 +22,10 @@ class RigidContact:
     has_memory = False
     grading = GRADING
 
-    def __init__(self, cells, angles, rotates, focus=None):
+    def __init__(self, cells, angles, rotates):
         self.angles = angles if rotates else 1
         if rotates:
-            rings = make_rings(cells, focus)
+            rings = make_rings(cells)
             theta = (np.arange(angles) + 0.5) * np.pi / angles
             self.lateral_position = np.cos(theta)[:, None] * rings.radius
             self.forward_position = np.sin(theta)[:, None] * rings.radius

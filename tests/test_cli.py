@@ -1,0 +1,168 @@
+"""The command line as its users and checks run it: in a process of its own."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+import microslip
+
+CONTRACT = {
+    "scene",
+    "velocity",
+    "poisson",
+    "model",
+    "mu_macro",
+    "mu_macro_error",
+    "converged",
+    "cells",
+    "steps_per_period",
+    "periods",
+    "solve_time_s",
+}
+TRANSVERSE = ("point", "transverse", "--velocity", "0.5", "--amplitude", "0.5")
+
+
+def run(*arguments):
+    return subprocess.run(
+        [sys.executable, "-m", "microslip.cli", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+
+
+def refused(*arguments):
+    """The one line on standard error of a run that must end with exit code 2."""
+    done = run(*arguments)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.endswith("\n") and done.stderr.count("\n") == 1
+    return done.stderr
+
+
+@pytest.mark.parametrize(
+    ("scene", "arguments"),
+    [
+        ("transverse", {"velocity": 0.5, "amplitude": 0.5}),
+        ("bore", {"velocity": 0.5, "amplitude": 1.0, "poisson": 0.3, "tolerance": 5e-3}),
+        ("continuous-bore", {"velocity": 0.5}),
+        ("transverse", {"velocity": 0, "amplitude": 0.5}),
+        ("transverse", {"velocity": 0.5, "amplitude": 0.5, "model": "slider", "steps": 32}),
+        ("bore", {"velocity": 2, "amplitude": 1, "model": "polar", "cells": 6, "steps": 8}),
+    ],
+)
+def test_json_is_the_answer_of_solve_and_nothing_else(scene, arguments):
+    options = [word for name, value in arguments.items() for word in (f"--{name}", value)]
+    done = run("point", scene, *options, "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.count("\n") == 1
+    fields = json.loads(done.stdout)
+    assert fields.keys() >= CONTRACT
+    assert ("amplitude" in fields) == ("mu_torque" not in fields) == (scene != "continuous-bore")
+    assert fields["converged"] is True
+    velocity, amplitude = arguments.pop("velocity"), arguments.pop("amplitude", None)
+    expected = microslip.solve(scene, velocity, amplitude, **arguments).to_dict()
+    for answer in (fields, expected):  # equal to the last bit, the time apart
+        answer.pop("solve_time_s")
+    assert fields == expected
+
+
+def test_text_says_what_was_found():
+    done = run("point", "continuous-bore", "--velocity", "0.5", "--tolerance", "1e-2")
+    assert (done.returncode, done.stderr) == (0, "")
+    result = microslip.solve("continuous-bore", 0.5, tolerance=1e-2)
+    assert f"mu_macro = {result.mu_macro:.6g} +- " in done.stdout
+    assert f"mu_torque = {result.mu_torque:.6g} +- " in done.stdout
+    assert "polar" in done.stdout and "NOT CONVERGED" not in done.stdout
+
+
+def test_tolerance_out_of_reach_is_exit_code_1():
+    arguments = ["continuous-bore", "--velocity", 0.5, "--model", "rigid", "--tolerance", 1e-6]
+    done = run("point", *arguments, "--json")
+    fields = json.loads(done.stdout)
+    assert done.returncode == 1 and done.stderr == ""
+    assert fields["converged"] is False and fields["reason"]
+    done = run("point", *arguments)
+    assert done.returncode == 1 and "NOT CONVERGED: " + fields["reason"] in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("option", "arguments"),
+    [
+        ("--velocity", ("point", "transverse", "--velocity", "fast", "--amplitude", "1")),
+        ("--velocity", ("point", "transverse", "--velocity=-1", "--amplitude", "1")),
+        ("--velocity", ("point", "transverse", "--velocity", "nan", "--amplitude", "1")),
+        ("--velocity", ("point", "transverse", "--velocity", "inf", "--amplitude", "1")),
+        ("--velocity", ("point", "transverse", "--amplitude", "1")),
+        ("--amplitude", ("point", "transverse", "--velocity", "1")),
+        ("--amplitude", ("point", "transverse", "--velocity", "1", "--amplitude=-0.5")),
+        ("--amplitude", ("point", "continuous-bore", "--velocity", "1", "--amplitude", "1")),
+        ("--poisson", (*TRANSVERSE, "--poisson", "0.6")),
+        ("--poisson", (*TRANSVERSE, "--poisson", "steel")),
+        ("--model", (*TRANSVERSE, "--model", "best")),
+        ("--model", (*TRANSVERSE, "--model", "radial", "--poisson", "0.3")),
+        ("--model", ("point", "bore", "--velocity", "1", "--amplitude", "1", "--model", "slider")),
+        ("--tolerance", (*TRANSVERSE, "--tolerance", "0")),
+        ("--tolerance", (*TRANSVERSE, "--tolerance", "1e-12")),
+        ("--cells", (*TRANSVERSE, "--cells", "7")),
+        ("--cells", (*TRANSVERSE, "--cells", "8.5")),
+        ("--steps", (*TRANSVERSE, "--steps", "2")),
+        ("--step", (*TRANSVERSE, "--step", "8")),
+        ("--colour", (*TRANSVERSE, "--colour", "red")),
+        ("SCENE", ("point", "sideways", "--velocity", "1")),
+        ("SCENE", ("point",)),
+        ("COMMAND", ()),
+        ("COMMAND", ("solve",)),
+        ("extra", (*TRANSVERSE, "extra")),
+    ],
+)
+def test_bad_input_is_one_line_that_names_the_option(option, arguments):
+    assert option in refused(*arguments)
+
+
+def test_model_that_does_not_apply_says_to_which_scene():
+    line = refused("point", "bore", "--velocity", "1", "--amplitude", "1", "--model", "radial")
+    assert "bore" in line and "rotation" in line
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((), ["point", "friction", "vibrated", "Coulomb", "dimensionless"]),
+        (("point",), ["transverse", "bore", "continuous-bore", "mu F_z"]),
+        (
+            ("point", "transverse"),
+            ["--velocity", "v0 / (omega u_lim)", "--amplitude", "y0 / u_lim", "Poisson"],
+        ),
+        (("point", "bore"), ["v0 / (Omega phi0 a)", "phi0 / phi_lk(a/2)", "--tolerance"]),
+        (("point", "continuous-bore"), ["v0 / (omega a)", "--cells", "--steps", "--json"]),
+    ],
+)
+def test_help_explains_the_terms(arguments, words):
+    done = run(*arguments, "--help")
+    assert (done.returncode, done.stderr) == (0, "")
+    text = " ".join(done.stdout.split())
+    assert [word for word in words if word not in text] == []
+    assert max(map(len, done.stdout.splitlines())) <= 100
+    if arguments == ("point", "continuous-bore"):
+        assert "--amplitude" not in text
+
+
+def test_version_is_that_of_the_package():
+    done = run("--version")
+    assert (done.returncode, done.stdout) == (0, f"microslip {microslip.__version__}\n")
+
+
+def test_help_and_bad_options_do_not_load_the_solver():
+    """They must answer at once; the compiled kernels take their time to load."""
+    code = (
+        "import sys, microslip.cli as cli\n"
+        "try: cli.main(['point', 'bore', '--help'])\n"
+        "except SystemExit: pass\n"
+        "sys.exit('numba' in sys.modules)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
+    assert done.returncode == 0
