@@ -141,19 +141,14 @@ def test_stick_radius_of_pure_twist_is_lubkins(stick, nu):
         assert radius[~slips & loaded].max() == pytest.approx(stick, abs=width)
 
 
-HALF_DISC_ONLY = pytest.mark.xfail(
-    strict=True, reason="PolarContact.march sums force and torque over half the disc alone"
-)
-
-
 @pytest.mark.parametrize(
     ("contact", "motion", "forbidden"),
     [
         (RadialContact.resolved(6), [0.4, 0.3, 0], [2]),
         (CartesianContact(6, 0.3), [0.4, 0.3, 0], [2]),
         (CartesianContact(6, 0.3), [0.4, 0, 0.8], [1]),
-        pytest.param(PolarContact(6, 4, False, 0.3), [0.4, 0.3, 0], [2], marks=HALF_DISC_ONLY),
-        pytest.param(PolarContact(6, 4, True, 0.3), [0.4, 0, 0.8], [1], marks=HALF_DISC_ONLY),
+        (PolarContact(6, 4, False, 0.3), [0.4, 0.3, 0], [2]),
+        (PolarContact(6, 4, True, 0.3), [0.4, 0, 0.8], [1]),
     ],
     ids=["radial", "cartesian", "cartesian, turned", "polar", "polar, turned"],
 )

@@ -12,6 +12,10 @@ UNIT_STIFFNESS = 1.5
 a bound on a force, |dF| <= sqrt(1.5 <dq, A dq>)."""
 
 
+FORWARD, LATERAL, TORQUE = range(3)
+"""Columns of the forces."""
+
+
 @dataclass(frozen=True, eq=False)
 class March:
     """What one march along a path gives.

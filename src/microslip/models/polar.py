@@ -188,7 +188,7 @@ class PolarContact:
         if angles < 2:
             raise ValueError(f"angles = {angles}: allowed is a whole number of at least 2")
         self.rings = make_rings(cells, focus)
-        self.angles = angles
+        self.angles, self.rotates = angles, rotates
         theta = (np.arange(angles) + 0.5) * np.pi / angles
         self.lateral_position = np.cos(theta)[:, None] * self.rings.radius
         self.forward_position = np.sin(theta)[:, None] * self.rings.radius
@@ -225,6 +225,8 @@ class PolarContact:
             tolerance,
             forces,
         )
+        # the half disc that is not resolved cancels what symmetry forbids
+        forces[:, contact.LATERAL if self.rotates else contact.TORQUE] = 0.0
         solves = path.stages.shape[0] * path.stages.shape[1]
         return contact.March(state, forces, residual, iterations, solves)
 

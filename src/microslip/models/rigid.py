@@ -54,4 +54,6 @@ class RigidContact:
                 lateral - angle * self.forward_position,
             )
             forces[k] = contact.forces(self, q)
+        if self.angles > 1:
+            forces[:, contact.LATERAL] = 0.0  # cancelled by the half disc that is not resolved
         return contact.March(q, forces, 0.0, 0, path.steps + 1)
