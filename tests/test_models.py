@@ -327,9 +327,10 @@ def test_every_step_obeys_coulomb_and_balances_energy(name, increments):
     for before, after in pairwise(motions):
         march = contact.march(through([before, after]), q, tolerance)
         assert march.residual <= tolerance
-        assert march.forces == pytest.approx(
-            np.array([forces(contact, q), forces(contact, march.state)]), abs=1e-12
-        )
+        sums = np.array([forces(contact, q), forces(contact, march.state)])
+        if isinstance(contact, PolarContact):  # half a disc; the other half cancels one of them
+            sums[:, 1 if contact.rotates else 2] = 0.0
+        assert march.forces == pytest.approx(sums, abs=1e-12)
         change = march.state - q
         slip = rigid(contact, after - before) - contact.displacement(change)
         assert_coulomb(contact, march.state, slip, tolerance)
