@@ -63,6 +63,12 @@ def history(
         raise ValueError(f"start = {start!r}: allowed is one of {', '.join(STARTS)}")
     if start == "full-rotation" and not kind.rotates:
         raise ValueError(f"start = {start!r}: the {kind.name} scene does not rotate")
+    for name, count in (("cells", cells), ("steps", steps), ("periods", periods)):
+        whole = isinstance(count, int | np.integer) and not isinstance(count, bool)
+        if count is not None and not (whole and count >= 1):
+            raise ValueError(f"{name} = {count!r}: allowed is a whole number of at least 1")
+    if not 0.0 < travel < np.inf:
+        raise ValueError(f"travel = {travel!r}: allowed is a finite number above 0")
     contact = _contact(kind, velocity, amplitude, poisson, model, cells)
     end = 2 * np.pi * periods if kind.periodic else travel / velocity
     count = (steps or STEPS) * (periods if kind.periodic else 1)

@@ -5,10 +5,9 @@ tractions over one period is solved for its fixed point: by Newton's method wher
 the derivative of its march, else by Anderson acceleration.  The start should have too much forward
 traction rather than too little: from there the mean tractions relax towards the periodic ones
 without losing slip on the way, which is what keeps an accelerated map from settling where nothing
-moves.  The verdict is always that of the
-plain map: its residual, the distance to the fixed point that the last correction measured, and
-what the residual means at the pace of the motion: close to the static limit a state changes so
-little in a period that a small residual proves nothing by itself.
+moves.  The verdict is always that of the plain map: its residual, the distance to the fixed point
+that the last correction measured, and what the residual means at the pace of the motion: close to
+the static limit a state changes so little in a period that a small residual proves nothing.
 """
 
 from __future__ import annotations
