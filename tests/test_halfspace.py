@@ -179,8 +179,8 @@ def rng():
 CONTACTS = {
     "radial": lambda nu: RadialContact.resolved(10, 0.7),
     "polar, translation": lambda nu: PolarContact(6, 6, False, nu, 0.7),
-    "polar, odd number of angles": lambda nu: PolarContact(5, 5, False, nu),
-    "polar, rotation": lambda nu: PolarContact(6, 5, True, nu, 0.3),
+    "polar, fewest angles": lambda nu: PolarContact(5, 2, False, nu),
+    "polar, rotation": lambda nu: PolarContact(6, 6, True, nu, 0.3),
     "cartesian": lambda nu: CartesianContact(7, nu),
 }
 

@@ -112,13 +112,15 @@ def test_verdict_is_that_of_the_plain_map(name):
         contact, path, start, TOLERANCE, STEP_TOLERANCE, max_periods=enough.periods - 1
     )
     assert not few.converged
-    assert few.distance > TOLERANCE and few.periods < enough.periods
+    assert few.periods < enough.periods
+    assert few.distance > TOLERANCE or few.solver_residual > enough.solver_residual
     for found in (enough, few):
         # whatever the search did, what it hands back is one march of the plain map
         march = contact.march(path, found.start, STEP_TOLERANCE)
-        assert march.forces == pytest.approx(found.forces, abs=1e-6)
+        loose = max(1e-6, found.solver_residual)  # far from the end steps are solved loosely
+        assert march.forces == pytest.approx(found.forces, abs=loose)
         change = energy_norm(contact, contact.mirrored(march.state) - found.start)
-        assert change == pytest.approx(found.residual, rel=0.02, abs=1e-6)
+        assert change == pytest.approx(found.residual, rel=0.02, abs=loose)
 
 
 def test_run_reports_what_was_not_reached(monkeypatch):

@@ -35,7 +35,7 @@ SCATTER = 0.5
 MOST_REBASED = 5
 LEVELS = {
     "cells": (0.5, 1, 2, 4, 8, 16, 32),
-    "angles": (0.75, 1, 1.5, 2, 3, 4, 6, 8, 12),
+    "angles": (0.5, 1, 1.5, 2, 3, 4, 6, 8, 12),
     "steps": (2 / 3, 1, 4 / 3, 2, 8 / 3, 4, 16 / 3, 8, 32 / 3, 16, 64 / 3, 32),
 }
 """Resolutions of each chain over the base."""

@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-JIT = {"cache": True, "nogil": True}
+JIT = {"cache": True, "nogil": True, "error_model": "numpy"}
 """Options of every compiled function: compiled once, kept on disk, no fast-math reordering."""
 
 
@@ -34,16 +34,17 @@ def coulomb_residual(q, slip, bound, weight, scale):
     scale (the diagonal of the influence operator): shape (m,), the same for every n.  Returns
     Sum weight |P_g(q + slip/scale) - q|, zero exactly for a solution.
     """
-    total = 0.0
+    rows = np.zeros(q.shape[2])  # summed ring by ring, which the compiler can vectorise
     for j in range(q.shape[1]):
         for i in range(q.shape[2]):
             forward = q[0, j, i] + slip[0, j, i] / scale[i]
             lateral = q[1, j, i] + slip[1, j, i] / scale[i]
-            f = shrink(forward, lateral, bound[i])
+            size = np.sqrt(forward * forward + lateral * lateral)
+            f = min(1.0, bound[i] / max(size, 1e-300))
             forward = forward * f - q[0, j, i]
             lateral = lateral * f - q[1, j, i]
-            total += weight[i] * np.sqrt(forward * forward + lateral * lateral)
-    return total
+            rows[i] += weight[i] * np.sqrt(forward * forward + lateral * lateral)
+    return rows.sum()
 
 
 def dissipation_gap(q, slip, bound, weight):

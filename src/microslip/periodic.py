@@ -21,6 +21,10 @@ from microslip.friction import project
 from microslip.models.contact import energy_norm
 
 PLAIN_PERIODS = 1
+FORCING = 1e-3
+LOOSEST = 1e-4
+"""While the state is still far from periodic, steps are solved to this share of what the last
+period changed, and to LOOSEST at first: more would be wasted on a start that is about to change."""
 ANDERSON_DEPTH = 12
 NEWTON_STALL = 10
 """Newton corrections without a better state after which the search is given up."""
@@ -78,17 +82,21 @@ def find_periodic_state(
     """
     newton = contact.has_sensitivity
     accelerate = _newton_correction if newton else Anderson(contact, ANDERSON_DEPTH)
-    state, best = start, None
+    state, best, march = start, None, None
+    inner = step_tolerance if newton else max(step_tolerance, LOOSEST)
     iterations = solves = 0
     distance = np.inf
     for period in range(1, max_periods + 1):
         use_newton = newton and period > PLAIN_PERIODS
-        march = contact.march(path, state, step_tolerance, sensitivity=use_newton)
+        march = contact.march(path, state, inner, sensitivity=use_newton, previous=march)
         iterations += march.iterations
         solves += march.solves
         image = contact.mirrored(march.state)
         change = image - state
         residual = energy_norm(contact, change)
+        solved = inner <= step_tolerance
+        if not newton:
+            inner = max(step_tolerance, min(FORCING * residual, LOOSEST))
         if newton and not use_newton:
             proposal = image
         elif newton:
@@ -99,7 +107,7 @@ def find_periodic_state(
         distance = max(energy_norm(contact, proposal - state), residual)
         if pace is not None:
             distance = max(distance, pace.doubt(residual, path.mean(march.forces[:, 0])))
-        converged = distance <= tolerance and (use_newton or not newton)
+        converged = distance <= tolerance and (use_newton if newton else solved)
         if best is None or distance < best.distance or converged:
             best = PeriodicState(
                 march.forces,

@@ -14,6 +14,10 @@ from microslip.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.periodic import Pace, find_periodic_state
 from microslip.static import STEPS, static_state
 
+STEP_SHARE = 1e-2
+SLOW_STEP_SHARE = 3e-4
+"""Tolerance of a step over that of the periodic state: the slower the motion, the less a state
+changes in a period, and the more an error of its steps adds up."""
 STEADY_STRETCH = 8
 """Steps marched between two looks at whether a steady motion has reached its steady state."""
 STEADY_TRAVEL = 0.5
@@ -63,7 +67,7 @@ def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance, 
 
     scene: scenes.Scene; velocity > 0, amplitude > 0 (None for steady scenes), poisson in 0..0.5:
     checked by the caller; tolerance: of the periodic state, a force over mu F_z, steps are solved
-    a thousand times tighter; guess: a Run of the same point with the same cells and angles, if any.
+    a hundred times tighter; guess: a Run of the same point with the same cells and angles, if any.
     Returns a Run; never raises for want of convergence.
     """
     focus = scene.focus(velocity, amplitude)
@@ -72,7 +76,11 @@ def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance, 
     def displacement(phase):
         return scene.displacement(phase, velocity, amplitude, poisson)
 
-    step_tolerance = 1e-3 * tolerance
+    step_tolerance = STEP_SHARE * tolerance
+    if scene.periodic:
+        creep = displacement(np.array([1.0]))[0][0] - displacement(np.array([0.0]))[0][0]
+        pace = UNIT_STIFFNESS * creep * np.pi
+        step_tolerance = min(max(pace * STEP_SHARE, SLOW_STEP_SHARE), STEP_SHARE) * tolerance
     if not scene.periodic:
         return _steady_run(contact, displacement, velocity, tolerance, step_tolerance)
     grading = {"grading": contact.grading} if hasattr(contact, "grading") else {}
@@ -110,7 +118,7 @@ def simulate_static(scene, amplitude, poisson, model, resolution, tolerance):
         residual, _ = static_state(
             contact,
             lambda phase: scene.displacement(phase, 0.0, amplitude, poisson),
-            1e-3 * tolerance,
+            STEP_SHARE * tolerance,
         )
         force = float(np.sum(contact.weight * residual[0]))
         solves = STEPS // 2
@@ -118,7 +126,7 @@ def simulate_static(scene, amplitude, poisson, model, resolution, tolerance):
         mu=force,
         torque=0.0,
         distance=0.0,
-        solver_residual=1e-3 * tolerance * solves,
+        solver_residual=STEP_SHARE * tolerance * solves,
         periods=1,
         iterations=0,
         solves=solves,

@@ -24,7 +24,8 @@ class March:
     forces: forward force, lateral force, torque at each phase, shape (steps + 1, 3), over mu F_z
     and mu F_z a; residual: sum over the stages of what the step solver left (force over mu F_z);
     iterations, solves: step-solver iterations and stages; sensitivity: derivative of the end state
-    with respect to the start, shape (state.size, state.size), or None if it was not asked for.
+    with respect to the start, shape (state.size, state.size), or None if it was not asked for;
+    stages: what the model wants to find again when it marches the same path from a start near by.
     """
 
     state: np.ndarray
@@ -33,6 +34,7 @@ class March:
     iterations: int
     solves: int
     sensitivity: np.ndarray | None = None
+    stages: np.ndarray | None = None
 
 
 class Contact(Protocol):
@@ -59,8 +61,11 @@ class Contact(Protocol):
     def mirrored(self, state) -> np.ndarray:
         """The state after lateral -> -lateral (lateral traction negated)."""
 
-    def march(self, path, state, tolerance, sensitivity=False) -> March:
-        """March along a path from a state; every stage is solved to ``tolerance`` (a force)."""
+    def march(self, path, state, tolerance, sensitivity=False, previous=None) -> March:
+        """March along a path from a state; every stage is solved to ``tolerance`` (a force).
+
+        previous: a March of the same path from a start near by, whose tractions are first guesses.
+        """
 
 
 def energy_norm(contact, change):

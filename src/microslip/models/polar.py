@@ -18,79 +18,84 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 
-from microslip.friction import JIT, coulomb_residual, shrink
-from microslip.halfspace import ring_influence
+from microslip.friction import JIT, coulomb_residual
 from microslip.models import contact
+from microslip.models.sectors import (
+    apply_sectors,
+    fold,
+    influence_sectors,
+    quickest,
+    shifted_inverse,
+    unfold,
+)
 from microslip.rings import make_rings
 
 MAX_ITERATIONS = 4000
-CHECK_EVERY = 4
 PENALTY = 1.0
 """Augmentation over the self-influence of a ring; iterations double at half and at twice it."""
 RELAXATION = 1.7
+FEWEST_BETWEEN, MOST_BETWEEN = 2, 12
+"""Iterations between two looks at the residual, which costs more than an iteration."""
 
 
 @njit(**JIT)
-def apply_blocks(to_modes, to_points, members, blocks, x):
-    """Operator given by its mode blocks, on flattened points.
-
-    to_modes, to_points: (2 M, 2 M); members: coefficients of each block, (blocks, 2), second -1 if
-    single; blocks: transposed, (blocks, b N, b N); x: (2 M, N).  Returns (2 M, N).
-    """
-    modes = np.dot(to_modes, x)
-    out = np.zeros_like(modes)
-    n = x.shape[1]
-    for k in range(members.shape[0]):
-        for source in range(2):
-            if members[k, source] < 0:
-                break
-            given = modes[members[k, source]]
-            for target in range(2):
-                if members[k, target] < 0:
-                    break
-                result = out[members[k, target]]
-                for j in range(n):
-                    # column by column, which the compiler turns into vector instructions
-                    column = blocks[k, source * n + j]
-                    for i in range(n):
-                        result[i] += column[target * n + i] * given[j]
-    return np.dot(to_points, out)
+def _slip(influence, b, q, folded, image, slip):
+    """slip = b - A q; folded, image: room for folded tractions."""
+    fold(q, folded)
+    apply_sectors(influence, folded, image)
+    unfold(image, slip)
+    for c in range(2):
+        for j in range(q.shape[1]):
+            for i in range(q.shape[2]):
+                slip[c, j, i] = b[c, j, i] - slip[c, j, i]
 
 
 @njit(**JIT)
-def solve_step(operator, inverse, penalty, bound, weight, scale, b, q, dual, slip, tolerance):
+def _project(free, bound, q, dual):
+    """Over-relaxed projection on the friction bound, the remainder kept in ``dual``; in place."""
+    for j in range(q.shape[1]):
+        for i in range(q.shape[2]):
+            forward = RELAXATION * free[0, j, i] + (1 - RELAXATION) * q[0, j, i] + dual[0, j, i]
+            lateral = RELAXATION * free[1, j, i] + (1 - RELAXATION) * q[1, j, i] + dual[1, j, i]
+            f = min(1.0, bound[i] / max(np.sqrt(forward * forward + lateral * lateral), 1e-300))
+            q[0, j, i] = f * forward
+            q[1, j, i] = f * lateral
+            dual[0, j, i] = forward - f * forward
+            dual[1, j, i] = lateral - f * lateral
+
+
+@njit(**JIT)
+def solve_step(influence, inverse, penalty, bound, weight, b, q, dual, slip, room, tolerance):
     """Solve one Coulomb step by over-relaxed ADMM, in place.
 
-    operator: (to_modes, to_points, members, blocks); inverse: blocks of (A + penalty)^-1; b: the
-    imposed displacement (2, M, N); q: start and result, within the bound; dual: slip over penalty,
-    kept from step to step; slip: receives b - A q.  Returns (iterations, residual).
+    influence: sectors.Sectors of A; inverse: of (A + penalty)^-1; penalty: (N,), also the scale of
+    the residual; b: the imposed displacement (2, M, N); q: start and result, within the bound;
+    dual: slip over penalty, kept from step to step; slip: receives b - A q; room: two folded
+    arrays and a full one.  Returns (iterations, residual).
     """
-    to_modes, to_points, members, blocks = operator
+    folded, image, free = room
     angles, n = q.shape[1], q.shape[2]
-    flat_q, flat_slip = q.reshape(2 * angles, n), slip.reshape(2 * angles, n)
-    flat_b, flat_dual = b.reshape(2 * angles, n), dual.reshape(2 * angles, n)
-    flat_slip[:] = flat_b - apply_blocks(to_modes, to_points, members, blocks, flat_q)
-    residual = coulomb_residual(q, slip, bound, weight, scale)
-    iterations = 0
+    _slip(influence, b, q, folded, image, slip)
+    residual = coulomb_residual(q, slip, bound, weight, penalty)
+    iterations, between = 0, FEWEST_BETWEEN
     while residual > tolerance and iterations < MAX_ITERATIONS:
-        for _ in range(CHECK_EVERY):
-            free = apply_blocks(
-                to_modes, to_points, members, inverse, flat_b + penalty * (flat_q - flat_dual)
-            )
-            for j in range(angles):
-                for i in range(n):
-                    forward = RELAXATION * free[j, i] + (1 - RELAXATION) * q[0, j, i]
-                    lateral = RELAXATION * free[angles + j, i] + (1 - RELAXATION) * q[1, j, i]
-                    forward += dual[0, j, i]
-                    lateral += dual[1, j, i]
-                    f = shrink(forward, lateral, bound[i])
-                    q[0, j, i] = f * forward
-                    q[1, j, i] = f * lateral
-                    dual[0, j, i] = forward - f * forward
-                    dual[1, j, i] = lateral - f * lateral
-        iterations += CHECK_EVERY
-        flat_slip[:] = flat_b - apply_blocks(to_modes, to_points, members, blocks, flat_q)
-        residual = coulomb_residual(q, slip, bound, weight, scale)
+        for _ in range(between):
+            for c in range(2):
+                for j in range(angles):
+                    for i in range(n):
+                        kept = q[c, j, i] - dual[c, j, i]
+                        free[c, j, i] = b[c, j, i] + penalty[i] * kept
+            fold(free, folded)
+            apply_sectors(inverse, folded, image)
+            unfold(image, free)
+            _project(free, bound, q, dual)
+        iterations += between
+        _slip(influence, b, q, folded, image, slip)
+        before, residual = residual, coulomb_residual(q, slip, bound, weight, penalty)
+        # the residual falls geometrically: the next look is due where it should be small enough
+        pace = np.log(max(residual, 1e-300) / before) / between
+        due = np.log(tolerance / max(residual, 1e-300)) / min(pace, -0.05)
+        between = int(min(max(np.ceil(due), FEWEST_BETWEEN), MOST_BETWEEN))
     return iterations, residual
 
 
@@ -117,32 +122,40 @@ def _forces(q, weight, forward_position, lateral_position, out):
 
 @njit(**JIT)
 def _march(
-    operator,
+    influence,
     inverse,
     penalty,
     bound,
     weight,
-    scale,
     positions,
     start,
     stages,
     carry,
     state,
     tolerance,
+    warm,
+    tractions,
+    duals,
     forces,
 ):
-    """March along a path; returns (state, residual sum, iterations)."""
-    to_modes, to_points, members, blocks = operator
+    """March along a path; returns (state, residual sum, iterations).
+
+    tractions, duals: (steps, stages, 2, M, N), solutions of every stage; filled, and read as first
+    guesses if ``warm``.
+    """
     forward_position, lateral_position = positions
     angles, n = state.shape[1], state.shape[2]
     n_stages = stages.shape[1]
     q = state.copy()
     rigid = np.empty_like(q)
     slips = np.empty((n_stages, 2, angles, n))
-    duals = np.zeros((n_stages, 2, angles, n))
-    elastic = apply_blocks(to_modes, to_points, members, blocks, q.reshape(2 * angles, n))
+    dual = np.zeros_like(q)
+    folded = np.empty((4, angles // 2, n))
+    room = (folded, np.empty_like(folded), np.empty_like(q))
     _rigid(start, forward_position, lateral_position, rigid)
-    z = elastic.reshape(2, angles, n) - rigid
+    z = np.empty_like(q)
+    _slip(influence, rigid, q, folded, room[1], z)
+    z[:] = -z
     _forces(q, weight, forward_position, lateral_position, forces[0])
     total, iterations = 0.0, 0
     b = np.empty_like(q)
@@ -152,21 +165,26 @@ def _march(
             b[:] = z + rigid
             for j in range(s):
                 b -= carry[s, j] * slips[j]
-            if k == 0 and s > 0:
-                duals[s] = duals[s - 1]
+            if warm:
+                q[:] = tractions[k, s]
+                dual[:] = duals[k, s]
+            elif k > 0:
+                dual[:] = duals[k - 1, s]
             count, residual = solve_step(
-                operator,
+                influence,
                 inverse,
                 penalty,
                 bound,
                 weight,
-                scale,
                 b,
                 q,
-                duals[s],
+                dual,
                 slips[s],
+                room,
                 tolerance,
             )
+            tractions[k, s] = q
+            duals[k, s] = dual
             iterations += count
             total += residual
         z[:] = b - slips[n_stages - 1] - rigid
@@ -185,8 +203,8 @@ class PolarContact:
     has_memory = True
 
     def __init__(self, cells, angles, rotates, poisson=0.0, focus=None):
-        if angles < 2:
-            raise ValueError(f"angles = {angles}: allowed is a whole number of at least 2")
+        if angles < 2 or angles % 2:
+            raise ValueError(f"angles = {angles}: allowed is an even number of at least 2")
         self.rings = make_rings(cells, focus)
         self.angles, self.rotates = angles, rotates
         theta = (np.arange(angles) + 0.5) * np.pi / angles
@@ -194,104 +212,56 @@ class PolarContact:
         self.forward_position = np.sin(theta)[:, None] * self.rings.radius
         self.bound = self.rings.bound
         self.weight = self.rings.area / angles
-        self.operator, self.compliance = _operator(cells, angles, rotates, poisson, focus)
+        key = (cells, angles, rotates, poisson, focus)
+        self.influence, self.inverse, self.compliance = _prepared(*key)
         self.penalty = PENALTY * self.compliance
-        self.inverse = _inverse(cells, angles, rotates, poisson, focus)
 
     def displacement(self, state):
         """A q; shapes (2, angles, cells)."""
-        flat = np.ascontiguousarray(state).reshape(2 * self.angles, -1)
-        return apply_blocks(*self.operator, flat).reshape(state.shape)
+        folded = np.empty((4, self.angles // 2, state.shape[2]))
+        image, out = np.empty_like(folded), np.empty(state.shape)
+        fold(np.ascontiguousarray(state), folded)
+        apply_sectors(self.influence, folded, image)
+        unfold(image, out)
+        return out
 
     def mirrored(self, state):
         """theta -> pi - theta, lateral traction negated."""
         return state[:, ::-1, :] * np.array([1.0, -1.0])[:, None, None]
 
-    def march(self, path, state, tolerance, sensitivity=False):
+    def march(self, path, state, tolerance, sensitivity=False, previous=None):
         """March along ``path``; see models.contact.Contact."""
         forces = np.zeros((path.steps + 1, 3))
+        if previous is None:
+            stages = np.empty((2, *path.stages.shape[:2], *state.shape))
+        else:
+            stages = previous.stages.copy()
         state, residual, iterations = _march(
-            self.operator,
+            self.influence,
             self.inverse,
             self.penalty,
             self.bound,
             self.weight,
-            self.compliance,
             (self.forward_position, self.lateral_position),
             path.start,
             path.stages,
             path.carry,
             np.ascontiguousarray(state),
             tolerance,
+            previous is not None,
+            stages[0],
+            stages[1],
             forces,
         )
         # the half disc that is not resolved cancels what symmetry forbids
         forces[:, contact.LATERAL if self.rotates else contact.TORQUE] = 0.0
         solves = path.stages.shape[0] * path.stages.shape[1]
-        return contact.March(state, forces, residual, iterations, solves)
-
-
-def _coefficients(angles, rotates):
-    """Real unknowns of the modes: (m, part), part 0 real, 1 imaginary, 2 the last sine (m = M)."""
-    if rotates:
-        return [(m, 0) for m in range(1 - angles, angles)] + [(angles, 2)]
-    first = -(angles // 2) + (1 - angles % 2)
-    return [(2 * k, part) for k in range(first, first + angles) for part in (0, 1)]
-
-
-def _synthesis(angles, coefficients):
-    """Points from coefficients, (2 M, 2 M): rows forward tractions, then lateral ones."""
-    theta = (np.arange(angles) + 0.5) * np.pi / angles
-    out = np.empty((2 * angles, 2 * angles))
-    for k, (m, part) in enumerate(coefficients):
-        # Q = forward - i lateral turns with the mode angle; its parts are the two rows
-        wave = 1j * np.sin(m * theta) if part == 2 else np.exp(1j * m * theta) * (1, 1j)[part]
-        out[:angles, k], out[angles:, k] = wave.real, -wave.imag
-    return out
+        return contact.March(state, forces, residual, iterations, solves, stages=stages)
 
 
 @lru_cache(maxsize=32)
-def _operator(cells, angles, rotates, poisson, focus):
-    """Mode transforms and influence blocks, and the self-influence of each ring (diagonal)."""
-    coefficients = _coefficients(angles, rotates)
-    index = {key: k for k, key in enumerate(coefficients)}
-    kappa = poisson / (2.0 - poisson)
-    rings = make_rings(cells, focus)
-    n_modes = max(abs(m) for m, _ in coefficients) + 1
-    near, far = ring_influence(rings.psi, n_modes, poisson > 0.0)
-    ratio = rings.area[:, None] / rings.area[None, :]  # the transpose in the area-weighted product
-    members, blocks = [], []
-    for k, (m, part) in enumerate(coefficients):
-        partner = index.get((2 - m, part)) if poisson > 0.0 and part < 2 else None
-        sign = -kappa if part == 0 else kappa
-        if partner is None:
-            members.append((k, -1))
-            blocks.append(near[abs(m)])
-        elif partner == k:
-            members.append((k, -1))
-            blocks.append(near[1] + 0.5 * sign * (far[0] + far[0].T * ratio.T))
-        elif m > 2 - m:
-            members.append((k, partner))
-            cross = sign * far[m - 1]
-            blocks.append(np.block([[near[m], cross], [cross.T * ratio.T, near[abs(2 - m)]]]))
-    size = max(len(block) for block in blocks)
-    packed = np.zeros((len(blocks), size, size))
-    for k, block in enumerate(blocks):
-        packed[k, : len(block), : len(block)] = block.T
-    to_points = _synthesis(angles, coefficients)
-    to_modes = np.linalg.inv(to_points)
-    operator = (to_modes, to_points, np.array(members), packed)
-    return operator, np.ascontiguousarray(np.diag(near[0]))
-
-
-@lru_cache(maxsize=32)
-def _inverse(cells, angles, rotates, poisson, focus):
-    """Blocks of (A + penalty)^-1, packed as in _operator."""
-    (_, _, members, blocks), compliance = _operator(cells, angles, rotates, poisson, focus)
-    out = np.zeros_like(blocks)
-    for k, (_, second) in enumerate(members):
-        n = cells if second < 0 else 2 * cells
-        penalty = np.tile(PENALTY * compliance, n // cells)
-        # the blocks are stored transposed, and so is their inverse
-        out[k, :n, :n] = np.linalg.inv(blocks[k, :n, :n] + np.diag(penalty))
-    return out
+def _prepared(cells, angles, rotates, poisson, focus):
+    """The operator, (A + penalty)^-1, and the self-influence of each ring."""
+    operator, compliance = influence_sectors(cells, angles, rotates, poisson, focus)
+    inverse = shifted_inverse(operator, PENALTY * compliance)
+    return quickest(operator), quickest(inverse), compliance

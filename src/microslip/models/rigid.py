@@ -43,7 +43,7 @@ class RigidContact:
         """theta -> pi - theta, lateral traction negated."""
         return state[:, ::-1, :] * np.array([1.0, -1.0])[:, None, None]
 
-    def march(self, path, state, tolerance, sensitivity=False):
+    def march(self, path, state, tolerance, sensitivity=False, previous=None):
         """Forces of full slip along the velocity at each phase of the path."""
         velocity = np.gradient(path.positions(), path.phase, axis=0, edge_order=2)
         forces = np.empty((path.steps + 1, 3))
