@@ -1,0 +1,164 @@
+"""Steps and marches on rings: against another solver, finite differences, and earlier results."""
+
+import numpy as np
+import pytest
+
+from microslip.friction import coulomb_residual, project
+from microslip.models.contact import energy_norm
+from microslip.models.radial import RadialContact
+from microslip.models.slider import slider_contact
+from microslip.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.scenes import TRANSVERSE
+from microslip.simulate import forward_slip
+
+# Friction of ``exponential_contact`` after six half periods from forward slip, from a solver in
+# complex numbers, Gauss-Seidel and dense Newton, that has no line in common with this one
+KNOWN = [
+    (4, 12, 0.005, 0.5, 0.3443567651),
+    (8, 16, 0.005, 0.5, 0.3207923574),
+    (12, 12, 0.0001, 0.9, 0.0005847364),
+    (10, 12, 0.1, 0.1, 0.9928784007),
+    (16, 16, 0.1, 1.5, 0.1959517441),
+    (8, 24, 1, 0.5, 0.9621146413),
+    (9, 12, 1, 5, 0.4176065584),
+    (32, 24, 0.01, 0.7, 0.0947968418),
+]
+"""(rings, steps, velocity, amplitude, mean forward force in the last half period)"""
+
+
+def half_period(velocity, amplitude, steps, integrator=SDIRK2):
+    def displacement(phase):
+        return TRANSVERSE.displacement(phase, velocity, amplitude, 0.0)
+
+    return make_path(displacement, half_period_phases(steps), integrator)
+
+
+def plain_half_period(velocity, amplitude, steps):
+    """... in equal steps of time."""
+    phase = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
+    return make_path(lambda t: TRANSVERSE.displacement(t, velocity, amplitude, 0.0), phase)
+
+
+def exponential_contact(cells):
+    """Rings with a made-up influence that nothing else in the package has a say in."""
+    edges = np.sin(np.linspace(0.0, np.pi / 2, cells + 1))
+    radius, weight = 0.5 * (edges[1:] + edges[:-1]), np.pi * np.diff(edges**2)
+    kernel = 0.8 * np.exp(-2.0 * np.abs(radius[:, None] - radius))
+    return RadialContact(kernel * weight, 1.5 / np.pi * np.sqrt(1.0 - radius**2), weight)
+
+
+def one_step(motion):
+    """A single Euler step through a displacement (forward, lateral)."""
+    forward, lateral = motion
+    return make_path(lambda t: (forward * t, lateral * t, 0.0 * t), np.array([0.0, 1.0]), EULER)
+
+
+def some_state(contact, seed, share=1.0):
+    q = np.random.default_rng(seed).normal(size=(2, 1, len(contact.bound)))
+    return share * project(q * contact.bound, contact.bound)
+
+
+def gauss_seidel(contact, imposed, q):
+    """Reference: one ring at a time, until nothing changes."""
+    influence, bound = contact.influence, contact.bound
+    slip = imposed - q @ influence.T
+    for _ in range(100_000):
+        most = 0.0
+        for i in range(len(bound)):
+            new = project(q[:, i] + slip[:, i] / influence[i, i], bound[i])
+            change = new - q[:, i]
+            q[:, i] = new
+            slip -= np.outer(change, influence[:, i])
+            most = max(most, np.abs(change).max() / bound[i])
+        if most < 1e-13:
+            return q
+    raise AssertionError("the reference did not converge")
+
+
+@pytest.mark.parametrize("size", [0.02, 0.3, 1.0, 3.0])
+@pytest.mark.parametrize(("cells", "focus"), [(2, None), (7, 0.4), (12, 0.8)])
+def test_step_is_that_of_gauss_seidel(cells, focus, size):
+    contact = RadialContact.resolved(cells, focus)
+    before = some_state(contact, cells)
+    motion = size * np.array([np.cos(cells), np.sin(cells)])
+    march = contact.march(one_step(motion), before, 1e-13)
+    imposed = before[:, 0] @ contact.influence.T + motion[:, None]
+    expected = gauss_seidel(contact, imposed, np.zeros_like(before[:, 0]))
+    assert march.state[:, 0] / contact.bound == pytest.approx(expected / contact.bound, abs=1e-9)
+
+
+@pytest.mark.parametrize("cells", [1, 5, 16, 48])
+def test_every_stage_obeys_coulomb_to_the_tolerance(cells):
+    contact = RadialContact.resolved(cells, 0.7) if cells > 1 else slider_contact()
+    for tolerance in (1e-4, 1e-8, 1e-12):
+        path = half_period(0.05, 0.8, 10, EULER)
+        march = contact.march(path, some_state(contact, 1), tolerance)
+        assert march.residual <= march.solves * tolerance
+        bound = contact.bound
+        assert (np.hypot(*np.moveaxis(march.stages, 1, 0)) <= bound * (1 + 1e-14)).all()
+        moves = np.diff(path.positions()[:, :2], axis=0)
+        for before, after, move in zip(march.stages, march.stages[1:], moves, strict=False):
+            slip = move[:, None] - (after - before) @ contact.influence.T
+            left = coulomb_residual(
+                after[:, None], slip[:, None], bound, contact.weight, contact.compliance
+            )
+            assert left <= 1.01 * tolerance + 1e-14
+
+
+@pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
+@pytest.mark.parametrize(
+    ("cells", "steps", "velocity", "amplitude"),
+    [
+        (1, 12, 0.1, 0.7),
+        (4, 6, 0.3, 0.8),
+        (8, 12, 0.005, 0.5),
+        (9, 12, 1.0, 0.3),
+        (13, 9, 0.1, 4.0),
+    ],
+)
+def test_sensitivity_is_that_of_finite_differences(cells, steps, velocity, amplitude, integrator):
+    contact = RadialContact.resolved(cells, 0.7) if cells > 1 else slider_contact()
+    path = half_period(velocity, amplitude, steps, integrator)
+    state = some_state(contact, 7, 0.9)
+    for seed in range(2):  # the second start is one that a march has left behind
+        march = contact.march(path, state, 1e-14, sensitivity=True)
+        change = 1e-6 * some_state(contact, seed)
+        ends = [contact.march(path, state + s * change, 1e-14).state for s in (1.0, -1.0)]
+        expected = 0.5 * (ends[0] - ends[1])
+        found = (march.sensitivity @ change.ravel()).reshape(change.shape)
+        assert energy_norm(contact, found - expected) < 1e-4 * energy_norm(contact, change)
+        assert energy_norm(contact, expected) > 1e-6 * energy_norm(contact, change)
+        state = 0.97 * contact.mirrored(march.state)
+
+
+def test_another_march_as_first_guess_changes_the_effort_only():
+    contact, tolerance = RadialContact.resolved(12, 0.7), 1e-12
+    path = half_period(0.02, 0.5, 16)
+    start = contact.march(path, forward_slip(contact), tolerance).state
+    near = contact.march(path, 0.999 * start, tolerance)
+    alone = contact.march(path, start, tolerance, sensitivity=True)
+    for previous in (near, alone):
+        led = contact.march(path, start, tolerance, sensitivity=True, previous=previous)
+        assert led.iterations < alone.iterations
+        assert energy_norm(contact, led.state - alone.state) < 1e-9
+        assert led.sensitivity == pytest.approx(alone.sensitivity, abs=1e-7)
+    other = contact.march(half_period(0.02, 0.5, 12), start, tolerance)  # of no use here
+    assert np.array_equal(contact.march(path, start, tolerance, previous=other).state, alone.state)
+
+
+def test_equal_inputs_give_equal_bits():
+    contact, path = RadialContact.resolved(10, 0.7), half_period(0.01, 0.5, 12)
+    marches = [contact.march(path, forward_slip(contact), 1e-8, sensitivity=True) for _ in range(2)]
+    for name in ("state", "forces", "sensitivity", "stages"):
+        assert np.array_equal(*(getattr(march, name) for march in marches))
+
+
+@pytest.mark.parametrize(("cells", "steps", "velocity", "amplitude", "mu"), KNOWN)
+def test_friction_is_what_it_was(cells, steps, velocity, amplitude, mu):
+    contact = exponential_contact(cells)
+    path = plain_half_period(velocity, amplitude, steps)
+    state, march = forward_slip(contact), None
+    for _ in range(6):
+        march = contact.march(path, state, 1e-10, previous=march)
+        state = contact.mirrored(march.state)
+    assert path.mean(march.forces[:, 0]) == pytest.approx(mu, abs=1e-8)
