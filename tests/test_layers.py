@@ -12,12 +12,13 @@ PACKAGE = Path(microslip.__file__).parent
 # From the ground up; modules on one line do not know each other.
 LAYERS = [
     {"hertz"},
-    {"theory", "halfspace", "friction", "path"},
+    {"theory", "bounds", "halfspace", "friction", "path"},
     {"rings", "scenes"},
     {"models"},
     {"static", "periodic"},
     {"simulate"},
     {"accuracy"},
+    {"choice"},
     {"point"},
     {"inside"},
     {"keys", "schemas"},

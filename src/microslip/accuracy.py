@@ -1,46 +1,52 @@
 """How fine is fine enough: resolutions chosen by the tolerance, errors estimated from the runs.
 
-Each refinable axis (cells, angles, steps) has a chain of runs of its own, refined from a common
-base, so that what an axis contributes is seen by itself and nothing has to be run fine in all of
-them at once.  The answer is the base value plus the correction of every chain.  Where corrections
-do not add up (time scatter in the differences of other chains, mixed difference of cells and
-angles) that counts as error too, and if it is the largest one the base itself is refined.
+Each refinable axis (cells, angles, steps) has a chain of runs of its own, coarser and finer than a
+common base, so that what an axis contributes is seen by itself and nothing has to be run fine in
+all of them at once.  The answer is the base value plus the correction of every chain.  Where
+corrections do not add up (time scatter in the differences of other chains, mixed difference of
+cells and angles) that counts as error too, and if it is the largest one the base itself is refined.
 
-- cells, doubled: the error falls smoothly with the second power, so the last difference is
-  extrapolated by a third; 0.6 of it stays as the error, which covers any order above 1.05, or 0.35
-  where the last two differences show an order between 1.3 and 2.7.
-- angles, grown likewise in smaller steps: the error falls fast but irregularly.
-- steps, grown by 4/3 and 3/2 in turn: the error scatters about its second-power trend, since a
-  ring starts to slip somewhere within a step; so the spread of the last three runs is the error and
-  nothing is extrapolated.
+- cells: the error falls smoothly with about the second power, so the last difference is
+  extrapolated; half of that extrapolation stays as error, and half of the change that the last run
+  made to the extrapolated value.
+- angles: the error falls fast but irregularly, so the spread of the last three runs is the error.
+- steps: the error scatters about its trend, since a ring starts to slip somewhere within a step; so
+  the spread of the last three runs is the error here, too, and nothing is extrapolated.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-ERROR_SHARE = {"cells": 0.6, "angles": 1.0, "steps": 1.0}
-"""Error over the last difference (cells), over the spread of the last three (angles, steps)."""
-REGULAR = 0.35
-REGULAR_RATIOS = (2.5, 6.5)
-"""Error share of cells whose last two differences have a ratio within these bounds (4: order 2)."""
-EXTRAPOLATED_CELLS = 1.0 / 3.0
+EXTRAPOLATION_SHARE = 0.5
+CHANGE_SHARE = 0.5
+"""Errors of cells over the last extrapolation, and over the change of the extrapolated value."""
 RESOLVED = 0.02
 """Share of the tolerance below which no axis claims its error to be: nothing was run to see it."""
-COINCIDENCE = 1.0 / 6.0
-"""Share of the difference before the last that an error does not fall below: two runs that happen
-to agree prove little."""
 SCATTER = 0.5
-"""Share of the time error of the base that its scatter may reach."""
-MOST_REBASED = 5
-LEVELS = {
-    "cells": (0.5, 1, 2, 4, 8, 16, 32),
-    "angles": (0.5, 1, 1.5, 2, 3, 4, 6, 8, 12),
-    "steps": (2 / 3, 1, 4 / 3, 2, 8 / 3, 4, 16 / 3, 8, 32 / 3, 16, 64 / 3, 32),
-}
-"""Resolutions of each chain over the base."""
-FIRST_RUNS = {"cells": 3, "angles": 3, "steps": 3}
+"""Share of the correction in time that its scatter may do to the differences of other chains."""
+PERIODICITY_SAFETY = 2.0
+"""The distance from the periodic state is itself an estimate."""
+AIM = 0.85
+"""Share of the tolerance that the errors of the chains may fill."""
+MOST_REBASED = 6
 SOURCES = {"cells": "space", "angles": "space", "steps": "time"}
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One axis of refinement.
+
+    levels: resolutions, increasing; base: index of the one that the chains of other axes are run
+    at; first: indices of the runs to start with, three of them, the base among them.
+    imposed: the last level is what was asked for, and its error is only reported.
+    """
+
+    name: str
+    levels: tuple[int, ...]
+    base: int
+    first: tuple[int, ...]
+    imposed: bool = False
 
 
 @dataclass(frozen=True)
@@ -68,123 +74,146 @@ class Certified:
         return sum(self.errors.values())
 
 
-class _Chain:
-    """Runs along one axis.  imposed: the base is what was asked for; it is run, and its half."""
+class _Runs:
+    """Runs at (cells, angles, steps) given as indices into the levels of the axes, each run once."""
 
-    def __init__(self, at, base, axis, imposed):
-        self.at, self.base, self.axis, self.imposed = at, base, axis, imposed
-        levels = (0.5, 1) if imposed else LEVELS[axis]
-        values = [max(round(level * getattr(base, axis)), 2) for level in levels]
-        self.resolutions = [replace(base, **{axis: value}) for value in values]
-        self.runs = [at(r) for r in self.resolutions[: 2 if imposed else FIRST_RUNS[axis]]]
+    def __init__(self, run, coarsest, axes):
+        self.run, self.coarsest, self.axes = run, coarsest, {axis.name: axis for axis in axes}
+        self.base = {axis.name: axis.base for axis in axes}
+        self.done = {}
+
+    def resolution(self, **indices):
+        """The base with some indices replaced, as a simulate.Resolution."""
+        at = self.base | indices
+        levels = {name: self.axes[name].levels[index] for name, index in at.items()}
+        return replace(self.coarsest, **levels)
+
+    def __call__(self, **indices):
+        resolution = self.resolution(**indices)
+        if resolution not in self.done:
+            guess = self.done.get(self.resolution())
+            self.done[resolution] = self.run(resolution, guess)
+        return self.done[resolution]
+
+
+class _Chain:
+    """Runs along one axis, the others at the base."""
+
+    def __init__(self, runs, axis):
+        self.runs, self.axis = runs, axis
+        shift = runs.base[axis.name] - axis.base
+        self.indices = [index + shift for index in axis.first]
 
     @property
-    def finest(self):
-        return getattr(self.resolutions[len(self.runs) - 1], self.axis)
+    def levels(self):
+        return [self.axis.levels[index] for index in self.indices]
+
+    def values(self, name):
+        return [getattr(self.runs(**{self.axis.name: index}), name) for index in self.indices]
 
     def refine(self):
         """One more run; False if there is no finer level."""
-        if self.imposed or len(self.runs) == len(self.resolutions):
+        if self.indices[-1] + 1 == len(self.axis.levels):
             return False
-        self.runs.append(self.at(self.resolutions[len(self.runs)]))
+        self.indices.append(self.indices[-1] + 1)
         return True
 
     def correction(self, name):
         """What the chain adds to the value at the base."""
-        values = [getattr(run, name) for run in self.runs]
-        added = values[-1] - getattr(self.at(self.base), name)
-        if self.axis == "cells" and not self.imposed:
-            added += EXTRAPOLATED_CELLS * (values[-1] - values[-2])
+        values = self.values(name)
+        added = values[-1] - getattr(self.runs(), name)
+        if self.axis.name == "cells" and not self.axis.imposed:
+            added += _extrapolation(values, self.levels)
         return added
 
     def error(self, name):
         """Estimated error after the correction."""
-        values = [getattr(run, name) for run in self.runs]
-        if self.imposed:
-            return abs(values[1] - values[0])
-        if self.axis != "cells":
-            return ERROR_SHARE[self.axis] * (max(values[-3:]) - min(values[-3:]))
-        before, last = (values[-2] - values[-3], values[-1] - values[-2])
-        low, high = REGULAR_RATIOS
-        if low * abs(last) <= abs(before) <= high * abs(last) and before * last > 0.0:
-            return REGULAR * abs(last)
-        return ERROR_SHARE["cells"] * max(abs(last), COINCIDENCE * abs(before))
+        values, levels = self.values(name), self.levels
+        if self.axis.imposed:
+            return abs(values[-1] - values[-2])
+        if self.axis.name != "cells":
+            return max(values[-3:]) - min(values[-3:])
+        beyond = _extrapolation(values, levels)
+        before = _extrapolation(values[:-1], levels[:-1])
+        change = values[-1] + beyond - values[-2] - before
+        return EXTRAPOLATION_SHARE * abs(beyond) + CHANGE_SHARE * abs(change)
 
 
-def _scatter(chains):
-    """What the time steps of the base may do to the differences of the other chains.
-
-    Their runs share the steps of the base, and the part of its time error that scatters from run to
-    run does not cancel.
-    """
-    if "steps" not in chains or len(chains) == 1:
-        return 0.0
-    return SCATTER * abs(chains["steps"].correction("mu"))
+def _extrapolation(values, levels):
+    """What second-order convergence would still add to the last of the values."""
+    return (values[-1] - values[-2]) / ((levels[-1] / levels[-2]) ** 2 - 1.0)
 
 
-def _mixed(chains, base, at, imposed):
+def _mixed(runs, chains):
     """How far the corrections along cells and angles fail to add up: their mixed difference."""
-    if not {"cells", "angles"} <= chains.keys() or "cells" in imposed:
+    if not {"cells", "angles"} <= chains.keys() or chains["cells"].axis.imposed:
         return 0.0
-    cells, angles = (chains[axis].resolutions[2] for axis in ("cells", "angles"))
-    both = at(replace(base, cells=cells.cells, angles=angles.angles))
-    return abs(both.mu - at(cells).mu - at(angles).mu + at(base).mu)
+    beside = {}
+    for name in ("cells", "angles"):
+        base = runs.base[name]
+        beside[name] = base + 1 if base + 1 in chains[name].indices else base - 1
+    one, other = ({name: index} for name, index in beside.items())
+    return abs(runs(**beside).mu - runs(**one).mu - runs(**other).mu + runs().mu)
 
 
-def certify(run, base, axes, tolerance, imposed=()):
+def certify(run, coarsest, axes, tolerance):
     """Refine until the estimated error is within ``tolerance``.
 
-    run(resolution, guess) -> simulate.Run (guess: the run at the base, or None); base:
-    simulate.Resolution; axes: names that can be refined;
-    imposed: those whose resolution the caller fixed, so that their error is only reported.
+    run(resolution, guess) -> simulate.Run (guess: the run at the base, or None); coarsest:
+    simulate.Resolution, for what is not refined; axes: the Axis to be refined.
     Returns a Certified; converged is False, with the reason, where a run did not converge or the
     estimate over a free axis stays too large.
     """
-    cache = {}
-
-    def at(resolution):
-        if resolution not in cache:
-            cache[resolution] = run(resolution, cache.get(base))
-        return cache[resolution]
-
-    def start_chains():
-        at(base)
-        return {axis: _Chain(at, base, axis, axis in imposed) for axis in axes}
-
-    chains = start_chains()
+    runs = _Runs(run, coarsest, axes)
+    chains = {axis.name: _Chain(runs, axis) for axis in axes}
     rebased = 0
     while True:
-        reason = next((r.reason for r in cache.values() if not r.converged), "")
-        left = {axis: chain.error("mu") for axis, chain in chains.items() if axis not in imposed}
-        hidden = {"steps": _scatter(chains), "angles": _mixed(chains, base, at, imposed)}
-        if reason or sum(left.values()) + sum(hidden.values()) <= 0.9 * tolerance:
+        left = {name: c.error("mu") for name, c in chains.items() if not c.axis.imposed}
+        hidden = {"steps": 0.0, "angles": _mixed(runs, chains)}
+        if "steps" in chains and len(chains) > 1:
+            hidden["steps"] = SCATTER * abs(chains["steps"].correction("mu"))
+        runs()  # the base, where there is nothing to refine
+        reason = next((r.reason for r in runs.done.values() if not r.converged), "")
+        if reason or sum(left.values()) + sum(hidden.values()) <= AIM * tolerance:
             break
-        worst = max(left, key=left.get, default="steps")
+        worst = max(left, key=left.get, default=None)
         cause = max(hidden, key=hidden.get)
-        if hidden[cause] > left.get(worst, 0.0) and cause not in imposed and rebased < MOST_REBASED:
-            base = replace(base, **{cause: 2 * getattr(base, cause)})
-            chains, rebased = start_chains(), rebased + 1
-        elif not left:
+        if hidden[cause] > left.get(worst, 0.0) and _can_rebase(chains, cause, rebased):
+            runs.base[cause] += 1
+            chains, rebased = {axis.name: _Chain(runs, axis) for axis in axes}, rebased + 1
+        elif worst is None:
             break
         elif not chains[worst].refine():
-            reason = f"the error over {worst} is still {left[worst]:.1e} at {chains[worst].finest}"
+            reason = f"the error over {worst} is still {left[worst]:.1e}"
+            reason += f" at {chains[worst].levels[-1]}"
             break
-    runs = list(cache.values())
-    start = cache[base]
+    return _summary(runs, chains, hidden, tolerance, reason)
+
+
+def _can_rebase(chains, cause, rebased):
+    if cause not in chains or chains[cause].axis.imposed or rebased == MOST_REBASED:
+        return False
+    axis, runs = chains[cause].axis, chains[cause].runs
+    return runs.base[cause] - axis.base + max(axis.first) + 1 < len(axis.levels)
+
+
+def _summary(runs, chains, hidden, tolerance, reason):
+    """The Certified of chains that are fine enough, or as fine as they get."""
+    done, start = list(runs.done.values()), runs()
     errors = {"space": hidden["angles"], "time": hidden["steps"]}
-    for axis, chain in chains.items():
-        errors[SOURCES[axis]] += max(chain.error("mu"), RESOLVED * tolerance)
-    errors["periodicity"] = float(max(r.distance for r in runs))
-    errors["solver"] = float(max(r.solver_residual for r in runs))
+    for name, chain in chains.items():
+        errors[SOURCES[name]] += max(chain.error("mu"), RESOLVED * tolerance)
+    errors["periodicity"] = PERIODICITY_SAFETY * float(max(r.distance for r in done))
+    errors["solver"] = float(max(r.solver_residual for r in done))
     return Certified(
         mu=start.mu + sum(chain.correction("mu") for chain in chains.values()),
         torque=start.torque + sum(chain.correction("torque") for chain in chains.values()),
         errors=errors,
         torque_error=sum(chain.error("torque") for chain in chains.values()),
-        finest=replace(base, **{axis: chain.finest for axis, chain in chains.items()}),
-        periods=max(r.periods for r in runs),
-        iterations=sum(r.iterations for r in runs),
-        work=sum(r.work for r in runs),
+        finest=runs.resolution(**{name: chain.indices[-1] for name, chain in chains.items()}),
+        periods=max(r.periods for r in done),
+        iterations=sum(r.iterations for r in done),
+        work=sum(r.work for r in done),
         converged=not reason,
         reason=reason,
     )

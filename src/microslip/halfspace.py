@@ -23,13 +23,15 @@ from numba import njit
 
 from microslip.hertz import G_STAR
 
-JIT = {"cache": True, "nogil": True, "fastmath": False}
+JIT = {"cache": True, "nogil": True, "error_model": "numpy"}
 
 # Gauss points of the outer (averaging) and the inner (singular) ring integral, and the power that
 # clusters the inner points at the nearest approach, where the kernels have a logarithm.
 OUTER_POINTS = 8
 INNER_POINTS = 12
 CLUSTER_POWER = 4
+APART_POINTS = 5
+"""Gauss points on each of two rings with at least a ring's width between them."""
 
 
 @njit(**JIT)
@@ -112,27 +114,42 @@ def coupling_kernels(r, s, toroidal, out):
 
 
 @njit(**JIT)
-def _ring_pair_sums(edges_i, edges_j, n_modes, coupled, outer, inner, hertz, near, far):
-    """Add up the kernels over ring i (outer rule) and ring j (inner rule); angles psi, r = sin psi.
+def _kernels(r, s, n_modes, coupled, torus, pair):
+    """Fill torus[m] = G_m and, if coupled, pair[j] = C_{j+1}; returns torus (enlarged if needed)."""
+    top = n_modes
+    if coupled:
+        top = n_modes + 2
+        ratio = abs(np.log(s / r))
+        if s > r and (n_modes + 1) * ratio >= 2.0:
+            top = n_modes + 2 + int(36.0 / ratio)
+        if top > len(torus):
+            torus = np.empty(top)
+    view = torus[:top]
+    toroidal_kernels(r, s, view)
+    if coupled:
+        coupling_kernels(r, s, view, pair)
+    return torus
 
-    Returns nothing; near[m] and far[m] receive the averages of G_m and C_{m+1} weighted with the
-    ring shapes (normalised to unit weight Integral shape r dr = 1 on each ring).
+
+@njit(**JIT)
+def _close_pair(edges_i, edges_j, n_modes, coupled, outer, inner, hertz, near, far):
+    """Average the kernels over ring i (outer rule) and ring j (inner rule); angles psi, r = sin psi.
+
+    Adds to near[m] and far[m] the averages of G_m and C_{m+1} weighted with the ring shapes
+    (normalised to unit weight Integral shape r dr = 1 on each ring).
     """
     x_out, w_out = outer
     x_in, w_in = inner
     a0, a1 = edges_i
     b0, b1 = edges_j
-    gap_top = n_modes + 2
     norm_i = 0.0
     for p in range(len(x_out)):
         psi = a0 + (a1 - a0) * x_out[p]
         norm_i += (a1 - a0) * w_out[p] * _weight(psi, hertz)
     norm_j = _weight_integral(b0, b1, hertz)
-    torus = np.empty(gap_top)
-    pair = np.empty(n_modes)
+    torus, pair = np.empty(n_modes + 2), np.empty(n_modes)
     for p in range(len(x_out)):
         psi = a0 + (a1 - a0) * x_out[p]
-        r = np.sin(psi)
         weight_out = (a1 - a0) * w_out[p] * _weight(psi, hertz) / norm_i
         # the inner panel is cut at the point of nearest approach
         cut = min(max(psi, b0), b1)
@@ -143,26 +160,38 @@ def _ring_pair_sums(edges_i, edges_j, n_modes, coupled, outer, inner, hertz, nea
                 continue
             for q in range(len(x_in)):
                 chi = cut + length * x_in[q]
-                s = np.sin(chi)
                 w = weight_out * abs(length) * w_in[q] * _weight(chi, hertz) / norm_j
-                if coupled:
-                    ratio = abs(np.log(s / r))
-                    top = n_modes + 2
-                    if s > r and (n_modes + 1) * ratio >= 2.0:
-                        top = n_modes + 2 + int(36.0 / ratio)
-                    if top > len(torus):
-                        torus = np.empty(top)
-                    view = torus[:top]
-                    toroidal_kernels(r, s, view)
-                    coupling_kernels(r, s, view, pair)
-                    for m in range(n_modes):
-                        near[m] += w * view[m]
+                torus = _kernels(np.sin(psi), np.sin(chi), n_modes, coupled, torus, pair)
+                for m in range(n_modes):
+                    near[m] += w * torus[m]
+                    if coupled:
                         far[m] += w * pair[m]
-                else:
-                    view = torus[:n_modes]
-                    toroidal_kernels(r, s, view)
-                    for m in range(n_modes):
-                        near[m] += w * view[m]
+
+
+@njit(**JIT)
+def _pair_apart(edges_i, edges_j, n_modes, coupled, rule, hertz, near, far, far_back):
+    """As ``_close_pair`` for rings with a gap between them, both ways at once (far_back: C with
+    the rings exchanged): the kernels are smooth there."""
+    x, w = rule
+    a0, a1 = edges_i
+    b0, b1 = edges_j
+    norm = _weight_integral(a0, a1, hertz) * _weight_integral(b0, b1, hertz)
+    torus, pair = np.empty(n_modes + 2), np.empty(n_modes)
+    for p in range(len(x)):
+        psi = a0 + (a1 - a0) * x[p]
+        weight_out = (a1 - a0) * w[p] * _weight(psi, hertz) / norm
+        for q in range(len(x)):
+            chi = b0 + (b1 - b0) * x[q]
+            weight = weight_out * (b1 - b0) * w[q] * _weight(chi, hertz)
+            torus = _kernels(np.sin(psi), np.sin(chi), n_modes, coupled, torus, pair)
+            for m in range(n_modes):
+                near[m] += weight * torus[m]
+                if coupled:
+                    far[m] += weight * pair[m]
+            if coupled:
+                torus = _kernels(np.sin(chi), np.sin(psi), n_modes, coupled, torus, pair)
+                for m in range(n_modes):
+                    far_back[m] += weight * pair[m]
 
 
 @njit(**JIT)
@@ -182,21 +211,33 @@ def _weight_integral(b0, b1, hertz):
 
 
 @njit(**JIT)
-def _all_pairs(psi, n_modes, coupled, outer, inner, hertz, near, far):
+def _all_pairs(psi, n_modes, coupled, outer, inner, apart, hertz, near, far):
     n = len(psi) - 1
     for i in range(n):
-        for j in range(n):
-            _ring_pair_sums(
-                (psi[i], psi[i + 1]),
-                (psi[j], psi[j + 1]),
-                n_modes,
-                coupled,
-                outer,
-                inner,
-                hertz,
-                near[:, i, j],
-                far[:, i, j],
+        for j in range(i + 1):
+            one, other = (psi[i], psi[i + 1]), (psi[j], psi[j + 1])
+            gap = psi[i] - psi[j + 1]
+            if gap >= 0.999 * max(psi[i + 1] - psi[i], psi[j + 1] - psi[j]):
+                _pair_apart(
+                    one,
+                    other,
+                    n_modes,
+                    coupled,
+                    apart,
+                    hertz,
+                    near[:, i, j],
+                    far[:, i, j],
+                    far[:, j, i],
+                )
+                near[:, j, i] = near[:, i, j]
+                continue
+            _close_pair(
+                one, other, n_modes, coupled, outer, inner, hertz, near[:, i, j], far[:, i, j]
             )
+            if i != j:
+                _close_pair(
+                    other, one, n_modes, coupled, outer, inner, hertz, near[:, j, i], far[:, j, i]
+                )
 
 
 def _unit_gauss(n, power):
@@ -230,7 +271,8 @@ def ring_influence(psi, n_modes, coupled, hertz=True):
     far = np.zeros((n_modes, n, n))
     outer = _smooth_ends_gauss(OUTER_POINTS)
     inner = _unit_gauss(INNER_POINTS, CLUSTER_POWER)
-    _all_pairs(psi, n_modes, bool(coupled), outer, inner, bool(hertz), near, far)
+    apart = _unit_gauss(APART_POINTS, 1)
+    _all_pairs(psi, n_modes, bool(coupled), outer, inner, apart, bool(hertz), near, far)
     area = np.diff(np.sin(psi) ** 2) / 2.0  # Integral r dr of each ring
     scale = 2.0 / G_STAR * area[None, None, :]
     # the quadrature is not symmetric in its outer and inner variable; the operator is

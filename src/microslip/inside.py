@@ -10,7 +10,8 @@ from microslip import hertz
 from microslip.models import MODELS
 from microslip.models.contact import full_slip
 from microslip.path import make_path
-from microslip.point import checked_point, choose_model
+from microslip.choice import choose_model
+from microslip.point import checked_point
 from microslip.simulate import forward_slip, steady_state
 
 STARTS = ("stress-free", "full-slip", "full-rotation")

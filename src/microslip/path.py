@@ -42,8 +42,21 @@ SDIRK2 = Integrator("sdirk2", 2, (_GAMMA, 1.0), ((), ((1.0 - _GAMMA) / _GAMMA,))
 
 INTEGRATORS = {method.name: method for method in (EULER, SDIRK2)}
 
-TURNING_POINT_GRADING = 0.4
-"""Steps shrink to 1 - 0.4 of the mean at the turning points, where the direction turns fastest."""
+STRONGEST_GRADING = 0.8
+GRADED_CREEP = 0.02
+GRADED_STROKE = 2.0
+
+
+def turning_point_grading(creep, stroke):
+    """How much shorter steps are at the turning points than in the mean, 0 to 0.8 of it.
+
+    creep: forward displacement in a radian of phase; stroke: amplitude of the oscillation, both in
+    u_lim.  Where both are small, the forward slip of a whole half period happens next to the
+    turning points; where the stroke is long, the contact slides fully and forgets them soon.
+    """
+    slow = 1.0 / (1.0 + creep / GRADED_CREEP)
+    short = 1.0 / (1.0 + (stroke / GRADED_STROKE) ** 2)
+    return STRONGEST_GRADING * slow * short
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +96,7 @@ def make_path(displacement, phase, integrator=SDIRK2):
     return Path(phase, start, stages, integrator.carry_matrix())
 
 
-def half_period_phases(steps, grading=TURNING_POINT_GRADING):
+def half_period_phases(steps, grading=0.0):
     """Phases from one turning point (-pi/2) to the next, shape (steps + 1,), finer at both."""
     t = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
     return t + 0.5 * grading * np.sin(2 * t)

@@ -26,6 +26,10 @@ LOOSEST = 1e-4
 """While the state is still far from periodic, steps are solved to this share of what the last
 period changed, and to LOOSEST at first: more would be wasted on a start that is about to change."""
 ANDERSON_DEPTH = 12
+NOISE = 0.1
+"""Share of a period's change that its steps may leave unsolved."""
+FORGETFUL = 0.2
+"""Contraction of the plain map from the start on below which it is left alone."""
 NEWTON_STALL = 10
 """Newton corrections without a better state after which the search is given up."""
 
@@ -85,7 +89,7 @@ def find_periodic_state(
     state, best, march = start, None, None
     inner = step_tolerance if newton else max(step_tolerance, LOOSEST)
     iterations = solves = 0
-    distance = np.inf
+    forgets, last_residual = True, np.inf
     for period in range(1, max_periods + 1):
         use_newton = newton and period > PLAIN_PERIODS
         march = contact.march(path, state, inner, sensitivity=use_newton, previous=march)
@@ -97,12 +101,18 @@ def find_periodic_state(
         solved = inner <= step_tolerance
         if not newton:
             inner = max(step_tolerance, min(FORCING * residual, LOOSEST))
+            if not solved and march.residual > NOISE * residual:
+                continue  # what is left of the steps hides what the period changed
         if newton and not use_newton:
             proposal = image
         elif newton:
             proposal = accelerate(contact, march, state, change)
         else:
+            forgets = forgets and residual <= FORGETFUL * last_residual
             proposal = accelerate(state, image)
+            if forgets:
+                proposal = image
+        last_residual = residual
         proposal = project(proposal, contact.bound)
         distance = max(energy_norm(contact, proposal - state), residual)
         if pace is not None:

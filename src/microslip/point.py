@@ -8,23 +8,15 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from microslip import theory
 from microslip.accuracy import certify
-from microslip.models import MODELS
+from microslip.choice import ROUNDING, choose_model, closed_form, plan
 from microslip.scenes import scene_named
-from microslip.simulate import Resolution, simulate, simulate_static
+from microslip.simulate import simulate, simulate_static
 
-PERIODICITY_SHARE = 0.03
+PERIODICITY_SHARE = 0.05
 """Share of the tolerance that the distance from the periodic state may take."""
 SMALLEST_TOLERANCE = 1e-6
-COARSEST_STEPS = 24
-LONGEST_STROKE = 16.0
-"""Stroke in u_lim beyond which more steps are left to the estimate of the error."""
 CLOSED_FORM = "closed-form"
-STATIC_LIMITS = {
-    "transverse": theory.static_limit_transverse,  # nu = 0
-    "bore": theory.static_limit_bore,  # any nu: it only scales the angle
-}
 
 
 @dataclass(frozen=True)
@@ -102,17 +94,17 @@ def solve(
         "poisson": poisson,
         "tolerance": tolerance,
     }
-    exact = _closed_form(kind, velocity, amplitude, poisson) if model == "auto" else None
+    exact = None
+    if model == "auto":
+        exact = closed_form(kind, velocity, amplitude, poisson, tolerance)
+    elif kind.periodic and amplitude == 0.0:
+        exact = (1.0, None, ROUNDING)
+        point["model"] = name
     if exact is not None:
         return _exact_result(point, exact, time.perf_counter() - started)
-    if kind.periodic and amplitude == 0.0:
-        return _exact_result(point | {"model": name}, (1.0, None), time.perf_counter() - started)
-    base, axes, imposed = _plan(
-        kind, name, _stroke(kind, amplitude, poisson), tolerance, cells, steps
-    )
+    coarsest, axes = plan(kind, name, velocity, amplitude, poisson, tolerance, cells, steps)
+    imposed, names = any(axis.imposed for axis in axes), [axis.name for axis in axes]
     share = PERIODICITY_SHARE * tolerance
-    if velocity == 0.0:
-        axes = tuple(axis for axis in axes if axis != "steps")
 
     def run(resolution, guess):
         if progress is not None:
@@ -121,16 +113,16 @@ def solve(
             return simulate_static(kind, amplitude, poisson, name, resolution, share)
         return simulate(kind, velocity, amplitude, poisson, name, resolution, share, guess)
 
-    certified = certify(run, base, axes, tolerance, imposed)
+    certified = certify(run, coarsest, axes, tolerance)
     steady = not kind.periodic
-    within = certified.error <= tolerance or bool(imposed)
+    within = certified.error <= tolerance or imposed
     reason = certified.reason
     if certified.converged and not within:
         reason = f"estimated error {certified.error:.1e} above the tolerance"
     return Result(
         **point,
         model=name,
-        mu_macro=certified.mu if certified.converged else _or_nan(certified.mu),
+        mu_macro=min(certified.mu, 1.0) if math.isfinite(certified.mu) else math.nan,
         mu_macro_error=certified.error,
         **{f"error_{source}": error for source, error in certified.errors.items()},
         mu_torque=certified.torque if steady else None,
@@ -141,29 +133,12 @@ def solve(
         reason=reason,
         cells=certified.finest.cells,
         angles=certified.finest.angles,
-        steps_per_period=2 * certified.finest.steps if "steps" in axes else 0,
+        steps_per_period=2 * certified.finest.steps if "steps" in names else 0,
         periods=certified.periods,
         iterations=certified.iterations,
         work=certified.work,
         solve_time_s=time.perf_counter() - started,
     )
-
-
-def choose_model(scene, poisson, model="auto"):
-    """The model to use: the cheapest that is exact for the scene, or the one asked for.
-
-    Rings where the traction depends on the radius alone (translation at nu = 0), angular modes
-    otherwise: squares are never cheaper on a circular contact.  Raises ValueError for an unknown
-    model or one that does not apply.
-    """
-    if model == "auto":
-        return "polar" if scene.rotates or poisson > 0.0 else "radial"
-    if model not in MODELS:
-        raise ValueError(f"model = {model!r}: allowed is one of auto, {', '.join(MODELS)}")
-    refusal = MODELS[model].refuses(scene, poisson)
-    if refusal:
-        raise ValueError(f"model = {model!r}: does not apply to {scene.name}: {refusal}")
-    return model
 
 
 def checked_point(scene, velocity, amplitude, poisson):
@@ -204,74 +179,18 @@ def _count(name, value, low):
     return int(value)
 
 
-def _plan(scene, name, stroke, tolerance, cells, steps):
-    """Base resolution, axes to refine, and those among them that the caller imposed.
-
-    stroke: half the way that the edge of the contact oscillates, in u_lim.
-    """
-    model = MODELS[name]
-    angles = model.angles if _has_angles(scene, name) else 1
-    if angles > 1 and not scene.rotates:
-        angles //= 2  # only nu > 0 makes tractions depend on the angle, and only a little
-    # second order in time, and steps that stay short against u_lim where the stroke is long
-    base_steps = COARSEST_STEPS * max(1.0, (1e-3 / tolerance) ** 0.5)
-    base_steps *= min(max(1.0, stroke) ** 0.5, LONGEST_STROKE**0.5)
-    base = Resolution(
-        cells=model.cells if cells is None else cells,
-        angles=angles,
-        steps=3 * round(base_steps / 3) if steps is None else steps // 2,
-    )
-    axes = {
-        "cells": model.cells > 1 and (scene.rotates or name != "rigid"),
-        "angles": angles > 1,
-        "steps": scene.periodic,
-    }
-    imposed = {"cells": cells is not None, "steps": steps is not None}
-    return (
-        base,
-        tuple(axis for axis, there in axes.items() if there),
-        tuple(axis for axis, set_ in imposed.items() if set_ and axes[axis]),
-    )
-
-
-def _stroke(scene, amplitude, poisson):
-    """Half the way that the edge of the contact oscillates, in u_lim; 0 for steady scenes."""
-    if not scene.periodic:
-        return 0.0
-    motion = scene.displacement(np.array([-0.5, 0.5]) * np.pi, 0.0, amplitude, poisson)
-    return 0.5 * max(float(abs(np.diff(part)[0])) for part in motion)
-
-
-def _has_angles(scene, name):
-    return MODELS[name].angles > 1 and (name != "rigid" or scene.rotates)
-
-
-def _closed_form(scene, velocity, amplitude, poisson):
-    """(mu, torque) where nothing has to be computed, else None."""
-    if scene.periodic and amplitude == 0.0:
-        return 1.0, None
-    if velocity > 0.0:
-        return None
-    if not scene.periodic:
-        return 0.0, 1.0  # pure rotation
-    known = STATIC_LIMITS.get(scene.name)
-    if known is None or (poisson > 0.0 and not scene.rotates):
-        return None
-    return float(known(amplitude)), None
-
-
 def _exact_result(point, values, seconds):
-    mu, torque = values
+    mu, torque, error = values
     return Result(
         **{"model": CLOSED_FORM} | point,
         mu_macro=mu,
-        mu_macro_error=1e-12,
+        mu_macro_error=error,
         error_space=0.0,
         error_time=0.0,
         error_periodicity=0.0,
-        error_solver=1e-12,
+        error_solver=error,
         mu_torque=torque,
-        mu_torque_error=None if torque is None else 1e-12,
+        mu_torque_error=None if torque is None else error,
         converged=True,
         reason="",
         cells=0,
@@ -282,10 +201,6 @@ def _exact_result(point, values, seconds):
         work=0,
         solve_time_s=seconds,
     )
-
-
-def _or_nan(mu):
-    return mu if math.isfinite(mu) else math.nan
 
 
 def warm_up():

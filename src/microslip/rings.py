@@ -7,13 +7,19 @@ pressure falls like a square root.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from microslip import hertz
 
-FOCUS_STRENGTH = 0.6
-"""How strongly rings gather at the stick radius: their width there is 1 - 0.6 of the mean."""
+
+class Focus(NamedTuple):
+    """A radius that rings gather at: their width there is 1 - strength of the mean."""
+
+    radius: float
+    strength: float = 0.6
+
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,14 +37,15 @@ class Rings:
 
 
 def make_rings(count, focus=None):
-    """Rings for ``count`` unknown radii, refined around the radius ``focus`` (None: nowhere).
+    """Rings for ``count`` unknown radii, refined around ``focus`` (a Focus or just its radius;
+    None: nowhere).
 
     An edge lies on the focus exactly: the traction has a kink at the stick radius, and a ring that
     straddles it costs an order of accuracy.  Raises ValueError for count < 2 or focus outside 0..1.
     """
     if count < 2:
         raise ValueError(f"cells = {count}: allowed is a whole number of at least 2 rings")
-    psi = np.linspace(0.0, np.pi / 2, count + 1) if focus is None else _focused(count, focus)
+    psi = np.linspace(0.0, np.pi / 2, count + 1) if focus is None else _focused(count, _as_focus(focus))
     radii = np.sin(psi)
     # Integral of sin^2 cos^2 over each ring is the first moment of the bound
     moment = np.diff(psi / 8 - np.sin(4 * psi) / 32)
@@ -47,20 +54,26 @@ def make_rings(count, focus=None):
     return Rings(psi, area, hertz.ring_bounds(np.minimum(radii, 1.0)), moment / load)
 
 
+def _as_focus(focus):
+    focus = focus if isinstance(focus, Focus) else Focus(focus)
+    if not (0.0 <= focus.radius <= 1.0 and 0.0 <= focus.strength < 1.0):
+        raise ValueError(f"focus = {focus}: allowed is a radius in 0..1 and a strength in 0..1")
+    return focus
+
+
 def _focused(count, focus):
     """Edges in psi with one on the focus and widths that grow away from it on both sides."""
-    if not 0.0 <= focus <= 1.0:
-        raise ValueError(f"focus = {focus}: allowed is a radius in 0..1")
-    centre, edge = np.arcsin(focus), np.pi / 2
+    radius, strength = focus
+    centre, edge = np.arcsin(radius), np.pi / 2
     inside = int(round(count * centre / edge))
     inside = min(max(inside, count // 4, 1), count - max(count // 4, 1))
 
     def spread(t):
-        return (1 - FOCUS_STRENGTH) * t + FOCUS_STRENGTH * t * t
+        return (1 - strength) * t + strength * t * t
 
-    if focus in (0.0, 1.0):
+    if radius in (0.0, 1.0):
         t = np.linspace(0.0, 1.0, count + 1)
-        return edge * spread(t) if focus == 0.0 else edge * (1.0 - spread(1.0 - t))
+        return edge * spread(t) if radius == 0.0 else edge * (1.0 - spread(1.0 - t))
     inner = centre * (1.0 - spread(1.0 - np.linspace(0.0, 1.0, inside + 1)))
     outer = centre + (edge - centre) * spread(np.linspace(0.0, 1.0, count - inside + 1))
     psi = np.concatenate([inner, outer[1:]])

@@ -44,6 +44,18 @@ class Scene:
     velocity_label: str
     amplitude_label: str = ""
 
+    def creep(self, velocity, amplitude, poisson):
+        """Forward displacement in one radian of phase, in u_lim."""
+        forward, _, _ = self.displacement(np.array([0.0, 1.0]), velocity, amplitude, poisson)
+        return float(forward[1] - forward[0])
+
+    def stroke(self, amplitude, poisson):
+        """Half the way that the edge of the contact oscillates, in u_lim; 0 for steady scenes."""
+        if not self.periodic:
+            return 0.0
+        ends = self.displacement(np.array([-0.5, 0.5]) * np.pi, 0.0, amplitude, poisson)
+        return 0.5 * max(float(abs(part[1] - part[0])) for part in ends)
+
 
 def _transverse(phase, velocity, amplitude, poisson):
     """Eq 1 with Eqs 2 and 4: forward v~ t, lateral y~ sin t."""

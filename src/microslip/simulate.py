@@ -10,8 +10,9 @@ from microslip import hertz
 from microslip.friction import project
 from microslip.models import MODELS
 from microslip.models.contact import UNIT_STIFFNESS, energy_norm, full_slip
-from microslip.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.path import EULER, SDIRK2, half_period_phases, make_path, turning_point_grading
 from microslip.periodic import Pace, find_periodic_state
+from microslip.rings import Focus
 from microslip.static import STEPS, static_state
 
 STEP_SHARE = 1e-2
@@ -28,6 +29,11 @@ LARGEST_PUSH = 0.1
 """Forward traction added to the static limit's, as a share of the bound, for a start: it grows as
 the friction itself does with the creep in a radian, so that every point slips forward a little too
 much.  From there an accelerated search finds its way down; below, points would only drift."""
+
+WEAKEST_FOCUS, STRONGEST_FOCUS, FOCUS_STEP = 0.3, 0.9, 0.1
+"""Bounds of rings.Focus.strength.  Slip that is as small as the creep fills a layer around the
+stick radius whose width goes like creep^(2/3); with widths that grow from it quadratically, the
+square root of that is the right share of the mean width.  In steps, so that points share grids."""
 
 
 @dataclass(frozen=True, order=True)
@@ -70,21 +76,21 @@ def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance, 
     a hundred times tighter; guess: a Run of the same point with the same cells and angles, if any.
     Returns a Run; never raises for want of convergence.
     """
-    focus = scene.focus(velocity, amplitude)
-    contact = MODELS[model].build(scene, poisson, resolution.cells, resolution.angles, focus)
+    contact = _build(scene, velocity, amplitude, poisson, model, resolution)
 
     def displacement(phase):
         return scene.displacement(phase, velocity, amplitude, poisson)
 
     step_tolerance = STEP_SHARE * tolerance
     if scene.periodic:
-        creep = displacement(np.array([1.0]))[0][0] - displacement(np.array([0.0]))[0][0]
+        creep = scene.creep(velocity, amplitude, poisson)
         pace = UNIT_STIFFNESS * creep * np.pi
         step_tolerance = min(max(pace * STEP_SHARE, SLOW_STEP_SHARE), STEP_SHARE) * tolerance
     if not scene.periodic:
         return _steady_run(contact, displacement, velocity, tolerance, step_tolerance)
-    grading = {"grading": contact.grading} if hasattr(contact, "grading") else {}
-    path = make_path(displacement, half_period_phases(resolution.steps, **grading), SDIRK2)
+    grading = turning_point_grading(creep, scene.stroke(amplitude, poisson))
+    phases = half_period_phases(resolution.steps, getattr(contact, "grading", grading))
+    path = make_path(displacement, phases, SDIRK2)
     found = _search(contact, scene, displacement, path, tolerance, step_tolerance, guess)
     mean = path.mean(found.forces)
     solved = found.solver_residual <= found_limit(path, step_tolerance)
@@ -111,8 +117,7 @@ def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance, 
 def simulate_static(scene, amplitude, poisson, model, resolution, tolerance):
     """The limit of vanishing velocity at one resolution (see static.py): a Run, without a march in
     forward direction.  The rigid contact keeps no residual traction: 0."""
-    focus = scene.focus(0.0, amplitude)
-    contact = MODELS[model].build(scene, poisson, resolution.cells, resolution.angles, focus)
+    contact = _build(scene, 0.0, amplitude, poisson, model, resolution)
     force, solves = 0.0, 0
     if contact.has_memory:
         residual, _ = static_state(
@@ -134,6 +139,17 @@ def simulate_static(scene, amplitude, poisson, model, resolution, tolerance):
         converged=True,
         reason="",
     )
+
+
+def _build(scene, velocity, amplitude, poisson, model, resolution):
+    """The contact, its rings gathered where the slip starts: the closer, the slower the creep."""
+    radius = scene.focus(velocity, amplitude)
+    focus = radius
+    if radius is not None and scene.periodic:
+        layer = scene.creep(velocity, amplitude, poisson) ** (1.0 / 3.0)
+        strength = np.clip(1.0 - layer, WEAKEST_FOCUS, STRONGEST_FOCUS)
+        focus = Focus(radius, FOCUS_STEP * round(float(strength) / FOCUS_STEP))
+    return MODELS[model].build(scene, poisson, resolution.cells, resolution.angles, focus)
 
 
 def _search(contact, scene, displacement, path, tolerance, step_tolerance, guess):

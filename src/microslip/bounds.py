@@ -1,0 +1,34 @@
+"""How far vibration can lower the friction at most: brackets that need no simulation.
+
+Over a period the work of the contact forces is dissipated; elastic energy returns.  Every point
+slips forward by the creep, and no detour makes a slip path shorter, so the dissipation is at least
+creep x period.  With F the force (|F| <= 1) and d = 1 - mu:
+
+- transverse (forward v t, lateral y sin t): v mu + y <F_lateral cos t> >= v, where by Schwarz and
+  Jensen <F_lateral cos t>^2 <= (1 - mu^2) / 2 = d (1 - d/2).  Hence d <= 1 / ((v/y)^2 + 1/2).
+- bore (forward v phi t, angle phi sin t): the same with the torque, whose forward tractions give
+  at most phi d and whose lateral ones phi sqrt(d/5), 1/5 being the second moment of Hertz's
+  pressure about a diameter.  Hence d <= 1 / (5 (v - 1)^2) for v > 1.
+
+Both hold for any nu and any stiffness.  Arguments are the paper's dimensionless groups.
+"""
+
+from __future__ import annotations
+
+import math
+
+
+def largest_drop_transverse(velocity, amplitude):
+    """Upper bound of 1 - mu_macro (dimensionless) for velocity >= 0, amplitude >= 0."""
+    if amplitude == 0.0:
+        return 0.0
+    ratio = velocity / amplitude
+    return 1.0 / (ratio * ratio + 0.5) if ratio < 1e150 else 0.0
+
+
+def largest_drop_bore(velocity, amplitude):
+    """Upper bound of 1 - mu_macro (dimensionless) for velocity >= 0, whatever the amplitude."""
+    if amplitude == 0.0:
+        return 0.0
+    excess = velocity - 1.0
+    return min(1.0, 0.2 / (excess * excess)) if 0.0 < excess < 1e150 else math.inf

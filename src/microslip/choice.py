@@ -1,0 +1,111 @@
+"""What to run: the least that is right for the scene and fine enough for the tolerance."""
+
+from __future__ import annotations
+
+from microslip import bounds, theory
+from microslip.accuracy import Axis
+from microslip.models import MODELS
+from microslip.simulate import Resolution
+
+RINGS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
+SQUARES = (8, 16, 32, 64, 128)
+ANGLES = (2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)
+STEPS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768)
+"""Levels: rings (squares along a side), angles on half the disc, steps in half a period."""
+BASE_RINGS, BASE_ANGLES, BASE_STEPS = 8, 6, 16
+SLOW_CREEP = 3e-3
+"""Creep in a radian (u_lim) below which the layer at the stick radius is thin: the coarsest rings
+agree with each other there before they see it, and prove nothing."""
+LONGEST_STROKE = 16.0
+"""Stroke in u_lim beyond which more steps are left to the estimate of the error."""
+STATIC_LIMITS = {
+    "transverse": theory.static_limit_transverse,  # nu = 0
+    "bore": theory.static_limit_bore,  # any nu: it only scales the angle
+}
+LARGEST_DROPS = {
+    "transverse": bounds.largest_drop_transverse,
+    "bore": bounds.largest_drop_bore,
+}
+ROUNDING = 1e-12
+
+
+def choose_model(scene, poisson, model="auto"):
+    """The model to use: the cheapest that is exact for the scene, or the one asked for.
+
+    Rings where the traction depends on the radius alone (translation at nu = 0), angular modes
+    otherwise: squares are never cheaper on a circular contact.  The slider and the rigid contact
+    are never chosen: what they leave out can only be bounded by running the rings, which then are
+    the answer.  Raises ValueError for an unknown model or one that does not apply.
+    """
+    if model == "auto":
+        return "polar" if scene.rotates or poisson > 0.0 else "radial"
+    if not isinstance(model, str) or model not in MODELS:
+        raise ValueError(f"model = {model!r}: allowed is one of auto, {', '.join(MODELS)}")
+    refusal = MODELS[model].refuses(scene, poisson)
+    if refusal:
+        raise ValueError(f"model = {model!r}: does not apply to {scene.name}: {refusal}")
+    return model
+
+
+def closed_form(scene, velocity, amplitude, poisson, tolerance):
+    """(mu, torque, error) where nothing has to be computed, else None.
+
+    No vibration; the limit of vanishing velocity; pure rotation; and sliding so fast that the
+    bracket of bounds.py is within the tolerance.
+    """
+    if scene.periodic and amplitude == 0.0:
+        return 1.0, None, ROUNDING
+    if velocity == 0.0:
+        if not scene.periodic:
+            return 0.0, 1.0, ROUNDING
+        known = STATIC_LIMITS.get(scene.name)
+        if known is None or (poisson > 0.0 and not scene.rotates):
+            return None
+        return float(known(amplitude)), None, ROUNDING
+    largest_drop = LARGEST_DROPS.get(scene.name)
+    if largest_drop is not None:
+        drop = largest_drop(velocity, amplitude)
+        if 0.5 * drop <= tolerance:
+            return 1.0 - 0.5 * drop, None, 0.5 * drop + ROUNDING
+    return None
+
+
+def plan(scene, name, velocity, amplitude, poisson, tolerance, cells=None, steps=None):
+    """Coarsest resolution and the axes to refine (see accuracy.certify).
+
+    name: of the model; cells, steps (in a full period): impose a resolution instead.
+    """
+    model = MODELS[name]
+    angular = model.angles > 1 and (name != "rigid" or scene.rotates)
+    axes = []
+    if model.cells > 1 and (scene.rotates or name != "rigid"):
+        axes.append(_cells(scene, name, velocity, amplitude, poisson, cells))
+    if angular:
+        # only nu > 0 makes tractions of a translation depend on the angle, and only a little
+        base = ANGLES.index(BASE_ANGLES) - (0 if scene.rotates else 1)
+        axes.append(Axis("angles", ANGLES, base, (base - 1, base, base + 1)))
+    if scene.periodic and velocity > 0.0:
+        axes.append(_steps(scene, amplitude, poisson, tolerance, steps))
+    coarsest = Resolution(cells=cells or model.cells, angles=1, steps=STEPS[0])
+    return coarsest, tuple(axes)
+
+
+def _cells(scene, name, velocity, amplitude, poisson, imposed):
+    if imposed is not None:
+        return Axis("cells", (imposed // 2, imposed), 1, (0, 1), imposed=True)
+    if name == "cartesian":  # no regular convergence: cells at the edge come and go
+        return Axis("cells", SQUARES, 1, (0, 1, 2))
+    base = RINGS.index(BASE_RINGS)
+    slow = scene.periodic and scene.creep(velocity, amplitude, poisson) < SLOW_CREEP
+    return Axis("cells", RINGS, base, (base - 1, base, base + 1) if slow else (0, 1, base))
+
+
+def _steps(scene, amplitude, poisson, tolerance, imposed):
+    if imposed is not None:
+        return Axis("steps", (max(imposed // 4, 2), imposed // 2), 1, (0, 1), imposed=True)
+    # second order in time, and steps that stay short against u_lim where the stroke is long
+    stroke = min(max(1.0, scene.stroke(amplitude, poisson)), LONGEST_STROKE)
+    levels = tuple(2 * round(0.5 * count * stroke**0.5) for count in STEPS)
+    wanted = BASE_STEPS * max(1.0, (1e-3 / tolerance) ** 0.5)
+    base = next(k for k, count in enumerate(STEPS) if count >= wanted)
+    return Axis("steps", levels, base, (base - 2, base - 1, base))
