@@ -24,14 +24,13 @@ GOOD_STEP = 0.3
 def weighted_slip(stiffness, imposed, q, out):
     """out = imposed - B q; all (2, n)."""
     n = q.shape[1]
-    forward, lateral = out[0], out[1]
-    for i in range(n):
-        forward[i], lateral[i] = imposed[0, i], imposed[1, i]
-    for k in range(n):
-        row, x, y = stiffness[k], q[0, k], q[1, k]
+    for c in range(2):
         for i in range(n):
-            forward[i] -= row[i] * x
-            lateral[i] -= row[i] * y
+            out[c, i] = imposed[c, i]
+        for k in range(n):
+            x = q[c, k]
+            for i in range(n):
+                out[c, i] -= stiffness[k, i] * x
 
 
 @njit(**JIT)
@@ -65,41 +64,39 @@ def _sweep(stiffness, bound, q, slip, relaxation):
 @njit(**JIT)
 def _newton_step(slip, stick, factors):
     """Fill factors.change (in the order of the factors) with the Newton step against ``slip``."""
-    upper, matrix = factors.upper, factors.tangent
+    upper, matrix, change = factors.upper, factors.tangent, factors.change
     order, direction = factors.order, factors.direction
-    forward, lateral = factors.change[0], factors.change[1]
     n = len(order)
-    for p in range(n):
-        forward[p], lateral[p] = slip[0, order[p]], slip[1, order[p]]
-    for j in range(stick):
-        row = upper[j]
-        x, y = forward[j] * row[j], lateral[j] * row[j]
-        forward[j], lateral[j] = x, y
-        for p in range(j + 1, n):
-            forward[p] -= x * row[p]
-            lateral[p] -= y * row[p]
-    turn = forward[stick:]  # the angle's part; forward and lateral follow from it
+    for c in range(2):
+        for p in range(n):
+            change[c, p] = slip[c, order[p]]
+        for j in range(stick):
+            change[c, j] *= upper[j, j]
+            x = change[c, j]
+            for p in range(j + 1, n):
+                change[c, p] -= x * upper[j, p]
+    # the angle's part; both components follow from it
     for p in range(stick, n):
-        turn[p - stick] = direction[0, p] * forward[p] + direction[1, p] * lateral[p]
-    slipping = n - stick
-    for j in range(slipping):
-        turn[j] *= matrix[j, j]
-        subtract(turn[j + 1 :], turn[j], matrix[j, j + 1 : slipping])
-    for j in range(slipping - 1, -1, -1):
-        total = turn[j]
-        for s in range(j + 1, slipping):
-            total -= matrix[j, s] * turn[s]
-        turn[j] = total * matrix[j, j]
+        change[0, p] = direction[0, p] * change[0, p] + direction[1, p] * change[1, p]
+    for j in range(stick, n):
+        change[0, j] *= matrix[j - stick, j - stick]
+        x = change[0, j]
+        for s in range(j + 1, n):
+            change[0, s] -= x * matrix[j - stick, s - stick]
+    for j in range(n - 1, stick - 1, -1):
+        x = change[0, j]
+        for s in range(j + 1, n):
+            x -= matrix[j - stick, s - stick] * change[0, s]
+        change[0, j] = x * matrix[j - stick, j - stick]
     for p in range(stick, n):
-        lateral[p] = direction[1, p] * turn[p - stick]
-        forward[p] = direction[0, p] * turn[p - stick]
+        change[1, p] = direction[1, p] * change[0, p]
+        change[0, p] *= direction[0, p]
     for j in range(stick - 1, -1, -1):
-        x, y = forward[j], lateral[j]
-        row = upper[j]
+        x, y = change[0, j], change[1, j]
         for p in range(j + 1, n):
-            x -= row[p] * forward[p]
-            y -= row[p] * lateral[p]
-        forward[j], lateral[j] = x * row[j], y * row[j]
+            x -= upper[j, p] * change[0, p]
+            y -= upper[j, p] * change[1, p]
+        change[0, j], change[1, j] = x * upper[j, j], y * upper[j, j]
 
 
 @njit(**JIT)
