@@ -1,25 +1,28 @@
 """Square cells with FFT convolution: any nu, any outline; the general reference, and the paper's
 own method.
 
-The convolution is made linear by zero-padding to twice the size.  A step is solved by a projected
-gradient method with Barzilai-Borwein steps and an exact line search along the feasible direction,
-so the energy falls in every iteration.
+A step is solved by a projected gradient method with Barzilai-Borwein steps, without line search:
+the comparison of energies that a line search needs drowns in rounding long before the tractions
+do.  Where the residual does not fall for a while, steps short enough to let the energy fall for
+certain take over until it does.
 """
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 from numba import njit
-from scipy import fft
-from scipy.integrate import quad
 
 from microslip.friction import JIT, shrink
-from microslip.hertz import G_STAR
 from microslip.models import contact
+from microslip.models.convolution import convolve, square_convolution, workspace
 
-MAX_ITERATIONS = 3000
+MAX_ITERATIONS = 5000
+PATIENCE = 60
+"""Iterations granted to the Barzilai-Borwein steps for halving the residual."""
+SHORT_STEP_BELOW = 0.3
+"""Ratio of the two Barzilai-Borwein steps below which the shorter one is taken."""
+MAX_REMEMBERED = 4_000_000
+"""Numbers that a march keeps as first guesses for the next one; longer marches keep none."""
 
 
 class CartesianContact:
@@ -41,184 +44,210 @@ class CartesianContact:
         self.forward_position, self.lateral_position = np.meshgrid(centres, centres, indexing="ij")
         self.weight = np.full((cells, cells), self.size**2)
         self.bound = _cell_loads(cells) / self.size**2
-        self.kernel, self.cross, diagonal = _kernels(cells, poisson)
-        self.compliance = np.full((cells, cells), diagonal)
+        self.operator, self.scale, self.largest = square_convolution(cells, poisson)
+        self.compliance = np.full((cells, cells), self.scale)
 
     def displacement(self, state):
         """A q; shapes (2, cells, cells)."""
-        return _parts(self._convolve(state[1] + 1j * state[0]))
-
-    def _convolve(self, q):
-        """Displacement of complex tractions q = lateral + i forward, (cells, cells)."""
-        n = q.shape[0]
-        padded = fft.fft2(q, (2 * n, 2 * n))
-        out = self.kernel * padded
-        if self.cross is not None:
-            out += self.cross * fft.fft2(q.conj(), (2 * n, 2 * n))
-        return fft.ifft2(out)[:n, :n]
+        out = np.empty(state.shape)
+        convolve(self.operator, workspace(self.operator), np.ascontiguousarray(state), out)
+        return out
 
     def mirrored(self, state):
         """Lateral axis reversed, lateral traction negated."""
         return state[:, :, ::-1] * np.array([1.0, -1.0])[:, None, None]
 
-    def march(self, path, state, tolerance, sensitivity=False):
+    def march(self, path, state, tolerance, sensitivity=False, previous=None):
         """March along ``path``; see models.contact.Contact."""
-        n_stages = path.stages.shape[1]
-        q = (state[1] + 1j * state[0]).copy()
-        origin = self._rigid(path.start)
-        z = self._convolve(q) - origin
-        forces = np.empty((path.steps + 1, 3))
-        forces[0] = contact.forces(self, state)
-        total, iterations = 0.0, 0
-        slips = [None] * n_stages
-        for k in range(path.steps):
-            for s in range(n_stages):
-                rigid = self._rigid(path.stages[k, s])
-                b = z + rigid
-                for j in range(s):
-                    b = b - path.carry[s, j] * slips[j]
-                count, residual, slips[s] = self.solve_step(b, q, tolerance)
-                iterations += count
-                total += residual
-            z = b - slips[-1] - rigid
-            forces[k + 1] = contact.forces(self, _parts(q))
-        return contact.March(_parts(q), forces, total, iterations, path.steps * n_stages)
-
-    def _rigid(self, motion):
-        """Rigid displacement lateral + i forward for motion = (forward, lateral, angle)."""
-        forward, lateral, angle = motion
-        forward_part = forward + angle * self.lateral_position
-        return lateral - angle * self.forward_position + 1j * forward_part
-
-    def solve_step(self, b, q, tolerance):
-        """Solve one Coulomb step, in place in q; b, q: complex (cells, cells).
-
-        Returns (iterations, residual, slip).
-        """
-        slip = b - self._convolve(q)
-        step = 1.0 / self.compliance[0, 0]
-        direction = np.empty_like(q)
-        for iteration in range(MAX_ITERATIONS):
-            residual = _residual(q, slip, self.bound, self.size**2, self.compliance[0, 0])
-            if residual <= tolerance:
-                return iteration, residual, slip
-            descent = _feasible_direction(q, slip, self.bound, step, direction)
-            bent = self._convolve(direction)
-            curvature = _dot(direction, bent)
-            if not curvature > 0.0:
-                break
-            length = min(1.0, descent / curvature)
-            _advance(q, slip, direction, bent, length)
-            step = _dot(direction, direction) / curvature
-        return MAX_ITERATIONS, residual, slip
-
-
-def _parts(q):
-    """Forward and lateral parts, (2, n, n), of q = lateral + i forward."""
-    return np.stack([q.imag, q.real])
+        steps, n_stages, _ = path.stages.shape
+        guided = previous is not None and previous.stages is not None
+        remembers = steps * n_stages * state.size <= MAX_REMEMBERED
+        tractions = np.zeros((steps if remembers else 1, n_stages, *state.shape))
+        forces = np.empty((steps + 1, 3))
+        state, residual, iterations = _march(
+            self.operator,
+            workspace(self.operator),
+            (self.scale, self.largest),
+            self.bound,
+            self.size**2,
+            (self.forward_position, self.lateral_position),
+            (path.start, path.stages, path.carry),
+            np.ascontiguousarray(state),
+            tolerance,
+            previous.stages if guided else tractions,
+            guided,
+            tractions,
+            forces,
+        )
+        stages = tractions if remembers else None
+        return contact.March(state, forces, residual, iterations, steps * n_stages, stages=stages)
 
 
 @njit(**JIT)
-def _residual(q, slip, bound, weight, scale):
-    total = 0.0
-    for i in range(q.shape[0]):
-        for j in range(q.shape[1]):
-            if bound[i, j] > 0.0:
-                p = q[i, j] + slip[i, j] / scale
-                total += abs(p * shrink(p.real, p.imag, bound[i, j]) - q[i, j])
-    return weight * total
+def _march(
+    operator,
+    scratch,
+    scales,
+    bound,
+    weight,
+    positions,
+    path,
+    state,
+    tolerance,
+    guide,
+    guided,
+    tractions,
+    forces,
+):
+    """March along a path; returns (state, residual sum, iterations).
+
+    scales: see ``solve_step``; positions: (forward, lateral), (n, n) each; path: (start, stages,
+    carry); guide: tractions of every stage of a march near by, (steps, stages, 2, n, n), read if
+    ``guided``; tractions: the same of this march, or only of its last step if it has no room for
+    more; forces: filled, (steps + 1, 3).
+    """
+    start, stages, carry = path
+    n_stages = stages.shape[1]
+    q = state.copy()
+    rigid, z, b = np.empty_like(q), np.empty_like(q), np.empty_like(q)
+    slips = np.empty((n_stages, *q.shape))
+    last_guide = q.copy()
+    before = np.empty((2, n_stages, *q.shape))
+    step = 1.0 / scales[0]
+    convolve(operator, scratch, q, z)
+    _rigid(start, positions, rigid)
+    z -= rigid
+    _forces(q, weight, positions, forces[0])
+    total, iterations = 0.0, 0
+    for k in range(stages.shape[0]):
+        for s in range(n_stages):
+            _rigid(stages[k, s], positions, rigid)
+            b[:] = z + rigid
+            for j in range(s):
+                b -= carry[s, j] * slips[j]
+            if guided:  # what the other march added in this stage is added here, too
+                _extrapolate(q, guide[k, s], last_guide, bound, q)
+                last_guide[:] = guide[k, s]
+            elif k > 1:
+                _extrapolate(before[0, s], before[0, s], before[1, s], bound, q)
+            count, residual, step = solve_step(
+                operator, scratch, scales, bound, weight, b, q, slips[s], step, tolerance
+            )
+            iterations += count
+            total += residual
+            before[1, s] = before[0, s]
+            before[0, s] = q
+            tractions[min(k, len(tractions) - 1), s] = q
+        z[:] = b - slips[n_stages - 1] - rigid
+        _forces(q, weight, positions, forces[k + 1])
+    return q, total, iterations
 
 
 @njit(**JIT)
-def _feasible_direction(q, slip, bound, step, out):
-    """out = P(q + step slip) - q; returns its product with the slip (the descent)."""
-    descent = 0.0
-    for i in range(q.shape[0]):
-        for j in range(q.shape[1]):
-            if bound[i, j] > 0.0:
-                p = q[i, j] + step * slip[i, j]
-                d = p * shrink(p.real, p.imag, bound[i, j]) - q[i, j]
-                descent += d.real * slip[i, j].real + d.imag * slip[i, j].imag
-            else:
-                d = 0j
-            out[i, j] = d
-    return descent
+def solve_step(operator, scratch, scales, bound, weight, b, q, slip, step, tolerance):
+    """Solve one Coulomb step in place.
+
+    scales: self-influence, and a bound on the eigenvalues of the operator; weight: area of a cell;
+    b: imposed displacement (2, n, n); q: start and result, within the bound; slip: receives
+    b - A q; step: first length to try.  Returns (iterations, residual, last length).
+    """
+    new, moved = np.empty_like(q), np.empty_like(q)
+    room = np.empty((3, q.shape[2]))
+    convolve(operator, scratch, q, moved)
+    slip[:] = b - moved
+    best, best_at = np.inf, 0
+    for iteration in range(MAX_ITERATIONS):
+        residual = weight * _projected_step(q, slip, bound, scales[0], step, new, room[0])
+        if residual <= tolerance:
+            return iteration, residual, step
+        if residual < 0.5 * best:
+            best, best_at = residual, iteration
+        convolve(operator, scratch, new, moved)
+        dd, ds, ss = _replace(q, slip, new, b, moved, bound, room)
+        if iteration - best_at > PATIENCE or not ds > 0.0:
+            step = 1.0 / scales[1]
+        elif ds * ds < SHORT_STEP_BELOW * dd * ss:
+            step = ds / ss
+        else:
+            step = dd / ds
+    return MAX_ITERATIONS, residual, step
 
 
 @njit(**JIT)
-def _dot(a, b):
-    total = 0.0
-    for i in range(a.shape[0]):
-        for j in range(a.shape[1]):
-            total += a[i, j].real * b[i, j].real + a[i, j].imag * b[i, j].imag
-    return total
+def _projected_step(q, slip, bound, scale, step, new, room):
+    """new = P(q + step slip); returns the residual over the weight, as friction.coulomb_residual.
+
+    Sums go column by column into ``room``, (n,), which the compiler turns into vector instructions.
+    """
+    room[:] = 0.0
+    for i in range(q.shape[1]):
+        for j in range(q.shape[2]):
+            forward, lateral = q[0, i, j] + step * slip[0, i, j], q[1, i, j] + step * slip[1, i, j]
+            f = shrink(forward, lateral, bound[i, j])
+            new[0, i, j], new[1, i, j] = f * forward, f * lateral
+            forward, lateral = (
+                q[0, i, j] + slip[0, i, j] / scale,
+                q[1, i, j] + slip[1, i, j] / scale,
+            )
+            f = shrink(forward, lateral, bound[i, j])
+            forward, lateral = f * forward - q[0, i, j], f * lateral - q[1, i, j]
+            room[j] += np.sqrt(forward * forward + lateral * lateral)
+    return room.sum()
 
 
 @njit(**JIT)
-def _advance(q, slip, direction, bent, length):
-    for i in range(q.shape[0]):
-        for j in range(q.shape[1]):
-            q[i, j] += length * direction[i, j]
-            slip[i, j] -= length * bent[i, j]
+def _replace(q, slip, new, b, moved, bound, room):
+    """q = new, slip = b - A new; returns <dq, dq>, -<dq, ds> and <ds, ds> of the change."""
+    room[:] = 0.0
+    for c in range(2):
+        for i in range(q.shape[1]):
+            for j in range(q.shape[2]):
+                dq = new[c, i, j] - q[c, i, j]
+                now = b[c, i, j] - moved[c, i, j]
+                ds = slip[c, i, j] - now if bound[i, j] > 0.0 else 0.0
+                room[0, j] += dq * dq
+                room[1, j] += dq * ds
+                room[2, j] += ds * ds
+                q[c, i, j], slip[c, i, j] = new[c, i, j], now
+    return room[0].sum(), room[1].sum(), room[2].sum()
 
 
-@lru_cache(maxsize=8)
+@njit(**JIT)
+def _extrapolate(start, later, earlier, bound, out):
+    """out = P(start + later - earlier)."""
+    for i in range(bound.shape[0]):
+        for j in range(bound.shape[1]):
+            forward = start[0, i, j] + later[0, i, j] - earlier[0, i, j]
+            lateral = start[1, i, j] + later[1, i, j] - earlier[1, i, j]
+            f = shrink(forward, lateral, bound[i, j])
+            out[0, i, j], out[1, i, j] = f * forward, f * lateral
+
+
+@njit(**JIT)
+def _rigid(motion, positions, out):
+    """Rigid displacement of every cell for motion = (forward, lateral, angle)."""
+    out[0] = motion[0] + motion[2] * positions[1]
+    out[1] = motion[1] - motion[2] * positions[0]
+
+
+@njit(**JIT)
+def _forces(q, weight, positions, out):
+    """Forward force, lateral force and torque of tractions q."""
+    out[0] = weight * q[0].sum()
+    out[1] = weight * q[1].sum()
+    out[2] = weight * (positions[1] * q[0] - positions[0] * q[1]).sum()
+
+
 def _cell_loads(cells):
     """Friction bound integrated over each square, (cells, cells); sums to 1."""
-    size = 2.0 / cells
-    edges = np.arange(cells + 1) * size - 1.0
-    # cumulative load of the quarter-planes x < x_i, y < y_j, then second differences
-    cumulative = np.array([[_corner_load(x, y) for y in edges] for x in edges])
-    loads = np.diff(np.diff(cumulative, axis=0), axis=1)
-    loads = np.maximum(loads, 0.0)
+    edges = np.arange(cells + 1) * 2.0 / cells - 1.0
+    x, y = edges[:, None], edges[None, :]
+    # load of the rectangle from the centre to (x, y), odd in both, then second differences; past
+    # the edge of the disc the bound is zero, and so is the root
+    root = np.sqrt(np.maximum(1.0 - x * x - y * y, 0.0))
+    load = x * y * root - np.arctan2(x * y, root)
+    load = load + 0.5 * x * (3.0 - x * x) * np.arctan2(y, root)
+    load = load + 0.5 * y * (3.0 - y * y) * np.arctan2(x, root)
+    loads = np.diff(np.diff(load / (2.0 * np.pi), axis=0), axis=1)
     loads[loads < 1e-13] = 0.0
     return loads / loads.sum()
-
-
-def _corner_load(x, y):
-    """Load carried where the position is below (x, y) in both coordinates.
-
-    Across y the Hertz bound integrates in closed form; along x numerically.
-    """
-
-    def below(t):
-        chord = max(1.0 - t * t, 0.0)
-        if chord == 0.0:
-            return 0.0
-        half = np.sqrt(chord)
-        s = min(max(y / half, -1.0), 1.0)
-        return 1.5 / np.pi * chord * 0.5 * (s * np.sqrt(1 - s * s) + np.arcsin(s) + np.pi / 2)
-
-    if x <= -1.0 or y <= -1.0:
-        return 0.0
-    kinks = [t for t in (-np.sqrt(1 - y * y), np.sqrt(1 - y * y)) if -1.0 < t < x]
-    return quad(below, -1.0, x, points=kinks or None, epsabs=1e-12, epsrel=1e-12, limit=200)[0]
-
-
-@lru_cache(maxsize=8)
-def _kernels(cells, poisson):
-    """Transforms of the influence coefficients on the padded grid, and the self-influence.
-
-    Closed forms of the kernels of halfspace.py integrated over a square, taken at cell centres.
-    """
-    size = 2.0 / cells
-    offsets = fft.fftfreq(2 * cells, 1.0 / (2 * cells)) * size
-    y, x = np.meshgrid(offsets, offsets, indexing="ij")
-    single, squares, product = 0.0, 0.0, 0.0
-    for sx in (1, -1):
-        for sy in (1, -1):
-            u, v = x + sx * size / 2, y + sy * size / 2
-            r = np.hypot(u, v)
-            log_u, log_v = np.arcsinh(u / np.abs(v)), np.arcsinh(v / np.abs(u))
-            # sign(v) v arcsinh(u/|v|) is v ln(u + r) up to terms that cancel in the differences
-            single = single + sx * sy * (u * log_v + v * log_u)
-            squares = squares + sx * sy * (v * log_u - u * log_v)
-            product = product - sx * sy * r
-    scale = 1.0 / (np.pi * G_STAR)
-    direct = scale * single
-    kernel = fft.fft2(direct)
-    cross = None
-    if poisson > 0.0:
-        kappa = poisson / (2.0 - poisson)
-        cross = fft.fft2(scale * kappa * (squares + 2j * product))
-    return kernel, cross, float(direct[0, 0])

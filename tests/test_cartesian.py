@@ -1,0 +1,260 @@
+"""Squares: the compiled convolution against direct sums, the step solver against a plain one."""
+
+import numpy as np
+import pytest
+from scipy.integrate import dblquad
+
+from microslip.friction import coulomb_residual, project
+from microslip.models import cartesian
+from microslip.models.cartesian import CartesianContact, solve_step
+from microslip.models.contact import full_slip
+from microslip.models.convolution import convolve, influence, square_convolution, workspace
+from microslip.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.scenes import BORE, TRANSVERSE
+
+NUS = [0.0, 0.4]
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(20201109)
+
+
+def path_of(scene, steps, velocity=0.1, amplitude=1.0, nu=0.0, integrator=SDIRK2):
+    """Half a period."""
+
+    def displacement(phase):
+        return scene.displacement(phase, velocity, amplitude, nu)
+
+    return make_path(displacement, half_period_phases(steps), integrator)
+
+
+def forward_slip(contact):
+    ones = np.ones_like(contact.bound)
+    return full_slip(contact, ones, 0.0 * ones)
+
+
+def force_between(contact, one, other):
+    """Sum of the distances between tractions, a force over mu F_z."""
+    return np.sum(contact.weight * np.hypot(*(one - other)))
+
+
+# The convolution
+
+
+def direct_sum(cells, nu, state):
+    """Displacement by adding up, cell by cell, what each traction causes at each offset."""
+    direct, cross = influence(cells, 2 * cells, nu)  # negative offsets at the end: index -1, -2, ..
+    given = state[1] + 1j * state[0]
+    out = np.zeros((cells, cells), complex)
+    for i in range(cells):
+        for j in range(cells):
+            rows, columns = np.arange(cells)[:, None] - i, np.arange(cells)[None, :] - j
+            out += direct[rows, columns] * given[i, j] + cross[rows, columns] * given[i, j].conj()
+    return np.stack([out.imag, out.real])
+
+
+@pytest.mark.parametrize("nu", NUS)
+@pytest.mark.parametrize("cells", [2, 3, 4, 5, 7, 9, 12, 14, 16])
+def test_convolution_is_linear_and_equal_to_the_direct_sum(cells, nu, rng):
+    """Tractions everywhere, also in the corners, where a cyclic convolution would show."""
+    operator = square_convolution(cells, nu)[0]
+    state, out = rng.normal(size=(2, cells, cells)), np.empty((2, cells, cells))
+    convolve(operator, workspace(operator), state, out)
+    assert out == pytest.approx(direct_sum(cells, nu, state), abs=1e-13)
+
+
+@pytest.mark.parametrize("nu", NUS)
+def test_largest_eigenvalue_is_bounded_closely(nu):
+    contact = CartesianContact(8, nu)
+    units = np.eye(2 * 64).reshape(-1, 2, 8, 8)
+    matrix = np.stack([contact.displacement(unit).ravel() for unit in units])
+    largest = np.linalg.eigvalsh(matrix)[-1]
+    assert largest < contact.largest < 2.5 * largest
+
+
+@pytest.mark.parametrize("cells", [3, 4, 7])
+def test_loads_of_cells_are_integrals_of_the_bound(cells):
+    contact = CartesianContact(cells)
+    half, load = contact.size / 2, contact.weight * contact.bound
+    assert load.sum() == pytest.approx(1.0, abs=1e-14)
+    for i, j in [(0, 0), (0, 1), (0, cells // 2), (1, 1)]:
+        y, x = contact.forward_position[i, j], contact.lateral_position[i, j]
+
+        def chord(s, sign, x=x):
+            return min(max(sign * np.sqrt(max(1 - s * s, 0.0)), x - half), x + half)
+
+        expected, _ = dblquad(
+            lambda t, s: 1.5 / np.pi * np.sqrt(max(1 - s * s - t * t, 0.0)),
+            y - half,
+            y + half,
+            lambda s: chord(s, -1),
+            lambda s: chord(s, 1),
+        )
+        assert load[i, j] == pytest.approx(expected, abs=1e-7)
+
+
+# One step
+
+
+def plain_gradient(contact, nu, b):
+    """Projected gradient on the dense matrix of direct sums, one short step after the other."""
+    cells = len(contact.bound)
+    units = np.eye(2 * cells**2).reshape(-1, 2, cells, cells)
+    matrix = np.stack([direct_sum(cells, nu, unit).ravel() for unit in units], axis=1)
+    step = 1.0 / np.linalg.eigvalsh(matrix)[-1]
+    q = np.zeros_like(b)
+    for _ in range(20_000):
+        new = project(q + step * (b - (matrix @ q.ravel()).reshape(b.shape)), contact.bound)
+        if np.abs(new - q).max() < 1e-15:
+            return new
+        q = new
+    raise AssertionError("the reference did not converge")
+
+
+def solved(contact, b, start, tolerance, solver=solve_step):
+    """(tractions, slip, residual, iterations) of one step."""
+    q, slip = start.copy(), np.empty_like(start)
+    iterations, residual, _ = solver(
+        contact.operator,
+        workspace(contact.operator),
+        (contact.scale, contact.largest),
+        contact.bound,
+        contact.size**2,
+        b,
+        q,
+        slip,
+        1.0 / contact.scale,
+        tolerance,
+    )
+    return q, slip, residual, iterations
+
+
+@pytest.mark.parametrize("nu", NUS)
+@pytest.mark.parametrize("size", [0.03, 0.3, 1.0, 5.0])
+@pytest.mark.parametrize("cells", [5, 6])
+def test_step_is_that_of_a_plain_solver(cells, size, nu, rng):
+    contact = CartesianContact(cells, nu)
+    b = size * rng.normal(size=(2, cells, cells))
+    start = project(rng.normal(size=b.shape), contact.bound)
+    expected = plain_gradient(contact, nu, b)
+    q, slip, residual, _ = solved(contact, b, start, 1e-13)
+    assert residual <= 1e-13
+    assert q == pytest.approx(expected, abs=1e-11)
+    assert slip == pytest.approx(b - direct_sum(cells, nu, q), abs=1e-13)
+
+
+@pytest.mark.parametrize("nu", NUS)
+@pytest.mark.parametrize("size", [1e-3, 0.1, 1.0, 30.0])
+def test_steps_are_solved_down_to_rounding(size, nu, rng):
+    """... and to a residual that is the one of friction.coulomb_residual."""
+    contact = CartesianContact(16, nu)
+    before = project(rng.normal(size=(2, 16, 16)) * contact.bound, contact.bound)
+    forward, lateral, angle = size * rng.normal(size=3)
+    b = contact.displacement(before)
+    b += np.stack(
+        [
+            forward + angle * contact.lateral_position,
+            lateral - angle * contact.forward_position,
+        ]
+    )
+    q, slip, residual, iterations = solved(contact, b, before, 1e-12)
+    assert residual <= 1e-12
+    assert iterations < 250
+    row, scale = np.full(16, contact.size**2), contact.compliance[0]
+    rows = [(q[:, i : i + 1], slip[:, i : i + 1], contact.bound[i]) for i in range(16)]
+    total = sum(coulomb_residual(*map(np.ascontiguousarray, r), row, scale) for r in rows)
+    assert total == pytest.approx(residual, abs=1e-14)
+
+
+def test_short_steps_converge_where_the_long_ones_have_failed(monkeypatch, rng):
+    contact = CartesianContact(6, 0.4)
+    b = rng.normal(size=(2, 6, 6))
+    expected, _, _, few = solved(contact, b, np.zeros_like(b), 1e-11)
+    monkeypatch.setattr(cartesian, "PATIENCE", -1)
+    q, _, residual, many = solved(contact, b, np.zeros_like(b), 1e-11, solve_step.py_func)
+    assert residual <= 1e-11 and many > few
+    assert q == pytest.approx(expected, abs=1e-9)
+
+
+def test_the_worst_that_can_be_asked_ends(rng):
+    contact = CartesianContact(4)
+    b = rng.normal(size=(2, 4, 4))
+    _, _, residual, iterations = solved(contact, b, np.zeros_like(b), 0.0)
+    assert iterations <= cartesian.MAX_ITERATIONS and residual < 1e-14
+
+
+# Marches
+
+
+def test_a_march_reaches_tolerances_near_rounding():
+    """The motion that once stalled: an exact line search drowns in rounding at 1e-8."""
+    contact = CartesianContact(16)
+    march = contact.march(path_of(TRANSVERSE, 16), forward_slip(contact), 1e-12)
+    assert march.residual <= march.solves * 1e-12
+    assert march.iterations < 150 * march.solves
+
+
+@pytest.mark.parametrize("nu", NUS)
+def test_cells_without_load_carry_nothing(nu):
+    contact = CartesianContact(16, nu)
+    outside = contact.bound == 0.0
+    assert outside.sum() > 4
+    march = contact.march(path_of(BORE, 8, nu=nu), forward_slip(contact), 1e-8)
+    assert np.all(march.stages[..., outside] == 0.0)
+    assert np.all(march.state[:, outside] == 0.0)
+    size = np.hypot(*march.state)
+    assert np.all(size <= contact.bound * (1 + 4e-16))
+
+
+@pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
+@pytest.mark.parametrize("scene", [TRANSVERSE, BORE], ids=lambda scene: scene.name)
+def test_first_guesses_change_the_effort_but_not_the_march(scene, integrator, rng):
+    contact, tolerance = CartesianContact(8), 1e-11
+    path = path_of(scene, 12, integrator=integrator)
+    first = contact.march(path, forward_slip(contact), 1e-3)
+    near = project(forward_slip(contact) + 1e-3 * rng.normal(size=(2, 8, 8)), contact.bound)
+    plain = contact.march(path, near, tolerance)
+    guided = contact.march(path, near, tolerance, previous=first)
+    assert force_between(contact, guided.state, plain.state) < 1e3 * tolerance
+    assert guided.forces == pytest.approx(plain.forces, abs=1e3 * tolerance)
+    assert guided.residual <= guided.solves * tolerance
+    again = contact.march(path, near, tolerance, previous=plain)
+    assert again.iterations < 0.2 * plain.iterations
+
+
+def test_the_same_march_twice_is_the_same_to_the_bit():
+    contact, path = CartesianContact(8, 0.3), path_of(BORE, 8, nu=0.3)
+    one, other = (contact.march(path, forward_slip(contact), 1e-6) for _ in range(2))
+    assert np.array_equal(one.state, other.state) and np.array_equal(one.forces, other.forces)
+
+
+def test_marches_too_long_to_remember_do_without(monkeypatch):
+    contact, path = CartesianContact(6), path_of(BORE, 8)
+    kept = contact.march(path, forward_slip(contact), 1e-9)
+    assert kept.stages.shape == (8, 2, 2, 6, 6)
+    monkeypatch.setattr(cartesian, "MAX_REMEMBERED", 100)
+    march = contact.march(path, forward_slip(contact), 1e-9)
+    assert march.stages is None
+    assert np.array_equal(march.forces, kept.forces)
+    after = contact.march(path, forward_slip(contact), 1e-9, previous=march)
+    assert np.array_equal(after.forces, kept.forces)
+
+
+@pytest.mark.parametrize("nu", NUS)
+def test_the_mirrored_march_is_the_march_of_the_mirror_image(nu, rng):
+    """lateral -> -lateral turns lateral displacement and angle over."""
+    contact, tolerance = CartesianContact(8, nu), 1e-10
+    start = project(rng.normal(size=(2, 8, 8)) * contact.bound, contact.bound)
+
+    def displacement(phase, sign):
+        lateral, angle = 0.4 * np.sin(phase), np.cos(phase)
+        return 0.3 * phase, sign * lateral, sign * angle
+
+    phase = np.linspace(0.0, 3.0, 13)
+    march, image = (
+        contact.march(make_path(lambda t, s=sign: displacement(t, s), phase), state, tolerance)
+        for sign, state in [(1, start), (-1, contact.mirrored(start))]
+    )
+    assert force_between(contact, image.state, contact.mirrored(march.state)) < 1e3 * tolerance
+    assert image.forces == pytest.approx(march.forces * [1, -1, -1], abs=1e3 * tolerance)
