@@ -1,0 +1,140 @@
+"""The paper's method beside a certified point, in one process on one core.
+
+    python benchmarks/paper_method.py [--steps N] [--repeats N] [--json FILE] [--markdown FILE]
+
+The paper's method (R. Pohrt, Front. Mech. Eng. 6:566440, 2020): 32 x 32 squares, backward Euler,
+up to 8,000 time steps marched plainly from full forward slip, stresses to 0.1 %.  Here the steps
+are 100 a period, each solved until the tractions are off Coulomb's law by 0.1 % of the total
+friction; the mean is that of the last period.  The certified point: ``microslip.solve`` with an
+error of at most 1e-3 on the same friction.  Both are compiled before the clock starts, take turns,
+and the median of the repeats counts.
+"""
+
+from __future__ import annotations
+
+import os
+
+for library in ("OPENBLAS", "OMP", "MKL", "NUMBA"):  # before NumPy is imported
+    os.environ[f"{library}_NUM_THREADS"] = "1"
+
+import argparse  # noqa: E402
+import json  # noqa: E402
+import time  # noqa: E402
+from pathlib import Path  # noqa: E402
+from statistics import median  # noqa: E402
+
+import numpy as np  # noqa: E402
+
+import microslip  # noqa: E402
+from microslip.models.cartesian import CartesianContact  # noqa: E402
+from microslip.path import EULER, make_path  # noqa: E402
+from microslip.scenes import SCENES  # noqa: E402
+from microslip.simulate import forward_slip  # noqa: E402
+
+POINTS = [("transverse", 0.5), ("bore", 1.0)]
+"""Scene and amplitude."""
+VELOCITY = 0.005
+CELLS = 32
+STEPS = 8000
+STEPS_PER_PERIOD = 100
+STRESS_TOLERANCE = 1e-3
+TOLERANCE = 1e-3
+"""Of the certified point, absolute, on the friction."""
+
+
+def timed(function):
+    """Result and wall time (s) of one call."""
+    started = time.perf_counter()
+    result = function()
+    return result, time.perf_counter() - started
+
+
+def path_of(scene, amplitude, steps):
+    """Path of so many equal steps from the middle of a stroke."""
+
+    def displacement(phase):
+        return SCENES[scene].displacement(phase, VELOCITY, amplitude, 0.0)
+
+    phase = 2.0 * np.pi / STEPS_PER_PERIOD * np.arange(steps + 1)
+    return make_path(displacement, phase, EULER)
+
+
+def last_period_mean(march):
+    """Mean forward force over the last period marched."""
+    return float(march.forces[-STEPS_PER_PERIOD:, 0].mean())
+
+
+def compare(scene, amplitude, steps, repeats):
+    """One row of the table: the two methods in turns, ``repeats`` times."""
+    contact = CartesianContact(CELLS)
+    path, start = path_of(scene, amplitude, steps), forward_slip(contact)
+
+    def paper():
+        return contact.march(path, start, STRESS_TOLERANCE)
+
+    def certified():
+        return microslip.solve(scene, VELOCITY, amplitude, tolerance=TOLERANCE)
+
+    contact.march(path_of(scene, amplitude, 4), start, STRESS_TOLERANCE)
+    certified()
+    march_times, point_times = [], []
+    for _ in range(repeats):
+        march, seconds = timed(paper)
+        march_times.append(seconds)
+        point, seconds = timed(certified)
+        point_times.append(seconds)
+    step, certified_time = median(march_times) / steps, median(point_times)
+    return {
+        "scene": scene,
+        "amplitude": amplitude,
+        "velocity": VELOCITY,
+        "steps timed": steps,
+        f"s for {STEPS:,} steps": step * STEPS,
+        "ms a step": 1e3 * step,
+        "iterations a step": march.iterations / steps,
+        "certified point, ms": 1e3 * certified_time,
+        "ratio": step * STEPS / certified_time,
+        "mu, paper's method": last_period_mean(march),
+        "mu, certified": point.mu_macro,
+        "its error, at most": point.mu_macro_error,
+        "certified?": "yes" if point.converged else f"no: {point.reason}",
+    }
+
+
+def shown(value):
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def markdown(rows):
+    """The table turned on its side: one column a point."""
+    lines = ["| " + " | ".join([key, *(shown(row[key]) for row in rows)]) + " |" for key in rows[0]]
+    return "\n".join([lines[0], "|---" * (len(rows) + 1) + "|", *lines[1:]])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--steps", type=int, default=STEPS, help="steps to march and time")
+    parser.add_argument("--repeats", type=int, default=7)
+    parser.add_argument("--json", type=Path, help="file to write the table to")
+    parser.add_argument("--markdown", type=Path, help="file to write the table to")
+    args = parser.parse_args()
+    if args.steps < STEPS_PER_PERIOD or args.repeats < 1:
+        parser.error(f"at least {STEPS_PER_PERIOD} steps (one period) and one repeat")
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+    rows = [compare(scene, amplitude, args.steps, args.repeats) for scene, amplitude in POINTS]
+    table = markdown(rows)
+    if args.steps < STEPS:
+        table += (
+            f"\n\nOnly {args.steps:,} steps were marched; the time for {STEPS:,} is scaled from"
+            " them, and the friction need not be periodic yet."
+        )
+    print(table)
+    if args.markdown:
+        args.markdown.write_text(table + "\n", encoding="utf-8")
+    if args.json:
+        args.json.write_text(json.dumps(rows, indent=2) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
