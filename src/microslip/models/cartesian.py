@@ -73,6 +73,7 @@ class CartesianContact:
             (self.forward_position, self.lateral_position),
             (path.start, path.stages, path.carry),
             np.ascontiguousarray(state),
+            self.displacement(state),
             tolerance,
             previous.stages if guided else tractions,
             guided,
@@ -93,6 +94,7 @@ def _march(
     positions,
     path,
     state,
+    elastic,
     tolerance,
     guide,
     guided,
@@ -102,7 +104,7 @@ def _march(
     """March along a path; returns (state, residual sum, iterations).
 
     scales: see ``solve_step``; positions: (forward, lateral), (n, n) each; path: (start, stages,
-    carry); guide: tractions of every stage of a march near by, (steps, stages, 2, n, n), read if
+    carry); elastic: displacement under ``state``; guide: tractions of every stage of a march near by, (steps, stages, 2, n, n), read if
     ``guided``; tractions: the same of this march, or only of its last step if it has no room for
     more; forces: filled, (steps + 1, 3).
     """
@@ -114,9 +116,8 @@ def _march(
     last_guide = q.copy()
     before = np.empty((2, n_stages, *q.shape))
     step = 1.0 / scales[0]
-    convolve(operator, scratch, q, z)
     _rigid(start, positions, rigid)
-    z -= rigid
+    z[:] = elastic - rigid
     _forces(q, weight, positions, forces[0])
     total, iterations = 0.0, 0
     for k in range(stages.shape[0]):
@@ -151,25 +152,25 @@ def solve_step(operator, scratch, scales, bound, weight, b, q, slip, step, toler
     b: imposed displacement (2, n, n); q: start and result, within the bound; slip: receives
     b - A q; step: first length to try.  Returns (iterations, residual, last length).
     """
-    new, moved = np.empty_like(q), np.empty_like(q)
+    new, moved = q.copy(), np.empty_like(q)
     room = np.empty((3, q.shape[2]))
-    convolve(operator, scratch, q, moved)
-    slip[:] = b - moved
     best, best_at = np.inf, 0
     for iteration in range(MAX_ITERATIONS):
-        residual = weight * _projected_step(q, slip, bound, scales[0], step, new, room[0])
-        if residual <= tolerance:
-            return iteration, residual, step
-        if residual < 0.5 * best:
-            best, best_at = residual, iteration
         convolve(operator, scratch, new, moved)
         dd, ds, ss = _replace(q, slip, new, b, moved, bound, room)
-        if iteration - best_at > PATIENCE or not ds > 0.0:
+        if iteration == 0:
+            pass  # nothing is known yet but the length that served the last step well
+        elif iteration - best_at > PATIENCE or not ds > 0.0:
             step = 1.0 / scales[1]
         elif ds * ds < SHORT_STEP_BELOW * dd * ss:
             step = ds / ss
         else:
             step = dd / ds
+        residual = weight * _projected_step(q, slip, bound, scales[0], step, new, room[0])
+        if residual <= tolerance:
+            return iteration, residual, step
+        if residual < 0.5 * best:
+            best, best_at = residual, iteration
     return MAX_ITERATIONS, residual, step
 
 
@@ -226,16 +227,22 @@ def _extrapolate(start, later, earlier, bound, out):
 @njit(**JIT)
 def _rigid(motion, positions, out):
     """Rigid displacement of every cell for motion = (forward, lateral, angle)."""
-    out[0] = motion[0] + motion[2] * positions[1]
-    out[1] = motion[1] - motion[2] * positions[0]
+    for i in range(out.shape[1]):
+        for j in range(out.shape[2]):
+            out[0, i, j] = motion[0] + motion[2] * positions[1][i, j]
+            out[1, i, j] = motion[1] - motion[2] * positions[0][i, j]
 
 
 @njit(**JIT)
 def _forces(q, weight, positions, out):
     """Forward force, lateral force and torque of tractions q."""
-    out[0] = weight * q[0].sum()
-    out[1] = weight * q[1].sum()
-    out[2] = weight * (positions[1] * q[0] - positions[0] * q[1]).sum()
+    out[:] = 0.0
+    for i in range(q.shape[1]):
+        for j in range(q.shape[2]):
+            forward, lateral = weight * q[0, i, j], weight * q[1, i, j]
+            out[0] += forward
+            out[1] += lateral
+            out[2] += positions[1][i, j] * forward - positions[0][i, j] * lateral
 
 
 def _cell_loads(cells):
