@@ -104,9 +104,9 @@ def _march(
     """March along a path; returns (state, residual sum, iterations).
 
     scales: see ``solve_step``; positions: (forward, lateral), (n, n) each; path: (start, stages,
-    carry); elastic: displacement under ``state``; guide: tractions of every stage of a march near by, (steps, stages, 2, n, n), read if
-    ``guided``; tractions: the same of this march, or only of its last step if it has no room for
-    more; forces: filled, (steps + 1, 3).
+    carry); elastic: displacement under ``state``; guide: tractions of every stage of a march near
+    by, (steps, stages, 2, n, n), read if ``guided``; tractions: the same of this march, or only of
+    its last step if it has no room for more; forces: filled, (steps + 1, 3).
     """
     start, stages, carry = path
     n_stages = stages.shape[1]
