@@ -29,7 +29,7 @@ LAYERS = [
     {"cli"},
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
-PHYSICS = {name for names in LAYERS[:9] for name in names}
+PHYSICS = {name for names in LAYERS[:10] for name in names}
 MODULES = sorted(
     path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py") if path.name != "__pycache__"
 )

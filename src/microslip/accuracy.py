@@ -2,9 +2,10 @@
 
 Each refinable axis (cells, angles, steps) has a chain of runs of its own, coarser and finer than a
 common base, so that what an axis contributes is seen by itself and nothing has to be run fine in
-all of them at once.  The answer is the base value plus the correction of every chain.  Where
-corrections do not add up (time scatter in the differences of other chains, mixed difference of
-cells and angles) that counts as error too, and if it is the largest one the base itself is refined.
+all of them at once.  The answer is the base value plus the correction of every chain and the first
+mixed difference of cells and angles.  Where corrections do not add up (that mixed difference, and
+time scatter in the differences of other chains) that counts as error too, and if it is the largest
+one the base itself is refined.
 
 - cells: the error falls smoothly with about the second power, so the last difference is
   extrapolated; half of that extrapolation stays as error, and half of the change that the last run
@@ -25,11 +26,11 @@ RESOLVED = 0.02
 """Share of the tolerance below which no axis claims its error to be: nothing was run to see it."""
 SCATTER = 0.5
 """Share of the correction in time that its scatter may do to the differences of other chains."""
-PERIODICITY_SAFETY = 2.0
-"""The distance from the periodic state is itself an estimate."""
-AIM = 0.85
-"""Share of the tolerance that the errors of the chains may fill."""
+FEWEST_RUNS = 3
+"""Runs that an error is estimated from."""
 MOST_REBASED = 6
+REBASED_TOGETHER = {"steps": ("steps",), "angles": ("cells", "angles")}
+"""Axes whose base is refined where corrections do not add up, by the cause."""
 SOURCES = {"cells": "space", "angles": "space", "steps": "time"}
 
 
@@ -101,8 +102,7 @@ class _Chain:
 
     def __init__(self, runs, axis):
         self.runs, self.axis = runs, axis
-        shift = runs.base[axis.name] - axis.base
-        self.indices = [index + shift for index in axis.first]
+        self.indices = list(axis.first)
 
     @property
     def levels(self):
@@ -110,6 +110,11 @@ class _Chain:
 
     def values(self, name):
         return [getattr(self.runs(**{self.axis.name: index}), name) for index in self.indices]
+
+    def rebase(self):
+        """Go on from a new base, with no more runs than the error needs, up to the base at least."""
+        last = max(self.indices[-1], self.runs.base[self.axis.name])
+        self.indices = list(range(max(last - FEWEST_RUNS + 1, 0), last + 1))
 
     def refine(self):
         """One more run; False if there is no finer level."""
@@ -144,16 +149,17 @@ def _extrapolation(values, levels):
     return (values[-1] - values[-2]) / ((levels[-1] / levels[-2]) ** 2 - 1.0)
 
 
-def _mixed(runs, chains):
+def _mixed(runs, chains, name):
     """How far the corrections along cells and angles fail to add up: their mixed difference."""
     if not {"cells", "angles"} <= chains.keys() or chains["cells"].axis.imposed:
         return 0.0
     beside = {}
-    for name in ("cells", "angles"):
-        base = runs.base[name]
-        beside[name] = base + 1 if base + 1 in chains[name].indices else base - 1
-    one, other = ({name: index} for name, index in beside.items())
-    return abs(runs(**beside).mu - runs(**one).mu - runs(**other).mu + runs().mu)
+    for axis in ("cells", "angles"):
+        base = runs.base[axis]
+        beside[axis] = base + 1 if chains[axis].indices[-1] > base else base - 1
+    one, other = ({axis: index} for axis, index in beside.items())
+    both, one, other, base = (getattr(runs(**at), name) for at in (beside, one, other, {}))
+    return both - one - other + base
 
 
 def certify(run, coarsest, axes, tolerance):
@@ -168,46 +174,66 @@ def certify(run, coarsest, axes, tolerance):
     chains = {axis.name: _Chain(runs, axis) for axis in axes}
     rebased = 0
     while True:
+        runs()  # the base first: its state is a guess for others
         left = {name: c.error("mu") for name, c in chains.items() if not c.axis.imposed}
-        hidden = {"steps": 0.0, "angles": _mixed(runs, chains)}
+        hidden = {"steps": 0.0, "angles": abs(_mixed(runs, chains, "mu"))}
         if "steps" in chains and len(chains) > 1:
             hidden["steps"] = SCATTER * abs(chains["steps"].correction("mu"))
-        runs()  # the base, where there is nothing to refine
+        errors = _errors(runs, chains, hidden, tolerance)
         reason = next((r.reason for r in runs.done.values() if not r.converged), "")
-        if reason or sum(left.values()) + sum(hidden.values()) <= AIM * tolerance:
+        if reason or sum(errors.values()) <= tolerance:
             break
         worst = max(left, key=left.get, default=None)
         cause = max(hidden, key=hidden.get)
         if hidden[cause] > left.get(worst, 0.0) and _can_rebase(chains, cause, rebased):
-            runs.base[cause] += 1
-            chains, rebased = {axis.name: _Chain(runs, axis) for axis in axes}, rebased + 1
-        elif worst is None:
-            break
+            for name in REBASED_TOGETHER[cause]:
+                runs.base[name] += 1
+            rebased += 1
+            for chain in chains.values():
+                chain.rebase()
+        elif worst is None or sum(left.values()) + sum(hidden.values()) < 0.5 * tolerance:
+            break  # finer runs would not help
         elif not chains[worst].refine():
             reason = f"the error over {worst} is still {left[worst]:.1e}"
             reason += f" at {chains[worst].levels[-1]}"
             break
-    return _summary(runs, chains, hidden, tolerance, reason)
+    return _summary(runs, chains, errors, reason)
 
 
 def _can_rebase(chains, cause, rebased):
-    if cause not in chains or chains[cause].axis.imposed or rebased == MOST_REBASED:
+    """Whether the axes whose base would cure ``cause`` are there and have a finer level."""
+    if rebased == MOST_REBASED:
         return False
-    axis, runs = chains[cause].axis, chains[cause].runs
-    return runs.base[cause] - axis.base + max(axis.first) + 1 < len(axis.levels)
+    return all(
+        name in chains
+        and not chains[name].axis.imposed
+        and chains[name].runs.base[name] + 1 < len(chains[name].axis.levels)
+        for name in REBASED_TOGETHER[cause]
+    )
 
 
-def _summary(runs, chains, hidden, tolerance, reason):
-    """The Certified of chains that are fine enough, or as fine as they get."""
-    done, start = list(runs.done.values()), runs()
+def _errors(runs, chains, hidden, tolerance):
+    """Errors of mu by source."""
     errors = {"space": hidden["angles"], "time": hidden["steps"]}
     for name, chain in chains.items():
         errors[SOURCES[name]] += max(chain.error("mu"), RESOLVED * tolerance)
-    errors["periodicity"] = PERIODICITY_SAFETY * float(max(r.distance for r in done))
+    done = runs.done.values()
+    errors["periodicity"] = float(max(r.distance for r in done))
     errors["solver"] = float(max(r.solver_residual for r in done))
+    return errors
+
+
+def _corrected(runs, chains, name):
+    corrections = sum(chain.correction(name) for chain in chains.values())
+    return getattr(runs(), name) + corrections + _mixed(runs, chains, name)
+
+
+def _summary(runs, chains, errors, reason):
+    """The Certified of chains that are fine enough, or as fine as they get."""
+    done = list(runs.done.values())
     return Certified(
-        mu=start.mu + sum(chain.correction("mu") for chain in chains.values()),
-        torque=start.torque + sum(chain.correction("torque") for chain in chains.values()),
+        mu=_corrected(runs, chains, "mu"),
+        torque=_corrected(runs, chains, "torque"),
         errors=errors,
         torque_error=sum(chain.error("torque") for chain in chains.values()),
         finest=runs.resolution(**{name: chain.indices[-1] for name, chain in chains.items()}),

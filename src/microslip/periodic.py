@@ -100,8 +100,9 @@ def find_periodic_state(
         residual = energy_norm(contact, change)
         solved = inner <= step_tolerance
         if not newton:
-            inner = max(step_tolerance, min(FORCING * residual, LOOSEST))
-            if not solved and march.residual > NOISE * residual:
+            noisy = not solved and march.residual > NOISE * residual
+            inner = max(step_tolerance, min(FORCING * residual, NOISE * inner if noisy else LOOSEST))
+            if noisy:
                 continue  # what is left of the steps hides what the period changed
         if newton and not use_newton:
             proposal = image
