@@ -92,4 +92,4 @@ def test_physics_knows_no_files_workflow_or_plots(path):
 
 def test_theory_and_the_solvers_meet_only_in_the_public_answer():
     users = {top_name(path) for path in MODULES if "theory" in imported(path)[0]}
-    assert users <= {"point", "limits", "dataset"}
+    assert users <= {"choice", "limits", "dataset"}

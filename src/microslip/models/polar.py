@@ -121,6 +121,17 @@ def _forces(q, weight, forward_position, lateral_position, out):
 
 
 @njit(**JIT)
+def _add_projected(change, bound, q):
+    """q + change, projected on the friction bound; in place."""
+    for j in range(q.shape[1]):
+        for i in range(q.shape[2]):
+            forward, lateral = q[0, j, i] + change[0, j, i], q[1, j, i] + change[1, j, i]
+            f = min(1.0, bound[i] / max(np.sqrt(forward * forward + lateral * lateral), 1e-300))
+            q[0, j, i] = f * forward
+            q[1, j, i] = f * lateral
+
+
+@njit(**JIT)
 def _march(
     influence,
     inverse,
@@ -134,14 +145,14 @@ def _march(
     state,
     tolerance,
     warm,
-    tractions,
+    added,
     duals,
     forces,
 ):
     """March along a path; returns (state, residual sum, iterations).
 
-    tractions, duals: (steps, stages, 2, M, N), solutions of every stage; filled, and read as first
-    guesses if ``warm``.
+    added, duals: (steps, stages, 2, M, N), what every stage adds to the tractions, and its dual;
+    filled, and read as first guesses if ``warm``.
     """
     forward_position, lateral_position = positions
     angles, n = state.shape[1], state.shape[2]
@@ -149,7 +160,7 @@ def _march(
     q = state.copy()
     rigid = np.empty_like(q)
     slips = np.empty((n_stages, 2, angles, n))
-    dual = np.zeros_like(q)
+    dual, before = np.zeros_like(q), np.empty_like(q)
     folded = np.empty((4, angles // 2, n))
     room = (folded, np.empty_like(folded), np.empty_like(q))
     _rigid(start, forward_position, lateral_position, rigid)
@@ -165,8 +176,9 @@ def _march(
             b[:] = z + rigid
             for j in range(s):
                 b -= carry[s, j] * slips[j]
+            before[:] = q
             if warm:
-                q[:] = tractions[k, s]
+                _add_projected(added[k, s], bound, q)
                 dual[:] = duals[k, s]
             elif k > 0:
                 dual[:] = duals[k - 1, s]
@@ -183,7 +195,7 @@ def _march(
                 room,
                 tolerance,
             )
-            tractions[k, s] = q
+            added[k, s] = q - before
             duals[k, s] = dual
             iterations += count
             total += residual
