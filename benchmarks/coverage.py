@@ -1,0 +1,163 @@
+"""Do the certificates hold?  Random points, each against a reference four times as fine.
+
+    python benchmarks/coverage.py [--points N] [--seed S] [--workers W] [--output FILE]
+                                  [--markdown FILE]
+
+Velocity log-uniform in 1e-4..1e2, amplitude log-uniform in 1e-2..1e2, both oscillating scenes,
+nu one of 0, 0.3, 0.5; tolerances 1e-2, 1e-3 and 1e-4 in turn.  A point is covered if
+
+    |mu_macro - reference| <= mu_macro_error <= tolerance.
+
+The reference has four times the rings, angles and steps that the point was certified with, each
+refined by itself from a base that is finer than any certificate starts from, every periodic state
+searched for from scratch and 50 times closer than the tolerance.  What is left of its own error is
+estimated from the run with half of the refinement.  Results go to a file of JSON lines, point by
+point; an interrupted run goes on where it stopped.
+"""
+
+from __future__ import annotations
+
+import os
+
+for library in ("OPENBLAS", "OMP", "MKL", "NUMBA"):  # before NumPy is imported
+    os.environ[f"{library}_NUM_THREADS"] = "1"
+
+import argparse  # noqa: E402
+import json  # noqa: E402
+from concurrent.futures import ProcessPoolExecutor, as_completed  # noqa: E402
+from dataclasses import replace  # noqa: E402
+from pathlib import Path  # noqa: E402
+
+import numpy as np  # noqa: E402
+
+import microslip  # noqa: E402
+from microslip.choice import choose_model  # noqa: E402
+from microslip.scenes import SCENES  # noqa: E402
+from microslip.simulate import Resolution, simulate  # noqa: E402
+
+TOLERANCES = (1e-2, 1e-3, 1e-4)
+POISSON = (0.0, 0.3, 0.5)
+VELOCITIES, AMPLITUDES = (-4.0, 2.0), (-2.0, 2.0)
+"""Decimal logarithms of the ranges."""
+FINER = 4
+BASE = {"radial": Resolution(32, 1, 48), "polar": Resolution(16, 8, 32)}
+LEAST = {"radial": Resolution(64, 1, 128), "polar": Resolution(64, 16, 96)}
+MOST = Resolution(256, 128, 2048)
+"""Resolutions (steps in half a period) of the reference: its base, and bounds of its finest."""
+PERIODICITY = 0.02
+"""Distance of the reference from its periodic states, over the tolerance."""
+
+
+def sample(points, seed):
+    """Points as (scene, velocity, amplitude, nu, tolerance)."""
+    draw = np.random.default_rng(seed)
+    out = []
+    for k in range(points):
+        velocity = float(f"{10 ** draw.uniform(*VELOCITIES):.4g}")
+        amplitude = float(f"{10 ** draw.uniform(*AMPLITUDES):.4g}")
+        scene = str(draw.choice(["transverse", "bore"]))
+        out.append((scene, velocity, amplitude, float(draw.choice(POISSON)), TOLERANCES[k % 3]))
+    return out
+
+
+def reference(scene, velocity, amplitude, poisson, tolerance, certified):
+    """(mu, uncertainty) four times as fine as the ``certified`` Result."""
+    kind = SCENES[scene]
+    model = choose_model(kind, poisson)
+    stroke = min(max(kind.stroke(amplitude, poisson), 1.0), 16.0) ** 0.5
+    base = replace(BASE[model], steps=2 * round(0.5 * BASE[model].steps * stroke))
+
+    def mean(**changes):
+        at = replace(base, **changes)
+        run = simulate(kind, velocity, amplitude, poisson, model, at, PERIODICITY * tolerance)
+        if not run.converged:
+            raise RuntimeError(f"reference at {at}: {run.reason}")
+        return run.mu
+
+    at_base, mu, uncertainty = mean(), 0.0, 2 * PERIODICITY * tolerance
+    used = Resolution(certified.cells, certified.angles, certified.steps_per_period // 2)
+    for axis in ("cells", "angles", "steps"):
+        if axis == "angles" and model == "radial":
+            continue
+        finest = max(FINER * getattr(used, axis), getattr(LEAST[model], axis))
+        finest = min(finest, getattr(MOST, axis))
+        coarse, fine = mean(**{axis: finest // 2}), mean(**{axis: finest})
+        beyond = (fine - coarse) / 3.0  # second order
+        mu += fine + beyond - at_base
+        uncertainty += abs(beyond)
+    return at_base + mu, uncertainty
+
+
+def examine(point):
+    """One line of the output: the point, its certificate, the reference."""
+    scene, velocity, amplitude, poisson, tolerance = point
+    result = microslip.solve(scene, velocity, amplitude, poisson=poisson, tolerance=tolerance)
+    mu, uncertainty = reference(*point, result)
+    error = abs(result.mu_macro - mu)
+    return {
+        "point": list(point),
+        "certified": result.to_dict(),
+        "reference": mu,
+        "reference_uncertainty": uncertainty,
+        "covered": bool(error <= result.mu_macro_error <= tolerance and result.converged),
+    }
+
+
+def summary(lines):
+    """Markdown table of the coverage by tolerance, and what was not covered."""
+    out = ["| tolerance | points | covered | converged | median error / certificate | largest |"]
+    out.append("|---|---|---|---|---|---|")
+    missed = []
+    for tolerance in TOLERANCES:
+        group = [line for line in lines if line["point"][4] == tolerance]
+        if not group:
+            continue
+        errors = [abs(line["certified"]["mu_macro"] - line["reference"]) for line in group]
+        ratios = np.array(errors) / [line["certified"]["mu_macro_error"] for line in group]
+        converged = sum(line["certified"]["converged"] for line in group)
+        covered = sum(line["covered"] for line in group)
+        out.append(
+            f"| {tolerance:g} | {len(group)} | {covered} | {converged} "
+            f"| {np.median(ratios):.2f} | {ratios.max():.2f} |"
+        )
+        missed += [line for line in group if not line["covered"]]
+    for line in missed:
+        scene, velocity, amplitude, poisson, tolerance = line["point"]
+        certified = line["certified"]
+        error = abs(certified["mu_macro"] - line["reference"])
+        out.append(
+            f"\nNot covered: {scene}, velocity {velocity:g}, amplitude {amplitude:g}, nu {poisson:g}"
+            f" at {tolerance:g}: error {error:.1e} (+- {line['reference_uncertainty']:.0e}),"
+            f" certificate {certified['mu_macro_error']:.1e}."
+        )
+    return "\n".join(out) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--points", type=int, default=300)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--output", type=Path, default=Path("results/coverage.jsonl"))
+    parser.add_argument("--markdown", type=Path)
+    options = parser.parse_args()
+    options.output.parent.mkdir(parents=True, exist_ok=True)
+    wanted = sample(options.points, options.seed)
+    known = options.output.read_text().splitlines() if options.output.exists() else []
+    lines = {tuple(line["point"]): line for line in map(json.loads, known)}
+    with ProcessPoolExecutor(options.workers) as pool, options.output.open("a") as file:
+        jobs = [pool.submit(examine, point) for point in wanted if point not in lines]
+        for done, job in enumerate(as_completed(jobs), start=1):
+            line = job.result()
+            lines[tuple(line["point"])] = line
+            file.write(json.dumps(line) + "\n")
+            file.flush()
+            print(f"\r{done} of {len(jobs)} points", end="", flush=True)
+    table = summary([lines[point] for point in wanted])
+    print("\n" + table)
+    if options.markdown:
+        options.markdown.write_text(table)
+
+
+if __name__ == "__main__":
+    main()
