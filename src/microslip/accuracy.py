@@ -26,8 +26,6 @@ RESOLVED = 0.1
 """Share of the tolerance below which no axis claims its error to be: nothing was run to see it."""
 SCATTER = 0.5
 """Share of the correction in time that its scatter may do to the differences of other chains."""
-FEWEST_RUNS = 3
-"""Runs that an error is estimated from."""
 MOST_REBASED = 6
 REBASED_TOGETHER = {"steps": ("steps",), "angles": ("cells", "angles")}
 """Axes whose base is refined where corrections do not add up, by the cause."""
@@ -39,14 +37,16 @@ class Axis:
     """One axis of refinement.
 
     levels: resolutions, increasing; base: index of the one that the chains of other axes are run
-    at; first: indices of the runs to start with, three of them, the base among them.
-    imposed: the last level is what was asked for, and its error is only reported.
+    at; first: indices of the runs to start with, as many as the error is estimated from, at least three.
+    regular: the error falls smoothly, with the second power of the levels, so that it can be
+    extrapolated; imposed: the last level is what was asked for, and its error is only reported.
     """
 
     name: str
     levels: tuple[int, ...]
     base: int
     first: tuple[int, ...]
+    regular: bool = False
     imposed: bool = False
 
 
@@ -114,7 +114,7 @@ class _Chain:
     def rebase(self):
         """Go on from a new base, with no more runs than the error needs, up to the base at least."""
         last = max(self.indices[-1], self.runs.base[self.axis.name])
-        self.indices = list(range(max(last - FEWEST_RUNS + 1, 0), last + 1))
+        self.indices = list(range(max(last + 1 - len(self.axis.first), 0), last + 1))
 
     def refine(self):
         """One more run; False if there is no finer level."""
@@ -127,7 +127,7 @@ class _Chain:
         """What the chain adds to the value at the base."""
         values = self.values(name)
         added = values[-1] - getattr(self.runs(), name)
-        if self.axis.name == "cells" and not self.axis.imposed:
+        if self.axis.regular:
             added += _extrapolation(values, self.levels)
         return added
 
@@ -136,8 +136,9 @@ class _Chain:
         values, levels = self.values(name), self.levels
         if self.axis.imposed:
             return abs(values[-1] - values[-2])
-        if self.axis.name != "cells":
-            return max(values[-3:]) - min(values[-3:])
+        if not self.axis.regular:
+            last = values[-len(self.axis.first) :]
+            return max(last) - min(last)
         beyond = _extrapolation(values, levels)
         before = _extrapolation(values[:-1], levels[:-1])
         change = values[-1] + beyond - values[-2] - before

@@ -82,7 +82,7 @@ def plan(scene, name, velocity, amplitude, poisson, tolerance, cells=None, steps
         axes.append(_cells(scene, name, velocity, amplitude, poisson, cells))
     if angular:
         # only nu > 0 makes tractions of a translation depend on the angle, and only a little
-        base = ANGLES.index(BASE_ANGLES) - (0 if scene.rotates else 1)
+        base = ANGLES.index(BASE_ANGLES) + (not scene.periodic) - (not scene.rotates)
         axes.append(Axis("angles", ANGLES, base, (base - 1, base, base + 1)))
     if scene.periodic and velocity > 0.0:
         axes.append(_steps(scene, amplitude, poisson, tolerance, steps))
@@ -94,10 +94,15 @@ def _cells(scene, name, velocity, amplitude, poisson, imposed):
     if imposed is not None:
         return Axis("cells", (imposed // 2, imposed), 1, (0, 1), imposed=True)
     if name == "cartesian":  # no regular convergence: cells at the edge come and go
-        return Axis("cells", SQUARES, 1, (0, 1, 2))
+        return Axis("cells", SQUARES, 1, (0, 1, 2), regular=True)
     base = RINGS.index(BASE_RINGS)
-    slow = scene.periodic and scene.creep(velocity, amplitude, poisson) < SLOW_CREEP
-    return Axis("cells", RINGS, base, (base - 1, base, base + 1) if slow else (0, 1, base))
+    if not scene.periodic:  # the centre of rotation stays where it is, and only fine rings see it
+        return Axis("cells", RINGS, base + 1, (base, base + 1, base + 2), regular=True)
+    if velocity == 0.0:  # a stick zone that is not circular cuts rings, and the corners are steep
+        return Axis("cells", RINGS, base + 2, tuple(range(base, base + 6)))
+    slow = scene.creep(velocity, amplitude, poisson) < SLOW_CREEP
+    first = (base - 1, base, base + 1) if slow else (base - 2, base - 1, base)
+    return Axis("cells", RINGS, base, first, regular=True)
 
 
 def _steps(scene, amplitude, poisson, tolerance, imposed):
