@@ -214,7 +214,7 @@ def half_period(scene, velocity, amplitude, nu, steps, integrator=SDIRK2):
     def displacement(phase):
         return scene.displacement(phase, velocity, amplitude, nu)
 
-    return make_path(displacement, half_period_phases(steps), integrator)
+    return make_path(displacement, half_period_phases(steps, 0.4), integrator)
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS.values(), ids=INTEGRATORS)

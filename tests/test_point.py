@@ -20,7 +20,7 @@ def reference(scene, velocity, amplitude, nu):
     axis by itself, each periodic state ten times closer and searched for from scratch."""
     kind = SCENES[scene]
     model = "polar" if kind.rotates or nu > 0 else "radial"
-    cells, angles, steps = (24, 1, 128) if model == "radial" else (12, 8, 32)
+    cells, angles, steps = (24, 1, 128) if model == "radial" else (16, 8, 32)
 
     def mean(*resolution):
         run = simulate(kind, velocity, amplitude, nu, model, Resolution(*resolution), 3e-6)
@@ -352,7 +352,8 @@ def test_unmet_tolerance_is_said():
     """Squares no finer than the last level cannot certify one part in a million."""
     result = microslip.solve("continuous-bore", 0.5, model="rigid", tolerance=1e-6)
     assert not result.converged and "error over" in result.reason
-    assert result.mu_macro == pytest.approx(theory.bore_forward(0.5), abs=1e-4)
+    error = abs(result.mu_macro - theory.bore_forward(0.5))
+    assert 1e-6 < error < result.mu_macro_error < 1e-3
 
 
 def test_warm_up_leaves_a_working_solver():

@@ -217,7 +217,8 @@ def _errors(runs, chains, hidden, tolerance):
     """Errors of mu by source."""
     errors = {"space": hidden["angles"], "time": hidden["steps"]}
     for name, chain in chains.items():
-        errors[SOURCES[name]] += max(chain.error("mu"), RESOLVED * tolerance)
+        floor = 0.0 if chain.axis.imposed else RESOLVED * tolerance
+        errors[SOURCES[name]] += max(chain.error("mu"), floor)
     done = runs.done.values()
     errors["periodicity"] = float(max(r.distance for r in done))
     errors["solver"] = float(max(r.solver_residual for r in done))

@@ -122,7 +122,7 @@ def solve(
     return Result(
         **point,
         model=name,
-        mu_macro=min(certified.mu, 1.0) if math.isfinite(certified.mu) else math.nan,
+        mu_macro=min(max(certified.mu, 0.0), 1.0) if math.isfinite(certified.mu) else math.nan,
         mu_macro_error=certified.error,
         **{f"error_{source}": error for source, error in certified.errors.items()},
         mu_torque=certified.torque if steady else None,
