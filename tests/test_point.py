@@ -63,7 +63,7 @@ def test_certificate_covers_a_much_finer_reference(scene, velocity, amplitude, n
     expected, allowance = reference(scene, velocity, amplitude, nu)
     assert allowance < 6e-4
     assert abs(result.mu_macro - expected) <= result.mu_macro_error + allowance
-    sources = ("space", "time", "periodicity", "solver")
+    sources = ("space", "time", "periodicity", "solver", "model")
     shares = [getattr(result, f"error_{source}") for source in sources]
     assert result.mu_macro_error == pytest.approx(sum(shares), rel=1e-12)
     assert min(shares) >= 0.0

@@ -37,7 +37,8 @@ class Axis:
     """One axis of refinement.
 
     levels: resolutions, increasing; base: index of the one that the chains of other axes are run
-    at; first: indices of the runs to start with, as many as the error is estimated from, at least three.
+    at; first: indices of the runs to start with, as many as the error is estimated from, at least
+    three.
     regular: the error falls smoothly, with the second power of the levels, so that it can be
     extrapolated; imposed: the last level is what was asked for, and its error is only reported.
     """
@@ -76,7 +77,7 @@ class Certified:
 
 
 class _Runs:
-    """Runs at (cells, angles, steps) given as indices into the levels of the axes, each run once."""
+    """Runs at (cells, angles, steps), given as indices into the levels of the axes; each once."""
 
     def __init__(self, run, coarsest, axes):
         self.run, self.coarsest, self.axes = run, coarsest, {axis.name: axis for axis in axes}
@@ -112,7 +113,7 @@ class _Chain:
         return [getattr(self.runs(**{self.axis.name: index}), name) for index in self.indices]
 
     def rebase(self):
-        """Go on from a new base, with no more runs than the error needs, up to the base at least."""
+        """Go on from a new base: no more runs than the error needs, up to the base at least."""
         last = max(self.indices[-1], self.runs.base[self.axis.name])
         self.indices = list(range(max(last + 1 - len(self.axis.first), 0), last + 1))
 

@@ -115,7 +115,7 @@ def coupling_kernels(r, s, toroidal, out):
 
 @njit(**JIT)
 def _kernels(r, s, n_modes, coupled, torus, pair):
-    """Fill torus[m] = G_m and, if coupled, pair[j] = C_{j+1}; returns torus (enlarged if needed)."""
+    """Fill torus[m] = G_m and, if coupled, pair[j] = C_{j+1}; returns torus, perhaps enlarged."""
     top = n_modes
     if coupled:
         top = n_modes + 2
@@ -133,7 +133,7 @@ def _kernels(r, s, n_modes, coupled, torus, pair):
 
 @njit(**JIT)
 def _close_pair(edges_i, edges_j, n_modes, coupled, outer, inner, hertz, near, far):
-    """Average the kernels over ring i (outer rule) and ring j (inner rule); angles psi, r = sin psi.
+    """Average kernels over ring i (outer rule) and ring j (inner rule); angles psi, r = sin psi.
 
     Adds to near[m] and far[m] the averages of G_m and C_{m+1} weighted with the ring shapes
     (normalised to unit weight Integral shape r dr = 1 on each ring).

@@ -23,11 +23,12 @@ CLOSED_FORM = "closed-form"
 class Result:
     """Friction at one point, and how far to trust it.  All numbers dimensionless.
 
-    mu_macro: mean forward force over mu F_z; mu_macro_error: sum of the four error estimates that
-    follow it; mu_torque, mu_torque_error: torque over its value at zero forward velocity (steady
-    scenes only, else None); cells, angles, steps_per_period: finest resolution used (angles: points
-    on half the disc, 1 where rings or squares suffice); periods: longest march, in half periods;
-    iterations, work: step-solver iterations, and step solves x unknowns, over all runs.
+    mu_macro: mean forward force over mu F_z; mu_macro_error: sum of the five errors that follow it
+    (error_model: of a closed form, else 0); mu_torque, mu_torque_error: torque over its value at
+    zero forward velocity (steady scenes only, else None); cells, angles, steps_per_period: finest
+    resolution used (angles: points on half the disc, 1 where rings or squares suffice); periods:
+    longest march, in half periods; iterations, work: step-solver iterations, and step solves x
+    unknowns, over all runs.
     """
 
     scene: str
@@ -42,6 +43,7 @@ class Result:
     error_time: float
     error_periodicity: float
     error_solver: float
+    error_model: float
     mu_torque: float | None
     mu_torque_error: float | None
     converged: bool
@@ -125,6 +127,7 @@ def solve(
         mu_macro=min(max(certified.mu, 0.0), 1.0) if math.isfinite(certified.mu) else math.nan,
         mu_macro_error=certified.error,
         **{f"error_{source}": error for source, error in certified.errors.items()},
+        error_model=0.0,
         mu_torque=certified.torque if steady else None,
         mu_torque_error=certified.torque_error + certified.errors["periodicity"]
         if steady
@@ -188,7 +191,8 @@ def _exact_result(point, values, seconds):
         error_space=0.0,
         error_time=0.0,
         error_periodicity=0.0,
-        error_solver=error,
+        error_solver=0.0,
+        error_model=error,
         mu_torque=torque,
         mu_torque_error=None if torque is None else error,
         converged=True,

@@ -45,7 +45,10 @@ def make_rings(count, focus=None):
     """
     if count < 2:
         raise ValueError(f"cells = {count}: allowed is a whole number of at least 2 rings")
-    psi = np.linspace(0.0, np.pi / 2, count + 1) if focus is None else _focused(count, _as_focus(focus))
+    if focus is None:
+        psi = np.linspace(0.0, np.pi / 2, count + 1)
+    else:
+        psi = _focused(count, _as_focus(focus))
     radii = np.sin(psi)
     # Integral of sin^2 cos^2 over each ring is the first moment of the bound
     moment = np.diff(psi / 8 - np.sin(4 * psi) / 32)
