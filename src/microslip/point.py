@@ -208,9 +208,11 @@ def _exact_result(point, values, seconds):
 
 
 def warm_up():
-    """Compile every kernel once (and leave it in Numba's cache); takes seconds the first time."""
+    """Compile the kernels of the automatic models (and leave them in Numba's cache).
+
+    Takes a while the first time; squares are compiled when they are first used.
+    """
     solve("transverse", 0.5, 0.5, tolerance=1e-2)
     solve("transverse", 0.5, 0.5, poisson=0.3, tolerance=1e-2)
     solve("bore", 0.5, 0.5, tolerance=1e-2)
-    solve("transverse", 0.5, 0.5, model="cartesian", cells=4, steps=8, tolerance=1e-1)
     solve("continuous-bore", 0.5, tolerance=1e-2)
