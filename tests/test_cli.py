@@ -7,10 +7,12 @@ import sys
 import pytest
 
 import microslip
+from microslip import cli
 
 CONTRACT = {
     "scene",
     "velocity",
+    "amplitude",
     "poisson",
     "model",
     "mu_macro",
@@ -61,10 +63,12 @@ def test_json_is_the_answer_of_solve_and_nothing_else(scene, arguments):
     assert done.stdout.count("\n") == 1
     fields = json.loads(done.stdout)
     assert fields.keys() >= CONTRACT
-    assert ("amplitude" in fields) == ("mu_torque" not in fields) == (scene != "continuous-bore")
+    steady = scene == "continuous-bore"
+    assert (fields["amplitude"] is None) == ("mu_torque" in fields) == steady
     assert fields["converged"] is True
     velocity, amplitude = arguments.pop("velocity"), arguments.pop("amplitude", None)
     expected = microslip.solve(scene, velocity, amplitude, **arguments).to_dict()
+    expected = {"amplitude": None} | expected
     for answer in (fields, expected):  # equal to the last bit, the time apart
         answer.pop("solve_time_s")
     assert fields == expected
@@ -166,3 +170,14 @@ def test_help_and_bad_options_do_not_load_the_solver():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
     assert done.returncode == 0
+
+
+def test_a_negative_number_with_an_exponent_is_a_number(capsys):
+    """argparse by itself takes it for an option."""
+    assert cli.main(["point", "transverse", "--velocity", "-1e-3", "--amplitude", "1"]) == 2
+    assert "velocity = -0.001" in capsys.readouterr().err
+
+
+def test_a_steady_scene_has_no_amplitude(capsys):
+    assert cli.main(["point", "continuous-bore", "--velocity", "2", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["amplitude"] is None

@@ -97,7 +97,8 @@ def _add_options(parser):
 
 def main(arguments=None):
     """Entry point.  Exit codes: 0 converged, 1 not converged, 2 bad input."""
-    options = build_parser().parse_args(arguments)
+    arguments = sys.argv[1:] if arguments is None else arguments
+    options = build_parser().parse_args(_joined(arguments))
     from microslip.point import solve  # only now: --help and bad options need no solver
 
     progress = _Progress(enabled=sys.stderr.isatty())
@@ -119,10 +120,29 @@ def main(arguments=None):
         return 2
     progress.close()
     if options.json:
-        print(json.dumps(_json_ready(result.to_dict())))
+        print(json.dumps({"amplitude": None} | _json_ready(result.to_dict())))
     else:
         print(_as_text(result))
     return 0 if result.converged else 1
+
+
+def _joined(arguments):
+    """Options and negative numbers as one word: argparse takes -1e-3 for an option."""
+    out = []
+    for word in arguments:
+        if word.startswith("-") and out and out[-1].startswith("--") and _is_number(word):
+            out[-1] += f"={word}"
+        else:
+            out.append(word)
+    return out
+
+
+def _is_number(word):
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
 
 
 class _Progress:

@@ -88,7 +88,7 @@ def history(
     )
 
 
-def traction_field(scene, velocity, amplitude=None, *, poisson=0.0, cells=None, steps=None):
+def traction_field(scene, velocity, amplitude=None, *, poisson=0.0, cells=None):
     """Steady tractions of the continuous bore on the whole disc, computed by the polar model.
 
     Returns a dict of 1-D arrays over points (lateral_position, forward_position over a;
