@@ -26,7 +26,7 @@ HISTORIES_OF_SWEEP = {
 }
 # What microslip.models refuses, which takes too long to import here; a test keeps them the same.
 MODELS_OF_SCENE = {
-    "transverse": ("auto", "rigid", "slider", "radial", "polar", "cartesian"),
+    "transverse": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
     "bore": ("auto", "rigid", "polar", "cartesian"),
     "continuous-bore": ("auto", "rigid", "polar", "cartesian"),
 }

@@ -4,12 +4,15 @@
 |-----------|--------------------|--------------------|------------------------------------|
 | rigid     | approximate, Eq 6  | approximate, Eq 6  | approximate, Eq 29 (steady: exact) |
 | slider    | approximate, Eq 7  | approximate        | not applicable: it cannot turn     |
+| dahl      | approximate        | approximate        | not applicable: it cannot turn     |
+| mdr       | approximate        | approximate        | not applicable: it cannot turn     |
 | radial    | exact (rings)      | not applicable     | not applicable                     |
 | polar     | exact              | exact              | exact (rings x angular modes)      |
 | cartesian | exact              | exact              | exact (squares, any outline)       |
 
 "Exact" means: converges to the solution of the contact problem as its cells and steps are refined;
-"approximate": leaves out elasticity or partial slip, and no refinement brings it back.
+"approximate": leaves out elasticity, partial slip or how points of the contact act on each other,
+and no refinement brings it back.
 
 Every model that marches keeps the contract of ``models.contact.Contact``.  A new one is a file
 beside these and a row in ``MODELS``.
@@ -21,6 +24,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from microslip.models.cartesian import CartesianContact
+from microslip.models.dahl import DahlContact
+from microslip.models.mdr import mdr_contact
 from microslip.models.polar import PolarContact
 from microslip.models.radial import RadialContact
 from microslip.models.rigid import RigidContact
@@ -49,6 +54,10 @@ def _refuse_rotation_and_poisson(scene, poisson):
     return "rings alone cannot resolve nu > 0" if poisson > 0.0 else ""
 
 
+def _refuse_rotation(scene, poisson):
+    return "it has no extension that could turn" if scene.rotates else ""
+
+
 MODELS = {
     "rigid": Model(
         build=lambda scene, poisson, cells, angles, focus: RigidContact(
@@ -61,9 +70,21 @@ MODELS = {
     ),
     "slider": Model(
         build=lambda scene, poisson, cells, angles, focus: slider_contact(),
-        refuses=lambda scene, poisson: "a single slider cannot turn" if scene.rotates else "",
+        refuses=_refuse_rotation,
         exact=lambda scene: False,
         cells=1,
+    ),
+    "dahl": Model(
+        build=lambda scene, poisson, cells, angles, focus: DahlContact(),
+        refuses=_refuse_rotation,
+        exact=lambda scene: False,
+        cells=1,
+    ),
+    "mdr": Model(
+        build=lambda scene, poisson, cells, angles, focus: mdr_contact(cells, focus),
+        refuses=_refuse_rotation,
+        exact=lambda scene: False,
+        cells=8,
     ),
     "radial": Model(
         build=lambda scene, poisson, cells, angles, focus: RadialContact.resolved(cells, focus),

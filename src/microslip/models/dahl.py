@@ -1,0 +1,58 @@
+"""The Dahl model in two directions (Tsai and Tseng 2005): a bristle that creeps under any load.
+
+    dF/dt = k (dw/dt - |dw/dt| F),        |F| <= 1,
+
+k the stiffness of the contact without slip.  It has the contact's stiffness and its friction bound
+and nothing in between: no stick, so an infinitely slow motion meets no resistance once the contact
+vibrates at all.  Along a straight piece of the path the equation has a closed solution, and the
+march is linear in its start.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.models import contact
+
+STIFFNESS = contact.UNIT_STIFFNESS
+
+
+class DahlContact:
+    """A single bristle (see models.contact.Contact); states have shape (2, 1, 1)."""
+
+    has_sensitivity = True
+    has_memory = False  # no point of it ever sticks: nothing is left of it in the static limit
+    angles = 1
+
+    def __init__(self):
+        self.bound = self.weight = np.ones(1)
+        self.compliance = np.full(1, 1.0 / STIFFNESS)
+        self.forward_position = self.lateral_position = np.zeros((1, 1))
+
+    def displacement(self, state):
+        """Deflection of the bristle, shape (2, 1, 1)."""
+        return state / STIFFNESS
+
+    def mirrored(self, state):
+        """Lateral traction negated."""
+        return state * np.array([1.0, -1.0])[:, None, None]
+
+    def march(self, path, state, tolerance, sensitivity=False, previous=None):
+        """Solve along ``path``, straight from phase to phase (translations only)."""
+        moves = np.diff(path.positions()[:, :2], axis=0)
+        lengths = np.hypot(*moves.T)
+        forces = np.zeros((path.steps + 1, 3))
+        forces[0, :2] = traction = state.ravel()
+        for k, (move, length) in enumerate(zip(moves, lengths, strict=True)):
+            if length > 0.0:
+                end = move / length
+                traction = end + (traction - end) * np.exp(-STIFFNESS * length)
+            forces[k + 1, :2] = traction
+        return contact.March(
+            state=traction.reshape(2, 1, 1),
+            forces=forces,
+            residual=0.0,
+            iterations=0,
+            solves=path.steps,
+            sensitivity=np.exp(-STIFFNESS * lengths.sum()) * np.eye(2) if sensitivity else None,
+        )

@@ -1,0 +1,118 @@
+"""The models that leave something out, against what they must still get right."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+
+import microslip
+from microslip import hertz, theory
+from microslip.models.contact import forces
+from microslip.models.dahl import STIFFNESS, DahlContact
+from microslip.models.mdr import mdr_contact
+from microslip.models.radial import RadialContact
+from microslip.path import EULER, make_path
+
+
+def straight(displacements):
+    """Path through lateral displacements (u_lim), one Euler step each."""
+    displacements = np.asarray(displacements, dtype=float)
+
+    def displacement(phase):
+        lateral = np.interp(phase, np.arange(len(displacements)), displacements)
+        return 0.0 * phase, lateral, 0.0 * phase
+
+    return make_path(displacement, np.arange(len(displacements)), EULER)
+
+
+@pytest.mark.parametrize("u", [0.1, 0.4, 0.75, 0.99, 1.5])
+def test_springs_in_a_row_load_like_the_half_space(u):
+    """Cattaneo and Mindlin, with an error of second order in the springs."""
+    for cells in (16, 64):
+        contact = mdr_contact(cells)
+        march = contact.march(straight([0.0, u]), np.zeros((2, 1, cells)), 1e-13)
+        expected = hertz.mindlin_force(min(u, 1.0))
+        assert march.forces[-1, 1] == pytest.approx(expected, abs=0.5 / cells**2)
+
+
+def test_springs_in_a_row_unload_by_masings_rule():
+    path = straight([0.0, 0.8, 0.3])
+    loops = []
+    for contact in (mdr_contact(128), RadialContact.resolved(64)):
+        state = np.zeros((2, 1, len(contact.bound)))
+        loops.append(contact.march(path, state, 1e-12).forces[:, 1])
+    first, turn = hertz.mindlin_force(0.8), 2.0 * hertz.mindlin_force(0.25)
+    assert loops[0][1:] == pytest.approx([first, first - turn], abs=2e-4)
+    assert loops[0] == pytest.approx(loops[1], abs=1e-3)
+
+
+@pytest.mark.parametrize("amplitude", [0.25, 0.5, 0.75])
+def test_static_limit_of_springs_in_a_row(amplitude):
+    """Each spring keeps sqrt(bound^2 - (G* y)^2) for the forward direction."""
+    found = microslip.solve("transverse", 0.0, amplitude, model="mdr")
+    stick = np.sqrt(1.0 - amplitude)
+    expected = quad(lambda x: 1.5 * np.sqrt((1 - x * x) ** 2 - amplitude**2), 0.0, stick)[0]
+    assert found.converged
+    assert abs(found.mu_macro - expected) <= found.mu_macro_error + 1e-9
+    assert abs(expected - theory.static_limit_transverse(amplitude)) > 5e-3  # not the half-space's
+
+
+def test_springs_in_a_row_come_close_to_the_rings():
+    """What they leave out is worth some percent of the friction, and shrinks with fast sliding."""
+    apart = []
+    for velocity in (0.03, 0.3, 3.0):
+        rows, rings = (
+            microslip.solve("transverse", velocity, 0.7, model=model).mu_macro
+            for model in ("mdr", "radial")
+        )
+        apart.append(abs(rows - rings))
+    assert apart[0] < 0.03 and apart[2] < 0.2 * apart[0]
+
+
+def test_a_bristle_loads_exponentially():
+    march = DahlContact().march(straight([0.0, 0.2, 0.7]), np.zeros((2, 1, 1)), 1e-12)
+    expected = 1.0 - np.exp(-STIFFNESS * np.array([0.0, 0.2, 0.7]))
+    assert march.forces[:, 1] == pytest.approx(expected, rel=1e-13)
+    # the same stiffness at first as the half-space
+    slope = (hertz.mindlin_force(1e-6) - hertz.mindlin_force(0.0)) / 1e-6
+    assert slope == pytest.approx(STIFFNESS, rel=1e-5)
+
+
+@pytest.mark.parametrize(("velocity", "amplitude"), [(0.05, 0.5), (0.5, 2.0), (2.0, 1.0)])
+def test_a_bristle_solves_its_differential_equation(velocity, amplitude):
+    found = microslip.solve("transverse", velocity, amplitude, model="dahl", tolerance=1e-4)
+
+    def rate(phase, force):
+        motion = np.array([velocity, amplitude * np.cos(phase)])
+        return STIFFNESS * (motion - np.hypot(*motion) * force)
+
+    periods = 4 + int(2.0 / min(velocity, 1.0))
+    times = np.linspace(0.0, 2 * np.pi, 4001) + 2 * np.pi * periods
+    solved = solve_ivp(rate, (0.0, times[-1]), [1.0, 0.0], t_eval=times, rtol=1e-9, atol=1e-11)
+    expected = np.trapezoid(solved.y[0], times) / (2 * np.pi)
+    assert found.converged and abs(found.mu_macro - expected) <= found.mu_macro_error
+
+
+def test_a_bristle_resists_no_infinitely_slow_motion():
+    assert microslip.solve("transverse", 0.0, 0.1, model="dahl").mu_macro == 0.0
+    slow = microslip.solve("transverse", 1e-4, 0.5, model="dahl")
+    assert slow.converged and slow.mu_macro < 1e-3
+
+
+@pytest.mark.parametrize("model", ["slider", "dahl", "mdr"])
+def test_long_strokes_make_all_models_rigid(model):
+    found = microslip.solve("transverse", 20.0, 60.0, model=model)
+    expected = theory.large_amplitude_transverse(20.0, 60.0)
+    assert found.converged and found.mu_macro == pytest.approx(expected, abs=0.02)
+
+
+@pytest.mark.parametrize("model", ["dahl", "mdr"])
+def test_what_has_no_extension_cannot_turn(model):
+    for scene, amplitude in (("bore", 1.0), ("continuous-bore", None)):
+        with pytest.raises(ValueError, match="model"):
+            microslip.solve(scene, 0.5, amplitude, model=model)
+
+
+def test_full_slip_carries_the_whole_friction():
+    for contact in (mdr_contact(7, 0.6), DahlContact()):
+        ones = np.ones((1, len(contact.bound)))
+        assert forces(contact, np.stack([ones, 0.0 * ones]) * contact.bound)[0] == pytest.approx(1.0)
