@@ -1,0 +1,255 @@
+"""What is run for a point: the model, the closed forms that spare a run, the resolutions."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import microslip
+from microslip import theory
+from microslip.choice import choose_model, closed_form, plan
+from microslip.models import MODELS
+from microslip.scenes import BORE, CONTINUOUS_BORE, SCENES, TRANSVERSE
+from microslip.simulate import Resolution, simulate, simulate_static
+
+TURNING = {"rigid", "polar", "cartesian"}
+WITH_CELLS = {"mdr", "radial", "polar", "cartesian"}
+"""Models that have points off the axis to turn, and those that are refined for a translation."""
+
+# The model
+
+
+@pytest.mark.parametrize(
+    ("scene", "poisson", "expected"),
+    [
+        (TRANSVERSE, 0.0, "radial"),
+        (TRANSVERSE, 1e-12, "polar"),
+        (TRANSVERSE, 0.5, "polar"),
+        *((scene, nu, "polar") for scene in (BORE, CONTINUOUS_BORE) for nu in (0.0, 0.3, 0.5)),
+    ],
+)
+def test_cheapest_exact_model_is_chosen(scene, poisson, expected):
+    chosen = choose_model(scene, poisson)
+    assert chosen == expected
+    assert MODELS[chosen].exact(scene) and not MODELS[chosen].refuses(scene, poisson)
+
+
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+@pytest.mark.parametrize("poisson", [0.0, 0.3])
+def test_models_asked_for_are_taken_or_refused(scene, poisson):
+    if scene.rotates:
+        applicable = TURNING
+    else:
+        applicable = MODELS.keys() - ({"radial"} if poisson > 0.0 else set())
+    for name in MODELS:
+        if name not in applicable:
+            with pytest.raises(ValueError, match=f"^model = '{name}': .*{scene.name}"):
+                choose_model(scene, poisson, name)
+        else:
+            assert choose_model(scene, poisson, name) == name
+
+
+@pytest.mark.parametrize(
+    "model", ["best", "", "AUTO", None, ["radial"], {}, ("auto",), 3, 0.5, b""]
+)
+def test_unknown_models_are_refused(model):
+    for scene in SCENES.values():
+        with pytest.raises(ValueError, match="^model = .*auto.*radial"):
+            choose_model(scene, 0.0, model)
+
+
+# Closed forms
+
+
+@pytest.mark.parametrize("scene", [TRANSVERSE, BORE], ids=lambda scene: scene.name)
+@pytest.mark.parametrize("poisson", [0.0, 0.5])
+def test_no_vibration_needs_no_run(scene, poisson):
+    for velocity in (0.0, 1e-6, 1.0, 1e3):
+        result = microslip.solve(scene.name, velocity, 0.0, poisson=poisson)
+        assert (result.model, result.mu_macro) == ("closed-form", 1.0)
+        assert 0.0 < result.mu_macro_error <= 1e-9 and result.cells == 0
+
+
+@pytest.mark.parametrize(
+    ("scene", "amplitude", "poisson"),
+    [("transverse", 0.3, 0.0), ("transverse", 0.8, 0.0), ("bore", 0.7, 0.0), ("bore", 2.0, 0.4)],
+)
+def test_vanishing_velocity_needs_no_run(scene, amplitude, poisson):
+    result = microslip.solve(scene, 0.0, amplitude, poisson=poisson)
+    assert result.model == "closed-form" and result.cells == 0
+    model = "polar" if scene == "bore" else "radial"
+    coarse, fine = (
+        simulate_static(SCENES[scene], amplitude, poisson, model, Resolution(cells, 24, 0), 1e-8).mu
+        for cells in (24, 48)
+    )
+    expected = fine + (fine - coarse) / 3.0
+    assert result.mu_macro == pytest.approx(expected, abs=max(1e-5, abs(fine - coarse)))
+
+
+def test_vanishing_velocity_is_computed_where_no_form_is_known():
+    assert closed_form(TRANSVERSE, 0.0, 0.5, 0.3, 1e-2) is None
+    result = microslip.solve("transverse", 0.0, 0.5, poisson=0.3, tolerance=1e-2)
+    assert result.model == "polar" and result.cells > 0
+    # nu changes the tractions, but not what Mindlin's theory makes of them by much
+    assert result.mu_macro == pytest.approx(theory.static_limit_transverse(0.5), abs=2e-2)
+
+
+def test_pure_rotation_needs_no_run():
+    assert closed_form(CONTINUOUS_BORE, 0.0, None, 0.3, 1e-6)[:2] == (0.0, 1.0)
+    assert closed_form(CONTINUOUS_BORE, 1e3, None, 0.3, 1e-1) is None
+    result = microslip.solve("continuous-bore", 0.0, model="polar", tolerance=1e-2)
+    assert result.model == "polar" and result.cells > 0
+    assert result.mu_macro == pytest.approx(0.0, abs=1e-2)
+    assert result.mu_torque == pytest.approx(1.0, abs=1e-2)
+
+
+def fast(scene, amplitude, tolerance):
+    """Velocity at which half the bracket of bounds.py is the tolerance."""
+    if scene is TRANSVERSE:
+        return amplitude * math.sqrt(0.5 / tolerance - 0.5)
+    return 1.0 + math.sqrt(0.1 / tolerance)
+
+
+@pytest.mark.parametrize("scene", [TRANSVERSE, BORE], ids=lambda scene: scene.name)
+@pytest.mark.parametrize("tolerance", [1e-1, 1e-3, 1e-6])
+def test_fast_sliding_needs_no_run_and_not_before(scene, tolerance):
+    for amplitude, poisson in ((1e-6, 0.0), (0.4, 0.3), (1e3, 0.5)):
+        velocity = fast(scene, amplitude, tolerance)
+        assert closed_form(scene, velocity * (1 - 1e-6), amplitude, poisson, tolerance) is None
+        known = closed_form(scene, velocity * (1 + 1e-5), amplitude, poisson, tolerance)
+        mu, torque, error = known
+        assert torque is None and error == pytest.approx(tolerance, rel=1e-4)
+        assert error <= tolerance
+        # the middle of the bracket whose upper end is full friction
+        assert mu + error == pytest.approx(1.0, abs=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("scene", "amplitude", "poisson"),
+    [(TRANSVERSE, 0.2, 0.0), (TRANSVERSE, 4.0, 0.0), (TRANSVERSE, 1.0, 0.3), (BORE, 0.5, 0.3)],
+)
+@pytest.mark.parametrize("tolerance", [5e-2, 2e-3])
+def test_fast_sliding_is_covered(scene, amplitude, poisson, tolerance):
+    velocity = fast(scene, amplitude, tolerance)
+    for factor in (1.01, 4.0):
+        arguments = (scene.name, factor * velocity, amplitude)
+        result = microslip.solve(*arguments, poisson=poisson, tolerance=tolerance)
+        assert result.model == "closed-form" and result.converged
+        assert result.mu_macro_error <= tolerance
+        model = choose_model(scene, poisson)
+        run = microslip.solve(*arguments, poisson=poisson, model=model, tolerance=1e-4)
+        assert run.model == model and run.converged
+        apart = abs(run.mu_macro - result.mu_macro)
+        assert apart <= result.mu_macro_error + run.mu_macro_error
+    before = microslip.solve(
+        scene.name, 0.99 * velocity, amplitude, poisson=poisson, tolerance=tolerance
+    )
+    assert before.model == choose_model(scene, poisson)
+
+
+def test_a_model_asked_for_is_run_where_a_form_is_known():
+    fast_one = microslip.solve("transverse", 1e3, 1.0, model="radial")
+    slow_one = microslip.solve("transverse", 0.0, 0.5, model="radial")
+    assert fast_one.model == slow_one.model == "radial"
+    assert fast_one.cells > 0 and slow_one.cells > 0
+    assert fast_one.mu_macro == pytest.approx(1.0, abs=2e-3)
+    assert slow_one.mu_macro == pytest.approx(theory.static_limit_transverse(0.5), abs=2e-3)
+
+
+# Resolutions
+
+
+decades = st.floats(-6.0, 3.0).map(lambda x: 10**x)
+points = st.tuples(
+    st.sampled_from(list(SCENES.values())),
+    st.one_of(st.just(0.0), decades),
+    decades,
+    st.sampled_from([0.0, 0.3, 0.5]),
+    st.floats(-6.0, -1.0).map(lambda x: 10**x),
+    st.sampled_from(["auto", *MODELS]),
+)
+
+
+def planned(point, **imposed):
+    """(coarsest, axes by name), or None if the model does not apply."""
+    scene, velocity, amplitude, poisson, tolerance, model = point
+    try:
+        name = choose_model(scene, poisson, model)
+    except ValueError:
+        return None
+    amplitude = amplitude if scene.periodic else None
+    coarsest, axes = plan(scene, name, velocity, amplitude, poisson, tolerance, **imposed)
+    assert len({axis.name for axis in axes}) == len(axes)
+    return coarsest, {axis.name: axis for axis in axes}
+
+
+@settings(max_examples=300, deadline=None, derandomize=True)
+@given(points)
+def test_every_plan_can_be_run(point):
+    found = planned(point)
+    if found is None:
+        return
+    for axis in found[1].values():
+        assert all(level % 2 == 0 for level in axis.levels)
+        assert all(np.diff(axis.levels) > 0) and axis.levels[0] >= 2
+        assert len(axis.first) >= 3
+        assert list(axis.first) == list(range(axis.first[0], axis.first[-1] + 1))
+        assert 0 <= axis.first[0] and axis.first[-1] < len(axis.levels)
+        # the base is one of the first, and has a neighbour for the mixed difference
+        assert axis.first[0] <= axis.base <= axis.first[-1]
+        assert 1 <= axis.base < len(axis.levels) and not axis.imposed
+
+
+@settings(max_examples=200, deadline=None, derandomize=True)
+@given(points)
+def test_axes_are_those_that_the_scene_and_the_model_have(point):
+    found = planned(point)
+    if found is None:
+        return
+    scene, velocity, _, poisson, _, model = point
+    name = choose_model(scene, poisson, model)
+    expected = {"steps"} if scene.periodic and velocity > 0.0 else set()
+    if name in WITH_CELLS or (name == "rigid" and scene.rotates):
+        expected.add("cells")
+    if name == "polar" or (name == "rigid" and scene.rotates):
+        expected.add("angles")
+    assert found[1].keys() == expected
+
+
+def test_tighter_tolerances_start_from_finer_steps():
+    def base(tolerance, amplitude=1.0):
+        _, axes = planned((TRANSVERSE, 0.5, amplitude, 0.0, tolerance, "auto"))
+        return axes["steps"].levels[axes["steps"].base]
+
+    assert base(1e-1) == base(1e-3) < base(1e-4) < base(1e-6)
+    # second order: steps go with the root of the tolerance
+    assert base(1e-5) / base(1e-3) == pytest.approx(10.0, rel=0.4)
+    assert base(1e-3, 9.0) == pytest.approx(3.0 * base(1e-3), rel=0.1)
+
+
+@settings(max_examples=100, deadline=None, derandomize=True)
+@given(points, st.integers(2, 64).map(lambda n: 2 * n), st.integers(4, 64).map(lambda n: 2 * n))
+def test_imposed_resolutions_are_run_beside_their_halves(point, cells, steps):
+    found = planned(point, cells=cells, steps=steps)
+    if found is None:
+        return
+    free = planned(point)[1]
+    assert found[1].keys() == free.keys()
+    for name, wanted in (("cells", cells), ("steps", steps // 2)):
+        if name in free:
+            axis = found[1][name]
+            assert axis.imposed and axis.levels[axis.base] == axis.levels[-1] == wanted
+            assert wanted // 2 == axis.levels[0] and axis.first == (0, 1)
+    if "angles" in free:
+        assert found[1]["angles"] == free["angles"]
+
+
+def test_imposed_resolution_is_that_of_one_run():
+    result = microslip.solve("transverse", 0.01, 0.6, cells=8, steps=24, tolerance=1e-3)
+    finer = simulate(TRANSVERSE, 0.01, 0.6, 0.0, "radial", Resolution(64, 1, 96), 1e-6)
+    run = simulate(TRANSVERSE, 0.01, 0.6, 0.0, "radial", Resolution(8, 1, 12), 1e-6)
+    assert (result.cells, result.steps_per_period) == (8, 24)
+    assert result.mu_macro == pytest.approx(run.mu, abs=1.5e-4)
+    assert abs(finer.mu - run.mu) > 1e-3  # which is not what the tolerance would have chosen
