@@ -15,7 +15,9 @@ LAYERS = [
     {"theory", "bounds", "halfspace", "friction", "path"},
     {"rings", "scenes"},
     {"models"},
-    {"static", "periodic"},
+    {"static", "cycle", "steady"},
+    {"newton", "anderson"},
+    {"periodic"},
     {"simulate"},
     {"accuracy"},
     {"choice"},
@@ -29,7 +31,7 @@ LAYERS = [
     {"cli"},
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
-PHYSICS = {name for names in LAYERS[:10] for name in names}
+PHYSICS = {name for names in LAYERS[:12] for name in names}
 MODULES = sorted(
     path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py") if path.name != "__pycache__"
 )

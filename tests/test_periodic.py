@@ -10,7 +10,7 @@ from microslip.models.contact import energy_norm
 from microslip.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.periodic import find_periodic_state
 from microslip.scenes import BORE, TRANSVERSE
-from microslip.simulate import Resolution, forward_slip, simulate
+from microslip.simulate import Motion, Resolution, build_contact, forward_slip, simulate
 
 TOLERANCE = 1e-5
 STEP_TOLERANCE = 1e-3 * TOLERANCE  # what simulate asks of a step
@@ -75,8 +75,8 @@ def test_found_state_is_that_of_the_plain_march(name, velocity, amplitude):
     resolution = Resolution(cells, angles, STEPS)
     run = simulate(scene, velocity, amplitude, nu, model, resolution, TOLERANCE)
     assert run.converged and run.distance <= TOLERANCE
-    contact = contact_of(name, velocity, amplitude)
-    path = path_of(name, velocity, amplitude)
+    contact = build_contact(scene, velocity, amplitude, nu, model, resolution)
+    path = Motion(scene, velocity, amplitude, nu).path(contact, STEPS)
     stands_still = 1e-7 if model == "cartesian" else 1e-9  # its steps are solved no further
     state, forces = plain_march(contact, path, 0.0 * forward_slip(contact), stands_still)
     assert run.mu == pytest.approx(path.mean(forces[:, 0]), abs=2 * TOLERANCE)

@@ -7,28 +7,30 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from microslip import hertz
+from microslip.cycle import Pace
 from microslip.friction import project
 from microslip.models import MODELS
-from microslip.models.contact import UNIT_STIFFNESS, energy_norm, full_slip
-from microslip.path import EULER, SDIRK2, half_period_phases, make_path, turning_point_grading
-from microslip.periodic import Pace, find_periodic_state
+from microslip.models.contact import UNIT_STIFFNESS
+from microslip.path import half_period_phases, make_path, turning_point_grading
+from microslip.periodic import find_periodic_state
 from microslip.rings import Focus
 from microslip.static import STEPS, static_state
+from microslip.steady import forward_slip, steady_state
 
 STEP_SHARE = 1e-2
 SLOW_STEP_SHARE = 3e-4
 """Tolerance of a step over that of the periodic state: the slower the motion, the less a state
 changes in a period, and the more an error of its steps adds up."""
-STEADY_STRETCH = 8
-"""Steps marched between two looks at whether a steady motion has reached its steady state."""
-STEADY_TRAVEL = 0.5
-"""Largest rigid displacement of a steady motion in one step, in u_lim."""
-MAX_STRETCHES = 200
 SLOW_PUSH = 0.5
 LARGEST_PUSH = 0.1
 """Forward traction added to the static limit's, as a share of the bound, for a start: it grows as
 the friction itself does with the creep in a radian, so that every point slips forward a little too
 much.  From there an accelerated search finds its way down; below, points would only drift."""
+
+COARSENING, COARSEST_STEPS = 8, 12
+COARSE_TOLERANCE = 1e-5
+"""Where marches give derivatives, a search in this many times fewer steps comes first, as long as
+no fewer are left than these, and no tighter than this."""
 
 WEAKEST_FOCUS, STRONGEST_FOCUS, FOCUS_STEP = 0.3, 0.9, 0.1
 """Bounds of rings.Focus.strength.  Slip that is as small as the creep fills a layer around the
@@ -51,8 +53,9 @@ class Run:
     """Outcome of one run: forward friction and torque over their full-slip values, and the effort.
 
     distance: estimated distance from the periodic (steady) state; solver_residual: summed over the
-    last period; both forces over mu F_z.  work: step solves x unknowns.  state: the periodic
-    tractions, where there are any.
+    last period; both forces over mu F_z.  periods, iterations, solves: of all searches together;
+    work: step solves x unknowns.  For other runs of the point: state, the periodic tractions;
+    inverse: see cycle.PeriodicState; static_force: mean forward force of the static limit.
     """
 
     mu: float
@@ -66,6 +69,39 @@ class Run:
     converged: bool
     reason: str
     state: np.ndarray | None = None
+    inverse: np.ndarray | None = None
+    static_force: float = 0.0
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A periodic scene at one point of its parameters."""
+
+    scene: object
+    velocity: float
+    amplitude: float
+    poisson: float
+
+    def displacement(self, phase):
+        """Rigid displacement (forward, lateral, angle) at a phase."""
+        return self.scene.displacement(phase, self.velocity, self.amplitude, self.poisson)
+
+    def oscillation(self, phase):
+        """... without the forward motion."""
+        return self.scene.displacement(phase, 0.0, self.amplitude, self.poisson)
+
+    @property
+    def creep(self):
+        """Forward displacement in one radian of phase, in u_lim."""
+        return self.scene.creep(self.velocity, self.amplitude, self.poisson)
+
+    def path(self, contact, steps):
+        """Half a period in steps that suit the motion, or the contact if it has a say in it."""
+        grading = getattr(contact, "grading", None)
+        if grading is None:
+            stroke = self.scene.stroke(self.amplitude, self.poisson)
+            grading = turning_point_grading(self.creep, stroke)
+        return make_path(self.displacement, half_period_phases(steps, grading))
 
 
 def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance, guess=None):
@@ -73,51 +109,131 @@ def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance, 
 
     scene: scenes.Scene; velocity > 0, amplitude > 0 (None for steady scenes), poisson in 0..0.5:
     checked by the caller; tolerance: of the periodic state, a force over mu F_z, steps are solved
-    a hundred times tighter; guess: a Run of the same point with the same cells and angles, if any.
-    Returns a Run; never raises for want of convergence.
+    a hundred times tighter; guess: a Run of the same point, of use if cells and angles are the
+    same, too.  Returns a Run; never raises for want of convergence.
     """
-    contact = _build(scene, velocity, amplitude, poisson, model, resolution)
-
-    def displacement(phase):
-        return scene.displacement(phase, velocity, amplitude, poisson)
-
+    contact = build_contact(scene, velocity, amplitude, poisson, model, resolution)
     step_tolerance = STEP_SHARE * tolerance
-    if scene.periodic:
-        creep = scene.creep(velocity, amplitude, poisson)
-        pace = UNIT_STIFFNESS * creep * np.pi
-        step_tolerance = min(max(pace * STEP_SHARE, SLOW_STEP_SHARE), STEP_SHARE) * tolerance
     if not scene.periodic:
+
+        def displacement(phase):
+            return scene.displacement(phase, velocity, amplitude, poisson)
+
         return _steady_run(contact, displacement, velocity, tolerance, step_tolerance)
-    grading = turning_point_grading(creep, scene.stroke(amplitude, poisson))
-    phases = half_period_phases(resolution.steps, getattr(contact, "grading", grading))
-    path = make_path(displacement, phases, SDIRK2)
-    found = _search(contact, scene, displacement, path, tolerance, step_tolerance, guess)
-    mean = path.mean(found.forces)
-    solved = found.solver_residual <= found_limit(path, step_tolerance)
-    reason = ""
-    if not found.converged:
-        reason = f"no periodic state within {found.periods} half periods: {found.distance:.1e} left"
-    elif not solved:
-        reason = f"a step was left unsolved: residual {found.solver_residual:.1e}"
-    return Run(
-        mu=float(mean[0]),
-        torque=float(mean[2]) / hertz.TORQUE_FULL_SLIP,
-        distance=found.distance,
-        solver_residual=found.solver_residual,
-        periods=found.periods,
-        iterations=found.iterations,
-        solves=found.solves,
-        work=found.solves * found.start.size,
-        converged=found.converged and solved,
-        reason=reason,
-        state=found.start,
-    )
+    motion = Motion(scene, velocity, amplitude, poisson)
+    slow_share = UNIT_STIFFNESS * motion.creep * np.pi * STEP_SHARE
+    step_tolerance = min(max(slow_share, SLOW_STEP_SHARE), STEP_SHARE) * tolerance
+    search = _Search(contact, motion, resolution.steps, tolerance, step_tolerance)
+    return search.run(guess)
+
+
+class _Search:
+    """The search for the periodic state of one run, from one start after the other."""
+
+    def __init__(self, contact, motion, steps, tolerance, step_tolerance):
+        self.contact, self.motion, self.steps = contact, motion, steps
+        self.tolerance, self.step_tolerance = tolerance, step_tolerance
+        self.pace = Pace(0.0, UNIT_STIFFNESS * motion.creep * np.pi)
+        self.path = motion.path(contact, steps)
+        self.done = []
+
+    def run(self, guess=None):
+        """The Run; guess: see simulate."""
+        found = None
+        if guess is not None and self._fits(guess):
+            self.pace = replace(self.pace, static_force=guess.static_force)
+            found = self._find(self.path, guess.state, guess.inverse)
+        if found is None or not found.converged:
+            found = self._search_afresh()
+        return self._summary(found)
+
+    def _fits(self, guess):
+        shape = (2, *self.contact.forward_position.shape)
+        return guess.converged and guess.state.shape == shape
+
+    def _search_afresh(self):
+        slipping = forward_slip(self.contact)
+        for start in (self._start_near_the_limit(slipping), slipping):
+            found = self._find_in_stages(start)
+            if found.converged:
+                break
+        return found
+
+    def _start_near_the_limit(self, slipping):
+        """The static limit with all points pushed forward; also takes note of its force."""
+        contact, creep = self.contact, self.motion.creep
+        if not contact.has_memory:
+            return slipping
+        residual, oscillating = static_state(contact, self.motion.oscillation, self.step_tolerance)
+        force = float(np.sum(contact.weight * residual[0]))
+        self.pace = replace(self.pace, static_force=force)
+        push = min(SLOW_PUSH * creep ** (2.0 / 3.0), LARGEST_PUSH)
+        return project(residual + oscillating + push * slipping, contact.bound)
+
+    def _find_in_stages(self, start):
+        """From coarse steps to the steps asked for, each on the result of the last."""
+        counts = [self.steps]
+        while self.contact.has_sensitivity and counts[0] >= 2 * COARSEST_STEPS:
+            counts.insert(0, max(counts[0] // COARSENING, COARSEST_STEPS))
+        inverse = None
+        for count in counts[:-1]:
+            path = self.motion.path(self.contact, count)
+            found = self._find(path, start, inverse, max(self.tolerance, COARSE_TOLERANCE))
+            if found.converged:
+                start, inverse = found.start, found.inverse
+        return self._find(self.path, start, inverse)
+
+    def _find(self, path, start, inverse, tolerance=None):
+        looser = (tolerance or self.tolerance) / self.tolerance
+        self.done.append(
+            find_periodic_state(
+                self.contact,
+                path,
+                start,
+                looser * self.tolerance,
+                looser * self.step_tolerance,
+                self.pace,
+                inverse,
+            )
+        )
+        return self.done[-1]
+
+    def _summary(self, found):
+        mean = self.path.mean(found.forces)
+        solves = sum(one.solves for one in self.done)
+        solved = found.solver_residual <= found_limit(self.path, self.step_tolerance)
+        periods = sum(one.periods for one in self.done)
+        reason = ""
+        if not found.converged:
+            reason = f"no periodic state within {periods} half periods: {found.distance:.1e} left"
+        elif not solved:
+            reason = f"a step was left unsolved: residual {found.solver_residual:.1e}"
+        return Run(
+            mu=float(mean[0]),
+            torque=float(mean[2]) / hertz.TORQUE_FULL_SLIP,
+            distance=found.distance,
+            solver_residual=found.solver_residual,
+            periods=periods,
+            iterations=sum(one.iterations for one in self.done),
+            solves=solves,
+            work=solves * found.start.size,
+            converged=found.converged and solved,
+            reason=reason,
+            state=found.start,
+            inverse=found.inverse,
+            static_force=self.pace.static_force,
+        )
+
+
+def found_limit(path, step_tolerance):
+    """Largest sum of residuals that a march solved to ``step_tolerance`` can leave."""
+    return path.stages.shape[0] * path.stages.shape[1] * step_tolerance
 
 
 def simulate_static(scene, amplitude, poisson, model, resolution, tolerance):
     """The limit of vanishing velocity at one resolution (see static.py): a Run, without a march in
     forward direction.  The rigid contact keeps no residual traction: 0."""
-    contact = _build(scene, 0.0, amplitude, poisson, model, resolution)
+    contact = build_contact(scene, 0.0, amplitude, poisson, model, resolution)
     force, solves = 0.0, 0
     if contact.has_memory:
         residual, _ = static_state(
@@ -141,7 +257,7 @@ def simulate_static(scene, amplitude, poisson, model, resolution, tolerance):
     )
 
 
-def _build(scene, velocity, amplitude, poisson, model, resolution):
+def build_contact(scene, velocity, amplitude, poisson, model, resolution):
     """The contact, its rings gathered where the slip starts: the closer, the slower the creep."""
     radius = scene.focus(velocity, amplitude)
     focus = radius
@@ -150,88 +266,6 @@ def _build(scene, velocity, amplitude, poisson, model, resolution):
         strength = np.clip(1.0 - layer, WEAKEST_FOCUS, STRONGEST_FOCUS)
         focus = Focus(radius, FOCUS_STEP * round(float(strength) / FOCUS_STEP))
     return MODELS[model].build(scene, poisson, resolution.cells, resolution.angles, focus)
-
-
-def _search(contact, scene, displacement, path, tolerance, step_tolerance, guess):
-    """Find the periodic state, starting near the static limit or from a known state."""
-    creep = displacement(np.array([1.0]))[0][0] - displacement(np.array([0.0]))[0][0]
-    pace = Pace(0.0, UNIT_STIFFNESS * creep * np.pi)
-    start = forward_slip(contact)
-    if contact.has_memory:
-
-        def oscillation(phase):
-            forward, lateral, angle = displacement(phase)
-            return forward - creep * phase, lateral, angle
-
-        residual, oscillating = static_state(contact, oscillation, step_tolerance)
-        pace = replace(pace, static_force=float(np.sum(contact.weight * residual[0])))
-        push = min(SLOW_PUSH * creep ** (2.0 / 3.0), LARGEST_PUSH)
-        start = project(residual + oscillating + push * start, contact.bound)
-    starts = [start, forward_slip(contact)]
-    if guess is not None and guess.converged and guess.state.shape == start.shape:
-        starts.insert(0, guess.state)
-    for start in starts:
-        found = find_periodic_state(contact, path, start, tolerance, step_tolerance, pace)
-        if found.converged:
-            break
-    return found
-
-
-def found_limit(path, step_tolerance):
-    """Largest sum of residuals that a march solved to ``step_tolerance`` can leave."""
-    return path.stages.shape[0] * path.stages.shape[1] * step_tolerance
-
-
-def forward_slip(contact):
-    """Every point on its bound, forward: the state that the search for periodicity starts from."""
-    ones = np.ones_like(contact.forward_position)
-    return full_slip(contact, ones, 0.0 * ones)
-
-
-@dataclass(frozen=True, eq=False)
-class SteadyState:
-    """Where a steady motion settles: tractions, forces (3,), and the effort (see Run)."""
-
-    state: np.ndarray
-    forces: np.ndarray
-    distance: float
-    solver_residual: float
-    stretches: int
-    iterations: int
-    solves: int
-    converged: bool
-
-
-def steady_state(contact, displacement, velocity, tolerance, step_tolerance):
-    """March a steady motion until its tractions stand still to ``tolerance`` (a force)."""
-    step = STEADY_TRAVEL / max(1.0, velocity)
-    state, iterations, solves = forward_slip(contact), 0, 0
-    previous = distance = np.inf
-    for stretch in range(1, MAX_STRETCHES + 1):
-        phase = step * STEADY_STRETCH * (stretch - 1) + step * np.arange(STEADY_STRETCH + 1)
-        march = contact.march(make_path(displacement, phase, EULER), state, step_tolerance)
-        change = energy_norm(contact, march.state - state)
-        state = march.state
-        iterations += march.iterations
-        solves += march.solves
-        # the changes of a contraction fall geometrically; what is left is their tail
-        if np.isfinite(previous):
-            ratio = min(change / previous, 0.9) if previous > 0.0 else 0.0
-            distance = change / (1.0 - ratio)
-        previous = change
-        if distance <= tolerance:
-            break
-    solved = march.residual <= march.solves * step_tolerance
-    return SteadyState(
-        state,
-        march.forces[-1],
-        distance,
-        march.residual,
-        stretch,
-        iterations,
-        solves,
-        bool(distance <= tolerance and solved),
-    )
 
 
 def _steady_run(contact, displacement, velocity, tolerance, step_tolerance):

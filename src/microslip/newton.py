@@ -1,0 +1,113 @@
+"""Newton's method for the fixed point of a period, where a march gives its own derivative.
+
+A derivative costs more than a march, so it is taken once and kept up to date by Broyden's method,
+until a correction is no longer much smaller than the one before.  The plain map F does not expand
+distances in the energy norm.  Hence its residual falls, or at least does not grow, from a state to
+its image, and x - F(x) is monotone, so that damped corrections (damping + 1 - F') dx = F(x) - x are
+the more cautious, the larger the damping.  A correction counts only if the residual falls; else it
+is damped, and if that does not help the search goes on from the image.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.friction import project
+
+NEUTRAL = 1e-10
+"""Damping of every correction: keeps directions in which nothing ever slips where they are."""
+FIRST_DAMPING, DAMPING_FACTOR = 1e-2, 10.0
+MOST_DAMPINGS = 6
+SLOW = 0.5
+"""A correction larger than this share of the last one asks for a new derivative."""
+SKEWED = 1e-3
+"""Broyden updates that divide by less than this share of a move's square are left out."""
+
+
+def search(cycle, start, tolerance, step_tolerance, max_periods, inverse=None):
+    """Find the fixed point of a cycle.Cycle to ``tolerance`` (a force over mu F_z).
+
+    inverse: known inverse of 1 - F' near the start, (start.size, start.size); without it the plain
+    map comes first, and a derivative is taken at its image.  Returns a cycle.PeriodicState.
+    """
+    corrector = Corrector(cycle.contact, start, inverse)
+    state, derivative = start, False
+    best, found, last_step, rejected = None, None, np.inf, 0
+    while cycle.periods < max_periods:
+        lap = cycle(state, step_tolerance, derivative)
+        if corrector.inverse is None and not derivative:
+            state, derivative = project(lap.image, cycle.contact.bound), True
+            found = cycle.result(lap, cycle.distance(lap, state), False)
+            continue
+        if best is not None and not lap.residual <= best.residual:
+            rejected += 1
+            derivative = True
+            if best.march.sensitivity is not None and rejected <= MOST_DAMPINGS:
+                corrector.damp()
+                state = corrector(best)
+            else:
+                state, best, last_step = best.image, None, np.inf
+                corrector.damping = 0.0
+            continue
+        rejected = 0
+        corrector.learn(lap, best)
+        state = corrector(lap)
+        distance = cycle.distance(lap, state)
+        converged = distance <= tolerance and not corrector.damping
+        found = cycle.result(lap, distance, converged, corrector.inverse)
+        if converged:
+            break
+        derivative = corrector.damping > 0.0 or corrector.step > SLOW * last_step
+        best, last_step = lap, corrector.step
+    return found
+
+
+class Corrector:
+    """Next states from laps, by the inverse of damping + 1 - F' (F: the mirrored march).
+
+    step: size of the last correction before it was projected, in the metric of Broyden's updates.
+    """
+
+    def __init__(self, contact, state, inverse=None):
+        self.contact, self.inverse = contact, inverse
+        self.damping, self.step = 0.0, np.inf
+        self._signs = contact.mirrored(np.ones_like(state)).reshape(-1, 1)  # points stay in place
+        self._metric = np.broadcast_to(contact.weight * contact.compliance, state.shape).ravel()
+        self._system = None
+
+    def __call__(self, lap):
+        """The corrected state of a lap."""
+        correction = self.inverse @ lap.change.ravel()
+        self.step = float(np.sqrt(self._metric @ correction**2))
+        return project(lap.state + correction.reshape(lap.state.shape), self.contact.bound)
+
+    def learn(self, lap, before):
+        """Take the derivative from a lap that has one, else update it from the lap before."""
+        if lap.march.sensitivity is not None:
+            self._system = -self._signs * lap.march.sensitivity
+            self.damping /= DAMPING_FACTOR
+            if self.damping < FIRST_DAMPING:
+                self.damping = 0.0
+            self._invert()
+        elif before is not None:
+            self._update((lap.state - before.state).ravel(), (before.change - lap.change).ravel())
+
+    def damp(self):
+        """Damp corrections by the last derivative more than before."""
+        self.damping = max(DAMPING_FACTOR * self.damping, FIRST_DAMPING)
+        self._invert()
+
+    def _invert(self):
+        damped = self._system.copy()
+        damped.flat[:: len(damped) + 1] += 1.0 + max(self.damping, NEUTRAL)
+        self.inverse = np.linalg.inv(damped)
+
+    def _update(self, moved, changed):
+        """Broyden's update: the inverse turns ``changed`` into ``moved`` from now on."""
+        predicted = self.inverse @ changed
+        weighted = self._metric * moved
+        share = weighted @ predicted
+        if abs(share) > SKEWED * (weighted @ moved):
+            self.inverse = self.inverse + np.outer(
+                (moved - predicted) / share, weighted @ self.inverse
+            )
