@@ -134,7 +134,7 @@ def test_elastic_contacts_lie_within(scene, model, nu, velocity, amplitude):
 
 @pytest.mark.parametrize("ratio", [30.0, 300.0, 3e3])
 def test_brackets_are_four_times_the_drop_of_the_rigid_contact(ratio):
-    """Far out the rigid drop is (y/v)^2 / 4, a quarter of the bracket; in the bore, 1 / (20 v^2)."""
+    """Far out the rigid drop is (y/v)^2 / 4, a quarter of the bracket."""
     phase = np.linspace(0.0, 2.0 * np.pi, 4096, endpoint=False)
     aside = np.cos(phase) / ratio
     rigid_drop = np.mean(aside**2 / (np.hypot(1.0, aside) * (1.0 + np.hypot(1.0, aside))))

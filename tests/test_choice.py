@@ -196,7 +196,7 @@ def test_every_plan_can_be_run(point):
         assert all(np.diff(axis.levels) > 0) and axis.levels[0] >= 2
         assert len(axis.first) >= 3
         assert list(axis.first) == list(range(axis.first[0], axis.first[-1] + 1))
-        assert 0 <= axis.first[0] and axis.first[-1] < len(axis.levels)
+        assert axis.first[0] >= 0 and axis.first[-1] < len(axis.levels)
         # the base is one of the first, and has a neighbour for the mixed difference
         assert axis.first[0] <= axis.base <= axis.first[-1]
         assert 1 <= axis.base < len(axis.levels) and not axis.imposed

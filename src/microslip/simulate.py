@@ -21,6 +21,8 @@ STEP_SHARE = 1e-2
 SLOW_STEP_SHARE = 3e-4
 """Tolerance of a step over that of the periodic state: the slower the motion, the less a state
 changes in a period, and the more an error of its steps adds up."""
+MARCH_SHARE = 0.16
+"""Bound of the sum over the steps of half a period, two stages each: a third of the tolerance."""
 SLOW_PUSH = 0.5
 LARGEST_PUSH = 0.1
 """Forward traction added to the static limit's, as a share of the bound, for a start: it grows as
@@ -122,7 +124,8 @@ def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance, 
         return _steady_run(contact, displacement, velocity, tolerance, step_tolerance)
     motion = Motion(scene, velocity, amplitude, poisson)
     slow_share = UNIT_STIFFNESS * motion.creep * np.pi * STEP_SHARE
-    step_tolerance = min(max(slow_share, SLOW_STEP_SHARE), STEP_SHARE) * tolerance
+    share = min(max(slow_share, SLOW_STEP_SHARE), STEP_SHARE, MARCH_SHARE / resolution.steps)
+    step_tolerance = share * tolerance
     search = _Search(contact, motion, resolution.steps, tolerance, step_tolerance)
     return search.run(guess)
 
