@@ -1,0 +1,308 @@
+"""Certificates of synthetic runs, whose errors are known because they are made up.
+
+A run gives exact + Sum C_axis level^-p + mixed terms + scatter, and remembers that it was asked.
+"""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from microslip.accuracy import MOST_REBASED, Axis, certify
+from microslip.simulate import Resolution, Run
+
+EXACT, EXACT_TORQUE = 0.4, 0.7
+COARSEST = Resolution(cells=3, angles=1, steps=5)
+LEVELS = {
+    "cells": (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256),
+    "angles": (2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96),
+    "steps": (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768),
+}
+
+
+def axis(name, regular=None, base=3, most=None):
+    levels = LEVELS[name][:most]
+    regular = name == "cells" if regular is None else regular
+    return Axis(name, levels, base, (base - 1, base, base + 1), regular)
+
+
+def imposed(name, level):
+    return Axis(name, (level // 2, level), 1, (0, 1), imposed=True)
+
+
+class FakeRun:
+    """Runs whose mu is EXACT plus the terms (coefficient, {axis: power}); scatter: share of the
+    terms that is random."""
+
+    def __init__(self, *terms, scatter=0.0, distance=1e-9, residual=1e-10, fails=()):
+        self.terms, self.scatter, self.fails = terms, scatter, fails
+        self.distance, self.residual = distance, residual
+        self.asked, self.guesses, self.runs = [], [], []
+
+    def excess(self, resolution):
+        total = 0.0
+        for coefficient, powers in self.terms:
+            total += coefficient * np.prod(
+                [getattr(resolution, a) ** -p for a, p in powers.items()]
+            )
+        seed = [resolution.cells, resolution.angles, resolution.steps]
+        return total * (1.0 + self.scatter * np.random.default_rng(seed).uniform(-1.0, 1.0))
+
+    def __call__(self, resolution, guess):
+        excess, number = self.excess(resolution), len(self.asked) + 1
+        failed = resolution in self.fails
+        mu, torque = EXACT + excess, EXACT_TORQUE - 2.0 * excess
+        left = self.distance / number, self.residual * number
+        effort = number, 10 * number, 0, 100 * number
+        run = Run(mu, torque, *left, *effort, not failed, "lost its way" if failed else "")
+        self.asked.append(resolution)
+        self.guesses.append(guess)
+        self.runs.append(run)
+        return run
+
+
+def check(fake, found, axes, tolerance):
+    """What holds for every certificate."""
+    assert len(set(fake.asked)) == len(fake.asked)
+    assert found.error == pytest.approx(sum(found.errors.values()), rel=1e-14)
+    assert found.errors.keys() == {"space", "time", "periodicity", "solver"}
+    assert min(found.errors.values()) >= 0.0 and found.torque_error >= 0.0
+    assert found.converged == (found.reason == "")
+    if found.converged and not any(axis.imposed for axis in axes):
+        runs_are_to_blame = found.errors["periodicity"] + found.errors["solver"] > 0.5 * tolerance
+        assert found.error <= tolerance or runs_are_to_blame
+    count = len(fake.asked)
+    assert found.errors["periodicity"] == fake.distance
+    assert found.errors["solver"] == pytest.approx(fake.residual * count, rel=1e-14)
+    assert found.periods == count
+    assert found.iterations == 10 * sum(range(count + 1))
+    assert found.work == 100 * sum(range(count + 1))
+
+
+def certified(fake, axes, tolerance):
+    found = certify(fake, COARSEST, axes, tolerance)
+    check(fake, found, axes, tolerance)
+    return found
+
+
+# Errors are covered
+
+
+@pytest.mark.parametrize("coefficient", [-3.0, 0.1, 10.0])
+def test_second_order_in_cells_is_extrapolated_to_the_exact_value(coefficient):
+    fake = FakeRun((coefficient, {"cells": 2}))
+    found = certified(fake, (axis("cells"),), 1e-4)
+    assert found.converged and found.mu == pytest.approx(EXACT, abs=1e-12)
+    assert found.torque == pytest.approx(EXACT_TORQUE, abs=1e-12)
+    # half of what was extrapolated stays as error
+    finest = max(fake.asked)
+    assert found.finest == finest
+    expected = max(0.5 * abs(fake.excess(finest)), 1e-5)
+    assert found.errors["space"] == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "power"),
+    [
+        *product(["cells", "angles", "steps"], [1.5, 1.75, 2.0, 2.5, 3.0]),
+        *product(["angles", "steps"], [1.0, 1.25]),
+    ],
+)
+def test_smooth_errors_are_covered(name, power):
+    for coefficient, tolerance in product((-10.0, -0.1, 0.01, 1.0), (1e-2, 1e-3, 1e-4)):
+        fake = FakeRun((coefficient, {name: power}))
+        found = certified(fake, (axis(name),), tolerance)
+        assert abs(found.mu - EXACT) <= found.error
+        assert abs(found.torque - EXACT_TORQUE) <= found.torque_error + 2e-9
+
+
+def test_first_order_in_cells_is_underestimated_by_less_than_two():
+    """What is said to converge with the second power, but does not, is not quite covered."""
+    for coefficient, tolerance in product((-1.0, 0.01), (1e-2, 1e-3)):
+        found = certified(FakeRun((coefficient, {"cells": 1})), (axis("cells"),), tolerance)
+        assert abs(found.mu - EXACT) < 2.0 * found.error
+
+
+coefficients = st.tuples(st.sampled_from([-1.0, 1.0]), st.floats(-2.0, 1.0)).map(
+    lambda c: c[0] * 10 ** c[1]
+)
+
+
+@settings(max_examples=200, deadline=None, derandomize=True)
+@given(
+    st.tuples(coefficients, coefficients, coefficients),
+    st.floats(1.2, 3.0),
+    st.floats(-4.0, -1.0).map(lambda x: 10**x),
+)
+def test_errors_along_three_axes_are_covered(c, power, tolerance):
+    fake = FakeRun((c[0], {"cells": 2}), (c[1], {"angles": power}), (c[2], {"steps": power}))
+    found = certified(
+        fake, (axis("cells"), axis("angles", base=2), axis("steps", base=5)), tolerance
+    )
+    assert abs(found.mu - EXACT) <= found.error
+    assert abs(found.torque - EXACT_TORQUE) <= 2.0 * found.error
+
+
+def share_covered(scatter, *terms, axes=("cells", "angles", "steps")):
+    """Share of certificates that hold, over random coefficients."""
+    draw, held = np.random.default_rng(7), []
+    for _ in range(200):
+        c = draw.choice([-1.0, 1.0], len(terms)) * 10 ** draw.uniform(-2.0, 0.5, len(terms))
+        fake = FakeRun(*zip(c, terms, strict=True), scatter=scatter)
+        found = certified(fake, [axis(name) for name in axes], 10 ** draw.uniform(-4.0, -2.0))
+        held.append(abs(found.mu - EXACT) <= found.error)
+    return np.mean(held)
+
+
+SEPARATE = ({"cells": 2}, {"angles": 2}, {"steps": 2})
+
+
+def test_scattered_errors_are_covered_nearly_always():
+    assert share_covered(0.5, *SEPARATE) > 0.98
+    assert share_covered(0.3, {"steps": 2}, axes=["steps"]) > 0.98
+
+
+def test_mixed_errors_are_covered():
+    mixed = {"cells": 2, "angles": 2}
+    assert share_covered(0.0, *SEPARATE, mixed) > 0.98
+    assert share_covered(0.0, *SEPARATE, mixed, {"cells": 1, "steps": 2}) > 0.98
+
+
+# How the runs are chosen
+
+
+def test_first_run_is_the_base_and_guesses_are_runs_at_the_base():
+    fake = FakeRun((3.0, {"cells": 2}), (0.2, {"steps": 2}))
+    certified(fake, (axis("cells", base=4), axis("steps", base=5)), 1e-3)
+    assert fake.asked[0] == Resolution(cells=16, angles=1, steps=24)
+    assert fake.guesses[0] is None
+    assert all(guess is fake.runs[0] for guess in fake.guesses[1:])
+    # each chain goes along its own axis: no run is fine in both
+    assert all(r.cells == 16 or r.steps == 24 for r in fake.asked)
+    assert all(r.angles == COARSEST.angles for r in fake.asked)
+
+
+def test_nothing_is_refined_that_is_fine_enough():
+    fake = FakeRun((0.1, {"cells": 2}), (0.1, {"steps": 2}))
+    found = certified(fake, (axis("cells"), axis("steps")), 1e-2)
+    assert found.converged and len(fake.asked) == 5
+    assert found.finest == Resolution(16, 1, 16)
+    # a tenth of the tolerance for each axis at least: finer was not run
+    assert found.errors["space"] >= 1e-3 and found.errors["time"] >= 1e-3
+
+
+def test_imposed_axes_are_reported_but_not_refined():
+    terms = (5.0, {"cells": 2}), (1.0, {"steps": 2})
+    fake = FakeRun(*terms)
+    found = certified(fake, (imposed("cells", 10), axis("steps")), 1e-3)
+    assert {r.cells for r in fake.asked} == {5, 10}
+    assert found.finest.cells == 10 and found.mu - EXACT == pytest.approx(5e-2, abs=1e-3)
+    assert found.errors["space"] == pytest.approx(5.0 * (5**-2 - 10**-2), rel=1e-9)
+    # what is left to the tolerance keeps to it all the same
+    assert found.errors["time"] <= 1e-3 and found.reason == ""
+
+
+def test_imposed_axes_alone_take_three_runs():
+    fake = FakeRun((5.0, {"cells": 2}), (1.0, {"steps": 2}))
+    found = certified(fake, (imposed("cells", 10), imposed("steps", 8)), 1e-3)
+    at = [(r.cells, r.steps) for r in fake.asked]
+    assert at[0] == (10, 8) and set(at) == {(10, 8), (5, 8), (10, 4)}
+    assert found.mu == fake.runs[0].mu and found.reason == ""
+
+
+def test_without_axes_there_is_one_run():
+    fake = FakeRun()
+    found = certified(fake, (), 1e-3)
+    assert fake.asked == [COARSEST] and found.finest == COARSEST
+    assert found.mu == EXACT and found.error < 1e-8 and found.converged
+
+
+# What ends it
+
+
+@pytest.mark.parametrize(
+    ("failing", "count"),
+    [(Resolution(12, 1, 12), 5), (Resolution(8, 1, 12), 5), (Resolution(48, 1, 12), 8)],
+)
+def test_a_run_that_does_not_converge_ends_it(failing, count):
+    fake = FakeRun((10.0, {"cells": 2}), fails=[failing])
+    found = certified(fake, (axis("cells"), axis("steps")), 1e-4)
+    assert not found.converged and found.reason == "lost its way"
+    assert failing in fake.asked and len(fake.asked) == count
+
+
+@pytest.mark.parametrize("name", ["cells", "angles", "steps"])
+def test_exhausted_levels_are_named(name):
+    fake = FakeRun((1e3, {name: 2}))
+    found = certified(fake, (axis(name, most=7),), 1e-4)
+    last = LEVELS[name][6]
+    assert not found.converged and getattr(fake.asked[-1], name) == last
+    assert f"over {name} " in found.reason and found.reason.endswith(f"at {last}")
+    assert f"{found.errors['time' if name == 'steps' else 'space']:.1e}" in found.reason
+    assert abs(found.mu - EXACT) <= found.error
+
+
+@pytest.mark.parametrize("spoilt", [{"distance": 3e-3}, {"residual": 1e-3}])
+def test_errors_that_no_refinement_cures_are_reported(spoilt):
+    fake = FakeRun((0.1, {"cells": 2}), **spoilt)
+    found = certified(fake, (axis("cells"),), 1e-3)
+    assert found.error > 1e-3 and len(fake.asked) < 8
+
+
+# Corrections that do not add up
+
+
+def test_mixed_difference_is_added_and_counts_as_error():
+    fake = FakeRun((0.5, {"cells": 1, "angles": 1}), (0.1, {"cells": 1}), (-0.2, {"angles": 1}))
+    axes = axis("cells", regular=False), axis("angles")
+    found = certified(fake, axes, 1e-1)
+    # nothing is extrapolated here, so that all corrections together end at the finest resolution
+    assert found.finest == Resolution(16, 12, 5) == fake.asked[-1]
+    assert found.mu == pytest.approx(EXACT + fake.excess(found.finest), abs=1e-14)
+    failing_to_add_up = 0.5 * (1 / 12 - 1 / 16) * (1 / 8 - 1 / 12)
+    spread = {name: np.ptp([run.mu for run in along(fake, name)]) for name in ("cells", "angles")}
+    expected = failing_to_add_up + sum(max(one, 1e-2) for one in spread.values())
+    assert found.errors["space"] == pytest.approx(expected, rel=1e-9)
+
+
+def along(fake, name):
+    """Runs that differ from the first one along this axis alone."""
+    others = [other for other in LEVELS if other != name]
+    return [
+        run
+        for run, asked in zip(fake.runs, fake.asked, strict=True)
+        if all(getattr(asked, other) == getattr(fake.asked[0], other) for other in others)
+    ]
+
+
+def test_base_is_refined_where_a_mixed_term_dominates():
+    fake = FakeRun((30.0, {"cells": 2, "angles": 2}))
+    found = certified(fake, (axis("cells"), axis("angles", base=2)), 1e-3)
+    assert found.converged and abs(found.mu - EXACT) <= found.error <= 1e-3
+    bases = {id(guess): fake.asked[fake.runs.index(guess)] for guess in fake.guesses if guess}
+    assert len(bases) > 1  # guesses come from each base in turn
+    for one, next_one in zip(list(bases.values())[:-1], list(bases.values())[1:], strict=True):
+        assert next_one.cells > one.cells and next_one.angles > one.angles
+
+
+def test_base_in_time_is_refined_where_time_scatters():
+    """The scatter of coarse steps hides what the rings do."""
+    fake = FakeRun((30.0, {"steps": 2}), (1.0, {"cells": 2}), scatter=0.1)
+    found = certified(fake, (axis("cells"), axis("steps", base=2)), 1e-2)
+    assert found.converged and abs(found.mu - EXACT) <= found.error
+    used = [r.steps for r in fake.asked if r.cells != 12]
+    assert used[0] == 8 and used[-1] >= 24
+    # half of what the steps still change counts as what their scatter may hide
+    last = max(LEVELS["steps"][k] for k, n in enumerate(LEVELS["steps"]) if n in used)
+    correction = 30.0 * (found.finest.steps**-2 - last**-2)
+    assert found.errors["time"] >= 0.4 * abs(correction)
+
+
+def test_rebasing_ends():
+    fake = FakeRun((1e4, {"cells": 2, "angles": 2}))
+    found = certified(fake, (axis("cells", base=1), axis("angles", base=1)), 1e-5)
+    assert not found.converged and "error over" in found.reason
+    guessed_from = {id(guess) for guess in fake.guesses if guess is not None}
+    assert MOST_REBASED <= len(guessed_from) <= 1 + MOST_REBASED
