@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 EXTRAPOLATION_SHARE = 0.5
 CHANGE_SHARE = 0.5
 """Errors of cells over the last extrapolation, and over the change of the extrapolated value."""
-RESOLVED = 0.1
+RESOLVED = 0.125
 """Share of the tolerance below which no axis claims its error to be: nothing was run to see it."""
 SCATTER = 0.5
 """Share of the correction in time that its scatter may do to the differences of other chains."""

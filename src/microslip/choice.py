@@ -101,7 +101,8 @@ def _cells(scene, name, velocity, amplitude, poisson, imposed):
     if velocity == 0.0:  # a stick zone that is not circular cuts rings, and the corners are steep
         return Axis("cells", RINGS, base + 2, tuple(range(base, base + 6)))
     slow = scene.creep(velocity, amplitude, poisson) < SLOW_CREEP
-    first = (base - 1, base, base + 1) if slow else (base - 2, base - 1, base)
+    oval = poisson > 0.0 and not scene.rotates  # and so is the front of slip, which rings are not
+    first = (base - 1, base, base + 1) if slow or oval else (base - 2, base - 1, base)
     return Axis("cells", RINGS, base, first, regular=True)
 
 

@@ -27,18 +27,14 @@ SKEWED = 1e-3
 def search(cycle, start, tolerance, step_tolerance, max_periods, inverse=None):
     """Find the fixed point of a cycle.Cycle to ``tolerance`` (a force over mu F_z).
 
-    inverse: known inverse of 1 - F' near the start, (start.size, start.size); without it the plain
-    map comes first, and a derivative is taken at its image.  Returns a cycle.PeriodicState.
+    inverse: known inverse of 1 - F' near the start, (start.size, start.size); without it the first
+    march gives its derivative.  Returns a cycle.PeriodicState.
     """
     corrector = Corrector(cycle.contact, start, inverse)
-    state, derivative = start, False
+    state, derivative = start, inverse is None
     best, found, last_step, rejected = None, None, np.inf, 0
     while cycle.periods < max_periods:
         lap = cycle(state, step_tolerance, derivative)
-        if corrector.inverse is None and not derivative:
-            state, derivative = project(lap.image, cycle.contact.bound), True
-            found = cycle.result(lap, cycle.distance(lap, state), False)
-            continue
         if best is not None and not lap.residual <= best.residual:
             rejected += 1
             derivative = True

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -23,11 +24,10 @@ SLOW_STEP_SHARE = 3e-4
 changes in a period, and the more an error of its steps adds up."""
 MARCH_SHARE = 0.16
 """Bound of the sum over the steps of half a period, two stages each: a third of the tolerance."""
-SLOW_PUSH = 0.5
-LARGEST_PUSH = 0.1
+SLOW_PUSH, LARGEST_PUSH = 4.0, 0.6
 """Forward traction added to the static limit's, as a share of the bound, for a start: it grows as
-the friction itself does with the creep in a radian, so that every point slips forward a little too
-much.  From there an accelerated search finds its way down; below, points would only drift."""
+the friction itself does with the creep in a radian, so that every point slips forward too much.
+From there an accelerated search finds its way down; below, points would only drift."""
 
 COARSENING, COARSEST_STEPS = 8, 12
 COARSE_TOLERANCE = 1e-5
@@ -92,18 +92,24 @@ class Motion:
         """... without the forward motion."""
         return self.scene.displacement(phase, 0.0, self.amplitude, self.poisson)
 
-    @property
+    @cached_property
     def creep(self):
         """Forward displacement in one radian of phase, in u_lim."""
         return self.scene.creep(self.velocity, self.amplitude, self.poisson)
 
+    @cached_property
+    def grading(self):
+        """How much shorter steps are at the turning points (see path.turning_point_grading)."""
+        return turning_point_grading(self.creep, self.scene.stroke(self.amplitude, self.poisson))
+
     def path(self, contact, steps):
         """Half a period in steps that suit the motion, or the contact if it has a say in it."""
-        grading = getattr(contact, "grading", None)
-        if grading is None:
-            stroke = self.scene.stroke(self.amplitude, self.poisson)
-            grading = turning_point_grading(self.creep, stroke)
-        return make_path(self.displacement, half_period_phases(steps, grading))
+        return _path(self, steps, getattr(contact, "grading", self.grading))
+
+
+@lru_cache(maxsize=32)
+def _path(motion, steps, grading):
+    return make_path(motion.displacement, half_period_phases(steps, grading))
 
 
 def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance, guess=None):

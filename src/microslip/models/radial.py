@@ -37,11 +37,10 @@ class RadialContact:
         self._stiffness = 0.5 * (stiffness + stiffness.T)
         self._factor = cholesky(self._stiffness)
 
-    @classmethod
-    def resolved(cls, cells, focus=None):
+    @staticmethod
+    def resolved(cells, focus=None):
         """The half-space on ``cells`` rings refined around the radius ``focus``."""
-        rings = make_rings(cells, focus)
-        return cls(_influence(cells, focus), rings.bound, rings.area)
+        return _resolved(cells, focus)
 
     def displacement(self, state):
         """A q; shapes (2, 1, cells)."""
@@ -85,7 +84,9 @@ class RadialContact:
         )
 
 
-@lru_cache(maxsize=64)
-def _influence(cells, focus):
-    near, _ = ring_influence(make_rings(cells, focus).psi, 1, False)
-    return np.ascontiguousarray(near[0])
+@lru_cache(maxsize=32)
+def _resolved(cells, focus):
+    """Shared by runs that differ in their motion only: a contact never changes."""
+    rings = make_rings(cells, focus)
+    near, _ = ring_influence(rings.psi, 1, False)
+    return RadialContact(near[0], rings.bound, rings.area)
