@@ -1,12 +1,17 @@
 """The accelerated search for the periodic state against marching until nothing changes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import microslip.simulate
 from microslip import theory
+from microslip.cycle import Cycle
 from microslip.models import MODELS
 from microslip.models.contact import energy_norm
+from microslip.models.radial import RadialContact
+from microslip.newton import Corrector
 from microslip.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.periodic import find_periodic_state
 from microslip.scenes import BORE, TRANSVERSE
@@ -53,6 +58,19 @@ def path_of(name, velocity, amplitude, integrator=SDIRK2, whole=False):
         return scene.displacement(t, velocity, amplitude, nu)
 
     return make_path(displacement, phase, integrator)
+
+
+@pytest.fixture
+def marches(monkeypatch):
+    """Every march of rings from here on: (with derivative?, contact.March)."""
+    seen, plain = [], RadialContact.march
+
+    def march(contact, path, state, tolerance, sensitivity=False, previous=None):
+        seen.append((sensitivity, plain(contact, path, state, tolerance, sensitivity, previous)))
+        return seen[-1][1]
+
+    monkeypatch.setattr(RadialContact, "march", march)
+    return seen
 
 
 def plain_march(contact, path, state, change, most=20_000):
@@ -128,9 +146,10 @@ def test_run_reports_what_was_not_reached(monkeypatch):
         return find_periodic_state(*arguments, **options, max_periods=2)
 
     monkeypatch.setattr(microslip.simulate, "find_periodic_state", short)
-    run = simulate(BORE, 0.1, 1.0, 0.0, "polar", Resolution(6, 4, 8), TOLERANCE)
-    assert not run.converged
-    assert "no periodic state" in run.reason and run.distance > TOLERANCE
+    for scene, model, angles in ((BORE, "polar", 4), (TRANSVERSE, "radial", 1)):
+        run = simulate(scene, 0.1, 1.0, 0.0, model, Resolution(6, angles, 8), TOLERANCE)
+        assert not run.converged
+        assert "no periodic state" in run.reason and run.distance > TOLERANCE
 
 
 @pytest.mark.parametrize("amplitude", [0.2, 0.5, 0.9, 1.5])
@@ -155,6 +174,88 @@ def test_slow_motions_of_small_amplitude_are_not_taken_for_periodic_too_early(ve
     ]
     assert all(run.converged for run in runs)
     assert runs[0].mu == pytest.approx(runs[1].mu, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("velocity", "amplitude", "rings", "steps"),
+    [
+        # undamped corrections cycle, or throw the state far away
+        (5.56e-6, 0.58, 17, 23),
+        (5.67e-6, 0.412, 52, 26),
+        (7.12e-6, 0.739, 9, 77),
+        (1.14e-5, 0.518, 58, 53),
+        # next to nothing slips; nothing but slip
+        (1e-6, 0.01, 32, 16),
+        (1e-6, 1e3, 8, 32),
+        (1e3, 0.01, 8, 12),
+        (1e3, 1e3, 16, 96),
+    ],
+)
+def test_rings_converge_at_the_ends_of_the_parameters(velocity, amplitude, rings, steps):
+    resolution = Resolution(rings, 1, steps)
+    runs = [
+        simulate(TRANSVERSE, velocity, amplitude, 0.0, "radial", resolution, tolerance)
+        for tolerance in (1e-4, 1e-7)
+    ]
+    assert all(run.converged and run.periods < 80 for run in runs)
+    assert runs[0].mu == pytest.approx(runs[1].mu, abs=1.5e-4)
+
+
+def radial_run(velocity, amplitude, rings, steps, tolerance=1e-6, guess=None):
+    resolution = Resolution(rings, 1, steps)
+    return simulate(TRANSVERSE, velocity, amplitude, 0.0, "radial", resolution, tolerance, guess)
+
+
+def test_run_in_other_steps_spares_derivatives_and_marches(marches):
+    known = radial_run(0.01, 0.5, 8, 12)
+    assert any(derivative for derivative, _ in marches)
+    alone = radial_run(0.01, 0.5, 8, 16)
+    marches.clear()
+    led = radial_run(0.01, 0.5, 8, 16, guess=known)
+    assert led.converged and not any(derivative for derivative, _ in marches)
+    assert led.periods < alone.periods
+    assert led.mu == pytest.approx(alone.mu, abs=2e-6)
+    assert led.static_force == pytest.approx(alone.static_force, abs=1e-6)
+    marches.clear()
+    other = radial_run(0.01, 0.5, 6, 16, guess=known)  # of no use on other rings
+    assert other.mu == radial_run(0.01, 0.5, 6, 16).mu
+
+
+def test_a_wild_guess_costs_effort_only(marches):
+    known = radial_run(0.01, 0.5, 8, 16)
+    wild = replace(known, state=-known.state, inverse=-30.0 * known.inverse)
+    led = radial_run(0.01, 0.5, 8, 16, guess=wild)
+    assert led.converged and led.periods > known.periods
+    assert led.mu == pytest.approx(known.mu, abs=2e-6)
+
+
+@pytest.mark.parametrize("steps", [16, 48, 200])
+def test_all_effort_is_counted(marches, steps):
+    run = radial_run(0.01, 0.5, 8, steps)
+    searched = [march for _, march in marches if march.stages.shape[0] > 3]  # not the static limit
+    assert run.periods == len(searched)
+    assert run.iterations == sum(march.iterations for march in searched)
+    assert run.solves == sum(march.solves for march in searched)
+    assert run.work == 16 * run.solves
+
+
+def test_equal_runs_give_equal_bits():
+    one, other = (radial_run(0.01, 0.5, 8, 48) for _ in range(2))
+    assert one.mu == other.mu and one.distance == other.distance
+    assert np.array_equal(one.state, other.state) and np.array_equal(one.inverse, other.inverse)
+
+
+def test_broyden_update_maps_the_change_it_has_seen():
+    contact = contact_of("radial", 0.1, 1.0)
+    path, start = path_of("radial", 0.1, 1.0), forward_slip(contact)
+    cycle = Cycle(contact, path)
+    first = cycle(start, 1e-10, sensitivity=True)
+    corrector = Corrector(contact, start)
+    corrector.learn(first, None)
+    second = cycle(corrector(first), 1e-10)
+    corrector.learn(second, first)
+    moved = corrector.inverse @ (first.change - second.change).ravel()
+    assert moved == pytest.approx((second.state - first.state).ravel(), abs=1e-12)
 
 
 def test_vibration_much_slower_than_the_sliding_leaves_the_friction_as_it_is():
