@@ -70,7 +70,7 @@ class Contact(Protocol):
 
 def energy_norm(contact, change):
     """Bound on the force (over mu F_z) that a change of tractions carries, from its energy."""
-    energy = np.sum(contact.weight * (change * contact.displacement(change)).sum(axis=0))
+    energy = np.vdot(contact.weight * change, contact.displacement(change))
     return float(np.sqrt(UNIT_STIFFNESS * max(energy, 0.0)))
 
 

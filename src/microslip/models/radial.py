@@ -15,6 +15,9 @@ from microslip.models import contact, ring_march
 from microslip.models.ring_factors import cholesky
 from microslip.rings import make_rings
 
+MIRROR = np.array([1.0, -1.0])[:, None, None]
+"""Signs of forward and lateral tractions in the mirror image, shape (2, 1, 1)."""
+
 
 class RadialContact:
     """Contact of ``cells`` rings (see models.contact.Contact); states have shape (2, 1, cells).
@@ -48,7 +51,7 @@ class RadialContact:
 
     def mirrored(self, state):
         """Lateral traction negated."""
-        return state * np.array([1.0, -1.0])[:, None, None]
+        return state * MIRROR
 
     def march(self, path, state, tolerance, sensitivity=False, previous=None):
         """March along ``path`` (translations only); see models.contact.Contact.
