@@ -180,7 +180,8 @@ def test_slow_motions_of_small_amplitude_are_not_taken_for_periodic_too_early(ve
     ("velocity", "amplitude", "rings", "steps"),
     [
         # undamped corrections cycle, or throw the state far away
-        (5.56e-6, 0.58, 17, 23),
+        (1.34e-6, 0.867, 35, 78),
+        (1.45e-6, 0.903, 17, 78),
         (5.67e-6, 0.412, 52, 26),
         (7.12e-6, 0.739, 9, 77),
         (1.14e-5, 0.518, 58, 53),
