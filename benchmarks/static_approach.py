@@ -1,0 +1,85 @@
+"""How friction falls to its static limit: certified points at falling velocities.
+
+    python benchmarks/static_approach.py [--tolerance T] [--markdown FILE]
+
+One table for each scene and amplitude: velocity, mu_macro, its certificate, the excess over the
+closed form of the limit (theory.static_limit_*), and the local exponent p of excess ~ velocity^p
+between this velocity and the one above it, where both excesses are large against the certificates.
+Transverse and bore, nu = 0; the smaller the tolerance, the further down the exponent can be seen.
+"""
+
+from __future__ import annotations
+
+import os
+
+for library in ("OPENBLAS", "OMP", "MKL", "NUMBA"):  # before NumPy is imported
+    os.environ[f"{library}_NUM_THREADS"] = "1"
+
+import argparse  # noqa: E402
+import math  # noqa: E402
+import sys  # noqa: E402
+from pathlib import Path  # noqa: E402
+
+import microslip  # noqa: E402
+from microslip import theory  # noqa: E402
+
+VELOCITIES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+AMPLITUDES = {"transverse": (0.25, 0.5, 0.75), "bore": (0.5, 1.0, 2.0)}
+LIMITS = {"transverse": theory.static_limit_transverse, "bore": theory.static_limit_bore}
+CERTAIN = 5.0
+"""Excess over certificate from which an exponent is worth printing."""
+
+
+def exponent(points, limit):
+    """Local exponent between the last two of ``points``, or None where errors hide it."""
+    if len(points) < 2:
+        return None
+    excess = [point.mu_macro - limit for point in points[-2:]]
+    certain = all(
+        point.converged and over > CERTAIN * point.mu_macro_error
+        for point, over in zip(points[-2:], excess, strict=True)
+    )
+    if not certain:
+        return None
+    return math.log(excess[0] / excess[1]) / math.log(points[-2].velocity / points[-1].velocity)
+
+
+def table(scene, amplitude, tolerance):
+    """Markdown lines for one scene and amplitude."""
+    limit = float(LIMITS[scene](amplitude))
+    lines = [f"{scene}, amplitude {amplitude:g}: closed form of the limit {limit:.6f}", ""]
+    lines += ["| velocity | mu_macro | certificate | excess | exponent |", "|---|---|---|---|---|"]
+    points = []
+    for velocity in VELOCITIES:
+        point = microslip.solve(scene, velocity, amplitude, tolerance=tolerance)
+        points.append(point)
+        seconds = f"{point.solve_time_s:.1f} s {point.reason}"
+        print(f"{scene} {amplitude:g} at {velocity:g}: {seconds}", file=sys.stderr, flush=True)
+        if not point.converged:
+            lines.append(f"| {velocity:g} | not converged: {point.reason} | | | |")
+            continue
+        local = exponent(points, limit)
+        lines.append(
+            f"| {velocity:g} | {point.mu_macro:.6f} | {point.mu_macro_error:.1e} "
+            f"| {point.mu_macro - limit:.2e} | {'' if local is None else f'{local:.2f}'} |"
+        )
+    return lines
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--tolerance", type=float, default=1e-4)
+    parser.add_argument("--markdown", type=Path)
+    options = parser.parse_args()
+    lines = []
+    for scene, amplitudes in AMPLITUDES.items():
+        for amplitude in amplitudes:
+            lines += [*table(scene, amplitude, options.tolerance), ""]
+    text = "\n".join(lines)
+    print(text, end="")
+    if options.markdown:
+        options.markdown.write_text(text)
+
+
+if __name__ == "__main__":
+    main()

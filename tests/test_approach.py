@@ -1,0 +1,115 @@
+"""The static limit is where marches end up: friction at small velocities falls towards it.
+
+Nothing here is computed at velocity 0: every number is the mean force of a periodic state that was
+marched, extrapolated in the rings and with an error from coarser rings and steps.
+
+How it falls: the slip of the oscillation alone grows like the 3/2 power of the distance from the
+stick radius, so that the creep matters in a layer as wide as velocity^(2/3), and with it the excess
+over the limit.  Measured: transverse, amplitudes 0.25, 0.5 and 0.75: exponents 0.63, 0.67 and 0.69
+below velocity 1e-3, rising slowly to 0.70, 0.70 and 0.72 above 1e-5; bore: 0.72 to 0.76.
+"""
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip import theory
+from microslip.scenes import SCENES
+from microslip.simulate import Resolution, simulate
+
+LIMITS = {"transverse": theory.static_limit_transverse, "bore": theory.static_limit_bore}
+
+
+def ladder(scene, model, amplitude, velocities, resolution):
+    """Mean forces at falling velocities, each search started from the state before it."""
+    means, guess = [], None
+    for velocity in velocities:
+        run = simulate(SCENES[scene], velocity, amplitude, 0.0, model, resolution, 1e-6, guess)
+        assert run.converged, f"{velocity}: {run.reason}"
+        means.append(run.mu)
+        guess = run
+    return np.array(means)
+
+
+def marched(scene, amplitude, velocities):
+    """(mu, error) at each velocity, second order in the rings."""
+    model, rings, angles, steps = {
+        "transverse": ("radial", 32, 1, 64),
+        "bore": ("polar", 16, 12, 32),
+    }[scene]
+    coarse, fine, rough = (
+        ladder(scene, model, amplitude, velocities, Resolution(*resolution))
+        for resolution in [
+            (rings, angles, steps),
+            (2 * rings, angles, steps),
+            (rings, angles, steps // 2),
+        ]
+    )
+    beyond = (fine - coarse) / 3.0
+    return fine + beyond, np.abs(beyond) + np.abs(coarse - rough) + 1e-6
+
+
+def free_limit(means):
+    """Limit of the last three of a sequence whose differences fall geometrically."""
+    first, second, third = means[-3:]
+    return (first * third - second**2) / (first + third - 2.0 * second)
+
+
+def exponents(velocities, excess):
+    return np.diff(np.log(excess)) / np.diff(np.log(velocities))
+
+
+@pytest.mark.parametrize("amplitude", [0.25, 0.5, 0.75])
+def test_transverse_marches_fall_to_the_closed_form(amplitude):
+    velocities = 10.0 ** -np.array([3.0, 3.5, 4.0, 4.5, 5.0])
+    mu, error = marched("transverse", amplitude, velocities)
+    exact = float(theory.static_limit_transverse(amplitude))
+    assert error.max() < 1.5e-4
+    assert abs(free_limit(mu) - exact) <= error.max()
+    excess = mu - exact
+    assert np.all(excess > 5 * error) and np.all(np.diff(mu) < 0.0)
+    found = exponents(velocities, excess)
+    assert found.min() > 0.6 and found.max() < 0.75
+    assert np.all(np.diff(found) > 0.0)
+    # the paper's Eq 11 is not where they go
+    assert abs(free_limit(mu) - float(theory.static_transverse(amplitude))) > 100 * error.max()
+
+
+def test_bore_marches_fall_to_the_closed_form():
+    velocities = 10.0 ** -np.array([2.0, 2.5, 3.0, 3.5, 4.0])
+    mu, error = marched("bore", 1.0, velocities)
+    exact = float(theory.static_limit_bore(1.0))
+    assert error.max() < 4e-4
+    assert abs(free_limit(mu) - exact) <= error.max()
+    excess = mu - exact
+    assert np.all(excess > 5 * error) and np.all(np.diff(mu) < 0.0)
+    found = exponents(velocities, excess)
+    assert found.min() > 0.68 and found.max() < 0.8
+    assert abs(free_limit(mu) - float(theory.static_bore(1.0))) > 100 * error.max()
+
+
+@pytest.mark.parametrize(
+    ("scene", "model", "amplitude", "tolerance", "velocities"),
+    [
+        ("transverse", "radial", 0.25, 1e-4, (1e-2, 1e-3, 1e-4, 1e-5)),
+        ("transverse", "radial", 0.5, 1e-4, (1e-2, 1e-3, 1e-4)),
+        ("transverse", "radial", 0.75, 1e-4, (1e-2, 1e-3, 1e-4)),
+        ("bore", "polar", 1.0, 3e-4, (1e-2, 1e-3, 1e-4, 1e-5)),
+    ],
+)
+def test_certified_points_fall_towards_the_closed_form(
+    scene, model, amplitude, tolerance, velocities
+):
+    """A decade takes the excess down by 10^0.5 to 10^0.85, where errors let it be seen."""
+    results = [
+        microslip.solve(scene, v, amplitude, model=model, tolerance=tolerance) for v in velocities
+    ]
+    assert all(result.converged and result.model == model for result in results)
+    excess = np.array([result.mu_macro for result in results]) - float(LIMITS[scene](amplitude))
+    error = np.array([result.mu_macro_error for result in results])
+    assert np.all(excess > -error)
+    certain = excess[1:] > 5 * error[1:]
+    assert certain.sum() >= 2
+    ratio = (excess[:-1] / excess[1:])[certain]
+    doubt = (error[:-1] / excess[:-1] + error[1:] / excess[1:])[certain]
+    assert np.all(ratio * (1 + doubt) > 10**0.5) and np.all(ratio * (1 - doubt) < 10**0.85)
