@@ -92,8 +92,8 @@ def test_bore_marches_fall_to_the_closed_form():
     ("scene", "model", "amplitude", "tolerance", "velocities"),
     [
         ("transverse", "radial", 0.25, 1e-4, (1e-2, 1e-3, 1e-4, 1e-5)),
-        ("transverse", "radial", 0.5, 1e-4, (1e-2, 1e-3, 1e-4)),
-        ("transverse", "radial", 0.75, 1e-4, (1e-2, 1e-3, 1e-4)),
+        ("transverse", "radial", 0.5, 1e-4, (1e-2, 1e-3, 1e-4, 1e-5)),
+        ("transverse", "radial", 0.75, 1e-4, (1e-2, 1e-3, 1e-4, 1e-5)),
         ("bore", "polar", 1.0, 3e-4, (1e-2, 1e-3, 1e-4, 1e-5)),
     ],
 )
@@ -113,3 +113,23 @@ def test_certified_points_fall_towards_the_closed_form(
     ratio = (excess[:-1] / excess[1:])[certain]
     doubt = (error[:-1] / excess[:-1] + error[1:] / excess[1:])[certain]
     assert np.all(ratio * (1 + doubt) > 10**0.5) and np.all(ratio * (1 - doubt) < 10**0.85)
+
+
+UNSEEN = pytest.mark.xfail(strict=True, reason="coarse rings agree before they see the layer")
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "velocity", "tolerance"),
+    [
+        (0.25, 1e-4, 1e-3),
+        (0.75, 1e-4, 1e-3),
+        (0.25, 1e-5, 1e-4),
+        (0.5, 1e-5, 1e-4),
+        pytest.param(0.25, 1e-5, 1e-3, marks=UNSEEN),
+    ],
+)
+def test_certificates_cover_slow_marches(amplitude, velocity, tolerance):
+    (*_, expected), (*_, allowance) = marched("transverse", amplitude, [100 * velocity, velocity])
+    result = microslip.solve("transverse", velocity, amplitude, tolerance=tolerance)
+    assert result.converged and allowance < 1.5e-4
+    assert abs(result.mu_macro - expected) <= result.mu_macro_error + allowance
