@@ -13,7 +13,7 @@ from microslip.choice import ROUNDING, choose_model, closed_form, plan
 from microslip.scenes import scene_named
 from microslip.simulate import simulate, simulate_static
 
-PERIODICITY_SHARE = 0.15
+PERIODICITY_SHARE = 0.07
 """Share of the tolerance that the distance from the periodic state may take."""
 SMALLEST_TOLERANCE = 1e-6
 CLOSED_FORM = "closed-form"
