@@ -15,8 +15,6 @@ Both hold for any nu and any stiffness.  Arguments are the paper's dimensionless
 
 from __future__ import annotations
 
-import math
-
 
 def largest_drop_transverse(velocity, amplitude):
     """Upper bound of 1 - mu_macro (dimensionless) for velocity >= 0, amplitude >= 0."""
@@ -31,4 +29,6 @@ def largest_drop_bore(velocity, amplitude):
     if amplitude == 0.0:
         return 0.0
     excess = velocity - 1.0
-    return min(1.0, 0.2 / (excess * excess)) if 0.0 < excess < 1e150 else math.inf
+    if excess <= 0.0:
+        return 1.0
+    return min(1.0, 0.2 / (excess * excess)) if excess < 1e150 else 0.0

@@ -65,7 +65,7 @@ def closed_form(scene, velocity, amplitude, poisson, tolerance):
     largest_drop = LARGEST_DROPS.get(scene.name)
     if largest_drop is not None:
         drop = largest_drop(velocity, amplitude)
-        if 0.5 * drop <= tolerance:
+        if 0.5 * drop + ROUNDING <= tolerance:
             return 1.0 - 0.5 * drop, None, 0.5 * drop + ROUNDING
     return None
 
@@ -86,14 +86,15 @@ def plan(scene, name, velocity, amplitude, poisson, tolerance, cells=None, steps
         axes.append(Axis("angles", ANGLES, base, (base - 1, base, base + 1)))
     if scene.periodic and velocity > 0.0:
         axes.append(_steps(scene, amplitude, poisson, tolerance, steps))
-    coarsest = Resolution(cells=cells or model.cells, angles=1, steps=STEPS[0])
+    resolved = bool(axes) and axes[0].name == "cells"
+    coarsest = Resolution(cells=model.cells if resolved else 1, angles=1, steps=STEPS[0])
     return coarsest, tuple(axes)
 
 
 def _cells(scene, name, velocity, amplitude, poisson, imposed):
     if imposed is not None:
         return Axis("cells", (imposed // 2, imposed), 1, (0, 1), imposed=True)
-    if name == "cartesian":  # no regular convergence: cells at the edge come and go
+    if name == "cartesian":  # doubled, since cells come and go at the edge
         return Axis("cells", SQUARES, 1, (0, 1, 2), regular=True)
     base = RINGS.index(BASE_RINGS)
     if not scene.periodic:  # the centre of rotation stays where it is, and only fine rings see it

@@ -34,10 +34,8 @@ COARSE_TOLERANCE = 1e-5
 """Where marches give derivatives, a search in this many times fewer steps comes first, as long as
 no fewer are left than these, and no tighter than this."""
 
-WEAKEST_FOCUS, STRONGEST_FOCUS, FOCUS_STEP = 0.3, 0.9, 0.1
-"""Bounds of rings.Focus.strength.  Slip that is as small as the creep fills a layer around the
-stick radius whose width goes like creep^(2/3); with widths that grow from it quadratically, the
-square root of that is the right share of the mean width.  In steps, so that points share grids."""
+WEAKEST_FOCUS, STRONGEST_FOCUS, STATIC_FOCUS = 0.3, 1.0 - 2.0**-6, 0.9
+"""Bounds of rings.Focus.strength, and its value for the static limit."""
 
 
 @dataclass(frozen=True, order=True)
@@ -266,14 +264,24 @@ def simulate_static(scene, amplitude, poisson, model, resolution, tolerance):
     )
 
 
+def _focus_strength(creep):
+    """How closely rings should gather at the stick radius; creep: in a radian, in u_lim.
+
+    Slip that is as small as the creep fills a layer whose width goes like creep^(2/3).  With ring
+    widths that grow quadratically from it, the square root of that is the right share of the mean
+    width; in powers of two, so that points share grids.
+    """
+    layer = 2.0 ** round(np.log2(creep) / 3.0)
+    return float(np.clip(1.0 - layer, WEAKEST_FOCUS, STRONGEST_FOCUS))
+
+
 def build_contact(scene, velocity, amplitude, poisson, model, resolution):
     """The contact, its rings gathered where the slip starts: the closer, the slower the creep."""
     radius = scene.focus(velocity, amplitude)
     focus = radius
     if radius is not None and scene.periodic:
-        layer = scene.creep(velocity, amplitude, poisson) ** (1.0 / 3.0)
-        strength = np.clip(1.0 - layer, WEAKEST_FOCUS, STRONGEST_FOCUS)
-        focus = Focus(radius, FOCUS_STEP * round(float(strength) / FOCUS_STEP))
+        creep = scene.creep(velocity, amplitude, poisson)
+        focus = Focus(radius, _focus_strength(creep) if creep > 0.0 else STATIC_FOCUS)
     return MODELS[model].build(scene, poisson, resolution.cells, resolution.angles, focus)
 
 
