@@ -71,12 +71,7 @@ def test_huge_ratios_do_not_overflow(velocity, amplitude):
     assert 0.0 <= largest_drop_transverse(velocity, amplitude) < 1e-200
 
 
-BEYOND = pytest.mark.xfail(strict=True, reason="velocities above 1e150 count as slow")
-
-
-@pytest.mark.parametrize(
-    "velocity", [1e149, pytest.param(1e151, marks=BEYOND), pytest.param(1e300, marks=BEYOND)]
-)
+@pytest.mark.parametrize("velocity", [1e149, 1e151, 1e300])
 def test_huge_velocities_close_the_bracket_of_the_bore(velocity):
     assert 0.0 <= largest_drop_bore(velocity, 1.0) < 1e-200
 

@@ -252,4 +252,4 @@ def test_imposed_resolution_is_that_of_one_run():
     run = simulate(TRANSVERSE, 0.01, 0.6, 0.0, "radial", Resolution(8, 1, 12), 1e-6)
     assert (result.cells, result.steps_per_period) == (8, 24)
     assert result.mu_macro == pytest.approx(run.mu, abs=1.5e-4)
-    assert abs(finer.mu - run.mu) > 1e-3  # which is not what the tolerance would have chosen
+    assert abs(finer.mu - run.mu) > 5e-4  # which is not what the tolerance would have chosen
