@@ -129,8 +129,8 @@ def summary(lines):
         error = abs(certified["mu_macro"] - line["reference"])
         out.append(
             f"\nNot covered: {scene}, velocity {velocity:g}, amplitude {amplitude:g},"
-            f" nu {poisson:g} at {tolerance:g}: error {error:.1e} (+- {line['reference_uncertainty']:.0e}),"
-            f" certificate {certified['mu_macro_error']:.1e}."
+            f" nu {poisson:g} at {tolerance:g}: error {error:.1e}"
+            f" (+- {line['reference_uncertainty']:.0e}), certificate {certified['mu_macro_error']:.1e}."
         )
     return "\n".join(out) + "\n"
 

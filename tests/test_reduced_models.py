@@ -115,4 +115,5 @@ def test_what_has_no_extension_cannot_turn(model):
 def test_full_slip_carries_the_whole_friction():
     for contact in (mdr_contact(7, 0.6), DahlContact()):
         ones = np.ones((1, len(contact.bound)))
-        assert forces(contact, np.stack([ones, 0.0 * ones]) * contact.bound)[0] == pytest.approx(1.0)
+        full_slip = np.stack([ones, 0.0 * ones]) * contact.bound
+        assert forces(contact, full_slip)[0] == pytest.approx(1.0)

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from microslip import hertz
+from microslip.choice import choose_model
 from microslip.models import MODELS
 from microslip.models.contact import full_slip
 from microslip.path import make_path
-from microslip.choice import choose_model
 from microslip.point import checked_point
 from microslip.simulate import forward_slip, steady_state
 

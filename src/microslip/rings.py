@@ -21,7 +21,6 @@ class Focus(NamedTuple):
     strength: float = 0.6
 
 
-
 @dataclass(frozen=True, eq=False)
 class Rings:
     """n rings between psi = 0 and pi/2; arrays of shape (n,) but psi, shape (n + 1,).
