@@ -130,7 +130,8 @@ def summary(lines):
         out.append(
             f"\nNot covered: {scene}, velocity {velocity:g}, amplitude {amplitude:g},"
             f" nu {poisson:g} at {tolerance:g}: error {error:.1e}"
-            f" (+- {line['reference_uncertainty']:.0e}), certificate {certified['mu_macro_error']:.1e}."
+            f" (+- {line['reference_uncertainty']:.0e}),"
+            f" certificate {certified['mu_macro_error']:.1e}."
         )
     return "\n".join(out) + "\n"
 

@@ -2,9 +2,9 @@
 
 For tangential loading in one direction it reproduces the half-space exactly (Cattaneo and Mindlin,
 any axisymmetric profile); with two components of slip it is an approximation, since its springs
-know nothing of each other.  Springs at -a < x < a have the stiffness G* per length, and Hertz's parabola
-gives each the friction bound 3/4 (1 - x^2) per length (dimensionless), so that it yields at
-(1 - x^2) u_lim.
+know nothing of each other.  Springs at -a < x < a have the stiffness G* per length, and Hertz's
+parabola gives each the friction bound 3/4 (1 - x^2) per length (dimensionless), so that it yields
+at (1 - x^2) u_lim.
 """
 
 from __future__ import annotations
