@@ -41,7 +41,7 @@ POISSON = (0.0, 0.3, 0.5)
 VELOCITIES, AMPLITUDES = (-4.0, 2.0), (-2.0, 2.0)
 """Decimal logarithms of the ranges."""
 FINER = 4
-BASE = {"radial": Resolution(32, 1, 48), "polar": Resolution(16, 8, 32)}
+BASE = {"radial": Resolution(32, 1, 48), "polar": Resolution(24, 12, 32)}
 LEAST = {"radial": Resolution(64, 1, 96), "polar": Resolution(48, 16, 64)}
 MOST = Resolution(192, 64, 2048)
 """Resolutions (steps in half a period) of the reference: its base, and bounds of its finest."""
@@ -87,6 +87,11 @@ def reference(scene, velocity, amplitude, poisson, tolerance, certified):
         beyond = (fine - coarse) / 3.0  # second order
         mu += fine + beyond - at_base
         uncertainty += abs(beyond)
+    if model == "polar":  # what rings and angles do together
+        twice = {"cells": 2 * base.cells, "angles": 2 * base.angles}
+        one, other = (mean(**{axis: count}) for axis, count in twice.items())
+        mixed = mean(**twice) - one - other + at_base
+        mu, uncertainty = mu + mixed, uncertainty + 0.5 * abs(mixed)
     return at_base + mu, uncertainty + max(left)
 
 

@@ -8,7 +8,7 @@ time scatter in the differences of other chains) that counts as error too, and i
 one the base itself is refined.
 
 - cells: the error falls smoothly with about the second power, so the last difference is
-  extrapolated; half of that extrapolation stays as error, and half of the change that the last run
+  extrapolated; 0.6 of that extrapolation stays as error, and half of the change that the last run
   made to the extrapolated value.
 - angles: the error falls fast but irregularly, so the spread of the last three runs is the error.
 - steps: the error scatters about its trend, since a ring starts to slip somewhere within a step; so
@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-EXTRAPOLATION_SHARE = 0.5
+EXTRAPOLATION_SHARE = 0.6
 CHANGE_SHARE = 0.5
 """Errors of cells over the last extrapolation, and over the change of the extrapolated value."""
 RESOLVED = 0.125

@@ -101,10 +101,13 @@ def _cells(scene, name, velocity, amplitude, poisson, imposed):
         return Axis("cells", RINGS, base + 1, (base, base + 1, base + 2), regular=True)
     if velocity == 0.0:  # a stick zone that is not circular cuts rings, and the corners are steep
         return Axis("cells", RINGS, base + 2, tuple(range(base, base + 6)))
-    slow = scene.creep(velocity, amplitude, poisson) < SLOW_CREEP
-    oval = poisson > 0.0 and not scene.rotates  # and so is the front of slip, which rings are not
-    first = (base - 1, base, base + 1) if slow or oval else (base - 2, base - 1, base)
-    return Axis("cells", RINGS, base, first, regular=True)
+    if scene.rotates:
+        slow = scene.creep(velocity, amplitude, poisson) < SLOW_CREEP
+        up = 1 if slow else 0
+    else:  # few unknowns; and at nu > 0 the front of slip is oval, which rings are not
+        up = 2 if poisson > 0.0 else 1
+    base, last = base + max(up - 1, 0), base + up
+    return Axis("cells", RINGS, base, (last - 2, last - 1, last), regular=True)
 
 
 def _steps(scene, amplitude, poisson, tolerance, imposed):
