@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from microslip.accuracy import MOST_REBASED, RESOLVED, Axis, certify
+from microslip.accuracy import EXTRAPOLATION_SHARE, MOST_REBASED, RESOLVED, Axis, certify
 from microslip.simulate import Resolution, Run
 
 EXACT, EXACT_TORQUE = 0.4, 0.7
@@ -96,10 +96,11 @@ def test_second_order_in_cells_is_extrapolated_to_the_exact_value(coefficient):
     found = certified(fake, (axis("cells"),), 1e-4)
     assert found.converged and found.mu == pytest.approx(EXACT, abs=1e-12)
     assert found.torque == pytest.approx(EXACT_TORQUE, abs=1e-12)
-    # half of what was extrapolated stays as error
+    # most of what was extrapolated stays as error
     finest = max(fake.asked)
     assert found.finest == finest
-    expected = max(0.5 * abs(fake.excess(finest)), RESOLVED * 1e-4)
+    share = EXTRAPOLATION_SHARE * abs(fake.excess(finest))
+    expected = max(share, RESOLVED * 1e-4)
     assert found.errors["space"] == pytest.approx(expected, rel=1e-9)
 
 
