@@ -1,0 +1,72 @@
+"""What the points of a configuration cost, in one process on one core, compiled beforehand.
+
+    python benchmarks/sweep_cost.py [--config FILE] [--markdown FILE]
+
+Solves every point of every sweep once and sums up the time spent in the solver, which the datasets
+leave out because it differs from run to run.
+"""
+
+from __future__ import annotations
+
+import os
+
+for library in ("OPENBLAS", "OMP", "MKL", "NUMBA"):  # before NumPy is imported
+    os.environ[f"{library}_NUM_THREADS"] = "1"
+
+import argparse  # noqa: E402
+from itertools import product  # noqa: E402
+from pathlib import Path  # noqa: E402
+
+import numpy as np  # noqa: E402
+from tqdm import tqdm  # noqa: E402
+
+import microslip  # noqa: E402
+from microslip import config  # noqa: E402
+
+
+def cost(sweep):
+    """One row of the table."""
+    axes = (sweep.velocity, sweep.amplitude or (None,), sweep.poisson)
+    answers = []
+    for velocity, amplitude, poisson in tqdm(list(product(*axes)), desc=sweep.name, leave=False):
+        answers.append(
+            microslip.solve(
+                sweep.scene,
+                velocity,
+                amplitude,
+                poisson=poisson,
+                model=sweep.model,
+                tolerance=sweep.tolerance,
+                cells=sweep.cells,
+                steps=sweep.steps,
+            )
+        )
+    seconds = np.array([answer.solve_time_s for answer in answers])
+    return {
+        "sweep": sweep.name,
+        "points": len(answers),
+        "converged": sum(answer.converged for answer in answers),
+        "tolerance": f"{sweep.tolerance:g}",
+        "largest error": f"{max(answer.mu_macro_error for answer in answers):.1e}",
+        "solver time, s": f"{seconds.sum():.1f}",
+        "median, ms": f"{1e3 * np.median(seconds):.1f}",
+        "slowest, ms": f"{1e3 * seconds.max():.0f}",
+    }
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--config", type=Path, default=Path("config/config.yaml"))
+    parser.add_argument("--markdown", type=Path, help="file to write the table to")
+    options = parser.parse_args()
+    microslip.warm_up()
+    rows = [cost(sweep) for sweep in config.load(options.config).sweeps.values()]
+    lines = [list(rows[0]), ["---"] * len(rows[0]), *(list(row.values()) for row in rows)]
+    table = "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)
+    print(table)
+    if options.markdown:
+        options.markdown.write_text(table + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
