@@ -141,6 +141,17 @@ def summary(lines):
     return "\n".join(out) + "\n"
 
 
+def parsed(text):
+    """Results of an earlier run; what an interruption cut short is left out."""
+    found = []
+    for line in text.splitlines():
+        try:
+            found.append(json.loads(line))
+        except json.JSONDecodeError:
+            print("a line that is cut short is computed again")
+    return found
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--points", type=int, default=300)
@@ -151,9 +162,11 @@ def main():
     options = parser.parse_args()
     options.output.parent.mkdir(parents=True, exist_ok=True)
     wanted = sample(options.points, options.seed)
-    known = options.output.read_text().splitlines() if options.output.exists() else []
-    lines = {tuple(line["point"]): line for line in map(json.loads, known)}
+    known = options.output.read_text() if options.output.exists() else ""
+    lines = {tuple(line["point"]): line for line in parsed(known)}
     with ProcessPoolExecutor(options.workers) as pool, options.output.open("a") as file:
+        if known and not known.endswith("\n"):
+            file.write("\n")
         jobs = [pool.submit(examine, point) for point in wanted if point not in lines]
         for done, job in enumerate(as_completed(jobs), start=1):
             line = job.result()
