@@ -27,9 +27,9 @@ import numpy as np  # noqa: E402
 
 import microslip  # noqa: E402
 from microslip.models.cartesian import CartesianContact  # noqa: E402
+from microslip.models.contact import forward_slip  # noqa: E402
 from microslip.path import EULER, make_path  # noqa: E402
 from microslip.scenes import SCENES  # noqa: E402
-from microslip.simulate import forward_slip  # noqa: E402
 
 POINTS = [("transverse", 0.5), ("bore", 1.0)]
 """Scene and amplitude."""

@@ -12,7 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from microslip.accuracy import EXTRAPOLATION_SHARE, MOST_REBASED, RESOLVED, Axis, certify
-from microslip.simulate import Resolution, Run
+from microslip.motion import Resolution
+from microslip.simulate import Run
 
 EXACT, EXACT_TORQUE = 0.4, 0.7
 COARSEST = Resolution(cells=3, angles=1, steps=5)

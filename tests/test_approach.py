@@ -14,8 +14,9 @@ import pytest
 
 import microslip
 from microslip import theory
+from microslip.motion import Resolution
 from microslip.scenes import SCENES
-from microslip.simulate import Resolution, simulate
+from microslip.simulate import simulate
 
 LIMITS = {"transverse": theory.static_limit_transverse, "bore": theory.static_limit_bore}
 

@@ -7,7 +7,7 @@ from scipy.integrate import dblquad
 from microslip.friction import coulomb_residual, project
 from microslip.models import cartesian
 from microslip.models.cartesian import CartesianContact, solve_step
-from microslip.models.contact import full_slip
+from microslip.models.contact import forward_slip
 from microslip.models.convolution import convolve, influence, square_convolution, workspace
 from microslip.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.scenes import BORE, TRANSVERSE
@@ -27,11 +27,6 @@ def path_of(scene, steps, velocity=0.1, amplitude=1.0, nu=0.0, integrator=SDIRK2
         return scene.displacement(phase, velocity, amplitude, nu)
 
     return make_path(displacement, half_period_phases(steps), integrator)
-
-
-def forward_slip(contact):
-    ones = np.ones_like(contact.bound)
-    return full_slip(contact, ones, 0.0 * ones)
 
 
 def force_between(contact, one, other):

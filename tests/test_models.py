@@ -11,17 +11,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from microslip import hertz, theory
+from microslip.cycle import Cycle
 from microslip.friction import project
 from microslip.models import MODELS
 from microslip.models.cartesian import CartesianContact
-from microslip.models.contact import energy_norm, forces
+from microslip.models.contact import energy_norm, forces, forward_slip
 from microslip.models.polar import PolarContact
 from microslip.models.radial import RadialContact
 from microslip.models.slider import slider_contact
+from microslip.motion import Resolution
 from microslip.path import EULER, INTEGRATORS, SDIRK2, half_period_phases, make_path
 from microslip.periodic import find_periodic_state
 from microslip.scenes import BORE, TRANSVERSE
-from microslip.simulate import Resolution, forward_slip, simulate
+from microslip.simulate import simulate
 
 
 def at_rest(contact):
@@ -480,7 +482,7 @@ def test_order_of_the_integrators_in_the_periodic_mean(name):
 
     def mean(steps, integrator):
         path = half_period(scene, velocity, amplitude, 0.3, steps, integrator)
-        found = find_periodic_state(contact, path, forward_slip(contact), 1e-7, 1e-9)
+        found = find_periodic_state(Cycle(contact, path), forward_slip(contact), 1e-7, 1e-9)
         assert found.converged
         return path.mean(found.forces)[0]
 

@@ -9,13 +9,14 @@ import microslip.simulate
 from microslip import theory
 from microslip.cycle import Cycle
 from microslip.models import MODELS
-from microslip.models.contact import energy_norm
+from microslip.models.contact import energy_norm, forward_slip
 from microslip.models.radial import RadialContact
+from microslip.motion import Motion, Resolution, build_contact
 from microslip.newton import Corrector
 from microslip.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.periodic import find_periodic_state
 from microslip.scenes import BORE, TRANSVERSE
-from microslip.simulate import Motion, Resolution, build_contact, forward_slip, simulate
+from microslip.simulate import simulate
 
 TOLERANCE = 1e-5
 STEP_TOLERANCE = 1e-3 * TOLERANCE  # what simulate asks of a step
@@ -93,8 +94,9 @@ def test_found_state_is_that_of_the_plain_march(name, velocity, amplitude):
     resolution = Resolution(cells, angles, STEPS)
     run = simulate(scene, velocity, amplitude, nu, model, resolution, TOLERANCE)
     assert run.converged and run.distance <= TOLERANCE
-    contact = build_contact(scene, velocity, amplitude, nu, model, resolution)
-    path = Motion(scene, velocity, amplitude, nu).path(contact, STEPS)
+    motion = Motion(scene, velocity, amplitude, nu)
+    contact = build_contact(motion, model, resolution)
+    path = motion.path(contact, STEPS)
     stands_still = 1e-7 if model == "cartesian" else 1e-9  # its steps are solved no further
     state, forces = plain_march(contact, path, 0.0 * forward_slip(contact), stands_still)
     assert run.mu == pytest.approx(path.mean(forces[:, 0]), abs=2 * TOLERANCE)
@@ -107,7 +109,8 @@ def test_second_half_of_the_period_mirrors_the_first(name, integrator):
     """A march over the whole period from the found state, which knows nothing of the symmetry."""
     scene, point = CASES[name][1], POINTS[name][1]
     contact, path = contact_of(name, *point), path_of(name, *point, integrator)
-    found = find_periodic_state(contact, path, forward_slip(contact), TOLERANCE, STEP_TOLERANCE)
+    cycle = Cycle(contact, path)
+    found = find_periodic_state(cycle, forward_slip(contact), TOLERANCE, STEP_TOLERANCE)
     assert found.converged
     whole = path_of(name, *point, integrator, whole=True)
     march = contact.march(whole, found.start, STEP_TOLERANCE)
@@ -124,10 +127,10 @@ def test_second_half_of_the_period_mirrors_the_first(name, integrator):
 def test_verdict_is_that_of_the_plain_map(name):
     contact, path = contact_of(name, *POINTS[name][1]), path_of(name, *POINTS[name][1])
     start = forward_slip(contact)
-    enough = find_periodic_state(contact, path, start, TOLERANCE, STEP_TOLERANCE)
+    enough = find_periodic_state(Cycle(contact, path), start, TOLERANCE, STEP_TOLERANCE)
     assert enough.converged and enough.residual <= enough.distance <= TOLERANCE
     few = find_periodic_state(
-        contact, path, start, TOLERANCE, STEP_TOLERANCE, max_periods=enough.periods - 1
+        Cycle(contact, path), start, TOLERANCE, STEP_TOLERANCE, max_periods=enough.periods - 1
     )
     assert not few.converged
     assert few.periods < enough.periods
@@ -142,10 +145,7 @@ def test_verdict_is_that_of_the_plain_map(name):
 
 
 def test_run_reports_what_was_not_reached(monkeypatch):
-    def short(*arguments, **options):
-        return find_periodic_state(*arguments, **options, max_periods=2)
-
-    monkeypatch.setattr(microslip.simulate, "find_periodic_state", short)
+    monkeypatch.setattr(microslip.simulate, "MAX_PERIODS", 2)
     for scene, model, angles in ((BORE, "polar", 4), (TRANSVERSE, "radial", 1)):
         run = simulate(scene, 0.1, 1.0, 0.0, model, Resolution(6, angles, 8), TOLERANCE)
         assert not run.converged
@@ -251,7 +251,7 @@ def test_broyden_update_maps_the_change_it_has_seen():
     path, start = path_of("radial", 0.1, 1.0), forward_slip(contact)
     cycle = Cycle(contact, path)
     first = cycle(start, 1e-10, sensitivity=True)
-    corrector = Corrector(contact, start)
+    corrector = Corrector(cycle, start)
     corrector.learn(first, None)
     second = cycle(corrector(first), 1e-10)
     corrector.learn(second, first)

@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 
 from microslip.friction import coulomb_residual, project
-from microslip.models.contact import energy_norm
+from microslip.models.contact import energy_norm, forward_slip
 from microslip.models.radial import RadialContact
 from microslip.models.slider import slider_contact
 from microslip.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.scenes import TRANSVERSE
-from microslip.simulate import forward_slip
 
 # Friction of ``exponential_contact`` after six half periods from forward slip, from a solver in
 # complex numbers, Gauss-Seidel and dense Newton, that has no line in common with this one
@@ -96,7 +95,7 @@ def test_every_stage_obeys_coulomb_to_the_tolerance(cells):
         assert march.residual <= march.solves * tolerance
         bound = contact.bound
         assert (np.hypot(*np.moveaxis(march.stages, 1, 0)) <= bound * (1 + 1e-14)).all()
-        moves = np.diff(path.positions()[:, :2], axis=0)
+        moves = np.diff(path.positions[:, :2], axis=0)
         for before, after, move in zip(march.stages, march.stages[1:], moves, strict=False):
             slip = move[:, None] - (after - before) @ contact.influence.T
             left = coulomb_residual(

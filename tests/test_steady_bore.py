@@ -9,7 +9,7 @@ from microslip.inside import STARTS
 from microslip.models.cartesian import CartesianContact
 from microslip.models.polar import PolarContact
 from microslip.scenes import CONTINUOUS_BORE
-from microslip.simulate import steady_state
+from microslip.steady import steady_state
 
 VELOCITIES = np.geomspace(0.1, 10.0, 7)
 

@@ -11,8 +11,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from microslip.friction import project
-
 FORCING = 1e-3
 LOOSEST = 1e-4
 """While the state is still far from periodic, steps are solved to this share of what the last
@@ -46,7 +44,7 @@ def search(cycle, start, tolerance, step_tolerance, max_periods):
         proposal = accelerate(state, lap.image)
         if forgets:
             proposal = lap.image
-        state = project(proposal, cycle.contact.bound)
+        state = cycle.admissible(proposal)
         distance = cycle.distance(lap, state)
         converged = solved and distance <= tolerance
         if best is None or distance < best.distance or converged:

@@ -21,7 +21,7 @@ def largest_drop_transverse(velocity, amplitude):
     if amplitude == 0.0:
         return 0.0
     ratio = velocity / amplitude
-    return 1.0 / (ratio * ratio + 0.5) if ratio < 1e150 else 0.0
+    return 1.0 / (ratio * ratio + 0.5)
 
 
 def largest_drop_bore(velocity, amplitude):
@@ -31,4 +31,4 @@ def largest_drop_bore(velocity, amplitude):
     excess = velocity - 1.0
     if excess <= 0.0:
         return 1.0
-    return min(1.0, 0.2 / (excess * excess)) if excess < 1e150 else 0.0
+    return min(1.0, 0.2 / (excess * excess))

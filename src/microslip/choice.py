@@ -5,7 +5,7 @@ from __future__ import annotations
 from microslip import bounds, theory
 from microslip.accuracy import Axis
 from microslip.models import MODELS
-from microslip.simulate import Resolution
+from microslip.motion import Resolution
 
 RINGS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
 SQUARES = (8, 16, 32, 64, 128)
@@ -47,14 +47,17 @@ def choose_model(scene, poisson, model="auto"):
     return model
 
 
+def no_vibration(scene, amplitude):
+    """(mu, torque, error) where nothing oscillates, whatever the model, else None."""
+    return (1.0, None, ROUNDING) if scene.periodic and amplitude == 0.0 else None
+
+
 def closed_form(scene, velocity, amplitude, poisson, tolerance):
     """(mu, torque, error) where nothing has to be computed, else None.
 
-    No vibration; the limit of vanishing velocity; pure rotation; and sliding so fast that the
-    bracket of bounds.py is within the tolerance.
+    The limit of vanishing velocity; pure rotation; and sliding so fast that the bracket of
+    bounds.py is within the tolerance (0: only what is exact).
     """
-    if scene.periodic and amplitude == 0.0:
-        return 1.0, None, ROUNDING
     if velocity == 0.0:
         if not scene.periodic:
             return 0.0, 1.0, ROUNDING
@@ -71,24 +74,20 @@ def closed_form(scene, velocity, amplitude, poisson, tolerance):
 
 
 def plan(scene, name, velocity, amplitude, poisson, tolerance, cells=None, steps=None):
-    """Coarsest resolution and the axes to refine (see accuracy.certify).
+    """Resolution of what is not refined, and the axes to refine (see accuracy.certify).
 
     name: of the model; cells, steps (in a full period): impose a resolution instead.
     """
-    model = MODELS[name]
-    angular = model.angles > 1 and (name != "rigid" or scene.rotates)
-    axes = []
-    if model.cells > 1 and (scene.rotates or name != "rigid"):
+    resolved, axes = MODELS[name].axes(scene), []
+    if "cells" in resolved:
         axes.append(_cells(scene, name, velocity, amplitude, poisson, cells))
-    if angular:
+    if "angles" in resolved:
         # only nu > 0 makes tractions of a translation depend on the angle, and only a little
         base = ANGLES.index(BASE_ANGLES) + (not scene.periodic) - (not scene.rotates)
         axes.append(Axis("angles", ANGLES, base, (base - 1, base, base + 1)))
     if scene.periodic and velocity > 0.0:
         axes.append(_steps(scene, amplitude, poisson, tolerance, steps))
-    resolved = bool(axes) and axes[0].name == "cells"
-    coarsest = Resolution(cells=model.cells if resolved else 1, angles=1, steps=STEPS[0])
-    return coarsest, tuple(axes)
+    return Resolution(cells=1, angles=1, steps=STEPS[0]), tuple(axes)
 
 
 def _cells(scene, name, velocity, amplitude, poisson, imposed):

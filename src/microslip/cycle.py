@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.models.contact import March, energy_norm
+from microslip.friction import project
+from microslip.models.contact import March, StepFailure, energy_norm
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +23,8 @@ class PeriodicState:
     residual: what the plain map still changed, distance: estimated distance from the fixed point
     (both bounds on a force over mu F_z); solver_residual: sum over the stages of the last period;
     periods: maps marched; iterations, solves: of the step solver, over all of them; inverse: what
-    turned residuals into corrections, (start.size, start.size), if anything did.
+    turned residuals into corrections, (start.size, start.size), if anything did; failure: why a
+    march could not go on, if one could not.
     """
 
     forces: np.ndarray
@@ -35,6 +37,7 @@ class PeriodicState:
     solves: int
     converged: bool
     inverse: np.ndarray | None = None
+    failure: str = ""
 
 
 @dataclass(frozen=True)
@@ -70,7 +73,11 @@ class Lap:
 
 
 class Cycle:
-    """The map of a contact over a path, which counts the marches: Cycle(...)(state) -> Lap."""
+    """The map of a contact over a path, which counts the marches: Cycle(...)(state) -> Lap.
+
+    path: half a period, from turning point to turning point, whose second half is its lateral
+    mirror image; pace: if the motion may be slow, see Pace.
+    """
 
     def __init__(self, contact, path, pace=None):
         self.contact, self.path, self.pace = contact, path, pace
@@ -79,7 +86,10 @@ class Cycle:
         self._share = np.diff(path.phase) / (path.phase[-1] - path.phase[0])  # of each step
 
     def __call__(self, state, step_tolerance, sensitivity=False):
-        """March once from ``state``; steps are solved to ``step_tolerance``."""
+        """March once from ``state``; steps are solved to ``step_tolerance``.
+
+        Raises StepFailure where the tractions blow up.
+        """
         self._march = march = self.contact.march(
             self.path, state, step_tolerance, sensitivity=sensitivity, previous=self._march
         )
@@ -88,7 +98,13 @@ class Cycle:
         self.solves += march.solves
         image = self.contact.mirrored(march.state)
         change = image - state
+        if not np.isfinite(change).all():
+            raise StepFailure("diverged: tractions are not finite")
         return Lap(state, image, change, energy_norm(self.contact, change), march)
+
+    def admissible(self, state):
+        """The state projected on the friction bound, where the integrator keeps to it."""
+        return project(state, self.contact.bound) if self.path.end == 1.0 else state
 
     def distance(self, lap, proposal):
         """Estimated distance of a lap's state from the fixed point, given a better state."""
@@ -112,4 +128,19 @@ class Cycle:
             solves=self.solves,
             converged=bool(converged),
             inverse=inverse,
+        )
+
+    def broken(self, start, failure):
+        """The PeriodicState of a search that a march put an end to; no force of it is a number."""
+        return PeriodicState(
+            forces=np.full((len(self.path.phase), 3), np.nan),
+            start=start,
+            residual=np.inf,
+            distance=np.inf,
+            solver_residual=np.inf,
+            periods=self.periods + 1,
+            iterations=self.iterations,
+            solves=self.solves,
+            converged=False,
+            failure=failure,
         )

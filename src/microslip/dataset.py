@@ -40,7 +40,7 @@ POINT_VARIABLES = {
     "cells": (np.int32, "rings, or squares across the contact"),
     "angles": (np.int32, "angular points on half a ring"),
     "steps_per_period": (np.int32, "time steps in a period"),
-    "periods": (np.int32, "longest march to the periodic state, in half periods"),
+    "periods": (np.int32, "half periods marched in the longest run"),
     "iterations": (np.int32, "iterations of the step solver in all runs"),
     "work": (np.int64, "step solves times unknowns, summed over all runs"),
     "model": (str, "contact model that was used"),

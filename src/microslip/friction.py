@@ -23,7 +23,13 @@ JIT = {"cache": True, "nogil": True, "error_model": "numpy"}
 def shrink(forward, lateral, bound):
     """Factor in 0..1 that brings the traction (forward, lateral) onto the disc |q| <= bound."""
     size = np.sqrt(forward * forward + lateral * lateral)
-    return 1.0 if size <= bound else bound / size
+    return min(1.0, bound / max(size, 1e-300))  # no branch: the compiler can vectorise it
+
+
+@njit(inline="always", **JIT)
+def extended(start, stage, end):
+    """Value at the end of a step, given that at its start and that at its share ``end``."""
+    return stage if end == 1.0 else start + (stage - start) / end
 
 
 @njit(**JIT)
@@ -39,8 +45,7 @@ def coulomb_residual(q, slip, bound, weight, scale):
         for i in range(q.shape[2]):
             forward = q[0, j, i] + slip[0, j, i] / scale[i]
             lateral = q[1, j, i] + slip[1, j, i] / scale[i]
-            size = np.sqrt(forward * forward + lateral * lateral)
-            f = min(1.0, bound[i] / max(size, 1e-300))
+            f = shrink(forward, lateral, bound[i])
             forward = forward * f - q[0, j, i]
             lateral = lateral * f - q[1, j, i]
             rows[i] += weight[i] * np.sqrt(forward * forward + lateral * lateral)

@@ -8,11 +8,11 @@ import numpy as np
 
 from microslip import hertz
 from microslip.choice import choose_model
-from microslip.models import MODELS
-from microslip.models.contact import full_slip
+from microslip.models.contact import forward_slip, full_slip
+from microslip.motion import Motion, Resolution, build_contact
 from microslip.path import make_path
 from microslip.point import checked_point
-from microslip.simulate import forward_slip, steady_state
+from microslip.steady import steady_state
 
 STARTS = ("stress-free", "full-slip", "full-rotation")
 CELLS = 32
@@ -70,18 +70,15 @@ def history(
             raise ValueError(f"{name} = {count!r}: allowed is a whole number of at least 1")
     if not 0.0 < travel < np.inf:
         raise ValueError(f"travel = {travel!r}: allowed is a finite number above 0")
-    contact = _contact(kind, velocity, amplitude, poisson, model, cells)
+    motion = Motion(kind, velocity, amplitude, poisson)
+    contact = _contact(motion, model, cells)
     end = 2 * np.pi * periods if kind.periodic else travel / velocity
     count = (steps or STEPS) * (periods if kind.periodic else 1)
-
-    def displacement(phase):
-        return kind.displacement(phase, velocity, amplitude, poisson)
-
-    path = make_path(displacement, np.linspace(0.0, end, count + 1))
+    path = make_path(motion.displacement, np.linspace(0.0, end, count + 1))
     march = contact.march(path, _start(contact, start), STEP_TOLERANCE)
     return History(
         phase=path.phase,
-        displacement_forward=path.positions()[:, 0],
+        displacement_forward=path.positions[:, 0],
         force_forward=march.forces[:, 0],
         force_lateral=march.forces[:, 1],
         torque=march.forces[:, 2] / hertz.TORQUE_FULL_SLIP,
@@ -99,12 +96,10 @@ def traction_field(scene, velocity, amplitude=None, *, poisson=0.0, cells=None):
     kind, velocity, _, poisson = checked_point(scene, velocity, amplitude, poisson)
     if kind.periodic or velocity <= 0.0:
         raise ValueError(f"scene = {scene!r}: allowed is continuous-bore at velocity > 0")
-    contact = _contact(kind, velocity, None, poisson, "polar", cells)
-
-    def displacement(phase):
-        return kind.displacement(phase, velocity, None, poisson)
-
-    forward, lateral = -steady_state(contact, displacement, velocity, 1e-6, STEP_TOLERANCE).state
+    motion = Motion(kind, velocity, None, poisson)
+    contact = _contact(motion, "polar", cells)
+    found = steady_state(contact, motion.displacement, velocity, 1e-6, STEP_TOLERANCE)
+    forward, lateral = -found.state
     half = {
         "lateral_position": contact.lateral_position,
         "forward_position": contact.forward_position,
@@ -121,11 +116,9 @@ def traction_field(scene, velocity, amplitude=None, *, poisson=0.0, cells=None):
     return field | {"centre_lateral": -velocity}
 
 
-def _contact(scene, velocity, amplitude, poisson, model, cells):
-    name = choose_model(scene, poisson, model)
-    angles = ANGLES if MODELS[name].angles > 1 else 1
-    focus = scene.focus(velocity, amplitude)
-    return MODELS[name].build(scene, poisson, cells or CELLS, angles, focus)
+def _contact(motion, model, cells):
+    name = choose_model(motion.scene, motion.poisson, model)
+    return build_contact(motion, name, Resolution(cells or CELLS, ANGLES, steps=0))
 
 
 def _start(contact, start):

@@ -12,8 +12,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.friction import project
-
 NEUTRAL = 1e-10
 """Damping of every correction: keeps directions in which nothing ever slips where they are."""
 FIRST_DAMPING, DAMPING_FACTOR = 1e-2, 10.0
@@ -30,7 +28,7 @@ def search(cycle, start, tolerance, step_tolerance, max_periods, inverse=None):
     inverse: known inverse of 1 - F' near the start, (start.size, start.size); without it the first
     march gives its derivative.  Returns a cycle.PeriodicState.
     """
-    corrector = Corrector(cycle.contact, start, inverse)
+    corrector = Corrector(cycle, start, inverse)
     state, derivative = start, inverse is None
     best, found, last_step, rejected = None, None, np.inf, 0
     while cycle.periods < max_periods:
@@ -64,8 +62,9 @@ class Corrector:
     step: size of the last correction before it was projected, in the metric of Broyden's updates.
     """
 
-    def __init__(self, contact, state, inverse=None):
-        self.contact, self.inverse = contact, inverse
+    def __init__(self, cycle, state, inverse=None):
+        self.cycle, self.inverse = cycle, inverse
+        contact = cycle.contact
         self.damping, self.step = 0.0, np.inf
         self._signs = contact.mirrored(np.ones_like(state)).reshape(-1, 1)  # points stay in place
         self._metric = np.broadcast_to(contact.weight * contact.compliance, state.shape).ravel()
@@ -75,7 +74,7 @@ class Corrector:
         """The corrected state of a lap."""
         correction = self.inverse @ lap.change.ravel()
         self.step = float(np.sqrt(self._metric @ correction**2))
-        return project(lap.state + correction.reshape(lap.state.shape), self.contact.bound)
+        return self.cycle.admissible(lap.state + correction.reshape(lap.state.shape))
 
     def learn(self, lap, before):
         """Take the derivative from a lap that has one, else update it from the lap before."""

@@ -7,7 +7,8 @@ Stiffly accurate diagonally implicit Runge-Kutta methods suit it: every stage is
     A q_i + r_i = b_i,     b_i = z + w(t + c_i h) - Sum_{j<i} (a_ij / gamma) r_j,
 
 with r_i = gamma h (slip rate), and the last stage is the end of the step, so that tractions there
-never leave the friction bound.  Backward Euler is the one with a single stage.
+never leave the friction bound.  Backward Euler is the one with a single stage.  Theta methods solve
+theirs before the end of the step and extrapolate to it, bound or no bound.
 """
 
 from __future__ import annotations
@@ -21,12 +22,17 @@ _GAMMA = 1.0 - np.sqrt(0.5)
 
 @dataclass(frozen=True)
 class Integrator:
-    """A stiffly accurate DIRK method: stage times c and the carried slips a_ij / gamma (j < i)."""
+    """A DIRK method: stage times c and the carried slips a_ij / gamma (j < i).
+
+    end: where in the step the last stage sits; below 1 (a single stage then) the rest of the step
+    is extrapolated, and tractions at its end may leave the bound.
+    """
 
     name: str
     order: int
     times: tuple[float, ...]
     carried: tuple[tuple[float, ...], ...]
+    end: float = 1.0
 
     def carry_matrix(self):
         """Carried slips as an array of shape (stages, stages), zero on and above the diagonal."""
@@ -41,6 +47,17 @@ SDIRK2 = Integrator("sdirk2", 2, (_GAMMA, 1.0), ((), ((1.0 - _GAMMA) / _GAMMA,))
 """Two stages, L-stable, second order; the default: at equal work far ahead of backward Euler."""
 
 INTEGRATORS = {method.name: method for method in (EULER, SDIRK2)}
+
+
+def theta_method(theta):
+    """One stage at the share ``theta`` of the step, 0.5 (midpoint rule) to 1 (backward Euler).
+
+    Second order at 0.5 alone.  Raises ValueError for another theta.
+    """
+    if not 0.5 <= theta <= 1.0:
+        raise ValueError(f"theta = {theta}: allowed is a number from 0.5 to 1")
+    return Integrator("theta", 2 if theta == 0.5 else 1, (theta,), ((),), theta)
+
 
 STRONGEST_GRADING = 0.8
 GRADED_CREEP = 0.02
@@ -63,23 +80,20 @@ def turning_point_grading(creep, stroke):
 class Path:
     """A stretch of rigid motion cut into steps.
 
-    phase: shape (steps + 1,); start: displacement at the first phase, shape (3,) (forward, lateral,
-    angle); stages: displacement at every stage, shape (steps, stages, 3), the last one at the end
-    of the step; carry: shape (stages, stages).
+    phase: shape (steps + 1,); positions: displacement at every phase, shape (steps + 1, 3)
+    (forward, lateral, angle); stages: the same at every stage, shape (steps, stages, 3); carry:
+    shape (stages, stages); end: see Integrator.
     """
 
     phase: np.ndarray
-    start: np.ndarray
+    positions: np.ndarray
     stages: np.ndarray
     carry: np.ndarray
+    end: float = 1.0
 
     @property
     def steps(self):
         return len(self.phase) - 1
-
-    def positions(self):
-        """Rigid displacement at every phase, shape (steps + 1, 3)."""
-        return np.concatenate([self.start[None], self.stages[:, -1]])
 
     def mean(self, values):
         """Time average of values at the phases (first axis), by the trapezoidal rule."""
@@ -90,10 +104,13 @@ def make_path(displacement, phase, integrator=SDIRK2):
     """Path through the given phases; displacement(phase) -> (forward, lateral, angle)."""
     phase = np.asarray(phase, dtype=float)
     times = phase[:-1, None] + np.asarray(integrator.times) * np.diff(phase)[:, None]
-    times[:, -1] = phase[1:]
     stages = np.stack(displacement(times), axis=-1)
-    start = np.stack(displacement(phase[:1]), axis=-1)[0]
-    return Path(phase, start, stages, integrator.carry_matrix())
+    positions = np.stack(displacement(phase), axis=-1)
+    # on the chord of the step, so that what is extrapolated agrees with the end of it
+    stages[:, -1] = positions[:-1] + integrator.end * np.diff(positions, axis=0)
+    if integrator.end == 1.0:
+        stages[:, -1] = positions[1:]
+    return Path(phase, positions, stages, integrator.carry_matrix(), integrator.end)
 
 
 def half_period_phases(steps, grading=0.0):

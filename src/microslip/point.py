@@ -9,7 +9,8 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from microslip.accuracy import certify
-from microslip.choice import ROUNDING, choose_model, closed_form, plan
+from microslip.choice import choose_model, closed_form, no_vibration, plan
+from microslip.methods import SHIPPED, method_named
 from microslip.scenes import scene_named
 from microslip.simulate import simulate, simulate_static
 
@@ -27,8 +28,8 @@ class Result:
     (error_model: of a closed form, else 0); mu_torque, mu_torque_error: torque over its value at
     zero forward velocity (steady scenes only, else None); cells, angles, steps_per_period: finest
     resolution used (angles: points on half the disc, 1 where rings or squares suffice); periods:
-    longest march, in half periods; iterations, work: step-solver iterations, and step solves x
-    unknowns, over all runs.
+    half periods marched in the longest run; iterations, work: step-solver iterations, and step
+    solves x unknowns, over all runs.
     """
 
     scene: str
@@ -37,6 +38,7 @@ class Result:
     poisson: float
     model: str
     tolerance: float
+    method: str
     mu_macro: float
     mu_macro_error: float
     error_space: float
@@ -72,6 +74,7 @@ def solve(
     tolerance=1e-3,
     cells=None,
     steps=None,
+    method=SHIPPED,
     progress=None,
 ):
     """Macroscopic friction of a vibrated contact at one point.
@@ -79,15 +82,16 @@ def solve(
     scene: "transverse", "bore" or "continuous-bore"; velocity, amplitude: the paper's dimensionless
     groups (amplitude: None for continuous-bore; velocity 0: the limit v -> 0); poisson: nu;
     model: "auto" or a name in models.MODELS; tolerance: absolute, on mu_macro; cells, steps (in a
-    full period): impose a resolution instead of letting the tolerance choose; progress: called with
-    the Resolution of every run before it starts.
+    full period): impose a resolution instead of letting the tolerance choose; method: one of
+    methods.names(), to be compared with what ships; progress: called with the Resolution of every
+    run before it starts.
     Returns a Result; ``converged`` is False, with the reason, where the tolerance was not met.
     Raises ValueError, naming the argument, for input out of range or a model that does not apply.
     """
     kind, velocity, amplitude, poisson = checked_point(scene, velocity, amplitude, poisson)
     tolerance = _number("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
     cells, steps = _count("cells", cells, 4), _count("steps", steps, 8)
-    name = choose_model(kind, poisson, model)
+    name, how = choose_model(kind, poisson, model), method_named(method)
     started = time.perf_counter()
     point = {
         "scene": kind.name,
@@ -95,15 +99,16 @@ def solve(
         "amplitude": amplitude,
         "poisson": poisson,
         "tolerance": tolerance,
+        "method": method,
     }
-    exact = None
-    if model == "auto":
-        exact = closed_form(kind, velocity, amplitude, poisson, tolerance)
-    elif kind.periodic and amplitude == 0.0:
-        exact = (1.0, None, ROUNDING)
-        point["model"] = name
+    exact = no_vibration(kind, amplitude)
+    if exact is None and model == "auto" and method == SHIPPED:
+        imposed = cells is not None or steps is not None  # to be run, unless the answer is exact
+        bracket = 0.0 if imposed else tolerance
+        exact = closed_form(kind, velocity, amplitude, poisson, bracket)
     if exact is not None:
-        return _exact_result(point, exact, time.perf_counter() - started)
+        used = CLOSED_FORM if model == "auto" else name
+        return _exact_result(point | {"model": used}, exact, time.perf_counter() - started)
     coarsest, axes = plan(kind, name, velocity, amplitude, poisson, tolerance, cells, steps)
     imposed, names = any(axis.imposed for axis in axes), [axis.name for axis in axes]
     share = PERIODICITY_SHARE * tolerance
@@ -112,8 +117,8 @@ def solve(
         if progress is not None:
             progress(resolution)
         if velocity == 0.0 and kind.periodic:
-            return simulate_static(kind, amplitude, poisson, name, resolution, share)
-        return simulate(kind, velocity, amplitude, poisson, name, resolution, share, guess)
+            return simulate_static(kind, amplitude, poisson, name, resolution, share, how)
+        return simulate(kind, velocity, amplitude, poisson, name, resolution, share, guess, how)
 
     certified = certify(run, coarsest, axes, tolerance)
     steady = not kind.periodic
@@ -185,7 +190,7 @@ def _count(name, value, low):
 def _exact_result(point, values, seconds):
     mu, torque, error = values
     return Result(
-        **{"model": CLOSED_FORM} | point,
+        **point,
         mu_macro=mu,
         mu_macro_error=error,
         error_space=0.0,

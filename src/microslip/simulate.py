@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
 
 import numpy as np
 
 from microslip import hertz
-from microslip.cycle import Pace
+from microslip.cycle import Cycle, Pace
 from microslip.friction import project
-from microslip.models import MODELS
-from microslip.models.contact import UNIT_STIFFNESS
-from microslip.path import half_period_phases, make_path, turning_point_grading
-from microslip.periodic import find_periodic_state
-from microslip.rings import Focus
+from microslip.method import SHIPPED
+from microslip.models.contact import (
+    FORWARD,
+    UNIT_STIFFNESS,
+    StepFailure,
+    forces,
+    forward_slip,
+)
+from microslip.motion import Motion, build_contact
+from microslip.periodic import MAX_PERIODS
 from microslip.static import STEPS, static_state
-from microslip.steady import forward_slip, steady_state
+from microslip.steady import steady_state
 
 STEP_SHARE = 1e-2
 SLOW_STEP_SHARE = 3e-4
@@ -33,20 +37,6 @@ COARSENING, COARSEST_STEPS = 8, 12
 COARSE_TOLERANCE = 1e-5
 """Where marches give derivatives, a search in this many times fewer steps comes first, as long as
 no fewer are left than these, and no tighter than this."""
-
-WEAKEST_FOCUS, STRONGEST_FOCUS, STATIC_FOCUS = 0.3, 1.0 - 2.0**-6, 0.9
-"""Bounds of rings.Focus.strength, and its value for the static limit."""
-
-
-@dataclass(frozen=True, order=True)
-class Resolution:
-    """Cells (rings, or squares along a side), angular points on half the disc, steps a half period
-    (steady motion: not used)."""
-
-    cells: int
-    angles: int
-    steps: int
-
 
 @dataclass(frozen=True)
 class Run:
@@ -73,76 +63,73 @@ class Run:
     static_force: float = 0.0
 
 
-@dataclass(frozen=True)
-class Motion:
-    """A periodic scene at one point of its parameters."""
-
-    scene: object
-    velocity: float
-    amplitude: float
-    poisson: float
-
-    def displacement(self, phase):
-        """Rigid displacement (forward, lateral, angle) at a phase."""
-        return self.scene.displacement(phase, self.velocity, self.amplitude, self.poisson)
-
-    def oscillation(self, phase):
-        """... without the forward motion."""
-        return self.scene.displacement(phase, 0.0, self.amplitude, self.poisson)
-
-    @cached_property
-    def creep(self):
-        """Forward displacement in one radian of phase, in u_lim."""
-        return self.scene.creep(self.velocity, self.amplitude, self.poisson)
-
-    @cached_property
-    def grading(self):
-        """How much shorter steps are at the turning points (see path.turning_point_grading)."""
-        return turning_point_grading(self.creep, self.scene.stroke(self.amplitude, self.poisson))
-
-    def path(self, contact, steps):
-        """Half a period in steps that suit the motion, or the contact if it has a say in it."""
-        return _path(self, steps, getattr(contact, "grading", self.grading))
-
-
-@lru_cache(maxsize=32)
-def _path(motion, steps, grading):
-    return make_path(motion.displacement, half_period_phases(steps, grading))
-
-
-def simulate(scene, velocity, amplitude, poisson, model, resolution, tolerance, guess=None):
+def simulate(
+    scene,
+    velocity,
+    amplitude,
+    poisson,
+    model,
+    resolution,
+    tolerance,
+    guess=None,
+    method=SHIPPED,
+):
     """Run ``model`` on a scene at one resolution to its periodic (or steady) state.
 
     scene: scenes.Scene; velocity > 0, amplitude > 0 (None for steady scenes), poisson in 0..0.5:
     checked by the caller; tolerance: of the periodic state, a force over mu F_z, steps are solved
     a hundred times tighter; guess: a Run of the same point, of use if cells and angles are the
-    same, too.  Returns a Run; never raises for want of convergence.
+    same, too; method: method.Method.  Returns a Run; never raises for want of convergence.
     """
-    contact = build_contact(scene, velocity, amplitude, poisson, model, resolution)
+    motion = Motion(scene, velocity, amplitude, poisson)
+    if method.run is not None:
+        return method.run(motion, model, resolution, tolerance)
+    contact = method.dressed(build_contact(motion, model, resolution))
     step_tolerance = STEP_SHARE * tolerance
     if not scene.periodic:
-
-        def displacement(phase):
-            return scene.displacement(phase, velocity, amplitude, poisson)
-
-        return _steady_run(contact, displacement, velocity, tolerance, step_tolerance)
-    motion = Motion(scene, velocity, amplitude, poisson)
+        return _steady_run(contact, motion, tolerance, step_tolerance)
     slow_share = UNIT_STIFFNESS * motion.creep * np.pi * STEP_SHARE
     share = min(max(slow_share, SLOW_STEP_SHARE), STEP_SHARE, MARCH_SHARE / resolution.steps)
     step_tolerance = share * tolerance
-    search = _Search(contact, motion, resolution.steps, tolerance, step_tolerance)
-    return search.run(guess)
+    search = _Search(contact, motion, method, resolution.steps, tolerance, step_tolerance)
+    run = search.run(guess)
+    if method.extrapolated and run.converged:
+        half = replace(resolution, steps=max(resolution.steps // 2, 1))
+        other = replace(method, extrapolated=False)
+        point = (scene, velocity, amplitude, poisson, model, half, tolerance, run, other)
+        return _extrapolated(run, simulate(*point))
+    return run
+
+
+def _extrapolated(fine, coarse):
+    """The Run that two of first order amount to, one with half as many steps as the other."""
+    return replace(
+        fine,
+        mu=2.0 * fine.mu - coarse.mu,
+        torque=2.0 * fine.torque - coarse.torque,
+        distance=2.0 * fine.distance + coarse.distance,
+        solver_residual=2.0 * fine.solver_residual + coarse.solver_residual,
+        periods=fine.periods + coarse.periods,
+        iterations=fine.iterations + coarse.iterations,
+        solves=fine.solves + coarse.solves,
+        work=fine.work + coarse.work,
+        converged=coarse.converged,
+        reason=coarse.reason,
+    )
 
 
 class _Search:
     """The search for the periodic state of one run, from one start after the other."""
 
-    def __init__(self, contact, motion, steps, tolerance, step_tolerance):
-        self.contact, self.motion, self.steps = contact, motion, steps
+    def __init__(self, contact, motion, method, steps, tolerance, step_tolerance):
+        self.contact, self.motion, self.method, self.steps = contact, motion, method, steps
         self.tolerance, self.step_tolerance = tolerance, step_tolerance
         self.pace = Pace(0.0, UNIT_STIFFNESS * motion.creep * np.pi)
-        self.path = motion.path(contact, steps)
+        self.path = self._path(steps)
         self.done = []
+
+    def _path(self, steps):
+        return self.motion.path(self.contact, steps, self.method.integrator)
 
     def run(self, guess=None):
         """The Run; guess: see simulate."""
@@ -160,6 +147,8 @@ class _Search:
 
     def _search_afresh(self):
         slipping = forward_slip(self.contact)
+        if not self.method.prepared:
+            return self._find(self.path, slipping, None)
         for start in (self._start_near_the_limit(slipping), slipping):
             found = self._find_in_stages(start)
             if found.converged:
@@ -169,10 +158,10 @@ class _Search:
     def _start_near_the_limit(self, slipping):
         """The static limit with all points pushed forward; also takes note of its force."""
         contact, creep = self.contact, self.motion.creep
-        if not contact.has_memory:
+        if not contact.sticks:
             return slipping
         residual, oscillating = static_state(contact, self.motion.oscillation, self.step_tolerance)
-        force = float(np.sum(contact.weight * residual[0]))
+        force = float(forces(contact, residual)[FORWARD])
         self.pace = replace(self.pace, static_force=force)
         push = min(SLOW_PUSH * creep ** (2.0 / 3.0), LARGEST_PUSH)
         return project(residual + oscillating + push * slipping, contact.bound)
@@ -184,36 +173,33 @@ class _Search:
             counts.insert(0, max(counts[0] // COARSENING, COARSEST_STEPS))
         inverse = None
         for count in counts[:-1]:
-            path = self.motion.path(self.contact, count)
-            found = self._find(path, start, inverse, max(self.tolerance, COARSE_TOLERANCE))
+            found = self._find(
+                self._path(count), start, inverse, max(self.tolerance, COARSE_TOLERANCE)
+            )
             if found.converged:
                 start, inverse = found.start, found.inverse
         return self._find(self.path, start, inverse)
 
     def _find(self, path, start, inverse, tolerance=None):
         looser = (tolerance or self.tolerance) / self.tolerance
-        self.done.append(
-            find_periodic_state(
-                self.contact,
-                path,
-                start,
-                looser * self.tolerance,
-                looser * self.step_tolerance,
-                self.pace,
-                inverse,
-            )
-        )
-        return self.done[-1]
+        cycle = Cycle(self.contact, path, self.pace)
+        tolerances = looser * self.tolerance, looser * self.step_tolerance
+        try:
+            found = self.method.search(cycle, start, *tolerances, MAX_PERIODS, inverse)
+        except StepFailure as failure:
+            found = cycle.broken(start, str(failure))
+        self.done.append(found)
+        return found
 
     def _summary(self, found):
         mean = self.path.mean(found.forces)
         solves = sum(one.solves for one in self.done)
-        solved = found.solver_residual <= found_limit(self.path, self.step_tolerance)
+        solved = found.solver_residual <= _solved_sum(self.path, self.step_tolerance)
         periods = sum(one.periods for one in self.done)
-        reason = ""
-        if not found.converged:
+        reason = found.failure
+        if not reason and not found.converged:
             reason = f"no periodic state within {periods} half periods: {found.distance:.1e} left"
-        elif not solved:
+        elif not reason and not solved:
             reason = f"a step was left unsolved: residual {found.solver_residual:.1e}"
         return Run(
             mu=float(mean[0]),
@@ -232,23 +218,20 @@ class _Search:
         )
 
 
-def found_limit(path, step_tolerance):
+def _solved_sum(path, step_tolerance):
     """Largest sum of residuals that a march solved to ``step_tolerance`` can leave."""
     return path.stages.shape[0] * path.stages.shape[1] * step_tolerance
 
 
-def simulate_static(scene, amplitude, poisson, model, resolution, tolerance):
+def simulate_static(scene, amplitude, poisson, model, resolution, tolerance, method=SHIPPED):
     """The limit of vanishing velocity at one resolution (see static.py): a Run, without a march in
     forward direction.  The rigid contact keeps no residual traction: 0."""
-    contact = build_contact(scene, 0.0, amplitude, poisson, model, resolution)
+    motion = Motion(scene, 0.0, amplitude, poisson)
+    contact = method.dressed(build_contact(motion, model, resolution))
     force, solves = 0.0, 0
-    if contact.has_memory:
-        residual, _ = static_state(
-            contact,
-            lambda phase: scene.displacement(phase, 0.0, amplitude, poisson),
-            STEP_SHARE * tolerance,
-        )
-        force = float(np.sum(contact.weight * residual[0]))
+    if contact.sticks:
+        residual, _ = static_state(contact, motion.displacement, STEP_SHARE * tolerance)
+        force = float(forces(contact, residual)[FORWARD])
         solves = STEPS // 2
     return Run(
         mu=force,
@@ -264,29 +247,13 @@ def simulate_static(scene, amplitude, poisson, model, resolution, tolerance):
     )
 
 
-def _focus_strength(creep):
-    """How closely rings should gather at the stick radius; creep: in a radian, in u_lim.
-
-    Slip that is as small as the creep fills a layer whose width goes like creep^(2/3).  With ring
-    widths that grow quadratically from it, the square root of that is the right share of the mean
-    width; in powers of two, so that points share grids.
-    """
-    layer = 2.0 ** round(np.log2(creep) / 3.0)
-    return float(np.clip(1.0 - layer, WEAKEST_FOCUS, STRONGEST_FOCUS))
-
-
-def build_contact(scene, velocity, amplitude, poisson, model, resolution):
-    """The contact, its rings gathered where the slip starts: the closer, the slower the creep."""
-    radius = scene.focus(velocity, amplitude)
-    focus = radius
-    if radius is not None and scene.periodic:
-        creep = scene.creep(velocity, amplitude, poisson)
-        focus = Focus(radius, _focus_strength(creep) if creep > 0.0 else STATIC_FOCUS)
-    return MODELS[model].build(scene, poisson, resolution.cells, resolution.angles, focus)
-
-
-def _steady_run(contact, displacement, velocity, tolerance, step_tolerance):
-    found = steady_state(contact, displacement, velocity, tolerance, step_tolerance)
+def _steady_run(contact, motion, tolerance, step_tolerance):
+    try:
+        found = steady_state(
+            contact, motion.displacement, motion.velocity, tolerance, step_tolerance
+        )
+    except StepFailure as failure:
+        return _failed_run(str(failure))
     return Run(
         mu=float(found.forces[0]),
         torque=float(found.forces[2]) / hertz.TORQUE_FULL_SLIP,
@@ -299,3 +266,8 @@ def _steady_run(contact, displacement, velocity, tolerance, step_tolerance):
         converged=found.converged,
         reason="" if found.converged else f"no steady state: {found.distance:.1e} left",
     )
+
+
+def _failed_run(reason):
+    """The Run of a march that could not go on: no number."""
+    return Run(np.nan, np.nan, np.inf, np.inf, 0, 0, 0, 0, False, reason)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.models.contact import energy_norm, full_slip
+from microslip.models.contact import energy_norm, forward_slip
 from microslip.path import EULER, make_path
 
 STEADY_STRETCH = 8
@@ -14,12 +14,6 @@ STEADY_STRETCH = 8
 STEADY_TRAVEL = 0.5
 """Largest rigid displacement of a steady motion in one step, in u_lim."""
 MAX_STRETCHES = 200
-
-
-def forward_slip(contact):
-    """Every point on its bound, forward: the state that the search for periodicity starts from."""
-    ones = np.ones_like(contact.forward_position)
-    return full_slip(contact, ones, 0.0 * ones)
 
 
 @dataclass(frozen=True, eq=False)

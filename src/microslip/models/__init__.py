@@ -37,15 +37,14 @@ class Model:
     """How a model is built and where it applies.
 
     build(scene, poisson, cells, angles, focus) -> Contact; refuses(scene, poisson) -> reason or "";
-    exact(scene) -> whether refinement converges to the truth; cells, angles: coarsest resolution
-    that is worth running (1: there is nothing to refine).
+    exact(scene) -> whether refinement converges to the truth; axes(scene) -> what of its space can
+    be refined: "cells", "angles".
     """
 
     build: Callable
     refuses: Callable
     exact: Callable
-    cells: int
-    angles: int = 1
+    axes: Callable
 
 
 def _refuse_rotation_and_poisson(scene, poisson):
@@ -65,32 +64,31 @@ MODELS = {
         ),
         refuses=lambda scene, poisson: "",
         exact=lambda scene: not scene.periodic,
-        cells=8,
-        angles=8,
+        axes=lambda scene: ("cells", "angles") if scene.rotates else (),
     ),
     "slider": Model(
         build=lambda scene, poisson, cells, angles, focus: slider_contact(),
         refuses=_refuse_rotation,
         exact=lambda scene: False,
-        cells=1,
+        axes=lambda scene: (),
     ),
     "dahl": Model(
         build=lambda scene, poisson, cells, angles, focus: DahlContact(),
         refuses=_refuse_rotation,
         exact=lambda scene: False,
-        cells=1,
+        axes=lambda scene: (),
     ),
     "mdr": Model(
         build=lambda scene, poisson, cells, angles, focus: mdr_contact(cells, focus),
         refuses=_refuse_rotation,
         exact=lambda scene: False,
-        cells=8,
+        axes=lambda scene: ("cells",),
     ),
     "radial": Model(
         build=lambda scene, poisson, cells, angles, focus: RadialContact.resolved(cells, focus),
         refuses=_refuse_rotation_and_poisson,
         exact=lambda scene: True,
-        cells=8,
+        axes=lambda scene: ("cells",),
     ),
     "polar": Model(
         build=lambda scene, poisson, cells, angles, focus: PolarContact(
@@ -98,14 +96,13 @@ MODELS = {
         ),
         refuses=lambda scene, poisson: "",
         exact=lambda scene: True,
-        cells=8,
-        angles=8,
+        axes=lambda scene: ("cells", "angles"),
     ),
     "cartesian": Model(
         build=lambda scene, poisson, cells, angles, focus: CartesianContact(cells, poisson),
         refuses=lambda scene, poisson: "",
         exact=lambda scene: True,
-        cells=16,
+        axes=lambda scene: ("cells",),
     ),
 }
 """Models by name."""

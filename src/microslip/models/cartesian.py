@@ -12,9 +12,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from microslip.friction import JIT, shrink
+from microslip.friction import JIT, extended, shrink
 from microslip.models import contact
 from microslip.models.convolution import convolve, square_convolution, workspace
+from microslip.models.points import rigid_displacement, sum_forces
 
 MAX_ITERATIONS = 5000
 PATIENCE = 60
@@ -33,7 +34,7 @@ class CartesianContact:
     """
 
     has_sensitivity = False
-    has_memory = True
+    sticks = True
     angles = 1
 
     def __init__(self, cells, poisson=0.0):
@@ -55,7 +56,7 @@ class CartesianContact:
 
     def mirrored(self, state):
         """Lateral axis reversed, lateral traction negated."""
-        return state[:, :, ::-1] * np.array([1.0, -1.0])[:, None, None]
+        return state[:, :, ::-1] * contact.MIRROR
 
     def march(self, path, state, tolerance, sensitivity=False, previous=None):
         """March along ``path``; see models.contact.Contact."""
@@ -69,9 +70,9 @@ class CartesianContact:
             workspace(self.operator),
             (self.scale, self.largest),
             self.bound,
-            self.size**2,
+            self.weight[0],
             (self.forward_position, self.lateral_position),
-            (path.start, path.stages, path.carry),
+            (path.positions, path.stages, path.carry, path.end),
             np.ascontiguousarray(state),
             self.displacement(state),
             tolerance,
@@ -103,26 +104,27 @@ def _march(
 ):
     """March along a path; returns (state, residual sum, iterations).
 
-    scales: see ``solve_step``; positions: (forward, lateral), (n, n) each; path: (start, stages,
-    carry); elastic: displacement under ``state``; guide: tractions of every stage of a march near
-    by, (steps, stages, 2, n, n), read if ``guided``; tractions: the same of this march, or only of
-    its last step if it has no room for more; forces: filled, (steps + 1, 3).
+    scales: see ``solve_step``; weight: area of a cell, (n,); positions: (forward, lateral), (n, n)
+    each; path: (positions, stages, carry, end), see path.Path; elastic: displacement under
+    ``state``; guide: tractions of every stage of a march near by, (steps, stages, 2, n, n), read if
+    ``guided``; tractions: the same of this march, or only of its last step if it has no room for
+    more; forces: filled, (steps + 1, 3).
     """
-    start, stages, carry = path
+    way, stages, carry, end = path
     n_stages = stages.shape[1]
-    q = state.copy()
+    q, held = state.copy(), state.copy()
     rigid, z, b = np.empty_like(q), np.empty_like(q), np.empty_like(q)
     slips = np.empty((n_stages, *q.shape))
     last_guide = q.copy()
     before = np.empty((2, n_stages, *q.shape))
     step = 1.0 / scales[0]
-    _rigid(start, positions, rigid)
+    rigid_displacement(way[0], positions, rigid)
     z[:] = elastic - rigid
-    _forces(q, weight, positions, forces[0])
+    sum_forces(q, weight, positions, forces[0])
     total, iterations = 0.0, 0
     for k in range(stages.shape[0]):
         for s in range(n_stages):
-            _rigid(stages[k, s], positions, rigid)
+            rigid_displacement(stages[k, s], positions, rigid)
             b[:] = z + rigid
             for j in range(s):
                 b -= carry[s, j] * slips[j]
@@ -132,16 +134,21 @@ def _march(
             elif k > 1:
                 _extrapolate(before[0, s], before[0, s], before[1, s], bound, q)
             count, residual, step = solve_step(
-                operator, scratch, scales, bound, weight, b, q, slips[s], step, tolerance
+                operator, scratch, scales, bound, weight[0], b, q, slips[s], step, tolerance
             )
             iterations += count
             total += residual
             before[1, s] = before[0, s]
             before[0, s] = q
             tractions[min(k, len(tractions) - 1), s] = q
-        z[:] = b - slips[n_stages - 1] - rigid
-        _forces(q, weight, positions, forces[k + 1])
-    return q, total, iterations
+        b -= slips[n_stages - 1] + rigid
+        for c in range(2):
+            for i in range(q.shape[1]):
+                for j in range(q.shape[2]):
+                    z[c, i, j] = extended(z[c, i, j], b[c, i, j], end)
+                    held[c, i, j] = extended(held[c, i, j], q[c, i, j], end)
+        sum_forces(held, weight, positions, forces[k + 1])
+    return held, total, iterations
 
 
 @njit(**JIT)
@@ -222,27 +229,6 @@ def _extrapolate(start, later, earlier, bound, out):
             lateral = start[1, i, j] + later[1, i, j] - earlier[1, i, j]
             f = shrink(forward, lateral, bound[i, j])
             out[0, i, j], out[1, i, j] = f * forward, f * lateral
-
-
-@njit(**JIT)
-def _rigid(motion, positions, out):
-    """Rigid displacement of every cell for motion = (forward, lateral, angle)."""
-    for i in range(out.shape[1]):
-        for j in range(out.shape[2]):
-            out[0, i, j] = motion[0] + motion[2] * positions[1][i, j]
-            out[1, i, j] = motion[1] - motion[2] * positions[0][i, j]
-
-
-@njit(**JIT)
-def _forces(q, weight, positions, out):
-    """Forward force, lateral force and torque of tractions q."""
-    out[:] = 0.0
-    for i in range(q.shape[1]):
-        for j in range(q.shape[2]):
-            forward, lateral = weight * q[0, i, j], weight * q[1, i, j]
-            out[0] += forward
-            out[1] += lateral
-            out[2] += positions[1][i, j] * forward - positions[0][i, j] * lateral
 
 
 def _cell_loads(cells):

@@ -15,6 +15,9 @@ a bound on a force, |dF| <= sqrt(1.5 <dq, A dq>)."""
 FORWARD, LATERAL, TORQUE = range(3)
 """Columns of the forces."""
 
+MIRROR = np.array([1.0, -1.0])[:, None, None]
+"""Signs of forward and lateral tractions in the mirror image, shape (2, 1, 1)."""
+
 
 @dataclass(frozen=True, eq=False)
 class March:
@@ -37,6 +40,11 @@ class March:
     stages: np.ndarray | None = None
 
 
+class StepFailure(ArithmeticError):
+    """A march cannot go on: tractions are not finite, or a step stays unsolved.  The message is the
+    reason that a result gives."""
+
+
 class Contact(Protocol):
     """A discretised contact under given pressure.
 
@@ -44,7 +52,7 @@ class Contact(Protocol):
     compliance: displacement of a point under unit traction on itself, broadcast likewise;
     forward_position, lateral_position: where the points are (units a), same shape;
     has_sensitivity: whether ``march(..., sensitivity=True)`` is to be had cheaply;
-    has_memory: whether tractions depend on the history (not for the rigid contact).
+    sticks: whether points may stick, so that something is left of it in the static limit.
     """
 
     bound: np.ndarray
@@ -53,7 +61,7 @@ class Contact(Protocol):
     forward_position: np.ndarray
     lateral_position: np.ndarray
     has_sensitivity: bool
-    has_memory: bool
+    sticks: bool
 
     def displacement(self, state) -> np.ndarray:
         """A q: elastic displacement of each point, same shape as the state."""
@@ -80,6 +88,12 @@ def full_slip(contact, forward, lateral):
     with np.errstate(invalid="ignore", divide="ignore"):
         unit = np.where(size > 0, np.stack([forward, lateral]) / size, 0.0)
     return unit * contact.bound
+
+
+def forward_slip(contact):
+    """Every point on its bound, forward: the state of a contact that only ever slid forward."""
+    ones = np.ones_like(contact.forward_position)
+    return full_slip(contact, ones, 0.0 * ones)
 
 
 def forces(contact, state):

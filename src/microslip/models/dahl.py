@@ -21,7 +21,7 @@ class DahlContact:
     """A single bristle (see models.contact.Contact); states have shape (2, 1, 1)."""
 
     has_sensitivity = True
-    has_memory = False  # no point of it ever sticks: nothing is left of it in the static limit
+    sticks = False  # no point of it ever sticks: nothing is left of it in the static limit
     angles = 1
 
     def __init__(self):
@@ -35,11 +35,11 @@ class DahlContact:
 
     def mirrored(self, state):
         """Lateral traction negated."""
-        return state * np.array([1.0, -1.0])[:, None, None]
+        return state * contact.MIRROR
 
     def march(self, path, state, tolerance, sensitivity=False, previous=None):
         """Solve along ``path``, straight from phase to phase (translations only)."""
-        moves = np.diff(path.positions()[:, :2], axis=0)
+        moves = np.diff(path.positions[:, :2], axis=0)
         lengths = np.hypot(*moves.T)
         forces = np.zeros((path.steps + 1, 3))
         forces[0, :2] = traction = state.ravel()

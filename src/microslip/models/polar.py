@@ -18,8 +18,9 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 
-from microslip.friction import JIT, coulomb_residual
+from microslip.friction import JIT, coulomb_residual, extended, shrink
 from microslip.models import contact
+from microslip.models.points import rigid_displacement, sum_forces
 from microslip.models.sectors import (
     apply_sectors,
     fold,
@@ -57,7 +58,7 @@ def _project(free, bound, q, dual):
         for i in range(q.shape[2]):
             forward = RELAXATION * free[0, j, i] + (1 - RELAXATION) * q[0, j, i] + dual[0, j, i]
             lateral = RELAXATION * free[1, j, i] + (1 - RELAXATION) * q[1, j, i] + dual[1, j, i]
-            f = min(1.0, bound[i] / max(np.sqrt(forward * forward + lateral * lateral), 1e-300))
+            f = shrink(forward, lateral, bound[i])
             q[0, j, i] = f * forward
             q[1, j, i] = f * lateral
             dual[0, j, i] = forward - f * forward
@@ -100,33 +101,12 @@ def solve_step(influence, inverse, penalty, bound, weight, b, q, dual, slip, roo
 
 
 @njit(**JIT)
-def _rigid(motion, forward_position, lateral_position, out):
-    """Rigid displacement of every point for motion = (forward, lateral, angle)."""
-    for j in range(out.shape[1]):
-        for i in range(out.shape[2]):
-            out[0, j, i] = motion[0] + motion[2] * lateral_position[j, i]
-            out[1, j, i] = motion[1] - motion[2] * forward_position[j, i]
-
-
-@njit(**JIT)
-def _forces(q, weight, forward_position, lateral_position, out):
-    """Forward force, lateral force and torque of tractions q."""
-    out[:] = 0.0
-    for j in range(q.shape[1]):
-        for i in range(q.shape[2]):
-            forward, lateral = weight[i] * q[0, j, i], weight[i] * q[1, j, i]
-            out[0] += forward
-            out[1] += lateral
-            out[2] += lateral_position[j, i] * forward - forward_position[j, i] * lateral
-
-
-@njit(**JIT)
 def _add_projected(change, bound, q):
     """q + change, projected on the friction bound; in place."""
     for j in range(q.shape[1]):
         for i in range(q.shape[2]):
             forward, lateral = q[0, j, i] + change[0, j, i], q[1, j, i] + change[1, j, i]
-            f = min(1.0, bound[i] / max(np.sqrt(forward * forward + lateral * lateral), 1e-300))
+            f = shrink(forward, lateral, bound[i])
             q[0, j, i] = f * forward
             q[1, j, i] = f * lateral
 
@@ -139,9 +119,7 @@ def _march(
     bound,
     weight,
     positions,
-    start,
-    stages,
-    carry,
+    path,
     state,
     tolerance,
     warm,
@@ -151,28 +129,29 @@ def _march(
 ):
     """March along a path; returns (state, residual sum, iterations).
 
-    added, duals: (steps, stages, 2, M, N), what every stage adds to the tractions, and its dual;
-    filled, and read as first guesses if ``warm``.
+    path: (positions, stages, carry, end), see path.Path; added, duals: (steps, stages, 2, M, N),
+    what every stage adds to the tractions, and its dual; filled, and read as first guesses if
+    ``warm``.
     """
-    forward_position, lateral_position = positions
+    way, stages, carry, end = path
     angles, n = state.shape[1], state.shape[2]
     n_stages = stages.shape[1]
-    q = state.copy()
+    q, held = state.copy(), state.copy()
     rigid = np.empty_like(q)
     slips = np.empty((n_stages, 2, angles, n))
     dual, before = np.zeros_like(q), np.empty_like(q)
     folded = np.empty((4, angles // 2, n))
     room = (folded, np.empty_like(folded), np.empty_like(q))
-    _rigid(start, forward_position, lateral_position, rigid)
+    rigid_displacement(way[0], positions, rigid)
     z = np.empty_like(q)
     _slip(influence, rigid, q, folded, room[1], z)
     z[:] = -z
-    _forces(q, weight, forward_position, lateral_position, forces[0])
+    sum_forces(q, weight, positions, forces[0])
     total, iterations = 0.0, 0
     b = np.empty_like(q)
     for k in range(stages.shape[0]):
         for s in range(n_stages):
-            _rigid(stages[k, s], forward_position, lateral_position, rigid)
+            rigid_displacement(stages[k, s], positions, rigid)
             b[:] = z + rigid
             for j in range(s):
                 b -= carry[s, j] * slips[j]
@@ -199,9 +178,14 @@ def _march(
             duals[k, s] = dual
             iterations += count
             total += residual
-        z[:] = b - slips[n_stages - 1] - rigid
-        _forces(q, weight, forward_position, lateral_position, forces[k + 1])
-    return q, total, iterations
+        b -= slips[n_stages - 1] + rigid
+        for c in range(2):
+            for j in range(angles):
+                for i in range(n):
+                    z[c, j, i] = extended(z[c, j, i], b[c, j, i], end)
+                    held[c, j, i] = extended(held[c, j, i], q[c, j, i], end)
+        sum_forces(held, weight, positions, forces[k + 1])
+    return held, total, iterations
 
 
 class PolarContact:
@@ -212,7 +196,7 @@ class PolarContact:
     """
 
     has_sensitivity = False
-    has_memory = True
+    sticks = True
 
     def __init__(self, cells, angles, rotates, poisson=0.0, focus=None):
         if angles < 2 or angles % 2:
@@ -239,7 +223,7 @@ class PolarContact:
 
     def mirrored(self, state):
         """theta -> pi - theta, lateral traction negated."""
-        return state[:, ::-1, :] * np.array([1.0, -1.0])[:, None, None]
+        return state[:, ::-1, :] * contact.MIRROR
 
     def march(self, path, state, tolerance, sensitivity=False, previous=None):
         """March along ``path``; see models.contact.Contact."""
@@ -255,9 +239,7 @@ class PolarContact:
             self.bound,
             self.weight,
             (self.forward_position, self.lateral_position),
-            path.start,
-            path.stages,
-            path.carry,
+            (path.positions, path.stages, path.carry, path.end),
             np.ascontiguousarray(state),
             tolerance,
             previous is not None,

@@ -15,9 +15,6 @@ from microslip.models import contact, ring_march
 from microslip.models.ring_factors import cholesky
 from microslip.rings import make_rings
 
-MIRROR = np.array([1.0, -1.0])[:, None, None]
-"""Signs of forward and lateral tractions in the mirror image, shape (2, 1, 1)."""
-
 
 class RadialContact:
     """Contact of ``cells`` rings (see models.contact.Contact); states have shape (2, 1, cells).
@@ -28,7 +25,7 @@ class RadialContact:
     """
 
     has_sensitivity = True
-    has_memory = True
+    sticks = True
     angles = 1
 
     def __init__(self, influence, bound, weight):
@@ -51,7 +48,7 @@ class RadialContact:
 
     def mirrored(self, state):
         """Lateral traction negated."""
-        return state * MIRROR
+        return state * contact.MIRROR
 
     def march(self, path, state, tolerance, sensitivity=False, previous=None):
         """March along ``path`` (translations only); see models.contact.Contact.
@@ -63,21 +60,19 @@ class RadialContact:
         known = None if previous is None else previous.stages
         if known is None or known.shape != (1 + stages, 2, len(self.bound)):
             known = np.empty((0, 2, 0))
-        tractions, forces, residual, iterations, derivative = ring_march.march(
+        end, tractions, forces, residual, iterations, derivative = ring_march.march(
             self._stiffness,
             self._factor,
             self.bound,
             self.weight,
-            path.start,
-            path.stages,
-            path.carry,
+            (path.positions, path.stages, path.carry, path.end),
             np.ascontiguousarray(state[:, 0]),
             known,
             tolerance,
             sensitivity,
         )
         return contact.March(
-            state=tractions[-1][:, None],
+            state=end[:, None],
             forces=forces,
             residual=residual,
             iterations=iterations,

@@ -19,7 +19,7 @@ class RigidContact:
     """Points on rings x half-circle angles (one point for translation); see models.contact."""
 
     has_sensitivity = False
-    has_memory = False
+    sticks = False
     grading = GRADING
 
     def __init__(self, cells, angles, rotates):
@@ -41,11 +41,11 @@ class RigidContact:
 
     def mirrored(self, state):
         """theta -> pi - theta, lateral traction negated."""
-        return state[:, ::-1, :] * np.array([1.0, -1.0])[:, None, None]
+        return state[:, ::-1, :] * contact.MIRROR
 
     def march(self, path, state, tolerance, sensitivity=False, previous=None):
         """Forces of full slip along the velocity at each phase of the path."""
-        velocity = np.gradient(path.positions(), path.phase, axis=0, edge_order=2)
+        velocity = np.gradient(path.positions, path.phase, axis=0, edge_order=2)
         forces = np.empty((path.steps + 1, 3))
         for k, (forward, lateral, angle) in enumerate(velocity):
             q = contact.full_slip(

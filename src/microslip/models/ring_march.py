@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from microslip.friction import JIT, shrink
+from microslip.friction import JIT, extended, shrink
 from microslip.models.ring_factors import ON_BOUND, combine, factorise, make_factors, subtract
 from microslip.models.ring_kernels import solve_step, weighted_slip
 
@@ -186,14 +186,15 @@ def _stretch(way, at):
 
 
 @njit(**JIT)
-def march(stiffness, whole, bound, weight, start, rigid, carry, state, known, tolerance, tangent):
+def march(stiffness, whole, bound, weight, path, state, known, tolerance, tangent):
     """March along a path.
 
-    stiffness, whole: B and its Cholesky factor; start, rigid, carry: see path.Path; state: (2, n);
-    known: tractions of another march, at its start and after every stage, (1 + steps stages, 2, n),
-    or empty.  Returns (the same of this march, forces (steps + 1, 3), residual sum, iterations,
-    derivative of the end state (2 n, 2 n) or empty).
+    stiffness, whole: B and its Cholesky factor; path: (positions, stages, carry, end), see
+    path.Path; state: (2, n); known: tractions of another march, at its start and after every stage,
+    (1 + steps stages, 2, n), or empty.  Returns (end state, the tractions of this march, forces
+    (steps + 1, 3), residual sum, iterations, derivative of the end state (2 n, 2 n) or empty).
     """
+    positions, rigid, carry, end = path
     n, steps, stages = len(bound), rigid.shape[0], rigid.shape[1]
     columns = 2 * n if tangent else 0
     dz, work = np.zeros((2, n, columns)), np.empty((2, n, columns))
@@ -202,16 +203,16 @@ def march(stiffness, whole, bound, weight, start, rigid, carry, state, known, to
     transfer = np.empty((n, n))
     factors = make_factors(n)
     tractions, forces = np.empty((1 + steps * stages, 2, n)), np.zeros((steps + 1, 3))
-    q, z, b = np.empty((2, n)), np.empty((2, n)), np.empty((2, n))
+    q, z, b, held = np.empty((2, n)), np.empty((2, n)), np.empty((2, n)), state.copy()
     slips = np.empty((stages, 2, n))
     way = np.empty((1 + steps * stages, 2))
     for c in range(2):
-        way[0, c] = start[c]
+        way[0, c] = positions[0, c]
         for k in range(steps * stages):
             way[1 + k, c] = rigid[k // stages, k % stages, c]
         for i in range(n):
             q[c, i] = state[c, i]
-            b[c, i] = -weight[i] * start[c]
+            b[c, i] = -weight[i] * positions[0, c]
             if tangent:
                 dz[c, i, c * n + i] = 1.0
     weighted_slip(stiffness, b, q, z)
@@ -254,9 +255,11 @@ def march(stiffness, whole, bound, weight, start, rigid, carry, state, known, to
                     )
         for c in range(2):
             for i in range(n):
-                z[c, i] = b[c, i] - slips[stages - 1, c, i] - weight[i] * way[at, c]
-                forces[k + 1, c] += weight[i] * q[c, i]
+                now = b[c, i] - slips[stages - 1, c, i] - weight[i] * way[at, c]
+                z[c, i] = extended(z[c, i], now, end)
+                held[c, i] = extended(held[c, i], q[c, i], end)
+                forces[k + 1, c] += weight[i] * held[c, i]
         if tangent:
-            _carry_derivative(dz, touched, 1.0, dslips[stages - 1], slid[stages - 1])
+            _carry_derivative(dz, touched, 1.0 / end, dslips[stages - 1], slid[stages - 1])
     derivative = _start_derivative(stiffness, whole, dz) if tangent else np.empty((0, 0))
-    return tractions, forces, total, iterations, derivative
+    return held, tractions, forces, total, iterations, derivative

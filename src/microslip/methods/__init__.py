@@ -1,0 +1,82 @@
+"""Methods to compare with the one that ships: one file a method.
+
+A method is the file ``name_of_it.py`` in this folder, which holds METHOD, a ``method.Method``; it
+is then known as ``name-of-it``, to ``microslip.solve`` as well as in a configuration.  Files whose
+name starts with an underscore are shared by methods.  Numbers that a method takes may follow its
+name: "admm:penalty=0.1,relaxation=1.5".
+
+Listing and checking names imports no solver.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+
+SHIPPED = "shipped"
+
+
+@cache
+def names():
+    """Names of all methods, the one that ships first."""
+    files = Path(__file__).parent.glob("[!_]*.py")
+    return (SHIPPED, *sorted(file.stem.replace("_", "-") for file in files))
+
+
+def split(text):
+    """Name and numbers (dict) of a method; raises ValueError if the text cannot be read."""
+    name, colon, rest = text.partition(":")
+    if name not in names():
+        raise ValueError(f"method = {name!r}: allowed is one of {', '.join(names())}")
+    numbers = {}
+    for part in rest.split(",") if colon else ():
+        key, equals, value = (word.strip() for word in part.partition("="))
+        try:
+            numbers[key] = float(value)
+        except ValueError:
+            numbers[key] = math.nan
+        if not (key and equals and math.isfinite(numbers[key])):
+            raise ValueError(f"method = {text!r}: allowed are numbers as in {name}:key=0.5")
+    return name, numbers
+
+
+def refusal(text):
+    """Why a text names no method, as one line; "" if it does.  Imports no solver."""
+    try:
+        name, numbers = split(text)
+    except ValueError as error:
+        return str(error)
+    unknown = sorted(numbers.keys() - set(_parameters(name)))
+    if unknown:
+        known = ", ".join(_parameters(name)) or "none"
+        return f"method = {text!r}: unknown number {unknown[0]}; allowed: {known}"
+    return ""
+
+
+def method_named(text):
+    """The method.Method that a text names; raises ValueError, with what is allowed, if none."""
+    problem = refusal(text)
+    if problem:
+        raise ValueError(problem)
+    from dataclasses import replace
+
+    name, numbers = split(text)
+    if name == SHIPPED:
+        return import_module("microslip.method").SHIPPED
+    method = import_module(f"{__name__}.{name.replace('-', '_')}").METHOD
+    return replace(method, parameters={**method.parameters, **numbers})
+
+
+@cache
+def _parameters(name):
+    """Names of the numbers that a method takes, read from its file without running it."""
+    if name == SHIPPED:
+        return ()
+    file = Path(__file__).parent / f"{name.replace('-', '_')}.py"
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.keyword) and node.arg == "parameters":
+            return tuple(ast.literal_eval(node.value))
+    return ()
