@@ -23,8 +23,7 @@ class PeriodicState:
     residual: what the plain map still changed, distance: estimated distance from the fixed point
     (both bounds on a force over mu F_z); solver_residual: sum over the stages of the last period;
     periods: maps marched; iterations, solves: of the step solver, over all of them; inverse: what
-    turned residuals into corrections, (start.size, start.size), if anything did; failure: why a
-    march could not go on, if one could not.
+    turned residuals into corrections, (start.size, start.size), if anything did.
     """
 
     forces: np.ndarray
@@ -37,7 +36,6 @@ class PeriodicState:
     solves: int
     converged: bool
     inverse: np.ndarray | None = None
-    failure: str = ""
 
 
 @dataclass(frozen=True)
@@ -128,19 +126,4 @@ class Cycle:
             solves=self.solves,
             converged=bool(converged),
             inverse=inverse,
-        )
-
-    def broken(self, start, failure):
-        """The PeriodicState of a search that a march put an end to; no force of it is a number."""
-        return PeriodicState(
-            forces=np.full((len(self.path.phase), 3), np.nan),
-            start=start,
-            residual=np.inf,
-            distance=np.inf,
-            solver_residual=np.inf,
-            periods=self.periods + 1,
-            iterations=self.iterations,
-            solves=self.solves,
-            converged=False,
-            failure=failure,
         )

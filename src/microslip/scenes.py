@@ -62,6 +62,12 @@ def _transverse(phase, velocity, amplitude, poisson):
     return velocity * phase, amplitude * np.sin(phase), np.zeros_like(phase)
 
 
+def _zigzag(phase, velocity, amplitude, poisson):
+    """The transverse scene with a lateral velocity that is constant but for its sign."""
+    lateral = amplitude * 2.0 / np.pi * np.arcsin(np.sin(phase))
+    return velocity * phase, lateral, np.zeros_like(phase)
+
+
 def _bore(phase, velocity, amplitude, poisson):
     """Eq 23 with Eqs 27 and 28: forward v~ phi_0 t, angle phi_0 sin t."""
     angle = hertz.bore_angle(amplitude, poisson)
@@ -104,6 +110,17 @@ TRANSVERSE = Scene(
     velocity_label="v0 / (omega u_lim)",
     amplitude_label="y0 / u_lim",
 )
+ZIGZAG = Scene(
+    name="zigzag",
+    summary="forward sliding with a lateral oscillation at constant speed that turns abruptly",
+    displacement=_zigzag,
+    periodic=True,
+    rotates=False,
+    half_period_mirror=True,
+    focus=_transverse_focus,
+    velocity_label="v0 / (omega u_lim)",
+    amplitude_label="y0 / u_lim",
+)
 BORE = Scene(
     name="bore",
     summary="forward sliding with an oscillating rotation about the contact normal",
@@ -126,7 +143,7 @@ CONTINUOUS_BORE = Scene(
     velocity_label="v0 / (omega a)",
 )
 
-SCENES = {scene.name: scene for scene in (TRANSVERSE, BORE, CONTINUOUS_BORE)}
+SCENES = {scene.name: scene for scene in (TRANSVERSE, ZIGZAG, BORE, CONTINUOUS_BORE)}
 
 
 def scene_named(name):

@@ -38,6 +38,7 @@ COARSE_TOLERANCE = 1e-5
 """Where marches give derivatives, a search in this many times fewer steps comes first, as long as
 no fewer are left than these, and no tighter than this."""
 
+
 @dataclass(frozen=True)
 class Run:
     """Outcome of one run: forward friction and torque over their full-slip values, and the effort.
@@ -84,21 +85,28 @@ def simulate(
     motion = Motion(scene, velocity, amplitude, poisson)
     if method.run is not None:
         return method.run(motion, model, resolution, tolerance)
-    contact = method.dressed(build_contact(motion, model, resolution))
-    step_tolerance = STEP_SHARE * tolerance
-    if not scene.periodic:
-        return _steady_run(contact, motion, tolerance, step_tolerance)
-    slow_share = UNIT_STIFFNESS * motion.creep * np.pi * STEP_SHARE
-    share = min(max(slow_share, SLOW_STEP_SHARE), STEP_SHARE, MARCH_SHARE / resolution.steps)
-    step_tolerance = share * tolerance
-    search = _Search(contact, motion, method, resolution.steps, tolerance, step_tolerance)
-    run = search.run(guess)
+    try:
+        run = _run(motion, model, resolution, tolerance, guess, method)
+    except StepFailure as failure:
+        return Run(np.nan, np.nan, np.inf, np.inf, 0, 0, 0, 0, False, str(failure))
     if method.extrapolated and run.converged:
         half = replace(resolution, steps=max(resolution.steps // 2, 1))
         other = replace(method, extrapolated=False)
         point = (scene, velocity, amplitude, poisson, model, half, tolerance, run, other)
         return _extrapolated(run, simulate(*point))
     return run
+
+
+def _run(motion, model, resolution, tolerance, guess, method):
+    contact = method.dressed(build_contact(motion, model, resolution))
+    step_tolerance = STEP_SHARE * tolerance
+    if not motion.scene.periodic:
+        return _steady_run(contact, motion, tolerance, step_tolerance)
+    slow_share = UNIT_STIFFNESS * motion.creep * np.pi * STEP_SHARE
+    share = min(max(slow_share, SLOW_STEP_SHARE), STEP_SHARE, MARCH_SHARE / resolution.steps)
+    step_tolerance = share * tolerance
+    search = _Search(contact, motion, method, resolution.steps, tolerance, step_tolerance)
+    return search.run(guess)
 
 
 def _extrapolated(fine, coarse):
@@ -184,22 +192,18 @@ class _Search:
         looser = (tolerance or self.tolerance) / self.tolerance
         cycle = Cycle(self.contact, path, self.pace)
         tolerances = looser * self.tolerance, looser * self.step_tolerance
-        try:
-            found = self.method.search(cycle, start, *tolerances, MAX_PERIODS, inverse)
-        except StepFailure as failure:
-            found = cycle.broken(start, str(failure))
-        self.done.append(found)
-        return found
+        self.done.append(self.method.search(cycle, start, *tolerances, MAX_PERIODS, inverse))
+        return self.done[-1]
 
     def _summary(self, found):
         mean = self.path.mean(found.forces)
         solves = sum(one.solves for one in self.done)
         solved = found.solver_residual <= _solved_sum(self.path, self.step_tolerance)
         periods = sum(one.periods for one in self.done)
-        reason = found.failure
-        if not reason and not found.converged:
+        reason = ""
+        if not found.converged:
             reason = f"no periodic state within {periods} half periods: {found.distance:.1e} left"
-        elif not reason and not solved:
+        elif not solved:
             reason = f"a step was left unsolved: residual {found.solver_residual:.1e}"
         return Run(
             mu=float(mean[0]),
@@ -248,12 +252,7 @@ def simulate_static(scene, amplitude, poisson, model, resolution, tolerance, met
 
 
 def _steady_run(contact, motion, tolerance, step_tolerance):
-    try:
-        found = steady_state(
-            contact, motion.displacement, motion.velocity, tolerance, step_tolerance
-        )
-    except StepFailure as failure:
-        return _failed_run(str(failure))
+    found = steady_state(contact, motion.displacement, motion.velocity, tolerance, step_tolerance)
     return Run(
         mu=float(found.forces[0]),
         torque=float(found.forces[2]) / hertz.TORQUE_FULL_SLIP,
@@ -266,8 +265,3 @@ def _steady_run(contact, motion, tolerance, step_tolerance):
         converged=found.converged,
         reason="" if found.converged else f"no steady state: {found.distance:.1e} left",
     )
-
-
-def _failed_run(reason):
-    """The Run of a march that could not go on: no number."""
-    return Run(np.nan, np.nan, np.inf, np.inf, 0, 0, 0, 0, False, reason)

@@ -1,0 +1,52 @@
+"""Searches for the periodic state that people write first; see cycle.Cycle for what they act on.
+
+All start from full forward slip and return a cycle.PeriodicState.
+"""
+
+from __future__ import annotations
+
+from microslip.anderson import DEPTH, Anderson
+
+
+def march(cycle, start, tolerance, step_tolerance, max_periods, inverse=None):
+    """March on until the plain map stands still, as strictly as the shipped search judges it.
+
+    What is left is the geometric tail of the changes, in the ratio of the last two.
+    """
+    state, last = start, None
+    for _ in range(max_periods):
+        lap = cycle(state, step_tolerance)
+        left = float("inf")
+        if last is not None and lap.residual < last:
+            left = lap.residual / (1.0 - lap.residual / last)
+        if last == 0.0:
+            left = 0.0
+        distance = max(left, cycle.distance(lap, lap.image))
+        if distance <= tolerance:
+            break
+        state, last = lap.image, lap.residual
+    return cycle.result(lap, distance, distance <= tolerance)
+
+
+def equal_means(cycle, start, tolerance, step_tolerance, max_periods, inverse=None):
+    """March on until the mean force of two half periods is the same to the tolerance."""
+    state, last = start, float("inf")
+    for _ in range(max_periods):
+        lap = cycle(state, step_tolerance)
+        mean = cycle.path.mean(lap.march.forces)[0]
+        change = abs(mean - last)
+        if change <= tolerance:
+            break
+        state, last = lap.image, mean
+    return cycle.result(lap, change, change <= tolerance)
+
+
+def residual_alone(cycle, start, tolerance, step_tolerance, max_periods, inverse=None):
+    """Anderson acceleration, believed as soon as the plain map changes less than the tolerance."""
+    accelerate, state = Anderson(cycle.contact, DEPTH), start
+    for _ in range(max_periods):
+        lap = cycle(state, step_tolerance)
+        if lap.residual <= tolerance:
+            break
+        state = cycle.admissible(accelerate(state, lap.image))
+    return cycle.result(lap, lap.residual, lap.residual <= tolerance)

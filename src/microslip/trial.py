@@ -1,0 +1,112 @@
+"""One run of any model by any method at one resolution, and what a step costs at any size.
+
+For comparing methods: a trial is not certified, its number is as good as its resolution.
+"""
+
+from __future__ import annotations
+
+import time
+from statistics import median
+
+import numpy as np
+
+from microslip.methods import method_named
+from microslip.models import MODELS
+from microslip.models.contact import forward_slip
+from microslip.motion import Motion, Resolution, build_contact
+from microslip.path import EULER, half_period_phases, make_path
+from microslip.scenes import BORE, TRANSVERSE, scene_named
+from microslip.simulate import simulate
+
+STEPLESS = ("rigid", "dahl")
+"""Models whose march is an evaluation: no step of theirs is solved."""
+STEP_TOLERANCE = 1e-6
+
+
+def applies(scene, poisson, model, method):
+    """Why a model or a method cannot be tried on a scene (by name), as one line; "" if it can."""
+    kind, how = scene_named(scene), method_named(method)
+    refusal = MODELS[model].refuses(kind, poisson)
+    if refusal or how == method_named("shipped"):
+        return refusal
+    if how.run is not None:
+        return "" if model == "cartesian" and kind.periodic else "it is a run on squares"
+    if model in STEPLESS:
+        return "no step of the model has to be solved"
+    if not kind.periodic and how.dress is None:
+        return "nothing oscillates"
+    if model == "cartesian" and how.dress is not None:
+        return "the matrix of all squares would be too large"
+    return ""
+
+
+def run_trial(
+    scene, velocity, amplitude, *, poisson, model, method, cells, angles, steps, tolerance
+):
+    """One run: a dict of mu_macro (nan if there is none), converged, reason, periods (half ones),
+    iterations, solves, unknowns and work = iterations x unknowns; nothing in it depends on the
+    machine.
+
+    Arguments as for ``microslip.solve``, steps in a full period, tolerance on the periodic state (a
+    force over mu F_z); angles: on half the disc.  Raises ValueError where ``applies`` says why.
+    """
+    refusal = applies(scene, poisson, model, method)
+    if refusal:
+        raise ValueError(f"model = {model!r}, method = {method!r}: {refusal}")
+    resolution = Resolution(cells, angles, max(steps // 2, 1))
+    point = (scene_named(scene), velocity, amplitude, poisson, model, resolution, tolerance)
+    run = simulate(*point, method=method_named(method))
+    unknowns = run.work // run.solves if run.solves else 0
+    return {
+        "mu_macro": float(run.mu),
+        "converged": bool(run.converged),
+        "reason": run.reason,
+        "periods": run.periods,
+        "iterations": run.iterations,
+        "solves": run.solves,
+        "unknowns": unknowns,
+        "work": run.iterations * unknowns,
+    }
+
+
+def measure_steps(model, cells, angles, poisson, steps):
+    """What a backward Euler step costs: a dict of unknowns, iterations and seconds (CPU) a step,
+    and memory, the bytes that the arrays of the contact take.
+
+    The path is half a period in ``steps`` steps from full slip, transverse for rings, else bore,
+    each step solved to 1e-6 of mu F_z.  Times are the median of three marches, after one that
+    compiles.
+    """
+    scene = TRANSVERSE if model == "radial" else BORE
+    motion = Motion(scene, 0.1, 1.0, poisson)
+    contact = build_contact(motion, model, Resolution(cells, angles, steps))
+    path = make_path(motion.displacement, half_period_phases(steps), EULER)
+    start = forward_slip(contact)
+    contact.march(make_path(motion.displacement, path.phase[:2], EULER), start, STEP_TOLERANCE)
+    times = []
+    for _ in range(3):
+        began = time.process_time()
+        march = contact.march(path, start, STEP_TOLERANCE)
+        times.append(time.process_time() - began)
+    return {
+        "unknowns": march.state.size,
+        "iterations": march.iterations / march.solves,
+        "seconds": median(times) / march.solves,
+        "memory": held_bytes(contact),
+    }
+
+
+def held_bytes(thing):
+    """Bytes in the arrays that an object holds, whatever holds them, each counted once."""
+    sizes, stack = {}, [thing]
+    while stack:
+        one = stack.pop()
+        if isinstance(one, np.ndarray):
+            base = one if one.base is None else one.base
+            if isinstance(base, np.ndarray):
+                sizes[id(base)] = base.nbytes
+        elif isinstance(one, list | tuple):
+            stack += one
+        elif type(one).__module__.startswith("microslip"):
+            stack += vars(one).values()
+    return sum(sizes.values())
