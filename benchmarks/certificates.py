@@ -9,32 +9,30 @@ nu one of 0, 0.3, 0.5; tolerances 1e-2, 1e-3 and 1e-4 in turn.  A point is cover
     |mu_macro - reference| <= mu_macro_error <= tolerance.
 
 The reference has four times the rings, angles and steps that the point was certified with (no more
-than 192 rings, 64 angles and 2048 steps in half a period), each
-refined by itself from a base that is finer than any certificate starts from, every periodic state
-searched for from scratch, to a tenth of the tolerance.  What is left of its own error is
-estimated from the run with half of the refinement.  Results go to a file of JSON lines, point by
-point; an interrupted run goes on where it stopped.
+than 192 rings, 64 angles and 2048 steps in half a period), each refined by itself from a base that
+is finer than any certificate starts from, every periodic state searched for from scratch, to a
+tenth of the tolerance.  What is left of its own error is estimated from the run with half of the
+refinement.  Results go to a file of JSON lines, point by point; an interrupted run goes on where it
+stopped.
 """
 
 from __future__ import annotations
 
-import os
+import one_thread  # noqa: F401  # isort: split
 
-for library in ("OPENBLAS", "OMP", "MKL", "NUMBA"):  # before NumPy is imported
-    os.environ[f"{library}_NUM_THREADS"] = "1"
+import argparse
+import json
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import replace
+from pathlib import Path
 
-import argparse  # noqa: E402
-import json  # noqa: E402
-from concurrent.futures import ProcessPoolExecutor, as_completed  # noqa: E402
-from dataclasses import replace  # noqa: E402
-from pathlib import Path  # noqa: E402
+import numpy as np
 
-import numpy as np  # noqa: E402
-
-import microslip  # noqa: E402
-from microslip.choice import choose_model  # noqa: E402
-from microslip.scenes import SCENES  # noqa: E402
-from microslip.simulate import Resolution, simulate  # noqa: E402
+import microslip
+from microslip.choice import choose_model
+from microslip.motion import Resolution
+from microslip.scenes import SCENES
+from microslip.simulate import simulate
 
 TOLERANCES = (1e-2, 1e-3, 1e-4)
 POISSON = (0.0, 0.3, 0.5)

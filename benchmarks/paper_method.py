@@ -12,32 +12,31 @@ and the median of the repeats counts.
 
 from __future__ import annotations
 
-import os
+import one_thread  # isort: split
 
-for library in ("OPENBLAS", "OMP", "MKL", "NUMBA"):  # before NumPy is imported
-    os.environ[f"{library}_NUM_THREADS"] = "1"
+import argparse
+import json
+import time
+from pathlib import Path
+from statistics import median
 
-import argparse  # noqa: E402
-import json  # noqa: E402
-import time  # noqa: E402
-from pathlib import Path  # noqa: E402
-from statistics import median  # noqa: E402
-
-import numpy as np  # noqa: E402
-
-import microslip  # noqa: E402
-from microslip.models.cartesian import CartesianContact  # noqa: E402
-from microslip.models.contact import forward_slip  # noqa: E402
-from microslip.path import EULER, make_path  # noqa: E402
-from microslip.scenes import SCENES  # noqa: E402
+import microslip
+from microslip.methods.paper import (
+    CELLS,
+    STEPS,
+    STEPS_PER_PERIOD,
+    STRESS_TOLERANCE,
+    last_means,
+    path_of,
+)
+from microslip.models.cartesian import CartesianContact
+from microslip.models.contact import forward_slip
+from microslip.motion import Motion
+from microslip.scenes import SCENES
 
 POINTS = [("transverse", 0.5), ("bore", 1.0)]
 """Scene and amplitude."""
 VELOCITY = 0.005
-CELLS = 32
-STEPS = 8000
-STEPS_PER_PERIOD = 100
-STRESS_TOLERANCE = 1e-3
 TOLERANCE = 1e-3
 """Of the certified point, absolute, on the friction."""
 
@@ -49,25 +48,11 @@ def timed(function):
     return result, time.perf_counter() - started
 
 
-def path_of(scene, amplitude, steps):
-    """Path of so many equal steps from the middle of a stroke."""
-
-    def displacement(phase):
-        return SCENES[scene].displacement(phase, VELOCITY, amplitude, 0.0)
-
-    phase = 2.0 * np.pi / STEPS_PER_PERIOD * np.arange(steps + 1)
-    return make_path(displacement, phase, EULER)
-
-
-def last_period_mean(march):
-    """Mean forward force over the last period marched."""
-    return float(march.forces[-STEPS_PER_PERIOD:, 0].mean())
-
-
 def compare(scene, amplitude, steps, repeats):
     """One row of the table: the two methods in turns, ``repeats`` times."""
     contact = CartesianContact(CELLS)
-    path, start = path_of(scene, amplitude, steps), forward_slip(contact)
+    motion = Motion(SCENES[scene], VELOCITY, amplitude, 0.0)
+    path, start = path_of(motion, steps), forward_slip(contact)
 
     def paper():
         return contact.march(path, start, STRESS_TOLERANCE)
@@ -75,7 +60,7 @@ def compare(scene, amplitude, steps, repeats):
     def certified():
         return microslip.solve(scene, VELOCITY, amplitude, tolerance=TOLERANCE)
 
-    contact.march(path_of(scene, amplitude, 4), start, STRESS_TOLERANCE)
+    contact.march(path_of(motion, 4), start, STRESS_TOLERANCE)
     certified()
     march_times, point_times = [], []
     for _ in range(repeats):
@@ -94,7 +79,7 @@ def compare(scene, amplitude, steps, repeats):
         "iterations a step": march.iterations / steps,
         "certified point, ms": 1e3 * certified_time,
         "ratio": step * STEPS / certified_time,
-        "mu, paper's method": last_period_mean(march),
+        "mu, paper's method": last_means(march)[0],
         "mu, certified": point.mu_macro,
         "its error, at most": point.mu_macro_error,
         "certified?": "yes" if point.converged else f"no: {point.reason}",
@@ -120,8 +105,7 @@ def main():
     args = parser.parse_args()
     if args.steps < STEPS_PER_PERIOD or args.repeats < 1:
         parser.error(f"at least {STEPS_PER_PERIOD} steps (one period) and one repeat")
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+    one_thread.stay_on_one_core()
     rows = [compare(scene, amplitude, args.steps, args.repeats) for scene, amplitude in POINTS]
     table = markdown(rows)
     if args.steps < STEPS:

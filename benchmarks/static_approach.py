@@ -10,18 +10,15 @@ Transverse and bore, nu = 0; the smaller the tolerance, the further down the exp
 
 from __future__ import annotations
 
-import os
+import one_thread  # noqa: F401  # isort: split
 
-for library in ("OPENBLAS", "OMP", "MKL", "NUMBA"):  # before NumPy is imported
-    os.environ[f"{library}_NUM_THREADS"] = "1"
+import argparse
+import math
+import sys
+from pathlib import Path
 
-import argparse  # noqa: E402
-import math  # noqa: E402
-import sys  # noqa: E402
-from pathlib import Path  # noqa: E402
-
-import microslip  # noqa: E402
-from microslip import theory  # noqa: E402
+import microslip
+from microslip import theory
 
 VELOCITIES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 AMPLITUDES = {"transverse": (0.25, 0.5, 0.75), "bore": (0.5, 1.0, 2.0)}

@@ -8,20 +8,17 @@ leave out because it differs from run to run.
 
 from __future__ import annotations
 
-import os
+import one_thread  # noqa: F401  # isort: split
 
-for library in ("OPENBLAS", "OMP", "MKL", "NUMBA"):  # before NumPy is imported
-    os.environ[f"{library}_NUM_THREADS"] = "1"
+import argparse
+from itertools import product
+from pathlib import Path
 
-import argparse  # noqa: E402
-from itertools import product  # noqa: E402
-from pathlib import Path  # noqa: E402
+import numpy as np
+from tqdm import tqdm
 
-import numpy as np  # noqa: E402
-from tqdm import tqdm  # noqa: E402
-
-import microslip  # noqa: E402
-from microslip import config  # noqa: E402
+import microslip
+from microslip import config
 
 
 def cost(sweep):

@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from point_contract import CONTRACT
 
 import microslip
 from microslip import theory
+from microslip.motion import Resolution
 from microslip.scenes import SCENES
-from microslip.simulate import Resolution, simulate
+from microslip.simulate import simulate
 
 # Certificates
 
@@ -277,21 +279,6 @@ def test_imposing_one_axis_leaves_the_other_to_the_tolerance():
 
 
 # Fields
-
-
-CONTRACT = {
-    "scene",
-    "velocity",
-    "poisson",
-    "model",
-    "mu_macro",
-    "mu_macro_error",
-    "converged",
-    "cells",
-    "steps_per_period",
-    "periods",
-    "solve_time_s",
-}
 
 
 def without_time(fields):

@@ -77,7 +77,8 @@ def _add_options(parser):
         "--model",
         default="auto",
         metavar="NAME",
-        help="auto (the cheapest), rigid, slider, dahl, mdr, radial, polar or cartesian",
+        help="auto (the cheapest that is right), rigid, slider, dahl, mdr, radial, polar or "
+        "cartesian",
     )
     parser.add_argument(
         "--tolerance",

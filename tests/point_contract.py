@@ -1,0 +1,15 @@
+"""Fields that every answer has, whatever else it says."""
+
+CONTRACT = {
+    "scene",
+    "velocity",
+    "poisson",
+    "model",
+    "mu_macro",
+    "mu_macro_error",
+    "converged",
+    "cells",
+    "steps_per_period",
+    "periods",
+    "solve_time_s",
+}
