@@ -18,7 +18,9 @@ stopped.
 
 from __future__ import annotations
 
-import one_thread  # noqa: F401  # isort: split
+import one_thread  # noqa: F401
+
+# isort: split
 
 import argparse
 import json

@@ -10,7 +10,9 @@ Transverse and bore, nu = 0; the smaller the tolerance, the further down the exp
 
 from __future__ import annotations
 
-import one_thread  # noqa: F401  # isort: split
+import one_thread  # noqa: F401
+
+# isort: split
 
 import argparse
 import math

@@ -8,7 +8,9 @@ leave out because it differs from run to run.
 
 from __future__ import annotations
 
-import one_thread  # noqa: F401  # isort: split
+import one_thread  # noqa: F401
+
+# isort: split
 
 import argparse
 from itertools import product
