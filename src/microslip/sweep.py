@@ -1,21 +1,17 @@
-"""From a configuration to results: requests, batches of them, and their answers.
+"""From a configuration to results: requests, batches of them, and their answers from the store.
 
 A request is a plain dict that says what to compute, with numbers as canonical strings; together
 with the digest of the solver it names a result. A job gets a batch of requests and computes those
 that the store does not hold, so how points are cut into batches never decides what is computed.
-
-The solver is imported only when something has to be computed.
 """
 
 import importlib.metadata
 import logging
-import math
 import platform
 import time
 from functools import cache
 
-import microslip
-
+from . import answers
 from .config import HISTORIES_OF_SWEEP
 from .keys import batch_name, number, result_key, source_digest
 
@@ -23,6 +19,18 @@ log = logging.getLogger(__name__)
 
 # The initial states of Figure 5.
 STARTS = ("stress-free", "full-rotation", "full-slip")
+
+# Folders of the store by kind of request. Those in trials and scaling hold times that were
+# measured: computed again they differ in these, and in nothing else.
+FOLDERS = {
+    "point": "points",
+    "history": "histories",
+    "field": "histories",
+    "trial": "trials",
+    "choice": "trials",
+    "probe": "probes",
+    "scaling": "scaling",
+}
 
 
 def point_requests(sweep):
@@ -77,8 +85,7 @@ def batches(requests, size, digest):
 
 def group(request):
     """Name the subfolder of the store that a request's result goes to."""
-    kind = "points" if request["kind"] == "point" else "histories"
-    return f"{kind}/{request['scene']}"
+    return "/".join([FOLDERS[request["kind"]], request.get("scene", request.get("model"))])
 
 
 def answer(request, store):
@@ -92,9 +99,10 @@ def answer(request, store):
     if record is not None:
         return record, 0.0
     started = time.perf_counter()
-    result = _compute(request)
+    result = answers.computed(request)
     seconds = time.perf_counter() - started
-    # How long it took is left out: equal requests have equal records, bit for bit.
+    # How long it took is left out: equal requests have equal records, bit for bit, but for those
+    # that ask for a time.
     record = {"key": key, "request": request, "result": result, "versions": versions()}
     store.write(group(request), key, record)
     return record, seconds
@@ -122,9 +130,11 @@ def run_batch(requests, store, progress=iter):
 
 def label(request):
     """Describe a request in a few words, for messages."""
-    names = ("poisson", "amplitude", "velocity", "start")
+    names = ["poisson", "amplitude", "velocity", "start"]
+    if request["kind"] != "point":
+        names += ["model", "method", "cells", "angles", "steps"]
     given = ", ".join(f"{name} {request[name]}" for name in names if request.get(name) is not None)
-    return f"{request['scene']} at {given}"
+    return f"{request.get('scene', request['kind'])} at {given}"
 
 
 @cache
@@ -132,49 +142,3 @@ def versions():
     """Versions of Python and of the numerical libraries that compute a result, as a dict."""
     found = {name: importlib.metadata.version(name) for name in ("numpy", "scipy", "numba")}
     return {"python": platform.python_version(), **found}
-
-
-def _compute(request):
-    """Ask the solver; the result as a dict of plain values."""
-    if request["kind"] == "point":
-        return _solved(request)
-    given = {k: float(request[k]) for k in ("velocity", "amplitude", "travel") if k in request}
-    given |= {k: request[k] for k in ("cells", "steps", "periods", "start") if k in request}
-    if request["kind"] == "field":
-        return _plain(microslip.traction_field(request["scene"], **given))
-    history = microslip.history(request["scene"], **given)
-    names = ("phase", "displacement_forward", "force_forward", "force_lateral", "torque")
-    return _plain({name: getattr(history, name) for name in names})
-
-
-def _solved(request):
-    amplitude = request["amplitude"]
-    try:
-        result = microslip.solve(
-            request["scene"],
-            float(request["velocity"]),
-            None if amplitude is None else float(amplitude),
-            poisson=float(request["poisson"]),
-            model=request["model"],
-            tolerance=float(request["tolerance"]),
-            cells=request["cells"],
-            steps=request["steps"],
-        ).to_dict()
-    except (ArithmeticError, RuntimeError) as error:
-        # One point that fails is a gap in the map, not the end of the sweep.
-        result = {"converged": False, "reason": f"{type(error).__name__}: {error}"}
-    result.pop("solve_time_s", None)
-    return _plain(result)
-
-
-def _plain(value):
-    """Python values that JSON can hold, from NumPy's or a dict of them; NaN becomes None."""
-    if isinstance(value, dict):
-        return {str(name): _plain(item) for name, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    if hasattr(value, "tolist"):
-        return _plain(value.tolist())
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value

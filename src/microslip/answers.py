@@ -1,0 +1,184 @@
+"""The answer to a request: ask the solver, and turn what it says into plain values.
+
+See microslip.sweep for what a request is. The solver is imported only when it is asked.
+"""
+
+import math
+import time
+from statistics import median
+
+import microslip
+
+SHORTEST = 0.02
+"""CPU seconds that are worth a reading of the clock; shorter runs are read together."""
+LONG_ENOUGH = 2.0
+"""CPU seconds of readings after which no more are taken."""
+
+
+def computed(request):
+    """Ask the solver; the result as a dict of values that JSON can hold."""
+    return _plain(_KINDS[request["kind"]](request))
+
+
+def timed(run, repeats):
+    """Return what `run()` gives and the CPU seconds that it takes, compiled and with warm caches.
+
+    The first call is not counted. The seconds are the median of `repeats` readings, or fewer if
+    they take long. CPU time does not count what other processes do on the same cores meanwhile.
+    """
+    result = run()
+    readings, spent, calls = [], 0.0, 1
+    while len(readings) < repeats and (spent < LONG_ENOUGH or not readings):
+        begun = time.process_time()
+        for _ in range(calls):
+            run()
+        took = time.process_time() - begun
+        spent += took
+        if took < SHORTEST and not readings:
+            calls = max(2 * calls, math.ceil(1.2 * calls * SHORTEST / max(took, 1e-6)))
+        else:
+            readings.append(took / calls)
+    return result, median(readings)
+
+
+# Kinds of requests
+
+
+def _point(request):
+    return _survived(lambda: _solved(request, model=request["model"]))
+
+
+def _history(request):
+    history = microslip.history(request["scene"], **_of_single_run(request))
+    names = ("phase", "displacement_forward", "force_forward", "force_lateral", "torque")
+    return {name: getattr(history, name) for name in names}
+
+
+def _field(request):
+    return microslip.traction_field(request["scene"], **_of_single_run(request))
+
+
+def _trial(request):
+    """One run at one resolution; `applies` is False where there is nothing to run."""
+    from . import trial
+
+    place = _place(request)
+    settings = {"model": request["model"], "method": request["method"]}
+    reason = trial.applies(place["scene"], place["poisson"], **settings)
+    if reason:
+        return {"applies": False, "converged": False, "reason": reason}
+    settings |= {"cells": request["cells"], "angles": request["angles"]}
+    settings["steps"] = request["steps"] or 2  # a steady motion takes any number, and none
+    settings["tolerance"] = float(request["tolerance"])
+
+    def run():
+        return trial.run_trial(**place, **settings)
+
+    return {"applies": True} | _timed_if_survived(run, request["repeats"])
+
+
+def _choice(request):
+    """What `solve` does when only a tolerance is given."""
+    return _timed_if_survived(lambda: _solved(request), request["repeats"])
+
+
+def _probe(request):
+    """A certified solve with another method; `applies` is False where it cannot be used."""
+    from . import trial
+    from .choice import choose_model
+    from .scenes import scene_named
+
+    place = _place(request)
+    model = choose_model(scene_named(place["scene"]), place["poisson"], request["model"])
+    reason = trial.applies(place["scene"], place["poisson"], model, request["method"])
+    if reason:
+        return {"applies": False, "converged": False, "reason": reason}
+    settings = {"model": request["model"], "method": request["method"]}
+    return {"applies": True} | _survived(lambda: _solved(request, **settings))
+
+
+def _scaling(request):
+    from . import trial
+
+    sizes = [request["cells"], request["angles"], float(request["poisson"]), request["steps"]]
+    return trial.measure_steps(request["model"], *sizes)
+
+
+_KINDS = {
+    "point": _point,
+    "history": _history,
+    "field": _field,
+    "trial": _trial,
+    "choice": _choice,
+    "probe": _probe,
+    "scaling": _scaling,
+}
+
+
+# What they share
+
+
+def _place(request):
+    amplitude = request["amplitude"]
+    return {
+        "scene": request["scene"],
+        "velocity": float(request["velocity"]),
+        "amplitude": None if amplitude is None else float(amplitude),
+        "poisson": float(request["poisson"]),
+    }
+
+
+def _of_single_run(request):
+    given = {k: float(request[k]) for k in ("velocity", "amplitude", "travel") if k in request}
+    return given | {k: request[k] for k in ("cells", "steps", "periods", "start") if k in request}
+
+
+def _solved(request, **settings):
+    place = _place(request)
+    settings |= {name: request[name] for name in ("cells", "steps") if name in request}
+    result = microslip.solve(
+        place.pop("scene"),
+        place.pop("velocity"),
+        place.pop("amplitude"),
+        tolerance=float(request["tolerance"]),
+        **place,
+        **settings,
+    ).to_dict()
+    result.pop("solve_time_s", None)
+    return result
+
+
+def _survived(run):
+    """The result of `run()`, or the error that it ended with, as a result."""
+    try:
+        return run()
+    except (ArithmeticError, RuntimeError, MemoryError, _linear_algebra_error()) as error:
+        # One point that fails is a gap in the map, not the end of the sweep.
+        return {"converged": False, "reason": f"{type(error).__name__}: {error}"}
+
+
+def _timed_if_survived(run, repeats):
+    def both():
+        result, seconds = timed(run, repeats)
+        return dict(result) | {"seconds": seconds}
+
+    return _survived(both)
+
+
+def _linear_algebra_error():
+    from numpy.linalg import LinAlgError
+
+    return LinAlgError
+
+
+def _plain(value):
+    """Python values that JSON can hold, from NumPy's or a dict of them; NaN becomes None."""
+    if isinstance(value, dict):
+        return {str(name): _plain(item) for name, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if hasattr(value, "tolist"):
+        return _plain(value.tolist())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
