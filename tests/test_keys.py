@@ -147,7 +147,69 @@ def test_a_new_or_renamed_solver_file_changes_the_digest(tmp_path):
 def test_the_solver_uses_no_module_that_its_digest_leaves_out():
     for name, path in keys.solver_files():
         for module in _imports_from_the_package(path):
+            if module == "methods":
+                continue  # their files are loaded by name, and counted where one is named
             assert module not in keys.NOT_SOLVER, f"{name} imports microslip.{module}"
+
+
+@pytest.fixture
+def package(tmp_path):
+    """A made-up package with a solver, what runs trials, and methods of which two share code."""
+    files = {
+        "solver.py": "A = 1",
+        "trial.py": "B = 1",
+        "methods/__init__.py": "C = 1",
+        "methods/_shared.py": "D = 1",
+        "methods/_deeper.py": "E = 1",
+        "methods/one.py": "from package.methods._shared import D",
+        "methods/other_one.py": "from . import _shared",
+        "methods/alone.py": "import numpy",
+    }
+    files["methods/_shared.py"] = "from package.methods import _deeper"
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("kind", "method", "names"),
+    [
+        ("point", "", []),
+        ("choice", "", []),
+        ("probe", "shipped", []),
+        ("trial", "shipped", ["trial.py"]),
+        ("scaling", "", ["trial.py"]),
+        ("probe", "alone:step=2", ["methods/alone.py"]),
+        ("trial", "alone", ["methods/alone.py", "trial.py"]),
+        ("probe", "one", ["methods/_deeper.py", "methods/_shared.py", "methods/one.py"]),
+        (
+            "probe",
+            "other-one",
+            ["methods/_deeper.py", "methods/_shared.py", "methods/other_one.py"],
+        ),
+    ],
+)
+def test_a_request_depends_on_the_method_that_it_names_and_on_no_other(
+    kind, method, names, package
+):
+    found = keys.further_files(kind, method, package)
+    assert [name for name, _ in found] == names
+    assert all(path == package / name for name, path in found)
+
+
+def test_no_method_counts_for_an_ordinary_point(package):
+    assert [name for name, _ in keys.solver_files(package)] == ["solver.py"]
+
+
+def test_requests_differ_by_the_method_and_by_its_file(monkeypatch):
+    shipped = {"kind": "probe", "method": "shipped"}
+    probe = {"kind": "probe", "method": "euler"}
+    monkeypatch.setattr(keys, "_further_digest", lambda kind, method: "")
+    assert keys.result_key(shipped, "d") != keys.result_key(probe, "d")
+    before = keys.result_key(probe, "d")
+    monkeypatch.setattr(keys, "_further_digest", lambda kind, method: "of another file")
+    assert keys.result_key(probe, "d") != before
 
 
 def _imports_from_the_package(path):
@@ -171,7 +233,8 @@ def _imports_from_the_package(path):
 def test_the_workflow_reads_this_without_loading_anything_heavy():
     heavy = ("numpy", "scipy", "numba", "xarray", "matplotlib")
     program = (
-        "import sys; from microslip import config, keys, plot, sweep; keys.source_digest();"
+        "import sys; from microslip import config, keys, plot, studies, sweep;"
+        "keys.source_digest();"
         f"print([m for m in {heavy} if m in sys.modules])"
     )
     done = subprocess.run(

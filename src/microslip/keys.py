@@ -19,7 +19,12 @@ from pathlib import Path
 # What a result does not depend on. Every other module of the package is part of the digest, so
 # that a new solver file is counted without anybody thinking of it.
 NOT_SOLVER = {"__init__", "__main__", "cli"}
-NOT_SOLVER |= {"config", "schemas", "keys", "cache", "sweep", "jobs", "limits", "dataset", "plot"}
+NOT_SOLVER |= {"config", "schemas", "keys", "cache", "answers", "sweep", "jobs"}
+NOT_SOLVER |= {"limits", "dataset", "studies", "plot"}
+# These count for the requests that name them, see further_files.
+NOT_SOLVER |= {"trial", "methods"}
+
+PACKAGE = Path(__file__).parent
 
 # Raise it when the content of a record changes without any change in the solver.
 RECORD_FORMAT = 1
@@ -58,7 +63,11 @@ def result_key(request, digest):
 
     request: dict of canonical strings, integers and None, see microslip.sweep.
     """
-    return sha256(canonical_json({"request": request, "source": digest, "format": RECORD_FORMAT}))
+    content = {"request": request, "source": digest, "format": RECORD_FORMAT}
+    further = _further_digest(request["kind"], request.get("method", ""))
+    if further:
+        content["further"] = further
+    return sha256(canonical_json(content))
 
 
 def batch_name(keys):
@@ -77,13 +86,48 @@ def solver_files(package=None):
 
     package: folder of the package, by default the one that is running.
     """
-    package = Path(package or Path(__file__).parent)
+    package = Path(package or PACKAGE)
     files = ((path.relative_to(package), path) for path in package.rglob("*.py"))
     return sorted(
         (name.as_posix(), path)
         for name, path in files
         if name.parts[0].removesuffix(".py") not in NOT_SOLVER
     )
+
+
+def further_files(kind, method, package=None):
+    """List the modules that a request depends on besides the solver, as (name, Path), sorted.
+
+    kind, method: of the request, see microslip.studies.requests; method: such as "admm:penalty=1",
+    "" for none. What runs trials counts for these, and a method's file with all that it imports
+    from its folder, so that another method makes no result stale.
+    """
+    package = Path(package or PACKAGE)
+    names = {"trial.py"} if kind in ("trial", "scaling") else set()
+    waiting = [method.partition(":")[0].replace("-", "_")]
+    while waiting:
+        name = f"methods/{waiting.pop()}.py"
+        if name not in names and (package / name).is_file():
+            names.add(name)
+            waiting += _imported_beside(package / name)
+    return sorted((name, package / name) for name in names)
+
+
+def _imported_beside(path):
+    """Names of the modules that a file of a subpackage may import from its own folder."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                yield alias.name.rpartition(".")[2]
+        elif isinstance(node, ast.ImportFrom):
+            yield (node.module or "").rpartition(".")[2]
+            yield from (alias.name for alias in node.names)
+
+
+@cache
+def _further_digest(kind, method):
+    files = further_files(kind, method)
+    return digest_of_files(files) if files else ""
 
 
 def digest_of_files(files):
