@@ -1,0 +1,44 @@
+"""Studies: how accuracy is paid for, and where methods fail.
+
+`ladders` says in which resolutions a model is run; `accuracy_cost` and `stability` say what is
+asked; `fronts` picks and fits; the modules with `dataset` in their name turn the answers into
+datasets. What is asked is plain data that imports nothing heavy, since the workflow reads it
+whenever it is parsed.
+"""
+
+from dataclasses import asdict
+from importlib import import_module
+
+from . import accuracy_cost, stability
+
+# Studies, named as in the configuration, and their datasets.
+DATASETS = {"accuracy": "accuracy_cost", "stability": "stability"}
+
+_ASKED = {"accuracy": accuracy_cost, "stability": stability}
+
+
+def pieces(study, configuration):
+    """What one job each answers: two lists of lists of requests, those that take long first."""
+    return _ASKED[study].pieces(getattr(configuration, study))
+
+
+def settings(study, configuration):
+    """All settings that the dataset of a study depends on, as a dict for JSON."""
+    return asdict(getattr(configuration, study))
+
+
+def build(study, configuration, answer):
+    """Assemble the xarray.Dataset of a study.
+
+    configuration: config.Configuration. answer(request) -> record, see microslip.sweep.
+    """
+    return _dataset_of(study).build(getattr(configuration, study), answer)
+
+
+def report(study, dataset):
+    """Lines of text that sum up the dataset of a study."""
+    return _dataset_of(study).report(dataset)
+
+
+def _dataset_of(study):
+    return import_module(f".{DATASETS[study]}_dataset", __name__)

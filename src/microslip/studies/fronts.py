@@ -1,0 +1,44 @@
+"""What is picked from trials, and what is fitted to them: fronts, the cheapest, exponents."""
+
+import numpy as np
+
+
+def on_front(cost, error):
+    """Mark what nothing beats: nothing costs no more and errs no more, and one of the two less.
+
+    cost, error: arrays (n,); what has no finite value of both takes no part. Returns bool (n,).
+    """
+    cost, error = np.asarray(cost, float), np.asarray(error, float)
+    front = np.isfinite(cost) & np.isfinite(error)
+    best, best_cost = np.inf, np.inf
+    # From cheap to dear, of equal costs the more accurate first.
+    for i in np.lexsort((error, cost)):
+        if not front[i]:
+            continue
+        if error[i] < best:
+            best, best_cost = error[i], cost[i]
+        else:
+            front[i] = error[i] == best and cost[i] == best_cost
+    return front
+
+
+def cheapest(cost, error, tolerance):
+    """Index of the least cost among those within the tolerance, or None if none is."""
+    cost, error = np.asarray(cost, float), np.asarray(error, float)
+    good = np.flatnonzero(np.isfinite(cost) & (error <= tolerance))
+    return int(good[np.argmin(cost[good])]) if good.size else None
+
+
+def exponent(sizes, values):
+    """Exponent p of values ~ sizes^p by least squares of logarithms, over the larger half of sizes.
+
+    sizes, values: arrays (n,). NaN where fewer than two of them are positive numbers.
+    """
+    sizes, values = np.asarray(sizes, float), np.asarray(values, float)
+    good = np.isfinite(sizes) & np.isfinite(values) & (sizes > 0) & (values > 0)
+    order = np.argsort(sizes[good])
+    sizes, values = sizes[good][order], values[good][order]
+    half = slice(min(sizes.size // 2, max(sizes.size - 2, 0)), None)
+    if sizes.size < 2:
+        return np.nan
+    return float(np.polyfit(np.log(sizes[half]), np.log(values[half]), 1)[0])

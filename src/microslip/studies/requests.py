@@ -1,0 +1,65 @@
+"""Requests of the studies: plain dicts with numbers as canonical strings, see microslip.sweep.
+
+- trial: one timed run of (point, model, method, resolution);
+- choice: one timed solve at a tolerance, which picks its own model and resolution;
+- probe: one solve with a method exchanged, with nothing timed;
+- point: an ordinary point of a sweep, solved tightly, that the others are compared with;
+- scaling: what a step costs at one size.
+"""
+
+from ..keys import number
+from .ladders import exact_model
+
+RINGS_TOLERANCE, TOLERANCE = 1e-6, 3e-5
+"""Of references: with rings alone, which are cheap, and with angular points."""
+
+
+def of_point(point):
+    """The part of a request that says where: point is a config.StudyPoint."""
+    return {
+        "scene": point.scene,
+        "velocity": number(point.velocity),
+        "amplitude": None if point.amplitude is None else number(point.amplitude),
+        "poisson": number(point.poisson),
+    }
+
+
+def trial(point, model, method, level, tolerance, repeats):
+    """One timed run; level: ladders.Level.  A steady motion takes no steps."""
+    return of_point(point) | {
+        "kind": "trial",
+        "model": model,
+        "method": method,
+        "cells": level.cells,
+        "angles": level.angles,
+        "steps": None if point.amplitude is None else level.steps,
+        "tolerance": number(tolerance),
+        "repeats": repeats,
+    }
+
+
+def choice(point, tolerance, repeats):
+    """One timed solve, as anybody would call it."""
+    kind = {"kind": "choice", "tolerance": number(tolerance), "repeats": repeats}
+    return of_point(point) | kind
+
+
+def probe(point, method, tolerance, cells=None, steps=None):
+    """One solve with another method; cells, steps: imposed resolution, None: by the tolerance."""
+    kind = {"kind": "probe", "method": method, "model": "auto", "tolerance": number(tolerance)}
+    return of_point(point) | kind | {"cells": cells, "steps": steps}
+
+
+def reference(point, tolerance=None):
+    """An ordinary point; tolerance: None for what a reference is worth."""
+    if tolerance is None:
+        rings = exact_model(point.scene, point.poisson) == "radial"
+        tolerance = RINGS_TOLERANCE if rings else TOLERANCE
+    kind = {"kind": "point", "model": "auto", "tolerance": number(tolerance)}
+    return of_point(point) | kind | {"cells": None, "steps": None}
+
+
+def scaling(model, cells, angles, steps):
+    """What a step costs with so many cells and angles, over a period of `steps` steps."""
+    sizes = {"cells": cells, "angles": angles, "steps": steps}
+    return {"kind": "scaling", "model": model, "poisson": "0"} | sizes
