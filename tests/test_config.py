@@ -2,13 +2,14 @@
 
 import itertools
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import jsonschema
 import pytest
 import yaml
 
-from microslip import config, schemas
+from microslip import config, methods, schemas
 from microslip.config import ConfigError, load
 
 ROOT = Path(__file__).parent.parent
@@ -65,6 +66,36 @@ def test_shipped_configurations_are_good(name):
     found = load(ROOT / "config" / f"{name}.yaml")
     assert list(found.sweeps) == ["transverse", "bore", "continuous_bore"]
     assert found.sweeps["transverse"].amplitude[0] == 0  # where mu_macro is 1
+
+
+def test_the_studies_name_every_method_that_can_be_run():
+    found = load(ROOT / "config" / "config.yaml")
+    assert set(found.accuracy.methods) == set(methods.names())
+    # The run of the paper comes with its own resolution: nothing can be varied in it.
+    assert set(found.stability.methods) == set(methods.names()) - {"paper"}
+
+
+def test_the_studies_need_not_be_given():
+    shipped = load(ROOT / "config" / "config.yaml")
+    found = config.from_mapping({"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}})
+    assert found.accuracy.methods == found.stability.methods == methods.names()
+    assert replace(found.accuracy, methods=()) == replace(shipped.accuracy, methods=())
+    assert replace(found.stability, methods=()) == replace(shipped.stability, methods=())
+    assert found.accuracy.map_tolerance == (1e-2, 1e-3)
+
+
+def test_points_of_a_study_have_numbers_and_titles():
+    text = "{there: {scene: zigzag, velocity: 1, amplitude: 2}, steady: {scene: continuous-bore, "
+    points = yaml.safe_load(text + "velocity: 3, poisson: 0.5, title: at rest}}")
+    given = {
+        "sweeps": {"bore": {"velocity": [1], "amplitude": [1]}},
+        "accuracy": {"points": points},
+    }
+    found = config.from_mapping(given).accuracy.points
+    assert found == {
+        "there": config.StudyPoint("there", "zigzag", 1.0, 2.0, 0.0, "there"),
+        "steady": config.StudyPoint("steady", "continuous-bore", 3.0, None, 0.5, "at rest"),
+    }
 
 
 def test_default_sweeps_are_those_of_the_paper():
@@ -183,6 +214,94 @@ BAD = {
         "sweeps:",
         "histories: {transients: {velocity: 0}}\nsweeps:",
         ["histories.transients.velocity: 0", "> 0"],
+    ),
+    "unknown study key": ("sweeps:", "accuracy: {point: {}}\nsweeps:", ["did you mean points?"]),
+    "unknown method": (
+        "sweeps:",
+        "accuracy: {methods: [shipped, ful-newton]}\nsweeps:",
+        ["accuracy.methods[1]", "'ful-newton'", "full-newton, "],
+    ),
+    "unknown number of a method": (
+        "sweeps:",
+        "stability: {methods: ['admm:penalt=1']}\nsweeps:",
+        ["stability.methods[0]", "penalt", "penalty"],
+    ),
+    "number of a method that is none": (
+        "sweeps:",
+        "stability: {methods: ['admm:penalty=high']}\nsweeps:",
+        ["stability.methods[0]", "admm:penalty=high"],
+    ),
+    "a method twice": (
+        "sweeps:",
+        "stability: {methods: [admm, admm]}\nsweeps:",
+        ["stability.methods: admm occurs twice"],
+    ),
+    "one method without brackets": (
+        "sweeps:",
+        "accuracy: {methods: admm}\nsweeps:",
+        ['accuracy.methods: "admm"', "a list of text or null"],
+    ),
+    "no methods": ("sweeps:", "accuracy: {methods: []}\nsweeps:", ["accuracy.methods: []", "list"]),
+    "no points": ("sweeps:", "accuracy: {points: {}}\nsweeps:", ["accuracy.points: {}", "names"]),
+    "point without a scene": (
+        "sweeps:",
+        "accuracy: {points: {a: {velocity: 1}}}\nsweeps:",
+        ["accuracy.points.a.scene: missing"],
+    ),
+    "point of an unknown scene": (
+        "sweeps:",
+        "accuracy: {points: {a: {scene: bores, velocity: 1}}}\nsweeps:",
+        ["accuracy.points.a.scene", '"bores"', "transverse, bore, "],
+    ),
+    "point at rest": (
+        "sweeps:",
+        "accuracy: {points: {a: {scene: bore, velocity: 0, amplitude: 1}}}\nsweeps:",
+        ["accuracy.points.a.velocity: 0", "> 0"],
+    ),
+    "point without an amplitude": (
+        "sweeps:",
+        "accuracy: {points: {a: {scene: bore, velocity: 1}}}\nsweeps:",
+        ["accuracy.points.a.amplitude: missing", "bore"],
+    ),
+    "point with an amplitude where there is none": (
+        "sweeps:",
+        "accuracy: {points: {a: {scene: continuous-bore, velocity: 1, amplitude: 1}}}\nsweeps:",
+        ["accuracy.points.a.amplitude: 1", "continuous-bore has no amplitude"],
+    ),
+    "unknown key of a point": (
+        "sweeps:",
+        "accuracy: {points: {a: {scene: bore, velocity: 1, amplitud: 1}}}\nsweeps:",
+        ["accuracy.points.a.amplitud", "did you mean amplitude?"],
+    ),
+    "too many levels": (
+        "sweeps:",
+        "accuracy: {levels: 7}\nsweeps:",
+        ["accuracy.levels: 7", "<= 6"],
+    ),
+    "a map at rest": (
+        "sweeps:",
+        "accuracy: {map: {velocity: [0, 1]}}\nsweeps:",
+        ["accuracy.map.velocity: 0", "> 0"],
+    ),
+    "a map of one row": (
+        "sweeps:",
+        "accuracy: {map: {amplitude_bore: [1]}}\nsweeps:",
+        ["accuracy.map.amplitude_bore", "two numbers"],
+    ),
+    "a map without tolerances": (
+        "sweeps:",
+        "accuracy: {map: {tolerance: []}}\nsweeps:",
+        ["accuracy.map.tolerance: []", "a list of a number"],
+    ),
+    "unknown block": (
+        "sweeps:",
+        "stability: {axes: [step]}\nsweeps:",
+        ["stability.axes[0]", '"step"', "steps, slow-transverse"],
+    ),
+    "a block twice": (
+        "sweeps:",
+        "stability: {axes: [steps, steps]}\nsweeps:",
+        ["stability.axes: steps occurs twice"],
     ),
 }
 

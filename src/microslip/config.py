@@ -1,4 +1,4 @@
-"""The configuration of a sweep: read YAML, check it, fill in defaults, expand the axes.
+"""The configuration of sweeps and studies: read YAML, check it, fill in defaults, expand the axes.
 
 The JSON schema in microslip.schemas holds the shape, the ranges, the defaults and a description
 of every key. What it cannot say is checked here: duplicates, and settings that do not go together.
@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import yaml
 
-from . import schemas
+from . import methods, schemas
 from .keys import number
 
 # Sweeps are named like their datasets, scenes as on the command line.
@@ -29,6 +29,7 @@ MODELS_OF_SCENE = {
     "transverse": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
     "bore": ("auto", "rigid", "polar", "cartesian"),
     "continuous-bore": ("auto", "rigid", "polar", "cartesian"),
+    "zigzag": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
 }
 
 
@@ -59,6 +60,40 @@ class Sweep:
 
 
 @dataclass(frozen=True)
+class StudyPoint:
+    """A point that methods are compared at. All numbers are dimensionless."""
+
+    name: str
+    scene: str
+    velocity: float
+    amplitude: float | None  # None: the scene has no amplitude
+    poisson: float
+    title: str
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """What is asked to see what accuracy costs."""
+
+    methods: tuple
+    points: dict  # name -> StudyPoint
+    levels: int
+    repeats: int
+    map_velocity: tuple
+    map_amplitude: dict  # scene -> tuple
+    map_tolerance: tuple  # from loose to tight
+
+
+@dataclass(frozen=True)
+class Stability:
+    """What is asked to see where methods fail."""
+
+    methods: tuple
+    tolerance: float
+    axes: tuple | None  # None: all blocks of studies.stability
+
+
+@dataclass(frozen=True)
 class Configuration:
     """A checked configuration with its defaults filled in and its axes expanded."""
 
@@ -66,6 +101,8 @@ class Configuration:
     points_per_job: int
     sweeps: dict  # name -> Sweep, in the order of SCENE_OF_SWEEP
     histories: dict  # transverse, field, transients -> dict of settings, as in the schema
+    accuracy: Accuracy
+    stability: Stability
 
     def of_sweep(self, name):
         """All settings that the dataset of the sweep `name` depends on, as a dict for JSON."""
@@ -111,7 +148,83 @@ def from_mapping(mapping, source="configuration"):
         for name in SCENE_OF_SWEEP
         if name in filled["sweeps"]
     }
-    return Configuration(filled["results"], filled["points_per_job"], sweeps, filled["histories"])
+    return Configuration(
+        results=filled["results"],
+        points_per_job=filled["points_per_job"],
+        sweeps=sweeps,
+        histories=filled["histories"],
+        accuracy=_accuracy(filled["accuracy"], f"{source}: accuracy"),
+        stability=_stability(filled["stability"], f"{source}: stability"),
+    )
+
+
+# From settings to studies
+
+
+def _accuracy(given, where):
+    grid = given["map"]
+    axes = {
+        name: _axis(grid[name], f"{where}.map.{name}", positive=True)
+        for name in ("velocity", "amplitude_transverse", "amplitude_bore", "tolerance")
+    }
+    for name, values in axes.items():
+        if len(values) < 2 and name != "tolerance":
+            raise ConfigError(
+                f"{where}.map.{name}: {list(values)} is not allowed; allowed: two numbers or more"
+            )
+    points = [_study_point(name, p, f"{where}.points") for name, p in given["points"].items()]
+    return Accuracy(
+        methods=_methods(given["methods"], where),
+        points={point.name: point for point in points},
+        levels=given["levels"],
+        repeats=given["repeats"],
+        map_velocity=axes["velocity"],
+        map_amplitude={s: axes[f"amplitude_{s}"] for s in ("transverse", "bore")},
+        map_tolerance=axes["tolerance"][::-1],
+    )
+
+
+def _stability(given, where):
+    axes = given["axes"]
+    return Stability(
+        methods=_methods(given["methods"], where),
+        tolerance=float(number(given["tolerance"])),
+        axes=None if axes is None else tuple(_once(axes, f"{where}.axes")),
+    )
+
+
+def _study_point(name, given, where):
+    where = f"{where}.{name}.amplitude"
+    steady, amplitude = given["scene"] == "continuous-bore", given["amplitude"]
+    if steady and amplitude is not None:
+        raise ConfigError(f"{where}: {amplitude} is not allowed; {given['scene']} has no amplitude")
+    if not steady and amplitude is None:
+        raise ConfigError(f"{where}: missing; required for {given['scene']}")
+    return StudyPoint(
+        name=str(name),
+        scene=given["scene"],
+        velocity=float(number(given["velocity"])),
+        amplitude=None if steady else float(number(amplitude)),
+        poisson=float(number(given["poisson"])),
+        title=given["title"] or str(name),
+    )
+
+
+def _methods(given, where):
+    if given is None:
+        return methods.names()
+    for i, text in enumerate(_once(given, f"{where}.methods")):
+        problem = methods.refusal(text)
+        if problem:
+            raise ConfigError(f"{where}.methods[{i}]: {problem}")
+    return tuple(given)
+
+
+def _once(values, where):
+    twice = next((value for i, value in enumerate(values) if value in values[:i]), None)
+    if twice is not None:
+        raise ConfigError(f"{where}: {twice} occurs twice; allowed: different values")
+    return values
 
 
 # From settings to sweeps
@@ -137,7 +250,7 @@ def _sweep(name, given, source):
     return sweep
 
 
-def _axis(given, where):
+def _axis(given, where, positive=False):
     if isinstance(given, list):
         values = [float(number(value)) for value in given]
     else:
@@ -147,6 +260,8 @@ def _axis(given, where):
     for low, high in pairwise(values):
         if high - low <= 1e-9 * high:
             raise ConfigError(f"{where}: {high:.12g} occurs twice; allowed: different values")
+    if positive and values[0] <= 0:
+        raise ConfigError(f"{where}: {values[0]:g} is not allowed; allowed: numbers > 0")
     return tuple(values)
 
 

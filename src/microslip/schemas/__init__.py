@@ -52,7 +52,9 @@ def _filled(value, rule):
     if isinstance(value, dict):
         rules = rule.get("properties", {})
         whole = {k: _resolved(r)["default"] for k, r in rules.items() if "default" in _resolved(r)}
-        return {k: _filled(v, rules[k]) for k, v in {**whole, **value}.items()}
+        # Where the keys are free, all their values follow one rule.
+        free = rule.get("additionalProperties")
+        return {k: _filled(v, rules.get(k, free)) for k, v in {**whole, **value}.items()}
     if isinstance(value, list):
         return list(value)
     if "integer" in rule.get("type", ()) and value is not None:
@@ -127,10 +129,16 @@ def _allowed(rule):
     kinds = _types(rule)
     if "array" in kinds and "object" in kinds:
         return f"a list of {_allowed(_resolved(rule['items']))}, or linear or log spacing"
+    if kinds[:1] == ["array"]:
+        one = _allowed(_resolved(rule["items"]))
+        return " ".join([f"a list of {one}", *(["or null"] if "null" in kinds else [])])
+    if kinds == ["object"] and "properties" not in rule:
+        return "a mapping of names, one at least"
     if kinds == ["object"]:
         return f"a mapping with the keys {', '.join(rule['properties'])}"
     words = {"number": "a number", "integer": "a whole number", "array": "or a list of them"}
-    words |= {"string": "text for a folder, without braces, * and ?", "null": "or null"}
+    folder = "text for a folder, without braces, * and ?"
+    words |= {"string": folder if "pattern" in rule else "text", "null": "or null"}
     limits = {"minimum": ">=", "exclusiveMinimum": ">", "maximum": "<="}
     ranges = [f"{sign} {rule[key]:g}" for key, sign in limits.items() if key in rule]
     if rule.get("multipleOf") == 2:
