@@ -5,6 +5,12 @@
 #   batches of a sweep --> collect --> results/{transverse,bore,continuous_bore}.nc
 #   datasets --> draw_figure --> results/figures/fig{1..6}_*.{png,pdf}
 #
+# Two studies compare methods: snakemake accuracy, snakemake stability.
+#
+#   methods, points --> pieces --> solve_batch --+--> results/batches/{accuracy,stability}*/*.json
+#                                                +--> results/{points,trials,probes,scaling}
+#   pieces of a study --> collect_study --> results/{accuracy_cost,stability}.nc --> draw_figure
+#
 # Batches are named by the hashes of their points, points by what they depend on: the physics, the
 # tolerance and the solver's sources. So what is there is never stale, and never computed twice.
 
@@ -28,4 +34,16 @@ rule all:
     default_target: True
     input:
         expand(f"{RESULTS}/{{sweep}}.nc", sweep=CONFIGURATION.sweeps),
-        expand(f"{RESULTS}/figures/{{figure}}.{{format}}", figure=FIGURES, format=["png", "pdf"]),
+        figures_of(CONFIGURATION.sweeps),
+
+
+rule accuracy:
+    input:
+        f"{RESULTS}/accuracy_cost.nc",
+        figures_of(["accuracy_cost"]),
+
+
+rule stability:
+    input:
+        f"{RESULTS}/stability.nc",
+        figures_of(["stability"]),

@@ -19,7 +19,7 @@ os.environ.update(
 )
 
 from microslip import config as microslip_config
-from microslip import keys, plot, sweep
+from microslip import keys, plot, studies, sweep
 
 try:
     files = [os.path.relpath(file) for file in workflow.configfiles]
@@ -45,11 +45,33 @@ for name, grid in CONFIGURATION.sweeps.items():
     histories = sweep.history_requests(CONFIGURATION, name)
     BATCHES[f"{name}_histories"] = sweep.batches(histories, size, DIGEST)
 
-# The figures that the configured sweeps have data for, each with the name of its dataset.
-FIGURES = {figure: name for figure, (name,) in plot.FIGURES.items() if name in CONFIGURATION.sweeps}
+# The studies by the names of their datasets. They cut their requests themselves; what takes long
+# starts first, in jobs of its own.
+STUDIES = {dataset: study for study, dataset in studies.DATASETS.items()}
+for study in STUDIES.values():
+    for group, cuts in zip((f"{study}_first", study), studies.pieces(study, CONFIGURATION)):
+        batches = (sweep.batches(cut, len(cut), DIGEST) for cut in cuts)
+        BATCHES[group] = {name: cut for batch in batches for name, cut in batch.items()}
+
+# The figures that there is data for, each with the name of its dataset.
+FIGURES = {
+    figure: name
+    for figure, (name,) in plot.FIGURES.items()
+    if name in CONFIGURATION.sweeps or name in STUDIES
+}
 for figure in ("fig2_transverse_map", "fig6_bore_map"):
     if figure in FIGURES and not CONFIGURATION.sweeps[FIGURES[figure]].spans_a_map:
         del FIGURES[figure]
+
+
+def figures_of(datasets):
+    """Files of all figures that are drawn from these datasets."""
+    return [
+        f"{RESULTS}/figures/{figure}.{form}"
+        for figure, name in FIGURES.items()
+        if name in datasets
+        for form in ("png", "pdf")
+    ]
 
 
 def batches_of(name):
@@ -61,8 +83,20 @@ def batches_of(name):
     ]
 
 
+def batches_of_study(dataset):
+    """Index files of all that a study asks for; dataset: its name."""
+    study = STUDIES[dataset]
+    return [
+        f"{RESULTS}/batches/{group}/{batch}.json"
+        for group in (f"{study}_first", study)
+        for batch in BATCHES[group]
+    ]
+
+
 wildcard_constraints:
     sweep="|".join(CONFIGURATION.sweeps),
+    dataset="|".join(STUDIES),
     group="|".join(BATCHES),
+    early="|".join(f"{study}_first" for study in STUDIES.values()),
     batch="[0-9a-f]+",
     figure="|".join(FIGURES),

@@ -24,6 +24,8 @@ rule solve_batch:
         f"{RESULTS}/batches/{{group}}/{{batch}}.json",
     log:
         f"{RESULTS}/logs/solve_batch/{{group}}/{{batch}}.log",
+    wildcard_constraints:
+        group="|".join(group for group in BATCHES if not group.endswith("_first")),
     conda:
         "../envs/microslip.yaml"
     resources:
@@ -35,3 +37,15 @@ rule solve_batch:
         store=lambda wildcards, output: str(Path(output[0]).parents[2]),
     script:
         "../scripts/solve_batch.py"
+
+
+# The same for what takes long, so that it does not start when all else is done.
+use rule solve_batch as solve_early_batch with:
+    output:
+        f"{RESULTS}/batches/{{early}}/{{batch}}.json",
+    log:
+        f"{RESULTS}/logs/solve_batch/{{early}}/{{batch}}.log",
+    priority: 10
+    params:
+        requests=lambda wildcards: keys.canonical_json(BATCHES[wildcards.early][wildcards.batch]),
+        store=lambda wildcards, output: str(Path(output[0]).parents[2]),

@@ -1,8 +1,9 @@
-"""Answer a batch of requests: points of a sweep, or single runs for a figure.
+"""Answer a batch of requests: points of a sweep, single runs for a figure, or part of a study.
 
 Output: JSON with `keys`, the names of the results in the order of the requests, and
 `not_converged`, a count. The results themselves are files of their own under the store's folders
-points and histories; all numbers in them are dimensionless.
+points, histories, trials, probes and scaling; all numbers in them are dimensionless, but for the
+times (s) and sizes of memory (byte) of trials and scaling.
 """
 
 import json
@@ -16,7 +17,7 @@ with job_log(snakemake.log[0]) as log:
     index, done = sweep.run_batch(
         json.loads(snakemake.params.requests),
         Store(snakemake.params.store),
-        lambda requests: progress(requests, snakemake.wildcards.group),
+        lambda requests: progress(requests, snakemake.wildcards[0]),
     )
     write_atomically(snakemake.output[0], canonical_json(index).encode())
     log.info("%(points)d points, %(computed)d computed in %(solver_seconds).2f s", done)

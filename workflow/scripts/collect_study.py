@@ -1,0 +1,23 @@
+"""Assemble the dataset of one study from the store.
+
+Output: netCDF-4, CF conventions, all quantities dimensionless but for seconds and bytes.
+  accuracy_cost.nc  dims trial, point, scaling_model, scaling_size, map_tolerance, and the axes of
+                    the maps
+  stability.nc      dims (method, case), axis
+"""
+
+import logging
+
+from microslip import config, dataset, studies, sweep
+from microslip.cache import Store
+from microslip.jobs import job_log
+
+study = snakemake.params.study
+
+with job_log(snakemake.log[0], shown=logging.INFO) as log:
+    configuration = config.from_mapping(snakemake.config)
+    store = Store(snakemake.params.store)
+    data = studies.build(study, configuration, lambda request: sweep.answer(request, store)[0])
+    dataset.write(data, snakemake.output[0])
+    for line in studies.report(study, data):
+        log.info(line)
