@@ -71,6 +71,7 @@ def accuracy_result(request):
         return found | {
             "seconds": 9.0,
             "work": 9,
+            "effort": 900,
             "steps_per_period": 64 if request["amplitude"] else 0,
             "converged": True,
         }

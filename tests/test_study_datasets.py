@@ -65,6 +65,7 @@ def test_the_choice_that_follows_a_tolerance_claims_an_error(accuracy):
     assert auto.claimed_error.values == pytest.approx([6e-3, 6e-4, 6e-5])
     assert auto.error.values == pytest.approx([3e-3, 3e-4, 3e-5])
     assert (auto.trial_steps.values == 64).all()
+    assert (auto.work.values == 900).all()
 
 
 def test_what_does_not_apply_has_no_row_and_what_fails_has_no_number(accuracy):
