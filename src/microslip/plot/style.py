@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable
 from contextlib import AbstractContextManager
 
 import matplotlib.style
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -14,7 +17,7 @@ SINGLE, DOUBLE = 3.39, 7.09
 # Okabe and Ito's colours, which all common kinds of colour vision tell apart.
 BLACK, BLUE, VERMILLION = "#000000", "#0072B2", "#D55E00"
 GREEN, ORANGE, PURPLE = "#009E73", "#E69F00", "#CC79A7"
-GREY, PALE = "#6E6E6E", "#D4D4D4"
+GREY, PALE, SKY = "#6E6E6E", "#D4D4D4", "#56B4E9"
 
 #: Perceptually even and readable in grey and by colour-blind readers.
 COLOURMAP = "cividis"
@@ -34,6 +37,20 @@ COMPUTED = {
     "markeredgewidth": 0.7,
     "zorder": 5,
 }
+
+#: The contact models, coarsest first: colour, marker, and two letters where a word has no room.
+MODELS = {
+    "rigid": (BLACK, "h", "Ri"),
+    "slider": (ORANGE, "<", "Sl"),
+    "dahl": (PURPLE, ">", "Da"),
+    "mdr": (SKY, "^", "Md"),
+    "radial": (GREEN, "v", "Ra"),
+    "polar": (BLUE, "o", "Po"),
+    "cartesian": (VERMILLION, "s", "Ca"),
+}
+
+#: Characters that are smaller than this in print are hard to read.
+SMALLEST = 7.0
 
 RC = {
     "figure.dpi": 200,  # the layout is solved for the PNG that is written
@@ -93,19 +110,63 @@ def number(value: float) -> str:
     return power if mantissa == "1" else rf"{mantissa}\times {power}"
 
 
+def model(name: str) -> tuple[str, str, str]:
+    """Colour, marker and two letters of a contact model; grey for one that has no own look."""
+    return MODELS.get(name, (GREY, "p", name[:2].capitalize()))
+
+
+def in_order(names: set[str]) -> list[str]:
+    """Names of contact models, coarsest first; those without a look of their own come last."""
+    return [name for name in MODELS if name in names] + sorted(names - MODELS.keys())
+
+
+def wrapped(text: str, width: float, size: float, weight: str = "normal") -> str:
+    """The text with line breaks such that no line is wider than `width` inches, if words allow.
+
+    Breaks are made at spaces outside mathtext.
+    """
+    measure = measurer(size, weight)
+    lines: list[str] = []
+    for word in re.findall(r"(?:\$[^$]*\$|\S)+", text):
+        if lines and measure(f"{lines[-1]} {word}") <= width:
+            lines[-1] += f" {word}"
+        else:
+            lines.append(word)
+    return "\n".join(lines)
+
+
+def measurer(size: float, weight: str = "normal") -> Callable[[str], float]:
+    """A function that tells the width in inches of a text set in that size."""
+    figure = Figure()
+
+    def measure(text: str) -> float:
+        probe = figure.text(0.0, 0.0, text, fontsize=size, fontweight=weight)
+        width = probe.get_window_extent().width / figure.dpi
+        probe.remove()
+        return width
+
+    return measure
+
+
+def power_of_ten(value: float) -> str:
+    """A tolerance for a label, inside mathtext: 10^{-3} rather than 0.001."""
+    power = np.log10(value) if value > 0 else np.nan
+    return f"10^{{{power:.0f}}}" if np.isclose(power, np.round(power)) else number(value)
+
+
 def letter(axes: Axes, which: str, note: str = "") -> None:
     """Head a panel with its letter and an optional note, above its left corner."""
     axes.set_title(_heading(which, note), loc="left", pad=5)
 
 
-def legend_above(axes: Axes, which: str, note: str) -> None:
+def legend_above(axes: Axes, which: str, note: str, ncols: int = 2) -> None:
     """Head a panel with its letter, a note and its legend, where it can hide nothing."""
     legend = axes.legend(
         title=_heading(which, note),
         alignment="left",
         loc="lower left",
         bbox_to_anchor=(0.0, 1.0),
-        ncols=2,
+        ncols=ncols,
         handlelength=2.3,
         columnspacing=1.0,
         borderaxespad=0.0,

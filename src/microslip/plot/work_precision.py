@@ -1,0 +1,276 @@
+"""Accuracy against cost: the error of every trial over its time, or over its work.
+
+One panel a point. All panels share their axes, so further down and to the left is better in every
+one. What has no place on the axes is drawn in strips along them, never left out: errors too small
+to judge at the bottom, trials without a result at the top, costs of zero at the left.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.legend import Legend
+from matplotlib.lines import Line2D
+from matplotlib.markers import CARETDOWN, CARETLEFT
+from matplotlib.patches import Patch
+from matplotlib.transforms import Bbox
+
+from microslip.plot import style as look
+from microslip.plot.data import require
+from microslip.plot.maps import MAPS
+from microslip.plot.panels import COLUMNS, PANEL, TITLE, Scale, grid, label_beside, share_axes
+
+#: What each figure has along x: the variable, the front in it, the label.
+COSTS = {
+    "accuracy_vs_cost": ("seconds", "front_seconds", "CPU time of a run (s)"),
+    "accuracy_vs_work": ("work", "front_work", r"work: iterations $\times$ unknowns"),
+}
+POINT = ("point", "point_title", "point_scene", "point_velocity", "point_amplitude")
+POINT += ("point_poisson", "reference_error")
+TRIAL = ("trial_point", "trial_model", "trial_method", "trial_level", "trial_tolerance")
+TRIAL += ("error", "converged")
+
+#: Errors so many times smaller than what is known of any reference are drawn in the strip.
+BELOW_REFERENCE = 3.0
+#: The largest error over the smallest that has a place above the strip.
+MOST = 1e6
+#: Symbols of velocity and amplitude in each scene.
+SYMBOLS = {
+    scene: (MAPS[plan].velocity_symbol, MAPS[plan].amplitude_symbol)
+    for scene, plan in (("transverse", "fig2_transverse_map"), ("bore", "fig6_bore_map"))
+} | {"continuous-bore": (r"\tilde{v}", "")}
+
+FRONT = {"color": "#EBD9A0", "linewidth": 5.0, "solid_capstyle": "round", "zorder": 1}
+UNKNOWN = {"facecolor": "none", "edgecolor": "#A8A8A8", "linewidth": 0.0, "hatch": "/////"}
+SHIPPED = {"linewidth": 1.1, "markersize": 4.2, "markeredgewidth": 0.8, "zorder": 5}
+OTHER = {"color": "#9A9A9A", "linewidth": 0.5, "markersize": 3.0, "zorder": 3}
+OTHER |= {"markerfacecolor": "white", "markeredgewidth": 0.6}
+AUTO = {"color": look.BLACK, "marker": "D", "linewidth": 0.8, "markersize": 4.2, "zorder": 7}
+PAPER = {"color": look.BLACK, "marker": "*", "linestyle": "none", "markersize": 9.0, "zorder": 8}
+CROSS = {"color": look.BLACK, "marker": "x", "linestyle": "none", "markersize": 5.0}
+CROSS |= {"markeredgewidth": 0.7, "zorder": 9}
+ARROW = {"color": look.BLACK, "linestyle": "none", "markersize": 3.6, "zorder": 9}
+MARKS = 6  # lines in the legend of marks
+#: Open markers of the methods that do not ship, in the order in which the methods appear.
+MARKERS = ("o", "s", "^", "D", "v", "+", "<", "1", ">", "d", "|", "2")
+
+
+def draw(name: str, dataset: xr.Dataset) -> Figure:
+    """Draw the figure `name`: errors over seconds, or over work."""
+    cost, front, label = COSTS[name]
+    require(name, "accuracy_cost", dataset, (*POINT, *TRIAL, cost, front))
+    points = [dataset.isel(point=index) for index in range(dataset.sizes["point"])]
+    if not points or not dataset.sizes["trial"]:
+        raise ValueError(f"figure {name}: the dataset holds no points or no trials")
+    of_point = dataset["trial_point"].values.astype(str)
+    scales = _scale_of_costs(dataset[cost].values), _scale_of_errors(dataset)
+    methods = _other_methods(dataset)
+
+    letters = [chr(ord("a") + index % 26) for index in range(len(points))]
+    titles = [_title(which, point) for which, point in zip(letters, points, strict=True)]
+    models = set(dataset["trial_model"].values.astype(str)) - {"auto"}
+    breaks = sum(_broken(method).count("\n") for method in methods)
+    lines = [-(-len(methods) // columns) + breaks for columns in (1, _columns(models, methods))]
+    figure, panels, below = grid(titles, *(max(len(models), n, MARKS) for n in lines))
+    for index, (axes, point) in enumerate(zip(panels, points, strict=True)):
+        rows = dataset.isel(trial=of_point == str(point["point"].item()))
+        table = Table(rows, cost, *scales)
+        share_axes(axes, *scales)
+        _behind(axes, float(point["reference_error"]), table, rows[front].values != 0)
+        _trials(axes, table, methods)
+        _labels(axes, table)
+        lowest = index + COLUMNS >= len(points)
+        axes.tick_params(labelleft=index % COLUMNS == 0, labelbottom=lowest)
+        axes.set_xlabel(label if lowest else "")
+        axes.set_ylabel("" if index % COLUMNS else f"error of {look.MU_MACRO}")
+    _legends(below, models, methods)
+    return figure
+
+
+class Table:
+    """The trials of one point as arrays: where they are drawn, and what they are."""
+
+    def __init__(self, rows: xr.Dataset, cost: str, costs: Scale, errors: Scale) -> None:
+        order = np.lexsort((rows[cost].values, rows["trial_level"].values))
+        self.order = order
+        columns = ("trial_model", "trial_method")
+        self.model, self.method = (rows[name].values.astype(str)[order] for name in columns)
+        self.tolerance = rows["trial_tolerance"].values[order]
+        self.converged = rows["converged"].values[order] != 0
+        raw_cost, raw_error = (rows[name].values.astype(float)[order] for name in (cost, "error"))
+        self.finite = np.isfinite(raw_error)
+        self.x, self.y = costs.shown(raw_cost), errors.shown(raw_error)
+        self.left, self.low = raw_cost < costs.low, raw_error < errors.low
+        self.costs, self.errors = costs, errors
+        self.auto, self.paper = self.model == "auto", self.method == "paper"
+
+
+def _other_methods(dataset: xr.Dataset) -> dict[str, tuple[str, object]]:
+    """The methods that do not ship, each with its marker and line style."""
+    names = dict.fromkeys(dataset["trial_method"].values.astype(str))
+    styles = (look.SOLID, look.DASHED, look.DOTTED)
+    return {
+        name: (MARKERS[index % len(MARKERS)], styles[index // len(MARKERS) % len(styles)])
+        for index, name in enumerate(n for n in names if n not in ("shipped", "paper"))
+    }
+
+
+def _scale_of_costs(costs: np.ndarray) -> Scale:
+    """A scale that spans all costs above zero."""
+    costs = np.asarray(costs, dtype=float)
+    counted = costs[np.isfinite(costs) & (costs > 0)]
+    low, high = (counted.min(), counted.max()) if counted.size else (1.0, 10.0)
+    margin = max((high / low) ** 0.05, 1.2)
+    below, above = bool((costs <= 0).any()), not np.isfinite(costs).all()
+    return Scale.over(low / margin, high * margin, below, above)
+
+
+def _scale_of_errors(dataset: xr.Dataset) -> Scale:
+    """A scale from just below what can be judged to the largest error."""
+    errors, of_point = dataset["error"].values, dataset["trial_point"].values.astype(str)
+    counted = np.isfinite(errors) & (errors > 0)
+    lows = []
+    columns = (dataset[name].values for name in ("point", "reference_error"))
+    for point, known in zip(*columns, strict=True):
+        smallest = errors[counted & (of_point == str(point))].min(initial=np.inf) / 1.5
+        known = known / BELOW_REFERENCE if np.isfinite(known) else 0.0
+        lows.append(max(known, smallest) if np.isfinite(smallest) else known or np.inf)
+    high = 1.5 * errors[counted].max(initial=1e-3)
+    low = max(min(*lows, high / 100.0), high / MOST)
+    return Scale.over(low, high, bool((errors < low).any()), not np.isfinite(errors).all())
+
+
+def _title(which: str, point: xr.Dataset) -> str:
+    """The heading of a panel: its letter, the title of its point, and the point's numbers."""
+    scene = str(point["point_scene"].item())
+    symbols = (*SYMBOLS.get(scene, ("v", "A")), r"\nu")
+    values = (float(point[f"point_{n}"]) for n in ("velocity", "amplitude", "poisson"))
+    numbers = [
+        rf"${symbol} = {look.number(value)}$"
+        for symbol, value in zip(symbols, values, strict=True)
+        if symbol and np.isfinite(value)
+    ]
+    title = rf"$\bf{{{which}}}$  {point['point_title'].item()}"
+    return look.wrapped(title, PANEL[0], TITLE) + "\n" + ",  ".join(numbers)
+
+
+def _behind(axes: Axes, known: float, table: Table, front: np.ndarray) -> None:
+    """Draw what lies behind the trials: the reference's error, hatched, and the Pareto front."""
+    bottom, top = axes.get_ylim()
+    if known > bottom:  # what is not known at all is NaN
+        axes.axhspan(bottom, min(known, top), gid="reference", zorder=0.5, **UNKNOWN)
+    chosen = front[table.order]
+    x, y = table.x[chosen], table.y[chosen]
+    along = np.lexsort((-y, x))
+    axes.plot(x[along], y[along], drawstyle="steps-post", gid="front", **FRONT)
+
+
+def _trials(axes: Axes, table: Table, methods: dict[str, tuple[str, object]]) -> None:
+    """Draw every trial of a point: curves over the levels, one a model and method."""
+    for model, method in dict.fromkeys(zip(table.model, table.method, strict=True)):
+        mine = (table.model == model) & (table.method == method)
+        color, marker, _ = look.model(model)
+        if method == "paper":
+            ink = PAPER
+        elif model == "auto":
+            ink = AUTO
+        elif method == "shipped":
+            ink = SHIPPED | {"color": color, "marker": marker}
+        else:
+            marker, line = methods[method]
+            ink = OTHER | {"marker": marker, "linestyle": line, "markeredgecolor": color}
+        joined, failed = mine & table.finite, mine & ~(table.finite & table.converged)
+        axes.plot(table.x[joined], table.y[joined], gid=f"{model} {method}", **ink)
+        ink = ink | {"linestyle": "none", "markerfacecolor": "white"}
+        axes.plot(table.x[failed], table.y[failed], gid="hollow", **ink)
+    failed = ~(table.finite & table.converged)
+    axes.plot(table.x[failed], table.y[failed], gid="not converged", **CROSS)
+    left, bottom = table.costs.first, table.errors.first
+    for mine, gid, marker in ((table.low, "low", CARETDOWN), (table.left, "left", CARETLEFT)):
+        x = np.full(mine.sum(), left) if gid == "left" else table.x[mine]
+        y = np.full(mine.sum(), bottom) if gid == "low" else table.y[mine]
+        if mine.any():
+            axes.plot(x, y, marker=marker, gid=gid, clip_on=False, **ARROW)
+
+
+def _labels(axes: Axes, table: Table) -> None:
+    """Name the paper's run, and the tolerances where there is room."""
+    points = axes.transData.transform(np.column_stack((table.x, table.y)))
+    taken: list[Bbox] = []
+    for index in np.flatnonzero(table.paper):
+        label_beside(axes, "paper's run", points, index, taken, away=7.0, always=True)
+    for index in np.flatnonzero(table.auto):
+        text = f"${look.power_of_ten(table.tolerance[index])}$"
+        label_beside(axes, text, points, index, taken)
+
+
+def _broken(name: str) -> str:
+    """The name of a method, on lines of their own the numbers that it holds, if it is long."""
+    return name.replace(":", ":\n  ").replace(",", ",\n  ") if len(name) > 20 else name
+
+
+def _columns(models: set[str], methods: dict[str, tuple[str, object]]) -> int:
+    """So many columns of methods, on the full width, as make them no longer than the rest."""
+    return max(1, -(-len(methods) // max(len(models), MARKS)))
+
+
+def _legends(below: Axes, models: set[str], methods: dict[str, tuple[str, object]]) -> None:
+    """Three lists: the models, the other methods, and the marks."""
+    shipped = [
+        Line2D([], [], label=name, color=look.model(name)[0], marker=look.model(name)[1], **SHIPPED)
+        for name in look.in_order(models)
+    ]
+    others = [
+        Line2D(
+            [],
+            [],
+            label=_broken(name),
+            marker=marker,
+            linestyle=line,
+            markeredgecolor=look.GREY,
+            **OTHER,
+        )
+        for name, (marker, line) in methods.items()
+    ]
+    marks = [
+        Line2D([], [], label="Pareto front", **FRONT),
+        Line2D([], [], label="chosen by tolerance", **AUTO),
+        Line2D([], [], label="paper's run", **PAPER),
+        Line2D([], [], label="not converged, or none", **CROSS),
+        Line2D([], [], label="too small for the axis", marker=CARETDOWN, **ARROW),
+        Patch(label="within the reference's error", **UNKNOWN),
+    ]
+    lists = (
+        ("shipped method", shipped),
+        ("methods (outline: model)", others),
+        ("marks", marks),
+    )
+    wide = below.get_position().width > 0.8
+    columns = _columns(models, methods) if wide else 1
+    legends = [
+        Legend(
+            below,
+            handles,
+            [handle.get_label() for handle in handles],
+            title=title,
+            loc="upper left",
+            fontsize=look.SMALLEST,
+            title_fontsize=TITLE,
+            alignment="left",
+            borderaxespad=0.0,
+            borderpad=0.0,
+            handlelength=2.2,
+            columnspacing=1.2,
+            ncols=columns if handles is others else 1,
+        )
+        for title, handles in lists
+        if handles
+    ]
+    for legend in legends:
+        below.add_artist(legend)
+    widths = [legend.get_window_extent().width / below.bbox.width for legend in legends]
+    gap = min((1.0 - sum(widths)) / max(len(widths) - 1, 1), 0.1)
+    for index, legend in enumerate(legends):
+        legend.set_bbox_to_anchor((sum(widths[:index]) + gap * index, 1.0), below.transAxes)
