@@ -30,6 +30,11 @@ FIGURES: dict[str, tuple[str, ...]] = {
     "fig4_continuous_bore": ("continuous_bore",),
     "fig5_transients": ("continuous_bore",),
     "fig6_bore_map": ("bore",),
+    "accuracy_vs_cost": ("accuracy_cost",),
+    "accuracy_vs_work": ("accuracy_cost",),
+    "model_map": ("accuracy_cost",),
+    "scaling": ("accuracy_cost",),
+    "stability_atlas": ("stability",),
 }
 
 #: File formats `save` can write, with the metadata that would otherwise hold dates or versions.
@@ -45,6 +50,11 @@ _MODULES = {
     "fig4_continuous_bore": "steady",
     "fig5_transients": "transients",
     "fig6_bore_map": "maps",
+    "accuracy_vs_cost": "work_precision",
+    "accuracy_vs_work": "work_precision",
+    "model_map": "model_map",
+    "scaling": "scaling",
+    "stability_atlas": "atlas",
 }
 
 __all__ = ["FIGURES", "FORMATS", "draw", "save"]
