@@ -496,6 +496,17 @@ def test_the_papers_run_and_the_tolerances_are_named(datasets, figures):
     assert all(f"$10^{{-{k}}}$" in texts(axes) for k in (2, 3, 4))
 
 
+def test_names_of_tolerances_hide_no_trial(figures):
+    for name in FIGURES[:2]:
+        for axes in figures[name].axes[:11]:
+            lines = [line for line in axes.get_lines() if " " in (line.get_gid() or "")]
+            marks = np.concatenate([line.get_xydata() for line in lines])
+            pixels = axes.transData.transform(marks)
+            for label in artists(axes, "label"):
+                hidden = label.get_window_extent().count_contains(pixels)
+                assert hidden == 0 or label.get_text() == "paper's run"
+
+
 def test_the_legends_name_every_model_method_and_mark(datasets, figures):
     dataset = datasets["accuracy_cost"]
     for name in FIGURES[:2]:
