@@ -13,11 +13,13 @@ from microslip.cache import Store, write_atomically
 from microslip.jobs import job_log, progress
 from microslip.keys import canonical_json
 
+title = snakemake.wildcards[0]  # the group of the batch, whatever the rule calls it
+
 with job_log(snakemake.log[0]) as log:
     index, done = sweep.run_batch(
         json.loads(snakemake.params.requests),
         Store(snakemake.params.store),
-        lambda requests: progress(requests, snakemake.wildcards[0]),
+        lambda requests: progress(requests, title),
     )
     write_atomically(snakemake.output[0], canonical_json(index).encode())
     log.info("%(points)d points, %(computed)d computed in %(solver_seconds).2f s", done)
