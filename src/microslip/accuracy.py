@@ -17,6 +17,7 @@ one the base itself is refined.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 EXTRAPOLATION_SHARE = 0.6
@@ -40,7 +41,8 @@ class Axis:
     at; first: indices of the runs to start with, as many as the error is estimated from, at least
     three.
     regular: the error falls smoothly, with the second power of the levels, so that it can be
-    extrapolated; imposed: the last level is what was asked for, and its error is only reported.
+    extrapolated; imposed: the last level is what was asked for, and its error, the spread of the
+    last three again, is only reported.
     """
 
     name: str
@@ -85,7 +87,7 @@ class _Runs:
         self.done = {}
 
     def resolution(self, **indices):
-        """The base with some indices replaced, as a simulate.Resolution."""
+        """The base with some indices replaced, as a motion.Resolution."""
         at = self.base | indices
         levels = {name: self.axes[name].levels[index] for name, index in at.items()}
         return replace(self.coarsest, **levels)
@@ -135,8 +137,6 @@ class _Chain:
     def error(self, name):
         """Estimated error after the correction."""
         values, levels = self.values(name), self.levels
-        if self.axis.imposed:
-            return abs(values[-1] - values[-2])
         if not self.axis.regular:
             last = values[-len(self.axis.first) :]
             return max(last) - min(last)
@@ -164,11 +164,12 @@ def _mixed(runs, chains, name):
     return both - one - other + base
 
 
-def certify(run, coarsest, axes, tolerance):
+def certify(run, coarsest, axes, tolerance, most_work=math.inf):
     """Refine until the estimated error is within ``tolerance``.
 
     run(resolution, guess) -> simulate.Run (guess: the run at the base, or None); coarsest:
-    simulate.Resolution, for what is not refined; axes: the Axis to be refined.
+    motion.Resolution, for what is not refined; axes: the Axis to be refined; most_work: of all
+    runs together (see simulate.Run), beyond which nothing is refined any more.
     Returns a Certified; converged is False, with the reason, where a run did not converge or the
     estimate over a free axis stays too large.
     """
@@ -184,6 +185,9 @@ def certify(run, coarsest, axes, tolerance):
         errors = _errors(runs, chains, hidden, tolerance)
         reason = next((r.reason for r in runs.done.values() if not r.converged), "")
         if reason or sum(errors.values()) <= tolerance:
+            break
+        if sum(r.work for r in runs.done.values()) > most_work:
+            reason = f"the budget of work is spent, the error still {sum(errors.values()):.1e}"
             break
         worst = max(left, key=left.get, default=None)
         cause = max(hidden, key=hidden.get)

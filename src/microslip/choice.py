@@ -92,7 +92,7 @@ def plan(scene, name, velocity, amplitude, poisson, tolerance, cells=None, steps
 
 def _cells(scene, name, velocity, amplitude, poisson, imposed):
     if imposed is not None:
-        return Axis("cells", (imposed // 2, imposed), 1, (0, 1), imposed=True)
+        return _imposed("cells", imposed)
     if name == "cartesian":  # doubled, since cells come and go at the edge
         return Axis("cells", SQUARES, 1, (0, 1, 2), regular=True)
     base = RINGS.index(BASE_RINGS)
@@ -109,9 +109,15 @@ def _cells(scene, name, velocity, amplitude, poisson, imposed):
     return Axis("cells", RINGS, base, (last - 2, last - 1, last), regular=True)
 
 
+def _imposed(name, count):
+    """An axis whose resolution is asked for; two coarser ones show what it is worth."""
+    levels = (count // 2, round(0.75 * count), count)
+    return Axis(name, levels, 2, (0, 1, 2), imposed=True)
+
+
 def _steps(scene, amplitude, poisson, tolerance, imposed):
     if imposed is not None:
-        return Axis("steps", (max(imposed // 4, 2), imposed // 2), 1, (0, 1), imposed=True)
+        return _imposed("steps", imposed // 2)
     # second order in time, and steps that stay short against u_lim where the stroke is long
     stroke = min(max(1.0, scene.stroke(amplitude, poisson)), LONGEST_STROKE)
     levels = tuple(2 * round(0.5 * count * stroke**0.5) for count in STEPS)

@@ -75,6 +75,7 @@ def solve(
     cells=None,
     steps=None,
     method=SHIPPED,
+    most_work=math.inf,
     progress=None,
 ):
     """Macroscopic friction of a vibrated contact at one point.
@@ -83,14 +84,17 @@ def solve(
     groups (amplitude: None for continuous-bore; velocity 0: the limit v -> 0); poisson: nu;
     model: "auto" or a name in models.MODELS; tolerance: absolute, on mu_macro; cells, steps (in a
     full period): impose a resolution instead of letting the tolerance choose; method: one of
-    methods.names(), to be compared with what ships; progress: called with the Resolution of every
-    run before it starts.
+    methods.names(), to be compared with what ships; most_work: step solves x unknowns, over all
+    runs, beyond which a point is given up; progress: called with the Resolution of every run before
+    it starts.
     Returns a Result; ``converged`` is False, with the reason, where the tolerance was not met.
     Raises ValueError, naming the argument, for input out of range or a model that does not apply.
     """
     kind, velocity, amplitude, poisson = checked_point(scene, velocity, amplitude, poisson)
     tolerance = _number("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
     cells, steps = _count("cells", cells, 4), _count("steps", steps, 8)
+    if not most_work > 0.0:
+        raise ValueError(f"most_work = {most_work!r}: allowed is a number above 0")
     name, how = choose_model(kind, poisson, model), method_named(method)
     started = time.perf_counter()
     point = {
@@ -120,7 +124,7 @@ def solve(
             return simulate_static(kind, amplitude, poisson, name, resolution, share, how)
         return simulate(kind, velocity, amplitude, poisson, name, resolution, share, guess, how)
 
-    certified = certify(run, coarsest, axes, tolerance)
+    certified = certify(run, coarsest, axes, tolerance, most_work)
     steady = not kind.periodic
     within = certified.error <= tolerance or imposed
     reason = certified.reason
@@ -182,7 +186,7 @@ def _count(name, value, low):
         raise ValueError(f"{name} = {value!r}: allowed is a whole number of at least {low}")
     if value % 2:
         raise ValueError(
-            f"{name} = {value!r}: allowed is an even number (half of it is run beside)"
+            f"{name} = {value!r}: allowed is an even number (half of it is run, too)"
         )
     return int(value)
 

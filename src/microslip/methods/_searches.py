@@ -1,11 +1,20 @@
 """Searches for the periodic state that people write first; see cycle.Cycle for what they act on.
 
-All start from full forward slip and return a cycle.PeriodicState.
+All return a cycle.PeriodicState.
 """
 
 from __future__ import annotations
 
+from microslip import anderson
 from microslip.anderson import DEPTH, Anderson
+
+
+def accelerated(cycle, start, tolerance, step_tolerance, max_periods, inverse=None):
+    """Anderson acceleration, whether or not marches give a derivative.
+
+    Newton's method has nothing to invert where the map keeps what rings in it for ever.
+    """
+    return anderson.search(cycle, start, tolerance, step_tolerance, max_periods)
 
 
 def march(cycle, start, tolerance, step_tolerance, max_periods, inverse=None):

@@ -7,6 +7,9 @@ leave the friction bound and the error of one step comes back in the next with t
 from __future__ import annotations
 
 from microslip.method import Method
+from microslip.methods import _searches
 from microslip.path import theta_method
 
-METHOD = Method("implicit midpoint rule, undamped", integrator=theta_method(0.5))
+METHOD = Method(
+    "implicit midpoint rule, undamped", integrator=theta_method(0.5), search=_searches.accelerated
+)
