@@ -18,10 +18,10 @@ from . import requests
 class Axis:
     """What is varied.
 
-    label: what it is, for axes of figures (mathtext allowed); note: what is held; cases: pairs of
-    the value and what it replaces in the request: scene, velocity, amplitude, poisson, cells or
-    steps; parameters: by method, the name of the number that takes the value; an axis that has
-    them asks only these methods, and the shipped one to compare with.
+    label: what it is, for axes of figures (mathtext allowed, without blanks in it); note: what is
+    held; cases: pairs of the value and what it sets in the request: scene, velocity, amplitude,
+    poisson, cells or steps; parameters: by method, the name of the number that takes the value; an
+    axis that has them asks only these methods, and the shipped one to compare with.
     """
 
     name: str
@@ -52,19 +52,19 @@ AXES = (
     ),
     Axis(
         "slow-transverse",
-        r"velocity $v_0/(\omega u_\mathrm{lim})$",
+        r"velocity $v_0/(\omega{}u_\mathrm{lim})$",
         "transverse, A 0.5",
         _varied("velocity", _SLOW, scene="transverse", amplitude=0.5),
     ),
     Axis(
         "slow-bore",
-        r"velocity $v_0/(\Omega\varphi_0 a)$",
+        r"velocity $v_0/(\Omega\varphi_0{}a)$",
         "bore, A 1",
         _varied("velocity", _SLOW_BORE, scene="bore", amplitude=1.0),
     ),
     Axis(
         "critical-amplitude",
-        r"amplitude $y_0/u_\mathrm{lim}$ around 1, where the stick zone vanishes",
+        r"amplitude $y_0/u_\mathrm{lim}$ around the critical one",
         "transverse, v 0.01",
         _varied("amplitude", _AROUND_ONE, scene="transverse", velocity=0.01),
     ),
@@ -89,33 +89,33 @@ AXES = (
     # The outermost cells get ever smaller, and the bound of friction goes to 0 there.
     Axis(
         "edge",
-        "rings, ever smaller at the edge",
+        "rings: small at the edge",
         "transverse, v 0.01, A 0.5",
         _varied("cells", (8, 16, 32, 64, 128), scene="transverse", velocity=0.01, amplitude=0.5),
     ),
     # The innermost cells of a polar grid get ever more slender.
     Axis(
         "centre",
-        "rings, ever more slender cells at the centre",
+        "rings: slender cells at the centre",
         "bore, v 0.1, A 1",
         _varied("cells", (4, 8, 12, 16, 24), **_BORE),
     ),
     # Up to 1 the instantaneous centre lies inside the contact: the slip has no direction there.
     Axis(
         "rotation-centre",
-        "velocity; up to 1 the centre of rotation is inside",
-        "bore, A 5",
+        "velocity: where the centre of rotation lies",
+        "bore, A 5; inside the contact up to 1",
         _varied("velocity", (0.05, 0.2, 0.5, 0.8, 1.0, 1.2, 2.0), scene="bore", amplitude=5.0),
     ),
     Axis(
         "reversal",
-        "amplitude of a lateral zigzag, which turns abruptly",
-        "zigzag, v 0.1",
+        "amplitude of a zigzag",
+        "lateral speed constant but for its sign, v 0.1",
         _varied("amplitude", (0.5, 1.0, 2.0, 5.0, 20.0, 100.0), scene="zigzag", velocity=0.1),
     ),
     Axis(
         "penalty",
-        "penalty, over the shipped one",
+        "penalty",
         "transverse, v 0.1, A 1",
         _varied(None, (0.01, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0), **_BASE),
         parameters=(("admm", "penalty"),),
