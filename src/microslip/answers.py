@@ -135,7 +135,8 @@ def _of_single_run(request):
 
 def _solved(request, **settings):
     place = _place(request)
-    settings |= {name: request[name] for name in ("cells", "steps") if name in request}
+    names = ("cells", "steps", "most_work")
+    settings |= {name: request[name] for name in names if name in request}
     result = microslip.solve(
         place.pop("scene"),
         place.pop("velocity"),

@@ -185,9 +185,7 @@ def _count(name, value, low):
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < low:
         raise ValueError(f"{name} = {value!r}: allowed is a whole number of at least {low}")
     if value % 2:
-        raise ValueError(
-            f"{name} = {value!r}: allowed is an even number (half of it is run, too)"
-        )
+        raise ValueError(f"{name} = {value!r}: allowed is an even number (half of it is run, too)")
     return int(value)
 
 

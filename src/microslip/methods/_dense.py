@@ -69,7 +69,10 @@ class DenseContact:
 
     def _solved(self, b, q, slip, tolerance):
         point = (self.matrix, self.scale, self.flat_bound, self.flat_weight, b, q, slip)
-        count, residual = self.solve(*point, tolerance, self.settings)
+        try:
+            count, residual = self.solve(*point, tolerance, self.settings)
+        except np.linalg.LinAlgError as error:
+            raise StepFailure(f"diverged: {error}") from error
         if not residual <= tolerance:  # NaN is not, either
             far = not residual <= FAR_FROM_SOLVED
             raise StepFailure(

@@ -12,6 +12,8 @@ from .ladders import exact_model
 
 RINGS_TOLERANCE, TOLERANCE = 1e-6, 3e-5
 """Of references: with rings alone, which are cheap, and with angular points."""
+MOST_WORK = 5_000_000
+"""Step solves x unknowns that a probe may take: several times what the shipped method needs."""
 
 
 def of_point(point):
@@ -45,9 +47,11 @@ def choice(point, tolerance, repeats):
 
 
 def probe(point, method, tolerance, cells=None, steps=None):
-    """One solve with another method; cells, steps: imposed resolution, None: by the tolerance."""
+    """One solve with another method, on a budget; cells, steps: imposed resolution, None: by the
+    tolerance."""
     kind = {"kind": "probe", "method": method, "model": "auto", "tolerance": number(tolerance)}
-    return of_point(point) | kind | {"cells": cells, "steps": steps}
+    budget = {"most_work": MOST_WORK}
+    return of_point(point) | kind | {"cells": cells, "steps": steps} | budget
 
 
 def reference(point, tolerance=None):
