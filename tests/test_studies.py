@@ -18,6 +18,7 @@ from microslip.choice import choose_model
 from microslip.models import MODELS
 from microslip.scenes import SCENES
 from microslip.studies import accuracy_cost, fronts, ladders, stability
+from microslip.studies import requests as study_requests
 
 # Ladders: what is run where
 
@@ -357,6 +358,7 @@ def test_probes_hand_on_the_method_and_the_resolution(monkeypatch):
         "tolerance": 1e-3,
         "cells": None,
         "steps": 32,
+        "most_work": study_requests.MOST_WORK,
     }
     assert result == {"applies": True, "mu_macro": None}
 
