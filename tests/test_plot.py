@@ -15,7 +15,6 @@ from matplotlib.text import Text
 
 from microslip import plot, theory
 
-
 #: The paper's figures; those of the studies have tests of their own.
 PAPERS = [name for name in plot.FIGURES if name.startswith("fig")]
 

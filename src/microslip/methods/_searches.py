@@ -8,6 +8,9 @@ from __future__ import annotations
 from microslip import anderson
 from microslip.anderson import DEPTH, Anderson
 
+SLOWEST = 1.0 - 1e-6
+"""Largest ratio of two changes that is believed: rounding alone makes it 1."""
+
 
 def accelerated(cycle, start, tolerance, step_tolerance, max_periods, inverse=None):
     """Anderson acceleration, whether or not marches give a derivative.
@@ -22,15 +25,12 @@ def march(cycle, start, tolerance, step_tolerance, max_periods, inverse=None):
 
     What is left is the geometric tail of the changes, in the ratio of the last two.
     """
-    state, last = start, None
+    state, last, distance = start, None, float("inf")
     for _ in range(max_periods):
         lap = cycle(state, step_tolerance)
-        left = float("inf")
-        if last is not None and lap.residual < last:
-            left = lap.residual / (1.0 - lap.residual / last)
-        if last == 0.0:
-            left = 0.0
-        distance = max(left, cycle.distance(lap, lap.image))
+        if last is not None:
+            ratio = min(lap.residual / last, SLOWEST) if last > 0.0 else 0.0
+            distance = max(lap.residual / (1.0 - ratio), cycle.distance(lap, lap.image))
         if distance <= tolerance:
             break
         state, last = lap.image, lap.residual

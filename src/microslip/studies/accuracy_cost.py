@@ -5,8 +5,8 @@ every other method climbs that of the model that model auto would take. Beside t
 tolerance-driven choice of `solve` and a reference. A map of two scenes asks which model is the
 cheapest that is good enough, and a series of sizes what a step costs.
 
-Requests come in pieces that one job can answer, cut so that another method or another point in
-the configuration adds pieces and changes none.
+Requests come in pieces that one job can answer, large enough that the start of a job is a small
+part of it, and cut so that another method in the configuration adds pieces and changes none.
 """
 
 from itertools import groupby
@@ -19,6 +19,8 @@ from .ladders import ladder, models_for
 CHOICE_TOLERANCES = (1e-2, 1e-3, 1e-4)
 MAP_SCENES = ("transverse", "bore")
 MAP_LEVELS, MAP_REPEATS = 5, 3
+MAP_SQUARES = 16
+"""Along a side: these already cost more than rings that are far better; larger ones never win."""
 TRUTH_SHARE = 0.1
 """Tolerance of what a map compares with, over the tightest tolerance that the map asks about."""
 
@@ -29,8 +31,9 @@ SCALING_SIZES = {
 }
 """(cells, angles) by model; as many of them are run as there are levels of ladders."""
 SCALING_STEPS = 16
-LARGE = 64
-"""Squares along a side from which on a run takes as long as all coarser ones, or longer."""
+LARGE, LONE_SIZES = 64, 4
+"""Squares along a side from which on a run takes as long as all coarser ones, or longer; and how
+many of the sizes one job can measure together."""
 
 
 def trials(study, point):
@@ -71,6 +74,7 @@ def map_trials(study, point):
         requests.trial(point, model, SHIPPED, level, tolerance, repeats)
         for model in models_for(SHIPPED, point.scene, point.poisson)
         for _, level, tolerance in ladder(model, SHIPPED, min(study.levels, MAP_LEVELS))
+        if model != "cartesian" or level.cells <= MAP_SQUARES
     ]
 
 
@@ -87,21 +91,32 @@ def scaling(study, model):
 
 def pieces(study):
     """What one job each answers: two lists of lists of requests, those that take long first."""
-    long = [[request] for request in map(truth, study.points.values()) if request is not None]
-    long += [[request] for model in SCALING_SIZES for request in reversed(scaling(study, model))]
-    short = []
-    for point in study.points.values():
-        by_method = {}
+    points = list(study.points.values())
+    long = [[request] for request in map(truth, points) if request is not None]
+    for model in SCALING_SIZES:
+        sizes = scaling(study, model)
+        long += [[request] for request in reversed(sizes[LONE_SIZES:])] + [sizes[:LONE_SIZES]]
+    shipped, others = [], {}
+    for point in points:
+        asked = {True: [], False: []}
         for _, request in trials(study, point):
-            if request.get("model") == "cartesian" and request["cells"] >= LARGE:
-                long.append([request])
+            if request.get("method", SHIPPED) == SHIPPED:
+                asked[_takes_long(request)].append(request)
             else:
-                by_method.setdefault(request.get("method", SHIPPED), []).append(request)
-        short += by_method.values()
-    for scene in MAP_SCENES:
-        rows = groupby(map_points(study, scene), key=lambda point: point.amplitude)
-        short += [_map_row(study, points) for _, points in rows]
-    return long, short
+                others.setdefault(request["method"], []).append(request)
+        long.append(asked[True])
+        shipped.append(asked[False])
+    rows = [
+        _map_row(study, list(row))
+        for scene in MAP_SCENES
+        for _, row in groupby(map_points(study, scene), key=lambda point: point.amplitude)
+    ]
+    short = [*shipped, *others.values(), *rows]
+    return [piece for piece in long if piece], [piece for piece in short if piece]
+
+
+def _takes_long(request):
+    return request.get("model") == "cartesian" and request.get("cells", 0) >= LARGE
 
 
 def _map_row(study, points):

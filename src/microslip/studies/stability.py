@@ -136,6 +136,8 @@ AXES = (
     ),
 )
 """All blocks of the atlas, in the order in which it shows them."""
+BLOCKS_TOGETHER = 5
+"""Blocks that one job sends a method to."""
 
 
 def axes(study):
@@ -167,14 +169,18 @@ def reference(overrides):
 
 def pieces(study):
     """What one job each answers: two lists of lists of requests, those that take long first."""
-    asked = cases(study)
-    long = {canonical_json(r): [r] for r in (reference(overrides) for _, _, overrides in asked)}
-    short = []
+    asked = [list(block) for _, block in groupby(cases(study), key=lambda case: case[0].name)]
+    known, long, short = set(), [], []
+    for block in asked:
+        found = {canonical_json(r): r for r in (reference(case[2]) for case in block)}
+        long.append([r for text, r in found.items() if text not in known])
+        known |= found.keys()
     for method in study.methods:
-        for _, block in groupby(asked, key=lambda case: case[0].name):
-            found = [probe(study, method, *case) for case in block]
+        for at in range(0, len(asked), BLOCKS_TOGETHER):
+            some = [case for block in asked[at : at + BLOCKS_TOGETHER] for case in block]
+            found = [probe(study, method, *case) for case in some]
             short.append([request for request in found if request is not None])
-    return list(long.values()), [piece for piece in short if piece]
+    return [piece for piece in long if piece], [piece for piece in short if piece]
 
 
 def _point(overrides):

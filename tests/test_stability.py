@@ -1,0 +1,253 @@
+"""How methods fail, by name: each failure in a method that has it, its absence in what ships."""
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip import hertz
+from microslip.cycle import Cycle
+from microslip.methods import _searches, method_named
+from microslip.models.contact import FORWARD, StepFailure, energy_norm, forward_slip
+from microslip.models.radial import RadialContact
+from microslip.models.slider import slider_contact
+from microslip.motion import Motion, Resolution, build_contact
+from microslip.path import SDIRK2, make_path
+from microslip.periodic import find_periodic_state
+from microslip.scenes import BORE, TRANSVERSE
+from microslip.static import static_state
+
+MIDPOINT = method_named("midpoint").integrator
+
+
+def straight(distance, steps, integrator=SDIRK2):
+    """A push forward, in equal steps."""
+
+    def displacement(phase):
+        return distance * phase, np.zeros_like(phase), np.zeros_like(phase)
+
+    return make_path(displacement, np.linspace(0.0, 1.0, steps + 1), integrator)
+
+
+# Ringing
+
+
+def pushed(integrator):
+    """Friction of the elastic slider, which yields at 1, pushed by 0.3 in each of 20 steps."""
+    contact = slider_contact()
+    march = contact.march(straight(6.0, 20, integrator), np.zeros((2, 1, 1)), 1e-12)
+    return march.forces[:, FORWARD]
+
+
+def test_ringing_of_the_midpoint_rule():
+    """Slip at mid-step holds the middle at the bound, so the ends mirror each other there."""
+    force = pushed(MIDPOINT)
+    assert force[:4] == pytest.approx([0.0, 0.3, 0.6, 0.9])
+    assert force[4::2] == pytest.approx(1.1)
+    assert force[5::2] == pytest.approx(0.9)
+
+
+def test_no_ringing_in_the_shipped_integrator():
+    force = pushed(SDIRK2)
+    assert force[:4] == pytest.approx([0.0, 0.3, 0.6, 0.9])
+    assert force[4:] == pytest.approx(1.0, abs=1e-12)
+
+
+def test_theta_method_rings_and_forgets():
+    """Its end mirrors the start at the bound, shrunk by (1 - theta) / theta."""
+    theta = method_named("theta").integrator
+    force = pushed(theta)
+    ratio = (1.0 - theta.end) / theta.end
+    rings = np.diff(force[4:])
+    assert np.all(rings[1:] * rings[:-1] < 0.0)
+    assert rings[1:] / rings[:-1] == pytest.approx(-ratio)
+
+
+@pytest.mark.parametrize("model", ["radial", "polar", "cartesian"])
+def test_midpoint_tractions_leave_the_bound_and_shipped_ones_never_do(model):
+    motion = Motion(TRANSVERSE, 0.1, 1.0, 0.0)
+    contact = build_contact(motion, model, Resolution(8, 4, 16))
+    beyond = {}
+    for name in ("midpoint", "shipped"):
+        path = motion.path(contact, 16, method_named(name).integrator)
+        state = contact.march(path, forward_slip(contact), 1e-10).state
+        beyond[name] = np.max(np.hypot(*state) - contact.bound) / np.max(contact.bound)
+    assert beyond["midpoint"] > 1e-3
+    assert beyond["shipped"] <= 1e-12
+
+
+# Stagnation
+
+
+def iterations_a_step(method, cells):
+    motion = Motion(TRANSVERSE, 0.1, 0.5, 0.0)
+    contact = method_named(method).dressed(
+        build_contact(motion, "radial", Resolution(cells, 1, 16))
+    )
+    march = contact.march(motion.path(contact, 16), forward_slip(contact), 1e-6)
+    return march.iterations / march.solves
+
+
+def test_stagnation_of_the_projected_gradient():
+    """A step short enough to be safe for rough tractions is too short for smooth ones; the shipped
+    solver takes the smooth ones in one stride, whatever the number of rings."""
+    for cells in (8, 32):
+        slow, shipped = (iterations_a_step(m, cells) for m in ("projected-gradient", "shipped"))
+        assert shipped < 5.0
+        assert slow > 15.0 * shipped
+
+
+def test_stagnation_of_the_plain_march():
+    """So slow a motion takes thousands of periods to forget its start; it says that it has not."""
+    plain = microslip.solve("transverse", 1e-4, 0.5, tolerance=1e-2, method="march")
+    shipped = microslip.solve("transverse", 1e-4, 0.5, tolerance=1e-2)
+    assert not plain.converged and "no periodic state" in plain.reason
+    assert shipped.converged and shipped.periods < 40
+    assert abs(plain.mu_macro - shipped.mu_macro) > 5e-2
+
+
+def test_undamped_jacobi_never_gets_there():
+    """Points that correct the same slip all at once overshoot from bound to bound."""
+    with pytest.raises(StepFailure, match="diverged"):
+        iterations_a_step("jacobi", 16)
+    assert microslip.solve("bore", 0.2, 1.0, tolerance=1e-2, method="jacobi").reason.startswith(
+        "diverged"
+    )
+
+
+def test_switching_is_right_in_one_direction_and_lost_where_slip_turns():
+    motion = Motion(TRANSVERSE, 0.1, 0.5, 0.0)
+    rings = build_contact(motion, "radial", Resolution(32, 1, 16))
+    contact = method_named("switching").dressed(rings)
+    march = contact.march(straight(0.8, 16), np.zeros((2, 1, 32)), 1e-10)
+    mindlin = hertz.mindlin_force(0.8)
+    assert march.forces[-1, FORWARD] == pytest.approx(mindlin, abs=2e-3)
+    with pytest.raises(StepFailure):
+        contact.march(motion.path(contact, 16), forward_slip(contact), 1e-6)
+
+
+# False convergence
+
+
+@pytest.fixture(scope="module")
+def slow_truth():
+    """Rings alone certify this to 1e-4; the static limit, a closed form, lies just below."""
+    truth = microslip.solve("transverse", 1e-4, 0.5, tolerance=1e-4)
+    limit = microslip.solve("transverse", 0.0, 0.5).mu_macro
+    assert truth.converged and limit < truth.mu_macro < limit + 0.02
+    return truth.mu_macro
+
+
+def test_false_convergence_of_equal_means(slow_truth):
+    """Two means agree long before the state stands still."""
+    early = microslip.solve("transverse", 1e-4, 0.5, tolerance=1e-2, method="equal-means")
+    assert early.converged
+    assert abs(early.mu_macro - slow_truth) > 5.0 * early.mu_macro_error
+
+
+def test_the_shipped_search_does_not_fall_for_equal_means(slow_truth):
+    right = microslip.solve("transverse", 1e-4, 0.5, tolerance=1e-2)
+    assert right.converged
+    assert abs(right.mu_macro - slow_truth) <= right.mu_macro_error + 1e-4
+
+
+# Loss of uniqueness
+
+
+SHARES = (0.0, 0.5, 1.0)
+
+
+def periodic_force(velocity, share, search):
+    """Mean forward force of the periodic state found from the oscillation's own tractions plus a
+    share of all the forward traction that they leave room for."""
+    motion = Motion(TRANSVERSE, velocity, 0.5, 0.0)
+    contact = RadialContact.resolved(16, TRANSVERSE.focus(velocity, 0.5))
+    path = motion.path(contact, 32)
+    room, oscillating = static_state(contact, motion.oscillation, 1e-12)
+    found = search(Cycle(contact, path), oscillating + share * room, 1e-6, 1e-9, 200)
+    assert found.converged
+    return path.mean(found.forces)[FORWARD]
+
+
+def test_loss_of_uniqueness_without_forward_motion():
+    """What never slips keeps what it had: each start has a periodic state of its own, with any
+    friction up to the static limit."""
+    limit = microslip.solve("transverse", 0.0, 0.5).mu_macro
+    for share in SHARES:
+        force = periodic_force(0.0, share, _searches.march)
+        assert force == pytest.approx(share * limit, abs=2e-3)
+
+
+def test_any_forward_motion_makes_it_unique_again():
+    none, half, full = (periodic_force(1e-3, share, find_periodic_state) for share in SHARES)
+    assert none == pytest.approx(full, abs=1e-5) and half == pytest.approx(full, abs=1e-5)
+
+
+def test_the_shipped_answer_at_velocity_zero_is_the_limit_and_not_a_start():
+    limit = microslip.solve("transverse", 0.0, 0.5)
+    near = microslip.solve("transverse", 1e-6, 0.5, tolerance=1e-4)
+    assert near.converged and 0.0 < near.mu_macro - limit.mu_macro < 1e-3
+
+
+# Methods and what ships agree where both converge
+
+
+@pytest.mark.parametrize(
+    "method",
+    ["euler", "extrapolated", "march", "full-newton", "admm", "gauss-seidel", "spectral-gradient"],
+)
+def test_methods_agree_with_what_ships(method):
+    """... at a fast, easy point, each within its own certificate and that of the other."""
+    for place in (("transverse", 1.0, 1.0), ("bore", 1.0, 1.0)):
+        shipped = microslip.solve(*place, tolerance=1e-4)
+        other = microslip.solve(*place, tolerance=1e-2, method=method)
+        assert other.converged and other.method == method
+        allowed = other.mu_macro_error + shipped.mu_macro_error
+        assert abs(other.mu_macro - shipped.mu_macro) <= allowed
+
+
+@pytest.mark.parametrize("method", ["admm", "gauss-seidel", "spectral-gradient", "full-newton"])
+def test_step_solvers_find_the_one_solution_of_a_step(method):
+    """Each step is a convex problem: whoever solves it finds the same tractions."""
+    motion = Motion(BORE, 0.2, 1.0, 0.3)
+    contact = build_contact(motion, "polar", Resolution(6, 4, 8))
+    path = motion.path(contact, 8)
+    start = forward_slip(contact)
+    one = contact.march(path, start, 1e-10).state
+    other = method_named(method).dressed(contact).march(path, start, 1e-10).state
+    assert energy_norm(contact, one - other) < 1e-7
+
+
+@pytest.mark.parametrize(("name", "order"), [("euler", 1), ("midpoint", 2), ("shipped", 2)])
+def test_orders_of_the_integrators(name, order):
+    """On a smooth stretch: the slider slips all the way while its direction turns slowly."""
+    contact, integrator = slider_contact(), method_named(name).integrator
+
+    def displacement(phase):
+        return 5.0 * phase, phase**2, np.zeros_like(phase)
+
+    def lateral(steps):
+        path = make_path(displacement, np.linspace(0.0, 2.0, steps + 1), integrator)
+        start = np.array([1.0, 0.0]).reshape(2, 1, 1)
+        return contact.march(path, start, 1e-13).forces[-1, 1]
+
+    exact = lateral(4096)
+    errors = [abs(lateral(steps) - exact) for steps in (32, 64, 128)]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.3)
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(order, abs=0.3)
+
+
+# Names
+
+
+@pytest.mark.parametrize(
+    ("text", "named"),
+    [("nowton", "full-newton"), ("admm:penalti=1", "penalty"), ("admm:penalty", "admm:key=0.5")],
+)
+def test_method_names_are_refused_with_what_is_allowed(text, named):
+    with pytest.raises(ValueError, match=named):
+        microslip.solve("transverse", 0.1, 0.5, method=text)
+
+
+def test_numbers_of_a_method_reach_it():
+    assert method_named("admm:penalty=0.25").parameters == {"penalty": 0.25, "relaxation": 1.7}
+    assert method_named("shipped").parameters == {}
