@@ -179,7 +179,7 @@ def test_cases_can_be_asked():
             assert request[name] is None or request[name] % 2 == 0
         if not axis.parameters:
             assert value in overrides.values()
-        reference = stability.reference(overrides)
+        reference = stability.reference(configured().stability, overrides)
         assert (reference["cells"], reference["steps"]) == (None, None)
         assert {k: reference[k] for k in ("scene", "velocity", "amplitude", "poisson")} == {
             k: request[k] for k in ("scene", "velocity", "amplitude", "poisson")

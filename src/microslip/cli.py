@@ -15,6 +15,11 @@ SCENES = {
         "displacement at which the whole contact slides",
         "y0 / u_lim: half stroke of the lateral oscillation over u_lim",
     ),
+    "zigzag": (
+        "sliding forward while moving sideways at constant speed, with abrupt turns",
+        "v0 / (omega u_lim): as for transverse",
+        "y0 / u_lim: half stroke of the lateral motion over u_lim",
+    ),
     "bore": (
         "sliding forward while oscillating in rotation about the contact normal",
         "v0 / (Omega phi0 a): forward speed over the largest rotation speed of the contact's edge",
@@ -92,6 +97,12 @@ def _add_options(parser):
     )
     parser.add_argument("--steps", type=int, metavar="N", help="impose N steps a period (even)")
     parser.add_argument(
+        "--method",
+        default="shipped",
+        metavar="NAME",
+        help="another way to compute it, for comparison: the name of a file in microslip/methods",
+    )
+    parser.add_argument(
         "--json", action="store_true", help="print one JSON object and nothing else"
     )
 
@@ -113,6 +124,7 @@ def main(arguments=None):
             tolerance=options.tolerance,
             cells=options.cells,
             steps=options.steps,
+            method=options.method,
             progress=progress,
         )
     except ValueError as error:

@@ -136,6 +136,8 @@ AXES = (
     ),
 )
 """All blocks of the atlas, in the order in which it shows them."""
+TRUTH_SHARE = 0.1
+"""Tolerance of what probes are compared with, over theirs."""
 BLOCKS_TOGETHER = 5
 """Blocks that one job sends a method to."""
 
@@ -162,9 +164,9 @@ def probe(study, method, axis, value, overrides):
     return requests.probe(_point(overrides), method, study.tolerance, **imposed)
 
 
-def reference(overrides):
+def reference(study, overrides):
     """The request that the probes of a case are compared with: as shipped, nothing imposed."""
-    return requests.reference(_point(overrides))
+    return requests.reference(_point(overrides), TRUTH_SHARE * study.tolerance)
 
 
 def pieces(study):
@@ -172,7 +174,7 @@ def pieces(study):
     asked = [list(block) for _, block in groupby(cases(study), key=lambda case: case[0].name)]
     known, long, short = set(), [], []
     for block in asked:
-        found = {canonical_json(r): r for r in (reference(case[2]) for case in block)}
+        found = {canonical_json(r): r for r in (reference(study, case[2]) for case in block)}
         long.append([r for text, r in found.items() if text not in known])
         known |= found.keys()
     for method in study.methods:

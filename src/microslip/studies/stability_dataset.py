@@ -42,7 +42,7 @@ def build(settings, answer):
     """
     answers = Answers(answer)
     cases = study.cases(settings)
-    truths = [answers(study.reference(overrides)) for _, _, overrides in cases]
+    truths = [answers(study.reference(settings, overrides)) for _, _, overrides in cases]
     reference = np.array([value_of(truth, "mu_macro") for truth in truths])
     reference_error = np.array([value_of(truth, "mu_macro_error") for truth in truths])
     results = [

@@ -1,0 +1,72 @@
+"""Scenes: what their displacement promises, and the zigzag against closed forms."""
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip import theory
+from microslip.motion import Motion, Resolution
+from microslip.scenes import SCENES, TRANSVERSE, ZIGZAG
+from microslip.simulate import simulate_static
+
+PERIODIC = [scene for scene in SCENES.values() if scene.periodic]
+PHASE = np.linspace(-3.0, 3.0, 101)
+
+
+@pytest.mark.parametrize("scene", PERIODIC, ids=lambda scene: scene.name)
+def test_half_a_period_later_a_motion_is_its_own_mirror_image(scene):
+    """... moved on forward: the search for the periodic state stands on it."""
+    motion = Motion(scene, 0.3, 0.7, 0.2)
+    now, later = motion.displacement(PHASE), motion.displacement(PHASE + np.pi)
+    moved = np.pi * motion.creep
+    for one, other, sign, way in zip(now, later, (1, -1, -1), (moved, 0.0, 0.0), strict=True):
+        assert other == pytest.approx(sign * one + way, abs=1e-12)
+
+
+@pytest.mark.parametrize("scene", PERIODIC, ids=lambda scene: scene.name)
+def test_the_oscillation_turns_at_both_ends_of_half_a_period(scene):
+    _, lateral, angle = scene.displacement(PHASE, 0.0, 0.7, 0.0)
+    _, end, turn = scene.displacement(np.array([-0.5, 0.5]) * np.pi, 0.0, 0.7, 0.0)
+    assert np.abs(lateral).max() <= abs(end[1]) + 1e-12
+    assert np.abs(angle).max() <= abs(turn[1]) + 1e-12
+
+
+def test_the_zigzag_has_one_speed_sideways():
+    _, lateral, _ = ZIGZAG.displacement(np.linspace(-1.5, 1.5, 31), 0.1, 0.7, 0.0)
+    assert np.diff(lateral) == pytest.approx(0.7 * 2.0 / np.pi * 0.1)
+
+
+@pytest.mark.parametrize(("velocity", "amplitude"), [(0.1, 1.0), (1.0, 3.0), (2.0, 0.5)])
+def test_a_rigid_zigzag_keeps_the_direction_of_its_slip(velocity, amplitude):
+    speed = 2.0 * amplitude / np.pi
+    rigid = microslip.solve("zigzag", velocity, amplitude, model="rigid", tolerance=1e-2)
+    exact = velocity / np.hypot(velocity, speed)
+    # at the turning points themselves the direction flips within a step
+    assert rigid.mu_macro == pytest.approx(exact, abs=rigid.mu_macro_error + 1e-3)
+
+
+def test_an_elastic_zigzag_tends_to_the_rigid_one_at_large_amplitude():
+    """The elastic turn costs a way of the order of u_lim, of a stroke of 2 y0."""
+    exact = 0.5 / np.hypot(0.5, 200.0 / np.pi)
+    answer = microslip.solve("zigzag", 0.5, 100.0)
+    assert answer.converged
+    assert answer.mu_macro == pytest.approx(exact, rel=0.03)
+    assert answer.mu_macro > exact
+
+
+def test_the_static_limit_knows_the_turning_points_alone():
+    """So it is that of the sine, for which it is known in closed form."""
+    resolution = Resolution(64, 1, 0)
+    one, other = (
+        simulate_static(scene, 0.5, 0.0, "radial", resolution, 1e-8).mu
+        for scene in (ZIGZAG, TRANSVERSE)
+    )
+    assert one == pytest.approx(other, abs=1e-9)
+    assert one == pytest.approx(theory.static_limit_transverse(0.5), abs=1e-3)
+
+
+def test_a_slow_zigzag_tends_to_the_static_limit():
+    slow = microslip.solve("zigzag", 1e-5, 0.5, tolerance=1e-3)
+    limit = theory.static_limit_transverse(0.5)
+    assert slow.converged
+    assert -slow.mu_macro_error < slow.mu_macro - limit < 5e-3
