@@ -56,7 +56,7 @@ class FakeRun:
         failed = resolution in self.fails
         mu, torque = EXACT + excess, EXACT_TORQUE - 2.0 * excess
         left = self.distance / number, self.residual * number
-        effort = number, 10 * number, 0, 100 * number
+        effort = number, 10 * number, 0, 100 * number, 0
         run = Run(mu, torque, *left, *effort, not failed, "lost its way" if failed else "")
         self.asked.append(resolution)
         self.guesses.append(guess)

@@ -387,6 +387,14 @@ def test_a_front_is_what_nothing_beats(pairs):
     assert list(fronts.on_front(costs, errors)) == expected
 
 
+def test_a_rung_is_as_good_as_the_worst_of_it_and_the_finer_ones():
+    models = ["mdr"] * 3 + ["radial"] * 3
+    error = [0.001, 0.02, 0.01, 0.1, 0.001, 0.01]
+    found = fronts.confirmed(models, error, "radial")
+    assert list(found) == [0.02, 0.02, math.inf, 0.1, 0.01, 0.01]
+    assert list(fronts.confirmed(["slider"], [0.0], "radial")) == [math.inf]
+
+
 def test_the_cheapest_is_within_the_tolerance():
     cost, error = [1.0, 2.0, 3.0, math.nan], [0.1, 0.01, 0.001, 0.0]
     assert [fronts.cheapest(cost, error, t) for t in (1.0, 0.1, 0.05, 0.01, 0.005, 1e-4)] == [

@@ -172,6 +172,9 @@ def test_the_cost_of_a_step_and_its_exponents():
 # What became of probes
 
 
+STUCK = "a step was left unsolved after 2000 iterations: residual 4.5e-06"
+
+
 @pytest.mark.parametrize(
     ("result", "expected"),
     [
@@ -187,6 +190,7 @@ def test_the_cost_of_a_step_and_its_exponents():
         (GOOD | {"converged": False, "mu_macro": 0.9, "reason": "no periodic state"}, "slow"),
         (GOOD | {"converged": False, "reason": "diverged: tractions of 1e9"}, "diverged"),
         (GOOD | {"converged": False, "mu_macro": None}, "diverged"),
+        (GOOD | {"converged": False, "mu_macro": None, "reason": STUCK}, "slow"),
         ({"applies": True, "converged": False, "reason": "LinAlgError: singular"}, "diverged"),
     ],
 )

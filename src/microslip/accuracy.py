@@ -51,6 +51,7 @@ class Axis:
     first: tuple[int, ...]
     regular: bool = False
     imposed: bool = False
+    caution: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -70,6 +71,7 @@ class Certified:
     periods: int
     iterations: int
     work: int
+    effort: int
     converged: bool
     reason: str
 
@@ -139,7 +141,7 @@ class _Chain:
         values, levels = self.values(name), self.levels
         if not self.axis.regular:
             last = values[-len(self.axis.first) :]
-            return max(last) - min(last)
+            return self.axis.caution * (max(last) - min(last))
         beyond = _extrapolation(values, levels)
         before = _extrapolation(values[:-1], levels[:-1])
         change = values[-1] + beyond - values[-2] - before
@@ -152,13 +154,17 @@ def _extrapolation(values, levels):
 
 
 def _mixed(runs, chains, name):
-    """How far the corrections along cells and angles fail to add up: their mixed difference."""
+    """How far the corrections along cells and angles fail to add up: their mixed difference.
+
+    It is taken at the finest angles, since few of them may hide what cells are worth.
+    """
     if not {"cells", "angles"} <= chains.keys() or chains["cells"].axis.imposed:
         return 0.0
     beside = {}
     for axis in ("cells", "angles"):
         base = runs.base[axis]
-        beside[axis] = base + 1 if chains[axis].indices[-1] > base else base - 1
+        last = chains[axis].indices[-1]
+        beside[axis] = base - 1 if last <= base else last if axis == "angles" else base + 1
     one, other = ({axis: index} for axis, index in beside.items())
     both, one, other, base = (getattr(runs(**at), name) for at in (beside, one, other, {}))
     return both - one - other + base
@@ -247,6 +253,7 @@ def _summary(runs, chains, errors, reason):
         periods=max(r.periods for r in done),
         iterations=sum(r.iterations for r in done),
         work=sum(r.work for r in done),
+        effort=sum(r.effort for r in done),
         converged=not reason,
         reason=reason,
     )

@@ -16,10 +16,14 @@ BASE_RINGS, BASE_ANGLES, BASE_STEPS = 8, 6, 16
 SLOW_CREEP = 3e-3
 """Creep in a radian (u_lim) below which the layer at the stick radius is thin: the coarsest rings
 agree with each other there before they see it, and prove nothing."""
+TURNING_CAUTION = 2.0
+"""Error in time over the spread of the runs where the contact turns: the first step after a turning
+point, in which all points stick and slip again, errs to one side whatever its length."""
 LONGEST_STROKE = 16.0
 """Stroke in u_lim beyond which more steps are left to the estimate of the error."""
 STATIC_LIMITS = {
     "transverse": theory.static_limit_transverse,  # nu = 0
+    "zigzag": theory.static_limit_transverse,  # it knows the turning points alone
     "bore": theory.static_limit_bore,  # any nu: it only scales the angle
 }
 LARGEST_DROPS = {
@@ -123,4 +127,5 @@ def _steps(scene, amplitude, poisson, tolerance, imposed):
     levels = tuple(2 * round(0.5 * count * stroke**0.5) for count in STEPS)
     wanted = BASE_STEPS * max(1.0, (1e-3 / tolerance) ** 0.5)
     base = next(k for k, count in enumerate(STEPS) if count >= wanted)
-    return Axis("steps", levels, base, (base - 2, base - 1, base))
+    caution = TURNING_CAUTION if scene.rotates else 1.0
+    return Axis("steps", levels, base, (base - 2, base - 1, base), caution=caution)

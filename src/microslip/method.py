@@ -22,7 +22,9 @@ class Method:
     parameters: numbers that ``dress`` takes, with their defaults; search(cycle, start, tolerance,
     step_tolerance, max_periods, inverse) -> cycle.PeriodicState; prepared: start near the static
     limit and with coarse steps, else once from full slip; extrapolated: add the difference to the
-    run with half the steps; run: replaces the whole simulation, see methods.paper.
+    run with half the steps; run: replaces the whole simulation, see methods.paper; requires:
+    package that it takes besides those of microslip, see methods.missing; turns: whether it knows
+    motions that rotate.
     """
 
     summary: str
@@ -33,6 +35,8 @@ class Method:
     prepared: bool = True
     extrapolated: bool = False
     run: Callable | None = None
+    requires: str = ""
+    turns: bool = True
 
     def dressed(self, contact):
         """The contact with this method's solver of a step."""

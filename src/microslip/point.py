@@ -28,8 +28,8 @@ class Result:
     (error_model: of a closed form, else 0); mu_torque, mu_torque_error: torque over its value at
     zero forward velocity (steady scenes only, else None); cells, angles, steps_per_period: finest
     resolution used (angles: points on half the disc, 1 where rings or squares suffice); periods:
-    half periods marched in the longest run; iterations, work: step-solver iterations, and step
-    solves x unknowns, over all runs.
+    half periods marched in the longest run; iterations, work, effort: step-solver
+    iterations, step solves x unknowns, and iterations x unknowns, over all runs.
     """
 
     scene: str
@@ -56,6 +56,7 @@ class Result:
     periods: int
     iterations: int
     work: int
+    effort: int
     solve_time_s: float
 
     def to_dict(self):
@@ -149,6 +150,7 @@ def solve(
         periods=certified.periods,
         iterations=certified.iterations,
         work=certified.work,
+        effort=certified.effort,
         solve_time_s=time.perf_counter() - started,
     )
 
@@ -210,6 +212,7 @@ def _exact_result(point, values, seconds):
         periods=0,
         iterations=0,
         work=0,
+        effort=0,
         solve_time_s=seconds,
     )
 

@@ -45,8 +45,9 @@ class Run:
 
     distance: estimated distance from the periodic (steady) state; solver_residual: summed over the
     last period; both forces over mu F_z.  periods, iterations, solves: of all searches together;
-    work: step solves x unknowns.  For other runs of the point: state, the periodic tractions;
-    inverse: see cycle.PeriodicState; static_force: mean forward force of the static limit.
+    work: step solves x unknowns; effort: iterations x unknowns.  For other runs of the point:
+    state, the periodic tractions; inverse: see cycle.PeriodicState; static_force: mean forward
+    force of the static limit.
     """
 
     mu: float
@@ -57,6 +58,7 @@ class Run:
     iterations: int
     solves: int
     work: int
+    effort: int
     converged: bool
     reason: str
     state: np.ndarray | None = None
@@ -88,7 +90,7 @@ def simulate(
     try:
         run = _run(motion, model, resolution, tolerance, guess, method)
     except StepFailure as failure:
-        return Run(np.nan, np.nan, np.inf, np.inf, 0, 0, 0, 0, False, str(failure))
+        return Run(np.nan, np.nan, np.inf, np.inf, 0, 0, 0, 0, 0, False, str(failure))
     if method.extrapolated and run.converged:
         half = replace(resolution, steps=max(resolution.steps // 2, 1))
         other = replace(method, extrapolated=False)
@@ -121,6 +123,7 @@ def _extrapolated(fine, coarse):
         iterations=fine.iterations + coarse.iterations,
         solves=fine.solves + coarse.solves,
         work=fine.work + coarse.work,
+        effort=fine.effort + coarse.effort,
         converged=coarse.converged,
         reason=coarse.reason,
     )
@@ -214,6 +217,7 @@ class _Search:
             iterations=sum(one.iterations for one in self.done),
             solves=solves,
             work=solves * found.start.size,
+            effort=sum(one.iterations for one in self.done) * found.start.size,
             converged=found.converged and solved,
             reason=reason,
             state=found.start,
@@ -246,6 +250,7 @@ def simulate_static(scene, amplitude, poisson, model, resolution, tolerance, met
         iterations=0,
         solves=solves,
         work=solves * 2 * contact.forward_position.size,
+        effort=0,
         converged=True,
         reason="",
     )
@@ -262,6 +267,7 @@ def _steady_run(contact, motion, tolerance, step_tolerance):
         iterations=found.iterations,
         solves=found.solves,
         work=found.solves * found.state.size,
+        effort=found.iterations * found.state.size,
         converged=found.converged,
         reason="" if found.converged else f"no steady state: {found.distance:.1e} left",
     )

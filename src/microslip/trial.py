@@ -10,7 +10,7 @@ from statistics import median
 
 import numpy as np
 
-from microslip.methods import method_named
+from microslip.methods import method_named, missing
 from microslip.models import MODELS
 from microslip.models.contact import forward_slip
 from microslip.motion import Motion, Resolution, build_contact
@@ -29,8 +29,13 @@ def applies(scene, poisson, model, method):
     refusal = MODELS[model].refuses(kind, poisson)
     if refusal or how == method_named("shipped"):
         return refusal
+    lacking = missing(method)
+    if lacking:
+        return lacking
     if how.run is not None:
-        return "" if model == "cartesian" and kind.periodic else "it is a run on squares"
+        if model != "cartesian" or not kind.periodic:
+            return "it is a run on squares"
+        return "it knows translations alone" if kind.rotates and not how.turns else ""
     if model in STEPLESS:
         return "no step of the model has to be solved"
     if not kind.periodic and how.dress is None:
@@ -65,7 +70,7 @@ def run_trial(
         "iterations": run.iterations,
         "solves": run.solves,
         "unknowns": unknowns,
-        "work": run.iterations * unknowns,
+        "work": run.effort,
     }
 
 

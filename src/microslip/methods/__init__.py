@@ -3,7 +3,8 @@
 A method is the file ``name_of_it.py`` in this folder, which holds METHOD, a ``method.Method``; it
 is then known as ``name-of-it``, to ``microslip.solve`` as well as in a configuration.  Files whose
 name starts with an underscore are shared by methods.  Numbers that a method takes may follow its
-name: "admm:penalty=0.1,relaxation=1.5".
+name: "admm:penalty=0.1,relaxation=1.5".  A method may require a package that is not one of
+microslip's: where that is not installed, nothing asks for it.
 
 Listing and checking names imports no solver.
 """
@@ -14,6 +15,7 @@ import ast
 import math
 from functools import cache
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 
 SHIPPED = "shipped"
@@ -56,6 +58,18 @@ def refusal(text):
     return ""
 
 
+def missing(text):
+    """Why a method cannot run here, as one line: the package that it requires is not installed.
+
+    "" if it can.  Imports neither the solver nor the package.  Raises ValueError as ``split``.
+    """
+    name, _ = split(text)
+    package = _declared(name, "requires")
+    if not package or find_spec(package) is not None:
+        return ""
+    return f"method = {text!r}: needs the package {package}, which is not installed"
+
+
 def method_named(text):
     """The method.Method that a text names; raises ValueError, with what is allowed, if none."""
     problem = refusal(text)
@@ -70,13 +84,18 @@ def method_named(text):
     return replace(method, parameters={**method.parameters, **numbers})
 
 
-@cache
 def _parameters(name):
-    """Names of the numbers that a method takes, read from its file without running it."""
+    """Names of the numbers that a method takes."""
+    return tuple(_declared(name, "parameters") or ())
+
+
+@cache
+def _declared(name, field):
+    """What a method's file gives for a field of METHOD, read without running it; None: nothing."""
     if name == SHIPPED:
-        return ()
+        return None
     file = Path(__file__).parent / f"{name.replace('-', '_')}.py"
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.keyword) and node.arg == "parameters":
-            return tuple(ast.literal_eval(node.value))
-    return ()
+        if isinstance(node, ast.keyword) and node.arg == field:
+            return ast.literal_eval(node.value)
+    return None

@@ -47,6 +47,7 @@ def _run(motion, model, resolution, tolerance):
         iterations=march.iterations,
         solves=march.solves,
         work=march.solves * march.state.size,
+        effort=march.iterations * march.state.size,
         converged=True,
         reason="",
     )

@@ -6,7 +6,8 @@ import numpy as np
 
 from .. import theory
 from . import accuracy_cost as study
-from .fronts import cheapest, exponent, on_front
+from .fronts import cheapest, confirmed, exponent, on_front
+from .ladders import exact_model
 from .tables import Answers, finished, value_of, variable
 
 MEASURED = (
@@ -199,14 +200,16 @@ def _candidates(settings, point, answers):
     requests = study.map_trials(settings, point)
     results = [answers(request) for request in requests]
     error = [
-        abs(value_of(r, "mu_macro") - truth) if value_of(r, "converged", bool) else np.nan
+        abs(value_of(r, "mu_macro") - truth) if value_of(r, "converged", bool) else np.inf
         for r in results
     ]
+    models = [request["model"] for request in requests]
+    exact = exact_model(point.scene, point.poisson)
     return (
-        [request["model"] for request in requests],
+        models,
         [request["cells"] for request in requests],
         [value_of(result, "seconds") for result in results],
-        error,
+        confirmed(models, error, exact),
     )
 
 

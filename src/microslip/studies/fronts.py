@@ -29,6 +29,22 @@ def cheapest(cost, error, tolerance):
     return int(good[np.argmin(cost[good])]) if good.size else None
 
 
+def confirmed(models, error, exact):
+    """The error that each rung of a ladder is good for: the largest of its own and all finer ones.
+
+    models: of the rungs, each from coarse to fine. A coarse run may be right by chance, where its
+    error changes sign; so the last rung has nothing to confirm it and counts as infinitely wrong,
+    but for the model `exact`, which is known to converge.
+    """
+    out = np.asarray(error, float).copy()
+    for model in dict.fromkeys(models):
+        rungs = [k for k, name in enumerate(models) if name == model]
+        out[rungs] = np.maximum.accumulate(out[rungs][::-1])[::-1]
+        if model != exact:
+            out[rungs[-1]] = np.inf
+    return out
+
+
 def exponent(sizes, values):
     """Exponent p of values ~ sizes^p by least squares of logarithms, over the larger half of sizes.
 

@@ -8,7 +8,7 @@ the solver refuses.
 from typing import NamedTuple
 
 from ..config import MODELS_OF_SCENE
-from ..methods import SHIPPED, split
+from ..methods import SHIPPED, missing, split
 
 
 class Level(NamedTuple):
@@ -40,16 +40,23 @@ LADDERS = {
 }
 """Levels by model.  Squares cost the most by far, so theirs are few."""
 
-OF_OTHER_METHODS = {"radial": 5, "polar": 4}
+OF_OTHER_METHODS = {"radial": 5, "polar": 4, "cartesian": 3}
 """Levels for methods that are not shipped: some keep dense matrices or solve point by point."""
 
 FIXED = {"paper": ("cartesian", Level(32, 1, 100))}
 """Methods that come with their own resolution, and the one model that they are made for."""
 
+TRANSLATIONS_ON_SQUARES = ("aspher",)
+"""Methods that march squares, as the model cartesian has them, and know no rotation."""
+
 COARSEST_TOLERANCE, TOLERANCE_POWER = 3e-5, 1.5
 """How near the periodic state a run has to come, a force over mu F_z: at the first level, and with
 which power of the steps it falls. That is below what the discretisation leaves at every level
 (rings at nu = 0: from 1e-4 to 1e-6), so that it takes part in no comparison."""
+
+
+TRANSLATIONS = ("transverse", "zigzag")
+"""Scenes without rotation."""
 
 
 def models_of(scene, poisson):
@@ -80,8 +87,15 @@ def ladder(model, method, count):
 
 
 def models_for(method, scene, poisson):
-    """Models that `method` is run on: all for the shipped one, else the one that auto takes."""
+    """Models that `method` is run on: all for the shipped one, else the one that auto takes.
+
+    None where the method requires a package that is not installed: then nothing is asked.
+    """
     name, _ = split(method)
     if name == SHIPPED:
         return models_of(scene, poisson)
+    if missing(method):
+        return []
+    if name in TRANSLATIONS_ON_SQUARES:
+        return ["cartesian"] if scene in TRANSLATIONS else []
     return [FIXED[name][0]] if name in FIXED else [exact_model(scene, poisson)]

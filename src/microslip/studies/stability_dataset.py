@@ -17,18 +17,25 @@ NUMBERS = {
     "work": ("work", "step solves times unknowns, summed over all runs"),
 }
 
+UNSOLVED = "a step was left unsolved"
+"""How the reason of a run starts that ran out of iterations near the solution of a step."""
+
 
 def outcome(result, reference, reference_error):
     """One of OUTCOMES, as an index.
 
     result: of a probe, None or `applies` False where the method was not asked. Converged: it says
-    so, and comes as near to the reference as both claim; wrong: it says so and does not; diverged:
-    no number, or it says so; slow: it gave up within its budget, and says so.
+    so, and comes as near to the reference as both claim; wrong: it says so and does not; slow: it
+    gave up within its budget, and says so, be it in the middle of a step; diverged: it says so, or
+    there is no number for another reason.
     """
     if result is None or not result.get("applies", True):
         return NOT_APPLICABLE
     mu, claimed = value_of(result, "mu_macro"), value_of(result, "mu_macro_error")
-    if not np.isfinite(mu) or value_of(result, "reason", str).startswith("diverged"):
+    reason = value_of(result, "reason", str)
+    if reason.startswith("diverged"):
+        return DIVERGED
+    if not np.isfinite(mu) and not reason.startswith(UNSOLVED):
         return DIVERGED
     if not value_of(result, "converged", bool):
         return SLOW
