@@ -156,7 +156,7 @@ def _extrapolation(values, levels):
 def _mixed(runs, chains, name):
     """How far the corrections along cells and angles fail to add up: their mixed difference.
 
-    It is taken at the finest angles, since few of them may hide what cells are worth.
+    It is taken next to the finest angles, since few of them may hide what cells are worth.
     """
     if not {"cells", "angles"} <= chains.keys() or chains["cells"].axis.imposed:
         return 0.0
@@ -164,7 +164,8 @@ def _mixed(runs, chains, name):
     for axis in ("cells", "angles"):
         base = runs.base[axis]
         last = chains[axis].indices[-1]
-        beside[axis] = base - 1 if last <= base else last if axis == "angles" else base + 1
+        step = max(last - base - 1, 1) if axis == "angles" else 1
+        beside[axis] = base + step if last > base else base - 1
     one, other = ({axis: index} for axis, index in beside.items())
     both, one, other, base = (getattr(runs(**at), name) for at in (beside, one, other, {}))
     return both - one - other + base
