@@ -16,6 +16,9 @@ BASE_RINGS, BASE_ANGLES, BASE_STEPS = 8, 6, 16
 SLOW_CREEP = 3e-3
 """Creep in a radian (u_lim) below which the layer at the stick radius is thin: the coarsest rings
 agree with each other there before they see it, and prove nothing."""
+SWEEPING_CENTRE = (0.1, 1.0)
+"""Velocities of a bore at which the centre of rotation sweeps through the contact and stays in it for
+a good part of the period: the coarsest rings agree with each other there, too, without seeing it."""
 TURNING_CAUTION = 2.0
 """Error in time over the spread of the runs where the contact turns: the first step after a turning
 point, in which all points stick and slip again, errs to one side whatever its length."""
@@ -106,7 +109,7 @@ def _cells(scene, name, velocity, amplitude, poisson, imposed):
         return Axis("cells", RINGS, base + 2, tuple(range(base, base + 6)))
     if scene.rotates:
         slow = scene.creep(velocity, amplitude, poisson) < SLOW_CREEP
-        up = 1 if slow else 0
+        up = 1 if slow or SWEEPING_CENTRE[0] <= velocity < SWEEPING_CENTRE[1] else 0
     else:  # few unknowns; and at nu > 0 the front of slip is oval, which rings are not
         up = 2 if poisson > 0.0 else 1
     base, last = base + max(up - 1, 0), base + up
