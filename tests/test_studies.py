@@ -406,6 +406,7 @@ def test_the_cheapest_is_within_the_tolerance():
         None,
     ]
     assert fronts.cheapest([1.0], [math.nan], 1.0) is None
+    assert fronts.cheapest([1.2, 1.0, 3.0], [0.0, 0.0, 0.0], 1.0) == 0  # as cheap, and cruder
     assert fronts.cheapest([], [], 1.0) is None
 
 

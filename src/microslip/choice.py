@@ -17,8 +17,8 @@ SLOW_CREEP = 3e-3
 """Creep in a radian (u_lim) below which the layer at the stick radius is thin: the coarsest rings
 agree with each other there before they see it, and prove nothing."""
 SWEEPING_CENTRE = (0.1, 1.0)
-"""Velocities of a bore at which the centre of rotation sweeps through the contact and stays in it for
-a good part of the period: the coarsest rings agree with each other there, too, without seeing it."""
+"""Velocities of a bore at which the centre of rotation sweeps through the contact and stays in it
+for a good part of the period: the coarsest rings agree there, too, without having seen it."""
 TURNING_CAUTION = 2.0
 """Error in time over the spread of the runs where the contact turns: the first step after a turning
 point, in which all points stick and slip again, errs to one side whatever its length."""

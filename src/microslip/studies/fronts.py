@@ -2,6 +2,9 @@
 
 import numpy as np
 
+AS_CHEAP = 1.5
+"""Ratio of two times up to which they may be the same."""
+
 
 def on_front(cost, error):
     """Mark what nothing beats: nothing costs no more and errs no more, and one of the two less.
@@ -23,10 +26,15 @@ def on_front(cost, error):
 
 
 def cheapest(cost, error, tolerance):
-    """Index of the least cost among those within the tolerance, or None if none is."""
+    """Index of the least cost among those within the tolerance, or None if none is.
+
+    Costs that differ by less than clocks do count as equal: then the first one is taken.
+    """
     cost, error = np.asarray(cost, float), np.asarray(error, float)
     good = np.flatnonzero(np.isfinite(cost) & (error <= tolerance))
-    return int(good[np.argmin(cost[good])]) if good.size else None
+    if not good.size:
+        return None
+    return int(good[np.argmax(cost[good] <= AS_CHEAP * cost[good].min())])
 
 
 def confirmed(models, error, exact):
