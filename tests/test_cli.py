@@ -67,7 +67,7 @@ def test_text_says_what_was_found():
     result = microslip.solve("continuous-bore", 0.5, tolerance=1e-2)
     assert f"mu_macro = {result.mu_macro:.6g} +- " in done.stdout
     assert f"mu_torque = {result.mu_torque:.6g} +- " in done.stdout
-    assert "polar" in done.stdout and "NOT CONVERGED" not in done.stdout
+    assert "closed-form" in done.stdout and "NOT CONVERGED" not in done.stdout
 
 
 def test_tolerance_out_of_reach_is_exit_code_1():

@@ -29,6 +29,7 @@ STATIC_LIMITS = {
     "zigzag": theory.static_limit_transverse,  # it knows the turning points alone
     "bore": theory.static_limit_bore,  # any nu: it only scales the angle
 }
+STEADY_STATES = {"continuous-bore": (theory.bore_forward, theory.bore_torque)}  # Eqs 21 and 22
 LARGEST_DROPS = {
     "transverse": bounds.largest_drop_transverse,
     "bore": bounds.largest_drop_bore,
@@ -62,12 +63,14 @@ def no_vibration(scene, amplitude):
 def closed_form(scene, velocity, amplitude, poisson, tolerance):
     """(mu, torque, error) where nothing has to be computed, else None.
 
-    The limit of vanishing velocity; pure rotation; and sliding so fast that the bracket of
-    bounds.py is within the tolerance (0: only what is exact).
+    The steady state of a motion that does not oscillate, where every point slips along its rigid
+    velocity; the limit of vanishing velocity; and sliding so fast that the bracket of bounds.py is
+    within the tolerance.
     """
+    if not scene.periodic:
+        forward, torque = STEADY_STATES[scene.name]
+        return float(forward(velocity)), float(torque(velocity)), ROUNDING
     if velocity == 0.0:
-        if not scene.periodic:
-            return 0.0, 1.0, ROUNDING
         known = STATIC_LIMITS.get(scene.name)
         if known is None or (poisson > 0.0 and not scene.rotates):
             return None
