@@ -70,7 +70,6 @@ def accuracy_result(request):
         found = {"mu_macro": mu_of(request) - error, "mu_macro_error": 2 * error, "cells": 24}
         return found | {
             "seconds": 9.0,
-            "work": 9,
             "effort": 900,
             "steps_per_period": 64 if request["amplitude"] else 0,
             "converged": True,
@@ -89,7 +88,7 @@ def accuracy_result(request):
         else float(theory.bore_forward(float(request["velocity"])))
     )
     return {"mu_macro": mu + error, "converged": True, "reason": "", "seconds": seconds} | {
-        "work": cells**2,
+        "effort": cells**2,
         "applies": True,
     }
 

@@ -251,3 +251,28 @@ def test_method_names_are_refused_with_what_is_allowed(text, named):
 def test_numbers_of_a_method_reach_it():
     assert method_named("admm:penalty=0.25").parameters == {"penalty": 0.25, "relaxation": 1.7}
     assert method_named("shipped").parameters == {}
+
+
+# Methods without a part in what is asked
+
+
+@pytest.mark.parametrize(
+    ("scene", "amplitude", "choice", "why"),
+    [
+        ("transverse", 0.5, {"method": "paper", "model": "cartesian"}, "cannot be refined"),
+        ("transverse", 0.5, {"method": "paper"}, "a run of the model cartesian"),
+        ("continuous-bore", None, {"method": "march"}, "nothing oscillates"),
+        ("transverse", 0.5, {"method": "euler", "model": "dahl"}, "no step"),
+        ("transverse", 0.5, {"method": "admm", "model": "cartesian"}, "too large"),
+    ],
+)
+def test_methods_without_a_part_are_refused(scene, amplitude, choice, why):
+    with pytest.raises(ValueError, match=f"method = '{choice['method']}': .*{why}"):
+        microslip.solve(scene, 0.2, amplitude, **choice)
+
+
+def test_a_step_that_fails_in_the_static_limit_is_not_a_result():
+    result = microslip.solve("transverse", 0.0, 0.5, method="full-newton")
+    assert not result.converged
+    assert "step" in result.reason
+    assert np.isnan(result.mu_macro)

@@ -15,6 +15,7 @@ from sweep_stub import Solver
 from microslip import answers, config, keys, schemas, studies, sweep, trial
 from microslip.cache import Store
 from microslip.choice import choose_model
+from microslip.methods import paper
 from microslip.models import MODELS
 from microslip.scenes import SCENES
 from microslip.studies import accuracy_cost, fronts, ladders, stability
@@ -33,8 +34,8 @@ def test_models_apply_here_exactly_where_the_solver_lets_them(scene, poisson):
 
 def test_every_model_has_a_ladder_and_fixed_methods_run_where_they_say():
     assert set(ladders.LADDERS) == set(MODELS)
-    for name, (model, _) in ladders.FIXED.items():
-        assert trial.applies("transverse", 0.0, model, name) == ""
+    assert trial.applies("transverse", 0.0, "cartesian", "paper") == ""
+    assert paper.METHOD.resolution == (paper.CELLS, 1, paper.STEPS_PER_PERIOD)
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -268,7 +269,7 @@ class Trials(Solver):
         assert isinstance(settings["steps"], int)
         mu = velocity / (1 + velocity + (amplitude or 0)) + 1 / settings["cells"] ** 2
         work = np.int64(settings["cells"] * settings["angles"] * settings["steps"])
-        return {"mu_macro": mu, "converged": True, "reason": "", "work": work, "unknowns": 4}
+        return {"mu_macro": mu, "converged": True, "reason": "", "effort": work, "unknowns": 4}
 
     def measure_steps(self, model, cells, angles, poisson, steps):
         n = cells * angles

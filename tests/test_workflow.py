@@ -65,9 +65,9 @@ class Project:
         assert done.returncode == 0, done.stderr
         return done.stdout + done.stderr
 
-    def planned(self):
+    def planned(self, *targets):
         """Jobs that a run would do, by rule; {} if there is nothing to do."""
-        done = self.snakemake(*RUN, "--dry-run")
+        done = self.snakemake(*targets, *RUN, "--dry-run")
         assert done.returncode == 0, done.stderr
         table = re.search(r"^-+  -+\n(.*?)^total", done.stdout, re.MULTILINE | re.DOTALL)
         rows = table[1].split("\n")[:-1] if table else []

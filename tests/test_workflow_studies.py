@@ -54,13 +54,6 @@ class Studies(Project):
     def write_method(self, stem):
         (self.folder / f"src/microslip/methods/{stem}.py").write_text(METHOD)
 
-    def planned(self, *targets):
-        done = self.snakemake(*targets, *RUN, "--dry-run")
-        assert done.returncode == 0, done.stderr
-        table = re.search(r"^-+  -+\n(.*?)^total", done.stdout, re.MULTILINE | re.DOTALL)
-        rows = table[1].split("\n")[:-1] if table else []
-        return {name: int(count) for name, count in map(str.split, rows)}
-
     def stored(self, folder):
         return {p.name: p.read_bytes() for p in self.folder.glob(f"results/{folder}/*/*/*.json")}
 

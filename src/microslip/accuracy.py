@@ -42,7 +42,7 @@ class Axis:
     three.
     regular: the error falls smoothly, with the second power of the levels, so that it can be
     extrapolated; imposed: the last level is what was asked for, and its error, the spread of the
-    last three again, is only reported.
+    last three again, is only reported; caution: errors of irregular axes over their spread.
     """
 
     name: str

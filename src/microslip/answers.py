@@ -26,8 +26,8 @@ def timed(run, repeats):
     """Return what `run()` gives and the CPU seconds that it takes, compiled and with warm caches.
 
     The first call is not counted, unless it takes so long that compiling is next to nothing of it.
-    The seconds are the median of `repeats` readings, or fewer if
-    they take long. CPU time does not count what other processes do on the same cores meanwhile.
+    The seconds are the median of `repeats` readings, or fewer if they take long. CPU time does not
+    count what other processes do on the same cores meanwhile.
     """
     begun = time.process_time()
     result = run()

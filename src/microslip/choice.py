@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from microslip import bounds, theory
 from microslip.accuracy import Axis
+from microslip.method import SHIPPED
 from microslip.models import MODELS
 from microslip.motion import Resolution
 
+STEPLESS = ("rigid", "dahl")
+"""Models whose march is an evaluation: no step of theirs is solved."""
 RINGS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
 SQUARES = (8, 16, 32, 64, 128)
 ANGLES = (2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)
@@ -53,6 +56,26 @@ def choose_model(scene, poisson, model="auto"):
     if refusal:
         raise ValueError(f"model = {model!r}: does not apply to {scene.name}: {refusal}")
     return model
+
+
+def method_refusal(scene, model, method):
+    """Why a method.Method has no part in how a model (by name) computes a scene, as one line; "" if
+    it has."""
+    if method.run is not None:
+        if model != method.model:
+            return f"it is a run of the model {method.model}"
+        if not scene.periodic:
+            return "nothing oscillates"
+        return "it knows translations alone" if scene.rotates and not method.turns else ""
+    if method == SHIPPED:
+        return ""
+    if model in STEPLESS:
+        return "no step of the model has to be solved"
+    if not scene.periodic and method.dress is None:
+        return "nothing oscillates"
+    if model == "cartesian" and method.dress is not None:
+        return "the matrix of all squares would be too large"
+    return ""
 
 
 def no_vibration(scene, amplitude):

@@ -76,18 +76,24 @@ def build(sweep, points, histories, settings):
         dataset = dataset.assign_coords(start=("start", starts))
         dataset["start"].attrs["long_name"] = "initial state of the transient"
     _describe_axes(dataset, sweep)
-    dataset.attrs = {
+    title = f"Friction of a vibrated Hertz contact, scene {sweep.scene}"
+    about = {"scene": sweep.scene, "tolerance": sweep.tolerance}
+    dataset.attrs = provenance(title, settings, versions, **about)
+    return dataset
+
+
+def provenance(title, settings, versions, **more):
+    """Attributes that say what made a dataset; settings: dict, kept as JSON; versions: set of
+    texts, those of the libraries behind its results."""
+    return {
         "Conventions": CONVENTIONS,
-        "title": f"Friction of a vibrated Hertz contact, scene {sweep.scene}",
+        "title": title,
         "references": PAPER,
-        "scene": sweep.scene,
-        "tolerance": sweep.tolerance,
         "microslip_version": microslip.__version__,
         "source_digest": source_digest(),
         "configuration": canonical_json(settings),
         "library_versions": "; ".join(sorted(versions)),
-    }
-    return dataset
+    } | more
 
 
 def write(dataset, path):
@@ -151,8 +157,9 @@ def _from_points(sweep, points, dims, shape):
             columns[name][count - 1] = value
     if count != size:
         raise ValueError(f"{sweep.name}: {count} results for the {size} points of the sweep")
+    meanings = {"converged": {"flags": "not_converged converged"}}
     variables = {
-        name: (dims, column.reshape(shape), _attributes(*table[name]))
+        name: (dims, column.reshape(shape), attributes(*table[name], **meanings.get(name, {})))
         for name, column in columns.items()
     }
     return variables, versions
@@ -161,18 +168,15 @@ def _from_points(sweep, points, dims, shape):
 _MISSING = {float: np.nan, bool: False, np.int32: 0, np.int64: 0, str: ""}
 
 
-def _attributes(kind, long_name):
+def attributes(kind, long_name, units="1", flags="no yes"):
+    """Attributes of a variable whose values are of a type; flags: what the two of bool mean."""
     if kind is str:
         return {"long_name": long_name}
     if kind is bool:
         # Stored as bytes with these meanings; xarray gives them back as bool.
-        flags = np.array([0, 1], np.int8)
-        return {
-            "long_name": long_name,
-            "flag_values": flags,
-            "flag_meanings": "not_converged converged",
-        }
-    return {"long_name": long_name, "units": "1"}
+        values = np.array([0, 1], np.int8)
+        return {"long_name": long_name, "flag_values": values, "flag_meanings": flags}
+    return {"long_name": long_name, "units": units}
 
 
 # Single runs, the data of Figures 1, 3 and 5

@@ -22,9 +22,13 @@ class Method:
     parameters: numbers that ``dress`` takes, with their defaults; search(cycle, start, tolerance,
     step_tolerance, max_periods, inverse) -> cycle.PeriodicState; prepared: start near the static
     limit and with coarse steps, else once from full slip; extrapolated: add the difference to the
-    run with half the steps; run: replaces the whole simulation, see methods.paper; requires:
-    package that it takes besides those of microslip, see methods.missing; turns: whether it knows
-    motions that rotate.
+    run with half the steps; run: replaces the whole simulation, see methods.paper; model: the only
+    one that ``run`` stands for; resolution: (cells, angles, steps a period) that ``run`` keeps to
+    whatever is asked for; requires: package that it takes besides those of microslip; turns:
+    whether it knows motions that rotate.
+
+    In a method's file the last four are literals: they are read without running it, see
+    methods.declared.
     """
 
     summary: str
@@ -35,6 +39,8 @@ class Method:
     prepared: bool = True
     extrapolated: bool = False
     run: Callable | None = None
+    model: str = ""
+    resolution: tuple[int, int, int] | None = None
     requires: str = ""
     turns: bool = True
 

@@ -9,8 +9,8 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from microslip.accuracy import certify
-from microslip.choice import choose_model, closed_form, no_vibration, plan
-from microslip.methods import SHIPPED, method_named
+from microslip.choice import choose_model, closed_form, method_refusal, no_vibration, plan
+from microslip.methods import SHIPPED, method_named, missing
 from microslip.scenes import scene_named
 from microslip.simulate import simulate, simulate_static
 
@@ -97,6 +97,7 @@ def solve(
     if not most_work > 0.0:
         raise ValueError(f"most_work = {most_work!r}: allowed is a number above 0")
     name, how = choose_model(kind, poisson, model), method_named(method)
+    _refuse_method(kind, name, method, how)
     started = time.perf_counter()
     point = {
         "scene": kind.name,
@@ -167,6 +168,19 @@ def checked_point(scene, velocity, amplitude, poisson):
     elif amplitude is not None:
         raise ValueError(f"amplitude = {amplitude}: {kind.name} has no amplitude")
     return kind, velocity, amplitude, poisson
+
+
+def _refuse_method(kind, model, method, how):
+    """Raise ValueError where a method, by name and as a method.Method, has no part in a solve."""
+    if missing(method):
+        raise ValueError(missing(method))
+    refusal = method_refusal(kind, model, how)
+    if not refusal and how.run is not None:
+        refusal = "it is one run, which cannot be refined"
+    if refusal:
+        raise ValueError(
+            f"method = {method!r}: does not apply to {kind.name}, model {model}: {refusal}"
+        )
 
 
 def _number(name, value, low, high=math.inf):

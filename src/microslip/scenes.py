@@ -11,7 +11,7 @@ it has; nothing else in the package names a scene.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -110,16 +110,11 @@ TRANSVERSE = Scene(
     velocity_label="v0 / (omega u_lim)",
     amplitude_label="y0 / u_lim",
 )
-ZIGZAG = Scene(
+ZIGZAG = replace(
+    TRANSVERSE,
     name="zigzag",
     summary="forward sliding with a lateral oscillation at constant speed that turns abruptly",
     displacement=_zigzag,
-    periodic=True,
-    rotates=False,
-    half_period_mirror=True,
-    focus=_transverse_focus,
-    velocity_label="v0 / (omega u_lim)",
-    amplitude_label="y0 / u_lim",
 )
 BORE = Scene(
     name="bore",

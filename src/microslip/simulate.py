@@ -90,13 +90,18 @@ def simulate(
     try:
         run = _run(motion, model, resolution, tolerance, guess, method)
     except StepFailure as failure:
-        return Run(np.nan, np.nan, np.inf, np.inf, 0, 0, 0, 0, 0, False, str(failure))
+        return failed_run(str(failure))
     if method.extrapolated and run.converged:
         half = replace(resolution, steps=max(resolution.steps // 2, 1))
         other = replace(method, extrapolated=False)
         point = (scene, velocity, amplitude, poisson, model, half, tolerance, run, other)
         return _extrapolated(run, simulate(*point))
     return run
+
+
+def failed_run(reason):
+    """The Run of a march that could not go on: no number, and why."""
+    return Run(np.nan, np.nan, np.inf, np.inf, 0, 0, 0, 0, 0, False, reason)
 
 
 def _run(motion, model, resolution, tolerance, guess, method):
@@ -238,7 +243,10 @@ def simulate_static(scene, amplitude, poisson, model, resolution, tolerance, met
     contact = method.dressed(build_contact(motion, model, resolution))
     force, solves = 0.0, 0
     if contact.sticks:
-        residual, _ = static_state(contact, motion.displacement, STEP_SHARE * tolerance)
+        try:
+            residual, _ = static_state(contact, motion.displacement, STEP_SHARE * tolerance)
+        except StepFailure as failure:
+            return failed_run(str(failure))
         force = float(forces(contact, residual)[FORWARD])
         solves = STEPS // 2
     return Run(

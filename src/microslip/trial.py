@@ -10,6 +10,7 @@ from statistics import median
 
 import numpy as np
 
+from microslip.choice import method_refusal
 from microslip.methods import method_named, missing
 from microslip.models import MODELS
 from microslip.models.contact import forward_slip
@@ -18,38 +19,21 @@ from microslip.path import EULER, half_period_phases, make_path
 from microslip.scenes import BORE, TRANSVERSE, scene_named
 from microslip.simulate import simulate
 
-STEPLESS = ("rigid", "dahl")
-"""Models whose march is an evaluation: no step of theirs is solved."""
 STEP_TOLERANCE = 1e-6
 
 
 def applies(scene, poisson, model, method):
-    """Why a model or a method cannot be tried on a scene (by name), as one line; "" if it can."""
-    kind, how = scene_named(scene), method_named(method)
-    refusal = MODELS[model].refuses(kind, poisson)
-    if refusal or how == method_named("shipped"):
-        return refusal
-    lacking = missing(method)
-    if lacking:
-        return lacking
-    if how.run is not None:
-        if model != "cartesian" or not kind.periodic:
-            return "it is a run on squares"
-        return "it knows translations alone" if kind.rotates and not how.turns else ""
-    if model in STEPLESS:
-        return "no step of the model has to be solved"
-    if not kind.periodic and how.dress is None:
-        return "nothing oscillates"
-    if model == "cartesian" and how.dress is not None:
-        return "the matrix of all squares would be too large"
-    return ""
+    """Why a model or a method, by name, cannot be tried on a scene, as one line; "" if it can."""
+    kind = scene_named(scene)
+    refusal = MODELS[model].refuses(kind, poisson) or missing(method)
+    return refusal or method_refusal(kind, model, method_named(method))
 
 
 def run_trial(
     scene, velocity, amplitude, *, poisson, model, method, cells, angles, steps, tolerance
 ):
     """One run: a dict of mu_macro (nan if there is none), converged, reason, periods (half ones),
-    iterations, solves, unknowns and work = iterations x unknowns; nothing in it depends on the
+    iterations, solves, unknowns and effort = iterations x unknowns; nothing in it depends on the
     machine.
 
     Arguments as for ``microslip.solve``, steps in a full period, tolerance on the periodic state (a
@@ -70,7 +54,7 @@ def run_trial(
         "iterations": run.iterations,
         "solves": run.solves,
         "unknowns": unknowns,
-        "work": run.effort,
+        "effort": run.effort,
     }
 
 

@@ -64,7 +64,7 @@ def missing(text):
     "" if it can.  Imports neither the solver nor the package.  Raises ValueError as ``split``.
     """
     name, _ = split(text)
-    package = _declared(name, "requires")
+    package = declared(name, "requires")
     if not package or find_spec(package) is not None:
         return ""
     return f"method = {text!r}: needs the package {package}, which is not installed"
@@ -86,12 +86,15 @@ def method_named(text):
 
 def _parameters(name):
     """Names of the numbers that a method takes."""
-    return tuple(_declared(name, "parameters") or ())
+    return tuple(declared(name, "parameters") or ())
 
 
 @cache
-def _declared(name, field):
-    """What a method's file gives for a field of METHOD, read without running it; None: nothing."""
+def declared(name, field):
+    """What a method's file gives for a field of METHOD, read without running it; None: nothing.
+
+    name: without numbers; the value has to be a literal.
+    """
     if name == SHIPPED:
         return None
     file = Path(__file__).parent / f"{name.replace('-', '_')}.py"

@@ -20,6 +20,7 @@ from microslip.models.contact import March, StepFailure, forces
 
 FAR_FROM_SOLVED = 1e-2
 """Residual of a step, over mu F_z, above which it counts as diverged rather than slow."""
+MAX_DESCENTS = 3000
 
 
 def nothing(matrix, scale):
@@ -94,6 +95,11 @@ class DenseContact:
         )
 
 
+def safe_length(matrix):
+    """Length of a gradient step that lowers the energy for certain: 1 / largest eigenvalue."""
+    return 1.0 / np.abs(np.linalg.eigvals(matrix)).max()
+
+
 def _matrix(contact, shape):
     """The influence operator of a contact, column by column."""
     size = int(np.prod(shape))
@@ -121,3 +127,17 @@ def project_in_place(q, bound):
         f = shrink(q[0, i], q[1, i], bound[i])
         q[0, i] *= f
         q[1, i] *= f
+
+
+@njit(**JIT)
+def descend(matrix, scale, bound, weight, b, q, slip, tolerance, length):
+    """Solve a step by projected gradient steps of fixed length, that of each point in ``length``,
+    (K,); see the module's docstring."""
+    residual = judge(matrix, scale, bound, weight, b, q, slip)
+    for iteration in range(MAX_DESCENTS):
+        if residual <= tolerance:
+            return iteration, residual
+        q += length * slip
+        project_in_place(q, bound)
+        residual = judge(matrix, scale, bound, weight, b, q, slip)
+    return MAX_DESCENTS, residual

@@ -26,10 +26,9 @@ import numpy as np
 from microslip.friction import project
 from microslip.hertz import G_STAR
 from microslip.method import Method
-from microslip.methods import missing
 from microslip.models.convolution import square_convolution
 from microslip.path import EULER
-from microslip.simulate import Run
+from microslip.simulate import Run, failed_run
 
 MOST_PERIODS = 6
 ACCEPTED = 1e-2
@@ -89,15 +88,9 @@ def half_period(solver, path, number):
 
 
 def _run(motion, model, resolution, tolerance):
-    problem = missing("aspher")
-    if not problem and motion.scene.rotates:
-        problem = "method = 'aspher': it knows translations alone"
-    if problem:
-        raise ValueError(problem)
     solver = Solver(resolution.cells, motion.poisson)
     if not solver.loaded:
-        reason = "the normal contact was left unsolved"
-        return Run(np.nan, np.nan, np.inf, np.inf, 0, 0, 0, 0, 0, False, reason)
+        return failed_run("the normal contact was left unsolved")
     path = motion.path(solver, resolution.steps, EULER)
     force, means, residuals, change = 0.0, [], [], math.inf
     for number in range(2 * MOST_PERIODS):
@@ -138,6 +131,7 @@ def _reason(solver, periods, change, tolerance):
 METHOD = Method(
     "another package's projected conjugate gradients: squares, backward Euler, plain march",
     run=_run,
+    model="cartesian",
     requires="aspher",
     turns=False,
 )

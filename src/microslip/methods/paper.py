@@ -15,9 +15,8 @@ from microslip.models.contact import FORWARD, forward_slip
 from microslip.path import EULER, make_path
 from microslip.simulate import Run
 
-CELLS = 32
+CELLS, STEPS_PER_PERIOD = 32, 100
 STEPS = 8000
-STEPS_PER_PERIOD = 100
 STRESS_TOLERANCE = 1e-3
 
 
@@ -53,4 +52,9 @@ def _run(motion, model, resolution, tolerance):
     )
 
 
-METHOD = Method("the paper's run: squares, 8,000 steps of backward Euler", run=_run)
+METHOD = Method(
+    "the paper's run: squares, 8,000 steps of backward Euler",
+    run=_run,
+    model="cartesian",
+    resolution=(32, 1, 100),
+)

@@ -5,12 +5,11 @@ The length of a step is what the last one measured of the matrix along its own d
 
 from __future__ import annotations
 
-import numpy as np
 from numba import njit
 
 from microslip.friction import JIT
 from microslip.method import Method
-from microslip.methods._dense import DenseContact, judge, project_in_place
+from microslip.methods._dense import DenseContact, judge, project_in_place, safe_length
 
 MAX_ITERATIONS = 2000
 PATIENCE = 60
@@ -18,8 +17,7 @@ PATIENCE = 60
 
 
 def _shortest(matrix, scale):
-    """A step that is safe: the reciprocal of the largest eigenvalue."""
-    return 1.0 / np.abs(np.linalg.eigvals(matrix)).max()
+    return safe_length(matrix)
 
 
 @njit(**JIT)

@@ -154,8 +154,7 @@ def _row(point, level, request, result, reference):
         "mu_macro": mu,
         "error": abs(mu - reference),
         "seconds": value_of(result, "seconds"),
-        # What solve calls work is step solves times unknowns.
-        "work": value_of(result, "effort" if chosen else "work"),
+        "work": value_of(result, "effort"),
         "converged": value_of(result, "converged", bool),
         "reason": value_of(result, "reason", str),
         "claimed_error": value_of(result, "mu_macro_error") if chosen else np.nan,

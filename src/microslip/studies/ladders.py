@@ -1,14 +1,14 @@
 """Ladders: the resolutions in which every model is run, from coarse to fine.
 
 Cells, angles and steps are refined jointly, so that no part of the discretisation holds up the
-others.  Here is also which model applies where, as plain data; a test keeps it the same as what
-the solver refuses.
+others.  A method may bring a model and a resolution of its own, which its file says.  Here is also
+which model applies where, as plain data; a test keeps it the same as what the solver refuses.
 """
 
 from typing import NamedTuple
 
 from ..config import MODELS_OF_SCENE
-from ..methods import SHIPPED, missing, split
+from ..methods import SHIPPED, declared, missing, split
 
 
 class Level(NamedTuple):
@@ -43,12 +43,6 @@ LADDERS = {
 OF_OTHER_METHODS = {"radial": 5, "polar": 4, "cartesian": 3}
 """Levels for methods that are not shipped: some keep dense matrices or solve point by point."""
 
-FIXED = {"paper": ("cartesian", Level(32, 1, 100))}
-"""Methods that come with their own resolution, and the one model that they are made for."""
-
-TRANSLATIONS_ON_SQUARES = ("aspher",)
-"""Methods that march squares, as the model cartesian has them, and know no rotation."""
-
 COARSEST_TOLERANCE, TOLERANCE_POWER = 3e-5, 1.5
 """How near the periodic state a run has to come, a force over mu F_z: at the first level, and with
 which power of the steps it falls. That is below what the discretisation leaves at every level
@@ -74,8 +68,9 @@ def exact_model(scene, poisson):
 def ladder(model, method, count):
     """List (number of the level, Level, tolerance) to run `method` in, at most `count` of them."""
     name, _ = split(method)
-    if name in FIXED:
-        return [(0, FIXED[name][1], COARSEST_TOLERANCE)]
+    own = declared(name, "resolution")
+    if own is not None:
+        return [(0, Level(*own), COARSEST_TOLERANCE)]
     levels = LADDERS[model][:count]
     if name != SHIPPED:
         levels = levels[: OF_OTHER_METHODS.get(model, 0)]
@@ -87,15 +82,14 @@ def ladder(model, method, count):
 
 
 def models_for(method, scene, poisson):
-    """Models that `method` is run on: all for the shipped one, else the one that auto takes.
+    """Models that `method` is run on: all for the shipped one, else its own or what auto takes.
 
-    None where the method requires a package that is not installed: then nothing is asked.
+    None for a rotation that it does not know, or where it requires a package that is not installed.
     """
     name, _ = split(method)
     if name == SHIPPED:
         return models_of(scene, poisson)
-    if missing(method):
+    knows = scene in TRANSLATIONS or declared(name, "turns") is not False
+    if missing(method) or not knows:
         return []
-    if name in TRANSLATIONS_ON_SQUARES:
-        return ["cartesian"] if scene in TRANSLATIONS else []
-    return [FIXED[name][0]] if name in FIXED else [exact_model(scene, poisson)]
+    return [declared(name, "model") or exact_model(scene, poisson)]

@@ -3,10 +3,8 @@
 import numpy as np
 import xarray as xr
 
-import microslip
-
-from ..dataset import CONVENTIONS, PAPER
-from ..keys import canonical_json, sha256, source_digest
+from .. import dataset
+from ..keys import canonical_json, sha256
 
 
 class Answers:
@@ -35,26 +33,15 @@ def value_of(result, name, kind=float):
 
 def variable(dims, values, long_name, kind=float, units="1"):
     """A variable of a dataset with its attributes; kind: type of its values."""
-    values = np.asarray(values)
-    if kind is str:
-        return dims, values.astype(object), {"long_name": long_name}
-    if kind is bool:
-        flags = {"flag_values": np.array([0, 1], np.int8), "flag_meanings": "no yes"}
-        return dims, values.astype(bool), {"long_name": long_name} | flags
-    return dims, values.astype(kind), {"long_name": long_name, "units": units}
+    values = np.asarray(values).astype(object if kind is str else kind)
+    return dims, values, dataset.attributes(kind, long_name, units)
 
 
 def finished(variables, coords, title, answers, settings, **attributes):
     """A Dataset with what says where it comes from; settings: dict, kept as JSON."""
-    described = {
-        "Conventions": CONVENTIONS,
-        "title": title,
-        "references": PAPER,
-        "microslip_version": microslip.__version__,
-        "source_digest": source_digest(),
-        # The names of all results: they depend on the sources of the methods, too.
-        "results_digest": sha256("\n".join(sorted(answers.keys))),
-        "configuration": canonical_json(settings),
-        "library_versions": "; ".join(sorted(answers.versions)),
-    }
-    return xr.Dataset(variables, coords, described | attributes)
+    # The names of all results: they depend on the sources of the methods, too.
+    digest = sha256("\n".join(sorted(answers.keys)))
+    described = dataset.provenance(
+        title, settings, answers.versions, results_digest=digest, **attributes
+    )
+    return xr.Dataset(variables, coords, described)
