@@ -150,6 +150,7 @@ def label_beside(
         path_effects=[patheffects.withStroke(linewidth=1.5, foreground="white")],
     )
     label.set_in_layout(False)
+    margin = 2.0 * axes.figure.dpi / 72.0  # panels still move a little when the layout settles
     best = None
     for right, up in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)):
         far = away if right == 0 or up == 0 else 0.7 * away
@@ -157,8 +158,9 @@ def label_beside(
         label.set_horizontalalignment(("right", "center", "left")[right + 1])
         label.set_verticalalignment(("top", "center", "bottom")[up + 1])
         box = label.get_window_extent()
-        inside = axes.bbox.containsx(box.x0) and axes.bbox.containsx(box.x1)
-        inside = inside and axes.bbox.containsy(box.y0) and axes.bbox.containsy(box.y1)
+        room = box.padded(margin)
+        inside = axes.bbox.containsx(room.x0) and axes.bbox.containsx(room.x1)
+        inside = inside and axes.bbox.containsy(room.y0) and axes.bbox.containsy(room.y1)
         if not inside or any(box.overlaps(other) for other in taken):
             continue
         wide = box.padded(2.0 * axes.figure.dpi / 72.0)
