@@ -10,7 +10,7 @@ import xarray as xr
 from sweep_stub import EFFORT, Solver
 
 import microslip
-from microslip import cache, config, dataset, sweep, theory
+from microslip import cache, columns, config, dataset, sweep, theory
 from microslip.cache import CacheError, Store
 
 GRIDS = {
@@ -21,12 +21,13 @@ GRIDS = {
 NU = {"transverse": {**GRIDS["transverse"], "poisson": [0, 0.3]}}
 
 
-def built(name, folder, grids=GRIDS):
+def write(name, folder, path, grids=GRIDS):
     configuration = config.from_mapping({"sweeps": grids})
     store = Store(folder)
     grid = configuration.sweeps[name]
     requests = sweep.history_requests(configuration, name)
-    return dataset.build(
+    dataset.write_sweep(
+        path,
         grid,
         (sweep.answer(request, store)[0] for request in sweep.point_requests(grid)),
         [sweep.answer(request, store)[0] for request in requests],
@@ -40,8 +41,13 @@ def solver(monkeypatch):
 
 
 def on_disk(name, folder, grids=GRIDS):
-    dataset.write(built(name, folder, grids), folder / f"{name}.nc")
+    write(name, folder, folder / f"{name}.nc", grids)
     return xr.open_dataset(folder / f"{name}.nc")
+
+
+def built(name, folder):
+    with on_disk(name, folder) as data:
+        return data.load()
 
 
 @pytest.mark.parametrize("name", ["transverse", "bore"])
@@ -167,11 +173,10 @@ def test_conventions_and_provenance(name, tmp_path, solver):
 
 @pytest.mark.parametrize("name", GRIDS)
 def test_equal_results_give_equal_bytes(name, tmp_path, solver):
-    data = built(name, tmp_path)
-    dataset.write(data, tmp_path / "first.nc")
-    time.sleep(1.1)  # HDF5 can hold times, in seconds
-    dataset.write(built(name, tmp_path), tmp_path / "elsewhere" / "second.nc")
     first, second = tmp_path / "first.nc", tmp_path / "elsewhere" / "second.nc"
+    write(name, tmp_path, first)
+    time.sleep(1.1)  # HDF5 can hold times, in seconds
+    write(name, tmp_path, second)
     assert first.read_bytes() == second.read_bytes()
 
 
@@ -180,13 +185,14 @@ def test_a_missing_or_additional_point_is_an_error(tmp_path, solver):
     grid, store = configuration.sweeps["bore"], Store(tmp_path)
     records = [sweep.answer(request, store)[0] for request in sweep.point_requests(grid)]
     for wrong in (records[:-1], [*records, records[0]]):
-        with pytest.raises(ValueError, match="results for the 6 points"):
-            dataset.build(grid, wrong, [], {})
+        with pytest.raises(ValueError, match="results for 6 points"):
+            dataset.write_sweep(tmp_path / "bore.nc", grid, wrong, [], {})
+        assert not list(tmp_path.glob("*.nc*"))
 
 
 def test_a_dataset_is_replaced_whole_or_not_at_all(tmp_path, monkeypatch, solver):
     path = tmp_path / "bore.nc"
-    dataset.write(built("bore", tmp_path), path)
+    write("bore", tmp_path, path)
     before = path.read_bytes()
 
     def full(*_):
@@ -194,6 +200,27 @@ def test_a_dataset_is_replaced_whole_or_not_at_all(tmp_path, monkeypatch, solver
 
     monkeypatch.setattr(cache.os, "fsync", full)
     with pytest.raises(CacheError, match="No space left"):
-        dataset.write(built("transverse", tmp_path, NU), path)
+        write("transverse", tmp_path, path, NU)
     assert path.read_bytes() == before
     assert [p.name for p in tmp_path.glob("*.nc*")] == ["bore.nc"]
+
+
+@pytest.mark.parametrize("block", [1, 2, 3, 4, 6, 7, 12])
+def test_blocks_of_any_size_give_the_same_dataset(block, tmp_path, monkeypatch, solver):
+    with on_disk("transverse", tmp_path, NU) as whole:
+        whole.load()
+    monkeypatch.setattr(columns, "BLOCK", block)
+    held = []
+    seen = columns._column
+    monkeypatch.setattr(columns, "_column", lambda b, *rest: held.append(len(b)) or seen(b, *rest))
+    with on_disk("transverse", tmp_path, NU) as cut:
+        xr.testing.assert_identical(cut.load(), whole)
+    assert max(held) <= block
+
+
+def test_large_datasets_are_chunked_and_open_with_dask(tmp_path, monkeypatch, solver):
+    monkeypatch.setattr(columns, "BLOCK", 3)
+    write("transverse", tmp_path, tmp_path / "transverse.nc", NU)
+    with xr.open_dataset(tmp_path / "transverse.nc", chunks={}) as data:
+        assert data.mu_macro.chunks == ((1, 1), (1, 1), (3,))
+        assert float(data.mu_macro.mean()) == pytest.approx(float(data.mu_macro.load().mean()))

@@ -28,7 +28,7 @@ LAYERS = [
     {"inside", "trial"},
     {"keys", "schemas"},
     {"cache", "config"},
-    {"answers", "jobs", "limits"},
+    {"answers", "jobs", "limits", "columns"},
     {"sweep", "dataset"},
     {"studies"},
     {"plot"},

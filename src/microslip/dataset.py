@@ -5,12 +5,13 @@ says what made it. All quantities are dimensionless. The same results give the s
 in a file depends on when, where or in how many jobs it was made.
 """
 
+import netCDF4
 import numpy as np
 import xarray as xr
 
 import microslip
 
-from . import limits, theory
+from . import columns, limits, theory
 from .cache import writing_beside
 from .keys import canonical_json, source_digest
 
@@ -27,58 +28,39 @@ AMPLITUDE = {
     "bore": "amplitude of the rotation over the one that leaves the stick radius a/2 (Eq 27)",
 }
 
-# Variables over the sweep: name -> (type, long_name). 0 stands where a count does not apply.
-POINT_VARIABLES = {
-    "mu_macro": (float, "mean forward friction force over mu F_z"),
-    "mu_macro_error": (float, "estimated error of mu_macro"),
-    "error_space": (float, "part of mu_macro_error from the cells"),
-    "error_time": (float, "part of mu_macro_error from the time steps"),
-    "error_periodicity": (float, "part of mu_macro_error from the distance to the periodic state"),
-    "error_solver": (float, "part of mu_macro_error from the iteration in each step"),
-    "error_model": (float, "part of mu_macro_error from a closed form used in place of a run"),
-    "converged": (bool, "mu_macro_error is within the tolerance"),
-    "cells": (np.int32, "rings, or squares across the contact"),
-    "angles": (np.int32, "angular points on half a ring"),
-    "steps_per_period": (np.int32, "time steps in a period"),
-    "periods": (np.int32, "half periods marched in the longest run"),
-    "iterations": (np.int32, "iterations of the step solver in all runs"),
-    "work": (np.int64, "step solves times unknowns, summed over all runs"),
-    "model": (str, "contact model that was used"),
-    "reason": (str, "why the point did not converge, empty if it did"),
-}
-TORQUE_VARIABLES = {
-    "mu_torque": (float, "torque about the normal over its value at zero forward velocity"),
-    "mu_torque_error": (float, "estimated error of mu_torque"),
-}
 
+def write_sweep(path, sweep, points, histories, settings):
+    """Write the dataset of a sweep to the netCDF-4 file `path`, all of it or nothing.
 
-def build(sweep, points, histories, settings):
-    """Assemble the Dataset of a sweep.
-
-    sweep: config.Sweep. points: records in the order of sweep.point_requests, any iterable.
-    histories: records in the order of sweep.history_requests. settings: dict of the configuration
-    that led here, kept as provenance. Returns an xarray.Dataset with dims (amplitude, velocity),
-    those of them that the scene has, and poisson before them if that is an axis. Raises
-    ValueError if there are not as many points as the grid has.
+    sweep: config.Sweep. points: records in the order of sweep.PointRequests, any iterable; it is
+    read a block at a time, so that memory does not grow with their number. histories: records
+    in the order of sweep.history_requests. settings: dict of the configuration that led here, kept
+    as provenance. The dataset has dims (amplitude, velocity), those of them that the scene has, and
+    poisson before them if that is an axis. The same results give the same bytes. Raises ValueError
+    if there are not as many points as the grid has, CacheError as `write` does.
     """
-    axes = _axes(sweep)
-    shape = tuple(len(values) for values in axes.values())
-    variables, versions = _from_points(sweep, points, tuple(axes), shape)
-    variables |= limits.variables(sweep)
-    for record in histories:
-        versions.add(canonical_json(record["versions"]))
-    coords = {name: (name, np.array(values)) for name, values in axes.items()}
+    frame, axes = _frame(sweep, histories), _axes(sweep)
+    title = f"Friction of a vibrated Hertz contact, scene {sweep.scene}"
+    versions = {canonical_json(record["versions"]) for record in histories}
+    with writing_beside(path) as beside:
+        _to_netcdf(frame, beside)
+        with netCDF4.Dataset(beside, "a") as file:
+            versions |= columns.append(file, sweep, axes, points)
+            about = {"scene": sweep.scene, "tolerance": sweep.tolerance}
+            file.setncatts(provenance(title, settings, versions, **about))
+
+
+def _frame(sweep, histories):
+    """Dataset of all but the points: axes, limits and single runs."""
+    coords = {name: (name, np.array(values)) for name, values in _axes(sweep).items()}
     if not sweep.poisson_is_axis:
         coords["poisson"] = ((), sweep.poisson[0])
-    dataset = xr.Dataset(variables | _single_runs(sweep, histories), coords)
+    dataset = xr.Dataset(limits.variables(sweep) | _single_runs(sweep, histories), coords)
     if "transient_step" in dataset.dims:
         starts = [r["request"]["start"] for r in histories if r["request"]["kind"] == "history"]
         dataset = dataset.assign_coords(start=("start", starts))
         dataset["start"].attrs["long_name"] = "initial state of the transient"
     _describe_axes(dataset, sweep)
-    title = f"Friction of a vibrated Hertz contact, scene {sweep.scene}"
-    about = {"scene": sweep.scene, "tolerance": sweep.tolerance}
-    dataset.attrs = provenance(title, settings, versions, **about)
     return dataset
 
 
@@ -102,11 +84,15 @@ def write(dataset, path):
     The same dataset gives the same bytes. Raises CacheError, one line that says what to do, on a
     full disk, a read-only folder and the like.
     """
+    with writing_beside(path) as beside:
+        _to_netcdf(dataset, beside)
+
+
+def _to_netcdf(dataset, path):
     encoding = {
         name: {"_FillValue": None} for name, v in dataset.variables.items() if v.dtype.kind == "f"
     }
-    with writing_beside(path) as beside:
-        dataset.to_netcdf(beside, engine="netcdf4", format="NETCDF4", encoding=encoding)
+    dataset.to_netcdf(path, engine="netcdf4", format="NETCDF4", encoding=encoding)
 
 
 def report(dataset):
@@ -133,50 +119,6 @@ def _describe_axes(dataset, sweep):
         names["amplitude"] = AMPLITUDE[sweep.scene]
     for name, long_name in names.items():
         dataset[name].attrs = {"long_name": long_name, "units": "1"}
-
-
-# Points
-
-
-def _from_points(sweep, points, dims, shape):
-    """Variables of POINT_VARIABLES over dims, and the set of library versions behind them."""
-    table = POINT_VARIABLES | (TORQUE_VARIABLES if sweep.amplitude is None else {})
-    size = int(np.prod(shape))
-    columns = {
-        name: np.zeros(size, object if kind is str else kind) for name, (kind, _) in table.items()
-    }
-    versions, count = set(), 0
-    for count, record in enumerate(points, start=1):
-        if count > size:
-            break
-        versions.add(canonical_json(record["versions"]))
-        for name, (kind, _) in table.items():
-            value = record["result"].get(name)
-            if value is None:
-                value = _MISSING[kind]
-            columns[name][count - 1] = value
-    if count != size:
-        raise ValueError(f"{sweep.name}: {count} results for the {size} points of the sweep")
-    meanings = {"converged": {"flags": "not_converged converged"}}
-    variables = {
-        name: (dims, column.reshape(shape), attributes(*table[name], **meanings.get(name, {})))
-        for name, column in columns.items()
-    }
-    return variables, versions
-
-
-_MISSING = {float: np.nan, bool: False, np.int32: 0, np.int64: 0, str: ""}
-
-
-def attributes(kind, long_name, units="1", flags="no yes"):
-    """Attributes of a variable whose values are of a type; flags: what the two of bool mean."""
-    if kind is str:
-        return {"long_name": long_name}
-    if kind is bool:
-        # Stored as bytes with these meanings; xarray gives them back as bool.
-        values = np.array([0, 1], np.int8)
-        return {"long_name": long_name, "flag_values": values, "flag_meanings": flags}
-    return {"long_name": long_name, "units": units}
 
 
 # Single runs, the data of Figures 1, 3 and 5

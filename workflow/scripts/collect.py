@@ -9,6 +9,8 @@ A sweep with a list of Poisson's ratios has the dim poisson before these.
 
 import logging
 
+import xarray as xr
+
 from microslip import config, dataset, sweep
 from microslip.cache import Store
 from microslip.jobs import job_log
@@ -21,12 +23,13 @@ with job_log(snakemake.log[0], shown=logging.INFO) as log:
     grid = configuration.sweeps[name]
     points = (sweep.answer(request, store)[0] for request in sweep.point_requests(grid))
     histories = sweep.history_requests(configuration, name)
-    data = dataset.build(
+    dataset.write_sweep(
+        snakemake.output[0],
         grid,
         points,
         [sweep.answer(request, store)[0] for request in histories],
         configuration.of_sweep(name),
     )
-    dataset.write(data, snakemake.output[0])
-    for line in dataset.report(data):
-        log.info(line)
+    with xr.open_dataset(snakemake.output[0]) as data:
+        for line in dataset.report(data):
+            log.info(line)

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from .. import dataset
+from .. import columns, dataset
 from ..keys import canonical_json, sha256
 
 
@@ -34,7 +34,7 @@ def value_of(result, name, kind=float):
 def variable(dims, values, long_name, kind=float, units="1"):
     """A variable of a dataset with its attributes; kind: type of its values."""
     values = np.asarray(values).astype(object if kind is str else kind)
-    return dims, values, dataset.attributes(kind, long_name, units)
+    return dims, values, columns.attributes(kind, long_name, units)
 
 
 def finished(variables, coords, title, answers, settings, **attributes):

@@ -1,0 +1,108 @@
+"""Results of the points of a sweep as variables of its dataset, written block by block.
+
+Memory does not grow with the number of points: at most BLOCK of them are held at a time.
+"""
+
+from itertools import islice
+
+import numpy as np
+
+from .keys import canonical_json
+
+# Variables over the sweep: name -> (type, long_name). 0 stands where a count does not apply.
+POINT_VARIABLES = {
+    "mu_macro": (float, "mean forward friction force over mu F_z"),
+    "mu_macro_error": (float, "estimated error of mu_macro"),
+    "error_space": (float, "part of mu_macro_error from the cells"),
+    "error_time": (float, "part of mu_macro_error from the time steps"),
+    "error_periodicity": (float, "part of mu_macro_error from the distance to the periodic state"),
+    "error_solver": (float, "part of mu_macro_error from the iteration in each step"),
+    "error_model": (float, "part of mu_macro_error from a closed form used in place of a run"),
+    "converged": (bool, "mu_macro_error is within the tolerance"),
+    "cells": (np.int32, "rings, or squares across the contact"),
+    "angles": (np.int32, "angular points on half a ring"),
+    "steps_per_period": (np.int32, "time steps in a period"),
+    "periods": (np.int32, "half periods marched in the longest run"),
+    "iterations": (np.int32, "iterations of the step solver in all runs"),
+    "work": (np.int64, "step solves times unknowns, summed over all runs"),
+    "model": (str, "contact model that was used"),
+    "reason": (str, "why the point did not converge, empty if it did"),
+}
+TORQUE_VARIABLES = {
+    "mu_torque": (float, "torque about the normal over its value at zero forward velocity"),
+    "mu_torque_error": (float, "estimated error of mu_torque"),
+}
+MISSING = {float: np.nan, bool: False, np.int32: 0, np.int64: 0, str: ""}
+
+BLOCK = 4096
+"""Points that are held at a time when a dataset is written, and a chunk of larger ones."""
+
+
+def append(file, sweep, axes, points):
+    """Write POINT_VARIABLES over the axes into an open file; the versions behind the records."""
+    table = POINT_VARIABLES | (TORQUE_VARIABLES if sweep.amplitude is None else {})
+    shape = tuple(len(values) for values in axes.values())
+    boxes = list(_boxes(shape))
+    for name, (kind, long_name) in table.items():
+        _create(file, name, kind, long_name, tuple(axes), boxes[0] if len(boxes) > 1 else None)
+    records, versions, count = iter(points), set(), 0
+    for box in boxes:
+        extent = tuple(part.stop - part.start for part in box)
+        block = list(islice(records, int(np.prod(extent))))
+        count += len(block)
+        if len(block) < np.prod(extent):
+            break
+        versions.update(canonical_json(record["versions"]) for record in block)
+        for name, (kind, _) in table.items():
+            file[name][box] = _column(block, name, kind).reshape(extent)
+    count += sum(1 for _ in islice(records, 1))
+    size = int(np.prod(shape))
+    if count != size:
+        raise ValueError(f"{sweep.name}: {min(count, size + 1)} results for {size} points")
+    return versions
+
+
+def _boxes(shape):
+    """Boxes of at most BLOCK points, as tuples of slices, that fill a grid in the order of C."""
+    whole = len(shape)
+    while whole and np.prod(shape[whole - 1 :]) <= BLOCK:
+        whole -= 1  # axes from here on are not cut
+    if whole == 0:
+        yield tuple(slice(0, n) for n in shape)
+        return
+    trailing = shape[whole:]
+    step = max(1, BLOCK // int(np.prod(trailing)))
+    for leading in np.ndindex(shape[: whole - 1]):
+        for start in range(0, shape[whole - 1], step):
+            cut = slice(start, min(start + step, shape[whole - 1]))
+            before = (slice(index, index + 1) for index in leading)
+            yield (*before, cut, *(slice(0, n) for n in trailing))
+
+
+def _create(file, name, kind, long_name, dims, box):
+    """An empty variable; box: one of those that its chunks are to be, None for a single one."""
+    stored = {bool: np.int8}.get(kind, kind)
+    chunks = None if box is None else tuple(part.stop - part.start for part in box)
+    variable = file.createVariable(name, stored, dims, chunksizes=chunks, fill_value=False)
+    flags = "not_converged converged" if name == "converged" else "no yes"
+    variable.setncatts(attributes(kind, long_name, flags=flags))
+    if kind is bool:
+        variable.setncattr("dtype", "bool")  # what xarray writes and reads
+
+
+def _column(block, name, kind):
+    """A value of every record, as an array."""
+    values = [record["result"].get(name) for record in block]
+    filled = [MISSING[kind] if value is None else value for value in values]
+    return np.array(filled, {str: object, bool: np.int8}.get(kind, kind))
+
+
+def attributes(kind, long_name, units="1", flags="no yes"):
+    """Attributes of a variable whose values are of a type; flags: what the two of bool mean."""
+    if kind is str:
+        return {"long_name": long_name}
+    if kind is bool:
+        # Stored as bytes with these meanings; xarray gives them back as bool.
+        values = np.array([0, 1], np.int8)
+        return {"long_name": long_name, "flag_values": values, "flag_meanings": flags}
+    return {"long_name": long_name, "units": units}
