@@ -30,6 +30,18 @@ include: "workflow/rules/datasets.smk"
 include: "workflow/rules/figures.smk"
 
 
+onstart:
+    WATCH.start(points_to_do())
+
+
+onsuccess:
+    show_the_end()
+
+
+onerror:
+    show_the_end()
+
+
 rule all:
     default_target: True
     input:

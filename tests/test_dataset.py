@@ -29,7 +29,7 @@ def write(name, folder, path, grids=GRIDS):
     dataset.write_sweep(
         path,
         grid,
-        (sweep.answer(request, store)[0] for request in sweep.point_requests(grid)),
+        (sweep.answer(request, store)[0] for request in sweep.PointRequests(grid)),
         [sweep.answer(request, store)[0] for request in requests],
         configuration.of_sweep(name),
     )
@@ -183,7 +183,7 @@ def test_equal_results_give_equal_bytes(name, tmp_path, solver):
 def test_a_missing_or_additional_point_is_an_error(tmp_path, solver):
     configuration = config.from_mapping({"sweeps": GRIDS})
     grid, store = configuration.sweeps["bore"], Store(tmp_path)
-    records = [sweep.answer(request, store)[0] for request in sweep.point_requests(grid)]
+    records = [sweep.answer(request, store)[0] for request in sweep.PointRequests(grid)]
     for wrong in (records[:-1], [*records, records[0]]):
         with pytest.raises(ValueError, match="results for 6 points"):
             dataset.write_sweep(tmp_path / "bore.nc", grid, wrong, [], {})

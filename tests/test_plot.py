@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import matplotlib
@@ -12,8 +13,10 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.legend import Legend
 from matplotlib.text import Text
+from PIL import Image
 
 from microslip import plot, theory
+from microslip.cache import CacheError
 
 #: The paper's figures; those of the studies have tests of their own.
 PAPERS = [name for name in plot.FIGURES if name.startswith("fig")]
@@ -156,7 +159,17 @@ def test_saves_whole_and_reproducibly(name, datasets, figures, tmp_path):
         assert content.startswith(start)
         assert content == again.read_bytes()
         assert b"Date" not in content
-    assert len(list((tmp_path / "new").iterdir())) == 4
+    assert len(list((tmp_path / "new").glob("[!.]*"))) == 4
+
+
+def test_a_figure_says_what_made_it(datasets, tmp_path):
+    made = datasets["bore"].assign_attrs(title="friction", source_digest="f00d", author="nobody")
+    figure = plot.draw("fig6_bore_map", {"bore": made})
+    with Image.open(plot.save(figure, tmp_path / "map.png")) as image:
+        (said,) = json.loads(image.info["Description"])
+    assert said["source_digest"] == "f00d"
+    assert "author" not in said
+    assert b"f00d" in plot.save(figure, tmp_path / "map.pdf").read_bytes()
 
 
 @pytest.mark.parametrize("name", PAPERS)
@@ -287,7 +300,7 @@ def test_a_failed_save_leaves_the_old_file(figures, tmp_path, monkeypatch):
         raise OSError("disk full")
 
     monkeypatch.setattr(figure, "savefig", fail)
-    with pytest.raises(OSError, match="disk full"):
+    with pytest.raises(CacheError, match="disk full"):
         plot.save(figure, path)
     assert [file.read_text() for file in tmp_path.iterdir()] == ["old"]
 

@@ -93,7 +93,7 @@ def test_references_are_ordinary_points_and_tight():
     study = configured().accuracy
     request = accuracy_cost.truth(study.points["mid"])
     sweep_of_it = {"velocity": [0.1], "amplitude": [0.5], "tolerance": 1e-6}
-    (point,) = sweep.point_requests(
+    (point,) = sweep.PointRequests(
         config.from_mapping({"sweeps": {"transverse": sweep_of_it}}).sweeps["transverse"]
     )
     assert request == point

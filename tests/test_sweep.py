@@ -17,7 +17,7 @@ def configured(**transverse):
 
 
 def requests_of(**transverse):
-    return sweep.point_requests(configured(**transverse).sweeps["transverse"])
+    return sweep.PointRequests(configured(**transverse).sweeps["transverse"])
 
 
 @pytest.fixture
@@ -32,7 +32,7 @@ def test_requests_are_canonical_and_run_through_the_velocity_fastest():
 
 
 def test_a_scene_without_amplitude_has_none():
-    (request,) = sweep.point_requests(configured().sweeps["continuous_bore"])
+    (request,) = sweep.PointRequests(configured().sweeps["continuous_bore"])
     assert request["amplitude"] is None
 
 

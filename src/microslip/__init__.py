@@ -1,7 +1,8 @@
 """Friction of a vibrated Hertz contact, resolved by boundary elements.
 
-``solve`` answers for one point, ``history`` and ``traction_field`` show what happens inside.  The
-solver is imported when it is first asked for, so that importing the package costs next to nothing.
+``solve`` answers for one point, ``solve_stored`` keeps the answer, ``history`` and
+``traction_field`` show what happens inside.  The solver is imported when it is first asked for, so
+that importing the package costs next to nothing.
 """
 
 from importlib import import_module as _import_module
@@ -10,11 +11,12 @@ _WHERE = {
     "solve": "microslip.point",
     "Result": "microslip.point",
     "warm_up": "microslip.point",
+    "solve_stored": "microslip.stored",
     "history": "microslip.inside",
     "History": "microslip.inside",
     "traction_field": "microslip.inside",
 }
-__all__ = ["History", "Result", "history", "solve", "traction_field", "warm_up"]
+__all__ = ["History", "Result", "history", "solve", "solve_stored", "traction_field", "warm_up"]
 __version__ = "0.1.0"
 
 

@@ -5,6 +5,7 @@ to disk and renamed, so a reader sees all of it or nothing. On reading, the text
 what its record writes, checksum included; any other file counts as absent and is written anew.
 """
 
+import hashlib
 import json
 import logging
 import os
@@ -70,11 +71,12 @@ def write_atomically(path, content):
 
 
 @contextmanager
-def writing_beside(path):
+def writing_beside(path, sealed=False):
     """Context that yields a Path beside `path` to write to, and puts it in place at its end.
 
-    The file is flushed to disk before it is renamed. After an error or an interrupt `path` is
-    what it was. Raises CacheError, one line that says what to do, where the system refuses.
+    The file is flushed to disk before it is renamed; sealed: with its checksum, see `is_damaged`.
+    After an error or an interrupt `path` is what it was. Raises CacheError, one line that says
+    what to do, where the system refuses.
     """
     path = Path(path)
     # The process number keeps two writers of one result apart.
@@ -84,6 +86,8 @@ def writing_beside(path):
         yield beside
         with open(beside, "rb") as file:
             os.fsync(file.fileno())
+            if sealed:
+                _write_seal(path, hashlib.file_digest(file, "sha256").hexdigest())
         os.replace(beside, path)
     except OSError as error:
         raise CacheError(_advice("write", path, error)) from error
@@ -91,6 +95,46 @@ def writing_beside(path):
         # Gone already after the rename, left by an interrupt; in a read-only folder never made.
         with suppress(OSError):
             beside.unlink()
+
+
+# Seals: a checksum beside a file, by which damage to it is noticed later
+
+
+def seal_of(path):
+    """Path of the checksum that stands beside a file."""
+    path = Path(path)
+    return path.with_name(f".{path.name}.sha256")
+
+
+def _write_seal(path, checksum):
+    # Before the file itself: between the two a run that is killed leaves a seal that does not fit,
+    # and the file is made again. The other way round it would leave an old seal on a good file.
+    write_atomically(seal_of(path), f"{checksum}\n".encode())
+
+
+def is_damaged(path):
+    """Whether a file is not what was sealed; False where there is no file or no seal."""
+    try:
+        sealed = seal_of(path).read_text(encoding="ascii")
+        with open(path, "rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest() != sealed.strip()
+    except FileNotFoundError:
+        return False
+    except UnicodeDecodeError:
+        return True
+    except OSError as error:
+        raise CacheError(_advice("read", path, error)) from error
+
+
+def set_damaged_aside(paths):
+    """Rename those of the files that are damaged; return their old names (list of Path).
+
+    What is there under the new name is kept until the next time.
+    """
+    found = [Path(path) for path in paths if is_damaged(path)]
+    for path in found:
+        os.replace(path, path.with_name(f"{path.name}.damaged"))
+    return found
 
 
 def _text(record):

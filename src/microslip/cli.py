@@ -103,6 +103,11 @@ def _add_options(parser):
         help="another way to compute it, for comparison: the name of a file in microslip/methods",
     )
     parser.add_argument(
+        "--results",
+        metavar="FOLDER",
+        help="look the answer up in a folder of results, say of a sweep, and keep it there",
+    )
+    parser.add_argument(
         "--json", action="store_true", help="print one JSON object and nothing else"
     )
 
@@ -111,32 +116,38 @@ def main(arguments=None):
     """Entry point.  Exit codes: 0 converged, 1 not converged, 2 bad input."""
     arguments = sys.argv[1:] if arguments is None else arguments
     options = build_parser().parse_args(_joined(arguments))
-    from microslip.point import solve  # only now: --help and bad options need no solver
+    from microslip.cache import CacheError  # only now: --help and bad options need no solver
 
     progress = _Progress(enabled=sys.stderr.isatty())
     try:
-        result = solve(
-            options.scene,
-            options.velocity,
-            getattr(options, "amplitude", None),
-            poisson=options.poisson,
-            model=options.model,
-            tolerance=options.tolerance,
-            cells=options.cells,
-            steps=options.steps,
-            method=options.method,
-            progress=progress,
-        )
-    except ValueError as error:
-        progress.close()
-        print(f"microslip point {options.scene}: --{error}", file=sys.stderr)
+        result = _answer(options, progress)
+    except (ValueError, CacheError) as error:
+        named = "--" if isinstance(error, ValueError) else "--results: "
+        print(f"microslip point {options.scene}: {named}{error}", file=sys.stderr)
         return 2
-    progress.close()
+    finally:
+        progress.close()
     if options.json:
         print(json.dumps({"amplitude": None} | _json_ready(result.to_dict())))
     else:
         print(_as_text(result))
     return 0 if result.converged else 1
+
+
+def _answer(options, progress):
+    """What the options ask for; raises ValueError and CacheError as microslip.solve_stored."""
+    from microslip import solve, solve_stored
+
+    place = (options.scene, options.velocity, getattr(options, "amplitude", None))
+    names = ("poisson", "model", "tolerance", "cells", "steps")
+    settings = {name: getattr(options, name) for name in names}
+    if options.results is None:
+        return solve(*place, **settings, method=options.method, progress=progress)
+    if options.method != "shipped":
+        raise ValueError(
+            f"method = {options.method!r}: not with --results, which keeps points of sweeps"
+        )
+    return solve_stored(*place, **settings, results=options.results)
 
 
 def _joined(arguments):

@@ -42,7 +42,7 @@ def write_sweep(path, sweep, points, histories, settings):
     frame, axes = _frame(sweep, histories), _axes(sweep)
     title = f"Friction of a vibrated Hertz contact, scene {sweep.scene}"
     versions = {canonical_json(record["versions"]) for record in histories}
-    with writing_beside(path) as beside:
+    with writing_beside(path, sealed=True) as beside:
         _to_netcdf(frame, beside)
         with netCDF4.Dataset(beside, "a") as file:
             versions |= columns.append(file, sweep, axes, points)
@@ -84,7 +84,7 @@ def write(dataset, path):
     The same dataset gives the same bytes. Raises CacheError, one line that says what to do, on a
     full disk, a read-only folder and the like.
     """
-    with writing_beside(path) as beside:
+    with writing_beside(path, sealed=True) as beside:
         _to_netcdf(dataset, beside)
 
 

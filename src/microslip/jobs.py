@@ -1,10 +1,9 @@
-"""What every job of the workflow has: a log, a line of progress, one clear message on failure."""
+"""What every job of the workflow has: a log, and one clear message on failure."""
 
 import logging
 import sys
 from contextlib import contextmanager
-
-from tqdm import tqdm
+from pathlib import Path
 
 from .cache import CacheError
 
@@ -38,8 +37,10 @@ def job_log(path, shown=logging.WARNING):
             handler.close()
 
 
-def progress(items, title):
-    """Yield the items, showing on standard error how many are done, the rate and the time left."""
-    # A terminal gets a moving line, a file a line now and then.
-    pause = 0.5 if sys.stderr.isatty() else 10
-    return tqdm(items, desc=title, unit="point", mininterval=pause, delay=pause, leave=False)
+def closing_lines(folder, names):
+    """What the logs of collecting say about datasets: a list of lines; names: of the datasets.
+
+    How many points each has, and which of them did not converge.
+    """
+    paths = (Path(folder, "logs", "collect", f"{name}.log") for name in names)
+    return [line for p in paths if p.is_file() for line in p.read_text("utf-8").splitlines()]

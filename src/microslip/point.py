@@ -92,8 +92,7 @@ def solve(
     Raises ValueError, naming the argument, for input out of range or a model that does not apply.
     """
     kind, velocity, amplitude, poisson = checked_point(scene, velocity, amplitude, poisson)
-    tolerance = _number("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
-    cells, steps = _count("cells", cells, 4), _count("steps", steps, 8)
+    tolerance, cells, steps = checked_accuracy(tolerance, cells, steps)
     if not most_work > 0.0:
         raise ValueError(f"most_work = {most_work!r}: allowed is a number above 0")
     name, how = choose_model(kind, poisson, model), method_named(method)
@@ -168,6 +167,12 @@ def checked_point(scene, velocity, amplitude, poisson):
     elif amplitude is not None:
         raise ValueError(f"amplitude = {amplitude}: {kind.name} has no amplitude")
     return kind, velocity, amplitude, poisson
+
+
+def checked_accuracy(tolerance, cells, steps):
+    """Tolerance and imposed resolution; raises ValueError naming the argument at fault."""
+    tolerance = _number("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
+    return tolerance, _count("cells", cells, 4), _count("steps", steps, 8)
 
 
 def _refuse_method(kind, model, method, how):

@@ -7,8 +7,10 @@ that the store does not hold, so how points are cut into batches never decides w
 
 import importlib.metadata
 import logging
+import math
 import platform
 import time
+from collections.abc import Sequence
 from functools import cache
 
 from . import answers
@@ -33,27 +35,36 @@ FOLDERS = {
 }
 
 
-def point_requests(sweep):
-    """List the requests for all points of a config.Sweep.
+class PointRequests(Sequence):
+    """Requests for all points of a config.Sweep, each made when it is asked for.
 
     The order is that of the dataset: Poisson's ratio, amplitude, velocity, the last one fastest.
     """
-    common = {
-        "kind": "point",
-        "scene": sweep.scene,
-        "model": sweep.model,
-        "tolerance": number(sweep.tolerance),
-        "cells": sweep.cells,
-        "steps": sweep.steps,
-    }
-    velocities = [number(v) for v in sweep.velocity]
-    amplitudes = [None] if sweep.amplitude is None else [number(a) for a in sweep.amplitude]
-    return [
-        {**common, "poisson": number(poisson), "amplitude": amplitude, "velocity": velocity}
-        for poisson in sweep.poisson
-        for amplitude in amplitudes
-        for velocity in velocities
-    ]
+
+    def __init__(self, sweep):
+        self._common = {
+            "kind": "point",
+            "scene": sweep.scene,
+            "model": sweep.model,
+            "tolerance": number(sweep.tolerance),
+            "cells": sweep.cells,
+            "steps": sweep.steps,
+        }
+        amplitudes = [None] if sweep.amplitude is None else [number(a) for a in sweep.amplitude]
+        velocities = [number(velocity) for velocity in sweep.velocity]
+        self._axes = ([number(nu) for nu in sweep.poisson], amplitudes, velocities)
+
+    def __len__(self):
+        return math.prod(map(len, self._axes))
+
+    def __getitem__(self, index):
+        if isinstance(index, slice):
+            return [self[i] for i in range(*index.indices(len(self)))]
+        poisson, amplitude, velocity = self._axes
+        rest, v = divmod(range(len(self))[index], len(velocity))
+        nu, a = divmod(rest, len(amplitude))
+        at = {"poisson": poisson[nu], "amplitude": amplitude[a], "velocity": velocity[v]}
+        return self._common | at
 
 
 def history_requests(configuration, name):

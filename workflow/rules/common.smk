@@ -2,6 +2,7 @@
 
 import os
 import sys
+from glob import glob
 from pathlib import Path
 
 # The package of this tree is the one that runs, whether it is installed or not.
@@ -19,7 +20,8 @@ os.environ.update(
 )
 
 from microslip import config as microslip_config
-from microslip import keys, plot, studies, sweep
+from microslip import cache, jobs, keys, plot, studies, sweep
+from microslip.watch import Watch
 
 try:
     files = [os.path.relpath(file) for file in workflow.configfiles]
@@ -35,13 +37,14 @@ except microslip_config.ConfigError as error:
     sys.exit(f"Error in {error}")
 
 DIGEST = keys.source_digest()
+COUNTER = f"{RESULTS}/logs/points_done"
 PACKAGE = os.path.relpath(Path(keys.__file__).parent)
 
 # BATCHES[group][name]: requests of that batch. A group is a sweep, or the single runs beside it.
 BATCHES = {}
 for name, grid in CONFIGURATION.sweeps.items():
     size = CONFIGURATION.points_per_job
-    BATCHES[name] = sweep.batches(sweep.point_requests(grid), size, DIGEST)
+    BATCHES[name] = sweep.batches(sweep.PointRequests(grid), size, DIGEST)
     histories = sweep.history_requests(CONFIGURATION, name)
     BATCHES[f"{name}_histories"] = sweep.batches(histories, size, DIGEST)
 
@@ -72,6 +75,34 @@ def figures_of(datasets):
         if name in datasets
         for form in ("png", "pdf")
     ]
+
+
+# What is there is used again, so damage to it has to be seen before anything is planned; but not
+# while another run may be writing.
+if workflow.is_main_process and not glob(".snakemake/locks/*"):
+    made = [f"{RESULTS}/{name}.nc" for name in (*CONFIGURATION.sweeps, *STUDIES)]
+    made += figures_of((*CONFIGURATION.sweeps, *STUDIES))
+    for path in cache.set_damaged_aside(made):
+        print(f"{path} was damaged: renamed to {path}.damaged, made again", file=sys.stderr)
+
+WATCH = Watch(COUNTER)
+
+
+def points_to_do():
+    """Points in the jobs that this run is about to do."""
+    asked = [
+        job.wildcards for job in workflow.dag.needrun_jobs() if "batch" in job.wildcards.keys()
+    ]
+    return sum(len(BATCHES[wildcards[0]][wildcards.batch]) for wildcards in asked)
+
+
+def show_the_end():
+    """Stop the line of progress; say once more what is in the datasets, and what is not."""
+    WATCH.stop()
+    planned = {job.output[0] for job in workflow.dag.needrun_jobs()}
+    names = [n for n in (*CONFIGURATION.sweeps, *STUDIES) if f"{RESULTS}/{n}.nc" in planned]
+    for line in jobs.closing_lines(RESULTS, names):
+        print(line, file=sys.stderr)
 
 
 def batches_of(name):

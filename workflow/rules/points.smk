@@ -35,6 +35,7 @@ rule solve_batch:
         # One string: Snakemake compares parameters as a set and would miss two swapped numbers.
         requests=lambda wildcards: keys.canonical_json(BATCHES[wildcards.group][wildcards.batch]),
         store=lambda wildcards, output: str(Path(output[0]).parents[2]),
+        counter=COUNTER,
     script:
         "../scripts/solve_batch.py"
 
@@ -49,3 +50,4 @@ use rule solve_batch as solve_early_batch with:
     params:
         requests=lambda wildcards: keys.canonical_json(BATCHES[wildcards.early][wildcards.batch]),
         store=lambda wildcards, output: str(Path(output[0]).parents[2]),
+        counter=COUNTER,

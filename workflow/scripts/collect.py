@@ -7,8 +7,6 @@ Output: netCDF-4, CF conventions, all quantities dimensionless (units 1, phases 
 A sweep with a list of Poisson's ratios has the dim poisson before these.
 """
 
-import logging
-
 import xarray as xr
 
 from microslip import config, dataset, sweep
@@ -17,11 +15,11 @@ from microslip.jobs import job_log
 
 name = snakemake.wildcards.sweep
 
-with job_log(snakemake.log[0], shown=logging.INFO) as log:
+with job_log(snakemake.log[0]) as log:
     configuration = config.from_mapping(snakemake.config)
     store = Store(snakemake.params.store)
     grid = configuration.sweeps[name]
-    points = (sweep.answer(request, store)[0] for request in sweep.point_requests(grid))
+    points = (sweep.answer(request, store)[0] for request in sweep.PointRequests(grid))
     histories = sweep.history_requests(configuration, name)
     dataset.write_sweep(
         snakemake.output[0],

@@ -6,15 +6,13 @@ Output: netCDF-4, CF conventions, all quantities dimensionless but for seconds a
   stability.nc      dims (method, case), axis
 """
 
-import logging
-
 from microslip import config, dataset, studies, sweep
 from microslip.cache import Store
 from microslip.jobs import job_log
 
 study = snakemake.params.study
 
-with job_log(snakemake.log[0], shown=logging.INFO) as log:
+with job_log(snakemake.log[0]) as log:
     configuration = config.from_mapping(snakemake.config)
     store = Store(snakemake.params.store)
     data = studies.build(study, configuration, lambda request: sweep.answer(request, store)[0])

@@ -10,16 +10,15 @@ import json
 
 from microslip import sweep
 from microslip.cache import Store, write_atomically
-from microslip.jobs import job_log, progress
+from microslip.jobs import job_log
 from microslip.keys import canonical_json
-
-title = snakemake.wildcards[0]  # the group of the batch, whatever the rule calls it
+from microslip.watch import counted
 
 with job_log(snakemake.log[0]) as log:
     index, done = sweep.run_batch(
         json.loads(snakemake.params.requests),
         Store(snakemake.params.store),
-        lambda requests: progress(requests, title),
+        lambda requests: counted(requests, snakemake.params.counter),
     )
     write_atomically(snakemake.output[0], canonical_json(index).encode())
     log.info("%(points)d points, %(computed)d computed in %(solver_seconds).2f s", done)

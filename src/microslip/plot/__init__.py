@@ -13,10 +13,13 @@ Importing this package is cheap: matplotlib is loaded by the first `draw` or `sa
 from __future__ import annotations
 
 import importlib
+import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from ..cache import writing_beside
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,11 +40,14 @@ FIGURES: dict[str, tuple[str, ...]] = {
     "stability_atlas": ("stability",),
 }
 
-#: File formats `save` can write, with the metadata that would otherwise hold dates or versions.
-FORMATS: dict[str, dict[str, None]] = {
-    "png": {"Software": None},
-    "pdf": {"Creator": None, "Producer": None, "CreationDate": None},
+#: File formats `save` can write: metadata that would otherwise hold dates or versions of libraries,
+#: and the name of the one that says what the figure was made from.
+FORMATS: dict[str, tuple[dict[str, None], str]] = {
+    "png": ({"Software": None}, "Description"),
+    "pdf": ({"Creator": None, "Producer": None, "CreationDate": None}, "Subject"),
 }
+PROVENANCE = ("title", "references", "microslip_version", "source_digest", "results_digest")
+PROVENANCE += ("configuration", "library_versions")
 
 _MODULES = {
     "fig1_force_history": "history",
@@ -81,14 +87,22 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
         for _ in range(2):  # the layout settles, and is then fixed: every save gives the same
             figure.draw_without_rendering()
         figure.set_layout_engine("none")
+    figure.made_from = made_from(datasets[key] for key in FIGURES[name])
     return figure
+
+
+def made_from(datasets: Iterable[xr.Dataset]) -> str:
+    """What made datasets, as JSON: a list of those of their attributes that say so."""
+    found = [{key: d.attrs[key] for key in PROVENANCE if key in d.attrs} for d in datasets]
+    return json.dumps(found, sort_keys=True)
 
 
 def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
     """Write a figure as `.png` (200 dpi) or `.pdf`, whole or not at all, and return its path.
 
-    The same figure gives the same bytes: no date and no version is written. The folder is made if
-    it is not there.
+    Its metadata say what made it, see `made_from`. The same figure gives the same bytes: no date is
+    written. The folder is made if it is not there. Raises CacheError, one line that says what to
+    do, on a full disk, a read-only folder and the like.
     """
     from microslip.plot.style import style
 
@@ -96,12 +110,8 @@ def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
     kind = path.suffix.lower().removeprefix(".")
     if kind not in FORMATS:
         raise ValueError(f"cannot write {path.name!r}: the name must end in .png or .pdf")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        with style():
-            figure.savefig(beside, format=kind, metadata=dict(FORMATS[kind]))
-        os.replace(beside, path)
-    finally:
-        beside.unlink(missing_ok=True)
+    plain, key = FORMATS[kind]
+    metadata = plain | {key: getattr(figure, "made_from", None)}
+    with writing_beside(path, sealed=True) as beside, style():
+        figure.savefig(beside, format=kind, metadata=metadata)
     return path

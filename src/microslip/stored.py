@@ -1,0 +1,64 @@
+"""One point as ``microslip.solve`` answers it, kept among the results of sweeps."""
+
+import math
+import time
+from dataclasses import fields
+
+from . import sweep
+from .cache import Store
+from .choice import choose_model
+from .keys import number
+from .point import Result, checked_accuracy, checked_point
+
+
+def solve_stored(
+    scene,
+    velocity,
+    amplitude=None,
+    *,
+    results="results",
+    poisson=0.0,
+    model="auto",
+    tolerance=1e-3,
+    cells=None,
+    steps=None,
+):
+    """Friction at one point, from a folder of results if it is there, else computed and kept there.
+
+    results: folder, that of a sweep or a new one; the rest as for ``microslip.solve``.  A result is
+    named by the physics, the tolerance and the sources of the solver, so that a sweep, the command
+    line and this function find what any of them has computed.  Numbers are rounded to 12 digits
+    first, as those of sweeps are.  Returns a Result, whose solve_time_s is that of this call.
+    Raises ValueError as ``solve`` does, cache.CacheError if the folder cannot be used.
+    """
+    started = time.perf_counter()
+    kind, velocity, amplitude, poisson = checked_point(scene, velocity, amplitude, poisson)
+    tolerance, cells, steps = checked_accuracy(tolerance, cells, steps)
+    choose_model(kind, poisson, model)
+    request = {
+        "kind": "point",
+        "scene": kind.name,
+        "velocity": number(velocity),
+        "amplitude": None if amplitude is None else number(amplitude),
+        "poisson": number(poisson),
+        "model": model,
+        "tolerance": number(tolerance),
+        "cells": cells,
+        "steps": steps,
+    }
+    record, _ = sweep.answer(request, Store(results))
+    given = request | record["result"]
+    given |= {k: float(given[k]) for k in ("velocity", "poisson", "tolerance")}
+    if amplitude is not None:
+        given["amplitude"] = float(given["amplitude"])
+    return _result(given | {"solve_time_s": time.perf_counter() - started})
+
+
+def _result(given):
+    """The Result with these fields; what a failed solver or JSON left out is NaN, 0 or empty."""
+    left_out = {"float": math.nan, "int": 0, "str": "", "bool": False}
+    values = {}
+    for field in fields(Result):
+        value = given.get(field.name)
+        values[field.name] = left_out.get(field.type) if value is None else value
+    return Result(**values)

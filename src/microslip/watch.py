@@ -1,0 +1,66 @@
+"""How far all jobs of a run have come: points done, rate and time left, in one line.
+
+Every job adds a byte to a file for each point that it is done with; what the file has grown to is
+what has been done, by whichever process and on whichever machine that sees the same folder.
+"""
+
+import sys
+import threading
+from pathlib import Path
+
+from tqdm import tqdm
+
+
+def counted(items, path):
+    """Yield the items; each one that is done with adds a byte to the file `path`.
+
+    What cannot be written is not counted: a full disk is reported where results are stored.
+    """
+    for item in items:
+        yield item
+        try:
+            with open(path, "ab") as file:
+                file.write(b".")
+        except OSError:
+            pass
+
+
+class Watch:
+    """A line on standard error while a run lasts; `start` and `stop` it."""
+
+    def __init__(self, path):
+        """path: of the file that jobs add to; it is emptied by `start`."""
+        self.path, self.stopped, self.thread = Path(path), threading.Event(), None
+
+    def start(self, total):
+        """Begin to show progress; total: points that there are to do."""
+        if not total:
+            return
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            self.path.write_bytes(b"")
+        except OSError:
+            return  # the first job says what is wrong
+        self.thread = threading.Thread(target=self._show, args=[total], daemon=True)
+        self.thread.start()
+
+    def stop(self):
+        """Show where things stand, and no more."""
+        if self.thread is not None:
+            self.stopped.set()
+            self.thread.join()
+
+    def done(self):
+        """Number of points done so far."""
+        try:
+            return self.path.stat().st_size
+        except OSError:
+            return 0
+
+    def _show(self, total):
+        # A terminal gets a moving line, a file a line now and then.
+        pause = 0.5 if sys.stderr.isatty() else 15.0
+        with tqdm(desc="points", total=total, unit="point", mininterval=0.0) as bar:
+            while not self.stopped.wait(pause):
+                bar.update(self.done() - bar.n)
+            bar.update(self.done() - bar.n)
