@@ -22,7 +22,7 @@ LAYERS = [
     {"method"},
     {"simulate"},
     {"methods"},
-    {"accuracy"},
+    {"accuracy", "approach"},
     {"choice"},
     {"point"},
     {"inside", "trial"},

@@ -72,6 +72,7 @@ class Certified:
     iterations: int
     work: int
     effort: int
+    retried: int
     converged: bool
     reason: str
 
@@ -255,6 +256,7 @@ def _summary(runs, chains, errors, reason):
         iterations=sum(r.iterations for r in done),
         work=sum(r.work for r in done),
         effort=sum(r.effort for r in done),
+        retried=sum(r.retried for r in done),
         converged=not reason,
         reason=reason,
     )

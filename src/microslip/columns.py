@@ -25,6 +25,7 @@ POINT_VARIABLES = {
     "periods": (np.int32, "half periods marched in the longest run"),
     "iterations": (np.int32, "iterations of the step solver in all runs"),
     "work": (np.int64, "step solves times unknowns, summed over all runs"),
+    "retried": (np.int32, "runs done again by safer steps, since they had not converged"),
     "model": (str, "contact model that was used"),
     "reason": (str, "why the point did not converge, empty if it did"),
 }

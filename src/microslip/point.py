@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from microslip.accuracy import certify
+from microslip.approach import run_safely
 from microslip.choice import choose_model, closed_form, method_refusal, no_vibration, plan
 from microslip.methods import SHIPPED, method_named, missing
 from microslip.scenes import scene_named
@@ -29,7 +30,8 @@ class Result:
     zero forward velocity (steady scenes only, else None); cells, angles, steps_per_period: finest
     resolution used (angles: points on half the disc, 1 where rings or squares suffice); periods:
     half periods marched in the longest run; iterations, work, effort: step-solver
-    iterations, step solves x unknowns, and iterations x unknowns, over all runs.
+    iterations, step solves x unknowns, and iterations x unknowns, over all runs; retried: runs that
+    found no periodic state at first, and were done again by safer steps.
     """
 
     scene: str
@@ -57,6 +59,7 @@ class Result:
     iterations: int
     work: int
     effort: int
+    retried: int
     solve_time_s: float
 
     def to_dict(self):
@@ -123,7 +126,14 @@ def solve(
             progress(resolution)
         if velocity == 0.0 and kind.periodic:
             return simulate_static(kind, amplitude, poisson, name, resolution, share, how)
-        return simulate(kind, velocity, amplitude, poisson, name, resolution, share, guess, how)
+
+        def run_at(velocity, guess, careful=False):
+            where = (kind, velocity, amplitude, poisson, name, resolution, share)
+            return simulate(*where, guess, how, careful)
+
+        if method != SHIPPED or not kind.periodic:
+            return run_at(velocity, guess)
+        return run_safely(run_at, velocity, guess)
 
     certified = certify(run, coarsest, axes, tolerance, most_work)
     steady = not kind.periodic
@@ -151,6 +161,7 @@ def solve(
         iterations=certified.iterations,
         work=certified.work,
         effort=certified.effort,
+        retried=certified.retried,
         solve_time_s=time.perf_counter() - started,
     )
 
@@ -232,6 +243,7 @@ def _exact_result(point, values, seconds):
         iterations=0,
         work=0,
         effort=0,
+        retried=0,
         solve_time_s=seconds,
     )
 

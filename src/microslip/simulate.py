@@ -26,6 +26,8 @@ STEP_SHARE = 1e-2
 SLOW_STEP_SHARE = 3e-4
 """Tolerance of a step over that of the periodic state: the slower the motion, the less a state
 changes in a period, and the more an error of its steps adds up."""
+CAREFUL = 0.1
+"""The floor of these tolerances in a second attempt, over that in a first one."""
 MARCH_SHARE = 0.16
 """Bound of the sum over the steps of half a period, two stages each: a third of the tolerance."""
 SLOW_PUSH, LARGEST_PUSH = 4.0, 0.6
@@ -45,7 +47,8 @@ class Run:
 
     distance: estimated distance from the periodic (steady) state; solver_residual: summed over the
     last period; both forces over mu F_z.  periods, iterations, solves: of all searches together;
-    work: step solves x unknowns; effort: iterations x unknowns.  For other runs of the point:
+    work: step solves x unknowns; effort: iterations x unknowns; retried: 1 if the run is a second
+    attempt, see approach.run_safely.  For other runs of the point:
     state, the periodic tractions; inverse: see cycle.PeriodicState; static_force: mean forward
     force of the static limit.
     """
@@ -64,6 +67,7 @@ class Run:
     state: np.ndarray | None = None
     inverse: np.ndarray | None = None
     static_force: float = 0.0
+    retried: int = 0
 
 
 def simulate(
@@ -76,20 +80,22 @@ def simulate(
     tolerance,
     guess=None,
     method=SHIPPED,
+    careful=False,
 ):
     """Run ``model`` on a scene at one resolution to its periodic (or steady) state.
 
     scene: scenes.Scene; velocity > 0, amplitude > 0 (None for steady scenes), poisson in 0..0.5:
     checked by the caller; tolerance: of the periodic state, a force over mu F_z, steps are solved
     a hundred times tighter; guess: a Run of the same point, of use if cells and angles are the
-    same, too; method: method.Method.  Returns a Run; never raises for want of convergence.
+    same, too; method: method.Method; careful: solve the steps of slow motions tighter.  Returns a
+    Run; never raises for want of convergence.
     """
     motion = Motion(scene, velocity, amplitude, poisson)
     if method.run is not None:
         return method.run(motion, model, resolution, tolerance)
     try:
-        run = _run(motion, model, resolution, tolerance, guess, method)
-    except StepFailure as failure:
+        run = _run(motion, model, resolution, tolerance, guess, method, careful)
+    except (StepFailure, ArithmeticError, np.linalg.LinAlgError) as failure:
         return failed_run(str(failure))
     if method.extrapolated and run.converged:
         half = replace(resolution, steps=max(resolution.steps // 2, 1))
@@ -104,13 +110,14 @@ def failed_run(reason):
     return Run(np.nan, np.nan, np.inf, np.inf, 0, 0, 0, 0, 0, False, reason)
 
 
-def _run(motion, model, resolution, tolerance, guess, method):
+def _run(motion, model, resolution, tolerance, guess, method, careful):
     contact = method.dressed(build_contact(motion, model, resolution))
     step_tolerance = STEP_SHARE * tolerance
     if not motion.scene.periodic:
         return _steady_run(contact, motion, tolerance, step_tolerance)
     slow_share = UNIT_STIFFNESS * motion.creep * np.pi * STEP_SHARE
-    share = min(max(slow_share, SLOW_STEP_SHARE), STEP_SHARE, MARCH_SHARE / resolution.steps)
+    floor = CAREFUL * SLOW_STEP_SHARE if careful else SLOW_STEP_SHARE
+    share = min(max(slow_share, floor), STEP_SHARE, MARCH_SHARE / resolution.steps)
     step_tolerance = share * tolerance
     search = _Search(contact, motion, method, resolution.steps, tolerance, step_tolerance)
     return search.run(guess)

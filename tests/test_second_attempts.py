@@ -1,0 +1,108 @@
+"""Runs that find no periodic state at first are done again by safer steps."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip import approach, point, simulate
+
+
+@dataclass(frozen=True)
+class FakeRun:
+    converged: bool
+    mu: float
+    reason: str = ""
+    iterations: int = 1
+    solves: int = 1
+    work: int = 10
+    effort: int = 5
+    retried: int = 0
+
+
+class Stubborn:
+    """Converges at velocities from `easy` on, and from a guess at most `reach` times faster."""
+
+    def __init__(self, easy, reach, careless=True):
+        self.easy, self.reach, self.careless, self.asked = easy, reach, careless, []
+
+    def __call__(self, velocity, guess, careful):
+        self.asked.append(velocity)
+        near = guess is not None and guess.mu <= self.reach * velocity * (1 + 1e-12)
+        good = (careful or self.careless) and (velocity >= self.easy or near)
+        return FakeRun(good, velocity, "" if good else f"failed at {velocity:g}")
+
+
+def test_what_converges_is_run_once():
+    run_at = Stubborn(easy=0.5, reach=1.0)
+    assert approach.run_safely(run_at, 1.0, None) == FakeRun(True, 1.0)
+    assert run_at.asked == [1.0]
+
+
+def test_tighter_steps_come_first():
+    run_at = Stubborn(easy=0.5, reach=1.0, careless=False)
+    found = approach.run_safely(run_at, 1.0, None)
+    assert (found.converged, found.retried, found.work) == (True, 1, 20)
+
+
+@pytest.mark.parametrize("reach", [8.0, 3.0, 1.5, 1.2])
+def test_the_velocity_is_lowered_in_steps_that_succeed(reach):
+    run_at = Stubborn(easy=100.0, reach=reach)
+    found = approach.run_safely(run_at, 1.0, None)
+    assert found.converged and found.mu == 1.0 and found.retried == 1
+    assert found.work == 10 * len(run_at.asked)
+    assert run_at.asked[-1] == 1.0
+
+
+def test_a_failure_is_told_as_the_first_attempt_tells_it():
+    for run_at in (Stubborn(easy=100.0, reach=1.1), Stubborn(easy=1e99, reach=1.1)):
+        found = approach.run_safely(run_at, 1.0, None)
+        assert not found.converged
+        assert found.reason == "failed at 1"
+        assert found.effort == 5 * len(run_at.asked) < 5 * 100
+
+
+# Points that the first attempt fails at, each in a way of its own.
+HARD = [
+    ("transverse", 0.5, 4.45e-6, 0.179, 1e-3),
+    ("zigzag", 0.3, 5.36e-7, 0.381, 1e-3),
+    ("transverse", 0.0, 1.2e-8, 0.909, 1e-3),
+    ("bore", 0.0, 2.78e-8, 0.0959, 1e-2),
+]
+
+
+@pytest.mark.parametrize(("scene", "poisson", "velocity", "amplitude", "tolerance"), HARD)
+def test_slowest_motions_get_their_answer_in_a_second_attempt(
+    scene, poisson, velocity, amplitude, tolerance
+):
+    """So slow a motion feels next to nothing but the static limit, which is computed otherwise."""
+    settings = {"poisson": poisson, "tolerance": tolerance}
+    answer = microslip.solve(scene, velocity, amplitude, **settings)
+    assert answer.converged
+    limit = microslip.solve(scene, 0.0, amplitude, **settings)
+    apart = abs(answer.mu_macro - limit.mu_macro)
+    assert apart <= answer.mu_macro_error + limit.mu_macro_error + velocity ** (2 / 3)
+
+
+def test_these_points_need_it(monkeypatch):
+    """Without the second attempt they are not converged; with it they say that there was one."""
+    scene, poisson, velocity, amplitude, tolerance = HARD[1]
+    settings = {"poisson": poisson, "tolerance": tolerance, "most_work": 1e7}
+    assert microslip.solve(scene, velocity, amplitude, **settings).retried > 0
+    monkeypatch.setattr(point, "run_safely", lambda run_at, v, guess: run_at(v, guess))
+    answer = microslip.solve(scene, velocity, amplitude, **settings)
+    assert not answer.converged
+    assert "no periodic state" in answer.reason
+    assert answer.retried == 0
+
+
+def test_an_error_in_the_solver_is_a_run_without_a_number(monkeypatch):
+    def fail(*_):
+        raise np.linalg.LinAlgError("Singular matrix")
+
+    monkeypatch.setattr(simulate, "_run", fail)
+    answer = microslip.solve("transverse", 0.1, 0.5)
+    assert not answer.converged
+    assert np.isnan(answer.mu_macro)
+    assert "Singular matrix" in answer.reason
