@@ -21,4 +21,4 @@ with job_log(snakemake.log[0]) as log:
         lambda requests: counted(requests, snakemake.params.counter),
     )
     write_atomically(snakemake.output[0], canonical_json(index).encode())
-    log.info("%(points)d points, %(computed)d computed in %(solver_seconds).2f s", done)
+    log.info("%(points)d points, %(computed)d computed in %(solver_seconds).2f s of CPU time", done)
