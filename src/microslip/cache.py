@@ -115,13 +115,11 @@ def _write_seal(path, checksum):
 def is_damaged(path):
     """Whether a file is not what was sealed; False where there is no file or no seal."""
     try:
-        sealed = seal_of(path).read_text(encoding="ascii")
+        sealed = seal_of(path).read_bytes().strip()
         with open(path, "rb") as file:
-            return hashlib.file_digest(file, "sha256").hexdigest() != sealed.strip()
+            return hashlib.file_digest(file, "sha256").hexdigest().encode() != sealed
     except FileNotFoundError:
         return False
-    except UnicodeDecodeError:
-        return True
     except OSError as error:
         raise CacheError(_advice("read", path, error)) from error
 
