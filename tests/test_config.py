@@ -325,9 +325,9 @@ def test_a_bad_configuration_gives_one_line_that_names_the_key(case, tmp_path):
     ("content", "part"),
     [
         (b"sweeps: [", "not valid YAML"),
-        (b"", "null is not a mapping"),
+        (b"", "is empty; allowed: keys and values"),
         (b"- 1\n- 2\n", "[1, 2] is not a mapping"),
-        (b"\xff\xfe\xfa", "not valid YAML"),
+        (b"\xff\xfe\xfa", "not text: byte 0xff; allowed: UTF-8"),
     ],
 )
 def test_a_file_that_is_no_configuration(content, part, tmp_path):
