@@ -64,7 +64,9 @@ class _OneLineParser(argparse.ArgumentParser):
     def _refuse_option(self, name, known):
         near = difflib.get_close_matches(f"--{name.lstrip('-')}", known, n=1)
         hint = f"did you mean {near[0]}? " if near else ""
-        self.error(f"unknown option {name}; {hint}allowed: {', '.join(known)}")
+        first = [action.metavar for action in self._actions if action.nargs == argparse.PARSER]
+        allowed = ", ".join([*known, *(f"{command} before other options" for command in first)])
+        self.error(f"unknown option {name}; {hint}allowed: {allowed}")
 
 
 def _complain(message):

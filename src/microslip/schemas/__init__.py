@@ -109,7 +109,7 @@ def near_miss(given, known):
 def _unknown_key(error):
     known = list(error.schema.get("properties", {}))
     unknown = next(key for key in error.instance if key not in known)
-    path = _dotted((*error.absolute_path, unknown))
+    path = _dotted((*error.absolute_path, str(unknown)))
     return f"{path}: unknown key; {near_miss(unknown, known)}allowed: {', '.join(known)}"
 
 
