@@ -4,6 +4,10 @@ A line starts with the key at fault; its parts are the value as it was given, wh
 and what is allowed.
 """
 
+import re
+
+import yaml
+
 GOOD = """
 sweeps:
   transverse:
@@ -165,6 +169,24 @@ stability:
   methods: [shipped, admm]
   axes: [edge]
 """
+
+
+def changed(settings):
+    """GOOD with settings given as YAML by their keys, such as sweeps.bore.amplitude[0]."""
+    mapping = yaml.safe_load(GOOD)
+    if any(key.startswith(("accuracy", "stability")) for key in settings):
+        mapping |= yaml.safe_load(STUDIED)
+    for key, text in settings.items():
+        *way, last = (int(k) if k.isdigit() else k for k in re.findall(r"[^.\[\]]+", key))
+        place = mapping
+        for name in way:
+            place = place[name] if isinstance(place, list) else place.setdefault(name, {})
+        if text is None:
+            del place[last]
+        else:
+            place[last] = yaml.safe_load(text)
+    return yaml.safe_dump(mapping, sort_keys=False)
+
 
 SPACED = "{start: 1, stop: 2, count: %d}"
 GRID = f"{{linear: {SPACED}}}"

@@ -123,9 +123,12 @@ def test_what_is_not_there_yet_or_as_it_should_be_is_not_refused(tmp_path):
 
 def test_a_log_that_cannot_be_written_is_one_line(tmp_path):
     (tmp_path / "logs").write_text("")
-    with pytest.raises(
-        SystemExit, match=r"^Error: cannot write [^\n]*logs/job.log: Not a dir[^\n]*$"
-    ), jobs.job_log(tmp_path / "logs" / "job.log"):
+    with (
+        pytest.raises(
+            SystemExit, match=r"^Error: cannot write [^\n]*logs/job.log: Not a dir[^\n]*$"
+        ),
+        jobs.job_log(tmp_path / "logs" / "job.log"),
+    ):
         pytest.fail("work has started")
 
 

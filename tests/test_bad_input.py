@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 import yaml
 from bad_command_lines import COMMAND_LINES, NAMES, NUMBERS, RESULTS
-from bad_configurations import FILES, GOOD, KEYS, STUDIED, STUDIES, TOGETHER
+from bad_configurations import FILES, KEYS, STUDIES, TOGETHER, changed
 
 import microslip
 from microslip import cli, config, schemas
@@ -88,23 +88,6 @@ def test_the_command_line_has_the_limits_of_configurations():
 
 
 # Configurations
-
-
-def changed(settings):
-    """GOOD with settings given as YAML by their keys, such as sweeps.bore.amplitude[0]."""
-    mapping = yaml.safe_load(GOOD)
-    if any(key.startswith(("accuracy", "stability")) for key in settings):
-        mapping |= yaml.safe_load(STUDIED)
-    for key, text in settings.items():
-        *way, last = (int(k) if k.isdigit() else k for k in re.findall(r"[^.\[\]]+", key))
-        place = mapping
-        for name in way:
-            place = place[name] if isinstance(place, list) else place.setdefault(name, {})
-        if text is None:
-            del place[last]
-        else:
-            place[last] = yaml.safe_load(text)
-    return yaml.safe_dump(mapping, sort_keys=False)
 
 
 def refusal(path):
