@@ -83,7 +83,8 @@ def points_to_do():
 def show_the_end():
     """Stop the line of progress; say once more what is in the datasets, and what is not."""
     WATCH.stop()
-    planned = {job.output[0] for job in workflow.dag.needrun_jobs()}
+    asked = workflow.dag.needrun_jobs(exclude_finished=False)
+    planned = {path for job in asked for path in job.output}
     names = [n for n in (*CONFIGURATION.sweeps, *STUDIES) if f"{RESULTS}/{n}.nc" in planned]
     for line in jobs.closing_lines(RESULTS, names):
         print(line, file=sys.stderr)
