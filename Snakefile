@@ -18,8 +18,14 @@ from snakemake.utils import min_version
 
 min_version("9.0")
 
+
+include: "workflow/rules/package.smk"
+
+
 # A file given with --configfile takes the place of the default, they are not mixed.
 if not workflow.overwrite_configfiles:
+    with refused_in_one_line("config/config.yaml"):
+        microslip_config.read_yaml("config/config.yaml")  # says where a mistake is
 
     configfile: "config/config.yaml"
 
@@ -31,6 +37,8 @@ include: "workflow/rules/figures.smk"
 
 
 onstart:
+    with refused_in_one_line(ORIGIN):
+        cache.Store(RESULTS).try_writing()
     WATCH.start(points_to_do())
 
 

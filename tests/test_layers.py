@@ -26,7 +26,7 @@ LAYERS = [
     {"choice"},
     {"point"},
     {"inside", "trial"},
-    {"keys", "schemas"},
+    {"keys", "schemas", "settings"},
     {"cache", "config"},
     {"answers", "jobs", "watch", "limits", "columns"},
     {"sweep", "dataset"},

@@ -43,7 +43,7 @@ def test_damage_is_noticed_and_set_aside(kind, sealed):
 
 def test_without_a_file_or_a_seal_nothing_is_damaged(sealed):
     other = sealed.with_name("other.nc")
-    other.write_text("not sealed")
+    other.write_bytes(b"\x89HDF, not sealed")
     sealed.unlink()
     assert cache.set_damaged_aside([sealed, other]) == []
     assert other.exists()

@@ -17,7 +17,7 @@ def configured(**transverse):
 
 
 def requests_of(**transverse):
-    return sweep.PointRequests(configured(**transverse).sweeps["transverse"])
+    return list(sweep.PointRequests(configured(**transverse).sweeps["transverse"]))
 
 
 @pytest.fixture

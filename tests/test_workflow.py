@@ -176,6 +176,20 @@ def test_a_damaged_point_is_computed_again_where_it_is_needed(project):
     assert dataset.read_bytes() == expected
 
 
+def test_a_damaged_dataset_and_figure_are_set_aside_and_made_again(project):
+    dataset = project.folder / "results" / "transverse.nc"
+    figure = project.folder / "results" / "figures" / "fig6_bore_map.png"
+    expected = {path: path.read_bytes() for path in (dataset, figure)}
+    for path, whole in expected.items():
+        path.write_bytes(whole[: len(whole) // 2])
+    said = project.run()
+    for path, whole in expected.items():
+        assert f"{path.relative_to(project.folder)} was damaged: renamed" in said
+        assert path.with_name(f"{path.name}.damaged").read_bytes() == whole[: len(whole) // 2]
+        assert path.read_bytes() == whole
+    assert project.planned() == {}
+
+
 STALLING = """
 
 from dataclasses import replace

@@ -16,6 +16,12 @@ from .keys import canonical_json, sha256
 
 log = logging.getLogger(__name__)
 
+# Bytes that a disk must still have room for before anything is computed.
+LEAST_ROOM = 65536
+
+# What files that others read begin with; one without a seal that does not is no such file.
+BEGINNINGS = {".nc": b"\x89HDF", ".png": b"\x89PNG", ".pdf": b"%PDF"}
+
 
 class CacheError(RuntimeError):
     """The results folder cannot be used. The message is one line that says what to do."""
@@ -26,7 +32,10 @@ class Store:
 
     def __init__(self, folder):
         """folder: str or Path. It is made when the first result is written."""
+        if not str(folder).strip():
+            raise CacheError(f"{str(folder)!r} is not allowed; allowed: the name of a folder")
         self.folder = Path(folder)
+        self._tried = False
 
     def path(self, group, key):
         """Path of the result `key`; group is a subfolder that keeps scenes apart."""
@@ -60,6 +69,37 @@ class Store:
         write_atomically(path, _text({**record, "key": key}))
         return path
 
+    def try_writing(self):
+        """Raise CacheError where nothing can be stored, before work is put into it; tries once."""
+        if self._tried:
+            return
+        trial = self.folder / f".trial.{os.getpid()}"
+        try:
+            write_atomically(trial, bytes(LEAST_ROOM))
+        except CacheError as error:
+            raise CacheError(_advice("write to", self.folder, error.__cause__)) from error
+        finally:
+            with suppress(OSError):
+                trial.unlink()
+        self._tried = True
+
+
+def refuse_unusable(folders, files):
+    """Raise CacheError where a file is in the place of a folder, or a folder in that of a file.
+
+    folders, files: to be made in time, with all folders above them. Makes nothing itself.
+    """
+    try:
+        for folder in map(Path, folders):
+            for place in (*reversed(folder.parents), folder):
+                if os.path.lexists(place) and not place.is_dir():
+                    raise CacheError(f"{place} is not a folder; allowed: a folder, or a new name")
+        for file in map(Path, files):
+            if file.is_dir():
+                raise CacheError(f"{file} is a folder; allowed there: a file, or nothing yet")
+    except OSError as error:
+        raise CacheError(_advice("use", folder, error)) from error
+
 
 def write_atomically(path, content):
     """Write bytes to `path` so that it holds all of them or what it held before.
@@ -91,6 +131,11 @@ def writing_beside(path, sealed=False):
         os.replace(beside, path)
     except OSError as error:
         raise CacheError(_advice("write", path, error)) from error
+    except RuntimeError as error:
+        if not str(error).startswith("NetCDF: "):
+            raise
+        # This is how its library tells of a full disk.
+        raise CacheError(_advice("write", path, error)) from error
     finally:
         # Gone already after the rename, left by an interrupt; in a read-only folder never made.
         with suppress(OSError):
@@ -113,10 +158,16 @@ def _write_seal(path, checksum):
 
 
 def is_damaged(path):
-    """Whether a file is not what was sealed; False where there is no file or no seal."""
+    """Whether a file is not what was sealed, or without a seal not what its name says.
+
+    False where there is no file.
+    """
+    begins = BEGINNINGS.get(Path(path).suffix, b"")
     try:
-        sealed = seal_of(path).read_bytes().strip()
         with open(path, "rb") as file:
+            if not seal_of(path).exists():
+                return file.read(len(begins)) != begins
+            sealed = seal_of(path).read_bytes().strip()
             return hashlib.file_digest(file, "sha256").hexdigest().encode() != sealed
     except FileNotFoundError:
         return False
@@ -131,7 +182,10 @@ def set_damaged_aside(paths):
     """
     found = [Path(path) for path in paths if is_damaged(path)]
     for path in found:
-        os.replace(path, path.with_name(f"{path.name}.damaged"))
+        try:
+            os.replace(path, path.with_name(f"{path.name}.damaged"))
+        except OSError as error:
+            raise CacheError(_advice("rename", path, error)) from error
     return found
 
 
@@ -149,7 +203,8 @@ def _parse(text):
 
 
 def _advice(verb, path, error):
+    why = getattr(error, "strerror", None) or error
     return (
-        f"cannot {verb} {path}: {error.strerror or error}; make room or set permissions there, or "
-        "choose another folder for results, and run again: finished points are kept"
+        f"cannot {verb} {path}: {why}; make room or set permissions there, or choose another "
+        "folder for results, and run again: finished points are kept"
     )

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import json
+import math
 import sys
 
 from microslip import __version__
@@ -32,13 +34,59 @@ SCENES = {
     ),
 }
 
+# As in the schema of configurations. What is larger is a slip, and would run out of memory or of
+# the range of floating-point numbers.
+MOST = {"velocity": 1e6, "amplitude": 1e6, "cells": 1000, "steps": 1_000_000}
+
 
 class _OneLineParser(argparse.ArgumentParser):
     """Bad input gets one line on standard error and exit code 2."""
 
     def error(self, message):
-        print(f"{self.prog}: {message} (see {self.prog} --help)", file=sys.stderr)
+        _complain(f"{self.prog}: {message} (see {self.prog} --help)")
         raise SystemExit(2)
+
+    def parse_known_args(self, args=None, namespace=None):
+        self._refuse_unknown_options(args)
+        return super().parse_known_args(args, namespace)
+
+    def _refuse_unknown_options(self, words):
+        """Before argparse does, which would rather say that the right one is missing."""
+        known = self._option_string_actions
+        for word in words:
+            if self._subparsers and not word.startswith("-"):
+                return  # what follows belongs to a command
+            name = word.partition("=")[0]
+            strange = word.startswith("-") and name.strip("-") and name not in known
+            if strange and not _is_number(word):
+                self._refuse_option(name, [n for n in known if n.startswith("--")])
+
+    def _refuse_option(self, name, known):
+        near = difflib.get_close_matches(f"--{name.lstrip('-')}", known, n=1)
+        hint = f"did you mean {near[0]}? " if near else ""
+        first = [action.metavar for action in self._actions if action.nargs == argparse.PARSER]
+        allowed = ", ".join([*known, *(f"{command} before other options" for command in first)])
+        self.error(f"unknown option {name}; {hint}allowed: {allowed}")
+
+
+def _complain(message):
+    print(" ".join(message.split()), file=sys.stderr)
+
+
+def _real(text):
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not allowed; allowed: a number") from None
+
+
+def _whole(text):
+    try:
+        return int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not allowed; allowed: an even whole number"
+        ) from None
 
 
 def build_parser():
@@ -54,6 +102,7 @@ def build_parser():
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     point = commands.add_parser(
         "point",
+        allow_abbrev=False,
         help="macroscopic friction at one (velocity, amplitude)",
         description="Mean forward friction force over mu F_z at one point, with an error estimate. "
         "1 means that the vibration does nothing, 0 that it takes all friction away.",
@@ -64,11 +113,11 @@ def build_parser():
             name, help=summary, description=f"The indenter is {summary}.", allow_abbrev=False
         )
         scene.add_argument(
-            "--velocity", type=float, required=True, metavar="V", help=f"{velocity}; 0: v -> 0"
+            "--velocity", type=_real, required=True, metavar="V", help=f"{velocity}; 0: v -> 0"
         )
         if amplitude:
             scene.add_argument(
-                "--amplitude", type=float, required=True, metavar="A", help=amplitude
+                "--amplitude", type=_real, required=True, metavar="A", help=amplitude
             )
         _add_options(scene)
     return parser
@@ -76,7 +125,7 @@ def build_parser():
 
 def _add_options(parser):
     parser.add_argument(
-        "--poisson", type=float, default=0.0, metavar="NU", help="Poisson's ratio, 0 to 0.5 (0)"
+        "--poisson", type=_real, default=0.0, metavar="NU", help="Poisson's ratio, 0 to 0.5 (0)"
     )
     parser.add_argument(
         "--model",
@@ -87,15 +136,18 @@ def _add_options(parser):
     )
     parser.add_argument(
         "--tolerance",
-        type=float,
+        type=_real,
         default=1e-3,
         metavar="T",
         help="largest accepted error of mu_macro, absolute (1e-3)",
     )
     parser.add_argument(
-        "--cells", type=int, metavar="N", help="impose N rings, or N x N squares (even)"
+        "--cells",
+        type=_whole,
+        metavar="N",
+        help="impose N rings, or N x N squares (even, from 4 on)",
     )
-    parser.add_argument("--steps", type=int, metavar="N", help="impose N steps a period (even)")
+    parser.add_argument("--steps", type=_whole, metavar="N", help="impose N steps a period (even)")
     parser.add_argument(
         "--method",
         default="shipped",
@@ -123,7 +175,7 @@ def main(arguments=None):
         result = _answer(options, progress)
     except (ValueError, CacheError) as error:
         named = "--" if isinstance(error, ValueError) else "--results: "
-        print(f"microslip point {options.scene}: {named}{error}", file=sys.stderr)
+        _complain(f"microslip point {options.scene}: {named}{error}")
         return 2
     finally:
         progress.close()
@@ -141,6 +193,10 @@ def _answer(options, progress):
     place = (options.scene, options.velocity, getattr(options, "amplitude", None))
     names = ("poisson", "model", "tolerance", "cells", "steps")
     settings = {name: getattr(options, name) for name in names}
+    for name, most in MOST.items():
+        given = getattr(options, name, None)
+        if given is not None and most < given < math.inf:
+            raise ValueError(f"{name} = {given!r}: allowed is at most {most:g}")
     if options.results is None:
         return solve(*place, **settings, method=options.method, progress=progress)
     if options.method != "shipped":

@@ -7,110 +7,27 @@ Imports nothing heavy, since the workflow reads it whenever it is parsed.
 """
 
 import math
-from dataclasses import asdict, dataclass
 from itertools import pairwise
 
 import yaml
 
 from . import methods, schemas
 from .keys import number
+from .settings import (
+    MODELS_OF_SCENE,
+    SCENE_OF_SWEEP,
+    Accuracy,
+    ConfigError,
+    Configuration,
+    Stability,
+    StudyPoint,
+    Sweep,
+)
 
-# Sweeps are named like their datasets, scenes as on the command line.
-SCENE_OF_SWEEP = {"transverse": "transverse", "bore": "bore", "continuous_bore": "continuous-bore"}
-
-# The single runs, for figures, that a dataset carries besides its sweep.
-HISTORIES_OF_SWEEP = {
-    "transverse": ("transverse",),
-    "bore": (),
-    "continuous_bore": ("field", "transients"),
-}
-# What microslip.models refuses, which takes too long to import here; a test keeps them the same.
-MODELS_OF_SCENE = {
-    "transverse": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
-    "bore": ("auto", "rigid", "polar", "cartesian"),
-    "continuous-bore": ("auto", "rigid", "polar", "cartesian"),
-    "zigzag": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
-}
-
-
-class ConfigError(ValueError):
-    """A configuration that cannot be used. The message is one line: file, key, value, allowed."""
-
-
-@dataclass(frozen=True)
-class Sweep:
-    """A grid of points. The axes are ascending tuples of floats, all dimensionless."""
-
-    name: str
-    scene: str
-    velocity: tuple
-    amplitude: tuple | None  # None: the scene has no amplitude
-    poisson: tuple
-    poisson_is_axis: bool  # a list was given, so the dataset gets a dimension of this name
-    model: str
-    tolerance: float
-    cells: int | None
-    steps: int | None
-
-    @property
-    def spans_a_map(self):
-        """Whether there is an area to draw: two amplitudes and two velocities above 0 at least."""
-        positive = [velocity for velocity in self.velocity if velocity > 0]
-        return len(self.amplitude or ()) > 1 and len(positive) > 1
-
-
-@dataclass(frozen=True)
-class StudyPoint:
-    """A point that methods are compared at. All numbers are dimensionless."""
-
-    name: str
-    scene: str
-    velocity: float
-    amplitude: float | None  # None: the scene has no amplitude
-    poisson: float
-    title: str
-
-
-@dataclass(frozen=True)
-class Accuracy:
-    """What is asked to see what accuracy costs."""
-
-    methods: tuple
-    points: dict  # name -> StudyPoint
-    levels: int
-    repeats: int
-    map_velocity: tuple
-    map_amplitude: dict  # scene -> tuple
-    map_tolerance: tuple  # from loose to tight
-
-
-@dataclass(frozen=True)
-class Stability:
-    """What is asked to see where methods fail."""
-
-    methods: tuple
-    tolerance: float
-    axes: tuple | None  # None: all blocks of studies.stability
-
-
-@dataclass(frozen=True)
-class Configuration:
-    """A checked configuration with its defaults filled in and its axes expanded."""
-
-    results: str
-    points_per_job: int
-    sweeps: dict  # name -> Sweep, in the order of SCENE_OF_SWEEP
-    histories: dict  # transverse, field, transients -> dict of settings, as in the schema
-    accuracy: Accuracy
-    stability: Stability
-
-    def of_sweep(self, name):
-        """All settings that the dataset of the sweep `name` depends on, as a dict for JSON."""
-        names = HISTORIES_OF_SWEEP[name]
-        return {
-            "sweep": asdict(self.sweeps[name]),
-            "histories": {history: self.histories[history] for history in names},
-        }
+# More points than this are a slip of the pen: naming them all takes the workflow a minute whenever
+# it starts. The points of a study's map are computed by every model, at every tolerance.
+MOST_POINTS = 1_000_000
+MOST_MAP_POINTS = 10_000
 
 
 def load(path):
@@ -125,8 +42,17 @@ def read_yaml(path):
             mapping = yaml.load(file, _UniqueKeyLoader)
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read: {error.strerror}") from None
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise ConfigError(f"{path}: not valid YAML: {' '.join(str(error).split())}") from None
+    except UnicodeDecodeError as error:
+        byte = error.object[error.start]
+        raise ConfigError(f"{path}: not text: byte 0x{byte:02x}; allowed: UTF-8") from None
+    except RecursionError:
+        raise ConfigError(f"{path}: not valid YAML: too many levels") from None
+    except (yaml.YAMLError, ValueError) as error:
+        # Such as a date with month 13, which is no YAMLError.
+        hint = "; allowed: spaces, no tabs" if "'\\t'" in str(error) else ""
+        raise ConfigError(f"{path}: not valid YAML: {_one_line(error)}{hint}") from None
+    if mapping is None:
+        raise ConfigError(f"{path}: is empty; allowed: keys and values, sweeps at least")
     if not isinstance(mapping, dict):
         raise ConfigError(
             f"{path}: {schemas.shown(mapping)} is not a mapping; allowed: keys and values"
@@ -139,9 +65,12 @@ def from_mapping(mapping, source="configuration"):
 
     source: how messages name the origin, usually the file. Raises ConfigError.
     """
-    problem = schemas.problem(mapping)
+    try:
+        problem = schemas.problem(mapping)
+    except RecursionError:
+        problem = "not valid YAML: a key that holds itself"
     if problem is not None:
-        raise ConfigError(f"{source}: {problem}")
+        raise ConfigError(f"{source}: {_one_line(problem)}")
     filled = schemas.filled(mapping)
     sweeps = {
         name: _sweep(name, filled["sweeps"][name], source)
@@ -172,6 +101,9 @@ def _accuracy(given, where):
             raise ConfigError(
                 f"{where}.map.{name}: {list(values)} is not allowed; allowed: two numbers or more"
             )
+    for name in ("amplitude_transverse", "amplitude_bore"):
+        count = len(axes["velocity"]) * len(axes[name])
+        _refuse_crowd(count, f"{where}.map.velocity x {name}", MOST_MAP_POINTS)
     points = [_study_point(name, p, f"{where}.points") for name, p in given["points"].items()]
     return Accuracy(
         methods=_methods(given["methods"], where),
@@ -247,7 +179,14 @@ def _sweep(name, given, source):
         steps=given["steps"],
     )
     _refuse_mismatch(sweep, where)
+    points = len(sweep.velocity) * len(sweep.amplitude or (None,)) * len(sweep.poisson)
+    _refuse_crowd(points, where, MOST_POINTS)
     return sweep
+
+
+def _refuse_crowd(points, where, most):
+    if points > most:
+        raise ConfigError(f"{where}: {points} points are not allowed; allowed: at most {most}")
 
 
 def _axis(given, where, positive=False):
@@ -269,6 +208,8 @@ def _spaced(spacing, spec, where):
     start, stop, count = spec["start"], spec["stop"], spec["count"]
     if stop <= start:
         raise ConfigError(f"{where}.stop: {stop} is not allowed; allowed: a number above {start}")
+    if spacing == "log" and math.isinf(stop / start):
+        raise ConfigError(f"{where}.start: {start} is not allowed; allowed: a number nearer {stop}")
     if spacing == "linear":
         values = (start + (stop - start) * i / (count - 1) for i in range(count))
     else:
@@ -300,6 +241,10 @@ def _refuse_mismatch(sweep, where):
             f"{where}.velocity: 0, the static limit, is known for poisson 0 only; "
             "allowed: numbers > 0"
         )
+
+
+def _one_line(text):
+    return " ".join(str(text).split())
 
 
 class _UniqueKeyLoader(yaml.SafeLoader):

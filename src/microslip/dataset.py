@@ -32,7 +32,7 @@ AMPLITUDE = {
 def write_sweep(path, sweep, points, histories, settings):
     """Write the dataset of a sweep to the netCDF-4 file `path`, all of it or nothing.
 
-    sweep: config.Sweep. points: records in the order of sweep.PointRequests, any iterable; it is
+    sweep: settings.Sweep. points: records in the order of sweep.PointRequests, any iterable; it is
     read a block at a time, so that memory does not grow with their number. histories: records
     in the order of sweep.history_requests. settings: dict of the configuration that led here, kept
     as provenance. The dataset has dims (amplitude, velocity), those of them that the scene has, and

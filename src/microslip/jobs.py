@@ -16,7 +16,11 @@ def job_log(path, shown=logging.WARNING):
     one that the user can mend ends the process with its message alone.
     """
     form = logging.Formatter("%(message)s")
-    handlers = [logging.FileHandler(path, mode="w", encoding="utf-8"), logging.StreamHandler()]
+    try:
+        kept = logging.FileHandler(path, mode="w", encoding="utf-8")
+    except OSError as error:
+        sys.exit(f"Error: cannot write {path}: {error.strerror}; choose another folder for results")
+    handlers = [kept, logging.StreamHandler()]
     log = logging.getLogger("microslip")
     log.setLevel(logging.INFO)
     handlers[1].setLevel(shown)

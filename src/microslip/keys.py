@@ -20,7 +20,7 @@ from pathlib import Path
 # that a new solver file is counted without anybody thinking of it.
 NOT_SOLVER = {"__init__", "__main__", "cli"}
 NOT_SOLVER |= {"config", "schemas", "keys", "cache", "answers", "sweep", "stored", "jobs", "watch"}
-NOT_SOLVER |= {"limits", "columns", "dataset", "studies", "plot"}
+NOT_SOLVER |= {"settings", "limits", "columns", "dataset", "studies", "plot"}
 # These count for the requests that name them, see further_files.
 NOT_SOLVER |= {"trial", "methods"}
 

@@ -59,7 +59,7 @@ LIMITS = {
 
 
 def variables(sweep):
-    """Variables of a config.Sweep's dataset: name -> (dims, values, attributes), dimensionless.
+    """Variables of a settings.Sweep's dataset: name -> (dims, values, attributes), dimensionless.
 
     Beside every limit stands `<name>_curve`, on the fine axis `amplitude_curve` or
     `velocity_curve`; of a limit that depends on both it is the one at the largest amplitude.

@@ -14,8 +14,8 @@ from collections.abc import Sequence
 from functools import cache
 
 from . import answers
-from .config import HISTORIES_OF_SWEEP
 from .keys import batch_name, number, result_key, source_digest
+from .settings import HISTORIES_OF_SWEEP
 
 log = logging.getLogger(__name__)
 
@@ -36,7 +36,7 @@ FOLDERS = {
 
 
 class PointRequests(Sequence):
-    """Requests for all points of a config.Sweep, each made when it is asked for.
+    """Requests for all points of a settings.Sweep, each made when it is asked for.
 
     The order is that of the dataset: Poisson's ratio, amplitude, velocity, the last one fastest.
     """
@@ -109,6 +109,7 @@ def answer(request, store):
     record = store.read(group(request), key)
     if record is not None:
         return record, 0.0
+    store.try_writing()
     started = time.process_time()
     result = answers.computed(request)
     seconds = time.process_time() - started

@@ -1,40 +1,19 @@
-# What the rules share: the package, the checked configuration, and the batches it leads to.
+# What the rules share: the checked configuration, and the batches it leads to.
 
-import os
-import sys
 from glob import glob
-from pathlib import Path
 
-# The package of this tree is the one that runs, whether it is installed or not.
-SOURCE = Path(workflow.current_basedir.get_path_or_uri(secret_free=True), "../../src").resolve()
-if SOURCE.is_dir():
-    sys.path.insert(0, str(SOURCE))
-    search = [str(SOURCE), *filter(None, [os.environ.get("PYTHONPATH")])]
-    os.environ.update(PYTHONPATH=os.pathsep.join(search))
-
-# Jobs inherit this. Parallel work is many points at a time, one thread each.
-os.environ.update(
-    dict.fromkeys(
-        ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"], "1"
-    )
-)
-
-from microslip import config as microslip_config
-from microslip import cache, jobs, keys, plot, studies, sweep
+from microslip import jobs, keys, plot, studies, sweep
 from microslip.watch import Watch
 
-try:
-    files = [os.path.relpath(file) for file in workflow.configfiles]
-    for file in files:
+FILES = [os.path.relpath(file) for file in workflow.configfiles]
+OVERRIDDEN = ["--config"] if workflow.config_settings.config else []
+ORIGIN = ", ".join([*FILES, *OVERRIDDEN]) or "configuration"
+
+with refused_in_one_line(ORIGIN):
+    for file in FILES:
         microslip_config.read_yaml(file)  # refuses a key that occurs twice
-    origin = ", ".join(files) or "configuration"
-    CONFIGURATION = microslip_config.from_mapping(config, origin)
+    CONFIGURATION = microslip_config.from_mapping(config, ORIGIN)
     RESULTS = os.path.normpath(CONFIGURATION.results)
-    for folder in (Path(RESULTS), *Path(RESULTS).parents):
-        if folder.exists() and not folder.is_dir():
-            raise microslip_config.ConfigError(f"{origin}: results: {folder} is not a folder")
-except microslip_config.ConfigError as error:
-    sys.exit(f"Error in {error}")
 
 DIGEST = keys.source_digest()
 COUNTER = f"{RESULTS}/logs/points_done"
@@ -77,13 +56,18 @@ def figures_of(datasets):
     ]
 
 
-# What is there is used again, so damage to it has to be seen before anything is planned; but not
-# while another run may be writing.
-if workflow.is_main_process and not glob(".snakemake/locks/*"):
-    made = [f"{RESULTS}/{name}.nc" for name in (*CONFIGURATION.sweeps, *STUDIES)]
-    made += figures_of((*CONFIGURATION.sweeps, *STUDIES))
-    for path in cache.set_damaged_aside(made):
-        print(f"{path} was damaged: renamed to {path}.damaged, made again", file=sys.stderr)
+MADE = [f"{RESULTS}/{name}.nc" for name in (*CONFIGURATION.sweeps, *STUDIES)]
+MADE += figures_of((*CONFIGURATION.sweeps, *STUDIES))
+GROUPS = {"batches", "figures", "logs", "warm_up", *sweep.FOLDERS.values()}
+
+with refused_in_one_line(ORIGIN):
+    if workflow.is_main_process:
+        cache.refuse_unusable([f"{RESULTS}/{group}" for group in sorted(GROUPS)], MADE)
+    # What is there is used again, so damage to it has to be seen before anything is planned; but
+    # not while another run may be writing.
+    if workflow.is_main_process and not glob(".snakemake/locks/*"):
+        for path in cache.set_damaged_aside(MADE):
+            print(f"{path} was damaged: renamed to {path}.damaged, made again", file=sys.stderr)
 
 WATCH = Watch(COUNTER)
 
@@ -99,7 +83,8 @@ def points_to_do():
 def show_the_end():
     """Stop the line of progress; say once more what is in the datasets, and what is not."""
     WATCH.stop()
-    planned = {job.output[0] for job in workflow.dag.needrun_jobs()}
+    asked = workflow.dag.needrun_jobs(exclude_finished=False)
+    planned = {path for job in asked for path in job.output}
     names = [n for n in (*CONFIGURATION.sweeps, *STUDIES) if f"{RESULTS}/{n}.nc" in planned]
     for line in jobs.closing_lines(RESULTS, names):
         print(line, file=sys.stderr)

@@ -3,12 +3,12 @@
 Output: the figure as PNG and as PDF.
 """
 
-import xarray as xr
-
 from microslip import plot
 from microslip.jobs import job_log
+from microslip.plot.data import loaded
 
-with job_log(snakemake.log[0]), xr.open_dataset(snakemake.input.dataset) as data:
+with job_log(snakemake.log[0]):
+    data = loaded(snakemake.input.dataset)
     figure = plot.draw(snakemake.wildcards.figure, {snakemake.params.name: data})
     for path in snakemake.output:
         plot.save(figure, path)

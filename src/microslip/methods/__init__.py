@@ -12,6 +12,7 @@ Listing and checking names imports no solver.
 from __future__ import annotations
 
 import ast
+import difflib
 import math
 from functools import cache
 from importlib import import_module
@@ -32,10 +33,14 @@ def split(text):
     """Name and numbers (dict) of a method; raises ValueError if the text cannot be read."""
     name, colon, rest = text.partition(":")
     if name not in names():
-        raise ValueError(f"method = {name!r}: allowed is one of {', '.join(names())}")
+        near = difflib.get_close_matches(name, names(), n=1)
+        hint = f"did you mean {near[0]}? " if near else ""
+        raise ValueError(f"method = {name!r}: {hint}allowed is one of {', '.join(names())}")
     numbers = {}
     for part in rest.split(",") if colon else ():
         key, equals, value = (word.strip() for word in part.partition("="))
+        if key in numbers:
+            raise ValueError(f"method = {text!r}: {key} occurs twice; allowed: each number once")
         try:
             numbers[key] = float(value)
         except ValueError:

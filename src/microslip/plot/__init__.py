@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..cache import writing_beside
+from ..settings import SCENE_OF_SWEEP
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -70,8 +71,9 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     """Draw one figure.
 
     name: a key of `FIGURES`. datasets: at least the datasets that `FIGURES[name]` lists, by their
-    key; others are ignored. Raises ValueError if the name is unknown or a dataset, variable or
-    dimension the figure needs is missing. The figure belongs to no window and no global state.
+    key; others are ignored. Raises ValueError if the name is unknown, a dataset is of another
+    scene, or a dataset, variable or dimension the figure needs is missing. The figure belongs to no
+    window and no global state.
     """
     if name not in FIGURES:
         raise ValueError(f"unknown figure {name!r}; known figures: {', '.join(FIGURES)}")
@@ -79,6 +81,10 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     if missing:
         given = ", ".join(map(repr, datasets)) or "none"
         raise ValueError(f"figure {name} needs the dataset {missing[0]!r}; given: {given}")
+    for key in FIGURES[name]:
+        scene, found = SCENE_OF_SWEEP.get(key), datasets[key].attrs.get("scene")
+        if scene and found not in (scene, None):
+            raise ValueError(f"figure {name}: dataset {key!r} is of {found!r}; allowed: {scene!r}")
     from microslip.plot.style import style
 
     module = importlib.import_module(f"microslip.plot.{_MODULES[name]}")

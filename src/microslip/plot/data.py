@@ -2,12 +2,28 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 
 import numpy as np
 import xarray as xr
 
+from microslip.cache import CacheError
+
 Curve = tuple[np.ndarray, np.ndarray]
+
+
+def loaded(path: str | os.PathLike[str]) -> xr.Dataset:
+    """A dataset from its file. Raises CacheError, one line, where the file is none or damaged."""
+    try:
+        with xr.open_dataset(path, engine="netcdf4") as dataset:
+            return dataset.load()
+    except (OSError, RuntimeError, ValueError) as error:
+        why = " ".join(str(getattr(error, "strerror", None) or error).split())
+        raise CacheError(
+            f"cannot read the dataset {path}: {why}; allowed: a netCDF file that the workflow made;"
+            " remove it and run again: finished points are kept"
+        ) from error
 
 
 def require(figure: str, key: str, dataset: xr.Dataset, variables: Iterable[str]) -> None:

@@ -96,16 +96,21 @@ def _explain(error):
     wants_number = {"number", "integer"} & set(_types(rule))
     if isinstance(value, str) and wants_number:
         return f"{where}: {shown(value)} is text; {_as_number(value)}"
-    return f"{where}: {shown(value)} is not allowed; allowed: {_allowed(rule)}"
+    hint = near_miss(value, rule.get("enum", ()))
+    return f"{where}: {shown(value)} is not allowed; {hint}allowed: {_allowed(rule)}"
+
+
+def near_miss(given, known):
+    """'did you mean this? ' if one of the known names is like what is given, else ''."""
+    near = difflib.get_close_matches(str(given), known, n=1)
+    return f"did you mean {near[0]}? " if near else ""
 
 
 def _unknown_key(error):
     known = list(error.schema.get("properties", {}))
     unknown = next(key for key in error.instance if key not in known)
-    near = difflib.get_close_matches(str(unknown), known, n=1)
-    hint = f"did you mean {near[0]}? " if near else ""
-    path = _dotted((*error.absolute_path, unknown))
-    return f"{path}: unknown key; {hint}allowed: {', '.join(known)}"
+    path = _dotted((*error.absolute_path, str(unknown)))
+    return f"{path}: unknown key; {near_miss(unknown, known)}allowed: {', '.join(known)}"
 
 
 def _as_number(text):
@@ -137,7 +142,7 @@ def _allowed(rule):
     if kinds == ["object"]:
         return f"a mapping with the keys {', '.join(rule['properties'])}"
     words = {"number": "a number", "integer": "a whole number", "array": "or a list of them"}
-    folder = "text for a folder, without braces, * and ?"
+    folder = "text for a folder, without braces, *, ? and line breaks"
     words |= {"string": folder if "pattern" in rule else "text", "null": "or null"}
     limits = {"minimum": ">=", "exclusiveMinimum": ">", "maximum": "<="}
     ranges = [f"{sign} {rule[key]:g}" for key, sign in limits.items() if key in rule]

@@ -30,7 +30,7 @@ def settings(study, configuration):
 def build(study, configuration, answer):
     """Assemble the xarray.Dataset of a study.
 
-    configuration: config.Configuration. answer(request) -> record, see microslip.sweep.
+    configuration: settings.Configuration. answer(request) -> record, see microslip.sweep.
     """
     return _dataset_of(study).build(getattr(configuration, study), answer)
 

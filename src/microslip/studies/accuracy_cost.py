@@ -39,7 +39,7 @@ many of the sizes one job can measure together."""
 def trials(study, point):
     """Yield (level, request) for the trials of one point, the choices of `solve` at the end.
 
-    study: config.Accuracy. The level of a choice counts its tolerances.
+    study: settings.Accuracy. The level of a choice counts its tolerances.
     """
     for method in study.methods:
         for model in models_for(method, point.scene, point.poisson):
@@ -59,7 +59,7 @@ def truth(point):
 
 
 def map_points(study, scene):
-    """The points of a map as config.StudyPoint, amplitude by amplitude, the velocity fastest."""
+    """The points of a map as settings.StudyPoint, amplitude by amplitude, the velocity fastest."""
     return [
         StudyPoint("", scene, velocity, amplitude, 0.0, "")
         for amplitude in study.map_amplitude[scene]

@@ -41,7 +41,7 @@ TRIAL_VARIABLES = {
 def build(settings, answer):
     """Assemble the Dataset.
 
-    settings: config.Accuracy. answer(request) -> record, such as sweep.answer with a store.
+    settings: settings.Accuracy. answer(request) -> record, such as sweep.answer with a store.
     """
     answers = Answers(answer)
     points = list(settings.points.values())

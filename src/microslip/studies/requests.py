@@ -17,7 +17,7 @@ MOST_WORK = 5_000_000
 
 
 def of_point(point):
-    """The part of a request that says where: point is a config.StudyPoint."""
+    """The part of a request that says where: point is a settings.StudyPoint."""
     return {
         "scene": point.scene,
         "velocity": number(point.velocity),

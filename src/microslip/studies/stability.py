@@ -143,7 +143,7 @@ BLOCKS_TOGETHER = 5
 
 
 def axes(study):
-    """The blocks that a config.Stability asks for, in the order of AXES."""
+    """The blocks that a settings.Stability asks for, in the order of AXES."""
     return [axis for axis in AXES if study.axes is None or axis.name in study.axes]
 
 

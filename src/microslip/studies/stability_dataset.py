@@ -45,7 +45,7 @@ def outcome(result, reference, reference_error):
 def build(settings, answer):
     """Assemble the Dataset.
 
-    settings: config.Stability. answer(request) -> record, such as sweep.answer with a store.
+    settings: settings.Stability. answer(request) -> record, such as sweep.answer with a store.
     """
     answers = Answers(answer)
     cases = study.cases(settings)

@@ -1,0 +1,104 @@
+"""What a checked configuration is: sweeps, studies and single runs as records.
+
+`config` makes them from a file. Imports nothing heavy, since the workflow reads it whenever it is
+parsed.
+"""
+
+from dataclasses import asdict, dataclass
+
+# Sweeps are named like their datasets, scenes as on the command line.
+SCENE_OF_SWEEP = {"transverse": "transverse", "bore": "bore", "continuous_bore": "continuous-bore"}
+
+# The single runs, for figures, that a dataset carries besides its sweep.
+HISTORIES_OF_SWEEP = {
+    "transverse": ("transverse",),
+    "bore": (),
+    "continuous_bore": ("field", "transients"),
+}
+# What microslip.models refuses, which takes too long to import here; a test keeps them the same.
+MODELS_OF_SCENE = {
+    "transverse": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
+    "bore": ("auto", "rigid", "polar", "cartesian"),
+    "continuous-bore": ("auto", "rigid", "polar", "cartesian"),
+    "zigzag": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
+}
+
+
+class ConfigError(ValueError):
+    """A configuration that cannot be used. The message is one line: file, key, value, allowed."""
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A grid of points. The axes are ascending tuples of floats, all dimensionless."""
+
+    name: str
+    scene: str
+    velocity: tuple
+    amplitude: tuple | None  # None: the scene has no amplitude
+    poisson: tuple
+    poisson_is_axis: bool  # a list was given, so the dataset gets a dimension of this name
+    model: str
+    tolerance: float
+    cells: int | None
+    steps: int | None
+
+    @property
+    def spans_a_map(self):
+        """Whether there is an area to draw: two amplitudes and two velocities above 0 at least."""
+        positive = [velocity for velocity in self.velocity if velocity > 0]
+        return len(self.amplitude or ()) > 1 and len(positive) > 1
+
+
+@dataclass(frozen=True)
+class StudyPoint:
+    """A point that methods are compared at. All numbers are dimensionless."""
+
+    name: str
+    scene: str
+    velocity: float
+    amplitude: float | None  # None: the scene has no amplitude
+    poisson: float
+    title: str
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """What is asked to see what accuracy costs."""
+
+    methods: tuple
+    points: dict  # name -> StudyPoint
+    levels: int
+    repeats: int
+    map_velocity: tuple
+    map_amplitude: dict  # scene -> tuple
+    map_tolerance: tuple  # from loose to tight
+
+
+@dataclass(frozen=True)
+class Stability:
+    """What is asked to see where methods fail."""
+
+    methods: tuple
+    tolerance: float
+    axes: tuple | None  # None: all blocks of studies.stability
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """A checked configuration with its defaults filled in and its axes expanded."""
+
+    results: str
+    points_per_job: int
+    sweeps: dict  # name -> Sweep, in the order of SCENE_OF_SWEEP
+    histories: dict  # transverse, field, transients -> dict of settings, as in the schema
+    accuracy: Accuracy
+    stability: Stability
+
+    def of_sweep(self, name):
+        """All settings that the dataset of the sweep `name` depends on, as a dict for JSON."""
+        names = HISTORIES_OF_SWEEP[name]
+        return {
+            "sweep": asdict(self.sweeps[name]),
+            "histories": {history: self.histories[history] for history in names},
+        }

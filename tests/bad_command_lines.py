@@ -1,0 +1,123 @@
+"""Bad command lines of microslip, each with parts that its one line on standard error must have.
+
+The option at fault, the value as it was given, and what is allowed.
+"""
+
+TRANSVERSE = "point transverse --velocity 0.5 --amplitude 0.5"
+BORE = "point bore --velocity 0.5 --amplitude 0.5"
+STEADY = "point continuous-bore --velocity 0.5"
+
+FINITE = "a finite number of at least 0"
+RATIO = "at least 0 and at most 0.5"
+RANGE = "at least 1e-06 and at most 0.1"
+
+# Arguments to what was right: of an option given twice the later value counts.
+NUMBERS = [
+    (f"{TRANSVERSE} --velocity -1", "--velocity = -1.0", FINITE),
+    (f"{TRANSVERSE} --velocity -1e-3", "--velocity = -0.001", FINITE),
+    (f"{TRANSVERSE} --velocity=-1e-3", "--velocity = -0.001", FINITE),
+    (f"{TRANSVERSE} --velocity nan", "--velocity = nan", FINITE),
+    (f"{TRANSVERSE} --velocity inf", "--velocity = inf", FINITE),
+    (f"{TRANSVERSE} --velocity -inf", "--velocity = -inf", FINITE),
+    (f"{TRANSVERSE} --velocity 1e7", "--velocity = 10000000.0", "at most 1e+06"),
+    (f"{TRANSVERSE} --velocity fast", "--velocity: 'fast'", "allowed: a number"),
+    (f"{TRANSVERSE} --velocity 0,5", "--velocity: '0,5'", "allowed: a number"),
+    (f"{TRANSVERSE} --velocity 0.1:1", "--velocity: '0.1:1'", "allowed: a number"),
+    (f"{TRANSVERSE} --velocity ''", "--velocity: ''", "allowed: a number"),
+    (f"{TRANSVERSE} --velocity '1\n2'", r"--velocity: '1\n2'", "allowed: a number"),
+    (f"{TRANSVERSE} --velocity", "--velocity", "expected one argument"),
+    (f"{BORE} --amplitude -0.5", "--amplitude = -0.5", FINITE),
+    (f"{BORE} --amplitude NaN", "--amplitude = nan", FINITE),
+    (f"{BORE} --amplitude 1e999", "--amplitude = inf", FINITE),
+    (f"{BORE} --amplitude 1e300", "--amplitude = 1e+300", "at most 1e+06"),
+    (f"{BORE} --amplitude 30deg", "--amplitude: '30deg'", "allowed: a number"),
+    (f"{TRANSVERSE} --poisson 0.7", "--poisson = 0.7", RATIO),
+    (f"{TRANSVERSE} --poisson 0.5000001", "--poisson = 0.5000001", RATIO),
+    (f"{BORE} --poisson -0.1", "--poisson = -0.1", RATIO),
+    (f"{STEADY} --poisson nan", "--poisson = nan", RATIO),
+    (f"{TRANSVERSE} --poisson steel", "--poisson: 'steel'", "allowed: a number"),
+    (f"{TRANSVERSE} --tolerance 0", "--tolerance = 0.0", RANGE),
+    (f"{TRANSVERSE} --tolerance 1", "--tolerance = 1.0", RANGE),
+    (f"{TRANSVERSE} --tolerance 1e-9", "--tolerance = 1e-09", RANGE),
+    (f"{TRANSVERSE} --tolerance -1e-3", "--tolerance = -0.001", RANGE),
+    (f"{STEADY} --tolerance nan", "--tolerance = nan", RANGE),
+    (f"{STEADY} --tolerance 1%", "--tolerance: '1%'", "allowed: a number"),
+    (f"{TRANSVERSE} --cells 7", "--cells = 7", "an even number"),
+    (f"{TRANSVERSE} --cells 2", "--cells = 2", "at least 4"),
+    (f"{TRANSVERSE} --cells 0", "--cells = 0", "at least 4"),
+    (f"{TRANSVERSE} --cells -8", "--cells = -8", "at least 4"),
+    (f"{TRANSVERSE} --cells 1002", "--cells = 1002", "at most 1000"),
+    (f"{TRANSVERSE} --cells 8.5", "--cells: '8.5'", "an even whole number"),
+    (f"{TRANSVERSE} --cells 1e3", "--cells: '1e3'", "an even whole number"),
+    (f"{TRANSVERSE} --steps 9", "--steps = 9", "an even number"),
+    (f"{TRANSVERSE} --steps 6", "--steps = 6", "at least 8"),
+    (f"{TRANSVERSE} --steps 2000000", "--steps = 2000000", "at most 1e+06"),
+    (f"{TRANSVERSE} --steps many", "--steps: 'many'", "an even whole number"),
+]
+
+NAMES = [
+    (f"{TRANSVERSE} --model best", "--model = 'best'", "auto, rigid, slider"),
+    (f"{TRANSVERSE} --model Polar", "--model = 'Polar'", "polar"),
+    (f"{TRANSVERSE} --model ''", "--model = ''", "auto, rigid, slider"),
+    (f"{TRANSVERSE} --model radial --poisson 0.3", "--model = 'radial'", "transverse", "nu"),
+    (f"{BORE} --model radial", "--model = 'radial'", "does not apply to bore", "rotation"),
+    (f"{BORE} --model slider", "--model = 'slider'", "does not apply to bore"),
+    (f"{STEADY} --model mdr", "--model = 'mdr'", "does not apply to continuous-bore"),
+    (f"{TRANSVERSE} --method shiped", "--method = 'shiped'", "did you mean shipped?", "admm,"),
+    (f"{TRANSVERSE} --method full_newton", "'full_newton'", "did you mean full-newton?"),
+    (f"{TRANSVERSE} --method ../euler", "--method = '../euler'", "allowed is one of shipped,"),
+    (f"{TRANSVERSE} --method admm:", "--method = 'admm:'", "admm:key=0.5"),
+    (f"{TRANSVERSE} --method admm:penalty", "'admm:penalty'", "admm:key=0.5"),
+    (f"{TRANSVERSE} --method admm:penalty=high", "'admm:penalty=high'", "admm:key=0.5"),
+    (f"{TRANSVERSE} --method admm:penalty=nan", "'admm:penalty=nan'", "admm:key=0.5"),
+    (f"{TRANSVERSE} --method admm:penalt=1", "penalt;", "allowed: penalty, relaxation"),
+    (f"{TRANSVERSE} --method admm:penalty=1,penalty=2", "penalty occurs twice", "once"),
+    (f"{TRANSVERSE} --method shipped:order=2", "unknown number order", "allowed: none"),
+    (f"{TRANSVERSE} --method paper", "--method = 'paper'", "model cartesian"),
+    (f"{STEADY} --method march", "--method = 'march'", "continuous-bore", "nothing oscillates"),
+    (f"{BORE} --model rigid --method euler", "--method = 'euler'", "bore, model rigid"),
+]
+
+OPTIONS = [
+    ("", "COMMAND"),
+    ("solve", "COMMAND", "'solve'", "point"),
+    ("--verion", "--verion", "did you mean --version?"),
+    ("--velocity 1 point transverse", "--velocity", "COMMAND before other options"),
+    ("point", "SCENE"),
+    ("point sideways --velocity 1", "SCENE", "'sideways'", "zigzag"),
+    ("point continuous_bore --velocity 1", "'continuous_bore'", "continuous-bore"),
+    ("point --velocity 1 transverse", "--velocity", "SCENE before other options"),
+    ("point transverse --amplitude 1", "required: --velocity"),
+    ("point transverse --velocity 1", "required: --amplitude"),
+    ("point bore", "required: --velocity, --amplitude"),
+    (f"{STEADY} --amplitude 1", "unknown option --amplitude", "allowed: --help, --velocity"),
+    ("point bore --velo 1 --amplitude 1", "option --velo;", "did you mean --velocity?"),
+    ("point bore --vleocity=1 --amplitude 1", "option --vleocity;", "did you mean --velocity?"),
+    ("point bore -velocity 1 --amplitude 1", "option -velocity;", "did you mean --velocity?"),
+    (f"{TRANSVERSE} --step 8", "unknown option --step;", "did you mean --steps?"),
+    (f"{TRANSVERSE} --colour red", "unknown option --colour;", "allowed: --help"),
+    (f"{TRANSVERSE} '--a\nb'", "unknown option --a b;", "allowed: --help"),
+    (f"{TRANSVERSE} -q", "unknown option -q;", "allowed: --help"),
+    (f"{TRANSVERSE} --json=yes", "--json", "'yes'"),
+    (f"{TRANSVERSE} bore", "unrecognized arguments: bore"),
+    (f"{TRANSVERSE} 0.5", "unrecognized arguments: 0.5"),
+]
+
+# Of these the folder is as tests/test_bad_input.py makes it.
+RESULTS = [
+    (f"{TRANSVERSE} --results", "--results", "expected one argument"),
+    (f"{TRANSVERSE} --results ''", "--results: ''", "the name of a folder"),
+    (f"{TRANSVERSE} --results ' '", "--results: ' '", "the name of a folder"),
+    (f"{TRANSVERSE} --results a-file", "--results", "a-file", "Not a directory", "another folder"),
+    (f"{TRANSVERSE} --results a-file/deep", "--results", "a-file/deep", "Not a directory"),
+    (f"{TRANSVERSE} --results lost-link", "--results", "lost-link", "another folder"),
+    (f"{TRANSVERSE} --results /proc/none", "--results", "/proc/none", "another folder"),
+    (f"{TRANSVERSE} --results {'x' * 300}", "--results", "xxx", "File name too long"),
+    (f"{TRANSVERSE} --results kept --method admm", "--method = 'admm'", "not with --results"),
+    (f"{TRANSVERSE} --results kept --poisson 0.7", "--poisson = 0.7", RATIO),
+    (f"{TRANSVERSE} --results kept --velocity nan", "--velocity = nan", FINITE),
+    (f"{TRANSVERSE} --results kept --cells 7", "--cells = 7", "an even number"),
+    (f"{BORE} --results kept --model slider", "--model = 'slider'", "does not apply to bore"),
+]
+
+COMMAND_LINES = [*NUMBERS, *NAMES, *OPTIONS, *RESULTS]

@@ -1,0 +1,252 @@
+"""Bad configurations, each with parts that its one line must have beside the name of the file.
+
+A line starts with the key at fault; its parts are the value as it was given, what is wrong with it
+and what is allowed.
+"""
+
+import re
+
+import yaml
+
+GOOD = """
+sweeps:
+  transverse:
+    velocity: [0.1, 1]
+    amplitude: [0, 1]
+  bore:
+    velocity: {log: {start: 0.1, stop: 10, count: 3}}
+    amplitude: {linear: {start: 0, stop: 1, count: 3}}
+  continuous_bore:
+    velocity: [1]
+"""
+T, B, C = "sweeps.transverse", "sweeps.bore", "sweeps.continuous_bore"
+RATIO = ">= 0 and <= 0.5"
+TOLERANCES = ">= 1e-06 and <= 0.1"
+MODELS = "auto, rigid, slider"
+
+# Key to set in GOOD, its value in YAML (None: no such key), parts. The line starts with the key.
+KEYS = [
+    ("reslts", "x", "unknown key; did you mean results?", "points_per_job"),
+    ("1", "x", "unknown key; allowed: results, "),
+    ("results", "''", '"" is not allowed', "text for a folder"),
+    ("results", "' '", '" " is not allowed', "text for a folder"),
+    ("results", "r{x}", '"r{x}"', "without braces, *, ?"),
+    ("results", "r*", '"r*"', "without braces, *, ?"),
+    ("results", '"a\\n"', '"a\\n"', "line breaks"),
+    ("results", '"a\\0b"', '"a\\u0000b"', "line breaks"),
+    ("results", "5", "5 is not allowed", "text for a folder"),
+    ("results", "~", "null is not allowed", "text for a folder"),
+    ("results", "2026-01-31", '"2026-01-31"', "text for a folder"),
+    ("points_per_job", "0", "0 is not allowed", ">= 1"),
+    ("points_per_job", "-3", "-3 is not allowed", ">= 1"),
+    ("points_per_job", "1.5", "1.5 is not allowed", "a whole number"),
+    ("points_per_job", "all", '"all" is text', "a number"),
+    ("points_per_job", "1e3", '"1e3" is text', "write 1.0e+3"),
+    ("points_per_job", "1000000", "1000000 is not allowed", "<= 100000"),
+    ("sweeps", None, "missing; required: sweeps"),
+    ("sweeps", "{}", "{} is not allowed", "transverse, bore, continuous_bore"),
+    ("sweeps", "[bore]", '["bore"] is not allowed', "transverse, bore, continuous_bore"),
+    ("sweeps.bores", "{}", "unknown key; did you mean bore?"),
+    ("sweeps.continuous-bore", "{}", "unknown key; did you mean continuous_bore?"),
+    ("sweeps.zigzag", "{}", "unknown key; allowed: transverse, bore, continuous_bore"),
+    (C, "~", "null is not allowed", "velocity"),
+    (f"{T}.velocities", "[1]", "unknown key; did you mean velocity?"),
+    (f"{T}.Amplitude", "[1]", "unknown key; did you mean amplitude?"),
+    (f"{T}.nu", "0.3", "unknown key; allowed: velocity, amplitude, poisson"),
+    (f"{T}.method", "admm", "unknown key; allowed: velocity, amplitude, poisson, model"),
+    (f"{C}.amplitude", "[1]", "unknown key; allowed: velocity, poisson"),
+    (f"{T}.amplitude", None, "missing; required: velocity, amplitude"),
+    (f"{C}.velocity", None, "missing; required: velocity"),
+    (f"{T}.velocity[0]", "-0.1", "-0.1 is not allowed", ">= 0"),
+    (f"{T}.velocity[1]", "fast", '"fast" is text', "a number"),
+    (f"{T}.velocity[1]", "'0.1'", '"0.1" is text', "without quotes: 0.1"),
+    (f"{T}.velocity[1]", "1e-3", '"1e-3" is text', "write 1.0e-3"),
+    (f"{T}.velocity[1]", "1.5e3", '"1.5e3" is text', "write 1.5e+3"),
+    (f"{T}.velocity[1]", "'inf'", '"inf" is text', "a finite number"),
+    (f"{T}.velocity[1]", "true", "true is not allowed", "a number"),
+    (f"{T}.velocity[1]", "[1]", "[1] is not allowed", "a number"),
+    (f"{T}.velocity[1]", "~", "null is not allowed", "a number"),
+    (f"{T}.velocity[1]", ".nan", "nan is not allowed", "a finite number"),
+    (f"{T}.velocity[1]", ".inf", "inf is not allowed", "a finite number"),
+    (f"{T}.velocity[1]", "1.0e+9", "1000000000.0 is not allowed", "<= 1e+06"),
+    (f"{T}.velocity", "all", '"all" is not allowed', "a list of"),
+    (f"{T}.velocity", "0.1", "0.1 is not allowed", "a list of"),
+    (f"{T}.velocity", "[]", "[] is not allowed", "a list of"),
+    (f"{T}.velocity", "{}", "{} is not allowed", "linear or log"),
+    (f"{T}.velocity", "[0.1, 1, 0.1]", "0.1 occurs twice", "different values"),
+    (f"{T}.velocity", "[0.3, 0.30000000000000004]", "0.3 occurs twice", "different values"),
+    (f"{T}.velocity", "[0, -0.0]", "0 occurs twice", "different values"),
+    (f"{T}.amplitude[1]", "-1", "-1 is not allowed", ">= 0"),
+    (f"{T}.amplitude", "[1, 2, 1.0]", "1 occurs twice", "different values"),
+    (f"{B}.velocity.logs", "{}", "unknown key; did you mean log?"),
+    (f"{B}.velocity.log.start", "0", "0 is not allowed", "> 0"),
+    (f"{B}.velocity.log.start", "-1", "-1 is not allowed", "> 0"),
+    (f"{B}.velocity.log.start", "1.0e-320", "1e-320 is not allowed", "nearer 10"),
+    (f"{B}.velocity.log.stop", "0.01", "0.01 is not allowed", "a number above 0.1"),
+    (f"{B}.velocity.log.stop", "0.1", "0.1 is not allowed", "a number above 0.1"),
+    (f"{B}.velocity.log.count", "0", "0 is not allowed", ">= 2"),
+    (f"{B}.velocity.log.count", "1", "1 is not allowed", ">= 2"),
+    (f"{B}.velocity.log.count", "2.5", "2.5 is not allowed", "a whole number"),
+    (f"{B}.velocity.log.count", "1000000", "1000000 is not allowed", "<= 100000"),
+    (f"{B}.velocity.log.count", None, "missing; required: start, stop, count"),
+    (f"{B}.velocity.log.number", "3", "unknown key; allowed: start, stop, count"),
+    (f"{C}.poisson", "0.7", "0.7 is not allowed", RATIO),
+    (f"{C}.poisson", "-0.1", "-0.1 is not allowed", RATIO),
+    (f"{C}.poisson", "steel", '"steel" is text', "a number"),
+    (f"{C}.poisson", ".nan", "nan is not allowed", "a finite number"),
+    (f"{C}.poisson", "[]", "[] is not allowed", "a list"),
+    (f"{C}.poisson", "[0.3, 0.3]", "0.3 occurs twice", "different values"),
+    (f"{C}.model", "exact", '"exact" is not allowed', MODELS),
+    (f"{C}.model", "poler", '"poler" is not allowed; did you mean polar?', MODELS),
+    (f"{C}.model", "radial", '"radial" does not apply to continuous-bore', "auto, rigid, polar"),
+    (f"{B}.model", "slider", '"slider" does not apply to bore', "auto, rigid, polar, cartesian"),
+    (f"{C}.tolerance", "0", "0 is not allowed", TOLERANCES),
+    (f"{C}.tolerance", "1", "1 is not allowed", TOLERANCES),
+    (f"{C}.tolerance", "1.0e-9", "1e-09 is not allowed", TOLERANCES),
+    (f"{C}.tolerance", "-1.0e-3", "-0.001 is not allowed", TOLERANCES),
+    (f"{C}.tolerance", "1e-3", '"1e-3" is text', "write 1.0e-3"),
+    (f"{C}.tolerance", "[1.0e-3]", "[0.001] is not allowed", TOLERANCES),
+    (f"{C}.cells", "7", "7 is not allowed", "an even number >= 4"),
+    (f"{C}.cells", "2", "2 is not allowed", "an even number >= 4"),
+    (f"{C}.cells", "5000", "5000 is not allowed", "<= 1000"),
+    (f"{C}.steps", "9", "9 is not allowed", "an even number >= 8"),
+    (f"{C}.steps", "fine", '"fine" is text', "a number"),
+    ("histories.bore", "{}", "unknown key; allowed: transverse, field, transients"),
+    ("histories.transverse.velocity", "0", "0 is not allowed", "> 0"),
+    ("histories.transverse.amplitude", "-1", "-1 is not allowed", ">= 0"),
+    ("histories.transverse.periods", "0", "0 is not allowed", ">= 1"),
+    ("histories.transverse.period", "4", "unknown key; did you mean periods?"),
+    ("histories.transverse.cells", "5", "5 is not allowed", "an even number"),
+    ("histories.field.steps", "8", "unknown key; allowed: velocity, cells"),
+    ("histories.transients.velocity", "0", "0 is not allowed", "> 0"),
+    ("histories.transients.travel", ".inf", "inf is not allowed", "a finite number"),
+]
+
+ADMM = "admm:key=0.5"
+POINT = "accuracy.points.a"
+
+STUDIES = [
+    ("accuracy.point", "{}", "unknown key; did you mean points?"),
+    ("accuracy.methods", "admm", '"admm" is not allowed', "a list of text or null"),
+    ("accuracy.methods", "[]", "[] is not allowed", "a list"),
+    ("accuracy.methods[1]", "full-newtn", "'full-newtn'", "did you mean full-newton?"),
+    ("accuracy.methods[1]", "1", "1 is not allowed", "text"),
+    ("stability.methods", "[admm, admm]", "admm occurs twice", "different values"),
+    ("stability.methods[1]", "'admm:penalt=1'", "penalt;", "allowed: penalty, relaxation"),
+    ("stability.methods[1]", "'admm:penalty=high'", "'admm:penalty=high'", ADMM),
+    ("stability.methods[1]", "'admm:penalty=1,penalty=2'", "penalty occurs twice", "once"),
+    ("stability.tolerance", "0.5", "0.5 is not allowed", TOLERANCES),
+    ("stability.axes", "[]", "[] is not allowed", "a list"),
+    ("stability.axes", "[steps, edge, steps]", "steps occurs twice", "different values"),
+    ("stability.axes[0]", "step", '"step" is not allowed; did you mean steps?', "slow-transverse"),
+    ("accuracy.levels", "0", "0 is not allowed", ">= 1"),
+    ("accuracy.levels", "7", "7 is not allowed", "<= 6"),
+    ("accuracy.repeats", "0", "0 is not allowed", ">= 1"),
+    ("accuracy.points", "{}", "{} is not allowed", "names"),
+    (f"{POINT}.scene", None, "missing; required: scene, velocity"),
+    (f"{POINT}.scene", "bores", '"bores" is not allowed; did you mean bore?', "zigzag"),
+    (f"{POINT}.velocity", "0", "0 is not allowed", "> 0"),
+    (f"{POINT}.amplitude", None, "missing; required for bore"),
+    (f"{POINT}.amplitude", "0", "0 is not allowed", "> 0"),
+    (f"{POINT}.poisson", "[0, 0.3]", "[0, 0.3] is not allowed", "a number >= 0 and <= 0.5"),
+    (f"{POINT}.amplitud", "1", "unknown key; did you mean amplitude?"),
+    ("accuracy.map.velocity", "[0, 1]", "0 is not allowed", "> 0"),
+    ("accuracy.map.velocity", "[1]", "[1.0] is not allowed", "two numbers or more"),
+    ("accuracy.map.amplitude_bore", "[1]", "[1.0] is not allowed", "two numbers or more"),
+    ("accuracy.map.amplitude", "[1, 2]", "unknown key; did you mean amplitude_bore?"),
+    ("accuracy.map.tolerance", "[]", "[] is not allowed", "a list of a number"),
+    ("accuracy.map.tolerance", "[0.01, 0.01]", "0.01 occurs twice", "different values"),
+    ("accuracy.map.tolerance[1]", "1", "1 is not allowed", TOLERANCES),
+]
+
+# What GOOD lacks and cases above change a part of.
+STUDIED = """
+accuracy:
+  methods: [shipped, admm]
+  points: {a: {scene: bore, velocity: 1, amplitude: 1}}
+  map: {tolerance: [0.01, 0.001]}
+stability:
+  methods: [shipped, admm]
+  axes: [edge]
+"""
+
+
+def changed(settings):
+    """GOOD with settings given as YAML by their keys, such as sweeps.bore.amplitude[0]."""
+    mapping = yaml.safe_load(GOOD)
+    if any(key.startswith(("accuracy", "stability")) for key in settings):
+        mapping |= yaml.safe_load(STUDIED)
+    for key, text in settings.items():
+        *way, last = (int(k) if k.isdigit() else k for k in re.findall(r"[^.\[\]]+", key))
+        place = mapping
+        for name in way:
+            place = place[name] if isinstance(place, list) else place.setdefault(name, {})
+        if text is None:
+            del place[last]
+        else:
+            place[last] = yaml.safe_load(text)
+    return yaml.safe_dump(mapping, sort_keys=False)
+
+
+SPACED = "{start: 1, stop: 2, count: %d}"
+GRID = f"{{linear: {SPACED}}}"
+CLOSE = "{linear: {start: 1, stop: 1.000001, count: 9}}"  # than the six digits that are kept
+RATIOS = str([0.04 * i for i in range(11)])
+
+# Settings that are fine one by one, the key that is named, parts.
+TOGETHER = [
+    ({f"{T}.velocity": "[0]", f"{T}.model": "polar"}, f"{T}.velocity", "0, the static", "auto"),
+    ({f"{T}.velocity": "[0]", f"{T}.poisson": "0.3"}, f"{T}.velocity", "0, the static", "> 0"),
+    ({f"{T}.model": "radial", f"{T}.poisson": "[0, 0.2]"}, f"{T}.poisson", "0.2", "allowed: 0"),
+    ({f"{B}.velocity.linear": SPACED % 2}, f"{B}.velocity", '{"log": {', "linear or log"),
+    ({f"{POINT}.scene": "continuous-bore"}, f"{POINT}.amplitude", "1", "has no amplitude"),
+    ({f"{B}.amplitude": CLOSE}, f"{B}.amplitude", "1 occurs twice", "different values"),
+    (
+        {f"{T}.velocity": GRID % 1001, f"{T}.amplitude": GRID % 1000},
+        T,
+        "1001000 points",
+        "at most 1000000",
+    ),
+    (
+        {f"{C}.velocity": GRID % 100000, f"{C}.poisson": RATIOS},
+        C,
+        "1100000 points",
+        "at most 1000000",
+    ),
+    (
+        {"accuracy.map.velocity": GRID % 2000},
+        "accuracy.map.velocity x amplitude_transverse",
+        "18000 points",
+        "at most 10000",
+    ),
+]
+
+# Files that are no configuration: their bytes, parts.
+FILES = {
+    "empty": (b"", "is empty", "sweeps at least"),
+    "comments alone": (b"# sweeps:\n#   bore:\n", "is empty", "sweeps at least"),
+    "a list": (b"- 1\n- 2\n", "[1, 2] is not a mapping", "keys and values"),
+    "text": (b"sweeps\n", '"sweeps" is not a mapping', "keys and values"),
+    "cut off": (GOOD.partition("stop")[0].encode(), "not valid YAML", "line 7"),
+    "not UTF-8": (b"# \xe9t\xe9\n" + GOOD.encode(), "not text: byte 0xe9", "UTF-8"),
+    "binary": (b"\x89HDF\r\n\x1a\n\x00\x00", "not text: byte 0x89", "UTF-8"),
+    "zeros": (bytes(512), "not valid YAML"),
+    "tabs": (GOOD.replace("    ", "\t").encode(), "not valid YAML", "line 4", "no tabs"),
+    "a key twice": (
+        GOOD.replace("  bore:", "  transverse: {}\n  bore:").encode(),
+        "the key transverse occurs twice",
+        "line 6",
+    ),
+    "a setting twice": (GOOD.encode() + b"    velocity: [2]\n", "velocity occurs twice", "line 11"),
+    "two documents": (
+        GOOD.encode() + b"---\n" + GOOD.encode(),
+        "not valid YAML",
+        "another document",
+    ),
+    "a month too many": (b"results: 2026-13-01\n", "not valid YAML", "month"),
+    "a tag": (b"results: !!python/object/apply:os.getcwd []\n", "not valid YAML", "line 1"),
+    "an unknown alias": (b"sweeps: *others\n", "not valid YAML", "others"),
+    "itself inside": (b"sweeps: &s {transverse: *s}\n", "holds itself"),
+    "very deep": (b"[" * 5000, "not valid YAML"),
+    "a list for a key": (b"? [1, 2]\n: 3\n", "not valid YAML", "line 1"),
+}

@@ -1,0 +1,34 @@
+# The package, before anything else needs it, and how bad input ends a run.
+
+import os
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+
+# The package of this tree is the one that runs, whether it is installed or not.
+SOURCE = Path(workflow.current_basedir.get_path_or_uri(secret_free=True), "../../src").resolve()
+if SOURCE.is_dir():
+    sys.path.insert(0, str(SOURCE))
+    search = [str(SOURCE), *filter(None, [os.environ.get("PYTHONPATH")])]
+    os.environ.update(PYTHONPATH=os.pathsep.join(search))
+
+# Jobs inherit this. Parallel work is many points at a time, one thread each.
+os.environ.update(
+    dict.fromkeys(
+        ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"], "1"
+    )
+)
+
+from microslip import cache
+from microslip import config as microslip_config
+
+
+@contextmanager
+def refused_in_one_line(origin):
+    """Context in which what the user has to mend ends the run with one line, before any job."""
+    try:
+        yield
+    except microslip_config.ConfigError as error:
+        sys.exit(f"Error in {error}")
+    except cache.CacheError as error:
+        sys.exit(f"Error in {origin}: results: {error}")
