@@ -31,7 +31,7 @@ include: "workflow/rules/figures.smk"
 
 
 onstart:
-    WATCH.start(points_to_do())
+    make_ready()
 
 
 onsuccess:

@@ -5,16 +5,25 @@ to disk and renamed, so a reader sees all of it or nothing. On reading, the text
 what its record writes, checksum included; any other file counts as absent and is written anew.
 """
 
+import errno
 import hashlib
 import json
 import logging
 import os
+import time
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from .keys import canonical_json, sha256
 
 log = logging.getLogger(__name__)
+
+
+# Errors of the system that say by themselves what the user is to mend.
+NO_WRITING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
+
+# Half a file that nobody has written to for that long (s) is left of a process that was killed.
+ABANDONED = 3600.0
 
 
 class CacheError(RuntimeError):
@@ -43,7 +52,7 @@ class Store:
         except FileNotFoundError:
             return None
         except OSError as error:
-            raise CacheError(_advice("read", path, error)) from error
+            raise CacheError(advice("read", path, error)) from error
         record = _parse(text)
         if record is None or record.get("key") != key:
             log.warning("damaged result %s: computed again", path)
@@ -90,11 +99,71 @@ def writing_beside(path, sealed=False):
                 _write_seal(path, hashlib.file_digest(file, "sha256").hexdigest())
         os.replace(beside, path)
     except OSError as error:
-        raise CacheError(_advice("write", path, error)) from error
+        raise CacheError(advice("write", path, _cause(error, beside))) from error
+    except RuntimeError as error:
+        # What netCDF says when HDF5 could not write.
+        if not str(error).startswith("NetCDF: "):
+            raise
+        raise CacheError(advice("write", path, _cause(error, beside))) from error
     finally:
         # Gone already after the rename, left by an interrupt; in a read-only folder never made.
         with suppress(OSError):
             beside.unlink()
+
+
+def _cause(error, beside):
+    """What keeps files from being written beside one, if anything does, else the error itself.
+
+    HDF5 says "Permission denied" and "HDF error" on a full disk.
+    """
+    if getattr(error, "errno", None) in NO_WRITING:
+        return error
+    try:
+        check_room(beside.parent, beside.with_suffix(".room.part").name)
+    except OSError as truth:
+        return truth
+    return error
+
+
+def check_room(folder, name=".room.part"):
+    """Write a small file to a folder and remove it; raises OSError where that is refused."""
+    trial = Path(folder, name)
+    try:
+        with open(trial, "wb") as file:
+            file.write(bytes(65536))
+            file.flush()
+            os.fsync(file.fileno())
+    finally:
+        with suppress(OSError):
+            trial.unlink()
+
+
+def clear_abandoned(folder):
+    """Remove what processes that were killed have left half written; return the paths.
+
+    A file that has been written to within the last hour is left alone, and so is one whose process
+    may still be there: it may be about to be put in place.
+    """
+    found = []
+    for path in Path(folder).rglob(".*.part"):
+        with suppress(OSError):
+            if time.time() - path.stat().st_mtime > ABANDONED and not _may_run(path):
+                path.unlink()
+                found.append(path)
+    return found
+
+
+def _may_run(path):
+    """Whether there is a process with the number in the name of a half written file."""
+    if os.name != "posix":
+        return False  # there the question itself would end it
+    try:
+        os.kill(int(path.name.split(".")[-2]), 0)
+    except (ValueError, OverflowError, ProcessLookupError):
+        return False
+    except OSError:
+        return True
+    return True
 
 
 # Seals: a checksum beside a file, by which damage to it is noticed later
@@ -121,17 +190,20 @@ def is_damaged(path):
     except FileNotFoundError:
         return False
     except OSError as error:
-        raise CacheError(_advice("read", path, error)) from error
+        raise CacheError(advice("read", path, error)) from error
 
 
 def set_damaged_aside(paths):
     """Rename those of the files that are damaged; return their old names (list of Path).
 
-    What is there under the new name is kept until the next time.
+    What is there under the new name is kept until the next time. Raises CacheError.
     """
     found = [Path(path) for path in paths if is_damaged(path)]
     for path in found:
-        os.replace(path, path.with_name(f"{path.name}.damaged"))
+        try:
+            os.replace(path, path.with_name(f"{path.name}.damaged"))
+        except OSError as error:
+            raise CacheError(advice("rename damaged", path, error)) from error
     return found
 
 
@@ -148,8 +220,10 @@ def _parse(text):
         return None
 
 
-def _advice(verb, path, error):
+def advice(verb, path, error):
+    """One line: what could not be done, why, and what to do about it."""
+    reason = getattr(error, "strerror", None) or error
     return (
-        f"cannot {verb} {path}: {error.strerror or error}; make room or set permissions there, or "
-        "choose another folder for results, and run again: finished points are kept"
+        f"cannot {verb} {path}: {reason}; make room or set permissions there, or choose another "
+        "folder for results, and run again: finished points are kept"
     )

@@ -19,6 +19,8 @@ os.environ.update(
     )
 )
 
+from snakemake.logging import logger as snakemake_log
+
 from microslip import config as microslip_config
 from microslip import cache, jobs, keys, plot, studies, sweep
 from microslip.watch import Watch
@@ -78,14 +80,30 @@ def figures_of(datasets):
 
 
 # What is there is used again, so damage to it has to be seen before anything is planned; but not
-# while another run may be writing.
+# while another run may be writing. Points are checked when they are read.
 if workflow.is_main_process and not glob(".snakemake/locks/*"):
     made = [f"{RESULTS}/{name}.nc" for name in (*CONFIGURATION.sweeps, *STUDIES)]
     made += figures_of((*CONFIGURATION.sweeps, *STUDIES))
-    for path in cache.set_damaged_aside(made):
-        print(f"{path} was damaged: renamed to {path}.damaged, made again", file=sys.stderr)
+    try:
+        for path in cache.set_damaged_aside(made):
+            print(f"{path} was damaged: renamed to {path}.damaged, made again", file=sys.stderr)
+    except cache.CacheError as error:
+        sys.exit(f"Error: {error}")
 
+snakemake_log.addFilter(jobs.plain_words(RESULTS))
 WATCH = Watch(COUNTER)
+
+
+def make_ready():
+    """Before the first job: see that results can be written, clear what killed runs left."""
+    try:
+        os.makedirs(RESULTS, exist_ok=True)
+        cache.check_room(RESULTS)
+    except OSError as error:
+        sys.exit(f"Error: {cache.advice('write', error.filename or RESULTS, error)}")
+    for path in cache.clear_abandoned(RESULTS):
+        print(f"{path} was left by a run that was killed: removed", file=sys.stderr)
+    WATCH.start(points_to_do())
 
 
 def points_to_do():
@@ -99,8 +117,9 @@ def points_to_do():
 def show_the_end():
     """Stop the line of progress; say once more what is in the datasets, and what is not."""
     WATCH.stop()
-    planned = {job.output[0] for job in workflow.dag.needrun_jobs()}
-    names = [n for n in (*CONFIGURATION.sweeps, *STUDIES) if f"{RESULTS}/{n}.nc" in planned]
+    planned = workflow.dag.needrun_jobs(exclude_finished=False)
+    made = {path for job in planned if workflow.dag.finished(job) for path in job.output}
+    names = [n for n in (*CONFIGURATION.sweeps, *STUDIES) if f"{RESULTS}/{n}.nc" in made]
     for line in jobs.closing_lines(RESULTS, names):
         print(line, file=sys.stderr)
 
