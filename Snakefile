@@ -37,9 +37,7 @@ include: "workflow/rules/figures.smk"
 
 
 onstart:
-    with refused_in_one_line(ORIGIN):
-        cache.Store(RESULTS).try_writing()
-    WATCH.start(points_to_do())
+    make_ready()
 
 
 onsuccess:

@@ -134,15 +134,62 @@ def test_an_interrupt_leaves_nothing_behind(store, monkeypatch):
     assert not leftovers(store)
 
 
-def test_a_full_disk_gives_one_message_that_says_what_to_do(store, monkeypatch):
-    def full(*_):
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+def full(*_):
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
+
+def test_a_full_disk_gives_one_message_that_says_what_to_do(store, monkeypatch):
     monkeypatch.setattr(cache.os, "fsync", full)
     with pytest.raises(CacheError, match=r"No space left on device.*make room") as caught:
         store.write("a", KEY, RECORD)
     assert "\n" not in str(caught.value)
     assert not leftovers(store)
+
+
+@pytest.mark.parametrize(
+    "said", [PermissionError(errno.EACCES, "Permission denied"), RuntimeError("NetCDF: HDF error")]
+)
+def test_what_hdf5_says_on_a_full_disk_is_put_right(store, monkeypatch, said):
+    monkeypatch.setattr(cache.os, "fsync", full)
+    with (
+        pytest.raises(CacheError, match=r"cannot write .*No space left on device.*make room"),
+        cache.writing_beside(store.folder / "x.nc") as beside,
+    ):
+        beside.write_text("half")
+        raise said
+    assert not leftovers(store)
+
+
+def test_what_netcdf_says_stands_where_there_is_room(store):
+    with (
+        pytest.raises(CacheError, match=r"cannot write .*x.nc: NetCDF: HDF error"),
+        cache.writing_beside(store.folder / "x.nc"),
+    ):
+        raise RuntimeError("NetCDF: HDF error")
+
+
+def test_a_mistake_in_a_program_stays_one(store):
+    with (
+        pytest.raises(RuntimeError, match="^dictionary changed"),
+        cache.writing_beside(store.folder / "x.nc"),
+    ):
+        raise RuntimeError("dictionary changed size during iteration")
+
+
+def test_old_halves_of_files_are_cleared_and_nothing_else(store):
+    path = store.write("a", KEY, RECORD)
+    gone = subprocess.Popen([sys.executable, "-c", ""])
+    gone.wait()
+    old, running, young = (
+        path.with_name(f".{name}.json.{number}.part")
+        for name, number in [("a", gone.pid), ("b", os.getpid()), ("c", gone.pid)]
+    )
+    for half in (old, running, young):
+        half.write_text("half")
+    for half in (path, old, running):
+        os.utime(half, (0, 0))
+    assert cache.clear_abandoned(store.folder) == [old]
+    assert {p.name for p in path.parent.iterdir()} == {path.name, running.name, young.name}
 
 
 def test_a_file_in_the_place_of_a_folder_gives_the_same_message(store):

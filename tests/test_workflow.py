@@ -171,7 +171,7 @@ def test_a_damaged_point_is_computed_again_where_it_is_needed(project):
         path.write_bytes(path.read_bytes()[:-9])
     dataset.unlink()
     said = project.run("results/transverse.nc")
-    assert said.count("damaged result") == 4
+    assert len({line for line in said.splitlines() if "damaged result" in line}) == 4
     assert project.points() == before
     assert dataset.read_bytes() == expected
 
@@ -188,6 +188,36 @@ def test_a_damaged_dataset_and_figure_are_set_aside_and_made_again(project):
         assert path.with_name(f"{path.name}.damaged").read_bytes() == whole[: len(whole) // 2]
         assert path.read_bytes() == whole
     assert project.planned() == {}
+
+
+def test_what_a_killed_run_left_half_written_is_cleared_later(project):
+    half = project.folder / "results" / ".bore.nc.99999999.part"
+    half.write_text("half")
+    os.utime(half, (0, 0))
+    (project.folder / "results" / "bore.nc").unlink()
+    assert "results/.bore.nc.99999999.part was left by a run that was killed" in project.run()
+    assert not half.exists()
+
+
+def test_a_job_that_fails_does_not_hide_what_the_others_say(project):
+    (project.folder / "results" / "bore.nc").unlink()
+    project.append("src/microslip/plot/maps.py", "\nraise ValueError('no maps today')\n")
+    done = project.snakemake(*RUN)
+    assert done.returncode != 0
+    assert "no maps today" in done.stderr
+    assert "bore: 4 points, none not converged" in done.stderr
+    assert "transverse: 4 points" not in done.stderr
+    assert "IndexError" not in done.stderr
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="no folder that root cannot write to")
+def test_results_that_cannot_be_written_stop_the_run_before_the_first_job(project):
+    project.configure({**TINY, "results": "/proc/results"})
+    done = project.snakemake(*RUN)
+    assert done.returncode != 0
+    message = done.stderr.strip().split("\n")[-1]
+    assert re.search(r"results: cannot write to /proc/results: .*make room or set perm", message)
+    assert "Traceback" not in done.stderr
 
 
 STALLING = """

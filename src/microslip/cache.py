@@ -5,10 +5,12 @@ to disk and renamed, so a reader sees all of it or nothing. On reading, the text
 what its record writes, checksum included; any other file counts as absent and is written anew.
 """
 
+import errno
 import hashlib
 import json
 import logging
 import os
+import time
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -21,6 +23,12 @@ LEAST_ROOM = 65536
 
 # What files that others read begin with; one without a seal that does not is no such file.
 BEGINNINGS = {".nc": b"\x89HDF", ".png": b"\x89PNG", ".pdf": b"%PDF"}
+
+# Errors of the system that say by themselves what the user is to mend.
+NO_WRITING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
+
+# Half a file that nobody has written to for that long (s) is left of a process that was killed.
+ABANDONED = 3600.0
 
 
 class CacheError(RuntimeError):
@@ -52,7 +60,7 @@ class Store:
         except FileNotFoundError:
             return None
         except OSError as error:
-            raise CacheError(_advice("read", path, error)) from error
+            raise CacheError(advice("read", path, error)) from error
         record = _parse(text)
         if record is None or record.get("key") != key:
             log.warning("damaged result %s: computed again", path)
@@ -73,14 +81,11 @@ class Store:
         """Raise CacheError where nothing can be stored, before work is put into it; tries once."""
         if self._tried:
             return
-        trial = self.folder / f".trial.{os.getpid()}"
         try:
-            write_atomically(trial, bytes(LEAST_ROOM))
-        except CacheError as error:
-            raise CacheError(_advice("write to", self.folder, error.__cause__)) from error
-        finally:
-            with suppress(OSError):
-                trial.unlink()
+            self.folder.mkdir(parents=True, exist_ok=True)
+            check_room(self.folder)
+        except OSError as error:
+            raise CacheError(advice("write to", self.folder, error)) from error
         self._tried = True
 
 
@@ -98,7 +103,7 @@ def refuse_unusable(folders, files):
             if file.is_dir():
                 raise CacheError(f"{file} is a folder; allowed there: a file, or nothing yet")
     except OSError as error:
-        raise CacheError(_advice("use", folder, error)) from error
+        raise CacheError(advice("use", folder, error)) from error
 
 
 def write_atomically(path, content):
@@ -130,16 +135,71 @@ def writing_beside(path, sealed=False):
                 _write_seal(path, hashlib.file_digest(file, "sha256").hexdigest())
         os.replace(beside, path)
     except OSError as error:
-        raise CacheError(_advice("write", path, error)) from error
+        raise CacheError(advice("write", path, _cause(error, beside))) from error
     except RuntimeError as error:
+        # What netCDF says when HDF5 could not write.
         if not str(error).startswith("NetCDF: "):
             raise
-        # This is how its library tells of a full disk.
-        raise CacheError(_advice("write", path, error)) from error
+        raise CacheError(advice("write", path, _cause(error, beside))) from error
     finally:
         # Gone already after the rename, left by an interrupt; in a read-only folder never made.
         with suppress(OSError):
             beside.unlink()
+
+
+def _cause(error, beside):
+    """What keeps files from being written beside one, if anything does, else the error itself.
+
+    HDF5 says "Permission denied" and "HDF error" on a full disk.
+    """
+    if getattr(error, "errno", None) in NO_WRITING:
+        return error
+    try:
+        check_room(beside.parent, beside.with_suffix(".room.part").name)
+    except OSError as truth:
+        return truth
+    return error
+
+
+def check_room(folder, name=".room.part"):
+    """Write a small file to a folder and remove it; raises OSError where that is refused."""
+    trial = Path(folder, name)
+    try:
+        with open(trial, "wb") as file:
+            file.write(bytes(LEAST_ROOM))
+            file.flush()
+            os.fsync(file.fileno())
+    finally:
+        with suppress(OSError):
+            trial.unlink()
+
+
+def clear_abandoned(folder):
+    """Remove what processes that were killed have left half written; return the paths.
+
+    A file that has been written to within the last hour is left alone, and so is one whose process
+    may still be there: it may be about to be put in place.
+    """
+    found = []
+    for path in Path(folder).rglob(".*.part"):
+        with suppress(OSError):
+            if time.time() - path.stat().st_mtime > ABANDONED and not _may_run(path):
+                path.unlink()
+                found.append(path)
+    return found
+
+
+def _may_run(path):
+    """Whether there is a process with the number in the name of a half written file."""
+    if os.name != "posix":
+        return False  # there the question itself would end it
+    try:
+        os.kill(int(path.name.split(".")[-2]), 0)
+    except (ValueError, OverflowError, ProcessLookupError):
+        return False
+    except OSError:
+        return True
+    return True
 
 
 # Seals: a checksum beside a file, by which damage to it is noticed later
@@ -172,20 +232,20 @@ def is_damaged(path):
     except FileNotFoundError:
         return False
     except OSError as error:
-        raise CacheError(_advice("read", path, error)) from error
+        raise CacheError(advice("read", path, error)) from error
 
 
 def set_damaged_aside(paths):
     """Rename those of the files that are damaged; return their old names (list of Path).
 
-    What is there under the new name is kept until the next time.
+    What is there under the new name is kept until the next time. Raises CacheError.
     """
     found = [Path(path) for path in paths if is_damaged(path)]
     for path in found:
         try:
             os.replace(path, path.with_name(f"{path.name}.damaged"))
         except OSError as error:
-            raise CacheError(_advice("rename", path, error)) from error
+            raise CacheError(advice("rename damaged", path, error)) from error
     return found
 
 
@@ -202,9 +262,10 @@ def _parse(text):
         return None
 
 
-def _advice(verb, path, error):
-    why = getattr(error, "strerror", None) or error
+def advice(verb, path, error):
+    """One line: what could not be done, why, and what to do about it."""
+    reason = getattr(error, "strerror", None) or error
     return (
-        f"cannot {verb} {path}: {why}; make room or set permissions there, or choose another "
+        f"cannot {verb} {path}: {reason}; make room or set permissions there, or choose another "
         "folder for results, and run again: finished points are kept"
     )

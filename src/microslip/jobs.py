@@ -1,11 +1,30 @@
 """What every job of the workflow has: a log, and one clear message on failure."""
 
+import errno
 import logging
+import re
 import sys
 from contextlib import contextmanager
 from pathlib import Path
 
-from .cache import CacheError
+from .cache import NO_WRITING, CacheError, advice
+
+
+class _LogFile(logging.FileHandler):
+    """A log that keeps what the system has against writing it, and raises nothing."""
+
+    problem = None
+
+    def handleError(self, record):
+        # What could not be written is tried again with the next message, and on closing.
+        if not isinstance(sys.exc_info()[1], OSError):
+            super().handleError(record)
+
+    def close(self):
+        try:
+            super().close()
+        except OSError as error:
+            self.problem = error
 
 
 @contextmanager
@@ -15,30 +34,55 @@ def job_log(path, shown=logging.WARNING):
     Messages from the level `shown` on go to standard error too. An error goes to the log in full;
     one that the user can mend ends the process with its message alone.
     """
-    form = logging.Formatter("%(message)s")
     try:
-        kept = logging.FileHandler(path, mode="w", encoding="utf-8")
+        handlers = [_LogFile(path, mode="w", encoding="utf-8"), logging.StreamHandler()]
     except OSError as error:
-        sys.exit(f"Error: cannot write {path}: {error.strerror}; choose another folder for results")
-    handlers = [kept, logging.StreamHandler()]
+        sys.exit(f"Error: {advice('write', path, error)}")
     log = logging.getLogger("microslip")
     log.setLevel(logging.INFO)
     handlers[1].setLevel(shown)
     for handler in handlers:
-        handler.setFormatter(form)
+        handler.setFormatter(logging.Formatter("%(message)s"))
         log.addHandler(handler)
+    failed = True
     try:
         yield log
+        failed = False
     except CacheError as error:
         log.error("Error: %s", error)
-        sys.exit(1)
-    except Exception:
-        log.exception("The job failed:")
-        sys.exit(1)
+    except Exception as error:
+        if getattr(error, "errno", None) in NO_WRITING:
+            log.error("Error: %s", advice("write", error.filename or "a file", error))
+        else:
+            log.exception("The job failed:")
     finally:
         for handler in handlers:
             log.removeHandler(handler)
             handler.close()
+    if failed:
+        sys.exit(1)
+    # A log that is cut short would leave out points that did not converge.
+    if handlers[0].problem is not None:
+        sys.exit(f"Error: {advice('write', path, handlers[0].problem)}")
+
+
+REFUSED = re.compile(r"^\w+: \[Errno (\d+)\] ([^:\n]+)(?:: '(.+)')?\s*\Z", re.MULTILINE)
+
+
+def plain_words(folder):
+    """Filter for Snakemake's log: where the system refuses Snakemake itself, what to do about it.
+
+    It comes in the place of a traceback. folder: named where the system names no file.
+    """
+
+    def say_plainly(record):
+        refused = REFUSED.search(str(record.msg))
+        if refused and "Traceback" in record.msg and int(refused[1]) in (*NO_WRITING, errno.EACCES):
+            error = OSError(int(refused[1]), refused[2])
+            record.msg = f"Error: {advice('write', refused[3] or folder, error)}"
+        return True
+
+    return say_plainly
 
 
 def closing_lines(folder, names):

@@ -4,6 +4,7 @@ Every job adds a byte to a file for each point that it is done with; what the fi
 what has been done, by whichever process and on whichever machine that sees the same folder.
 """
 
+import atexit
 import sys
 import threading
 from pathlib import Path
@@ -41,6 +42,7 @@ class Watch:
             self.path.write_bytes(b"")
         except OSError:
             return  # the first job says what is wrong
+        atexit.register(self.stop)  # where Snakemake itself fails, nobody else does
         self.thread = threading.Thread(target=self._show, args=[total], daemon=True)
         self.thread.start()
 

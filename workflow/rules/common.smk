@@ -2,6 +2,8 @@
 
 from glob import glob
 
+from snakemake.logging import logger as snakemake_log
+
 from microslip import jobs, keys, plot, studies, sweep
 from microslip.watch import Watch
 
@@ -69,7 +71,17 @@ with refused_in_one_line(ORIGIN):
         for path in cache.set_damaged_aside(MADE):
             print(f"{path} was damaged: renamed to {path}.damaged, made again", file=sys.stderr)
 
+snakemake_log.addFilter(jobs.plain_words(RESULTS))
 WATCH = Watch(COUNTER)
+
+
+def make_ready():
+    """Before the first job: see that results can be written, clear what killed runs left."""
+    with refused_in_one_line(ORIGIN):
+        cache.Store(RESULTS).try_writing()
+    for path in cache.clear_abandoned(RESULTS):
+        print(f"{path} was left by a run that was killed: removed", file=sys.stderr)
+    WATCH.start(points_to_do())
 
 
 def points_to_do():
@@ -83,9 +95,9 @@ def points_to_do():
 def show_the_end():
     """Stop the line of progress; say once more what is in the datasets, and what is not."""
     WATCH.stop()
-    asked = workflow.dag.needrun_jobs(exclude_finished=False)
-    planned = {path for job in asked for path in job.output}
-    names = [n for n in (*CONFIGURATION.sweeps, *STUDIES) if f"{RESULTS}/{n}.nc" in planned]
+    planned = workflow.dag.needrun_jobs(exclude_finished=False)
+    made = {path for job in planned if workflow.dag.finished(job) for path in job.output}
+    names = [n for n in (*CONFIGURATION.sweeps, *STUDIES) if f"{RESULTS}/{n}.nc" in made]
     for line in jobs.closing_lines(RESULTS, names):
         print(line, file=sys.stderr)
 
