@@ -20,25 +20,28 @@ os.environ.update(
 )
 
 from microslip import config as microslip_config
-from microslip import cache, jobs, keys, plot, studies, sweep
+from microslip import cache, jobs, keys, plot, schemas, studies, sweep
 from microslip.watch import Watch
 
 try:
-    files = [os.path.relpath(file) for file in workflow.configfiles]
+    # In a module the files are those of another workflow, which may hold more than this one knows.
+    files = [os.path.relpath(file) for file in workflow.configfiles] if MAIN else []
     for file in files:
         microslip_config.read_yaml(file)  # refuses a key that occurs twice
-    origin = ", ".join(files) or "configuration"
+    origin = ", ".join(files) or ("configuration" if MAIN else f"configuration of {__name__}")
     CONFIGURATION = microslip_config.from_mapping(config, origin)
+    config = schemas.filled(config)  # captions name the defaults too
     RESULTS = os.path.normpath(CONFIGURATION.results)
-    for folder in (Path(RESULTS), *Path(RESULTS).parents):
+    # RESULTS with the prefix that a module may have; Snakemake adds it to the paths of rules itself.
+    PLACE = str(workflow.modifier.modify_path(RESULTS))
+    for folder in (Path(PLACE), *Path(PLACE).parents):
         if folder.exists() and not folder.is_dir():
             raise microslip_config.ConfigError(f"{origin}: results: {folder} is not a folder")
 except microslip_config.ConfigError as error:
     sys.exit(f"Error in {error}")
 
 DIGEST = keys.source_digest()
-COUNTER = f"{RESULTS}/logs/points_done"
-PACKAGE = os.path.relpath(Path(keys.__file__).parent)
+COUNTER = f"{PLACE}/logs/points_done"
 
 # BATCHES[group][name]: requests of that batch. A group is a sweep, or the single runs beside it.
 BATCHES = {}
@@ -67,6 +70,13 @@ for figure in ("fig2_transverse_map", "fig6_bore_map"):
         del FIGURES[figure]
 
 
+def datasets_of(names):
+    """Files of the datasets with these names, and the pages about them."""
+    return expand(
+        [f"{RESULTS}/{{name}}.nc", f"{RESULTS}/summaries/{{name}}.html"], name=list(names)
+    )
+
+
 def figures_of(datasets):
     """Files of all figures that are drawn from these datasets."""
     return [
@@ -82,6 +92,7 @@ def figures_of(datasets):
 if workflow.is_main_process and not glob(".snakemake/locks/*"):
     made = [f"{RESULTS}/{name}.nc" for name in (*CONFIGURATION.sweeps, *STUDIES)]
     made += figures_of((*CONFIGURATION.sweeps, *STUDIES))
+    made = [str(workflow.modifier.modify_path(path)) for path in made]
     for path in cache.set_damaged_aside(made):
         print(f"{path} was damaged: renamed to {path}.damaged, made again", file=sys.stderr)
 
