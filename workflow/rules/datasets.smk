@@ -21,7 +21,9 @@ rule collect:
         runtime=10,
     params:
         # These two are not read by the script; they make Snakemake notice a change.
-        code=lambda wildcards: keys.digest_of_modules("dataset.py", "columns.py", "limits.py", "summary.py"),
+        code=lambda wildcards: keys.digest_of_modules(
+            "dataset.py", "columns.py", "limits.py", "summary.py"
+        ),
         settings=lambda wildcards: keys.canonical_json(CONFIGURATION.of_sweep(wildcards.sweep)),
         store=lambda wildcards, output: str(Path(output[0]).parent),
     script:
