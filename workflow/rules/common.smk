@@ -110,8 +110,8 @@ def points_to_do():
 def show_the_end():
     """Stop the line of progress; say once more what is in the datasets, and what is not."""
     WATCH.stop()
-    planned = {job.output[0] for job in workflow.dag.needrun_jobs()}
-    names = [n for n in (*CONFIGURATION.sweeps, *STUDIES) if f"{RESULTS}/{n}.nc" in planned]
+    made = {path for job in workflow.dag.finished_jobs for path in job.output}
+    names = [n for n in (*CONFIGURATION.sweeps, *STUDIES) if f"{RESULTS}/{n}.nc" in made]
     for line in jobs.closing_lines(RESULTS, names):
         print(line, file=sys.stderr)
 
