@@ -19,18 +19,18 @@ SETS_CORES = re.compile(r"-[cje]|--(cores|jobs|executor|profile|workflow-profile
 HELP = """\
 usage: microslip sweep [TARGET ...] [--configfile FILE] [options of Snakemake]
 
-Run the workflow in the current folder: sweeps over maps of velocity and amplitude, their datasets in
-results/ and their figures in results/figures/. What is there already is not computed again.
+Run the workflow in the current folder: maps of friction over velocity and amplitude, as datasets in
+results/ and figures in results/figures/. What is there already is not computed again.
 
   TARGET             what to make: all (unless said otherwise), accuracy, stability, or a file
-  --configfile FILE  what to compute; without it config/config.yaml, or the sweeps of the paper where
-                     there is no such file
+  --configfile FILE  what to compute; without it config/config.yaml, or where there is no such file
+                     the sweeps of the paper
   --cores N          jobs at the same time; all cores unless said otherwise
   --dry-run          say what there is to do, and do nothing
-  --report FILE      after a run: one page (.html, or .zip) with figures, captions and what made them
+  --report FILE      after a run: one page (.html or .zip) of figures, captions, what made them
   -h, --help         show this
 
-Everything is handed to Snakemake as it is, see snakemake --help, and its exit code comes back. The
+All else is handed to Snakemake as it is, see snakemake --help, and its exit code comes back. The
 defaults are those of profiles/default, here or in the package.
 
   microslip sweep --cores 2
