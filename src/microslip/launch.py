@@ -24,7 +24,7 @@ results/ and figures in results/figures/. What is there already is not computed 
 
   TARGET             what to make: all (unless said otherwise), accuracy, stability, or a file
   --configfile FILE  what to compute; without it config/config.yaml, or where there is no such file
-                     the sweeps of the paper
+                     the sweeps of the paper. It takes all names that follow: targets come before it
   --cores N          jobs at the same time; all cores unless said otherwise
   --dry-run          say what there is to do, and do nothing
   --report FILE      after a run: one page (.html or .zip) of figures, captions, what made them
