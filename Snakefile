@@ -28,11 +28,11 @@ report: "workflow/report/workflow.rst"
 
 # A file given with --configfile takes the place of the default, they are not mixed. Without one, that
 # of the working directory comes first. A module is configured by the workflow that uses it.
-MAIN = workflow.modifier.is_main_snakefile()
+MAIN = workflow.modifier.base_snakefile is None
 if not (workflow.overwrite_configfiles if MAIN else config):
     DEFAULT = "config/config.yaml"
     if not (MAIN and os.path.exists(DEFAULT)):
-        DEFAULT = workflow.current_basedir.join(DEFAULT).get_path_or_uri(secret_free=True)
+        DEFAULT = str(workflow.current_basedir.join(DEFAULT))
 
     configfile: DEFAULT
 

@@ -6,7 +6,7 @@ from glob import glob
 from pathlib import Path
 
 # The package of this tree is the one that runs, whether it is installed or not.
-SOURCE = Path(workflow.current_basedir.get_path_or_uri(secret_free=True), "../../src").resolve()
+SOURCE = Path(str(workflow.current_basedir), "../../src").resolve()
 if SOURCE.is_dir():
     sys.path.insert(0, str(SOURCE))
     search = [str(SOURCE), *filter(None, [os.environ.get("PYTHONPATH")])]
@@ -28,7 +28,8 @@ try:
     files = [os.path.relpath(file) for file in workflow.configfiles] if MAIN else []
     for file in files:
         microslip_config.read_yaml(file)  # refuses a key that occurs twice
-    origin = ", ".join(files) or ("configuration" if MAIN else f"configuration of {__name__}")
+    of_module = "" if MAIN else f" of {workflow.modifier.namespace}"
+    origin = ", ".join(files) or f"configuration{of_module}"
     CONFIGURATION = microslip_config.from_mapping(config, origin)
     config = schemas.filled(config)  # captions name the defaults too
     RESULTS = os.path.normpath(CONFIGURATION.results)
@@ -104,15 +105,16 @@ def points_to_do():
     asked = [
         job.wildcards for job in workflow.dag.needrun_jobs() if "batch" in job.wildcards.keys()
     ]
-    return sum(len(BATCHES[wildcards[0]][wildcards.batch]) for wildcards in asked)
+    # Where this is a module, others may have batches too.
+    return sum(len(BATCHES.get(w[0], {}).get(w.batch, ())) for w in asked)
 
 
 def show_the_end():
     """Stop the line of progress; say once more what is in the datasets, and what is not."""
     WATCH.stop()
     made = {path for job in workflow.dag.finished_jobs for path in job.output}
-    names = [n for n in (*CONFIGURATION.sweeps, *STUDIES) if f"{RESULTS}/{n}.nc" in made]
-    for line in jobs.closing_lines(RESULTS, names):
+    names = [n for n in (*CONFIGURATION.sweeps, *STUDIES) if f"{PLACE}/{n}.nc" in made]
+    for line in jobs.closing_lines(PLACE, names):
         print(line, file=sys.stderr)
 
 
