@@ -5,6 +5,8 @@
 #   batches of a sweep --> collect --> results/{transverse,bore,continuous_bore}.nc
 #   datasets --> draw_figure --> results/figures/fig{1..6}_*.{png,pdf}
 #
+# snakemake --report report.zip makes one page of figures, captions and what made them.
+#
 # Two studies compare methods: snakemake accuracy, snakemake stability.
 #
 #   methods, points --> pieces --> solve_batch --+--> results/batches/{accuracy,stability}*/*.json
@@ -14,20 +16,31 @@
 # Batches are named by the hashes of their points, points by what they depend on: the physics, the
 # tolerance and the solver's sources. So what is there is never stale, and never computed twice.
 
+import os
+
 from snakemake.utils import min_version
 
 min_version("9.0")
 
 
+report: "workflow/report/workflow.rst"
+
+
 include: "workflow/rules/package.smk"
 
 
-# A file given with --configfile takes the place of the default, they are not mixed.
-if not workflow.overwrite_configfiles:
-    with refused_in_one_line("config/config.yaml"):
-        microslip_config.read_yaml("config/config.yaml")  # says where a mistake is
+# A file given with --configfile takes the place of the default, they are not mixed. Without one, that
+# of the working directory comes first. A module is configured by the workflow that uses it.
+MAIN = workflow.modifier.base_snakefile is None
+if not (workflow.overwrite_configfiles if MAIN else config):
+    DEFAULT = "config/config.yaml"
+    if not (MAIN and os.path.exists(DEFAULT)):
+        DEFAULT = str(workflow.current_basedir.join(DEFAULT))
+    if os.path.exists(DEFAULT):
+        with refused_in_one_line(DEFAULT):
+            microslip_config.read_yaml(DEFAULT)  # says where a mistake is
 
-    configfile: "config/config.yaml"
+    configfile: DEFAULT
 
 
 include: "workflow/rules/common.smk"
@@ -49,19 +62,18 @@ onerror:
 
 
 rule all:
-    default_target: True
     input:
-        expand(f"{RESULTS}/{{sweep}}.nc", sweep=CONFIGURATION.sweeps),
+        datasets_of(CONFIGURATION.sweeps),
         figures_of(CONFIGURATION.sweeps),
 
 
 rule accuracy:
     input:
-        f"{RESULTS}/accuracy_cost.nc",
+        datasets_of(["accuracy_cost"]),
         figures_of(["accuracy_cost"]),
 
 
 rule stability:
     input:
-        f"{RESULTS}/stability.nc",
+        datasets_of(["stability"]),
         figures_of(["stability"]),

@@ -28,11 +28,11 @@ LAYERS = [
     {"inside", "trial"},
     {"keys", "schemas", "settings"},
     {"cache", "config"},
-    {"answers", "jobs", "watch", "limits", "columns"},
+    {"answers", "jobs", "watch", "limits", "columns", "summary"},
     {"sweep", "dataset"},
     {"stored"},
     {"studies"},
-    {"plot"},
+    {"plot", "launch"},
     {"cli"},
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}

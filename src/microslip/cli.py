@@ -1,4 +1,4 @@
-"""The command line: ``microslip point SCENE ...`` answers for one point."""
+"""The command line: ``microslip point SCENE ...`` answers for one point, ``sweep`` for many."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import json
 import math
 import sys
 
-from microslip import __version__
+from microslip import __version__, launch
 
 SCENES = {
     "transverse": (
@@ -107,6 +107,7 @@ def build_parser():
         description="Mean forward friction force over mu F_z at one point, with an error estimate. "
         "1 means that the vibration does nothing, 0 that it takes all friction away.",
     )
+    commands.add_parser("sweep", help="the workflow: maps, datasets and figures, by Snakemake")
     scenes = point.add_subparsers(dest="scene", required=True, metavar="SCENE")
     for name, (summary, velocity, amplitude) in SCENES.items():
         scene = scenes.add_parser(
@@ -165,8 +166,10 @@ def _add_options(parser):
 
 
 def main(arguments=None):
-    """Entry point.  Exit codes: 0 converged, 1 not converged, 2 bad input."""
+    """Entry point.  Exit codes: 0 converged, 1 not converged, 2 bad input; sweep: Snakemake's."""
     arguments = sys.argv[1:] if arguments is None else arguments
+    if arguments[:1] == ["sweep"]:  # not for argparse: what follows is Snakemake's
+        return launch.main(arguments[1:])
     options = build_parser().parse_args(_joined(arguments))
     from microslip.cache import CacheError  # only now: --help and bad options need no solver
 

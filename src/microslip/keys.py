@@ -20,7 +20,9 @@ from pathlib import Path
 # that a new solver file is counted without anybody thinking of it.
 NOT_SOLVER = {"__init__", "__main__", "cli"}
 NOT_SOLVER |= {"config", "schemas", "keys", "cache", "answers", "sweep", "stored", "jobs", "watch"}
-NOT_SOLVER |= {"settings", "limits", "columns", "dataset", "studies", "plot"}
+NOT_SOLVER |= {"settings", "limits", "columns", "dataset", "summary", "studies", "plot"}
+# The command that starts the workflow, and the copy of the workflow in an installed package.
+NOT_SOLVER |= {"launch", "bundle"}
 # These count for the requests that name them, see further_files.
 NOT_SOLVER |= {"trial", "methods"}
 
@@ -128,6 +130,17 @@ def _imported_beside(path):
 def _further_digest(kind, method):
     files = further_files(kind, method)
     return digest_of_files(files) if files else ""
+
+
+@cache
+def digest_of_modules(*names):
+    """Digest of modules of the package that is running: files, or folders with all their modules.
+
+    The same in every place that the package can be in.
+    """
+    paths = [PACKAGE / name for name in names]
+    files = [file for path in paths for file in (path.rglob("*.py") if path.is_dir() else [path])]
+    return digest_of_files(sorted((file.relative_to(PACKAGE).as_posix(), file) for file in files))
 
 
 def digest_of_files(files):

@@ -4,22 +4,26 @@ from glob import glob
 
 from snakemake.logging import logger as snakemake_log
 
-from microslip import jobs, keys, plot, studies, sweep
+from microslip import jobs, keys, plot, schemas, studies, sweep
 from microslip.watch import Watch
 
-FILES = [os.path.relpath(file) for file in workflow.configfiles]
-OVERRIDDEN = ["--config"] if workflow.config_settings.config else []
-ORIGIN = ", ".join([*FILES, *OVERRIDDEN]) or "configuration"
+# In a module the files are those of another workflow, which may hold more than this one knows.
+FILES = [os.path.relpath(file) for file in workflow.configfiles] if MAIN else []
+OVERRIDDEN = ["--config"] if MAIN and workflow.config_settings.config else []
+OF_MODULE = "" if MAIN else f" of {workflow.modifier.namespace}"
+ORIGIN = ", ".join([*FILES, *OVERRIDDEN]) or f"configuration{OF_MODULE}"
 
 with refused_in_one_line(ORIGIN):
     for file in FILES:
         microslip_config.read_yaml(file)  # refuses a key that occurs twice
     CONFIGURATION = microslip_config.from_mapping(config, ORIGIN)
+    config = schemas.filled(config)  # captions name the defaults too
     RESULTS = os.path.normpath(CONFIGURATION.results)
+    # RESULTS with the prefix that a module may have; Snakemake adds it to the paths of rules itself.
+    PLACE = str(workflow.modifier.modify_path(RESULTS))
 
 DIGEST = keys.source_digest()
-COUNTER = f"{RESULTS}/logs/points_done"
-PACKAGE = os.path.relpath(Path(keys.__file__).parent)
+COUNTER = f"{PLACE}/logs/points_done"
 
 # BATCHES[group][name]: requests of that batch. A group is a sweep, or the single runs beside it.
 BATCHES = {}
@@ -48,6 +52,13 @@ for figure in ("fig2_transverse_map", "fig6_bore_map"):
         del FIGURES[figure]
 
 
+def datasets_of(names):
+    """Files of the datasets with these names, and the pages about them."""
+    return expand(
+        [f"{RESULTS}/{{name}}.nc", f"{RESULTS}/summaries/{{name}}.html"], name=list(names)
+    )
+
+
 def figures_of(datasets):
     """Files of all figures that are drawn from these datasets."""
     return [
@@ -60,26 +71,27 @@ def figures_of(datasets):
 
 MADE = [f"{RESULTS}/{name}.nc" for name in (*CONFIGURATION.sweeps, *STUDIES)]
 MADE += figures_of((*CONFIGURATION.sweeps, *STUDIES))
+MADE = [str(workflow.modifier.modify_path(path)) for path in MADE]
 GROUPS = {"batches", "figures", "logs", "warm_up", *sweep.FOLDERS.values()}
 
 with refused_in_one_line(ORIGIN):
     if workflow.is_main_process:
-        cache.refuse_unusable([f"{RESULTS}/{group}" for group in sorted(GROUPS)], MADE)
+        cache.refuse_unusable([f"{PLACE}/{group}" for group in sorted(GROUPS)], MADE)
     # What is there is used again, so damage to it has to be seen before anything is planned; but
     # not while another run may be writing.
     if workflow.is_main_process and not glob(".snakemake/locks/*"):
         for path in cache.set_damaged_aside(MADE):
             print(f"{path} was damaged: renamed to {path}.damaged, made again", file=sys.stderr)
 
-snakemake_log.addFilter(jobs.plain_words(RESULTS))
+snakemake_log.addFilter(jobs.plain_words(PLACE))
 WATCH = Watch(COUNTER)
 
 
 def make_ready():
     """Before the first job: see that results can be written, clear what killed runs left."""
     with refused_in_one_line(ORIGIN):
-        cache.Store(RESULTS).try_writing()
-    for path in cache.clear_abandoned(RESULTS):
+        cache.Store(PLACE).try_writing()
+    for path in cache.clear_abandoned(PLACE):
         print(f"{path} was left by a run that was killed: removed", file=sys.stderr)
     WATCH.start(points_to_do())
 
@@ -89,16 +101,16 @@ def points_to_do():
     asked = [
         job.wildcards for job in workflow.dag.needrun_jobs() if "batch" in job.wildcards.keys()
     ]
-    return sum(len(BATCHES[wildcards[0]][wildcards.batch]) for wildcards in asked)
+    # Where this is a module, others may have batches too.
+    return sum(len(BATCHES.get(w[0], {}).get(w.batch, ())) for w in asked)
 
 
 def show_the_end():
     """Stop the line of progress; say once more what is in the datasets, and what is not."""
     WATCH.stop()
-    planned = workflow.dag.needrun_jobs(exclude_finished=False)
-    made = {path for job in planned if workflow.dag.finished(job) for path in job.output}
-    names = [n for n in (*CONFIGURATION.sweeps, *STUDIES) if f"{RESULTS}/{n}.nc" in made]
-    for line in jobs.closing_lines(RESULTS, names):
+    made = {path for job in workflow.dag.finished_jobs for path in job.output}
+    names = [n for n in (*CONFIGURATION.sweeps, *STUDIES) if f"{PLACE}/{n}.nc" in made]
+    for line in jobs.closing_lines(PLACE, names):
         print(line, file=sys.stderr)
 
 

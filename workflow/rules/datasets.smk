@@ -4,9 +4,14 @@
 rule collect:
     input:
         batches=lambda wildcards: batches_of(wildcards.sweep),
-        code=[f"{PACKAGE}/dataset.py", f"{PACKAGE}/limits.py", f"{PACKAGE}/theory.py"],
     output:
         f"{RESULTS}/{{sweep}}.nc",
+        summary=report(
+            f"{RESULTS}/summaries/{{sweep}}.html",
+            caption="../report/dataset.rst",
+            category="Datasets",
+            labels={"dataset": "{sweep}.nc"},
+        ),
     log:
         f"{RESULTS}/logs/collect/{{sweep}}.log",
     conda:
@@ -15,7 +20,10 @@ rule collect:
         mem_mb=500,
         runtime=10,
     params:
-        # Not read by the script; it makes Snakemake notice a change.
+        # These two are not read by the script; they make Snakemake notice a change.
+        code=lambda wildcards: keys.digest_of_modules(
+            "dataset.py", "columns.py", "limits.py", "summary.py"
+        ),
         settings=lambda wildcards: keys.canonical_json(CONFIGURATION.of_sweep(wildcards.sweep)),
         store=lambda wildcards, output: str(Path(output[0]).parent),
     script:
@@ -25,13 +33,14 @@ rule collect:
 rule collect_study:
     input:
         batches=lambda wildcards: batches_of_study(wildcards.dataset),
-        code=[
-            f"{PACKAGE}/dataset.py",
-            f"{PACKAGE}/theory.py",
-            *sorted(map(str, Path(PACKAGE, "studies").glob("*.py"))),
-        ],
     output:
         f"{RESULTS}/{{dataset}}.nc",
+        summary=report(
+            f"{RESULTS}/summaries/{{dataset}}.html",
+            caption="../report/dataset.rst",
+            category="Datasets",
+            labels={"dataset": "{dataset}.nc"},
+        ),
     log:
         f"{RESULTS}/logs/collect/{{dataset}}.log",
     conda:
@@ -41,6 +50,7 @@ rule collect_study:
         runtime=10,
     params:
         # Not read by the script, as above.
+        code=lambda wildcards: keys.digest_of_modules("dataset.py", "summary.py", "studies"),
         settings=lambda wildcards: keys.canonical_json(
             studies.settings(STUDIES[wildcards.dataset], CONFIGURATION)
         ),

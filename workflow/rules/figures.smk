@@ -4,9 +4,16 @@
 rule draw_figure:
     input:
         dataset=lambda wildcards: f"{RESULTS}/{FIGURES[wildcards.figure]}.nc",
-        code=sorted(map(str, Path(PACKAGE, "plot").glob("*.py"))),
     output:
-        expand(f"{RESULTS}/figures/{{{{figure}}}}.{{format}}", format=["png", "pdf"]),
+        report(
+            f"{RESULTS}/figures/{{figure}}.png",
+            caption="../report/figure.rst",
+            category=lambda wildcards: (
+                "Methods" if FIGURES[wildcards.figure] in STUDIES else "The paper's figures"
+            ),
+            labels={"figure": "{figure}"},
+        ),
+        f"{RESULTS}/figures/{{figure}}.pdf",
     log:
         f"{RESULTS}/logs/draw_figure/{{figure}}.log",
     conda:
@@ -16,5 +23,7 @@ rule draw_figure:
         runtime=10,
     params:
         name=lambda wildcards: FIGURES[wildcards.figure],
+        # Not read by the script; it makes Snakemake notice a change.
+        code=lambda wildcards: keys.digest_of_modules("plot"),
     script:
         "../scripts/draw_figure.py"

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 # The package of this tree is the one that runs, whether it is installed or not.
-SOURCE = Path(workflow.current_basedir.get_path_or_uri(secret_free=True), "../../src").resolve()
+SOURCE = Path(str(workflow.current_basedir), "../../src").resolve()
 if SOURCE.is_dir():
     sys.path.insert(0, str(SOURCE))
     search = [str(SOURCE), *filter(None, [os.environ.get("PYTHONPATH")])]

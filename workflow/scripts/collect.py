@@ -4,12 +4,13 @@ Output: netCDF-4, CF conventions, all quantities dimensionless (units 1, phases 
   transverse.nc       dims (amplitude, velocity), history_step
   bore.nc             dims (amplitude, velocity)
   continuous_bore.nc  dims (velocity), cell, (start, transient_step)
-A sweep with a list of Poisson's ratios has the dim poisson before these.
+A sweep with a list of Poisson's ratios has the dim poisson before these. Beside it an HTML
+page that sums it up.
 """
 
 import xarray as xr
 
-from microslip import config, dataset, sweep
+from microslip import config, dataset, summary, sweep
 from microslip.cache import Store
 from microslip.jobs import job_log
 
@@ -29,5 +30,7 @@ with job_log(snakemake.log[0]) as log:
         configuration.of_sweep(name),
     )
     with xr.open_dataset(snakemake.output[0]) as data:
-        for line in dataset.report(data):
+        lines = list(dataset.report(data))
+        for line in lines:
             log.info(line)
+        summary.write(snakemake.output.summary, data, lines)

@@ -4,9 +4,10 @@ Output: netCDF-4, CF conventions, all quantities dimensionless but for seconds a
   accuracy_cost.nc  dims trial, point, scaling_model, scaling_size, map_tolerance, and the axes of
                     the maps
   stability.nc      dims (method, case), axis
+and an HTML page that sums it up.
 """
 
-from microslip import config, dataset, studies, sweep
+from microslip import config, dataset, studies, summary, sweep
 from microslip.cache import Store
 from microslip.jobs import job_log
 
@@ -17,5 +18,7 @@ with job_log(snakemake.log[0]) as log:
     store = Store(snakemake.params.store)
     data = studies.build(study, configuration, lambda request: sweep.answer(request, store)[0])
     dataset.write(data, snakemake.output[0])
-    for line in studies.report(study, data):
+    lines = list(studies.report(study, data))
+    for line in lines:
         log.info(line)
+    summary.write(snakemake.output.summary, data, lines)
