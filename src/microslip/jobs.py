@@ -91,4 +91,6 @@ def closing_lines(folder, names):
     How many points each has, and which of them did not converge.
     """
     paths = (Path(folder, "logs", "collect", f"{name}.log") for name in names)
-    return [line for p in paths if p.is_file() for line in p.read_text("utf-8").splitlines()]
+    lines = [line for p in paths if p.is_file() for line in p.read_text("utf-8").splitlines()]
+    # Damage that was met on the way was a warning, and has been shown.
+    return [line for line in lines if not line.startswith("damaged result")]
