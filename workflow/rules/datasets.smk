@@ -16,9 +16,10 @@ rule collect:
         f"{RESULTS}/logs/collect/{{sweep}}.log",
     conda:
         "../envs/microslip.yaml"
+    threads: 1
     resources:
-        mem_mb=500,
-        runtime=10,
+        mem_mb=lambda wildcards, attempt: 1000 * attempt,
+        runtime=lambda wildcards, attempt: 10 * attempt,
     params:
         # These two are not read by the script; they make Snakemake notice a change.
         code=lambda wildcards: keys.digest_of_modules(
@@ -45,9 +46,10 @@ rule collect_study:
         f"{RESULTS}/logs/collect/{{dataset}}.log",
     conda:
         "../envs/microslip.yaml"
+    threads: 1
     resources:
-        mem_mb=500,
-        runtime=10,
+        mem_mb=lambda wildcards, attempt: 1000 * attempt,
+        runtime=lambda wildcards, attempt: 10 * attempt,
     params:
         # Not read by the script, as above.
         code=lambda wildcards: keys.digest_of_modules("dataset.py", "summary.py", "studies"),

@@ -18,9 +18,10 @@ rule draw_figure:
         f"{RESULTS}/logs/draw_figure/{{figure}}.log",
     conda:
         "../envs/microslip.yaml"
+    threads: 1
     resources:
-        mem_mb=500,
-        runtime=10,
+        mem_mb=lambda wildcards, attempt: 1000 * attempt,
+        runtime=lambda wildcards, attempt: 10 * attempt,
     params:
         name=lambda wildcards: FIGURES[wildcards.figure],
         # Not read by the script; it makes Snakemake notice a change.

@@ -9,9 +9,11 @@ rule warm_up:
         f"{RESULTS}/logs/warm_up.log",
     conda:
         "../envs/microslip.yaml"
+    threads: 1
+    # What a job takes where a scheduler starts it, Snakemake within it included: docs/cluster.md.
     resources:
-        mem_mb=500,
-        runtime=10,
+        mem_mb=lambda wildcards, attempt: 1000 * attempt,
+        runtime=lambda wildcards, attempt: 10 * attempt,
     script:
         "../scripts/warm_up.py"
 
@@ -28,9 +30,10 @@ rule solve_batch:
         group="|".join(group for group in BATCHES if not group.endswith("_first")),
     conda:
         "../envs/microslip.yaml"
+    threads: 1
     resources:
-        mem_mb=500,
-        runtime=60,
+        mem_mb=lambda wildcards, attempt: 1000 * attempt,
+        runtime=lambda wildcards, attempt: 60 * attempt,
     params:
         # One string: Snakemake compares parameters as a set and would miss two swapped numbers.
         requests=lambda wildcards: keys.canonical_json(BATCHES[wildcards.group][wildcards.batch]),
