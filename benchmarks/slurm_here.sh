@@ -142,6 +142,7 @@ fi
 
 # The same sweep twice
 
+read -r load _ </proc/loadavg
 sweep() { # folder, further options
     local folder=$work/$1 started=$SECONDS
     shift
@@ -207,6 +208,8 @@ print(version(sys.argv[1]))" "$package") |"
     echo "| --- | --- |"
     echo "| through Slurm | $slurm_seconds |"
     echo "| snakemake --jobs $cpus | $local_seconds |"
+    echo
+    echo "Slurm went first. The load of the machine by other work was $load at the start."
     echo
     if [ -z "$different" ]; then
         echo "Equal, byte for byte: $(count '\.nc$') datasets, $(count /points/) points," \
