@@ -36,9 +36,9 @@ if not (workflow.overwrite_configfiles if MAIN else config):
     DEFAULT = "config/config.yaml"
     if not (MAIN and os.path.exists(DEFAULT)):
         DEFAULT = str(workflow.current_basedir.join(DEFAULT))
-    if os.path.exists(DEFAULT):
+    if "://" not in DEFAULT:
         with refused_in_one_line(DEFAULT):
-            microslip_config.read_yaml(DEFAULT)  # says where a mistake is
+            microslip_config.read_yaml(os.path.relpath(DEFAULT))  # says where a mistake is
 
     configfile: DEFAULT
 
