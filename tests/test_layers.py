@@ -30,9 +30,11 @@ LAYERS = [
     {"cache", "config"},
     {"answers", "jobs", "watch", "limits", "columns"},
     {"sweep", "dataset"},
-    {"stored"},
+    {"stored", "si"},
     {"studies"},
     {"plot"},
+    {"cli_predict"},
+    {"cli_predict"},
     {"cli"},
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}

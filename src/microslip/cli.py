@@ -6,7 +6,7 @@ import argparse
 import json
 import sys
 
-from microslip import __version__
+from microslip import __version__, cli_predict
 
 SCENES = {
     "transverse": (
@@ -71,6 +71,7 @@ def build_parser():
                 "--amplitude", type=float, required=True, metavar="A", help=amplitude
             )
         _add_options(scene)
+    cli_predict.add_parser(commands)
     return parser
 
 
@@ -116,6 +117,8 @@ def main(arguments=None):
     """Entry point.  Exit codes: 0 converged, 1 not converged, 2 bad input."""
     arguments = sys.argv[1:] if arguments is None else arguments
     options = build_parser().parse_args(_joined(arguments))
+    if options.command == "predict":
+        return cli_predict.run(options)
     from microslip.cache import CacheError  # only now: --help and bad options need no solver
 
     progress = _Progress(enabled=sys.stderr.isatty())
