@@ -197,7 +197,7 @@ def _contact(body, other, radius, counter_radius, load, mu):
         curvature = curvature + 1.0 / other_radius if other_radius else 0.0
     if not curvature > 0.0:
         raise ValueError(
-            f"counter_radius = {counter_radius}: allowed is a ball, or a hollow wider than the sphere"
+            f"counter_radius = {counter_radius}: allowed is a hollow wider than the sphere"
         )
     return TwoBodies(body, other, 1.0 / curvature, si_value("load", load, "N"), _friction(mu))
 
