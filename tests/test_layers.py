@@ -30,9 +30,10 @@ LAYERS = [
     {"cache", "config"},
     {"answers", "jobs", "watch", "limits", "columns", "summary"},
     {"sweep", "dataset"},
-    {"stored"},
+    {"stored", "si"},
     {"studies"},
     {"plot", "launch"},
+    {"cli_predict"},
     {"cli"},
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}

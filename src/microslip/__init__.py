@@ -12,11 +12,12 @@ _WHERE = {
     "Result": "microslip.point",
     "warm_up": "microslip.point",
     "solve_stored": "microslip.stored",
+    "predict": "microslip.si.predict",
     "history": "microslip.inside",
     "History": "microslip.inside",
     "traction_field": "microslip.inside",
 }
-__all__ = ["History", "Result", "history", "solve", "solve_stored", "traction_field", "warm_up"]
+__all__ = sorted(_WHERE)
 __version__ = "0.1.0"
 
 

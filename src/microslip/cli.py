@@ -8,7 +8,7 @@ import json
 import math
 import sys
 
-from microslip import __version__, launch
+from microslip import __version__, cli_predict, launch
 
 SCENES = {
     "transverse": (
@@ -121,6 +121,7 @@ def build_parser():
                 "--amplitude", type=_real, required=True, metavar="A", help=amplitude
             )
         _add_options(scene)
+    cli_predict.add_parser(commands)
     return parser
 
 
@@ -171,6 +172,8 @@ def main(arguments=None):
     if arguments[:1] == ["sweep"]:  # not for argparse: what follows is Snakemake's
         return launch.main(arguments[1:])
     options = build_parser().parse_args(_joined(arguments))
+    if options.command == "predict":
+        return cli_predict.run(options)
     from microslip.cache import CacheError  # only now: --help and bad options need no solver
 
     progress = _Progress(enabled=sys.stderr.isatty())

@@ -1,0 +1,14 @@
+"""From a real contact in SI units to its friction under vibration.
+
+    import microslip
+
+    found = microslip.predict(
+        "transverse", young="210 GPa", nu=0.3, counterbody="rigid", radius="5 mm", load="10 N",
+        mu=0.3, speed="1 mm/s", amplitude="1 um", frequency="20 kHz",
+    )
+    print(found.mu_apparent, found.force_reduction, found.warnings)
+
+`quantities` reads texts with units, `materials` is a small table, `contact` holds Hertz's theory
+for two bodies, `groups` makes the paper's dimensionless groups, `predict` asks the solver and
+`doubts` says where an assumption of the theory breaks.
+"""

@@ -1,0 +1,82 @@
+"""Hertz contact of two elastic bodies in SI units, and what their mismatch couples."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from .materials import Material
+
+
+@dataclass(frozen=True)
+class TwoBodies:
+    """A sphere pressed on a flat or on a second sphere, both elastic or one rigid.
+
+    first, second: Material; radius: of relative curvature, m, 1/R = 1/R1 + 1/R2; load: N; mu:
+    coefficient of friction.  The tangential problem of two half-spaces is that of one whose
+    compliance is the sum of both: its G and Poisson's ratio follow from the sums of 1/G and nu/G.
+    """
+
+    first: Material
+    second: Material
+    radius: float
+    load: float
+    mu: float
+
+    def __post_init__(self):
+        if self.first.rigid and self.second.rigid:
+            raise ValueError("counterbody = 'rigid': allowed is an elastic one for a rigid body")
+
+    @property
+    def bodies(self):
+        return (self.first, self.second)
+
+    @property
+    def E_star(self):
+        """1/E* = sum (1 - nu^2)/E, Pa (Hertz)."""
+        return 1.0 / sum((1.0 - body.poisson**2) / body.young for body in self.bodies)
+
+    @property
+    def G(self):
+        """1/G = sum 1/G_i, Pa: what torsion feels."""
+        return 1.0 / sum(1.0 / body.shear_modulus for body in self.bodies)
+
+    @property
+    def poisson(self):
+        """Poisson's ratio of the equal half-space on a rigid one, sum(nu/G) / sum(1/G)."""
+        return self.G * sum(body.poisson / body.shear_modulus for body in self.bodies)
+
+    @property
+    def G_star(self):
+        """1/G* = sum (2 - nu)/(4 G), Pa (Eq 3 for two bodies)."""
+        return 4.0 * self.G / (2.0 - self.poisson)
+
+    @property
+    def contact_radius(self):
+        """a = (3 F R / (4 E*))^(1/3), m (Hertz)."""
+        return (0.75 * self.load * self.radius / self.E_star) ** (1.0 / 3.0)
+
+    @property
+    def indentation(self):
+        """d = a^2/R, m (Hertz)."""
+        return self.contact_radius**2 / self.radius
+
+    @property
+    def largest_pressure(self):
+        """p0 = 3 F / (2 pi a^2), Pa (Hertz)."""
+        return 1.5 * self.load / (math.pi * self.contact_radius**2)
+
+    @property
+    def u_lim(self):
+        """Displacement at which the whole contact slides, mu d E*/G*, m (below Eq 2)."""
+        return self.mu * self.indentation * self.E_star / self.G_star
+
+    @property
+    def mismatch(self):
+        """Dundurs' constant beta: how far pressure moves the surfaces apart sideways, 0 if equal.
+
+        Half of the difference of (1 - 2 nu)/G over the sum of (1 - nu)/G.
+        """
+        first, second = ((1.0 - 2.0 * body.poisson) / body.shear_modulus for body in self.bodies)
+        both = sum((1.0 - body.poisson) / body.shear_modulus for body in self.bodies)
+        return 0.5 * (first - second) / both

@@ -1,0 +1,255 @@
+"""Contacts in SI units: Hertz's theory by hand, the groups, predictions and their warnings."""
+
+import json
+import math
+
+import pytest
+
+import microslip
+from microslip import cli, hertz
+from microslip.si import quantities
+from microslip.si.contact import TwoBodies
+from microslip.si.groups import RealMotion, groups
+from microslip.si.materials import MATERIALS, RIGID, Material
+
+STEEL = Material(210e9, 0.3)
+BALL = {"radius": "5 mm", "load": "10 N", "mu": 0.3, "speed": "1 mm/s"}
+EXAMPLE = BALL | {"young": "210 GPa", "nu": 0.3, "amplitude": "1 um", "frequency": "20 kHz"}
+
+
+# Hertz's theory
+
+
+def test_one_elastic_body_is_the_papers_contact():
+    for poisson in (0.0, 0.3, 0.5):
+        here = TwoBodies(Material(3e9, poisson), RIGID, 0.01, 7.0, 0.4)
+        paper = hertz.HertzContact(radius=0.01, load=7.0, young=3e9, poisson=poisson, mu=0.4)
+        for name, other in (("indentation", "depth"), ("G_star", "G_star"), ("E_star", "E_star")):
+            assert getattr(here, name) == pytest.approx(getattr(paper, other), rel=1e-14)
+        assert here.contact_radius == pytest.approx(paper.contact_radius, rel=1e-14)
+        assert here.u_lim == pytest.approx(paper.u_lim, rel=1e-14)
+        assert here.largest_pressure == pytest.approx(paper.pressure(0.0), rel=1e-14)
+        assert here.poisson == pytest.approx(poisson)
+
+
+def test_a_steel_ball_of_10_mm_on_steel_by_hand():
+    """E* = 210/(2 * 0.91) GPa; a^3 = 3 * 10 * 0.005 / (4 E*); p0 = 3 F/(2 pi a^2)."""
+    contact = TwoBodies(STEEL, STEEL, 0.005, 10.0, 0.3)
+    assert contact.E_star == pytest.approx(115.385e9, rel=1e-5)
+    assert contact.contact_radius == pytest.approx(68.753e-6, rel=1e-4)
+    assert contact.largest_pressure == pytest.approx(1.0101e9, rel=1e-4)
+    # u_lim = 3 mu F (2 - nu) / (16 G_half a) with two bodies of G = 80.77 GPa in series
+    assert contact.u_lim == pytest.approx(3 * 3.0 * 1.7 / (16 * 40.385e9 * 68.753e-6), rel=1e-4)
+    assert contact.mismatch == 0.0
+
+
+def test_the_stiffer_the_counterbody_the_more_the_bodies_differ():
+    soft = Material(1e9, 0.3)
+    betas = [TwoBodies(soft, Material(e, 0.3), 1.0, 1.0, 1.0).mismatch for e in (1e9, 2e9, 1e12)]
+    assert betas[0] == 0.0
+    assert betas[0] < betas[1] < betas[2]
+    rigid = TwoBodies(soft, RIGID, 1.0, 1.0, 1.0)
+    assert rigid.mismatch == pytest.approx(0.5 * (1 - 0.6) / 0.7)
+    assert betas[2] == pytest.approx(rigid.mismatch, rel=3e-3)
+    assert TwoBodies(Material(1e9, 0.5), RIGID, 1.0, 1.0, 1.0).mismatch == 0.0
+
+
+def test_dimensionless_groups_by_hand():
+    contact = TwoBodies(STEEL, RIGID, 0.005, 10.0, 0.3)
+    motion = RealMotion("transverse", 1e-3, 1e-6, 20e3)
+    velocity, amplitude = groups(motion, contact)
+    assert velocity == pytest.approx(1e-3 / (2 * math.pi * 20e3 * contact.u_lim))
+    assert amplitude == pytest.approx(1e-6 / contact.u_lim)
+    turning = RealMotion("continuous-bore", 1e-3, rotation=2.0)
+    assert groups(turning, contact) == (1e-3 / (2.0 * contact.contact_radius), None)
+
+
+def test_the_unit_of_a_bore_leaves_half_the_radius_sticking():
+    """Torsion by hand: the angle D(1/2) mu F_z/(pi G a^2) leaves the stick radius a/2 (Eq 24)."""
+    for other in (RIGID, STEEL, Material(70e9, 0.2)):
+        contact = TwoBodies(STEEL, other, 0.005, 10.0, 0.3)
+        a = contact.contact_radius
+        angle = 3 * 0.3 * 10.0 / (4 * math.pi * contact.G * a**2) * hertz.D_HALF
+        velocity, amplitude = groups(RealMotion("bore", 1e-3, angle, 100.0), contact)
+        assert amplitude == pytest.approx(1.0)
+        assert velocity == pytest.approx(1e-3 / (2 * math.pi * 100.0 * angle * a))
+
+
+# Predictions
+
+
+def test_a_prediction_is_what_the_solver_says_of_its_groups():
+    found = microslip.predict("transverse", **EXAMPLE)
+    answer = microslip.solve("transverse", found.velocity, found.amplitude, poisson=found.poisson)
+    assert found.mu_macro == answer.mu_macro
+    assert found.mu_macro_error == answer.mu_macro_error
+    assert found.mu_apparent == pytest.approx(0.3 * answer.mu_macro)
+    assert found.friction_force_N == pytest.approx(3.0 * answer.mu_macro)
+    assert found.force_reduction == pytest.approx(1 - answer.mu_macro)
+    assert found.mu_static == pytest.approx(0.0, abs=found.mu_static_error)  # slides in each stroke
+
+
+def test_units_do_not_matter():
+    other = {"radius": 0.005, "load": "0.01 kN", "young": "2.1e11 Pa", "amplitude": "1e-3 mm"}
+    assert microslip.predict("transverse", **EXAMPLE | other) == microslip.predict(
+        "transverse", **EXAMPLE
+    )
+    metre = quantities.registry().Quantity(1.0, "m")
+    assert quantities.si_value("radius", 5e-3 * metre, "m") == pytest.approx(0.005)
+
+
+def test_two_balls_are_one_ball_of_half_the_radius():
+    both = microslip.predict("transverse", **EXAMPLE | {"counter_radius": "5 mm"})
+    half = microslip.predict("transverse", **EXAMPLE | {"radius": "2.5 mm"})
+    assert both.contact_radius_m == pytest.approx(half.contact_radius_m)
+    assert both.mu_macro == pytest.approx(half.mu_macro, abs=1e-9)
+    hollow = microslip.predict("transverse", **EXAMPLE | {"counter_radius": "-10 mm"})
+    assert hollow.contact_radius_m == pytest.approx(both.contact_radius_m * 4 ** (1 / 3))
+
+
+@pytest.mark.parametrize(
+    ("scene", "motion"),
+    [
+        ("transverse", {"frequency": "20 kHz"}),
+        ("transverse", {"frequency": "50 Hz"}),
+        ("bore", {"frequency": "20 kHz"}),
+    ],
+)
+def test_the_amplitude_that_halves_friction_does(scene, motion):
+    ball = BALL | {"material": "steel", "counterbody": "steel"} | motion
+    wanted = microslip.predict(scene, reduction="50 %", **ball)
+    assert wanted.force_reduction == pytest.approx(0.5, abs=2e-3)
+    there = microslip.predict(scene, amplitude=wanted.amplitude_si, **ball)
+    assert there.mu_macro == pytest.approx(wanted.mu_macro, abs=1e-12)
+    for factor, sign in ((0.9, 1), (1.1, -1)):
+        near = microslip.predict(scene, amplitude=factor * wanted.amplitude_si, **ball)
+        assert sign * (near.mu_macro - 0.5) > 0.01
+
+
+def test_a_reduction_that_no_amplitude_gives_is_refused():
+    with pytest.raises(ValueError, match="reduction = 100 %"):
+        microslip.predict("transverse", reduction=1.0, material="steel", frequency="20 kHz", **BALL)
+
+
+# Warnings
+
+MILD = EXAMPLE | {"counterbody": "210 GPa, 0.3", "amplitude": "0.3 um"}
+WARNED = {
+    "yields": {"hardness": "1.5 GPa"},
+    "half-spaces": {"young": "1 MPa", "nu": 0.5},
+    "amplitude": {"amplitude": "20 um"},
+    "shear wave crosses": {"density": "7850 kg/m^3", "frequency": "20 MHz"},
+    "slip speed": {"density": "7850 kg/m^3", "speed": "400 m/s"},
+    "beta": {"counterbody": "rigid"},
+}
+
+
+def test_nothing_is_warned_of_without_reason():
+    assert microslip.predict("transverse", **MILD).warnings == ()
+    sure = microslip.predict("transverse", **MILD | {"hardness": "7 GPa", "density": "7850 kg/m^3"})
+    assert sure.warnings == ()
+
+
+@pytest.mark.parametrize("word", WARNED)
+def test_what_breaks_is_warned_of(word, monkeypatch):
+    found = microslip.predict("transverse", **MILD | WARNED[word])
+    assert sum(word in text for text in found.warnings) == 1
+
+
+def test_what_was_not_checked_is_said():
+    assert len(microslip.predict("transverse", **MILD).not_checked) == 2
+    glass = BALL | {"material": "glass", "amplitude": "1 um", "frequency": "1 kHz"}
+    assert microslip.predict("transverse", **glass).not_checked == ()
+
+
+def test_materials_say_where_their_numbers_are_from():
+    for material in MATERIALS.values():
+        assert material.source
+        assert 0.0 <= material.poisson <= 0.5
+
+
+# Bad input
+
+BAD = [
+    ({"radius": "5"}, "radius", "'5 mm'"),
+    ({"radius": "5 N"}, "radius", "units of m"),
+    ({"radius": "-5 mm"}, "radius", "above 0"),
+    ({"radius": "five"}, "radius", "'five'"),
+    ({"load": "0 N"}, "load", "above 0"),
+    ({"load": "nan N"}, "load", "allowed"),
+    ({"mu": 0}, "mu", "above 0"),
+    ({"mu": "a lot"}, "mu", "a number"),
+    ({"nu": 0.7}, "nu", "at most 0.5"),
+    ({"young": None}, "young", "needed"),
+    ({"young": "inf GPa"}, "young", "finite"),
+    ({"material": "steel"}, "material", "without young"),
+    ({"counterbody": "wood"}, "counterbody", "'70 GPa, 0.22'"),
+    ({"counterbody": "70 GPa, 0.9"}, "counterbody", "at most 0.5"),
+    ({"counter_radius": "-4 mm"}, "counter_radius", "hollow wider"),
+    ({"counter_radius": "0 mm"}, "counter_radius", "allowed"),
+    ({"amplitude": "1 deg"}, "amplitude", "units of m"),
+    ({"amplitude": None}, "amplitude", "needs it"),
+    ({"frequency": "-20 kHz"}, "frequency", "above 0"),
+    ({"rotation": "60 rpm"}, "rotation", "has none"),
+    ({"reduction": "50 %"}, "reduction", "without an amplitude"),
+    ({"reduction": "120 %", "amplitude": None}, "reduction", "at most 1"),
+    ({"speed": "1 mm"}, "speed", "units of m/s"),
+    ({"tolerance": 0.0}, "tolerance", "allowed"),
+    ({"density": "7850"}, "density", "'7850 kg/m^3'"),
+]
+
+
+@pytest.mark.parametrize(("changed", "named", "said"), BAD)
+def test_bad_input_names_the_argument_and_what_is_allowed(changed, named, said):
+    with pytest.raises(ValueError, match=f"^{named} = ") as caught:
+        microslip.predict("transverse", **EXAMPLE | changed)
+    assert said in str(caught.value)
+
+
+def test_two_rigid_bodies_and_unknown_scenes_are_refused():
+    ball = BALL | {"amplitude": "1 um", "frequency": "1 kHz"}
+    with pytest.raises(ValueError, match="elastic"):
+        microslip.predict("transverse", material="rigid", **ball)
+    with pytest.raises(ValueError, match="^scene = 'sideways'"):
+        microslip.predict("sideways", material="steel", **ball)
+
+
+# Command line
+
+
+def options(**given):
+    words = [(f"--{name.replace('_', '-')}", str(value)) for name, value in given.items()]
+    return [word for pair in words for word in pair]
+
+
+def test_the_command_line_answers_in_json(capsys):
+    asked = EXAMPLE | {"counterbody": "rigid"}
+    assert cli.main(["predict", "transverse", *options(**asked), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    expected = "contact_radius_m indentation_m u_lim_m velocity amplitude mu_macro mu_macro_error"
+    assert said.keys() >= {*expected.split(), "mu_apparent", "warnings"}
+    assert said == microslip.predict("transverse", **EXAMPLE).to_dict()
+
+
+def test_the_command_line_answers_in_words(capsys):
+    for scene, motion in (
+        ("transverse", {"amplitude": "1 um", "frequency": "20 kHz"}),
+        ("bore", {"amplitude": "0.5 deg", "frequency": "20 kHz"}),
+        ("continuous-bore", {"rotation": "60 rpm"}),
+    ):
+        assert cli.main(["predict", scene, *options(material="steel", **BALL, **motion)]) == 0
+        said = capsys.readouterr().out
+        assert "54.57 um" in said
+        assert "warning: " in said
+
+
+@pytest.mark.parametrize(
+    ("changed", "named"),
+    [({"radius": "5"}, "--radius"), ({"counter_radius": "-1 mm"}, "--counter-radius")],
+)
+def test_the_command_line_names_the_option_at_fault(changed, named, capsys):
+    assert cli.main(["predict", "transverse", *options(**EXAMPLE | changed)]) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.count("\n") == 1
+    assert f"{named} = " in said.err
