@@ -213,10 +213,12 @@ def _answer(options, progress):
 
 
 def _joined(arguments):
-    """Options and negative numbers as one word: argparse takes -1e-3 for an option."""
+    """Options and negative numbers, with a unit or not, as one word: argparse takes -1e-3 for an
+    option."""
     out = []
     for word in arguments:
-        if word.startswith("-") and out and out[-1].startswith("--") and _is_number(word):
+        number = word.partition(" ")[0]
+        if word.startswith("-") and out and out[-1].startswith("--") and _is_number(number):
             out[-1] += f"={word}"
         else:
             out.append(word)
