@@ -13,7 +13,7 @@ from bad_command_lines import COMMAND_LINES, NAMES, NUMBERS, RESULTS
 from bad_configurations import FILES, KEYS, STUDIES, TOGETHER, changed
 
 import microslip
-from microslip import cli, config, schemas
+from microslip import cli, point, config, schemas
 
 SOURCE = str(Path(microslip.__file__).parent.parent)
 
@@ -84,7 +84,7 @@ def test_the_command_line_has_the_limits_of_configurations():
     rules = schemas.schema()["$defs"]
     limits = {name: rules[name]["maximum"] for name in ("cells", "steps", "non_negative")}
     limits |= dict.fromkeys(["velocity", "amplitude"], limits.pop("non_negative"))
-    assert limits == cli.MOST
+    assert limits == point.LARGEST
 
 
 # Configurations

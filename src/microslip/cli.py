@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import difflib
 import json
-import math
 import sys
 
 from microslip import __version__, cli_predict, launch
@@ -33,10 +32,6 @@ SCENES = {
         None,
     ),
 }
-
-# As in the schema of configurations. What is larger is a slip, and would run out of memory or of
-# the range of floating-point numbers.
-MOST = {"velocity": 1e6, "amplitude": 1e6, "cells": 1000, "steps": 1_000_000}
 
 
 class _OneLineParser(argparse.ArgumentParser):
@@ -199,10 +194,6 @@ def _answer(options, progress):
     place = (options.scene, options.velocity, getattr(options, "amplitude", None))
     names = ("poisson", "model", "tolerance", "cells", "steps")
     settings = {name: getattr(options, name) for name in names}
-    for name, most in MOST.items():
-        given = getattr(options, name, None)
-        if given is not None and most < given < math.inf:
-            raise ValueError(f"{name} = {given!r}: allowed is at most {most:g}")
     if options.results is None:
         return solve(*place, **settings, method=options.method, progress=progress)
     if options.method != "shipped":

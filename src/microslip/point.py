@@ -18,6 +18,9 @@ from microslip.simulate import simulate, simulate_static
 PERIODICITY_SHARE = 0.07
 """Share of the tolerance that the distance from the periodic state may take."""
 SMALLEST_TOLERANCE = 1e-6
+LARGEST = {"velocity": 1e6, "amplitude": 1e6, "cells": 1000, "steps": 1_000_000}
+"""What is larger is a slip, and would run out of memory or of the range of floating-point numbers;
+a test keeps them as in the schema of configurations."""
 CLOSED_FORM = "closed-form"
 
 
@@ -169,12 +172,12 @@ def solve(
 def checked_point(scene, velocity, amplitude, poisson):
     """Scene record and numbers of a point; raises ValueError naming the argument at fault."""
     kind = scene_named(scene)
-    velocity = _number("velocity", velocity, 0.0)
+    velocity = _number("velocity", velocity, 0.0, LARGEST["velocity"])
     poisson = _number("poisson", poisson, 0.0, 0.5)
     if kind.periodic:
         if amplitude is None:
             raise ValueError(f"amplitude = None: {kind.name} needs an amplitude >= 0")
-        amplitude = _number("amplitude", amplitude, 0.0)
+        amplitude = _number("amplitude", amplitude, 0.0, LARGEST["amplitude"])
     elif amplitude is not None:
         raise ValueError(f"amplitude = {amplitude}: {kind.name} has no amplitude")
     return kind, velocity, amplitude, poisson
@@ -214,8 +217,12 @@ def _number(name, value, low, high=math.inf):
 def _count(name, value, low):
     if value is None:
         return None
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < low:
-        raise ValueError(f"{name} = {value!r}: allowed is a whole number of at least {low}")
+    whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    if not whole or not low <= value <= LARGEST[name]:
+        raise ValueError(
+            f"{name} = {value!r}: allowed is a whole number of at least {low} and at most "
+            f"{LARGEST[name]:g}"
+        )
     if value % 2:
         raise ValueError(f"{name} = {value!r}: allowed is an even number (half of it is run, too)")
     return int(value)

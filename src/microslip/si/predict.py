@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass, replace
 
-from ..point import Result, solve
+from ..point import LARGEST, Result, solve
 from .contact import TwoBodies
 from .doubts import doubts, unchecked
 from .groups import SCENES, UNIT_OF_AMPLITUDE, RealMotion, groups
@@ -107,7 +107,8 @@ def predict(
     if reduction is not None:
         motion = _motion_for(contact, motion, reduction, tolerance)
     velocity, size = groups(motion, contact)
-    answer = solve(scene, velocity, size, poisson=contact.poisson, tolerance=tolerance)
+    fast = min(velocity, LARGEST["velocity"])  # beyond, the vibration does nothing
+    answer = solve(scene, fast, size, poisson=contact.poisson, tolerance=tolerance)
     limit = None
     if size is not None:
         limit = solve(scene, 0.0, size, poisson=contact.poisson, tolerance=tolerance)
@@ -127,7 +128,7 @@ def _prediction(contact, motion, answer: Result, limit: Result | None):
         amplitude_si=motion.amplitude,
         frequency_Hz=motion.frequency,
         rotation_rad_s=motion.rotation,
-        velocity=answer.velocity,
+        velocity=groups(motion, contact)[0],
         amplitude=answer.amplitude,
         mu_macro=answer.mu_macro,
         mu_macro_error=answer.mu_macro_error,
