@@ -13,7 +13,7 @@ from bad_command_lines import COMMAND_LINES, NAMES, NUMBERS, RESULTS
 from bad_configurations import FILES, KEYS, STUDIES, TOGETHER, changed
 
 import microslip
-from microslip import cli, point, config, schemas
+from microslip import cli, config, point, schemas
 
 SOURCE = str(Path(microslip.__file__).parent.parent)
 
