@@ -53,7 +53,7 @@ class Bench:
         """A plain re-run; it has to succeed."""
         run = self.project.rerun(unlocks)
         if run.process.returncode:
-            findings.append(f"the plain re-run failed: {run.said[-2000:]}")
+            findings.append(f"the plain re-run failed:\n{run.said[-2000:]}")
         return run
 
 
@@ -89,7 +89,7 @@ def kills(bench, rng, most=12):
         shared = any(one.alive() for one in runs)
         before = project.stored()
     if run.process.returncode not in (0, -signal.SIGKILL):
-        findings.append(f"a run that was to be killed failed: {run.said[-2000:]}")
+        findings.append(f"a run that was to be killed failed:\n{run.said[-2000:]}")
     halves = [] if any(one.alive() for one in runs) else project.halves()
     aged = halves if rng.random() < 0.5 else []
     age(aged)
@@ -189,7 +189,7 @@ def pair(bench, rng):
     for run in (one, two):
         clear = SAYS_UNLOCK in " ".join(run.said.split()) or not run.process.returncode
         if not clear and not (apart and told(run.said)):
-            findings.append(f"one of two runs said nothing useful: {run.said[-2000:]}")
+            findings.append(f"one of two runs said nothing useful:\n{run.said[-2000:]}")
     bench.rerun(findings, unlocks)
     bench.compare(findings)
     if unlocks:
@@ -253,9 +253,9 @@ def failed_well(run, findings):
     if not run.process.returncode:
         return False
     if not (ADVICE.search(run.said) or SYSTEM.search(run.said)):
-        findings.append(f"no message that names a file: {run.said[-2000:]}")
+        findings.append(f"no message that names a file:\n{run.said[-2000:]}")
     elif not told(run.said):
-        findings.append(f"the last word is a traceback: {run.said[-2000:]}")
+        findings.append(f"the last word is a traceback:\n{run.said[-2000:]}")
     return True
 
 
