@@ -18,7 +18,8 @@ ROOT = Path(__file__).parent.parent
 CONFIGURATION = "config/smoke.yaml"
 RESULTS = "results/smoke"
 SAYS_UNLOCK = "can be removed with the --unlock argument"
-GROUPS = ("points", "batches", "histories", "datasets", "figures", "seals", "warm_up", "logs")
+GROUPS = ("points", "batches", "histories", "datasets", "summaries", "figures", "seals")
+GROUPS += ("warm_up", "logs")
 UNREAD = ("warm_up", "logs")
 """Groups of results, and those of them whose content nothing depends on."""
 OLD = 7200.0

@@ -25,7 +25,7 @@ WIPES = {
     "datasets": (lambda name, rng: group_of(name) == "datasets", 0.5),
     "some figures": (lambda name, rng: group_of(name) == "figures" and rng.random() < 0.5, 0.4),
 }
-ADVICE = re.compile(r"cannot (write|read) \S+: [^;\n]+; make room or set permissions there")
+ADVICE = re.compile(r"cannot (write|write to|read|use) \S+: [^;\n]+; make room or set permissions")
 SYSTEM = re.compile(r"(No space left on device|Read-only file system)[^\n]*\S*/\S+")
 """What the package says when it cannot write, and what Snakemake says itself: it names the file."""
 BARE = re.compile(r'^(  File "|Traceback|\w*(Error|Exception)\b.*\[Errno)')

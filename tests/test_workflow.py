@@ -176,10 +176,9 @@ def test_a_damaged_point_is_computed_again_where_it_is_needed(project):
     assert dataset.read_bytes() == expected
 
 
-def test_a_damaged_dataset_and_figure_are_set_aside_and_made_again(project):
-    dataset = project.folder / "results" / "transverse.nc"
-    figure = project.folder / "results" / "figures" / "fig6_bore_map.png"
-    expected = {path: path.read_bytes() for path in (dataset, figure)}
+def test_a_damaged_dataset_page_and_figure_are_set_aside_and_made_again(project):
+    names = ("transverse.nc", "summaries/continuous_bore.html", "figures/fig6_bore_map.png")
+    expected = {path: path.read_bytes() for path in (project.folder / "results" / n for n in names)}
     for path, whole in expected.items():
         path.write_bytes(whole[: len(whole) // 2])
     said = project.run()

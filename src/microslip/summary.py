@@ -5,7 +5,7 @@ from html import escape
 
 import yaml
 
-from .cache import write_atomically
+from .cache import writing_beside
 
 # Quantities whose range tells at a glance whether a run came out well, where a dataset has them.
 RANGES = ("mu_macro", "mu_macro_error", "mu_torque", "reference_error", "seconds")
@@ -15,13 +15,14 @@ MOST_LINES = 40
 def write(path, dataset, lines):
     """Write the page of an xarray.Dataset; lines: list of what its report says.
 
-    Raises CacheError as `cache.write_atomically` does.
+    Raises CacheError as `cache.writing_beside` does.
     """
     # Text inside HTML, since the report of a run shows that in place.
     text = escape(page(dataset, lines))
     title = escape(dataset.attrs.get("title", ""))
     head = f'<!DOCTYPE html>\n<html lang="en"><meta charset="utf-8"><title>{title}</title>'
-    write_atomically(path, f"{head}\n<pre>{text}</pre></html>\n".encode())
+    with writing_beside(path, sealed=True) as beside:
+        beside.write_text(f"{head}\n<pre>{text}</pre></html>\n", encoding="utf-8", newline="\n")
 
 
 def page(dataset, lines):

@@ -69,8 +69,8 @@ def figures_of(datasets):
     ]
 
 
-MADE = [f"{RESULTS}/{name}.nc" for name in (*CONFIGURATION.sweeps, *STUDIES)]
-MADE += figures_of((*CONFIGURATION.sweeps, *STUDIES))
+MADE = [*CONFIGURATION.sweeps, *STUDIES]
+MADE = datasets_of(MADE) + figures_of(MADE)
 MADE = [str(workflow.modifier.modify_path(path)) for path in MADE]
 GROUPS = {"batches", "figures", "logs", "warm_up", *sweep.FOLDERS.values()}
 
