@@ -78,7 +78,12 @@ def kills(bench, rng, most=12):
             project.unlock(unlocks)
         runs.append(run := project.start())
         if run.ended_within(rng.uniform(0.0, part * bench.seconds)):
-            break
+            if run.process.returncode:
+                findings.append(f"a run that was to be killed failed:\n{run.said[-2000:]}")
+                break
+            _, part = wipe(project, rng)  # it was done before; there has to be more to do
+            before = project.stored()
+            continue
         everybody = rng.random() < 0.5
         run.kill(everybody)
         done["all" if everybody else "alone"] += 1
@@ -88,8 +93,6 @@ def kills(bench, rng, most=12):
             run.wait_for_all()
         shared = any(one.alive() for one in runs)
         before = project.stored()
-    if run.process.returncode not in (0, -signal.SIGKILL):
-        findings.append(f"a run that was to be killed failed:\n{run.said[-2000:]}")
     halves = [] if any(one.alive() for one in runs) else project.halves()
     aged = halves if rng.random() < 0.5 else []
     age(aged)
