@@ -152,9 +152,9 @@ def summary(lines, rooted):
     found = [finding for line in lines for finding in line["findings"]]
     verdict = "**Nothing lost, nothing stale, equal bits.**"
     out += [
-        f"\nAfter each of {len(lines)} rounds {sum(compared.values())} files were compared with"
-        " those of an undisturbed run by their SHA-256: "
-        + ", ".join(f"{count} {group}" for group, count in compared.items())
+        f"\nAfter each of {len(lines)} rounds all files were compared with those of an undisturbed"
+        " run by their SHA-256: "
+        + ", ".join(f"{count} {group.replace('_', '-')}" for group, count in compared.items())
         + ".",
         "",
         f"- {total('unlocks')} times a lock of Snakemake's was left by a run that was killed; it"
