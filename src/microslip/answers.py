@@ -19,7 +19,7 @@ FIRST_COUNTS = 8.0
 
 def computed(request):
     """Ask the solver; the result as a dict of values that JSON can hold."""
-    return _plain(_KINDS[request["kind"]](request))
+    return plain(_KINDS[request["kind"]](request))
 
 
 def timed(run, repeats):
@@ -179,14 +179,14 @@ def _linear_algebra_error():
     return LinAlgError
 
 
-def _plain(value):
+def plain(value):
     """Python values that JSON can hold, from NumPy's or a dict of them; NaN becomes None."""
     if isinstance(value, dict):
-        return {str(name): _plain(item) for name, item in value.items()}
+        return {str(name): plain(item) for name, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
+        return [plain(item) for item in value]
     if hasattr(value, "tolist"):
-        return _plain(value.tolist())
+        return plain(value.tolist())
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value

@@ -169,7 +169,8 @@ def main(arguments=None):
     options = build_parser().parse_args(_joined(arguments))
     if options.command == "predict":
         return cli_predict.run(options)
-    from microslip.cache import CacheError  # only now: --help and bad options need no solver
+    from microslip.answers import plain  # only now: --help and bad options need no solver
+    from microslip.cache import CacheError
 
     progress = _Progress(enabled=sys.stderr.isatty())
     try:
@@ -181,7 +182,7 @@ def main(arguments=None):
     finally:
         progress.close()
     if options.json:
-        print(json.dumps({"amplitude": None} | _json_ready(result.to_dict())))
+        print(json.dumps({"amplitude": None} | plain(result.to_dict())))
     else:
         print(_as_text(result))
     return 0 if result.converged else 1
@@ -245,11 +246,6 @@ class _Progress:
     def close(self):
         if self.bar is not None:
             self.bar.close()
-
-
-def _json_ready(fields):
-    """NaN has no place in JSON."""
-    return {k: None if isinstance(v, float) and v != v else v for k, v in fields.items()}
 
 
 def _as_text(result):

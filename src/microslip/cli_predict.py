@@ -50,6 +50,7 @@ def add_parser(commands):
 def run(options):
     """Answer; returns the exit code: 0 converged, 1 not converged, 2 bad input."""
     from microslip import predict
+    from microslip.answers import plain
 
     names = [name.replace("-", "_") for name in OPTIONS]
     given = {name: getattr(options, name) for name in names}
@@ -63,8 +64,7 @@ def run(options):
         print(f"microslip predict: {named}{equals}{rest}", file=sys.stderr)
         return 2
     if options.json:
-        fields = found.to_dict()
-        print(json.dumps({k: None if v != v else v for k, v in fields.items()}))
+        print(json.dumps(plain(found.to_dict())))
     else:
         print(_as_text(found))
     return 0 if found.converged else 1

@@ -7,8 +7,8 @@ from dataclasses import fields
 from . import sweep
 from .cache import Store
 from .choice import choose_model
-from .keys import number
 from .point import Result, checked_accuracy, checked_point
+from .settings import Sweep
 
 
 def solve_stored(
@@ -35,17 +35,19 @@ def solve_stored(
     kind, velocity, amplitude, poisson = checked_point(scene, velocity, amplitude, poisson)
     tolerance, cells, steps = checked_accuracy(tolerance, cells, steps)
     choose_model(kind, poisson, model)
-    request = {
-        "kind": "point",
-        "scene": kind.name,
-        "velocity": number(velocity),
-        "amplitude": None if amplitude is None else number(amplitude),
-        "poisson": number(poisson),
-        "model": model,
-        "tolerance": number(tolerance),
-        "cells": cells,
-        "steps": steps,
-    }
+    grid = Sweep(
+        name=kind.name,
+        scene=kind.name,
+        velocity=(velocity,),
+        amplitude=None if amplitude is None else (amplitude,),
+        poisson=(poisson,),
+        poisson_is_axis=False,
+        model=model,
+        tolerance=tolerance,
+        cells=cells,
+        steps=steps,
+    )
+    (request,) = sweep.PointRequests(grid)
     record, _ = sweep.answer(request, Store(results))
     given = request | record["result"]
     given |= {k: float(given[k]) for k in ("velocity", "poisson", "tolerance")}

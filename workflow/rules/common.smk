@@ -69,9 +69,8 @@ def figures_of(datasets):
     ]
 
 
-MADE = [*CONFIGURATION.sweeps, *STUDIES]
-MADE = datasets_of(MADE) + figures_of(MADE)
-MADE = [str(workflow.modifier.modify_path(path)) for path in MADE]
+NAMES = [*CONFIGURATION.sweeps, *STUDIES]
+MADE = [str(workflow.modifier.modify_path(p)) for p in datasets_of(NAMES) + figures_of(NAMES)]
 GROUPS = {"batches", "figures", "logs", "warm_up", *sweep.FOLDERS.values()}
 
 with refused_in_one_line(ORIGIN):
@@ -109,27 +108,26 @@ def show_the_end():
     """Stop the line of progress; say once more what is in the datasets, and what is not."""
     WATCH.stop()
     made = {path for job in workflow.dag.finished_jobs for path in job.output}
-    names = [n for n in (*CONFIGURATION.sweeps, *STUDIES) if f"{PLACE}/{n}.nc" in made]
+    names = [name for name in NAMES if f"{PLACE}/{name}.nc" in made]
     for line in jobs.closing_lines(PLACE, names):
         print(line, file=sys.stderr)
 
 
 def batches_of(name):
     """Index files of a sweep's points and of the single runs in the same dataset."""
-    return [
-        f"{RESULTS}/batches/{group}/{batch}.json"
-        for group in (name, f"{name}_histories")
-        for batch in BATCHES[group]
-    ]
+    return indices_of(name, f"{name}_histories")
 
 
 def batches_of_study(dataset):
     """Index files of all that a study asks for; dataset: its name."""
     study = STUDIES[dataset]
+    return indices_of(f"{study}_first", study)
+
+
+def indices_of(*groups):
+    """Index files of all batches of these groups."""
     return [
-        f"{RESULTS}/batches/{group}/{batch}.json"
-        for group in (f"{study}_first", study)
-        for batch in BATCHES[group]
+        f"{RESULTS}/batches/{group}/{batch}.json" for group in groups for batch in BATCHES[group]
     ]
 
 

@@ -52,7 +52,9 @@ rule collect_study:
         runtime=lambda wildcards, attempt: 10 * attempt,
     params:
         # Not read by the script, as above.
-        code=lambda wildcards: keys.digest_of_modules("dataset.py", "summary.py", "studies"),
+        code=lambda wildcards: keys.digest_of_modules(
+            "dataset.py", "columns.py", "summary.py", "studies"
+        ),
         settings=lambda wildcards: keys.canonical_json(
             studies.settings(STUDIES[wildcards.dataset], CONFIGURATION)
         ),

@@ -112,10 +112,10 @@ def predict(
     limit = None
     if size is not None:
         limit = solve(scene, 0.0, size, poisson=contact.poisson, tolerance=tolerance)
-    return _prediction(contact, motion, answer, limit)
+    return _prediction(contact, motion, velocity, answer, limit)
 
 
-def _prediction(contact, motion, answer: Result, limit: Result | None):
+def _prediction(contact, motion, velocity, answer: Result, limit: Result | None):
     still = contact.mu * contact.load
     return Prediction(
         scene=motion.scene,
@@ -128,7 +128,7 @@ def _prediction(contact, motion, answer: Result, limit: Result | None):
         amplitude_si=motion.amplitude,
         frequency_Hz=motion.frequency,
         rotation_rad_s=motion.rotation,
-        velocity=groups(motion, contact)[0],
+        velocity=velocity,
         amplitude=answer.amplitude,
         mu_macro=answer.mu_macro,
         mu_macro_error=answer.mu_macro_error,
