@@ -4,6 +4,7 @@ import json
 import math
 
 import pytest
+from scipy.integrate import quad
 
 import microslip
 from microslip import cli, hertz
@@ -20,16 +21,37 @@ EXAMPLE = BALL | {"young": "210 GPa", "nu": 0.3, "amplitude": "1 um", "frequency
 # Hertz's theory
 
 
-def test_one_elastic_body_is_the_papers_contact():
-    for poisson in (0.0, 0.3, 0.5):
-        here = TwoBodies(Material(3e9, poisson), RIGID, 0.01, 7.0, 0.4)
-        paper = hertz.HertzContact(radius=0.01, load=7.0, young=3e9, poisson=poisson, mu=0.4)
-        for name, other in (("indentation", "depth"), ("G_star", "G_star"), ("E_star", "E_star")):
-            assert getattr(here, name) == pytest.approx(getattr(paper, other), rel=1e-14)
-        assert here.contact_radius == pytest.approx(paper.contact_radius, rel=1e-14)
-        assert here.u_lim == pytest.approx(paper.u_lim, rel=1e-14)
-        assert here.largest_pressure == pytest.approx(paper.pressure(0.0), rel=1e-14)
-        assert here.poisson == pytest.approx(poisson)
+@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.5])
+def test_one_elastic_body_is_the_papers_contact(poisson):
+    """Eq 3 for one body, and the load as the integral of Hertz's pressure."""
+    contact = TwoBodies(Material(3e9, poisson), RIGID, 0.01, 7.0, 0.4)
+    shear_modulus = 3e9 / (2 * (1 + poisson))
+    assert contact.E_star == pytest.approx(3e9 / (1 - poisson**2))
+    assert pytest.approx(shear_modulus) == contact.G
+    assert contact.G_star == pytest.approx(4 * shear_modulus / (2 - poisson))
+    assert contact.poisson == pytest.approx(poisson)
+    a, depth = contact.contact_radius, contact.indentation
+    assert 4 / 3 * contact.E_star * math.sqrt(0.01) * depth**1.5 == pytest.approx(7.0)
+    share = quad(lambda r: 2 * math.pi * r * math.sqrt(1 - r**2), 0, 1)[0]
+    assert contact.largest_pressure * a**2 * share == pytest.approx(7.0)
+    # In working units the modulus is G* = 3/4.
+    assert contact.G_star * a * contact.u_lim / (0.4 * 7.0) == pytest.approx(hertz.G_STAR)
+
+
+def test_both_lines_of_eq_24_agree():
+    c, contact = 0.37, TwoBodies(STEEL, RIGID, 0.01, 50.0, 0.2)
+    a = contact.contact_radius
+    first = contact.mu * contact.E_star * a / (math.pi * contact.G * contact.radius) * hertz.D(c)
+    assert hertz.lubkin_angle(c, contact.poisson) * contact.u_lim / a == pytest.approx(first)
+
+
+@pytest.mark.parametrize(
+    ("field", "value"), [("radius", 0.0), ("load", -1.0), ("mu", math.nan), ("radius", math.inf)]
+)
+def test_a_contact_refuses_bad_values(field, value):
+    good = {"first": STEEL, "second": RIGID, "radius": 0.01, "load": 50.0, "mu": 0.2}
+    with pytest.raises(ValueError, match=rf"^{field} = {value}: allowed is .*{field}"):
+        TwoBodies(**good | {field: value})
 
 
 def test_a_steel_ball_of_10_mm_on_steel_by_hand():

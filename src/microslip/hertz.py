@@ -8,8 +8,6 @@ Every function takes floats or arrays, broadcasts, and raises ValueError for an 
 not finite or lies outside the range stated with it.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from scipy.special import ellipe, ellipkm1, elliprd, elliprf
 
@@ -225,59 +223,3 @@ def lubkin_torque(stick_radius):
     t = start + length * _UNIT_NODES
     integral = np.sum(_UNIT_WEIGHTS * 2 * t**5 * ellipe((1 - t) * (1 + t) * (1 + t * t)), axis=-1)
     return 4 / np.pi * length[..., 0] * integral
-
-
-@dataclass(frozen=True)
-class HertzContact:
-    """An elastic sphere pressed on a rigid flat, in SI units (Eqs 2 and 3 and Hertz's theory).
-
-    radius: of the sphere, m. load: F_z, N. young: Pa. poisson: 0..0.5. mu: coefficient of
-    friction. The normal and the tangential problem are taken as uncoupled. Raises ValueError for a
-    value that is not finite or not positive, or poisson outside 0..0.5.
-    """
-
-    radius: float
-    load: float
-    young: float
-    poisson: float
-    mu: float
-
-    def __post_init__(self):
-        for name in ("radius", "load", "young", "mu"):
-            checked(name, getattr(self, name), low_open=True)
-        checked("poisson", self.poisson, high=0.5)
-
-    @property
-    def E_star(self):
-        """Reduced modulus of elasticity E/(1 - nu^2), Pa (Eq 3)."""
-        return self.young / (1 - self.poisson**2)
-
-    @property
-    def G(self):
-        """Shear modulus E/(2 (1 + nu)), Pa."""
-        return self.young / (2 * (1 + self.poisson))
-
-    @property
-    def G_star(self):
-        """Reduced shear modulus 4G/(2 - nu), Pa (Eq 3)."""
-        return 4 * self.G / (2 - self.poisson)
-
-    @property
-    def contact_radius(self):
-        """Contact radius a, m (Hertz)."""
-        return (0.75 * self.load * self.radius / self.E_star) ** (1 / 3)
-
-    @property
-    def depth(self):
-        """Indentation depth d = a^2/R, m (Hertz)."""
-        return self.contact_radius**2 / self.radius
-
-    @property
-    def u_lim(self):
-        """Displacement at which the whole contact slides, mu d E*/G*, m (below Eq 2)."""
-        return self.mu * self.depth * self.E_star / self.G_star
-
-    def pressure(self, r):
-        """Normal pressure at the distance r >= 0 (m, any shape) from the centre, Pa (Hertz)."""
-        a = self.contact_radius
-        return self.load / a**2 * friction_bound(checked("r", r) / a)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ..hertz import checked
 from .materials import Material
 
 
@@ -15,6 +16,8 @@ class TwoBodies:
     first, second: Material; radius: of relative curvature, m, 1/R = 1/R1 + 1/R2; load: N; mu:
     coefficient of friction.  The tangential problem of two half-spaces is that of one whose
     compliance is the sum of both: its G and Poisson's ratio follow from the sums of 1/G and nu/G.
+    Normal and tangential problem are taken as uncoupled.  Raises ValueError for a value that is not
+    finite or not positive, and for two rigid bodies.
     """
 
     first: Material
@@ -24,6 +27,8 @@ class TwoBodies:
     mu: float
 
     def __post_init__(self):
+        for name in ("radius", "load", "mu"):
+            checked(name, getattr(self, name), low_open=True)
         if self.first.rigid and self.second.rigid:
             raise ValueError("counterbody = 'rigid': allowed is an elastic one for a rigid body")
 
