@@ -13,7 +13,7 @@ PACKAGE = Path(microslip.__file__).parent
 LAYERS = [
     {"hertz"},
     {"theory", "bounds", "halfspace", "friction", "path"},
-    {"rings", "scenes"},
+    {"rings", "scenes", "any_pressure"},
     {"models"},
     {"motion"},
     {"static", "cycle", "steady"},
@@ -104,4 +104,4 @@ def test_physics_knows_no_files_workflow_or_plots(path):
 
 def test_theory_and_the_solvers_meet_only_in_the_public_answer():
     users = {top_name(path) for path in MODULES if "theory" in imported(path)[0]}
-    assert users <= {"choice", "limits", "dataset", "studies"}
+    assert users <= {"any_pressure", "choice", "limits", "dataset", "studies"}

@@ -229,7 +229,8 @@ def _all_pairs(psi, n_modes, coupled, outer, inner, apart, hertz, near, far):
                     far[:, i, j],
                     far[:, j, i],
                 )
-                near[:, j, i] = near[:, i, j]
+                for m in range(n_modes):
+                    near[m, j, i] = near[m, i, j]
                 continue
             _close_pair(
                 one, other, n_modes, coupled, outer, inner, hertz, near[:, i, j], far[:, i, j]

@@ -10,7 +10,6 @@ not finite or lies outside the range stated with it.
 """
 
 import numpy as np
-from scipy.integrate import quad
 from scipy.special import ellipe, ellipkm1, elliprd, hyp2f1
 
 from . import hertz
@@ -51,17 +50,6 @@ def stick_radius_transverse(amplitude):
     amplitude >= 0 (any shape), else ValueError; 0 from amplitude 1 on.
     """
     return hertz.mindlin_stick_radius(checked("amplitude", amplitude))
-
-
-def static_stick_zone_of(pressure, stick_radius):
-    """Share of the load inside the stick radius, for any axisymmetric pressure (Eq 9).
-
-    pressure: function of a float radius in 0..1, in any unit. 0 <= stick_radius <= 1 (any shape).
-    Adaptive quadrature. Raises ValueError also for a load that is not positive.
-    """
-    stick_radius = checked("stick_radius", stick_radius, high=1.0)
-    total = _total(pressure, 1)
-    return _each(lambda c: _integral(lambda r: pressure(r) * r, 0.0, c) / total, stick_radius)
 
 
 def static_stick_zone(stick_radius):
@@ -164,47 +152,6 @@ def bore_torque(velocity):
     slow = 1 - slow + 0.375 * slow**2
     fast = 16 / (15 * np.pi) * inverse * hyp2f1(0.5, 0.5, 3.5, inverse**2)
     return np.where(velocity <= 1, slow, fast)[()]
-
-
-def bore_of(pressure, velocity):
-    """Steady continuous bore under any axisymmetric pressure (Eqs 17, 18, 21, 22).
-
-    pressure: function of a float radius in 0..1, in any unit. velocity > 0 (any shape), else
-    ValueError. Returns two arrays, bore_forward and bore_torque for this pressure. Adaptive
-    quadrature. Raises ValueError also for a load that is not positive.
-    """
-    velocity = checked("velocity", velocity, low_open=True)
-    forward = _bore_mean(pressure, velocity, forward_kernel, power=1)
-    return forward, _bore_mean(pressure, velocity, torque_kernel, power=2)
-
-
-def _bore_mean(pressure, velocity, kernel, power):
-    total = 2 * np.pi * _total(pressure, power)
-
-    def resistance(v):
-        def ring(r):
-            return kernel(r / v) * pressure(r) * r**power
-
-        # The kernel's slope is logarithmic on the ring through the centre of rotation.
-        split = min(v, 1.0)
-        return (_integral(ring, 0.0, split) + _integral(ring, split, 1.0)) / total
-
-    return _each(resistance, velocity)
-
-
-def _total(pressure, power):
-    total = _integral(lambda r: pressure(r) * r**power, 0.0, 1.0)
-    if not 0 < total < np.inf:
-        raise ValueError(f"pressure integrates to {total!r}: allowed is a finite load > 0")
-    return total
-
-
-def _integral(function, start, end):
-    return quad(function, start, end, epsabs=0.0, epsrel=1e-11, limit=200)[0]
-
-
-def _each(function, values):
-    return np.array([function(float(v)) for v in values.flat]).reshape(values.shape)[()]
 
 
 # Oscillating bore

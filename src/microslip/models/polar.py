@@ -66,6 +66,24 @@ def _project(free, bound, q, dual):
 
 
 @njit(**JIT)
+def _copy(out, values):
+    """out[:] = values for shape (2, M, N); see ring_factors.copy."""
+    for c in range(2):
+        for j in range(out.shape[1]):
+            for i in range(out.shape[2]):
+                out[c, j, i] = values[c, j, i]
+
+
+@njit(**JIT)
+def _add(out, factor, values):
+    """out += factor values for shape (2, M, N)."""
+    for c in range(2):
+        for j in range(out.shape[1]):
+            for i in range(out.shape[2]):
+                out[c, j, i] += factor * values[c, j, i]
+
+
+@njit(**JIT)
 def solve_step(influence, inverse, penalty, bound, weight, b, q, dual, slip, room, tolerance):
     """Solve one Coulomb step by over-relaxed ADMM, in place.
 
@@ -145,22 +163,23 @@ def _march(
     rigid_displacement(way[0], positions, rigid)
     z = np.empty_like(q)
     _slip(influence, rigid, q, folded, room[1], z)
-    z[:] = -z
+    _add(z, -2.0, z)
     sum_forces(q, weight, positions, forces[0])
     total, iterations = 0.0, 0
     b = np.empty_like(q)
     for k in range(stages.shape[0]):
         for s in range(n_stages):
             rigid_displacement(stages[k, s], positions, rigid)
-            b[:] = z + rigid
+            _copy(b, z)
+            _add(b, 1.0, rigid)
             for j in range(s):
-                b -= carry[s, j] * slips[j]
-            before[:] = q
+                _add(b, -carry[s, j], slips[j])
+            _copy(before, q)
             if warm:
                 _add_projected(added[k, s], bound, q)
-                dual[:] = duals[k, s]
+                _copy(dual, duals[k, s])
             elif k > 0:
-                dual[:] = duals[k - 1, s]
+                _copy(dual, duals[k - 1, s])
             count, residual = solve_step(
                 influence,
                 inverse,
@@ -174,15 +193,17 @@ def _march(
                 room,
                 tolerance,
             )
-            added[k, s] = q - before
-            duals[k, s] = dual
+            _copy(added[k, s], q)
+            _add(added[k, s], -1.0, before)
+            _copy(duals[k, s], dual)
             iterations += count
             total += residual
-        b -= slips[n_stages - 1] + rigid
+        slip = slips[n_stages - 1]
         for c in range(2):
             for j in range(angles):
                 for i in range(n):
-                    z[c, j, i] = extended(z[c, j, i], b[c, j, i], end)
+                    now = b[c, j, i] - (slip[c, j, i] + rigid[c, j, i])
+                    z[c, j, i] = extended(z[c, j, i], now, end)
                     held[c, j, i] = extended(held[c, j, i], q[c, j, i], end)
         sum_forces(held, weight, positions, forces[k + 1])
     return held, total, iterations

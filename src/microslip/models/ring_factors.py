@@ -64,6 +64,15 @@ def make_factors(n):
     )
 
 
+@njit(**JIT)
+def copy(out, values):
+    """out[:] = values for shape (2, n): no shapes are compared, and so none of the compiler's time
+    goes into words for those that differ."""
+    for c in range(2):
+        for i in range(out.shape[1]):
+            out[c, i] = values[c, i]
+
+
 @njit(inline="always", **JIT)
 def subtract(y, factor, x):
     """y -= factor x."""

@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from microslip.friction import JIT, shrink
-from microslip.models.ring_factors import factorise, subtract
+from microslip.models.ring_factors import copy, factorise, subtract
 
 MAX_ITERATIONS = 200
 RESCUE_SWEEPS = 12
@@ -130,8 +130,8 @@ def solve_step(stiffness, whole, imposed, bound, weight, q, slip, tolerance, fac
             trial_residual = step_residual(stiffness, trial, trial_slip, bound, weight)
         good = trial_residual <= max(GOOD_STEP * residual, tolerance)
         if trial_residual < residual:
-            q[:] = trial
-            slip[:] = trial_slip
+            copy(q, trial)
+            copy(slip, trial_slip)
             residual = trial_residual
         else:
             failures += 1

@@ -16,7 +16,14 @@ import numpy as np
 from numba import njit
 
 from microslip.friction import JIT, extended, shrink
-from microslip.models.ring_factors import ON_BOUND, combine, factorise, make_factors, subtract
+from microslip.models.ring_factors import (
+    ON_BOUND,
+    combine,
+    copy,
+    factorise,
+    make_factors,
+    subtract,
+)
 from microslip.models.ring_kernels import solve_step, weighted_slip
 
 LONGEST_STRETCH = 3.0
@@ -46,7 +53,8 @@ def _transfer(factors, stick, out):
     upper = factors.upper
     for j in range(stick - 1, -1, -1):
         row = out[j, : n - stick]
-        row[:] = upper[j, stick:]
+        for p in range(n - stick):
+            row[p] = upper[j, stick + p]
         combine(row, upper[j, j + 1 : stick], out[j + 1 :, : n - stick], stick - 1 - j)
         for p in range(n - stick):
             row[p] *= upper[j, j]
@@ -60,7 +68,9 @@ def _felt(order, stick, transfer, moved, rows, p, out):
     rows: derivative of the displacement, (n, columns), identity rows skipped; moved: positions in
     the order of the sticking rings that have slipped before.
     """
-    out[:] = rows[order[stick + p]]
+    own = rows[order[stick + p]]
+    for column in range(len(out)):
+        out[column] = own[column]
     k, count = 0, len(moved)
     while k + 4 <= count:
         e, f, g, h = moved[k], moved[k + 1], moved[k + 2], moved[k + 3]
@@ -127,9 +137,9 @@ def _start_derivative(stiffness, whole, dz):
     for c in range(2):
         for i in range(n):
             for part in (slice(0, n), slice(n, 2 * n)):
-                scratch[:] = dz[c, i, part]
+                own = dz[c, i, part]
                 for k in range(n):
-                    scratch[k] = -scratch[k]
+                    scratch[k] = -own[k]
                 combine(out[c * n + i, part], scratch, stiffness, n)
         _solve(whole, n, out[c * n : (c + 1) * n], scratch)
     return out
@@ -220,7 +230,7 @@ def march(stiffness, whole, bound, weight, path, state, known, tolerance, tangen
         for i in range(n):
             z[c, i] = 2.0 * b[c, i] - z[c, i]
             forces[0, c] += weight[i] * q[c, i]
-    tractions[0] = q
+    copy(tractions[0], q)
     total, iterations, at = 0.0, 0, 0
     for k in range(steps):
         for s in range(stages):
@@ -237,7 +247,7 @@ def march(stiffness, whole, bound, weight, path, state, known, tolerance, tangen
             count, residual = solve_step(
                 stiffness, whole, b, bound, weight, q, slips[s], tolerance, factors
             )
-            tractions[at] = q
+            copy(tractions[at], q)
             iterations += count
             total += residual
             if tangent:

@@ -131,13 +131,15 @@ def _add_pairs(members, blocks, modes, images):
         first, second = members[k]
         if first < 0:
             continue
-        pair[:n] = modes[first]
-        pair[n:] = modes[second] if second >= 0 else 0.0 * modes[first]
+        for i in range(n):
+            pair[i] = modes[first, i]
+            pair[n + i] = modes[second, i] if second >= 0 else 0.0
         image[:] = 0.0
         _add_columns(blocks[k], pair, image)
-        images[first] += image[:n]
-        if second >= 0:
-            images[second] += image[n:]
+        for i in range(n):
+            images[first, i] += image[i]
+            if second >= 0:
+                images[second, i] += image[n + i]
 
 
 def _waves(angles, rotates, coupled):
