@@ -39,6 +39,7 @@ KEYS = [
     ("results", "2026-01-31", '"2026-01-31"', "text for a folder"),
     ("points_per_job", "0", "0 is not allowed", ">= 1"),
     ("points_per_job", "-3", "-3 is not allowed", ">= 1"),
+    (f"{T}.points_per_job", "0", "0 is not allowed", ">= 1"),
     ("points_per_job", "1.5", "1.5 is not allowed", "a whole number"),
     ("points_per_job", "all", '"all" is text', "a number"),
     ("points_per_job", "1e3", '"1e3" is text', "write 1.0e+3"),

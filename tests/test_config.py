@@ -25,12 +25,22 @@ def saved(folder, text):
 
 def test_defaults_are_filled_in(tmp_path):
     found = load(saved(tmp_path, GOOD))
-    assert (found.results, found.points_per_job) == ("results", 50)
+    assert found.results == "results"
+    assert found.points_per_job == dict.fromkeys(found.sweeps, 50)
     sweep = found.sweeps["transverse"]
     assert (sweep.poisson, sweep.poisson_is_axis) == ((0.0,), False)
     assert (sweep.model, sweep.tolerance, sweep.cells, sweep.steps) == ("auto", 1e-3, None, None)
     assert found.histories["transients"]["velocity"] == 0.8
     assert found.sweeps["continuous_bore"].scene == "continuous-bore"
+
+
+def test_a_sweep_may_have_its_own_number_of_points_in_a_job(tmp_path):
+    text = GOOD.replace("  bore:", "    points_per_job: 7\n  bore:") + "points_per_job: 3\n"
+    found = load(saved(tmp_path, text))
+    assert found.points_per_job == dict.fromkeys(found.sweeps, 3) | {"transverse": 7}
+    # What decides who computes a point is no part of what a dataset depends on.
+    plain = load(saved(tmp_path, GOOD))
+    assert found.of_sweep("transverse") == plain.of_sweep("transverse")
 
 
 def test_axes_are_expanded_sorted_and_rounded_to_six_digits(tmp_path):

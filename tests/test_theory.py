@@ -369,7 +369,10 @@ def test_bad_input_is_named(name, function, bad):
         (lambda: theory.large_amplitude_transverse(-0.1, 1.0), "velocity = -0.1"),
         (lambda: theory.large_amplitude_transverse(0.1, np.nan), "amplitude = nan"),
         (lambda: theory.static_stick_zone(1.5), "stick_radius = 1.5"),
-        (lambda: any_pressure.static_stick_zone_of(lambda r: 0.0, 0.5), "pressure integrates to 0.0"),
+        (
+            lambda: any_pressure.static_stick_zone_of(lambda r: 0.0, 0.5),
+            "pressure integrates to 0.0",
+        ),
         (lambda: theory.steady_bore_traction(np.nan, 0.0, 1.0), "lateral = nan"),
         (lambda: theory.steady_bore_traction(0.0, np.inf, 1.0), "forward = inf"),
         (lambda: any_pressure.bore_of(hertz_pressure, 0.0), "velocity = 0.0"),

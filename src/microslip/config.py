@@ -79,7 +79,10 @@ def from_mapping(mapping, source="configuration"):
     }
     return Configuration(
         results=filled["results"],
-        points_per_job=filled["points_per_job"],
+        points_per_job={
+            name: filled["sweeps"][name]["points_per_job"] or filled["points_per_job"]
+            for name in sweeps
+        },
         sweeps=sweeps,
         histories=filled["histories"],
         accuracy=_accuracy(filled["accuracy"], f"{source}: accuracy"),

@@ -89,8 +89,8 @@ class Configuration:
     """A checked configuration with its defaults filled in and its axes expanded."""
 
     results: str
-    points_per_job: int
     sweeps: dict  # name -> Sweep, in the order of SCENE_OF_SWEEP
+    points_per_job: dict  # name of a sweep -> int; no dataset depends on it
     histories: dict  # transverse, field, transients -> dict of settings, as in the schema
     accuracy: Accuracy
     stability: Stability

@@ -28,7 +28,7 @@ COUNTER = f"{PLACE}/logs/points_done"
 # BATCHES[group][name]: requests of that batch. A group is a sweep, or the single runs beside it.
 BATCHES = {}
 for name, grid in CONFIGURATION.sweeps.items():
-    size = CONFIGURATION.points_per_job
+    size = CONFIGURATION.points_per_job[name]
     BATCHES[name] = sweep.batches(sweep.PointRequests(grid), size, DIGEST)
     histories = sweep.history_requests(CONFIGURATION, name)
     BATCHES[f"{name}_histories"] = sweep.batches(histories, size, DIGEST)
