@@ -16,6 +16,8 @@ _WHERE = {
     "history": "microslip.inside",
     "History": "microslip.inside",
     "traction_field": "microslip.inside",
+    "period": "microslip.inside",
+    "Period": "microslip.inside",
 }
 __all__ = sorted(_WHERE)
 __version__ = "0.1.0"

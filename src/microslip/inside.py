@@ -1,17 +1,18 @@
-"""What happens inside a period: force histories from a given start, and traction fields."""
+"""What happens inside: force histories from a given start, traction fields, a whole period."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from microslip import hertz
 from microslip.choice import choose_model
-from microslip.models.contact import forward_slip, full_slip
+from microslip.models.contact import FORWARD, LATERAL, TORQUE, forward_slip, full_slip
 from microslip.motion import Motion, Resolution, build_contact
 from microslip.path import make_path
 from microslip.point import checked_point
+from microslip.simulate import simulate
 from microslip.steady import steady_state
 
 STARTS = ("stress-free", "full-slip", "full-rotation")
@@ -19,6 +20,12 @@ CELLS = 32
 ANGLES = 16
 STEPS = 256
 STEP_TOLERANCE = 1e-7
+PERIOD_CELLS, PERIOD_STEPS = 16, 64
+PERIOD_TOLERANCE = 1e-4
+ON_BOUND = 1.0 - 1e-4
+"""Share of the friction bound from which on a traction along the slip counts as slipping."""
+MIRRORED_FORCES = np.array([1.0, -1.0, -1.0])
+"""Signs of the forces half a period later."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,6 +121,151 @@ def traction_field(scene, velocity, amplitude=None, *, poisson=0.0, cells=None):
         for name, values in half.items()
     }
     return field | {"centre_lateral": -velocity}
+
+
+@dataclass(frozen=True, eq=False)
+class Period:
+    """A period of the state that repeats itself, on the whole disc; dimensionless.
+
+    phase: omega t, from turning point to turning point and back, shape (steps + 1,); forward,
+    lateral: rigid displacement in u_lim, angle: in u_lim / a, same shape; force_forward,
+    force_lateral: over mu F_z, torque: over its full-slip value, same shape.
+    forward_position, lateral_position: points, over a, shape (points,); bound: over mu F_z / a^2,
+    same shape.  traction_forward, traction_lateral: on the flat, in the direction of the motion
+    that they resist, over mu F_z / a^2, shape (steps + 1, points); slip_forward, slip_lateral: in
+    the step that ends at this phase (first row: in the last step), in u_lim, and slips: whether a
+    point slips when the step ends, same shape.  mu_macro: mean of force_forward; converged, reason:
+    whether this is the periodic state of this resolution, else why not.
+    """
+
+    phase: np.ndarray
+    forward: np.ndarray
+    lateral: np.ndarray
+    angle: np.ndarray
+    force_forward: np.ndarray
+    force_lateral: np.ndarray
+    torque: np.ndarray
+    forward_position: np.ndarray
+    lateral_position: np.ndarray
+    bound: np.ndarray
+    traction_forward: np.ndarray
+    traction_lateral: np.ndarray
+    slip_forward: np.ndarray
+    slip_lateral: np.ndarray
+    slips: np.ndarray
+    mu_macro: float
+    converged: bool
+    reason: str
+
+
+def period(
+    scene,
+    velocity,
+    amplitude,
+    *,
+    poisson=0.0,
+    cells=PERIOD_CELLS,
+    angles=ANGLES,
+    steps=PERIOD_STEPS,
+):
+    """Forces, tractions and slip over one period of the periodic state, at one resolution.
+
+    scene: one that oscillates; velocity > 0, amplitude > 0, poisson: as for ``microslip.solve``;
+    cells: rings; angles: points on half a ring; steps: in a period; both even numbers.  Returns a
+    Period.  Raises ValueError naming the argument for bad input.
+    """
+    kind, velocity, amplitude, poisson = checked_point(scene, velocity, amplitude, poisson)
+    if not kind.periodic:
+        raise ValueError(f"scene = {scene!r}: allowed is one that oscillates")
+    for name, value in (("velocity", velocity), ("amplitude", amplitude)):
+        if value <= 0.0:
+            raise ValueError(f"{name} = {value!r}: a period needs {name} > 0")
+    for name, count, least in (("cells", cells, 2), ("angles", angles, 2), ("steps", steps, 4)):
+        whole = isinstance(count, int | np.integer) and not isinstance(count, bool)
+        if not (whole and count >= least and count % 2 == 0):
+            raise ValueError(f"{name} = {count!r}: allowed is an even number of at least {least}")
+    motion = Motion(kind, velocity, amplitude, poisson)
+    resolution = Resolution(cells, angles, steps // 2)
+    run = simulate(kind, velocity, amplitude, poisson, "polar", resolution, PERIOD_TOLERANCE)
+    if run.state is None:
+        raise ValueError(f"velocity = {velocity!r}: {run.reason}")
+    contact = build_contact(motion, "polar", resolution)
+    path = motion.path(contact, steps // 2)
+    tractions, forces = _frames(contact, path, run.state)
+    slip = _slip(contact, path, tractions)
+    # the second half is the mirror image of the first
+    tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions[1:]]])
+    slip = np.concatenate([slip, [contact.mirrored(part) for part in slip]])
+    forces = np.concatenate([forces, forces[1:] * MIRRORED_FORCES])
+    phase = np.concatenate([path.phase, path.phase[1:] + np.pi])
+    slip_forward, slip_lateral = _whole_disc(contact, np.concatenate([slip[-1:], slip]))
+    forward, lateral = _whole_disc(contact, tractions)
+    forward_position, lateral_position, bound = _points(contact)
+    along = forward * slip_forward + lateral * slip_lateral > 0.0
+    return Period(
+        phase,
+        *(np.array(part) for part in motion.displacement(phase)),
+        forces[:, FORWARD],
+        forces[:, LATERAL],
+        forces[:, TORQUE] / hertz.TORQUE_FULL_SLIP,
+        forward_position,
+        lateral_position,
+        bound,
+        forward,
+        lateral,
+        slip_forward,
+        slip_lateral,
+        along & (np.hypot(forward, lateral) >= ON_BOUND * bound),
+        mu_macro=run.mu,
+        converged=run.converged,
+        reason=run.reason,
+    )
+
+
+def _frames(contact, path, state):
+    """Tractions at every phase of a path, (steps + 1, 2, M, N), and the forces, (steps + 1, 3)."""
+    tractions, forces = [state], []
+    for k in range(path.steps):
+        step = replace(
+            path,
+            phase=path.phase[k : k + 2],
+            positions=path.positions[k : k + 2],
+            stages=path.stages[k : k + 1],
+        )
+        march = contact.march(step, tractions[-1], STEP_TOLERANCE)
+        tractions.append(march.state)
+        forces += list(march.forces[1 if forces else 0 :])
+    return np.array(tractions), np.array(forces)
+
+
+def _slip(contact, path, tractions):
+    """Rigid motion in every step less what the material follows, (steps, 2, M, N)."""
+    elastic = np.array([contact.displacement(change) for change in np.diff(tractions, axis=0)])
+    forward, lateral, angle = np.diff(path.positions, axis=0).T[..., None, None]
+    rigid = (
+        forward + angle * contact.lateral_position,
+        lateral - angle * contact.forward_position,
+    )
+    return np.stack(rigid, axis=1) - elastic
+
+
+def _points(contact):
+    """Forward and lateral positions and bounds on the whole disc, (points,) each."""
+    forward, lateral = contact.forward_position, contact.lateral_position
+    other = lateral if contact.rotates else -lateral
+    bound = np.broadcast_to(contact.bound, forward.shape)
+    parts = (forward, -forward), (lateral, other), (bound, bound)
+    return [np.concatenate([half.ravel() for half in part]) for part in parts]
+
+
+def _whole_disc(contact, field):
+    """Forward and lateral parts of a field (n, 2, M, N) on the whole disc, (n, points) each: the
+    other half is the mirror image across the lateral axis, of a translation the same turned round.
+    """
+    flat = field.reshape(len(field), 2, -1)
+    other = flat * [[1.0], [-1.0]] if contact.rotates else flat
+    both = np.concatenate([flat, other], axis=2)
+    return both[:, 0], both[:, 1]
 
 
 def _contact(motion, model, cells):

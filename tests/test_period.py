@@ -1,0 +1,115 @@
+"""A period seen from inside: tractions, slip and forces have to fit together."""
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip import theory
+from microslip.hertz import TORQUE_FULL_SLIP
+
+POINTS = [
+    ("transverse", 0.1, 0.6, 0.0),
+    ("transverse", 0.1, 0.6, 0.3),
+    ("bore", 0.05, 0.7, 0.0),
+    ("bore", 0.02, 1.0, 0.3),
+    ("zigzag", 0.1, 1.0, 0.0),
+]
+
+
+@pytest.fixture(scope="module", params=POINTS, ids=str)
+def given(request):
+    scene, velocity, amplitude, poisson = request.param
+    return request.param, microslip.period(scene, velocity, amplitude, poisson=poisson)
+
+
+def test_the_mean_force_is_the_certified_one(given):
+    (scene, velocity, amplitude, poisson), found = given
+    answer = microslip.solve(scene, velocity, amplitude, poisson=poisson)
+    assert found.converged
+    mean = np.trapezoid(found.force_forward, found.phase) / (2 * np.pi)
+    assert mean == pytest.approx(answer.mu_macro, abs=2e-3)
+    assert mean == pytest.approx(found.mu_macro, abs=1e-5)
+
+
+def test_a_period_ends_where_it_began(given):
+    _, found = given
+    for name in ("traction_forward", "traction_lateral"):
+        rows = getattr(found, name)
+        assert np.abs(rows[-1] - rows[0]).max() < 1e-3 * found.bound.max()
+
+
+def test_every_point_slips_forward_as_far_as_the_sphere_moves(given):
+    _, found = given
+    travel = found.forward[-1] - found.forward[0]
+    assert found.slip_forward[1:].sum(axis=0) == pytest.approx(travel, rel=1e-3)
+
+
+def test_tractions_keep_to_the_bound_and_oppose_no_more_than_slip(given):
+    _, found = given
+    size = np.hypot(found.traction_forward, found.traction_lateral)
+    assert (size <= found.bound * (1 + 1e-9)).all()
+    slip = np.hypot(found.slip_forward, found.slip_lateral)
+    sliding = found.slips & (slip > 0.2 * slip.max())  # beyond rounding and the turns of a step
+    cosine = found.slip_forward * found.traction_forward
+    cosine += found.slip_lateral * found.traction_lateral
+    assert (cosine[sliding] > 0.9 * (slip * size)[sliding]).all()
+    assert slip[~found.slips].max() < 0.3 * slip.max()
+
+
+def test_the_work_of_the_forces_is_dissipated(given):
+    (scene, *_), found = given
+
+    def work(force, way):
+        return np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(way))
+
+    spent = work(found.force_forward, found.forward) + work(found.force_lateral, found.lateral)
+    spent += TORQUE_FULL_SLIP * work(found.torque, found.angle)
+    size = np.hypot(found.slip_forward, found.slip_lateral)
+    weight = _weights(found)
+    lost = np.sum((weight * found.bound) @ size[1:].T)
+    assert spent == pytest.approx(lost, rel=0.03), scene
+
+
+def _weights(found):
+    """Areas of the points: the same for all points of a ring; the bound integrates to 1 on it."""
+    radius = np.hypot(found.forward_position, found.lateral_position).round(9)
+    rings, index, count = np.unique(radius, return_inverse=True, return_counts=True)
+    edges = [0.0]
+    for r in rings:  # a ring's radius is the mean of its edges' squares, or near it
+        edges.append(np.sqrt(max(2 * r**2 - edges[-1] ** 2, r**2)))
+    area = np.pi * np.diff(np.square(edges))
+    area *= np.pi / area.sum()
+    return (area / count)[index]
+
+
+def test_the_contact_never_slides_fully_near_the_static_limit():
+    found = microslip.period("bore", 0.01, 1.0)
+    assert not found.slips.all(axis=1).any()
+    inside = theory.bore_stick_radius(1.0) * 0.5
+    core = np.hypot(found.forward_position, found.lateral_position) < inside
+    # the patches alternate: what slips on the right at one turn slips on the left at the other
+    right = core & (found.lateral_position > 0.3 * inside)
+    left = core & (found.lateral_position < -0.3 * inside)
+    lead = found.slips[:, right].mean(axis=1) - found.slips[:, left].mean(axis=1)
+    half = len(lead) // 2
+    assert lead[: half + 1] == pytest.approx(-lead[half:], abs=0.05)
+    assert lead.max() > 0.5
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        (("continuous-bore", 0.5, None), "scene = 'continuous-bore'"),
+        (("bore", 0.0, 1.0), "velocity = 0.0"),
+        (("bore", 0.1, 0.0), "amplitude = 0.0"),
+    ],
+)
+def test_what_has_no_period_is_refused(arguments, name):
+    with pytest.raises(ValueError, match=name):
+        microslip.period(*arguments)
+
+
+@pytest.mark.parametrize("name", ["cells", "angles", "steps"])
+def test_odd_counts_are_refused(name):
+    with pytest.raises(ValueError, match=f"{name} = 7"):
+        microslip.period("bore", 0.1, 1.0, **{name: 7})
