@@ -2,7 +2,7 @@
 
     python benchmarks/interpolation.py [--results FOLDER] [--points N] [--seed S] [--markdown FILE]
 
-Needs the maps of a run (results/transverse.nc, results/bore.nc).  Lines of each map are left out one
+Needs the maps of a run (transverse.nc, bore.nc).  Lines of each map are left out one
 by one, along both axes, ends excepted, and all their points asked for.  Then N random points on
 each map, and N/4 each beyond every side of it, are solved to 2e-4 and compared with what the map
 says.  An answer is covered if it misses by no more than its bound and the error of what it is
