@@ -58,7 +58,8 @@ class Pace:
 
 @dataclass(frozen=True, eq=False)
 class Lap:
-    """One march over the period from ``state`` to ``image``, its mirror image half a period later.
+    """One march over a lap from ``state`` to ``image``, where the next lap begins: the end of the
+    period, or the mirror image of its middle.
 
     change: image - state; residual: its size, as a force over mu F_z.
     """
@@ -74,11 +75,11 @@ class Cycle:
     """The map of a contact over a path, which counts the marches: Cycle(...)(state) -> Lap.
 
     path: half a period, from turning point to turning point, whose second half is its lateral
-    mirror image; pace: if the motion may be slow, see Pace.
+    mirror image, or without ``mirror`` a whole one; pace: if the motion may be slow, see Pace.
     """
 
-    def __init__(self, contact, path, pace=None):
-        self.contact, self.path, self.pace = contact, path, pace
+    def __init__(self, contact, path, pace=None, mirror=True):
+        self.contact, self.path, self.pace, self.mirror = contact, path, pace, mirror
         self.periods = self.iterations = self.solves = 0
         self._march = None
         self._share = np.diff(path.phase) / (path.phase[-1] - path.phase[0])  # of each step
@@ -94,11 +95,15 @@ class Cycle:
         self.periods += 1
         self.iterations += march.iterations
         self.solves += march.solves
-        image = self.contact.mirrored(march.state)
+        image = self.image(march.state)
         change = image - state
         if not np.isfinite(change).all():
             raise StepFailure("diverged: tractions are not finite")
         return Lap(state, image, change, energy_norm(self.contact, change), march)
+
+    def image(self, state):
+        """Where the next lap begins, for tractions at the end of one; linear."""
+        return self.contact.mirrored(state) if self.mirror else state
 
     def admissible(self, state):
         """The state projected on the friction bound, where the integrator keeps to it."""

@@ -8,7 +8,13 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from microslip.models import MODELS
-from microslip.path import SDIRK2, half_period_phases, make_path, turning_point_grading
+from microslip.path import (
+    SDIRK2,
+    half_period_phases,
+    make_path,
+    period_phases,
+    turning_point_grading,
+)
 from microslip.rings import Focus
 
 WEAKEST_FOCUS, STRONGEST_FOCUS, STATIC_FOCUS = 0.3, 1.0 - 2.0**-6, 0.9
@@ -53,13 +59,15 @@ class Motion:
         return turning_point_grading(self.creep, self.scene.stroke(self.amplitude, self.poisson))
 
     def path(self, contact, steps, integrator=SDIRK2):
-        """Half a period in steps that suit the motion, or the contact if it has a say in it."""
+        """A lap in steps that suit the motion, or the contact if it has a say in it: half a period,
+        where the second half is the mirror image of the first one, else the whole."""
         return _path(self, steps, getattr(contact, "grading", self.grading), integrator)
 
 
 @lru_cache(maxsize=32)
 def _path(motion, steps, grading, integrator):
-    return make_path(motion.displacement, half_period_phases(steps, grading), integrator)
+    phases = half_period_phases if motion.scene.half_period_mirror else period_phases
+    return make_path(motion.displacement, phases(steps, grading), integrator)
 
 
 def _focus_strength(creep):

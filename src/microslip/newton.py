@@ -66,7 +66,7 @@ class Corrector:
         self.cycle, self.inverse = cycle, inverse
         contact = cycle.contact
         self.damping, self.step = 0.0, np.inf
-        self._signs = contact.mirrored(np.ones_like(state)).reshape(-1, 1)  # points stay in place
+        self._signs = cycle.image(np.ones_like(state)).reshape(-1, 1)  # points stay in place
         self._metric = np.broadcast_to(contact.weight * contact.compliance, state.shape).ravel()
         self._system = None
 

@@ -115,5 +115,14 @@ def make_path(displacement, phase, integrator=SDIRK2):
 
 def half_period_phases(steps, grading=0.0):
     """Phases from one turning point (-pi/2) to the next, shape (steps + 1,), finer at both."""
-    t = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
+    return _graded(np.linspace(-np.pi / 2, np.pi / 2, steps + 1), grading)
+
+
+def period_phases(steps, grading=0.0):
+    """Phases of a whole period in twice as many steps, shape (2 steps + 1,), finer at the turning
+    points."""
+    return _graded(np.linspace(-np.pi / 2, 3 * np.pi / 2, 2 * steps + 1), grading)
+
+
+def _graded(t, grading):
     return t + 0.5 * grading * np.sin(2 * t)

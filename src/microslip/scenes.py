@@ -31,6 +31,7 @@ class Scene:
     rotates: the angle is not zero, so tractions depend on the angle around the contact, with mirror
     symmetry across the lateral axis; without it they have point symmetry.
     half_period_mirror: half a period later the motion is its own image under lateral -> -lateral.
+    Without it a whole period is marched.
     focus(velocity, amplitude): radius where the traction has its kink (None: nowhere special).
     """
 
@@ -45,9 +46,10 @@ class Scene:
     amplitude_label: str = ""
 
     def creep(self, velocity, amplitude, poisson):
-        """Forward displacement in one radian of phase, in u_lim."""
-        forward, _, _ = self.displacement(np.array([0.0, 1.0]), velocity, amplitude, poisson)
-        return float(forward[1] - forward[0])
+        """Mean forward displacement in one radian of phase, in u_lim."""
+        ends = np.array([0.0, 2.0 * np.pi])
+        forward, _, _ = self.displacement(ends, velocity, amplitude, poisson)
+        return float(forward[1] - forward[0]) / (2.0 * np.pi)
 
     def stroke(self, amplitude, poisson):
         """Half the way that the edge of the contact oscillates, in u_lim; 0 for steady scenes."""
@@ -60,6 +62,12 @@ class Scene:
 def _transverse(phase, velocity, amplitude, poisson):
     """Eq 1 with Eqs 2 and 4: forward v~ t, lateral y~ sin t."""
     return velocity * phase, amplitude * np.sin(phase), np.zeros_like(phase)
+
+
+def _longitudinal(phase, velocity, amplitude, poisson):
+    """The oscillation along the forward direction: forward v~ t + x~ sin t."""
+    forward = velocity * phase + amplitude * np.sin(phase)
+    return forward, np.zeros_like(phase), np.zeros_like(phase)
 
 
 def _zigzag(phase, velocity, amplitude, poisson):
@@ -116,6 +124,14 @@ ZIGZAG = replace(
     summary="forward sliding with a lateral oscillation at constant speed that turns abruptly",
     displacement=_zigzag,
 )
+LONGITUDINAL = replace(
+    TRANSVERSE,
+    name="longitudinal",
+    summary="forward sliding with an oscillation along the same direction",
+    displacement=_longitudinal,
+    half_period_mirror=False,
+    amplitude_label="x0 / u_lim",
+)
 BORE = Scene(
     name="bore",
     summary="forward sliding with an oscillating rotation about the contact normal",
@@ -138,7 +154,7 @@ CONTINUOUS_BORE = Scene(
     velocity_label="v0 / (omega a)",
 )
 
-SCENES = {scene.name: scene for scene in (TRANSVERSE, ZIGZAG, BORE, CONTINUOUS_BORE)}
+SCENES = {scene.name: scene for scene in (TRANSVERSE, LONGITUDINAL, ZIGZAG, BORE, CONTINUOUS_BORE)}
 
 
 def scene_named(name):

@@ -147,7 +147,8 @@ class _Search:
     def __init__(self, contact, motion, method, steps, tolerance, step_tolerance):
         self.contact, self.motion, self.method, self.steps = contact, motion, method, steps
         self.tolerance, self.step_tolerance = tolerance, step_tolerance
-        self.pace = Pace(0.0, UNIT_STIFFNESS * motion.creep * np.pi)
+        lap = np.pi if motion.scene.half_period_mirror else 2.0 * np.pi
+        self.pace = Pace(0.0, UNIT_STIFFNESS * motion.creep * lap)
         self.path = self._path(steps)
         self.done = []
 
@@ -205,7 +206,7 @@ class _Search:
 
     def _find(self, path, start, inverse, tolerance=None):
         looser = (tolerance or self.tolerance) / self.tolerance
-        cycle = Cycle(self.contact, path, self.pace)
+        cycle = Cycle(self.contact, path, self.pace, self.motion.scene.half_period_mirror)
         tolerances = looser * self.tolerance, looser * self.step_tolerance
         self.done.append(self.method.search(cycle, start, *tolerances, MAX_PERIODS, inverse))
         return self.done[-1]
@@ -214,7 +215,8 @@ class _Search:
         mean = self.path.mean(found.forces)
         solves = sum(one.solves for one in self.done)
         solved = found.solver_residual <= _solved_sum(self.path, self.step_tolerance)
-        periods = sum(one.periods for one in self.done)
+        halves = 1 if self.motion.scene.half_period_mirror else 2
+        periods = halves * sum(one.periods for one in self.done)
         reason = ""
         if not found.converged:
             reason = f"no periodic state within {periods} half periods: {found.distance:.1e} left"

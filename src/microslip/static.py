@@ -31,9 +31,9 @@ def oscillating_part(contact, oscillation, step_tolerance):
     """
     shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
     quarter = make_path(oscillation, np.linspace(0.0, np.pi / 2, STEPS // 2 + 1), EULER)
-    # by Masing's rule the first quarter from a stress-free start already ends on the closed loop
-    state = contact.march(quarter, np.zeros((2, *shape)), step_tolerance).state
-    return 0.5 * (contact.mirrored(state) - state)
+    # by Masing's rule the first quarter from a stress-free start already ends on the closed loop,
+    # and at the other turning point tractions are the same with the opposite sign
+    return -contact.march(quarter, np.zeros((2, *shape)), step_tolerance).state
 
 
 def residual_part(oscillating, bound):
