@@ -12,8 +12,10 @@ PACKAGE = Path(microslip.__file__).parent
 # From the ground up; modules on one line do not know each other.
 LAYERS = [
     {"hertz"},
-    {"theory", "bounds", "halfspace", "friction", "path"},
-    {"rings", "scenes", "any_pressure"},
+    {"theory", "masing", "bounds", "halfspace", "friction", "path"},
+    {"rings", "scene", "any_pressure", "parameters", "frames"},
+    {"elliptic"},
+    {"scenes"},
     {"models"},
     {"motion"},
     {"static", "cycle", "steady"},

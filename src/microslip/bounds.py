@@ -9,8 +9,9 @@ creep x period.  With F the force (|F| <= 1) and d = 1 - mu:
 - bore (forward v phi t, angle phi sin t): the same with the torque, whose forward tractions give
   at most phi d and whose lateral ones phi sqrt(d/5), 1/5 being the second moment of Hertz's
   pressure about a diameter.  Hence d <= 1 / (5 (v - 1)^2) for v > 1.
+- longitudinal (forward v t + x sin t): the sphere never turns back where v >= x, so d = 0.
 
-Both hold for any nu and any stiffness.  Arguments are the paper's dimensionless groups.
+All hold for any nu and any stiffness.  Arguments are the paper's dimensionless groups.
 """
 
 from __future__ import annotations
@@ -32,3 +33,8 @@ def largest_drop_bore(velocity, amplitude):
     if excess <= 0.0:
         return 1.0
     return min(1.0, 0.2 / (excess * excess))
+
+
+def largest_drop_longitudinal(velocity, amplitude):
+    """Upper bound of 1 - mu_macro (dimensionless) for velocity >= 0, amplitude >= 0: 0 or 1."""
+    return 0.0 if velocity >= amplitude else 1.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from microslip import bounds, theory
+from microslip import bounds, masing, theory
 from microslip.accuracy import Axis
 from microslip.method import SHIPPED
 from microslip.models import MODELS
@@ -23,17 +23,23 @@ SWEEPING_CENTRE = (0.1, 1.0)
 """Velocities of a bore at which the centre of rotation sweeps through the contact and stays in it
 for a good part of the period: the coarsest rings agree there, too, without having seen it."""
 TURNING_CAUTION = 2.0
-"""Error in time over the spread of the runs where the contact turns: the first step after a turning
-point, in which all points stick and slip again, errs to one side whatever its length."""
+"""Error in time over the spread of the runs where the contact turns or slides back: the first step
+after a turning point, in which all points stick and slip again, errs to one side whatever its
+length."""
 LONGEST_STROKE = 16.0
 """Stroke in u_lim beyond which more steps are left to the estimate of the error."""
 STATIC_LIMITS = {
     "transverse": theory.static_limit_transverse,  # nu = 0
     "zigzag": theory.static_limit_transverse,  # it knows the turning points alone
+    "longitudinal": theory.static_limit_longitudinal,
     "bore": theory.static_limit_bore,  # any nu: it only scales the angle
 }
 STEADY_STATES = {"continuous-bore": (theory.bore_forward, theory.bore_torque)}  # Eqs 21 and 22
+WHOLE_MOTIONS = {"longitudinal": masing.longitudinal}
+"""At nu = 0, whatever the velocity and the amplitude."""
+MASING_ROUNDING = 1e-9
 LARGEST_DROPS = {
+    "longitudinal": bounds.largest_drop_longitudinal,
     "transverse": bounds.largest_drop_transverse,
     "bore": bounds.largest_drop_bore,
 }
@@ -87,8 +93,8 @@ def closed_form(scene, velocity, amplitude, poisson, tolerance):
     """(mu, torque, error) where nothing has to be computed, else None.
 
     The steady state of a motion that does not oscillate, where every point slips along its rigid
-    velocity; the limit of vanishing velocity; and sliding so fast that the bracket of bounds.py is
-    within the tolerance.
+    velocity; the limit of vanishing velocity; motion along one line, nu = 0; and sliding so fast
+    that the bracket of bounds.py is within the tolerance.
     """
     if not scene.periodic:
         forward, torque = STEADY_STATES[scene.name]
@@ -98,6 +104,8 @@ def closed_form(scene, velocity, amplitude, poisson, tolerance):
         if known is None or (poisson > 0.0 and not scene.rotates):
             return None
         return float(known(amplitude)), None, ROUNDING
+    if scene.name in WHOLE_MOTIONS and poisson == 0.0:
+        return float(WHOLE_MOTIONS[scene.name](velocity, amplitude)), None, MASING_ROUNDING
     largest_drop = LARGEST_DROPS.get(scene.name)
     if largest_drop is not None:
         drop = largest_drop(velocity, amplitude)
@@ -153,8 +161,9 @@ def _steps(scene, amplitude, poisson, tolerance, imposed):
         return _imposed("steps", imposed // 2)
     # second order in time, and steps that stay short against u_lim where the stroke is long
     stroke = min(max(1.0, scene.stroke(amplitude, poisson)), LONGEST_STROKE)
-    levels = tuple(2 * round(0.5 * count * stroke**0.5) for count in STEPS)
+    levels = tuple(2 * round(0.5 * count * scene.cycles * stroke**0.5) for count in STEPS)
     wanted = BASE_STEPS * max(1.0, (1e-3 / tolerance) ** 0.5)
     base = next(k for k, count in enumerate(STEPS) if count >= wanted)
-    caution = TURNING_CAUTION if scene.rotates else 1.0
+    turns = scene.rotates or not scene.half_period_mirror
+    caution = TURNING_CAUTION if turns else 1.0
     return Axis("steps", levels, base, (base - 2, base - 1, base), caution=caution)

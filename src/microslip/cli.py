@@ -16,6 +16,11 @@ SCENES = {
         "displacement at which the whole contact slides",
         "y0 / u_lim: half stroke of the lateral oscillation over u_lim",
     ),
+    "longitudinal": (
+        "sliding forward while oscillating along the same direction",
+        "v0 / (omega u_lim): as for transverse",
+        "x0 / u_lim: half stroke of the oscillation over u_lim",
+    ),
     "zigzag": (
         "sliding forward while moving sideways at constant speed, with abrupt turns",
         "v0 / (omega u_lim): as for transverse",

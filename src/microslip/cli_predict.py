@@ -35,7 +35,7 @@ def add_parser(commands):
         "that.  All quantities take units.",
     )
     parser.add_argument(
-        "scene", metavar="SCENE", help="transverse, zigzag, bore or continuous-bore"
+        "scene", metavar="SCENE", help="transverse, longitudinal, zigzag, bore or continuous-bore"
     )
     for name, (metavar, text) in OPTIONS.items():
         parser.add_argument(f"--{name}", metavar=metavar, help=text, required=name in NEEDED)

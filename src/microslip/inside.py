@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from microslip import hertz
 from microslip.choice import choose_model
+from microslip.frames import frames
 from microslip.models.contact import FORWARD, LATERAL, TORQUE, forward_slip, full_slip
 from microslip.motion import Motion, Resolution, build_contact
 from microslip.path import make_path
@@ -191,13 +192,14 @@ def period(
         raise ValueError(f"velocity = {velocity!r}: {run.reason}")
     contact = build_contact(motion, "polar", resolution)
     path = motion.path(contact, steps // 2)
-    tractions, forces = _frames(contact, path, run.state)
+    tractions, forces = frames(contact, path, run.state, STEP_TOLERANCE)
     slip = _slip(contact, path, tractions)
-    # the second half is the mirror image of the first
-    tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions[1:]]])
-    slip = np.concatenate([slip, [contact.mirrored(part) for part in slip]])
-    forces = np.concatenate([forces, forces[1:] * MIRRORED_FORCES])
-    phase = np.concatenate([path.phase, path.phase[1:] + np.pi])
+    phase = path.phase
+    if kind.half_period_mirror:  # the second half is the mirror image of the first
+        tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions[1:]]])
+        slip = np.concatenate([slip, [contact.mirrored(part) for part in slip]])
+        forces = np.concatenate([forces, forces[1:] * MIRRORED_FORCES])
+        phase = np.concatenate([phase, phase[1:] + np.pi])
     slip_forward, slip_lateral = _whole_disc(contact, np.concatenate([slip[-1:], slip]))
     forward, lateral = _whole_disc(contact, tractions)
     forward_position, lateral_position, bound = _points(contact)
@@ -220,22 +222,6 @@ def period(
         converged=run.converged,
         reason=run.reason,
     )
-
-
-def _frames(contact, path, state):
-    """Tractions at every phase of a path, (steps + 1, 2, M, N), and the forces, (steps + 1, 3)."""
-    tractions, forces = [state], []
-    for k in range(path.steps):
-        step = replace(
-            path,
-            phase=path.phase[k : k + 2],
-            positions=path.positions[k : k + 2],
-            stages=path.stages[k : k + 1],
-        )
-        march = contact.march(step, tractions[-1], STEP_TOLERANCE)
-        tractions.append(march.state)
-        forces += list(march.forces[1 if forces else 0 :])
-    return np.array(tractions), np.array(forces)
 
 
 def _slip(contact, path, tractions):

@@ -8,13 +8,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from microslip.models import MODELS
-from microslip.path import (
-    SDIRK2,
-    half_period_phases,
-    make_path,
-    period_phases,
-    turning_point_grading,
-)
+from microslip.path import SDIRK2, make_path, phases_between, turning_point_grading
 from microslip.rings import Focus
 
 WEAKEST_FOCUS, STRONGEST_FOCUS, STATIC_FOCUS = 0.3, 1.0 - 2.0**-6, 0.9
@@ -66,8 +60,8 @@ class Motion:
 
 @lru_cache(maxsize=32)
 def _path(motion, steps, grading, integrator):
-    phases = half_period_phases if motion.scene.half_period_mirror else period_phases
-    return make_path(motion.displacement, phases(steps, grading), integrator)
+    turns = motion.scene.turns(motion.velocity, motion.amplitude)
+    return make_path(motion.displacement, phases_between(turns, steps, grading), integrator)
 
 
 def _focus_strength(creep):

@@ -14,6 +14,7 @@ theirs before the end of the step and extrapolate to it, bound or no bound.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -113,16 +114,21 @@ def make_path(displacement, phase, integrator=SDIRK2):
     return Path(phase, positions, stages, integrator.carry_matrix(), integrator.end)
 
 
+HALF_PERIOD = (-np.pi / 2, np.pi / 2)
+"""From one turning point of a sine to the next."""
+
+
 def half_period_phases(steps, grading=0.0):
     """Phases from one turning point (-pi/2) to the next, shape (steps + 1,), finer at both."""
-    return _graded(np.linspace(-np.pi / 2, np.pi / 2, steps + 1), grading)
+    return phases_between(HALF_PERIOD, steps, grading)
 
 
-def period_phases(steps, grading=0.0):
-    """Phases of a whole period in twice as many steps, shape (2 steps + 1,), finer at the turning
-    points."""
-    return _graded(np.linspace(-np.pi / 2, 3 * np.pi / 2, 2 * steps + 1), grading)
-
-
-def _graded(t, grading):
-    return t + 0.5 * grading * np.sin(2 * t)
+def phases_between(turns, steps, grading=0.0):
+    """Phases from the first turning point to the last, ``steps`` steps from each to the next, finer
+    at both; shape ((len(turns) - 1) steps + 1,)."""
+    t = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
+    t = t + 0.5 * grading * np.sin(2 * t)
+    parts = [np.array(turns[:1])]
+    for start, end in pairwise(turns):
+        parts.append((0.5 * (start + end) + (end - start) / np.pi * t)[1:])
+    return np.concatenate(parts)

@@ -180,6 +180,11 @@ def checked_point(scene, velocity, amplitude, poisson):
         amplitude = _number("amplitude", amplitude, 0.0, LARGEST["amplitude"])
     elif amplitude is not None:
         raise ValueError(f"amplitude = {amplitude}: {kind.name} has no amplitude")
+    if velocity == 0.0 and not kind.straight:
+        raise ValueError(
+            "velocity = 0.0: allowed is a number above 0: the static limit is known for motions to "
+            "and fro on a line"
+        )
     return kind, velocity, amplitude, poisson
 
 

@@ -1,62 +1,19 @@
 """What moves: the rigid in-plane motions of the counterbody and their dimensionless groups.
 
-Names do not depend on the paper's axes: *forward* is the direction of sliding, *lateral* the one
-across it, with forward x lateral such that a positive angle moves points on the positive lateral
-side forward.  Displacements are in u_lim, angles in u_lim / a, time is the phase omega t.
-
-A scene is one ``Scene`` record.  To add a motion write its displacement and say which symmetries
-it has; nothing else in the package names a scene.
+A scene is one ``Scene`` record (see scene.py for it and for the names of directions).  To add a
+motion write its displacement and say which symmetries it has; nothing else in the package names a
+scene, but for closed forms that hold for it alone (choice.py).  A family of motions gives a Scene
+for numbers, such as elliptic.py.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from microslip import hertz
-
-FOCUS_RANGE = (0.05, 0.9995)
-"""Radii that rings may gather at; a stick zone smaller than the first carries next to no load."""
-
-
-@dataclass(frozen=True)
-class Scene:
-    """One kind of motion.
-
-    displacement(phase, velocity, amplitude, poisson) -> (forward, lateral, angle), arrays of the
-    shape of ``phase``.
-    periodic: the motion oscillates with period 2 pi and needs an amplitude; otherwise it is steady.
-    rotates: the angle is not zero, so tractions depend on the angle around the contact, with mirror
-    symmetry across the lateral axis; without it they have point symmetry.
-    half_period_mirror: half a period later the motion is its own image under lateral -> -lateral.
-    Without it a whole period is marched.
-    focus(velocity, amplitude): radius where the traction has its kink (None: nowhere special).
-    """
-
-    name: str
-    summary: str
-    displacement: Callable
-    periodic: bool
-    rotates: bool
-    half_period_mirror: bool
-    focus: Callable
-    velocity_label: str
-    amplitude_label: str = ""
-
-    def creep(self, velocity, amplitude, poisson):
-        """Mean forward displacement in one radian of phase, in u_lim."""
-        ends = np.array([0.0, 2.0 * np.pi])
-        forward, _, _ = self.displacement(ends, velocity, amplitude, poisson)
-        return float(forward[1] - forward[0]) / (2.0 * np.pi)
-
-    def stroke(self, amplitude, poisson):
-        """Half the way that the edge of the contact oscillates, in u_lim; 0 for steady scenes."""
-        if not self.periodic:
-            return 0.0
-        ends = self.displacement(np.array([-0.5, 0.5]) * np.pi, 0.0, amplitude, poisson)
-        return 0.5 * max(float(abs(part[1] - part[0])) for part in ends)
+from microslip import elliptic, hertz, parameters
+from microslip.scene import Scene, within_rings
 
 
 def _transverse(phase, velocity, amplitude, poisson):
@@ -68,6 +25,12 @@ def _longitudinal(phase, velocity, amplitude, poisson):
     """The oscillation along the forward direction: forward v~ t + x~ sin t."""
     forward = velocity * phase + amplitude * np.sin(phase)
     return forward, np.zeros_like(phase), np.zeros_like(phase)
+
+
+def _longitudinal_turns(velocity, amplitude):
+    """Where the sphere turns back and forth, if it does: v~ + x~ cos t = 0."""
+    back = np.arccos(-velocity / amplitude) if velocity < amplitude else np.pi / 2
+    return -back, back, 2.0 * np.pi - back
 
 
 def _zigzag(phase, velocity, amplitude, poisson):
@@ -87,24 +50,19 @@ def _continuous_bore(phase, velocity, amplitude, poisson):
     return velocity * phase, np.zeros_like(phase), phase + 0.0
 
 
-def _within(radius):
-    """The radius, kept off the centre and the edge so that no ring degenerates."""
-    return float(np.clip(radius, *FOCUS_RANGE))
-
-
 def _transverse_focus(velocity, amplitude):
     """Mindlin's stick radius of the oscillation alone (Eq 8); nowhere once it slides fully."""
-    return _within(np.sqrt(1.0 - amplitude)) if amplitude < 1.0 else None
+    return within_rings(np.sqrt(1.0 - amplitude)) if amplitude < 1.0 else None
 
 
 def _bore_focus(velocity, amplitude):
     """Lubkin's stick radius of the oscillation alone (Eq 30)."""
-    return _within(hertz.lubkin_stick_radius(hertz.bore_angle(amplitude)))
+    return within_rings(hertz.lubkin_stick_radius(hertz.bore_angle(amplitude)))
 
 
 def _steady_focus(velocity, amplitude):
     """The instantaneous centre of rotation, while it lies inside the contact (Eq 14)."""
-    return _within(velocity) if velocity < 1.0 else None
+    return within_rings(velocity) if velocity < 1.0 else None
 
 
 TRANSVERSE = Scene(
@@ -130,6 +88,7 @@ LONGITUDINAL = replace(
     summary="forward sliding with an oscillation along the same direction",
     displacement=_longitudinal,
     half_period_mirror=False,
+    turns=_longitudinal_turns,
     amplitude_label="x0 / u_lim",
 )
 BORE = Scene(
@@ -155,11 +114,22 @@ CONTINUOUS_BORE = Scene(
 )
 
 SCENES = {scene.name: scene for scene in (TRANSVERSE, LONGITUDINAL, ZIGZAG, BORE, CONTINUOUS_BORE)}
+FAMILIES = {elliptic.NAME: (elliptic.DEFAULTS, elliptic.scene)}
+"""Name -> numbers with their defaults, and what makes a Scene of them."""
 
 
 def scene_named(name):
-    """The scene of this name; raises ValueError listing the known ones."""
-    try:
+    """The scene of this name, or of a family for the numbers that follow its name, such as
+    "elliptic:forward=0.5,phase=90".  Raises ValueError saying what is allowed."""
+    if isinstance(name, str) and name in SCENES:
         return SCENES[name]
-    except (KeyError, TypeError):
-        raise ValueError(f"scene = {name!r}: allowed is one of {', '.join(SCENES)}") from None
+    if not isinstance(name, str):
+        raise ValueError(f"scene = {name!r}: allowed is one of {', '.join([*SCENES, *FAMILIES])}")
+    family, numbers = parameters.split(name, "scene", [*SCENES, *FAMILIES])
+    defaults, build = FAMILIES.get(family, ({}, None))
+    problem = parameters.unknown(name, "scene", numbers, list(defaults))
+    if problem:
+        raise ValueError(problem)
+    given = {key: value for key, value in sorted(numbers.items()) if value != defaults[key]}
+    words = ",".join(f"{key}={value:.12g}" for key, value in given.items())
+    return build(f"{family}:{words}" if words else family, **(defaults | given))

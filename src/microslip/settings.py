@@ -20,6 +20,7 @@ MODELS_OF_SCENE = {
     "transverse": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
     "bore": ("auto", "rigid", "polar", "cartesian"),
     "continuous-bore": ("auto", "rigid", "polar", "cartesian"),
+    "longitudinal": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
     "zigzag": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
 }
 

@@ -182,7 +182,7 @@ class _Search:
     def _start_near_the_limit(self, slipping):
         """The static limit with all points pushed forward; also takes note of its force."""
         contact, creep = self.contact, self.motion.creep
-        if not contact.sticks:
+        if not (contact.sticks and self.motion.scene.straight):
             return slipping
         residual, oscillating = static_state(contact, self.motion.oscillation, self.step_tolerance)
         force = float(forces(contact, residual)[FORWARD])

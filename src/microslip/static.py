@@ -8,7 +8,8 @@ its traction.  Creep so slow does not change q_osc, and the flow rule makes R th
     maximise  R . e_forward   subject to   |R + q_osc| <= g  and  |R - q_osc| <= g   at every point,
 
 a ratcheting counterpart of Melan's shakedown theorem.  In between the turning points q_osc runs
-along the segment that joins them, so these two instants are the only ones that count.
+along the segment that joins them, so these two instants are the only ones that count.  Motions on
+a loop are left out: what their slipping ring carries depends on the creep, however slow.
 """
 
 from __future__ import annotations

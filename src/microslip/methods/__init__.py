@@ -12,12 +12,12 @@ Listing and checking names imports no solver.
 from __future__ import annotations
 
 import ast
-import difflib
-import math
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
+
+from microslip import parameters
 
 SHIPPED = "shipped"
 
@@ -31,23 +31,7 @@ def names():
 
 def split(text):
     """Name and numbers (dict) of a method; raises ValueError if the text cannot be read."""
-    name, colon, rest = text.partition(":")
-    if name not in names():
-        near = difflib.get_close_matches(name, names(), n=1)
-        hint = f"did you mean {near[0]}? " if near else ""
-        raise ValueError(f"method = {name!r}: {hint}allowed is one of {', '.join(names())}")
-    numbers = {}
-    for part in rest.split(",") if colon else ():
-        key, equals, value = (word.strip() for word in part.partition("="))
-        if key in numbers:
-            raise ValueError(f"method = {text!r}: {key} occurs twice; allowed: each number once")
-        try:
-            numbers[key] = float(value)
-        except ValueError:
-            numbers[key] = math.nan
-        if not (key and equals and math.isfinite(numbers[key])):
-            raise ValueError(f"method = {text!r}: allowed are numbers as in {name}:key=0.5")
-    return name, numbers
+    return parameters.split(text, "method", names())
 
 
 def refusal(text):
@@ -56,11 +40,7 @@ def refusal(text):
         name, numbers = split(text)
     except ValueError as error:
         return str(error)
-    unknown = sorted(numbers.keys() - set(_parameters(name)))
-    if unknown:
-        known = ", ".join(_parameters(name)) or "none"
-        return f"method = {text!r}: unknown number {unknown[0]}; allowed: {known}"
-    return ""
+    return parameters.unknown(text, "method", numbers, _parameters(name))
 
 
 def missing(text):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from .. import hertz
 
-UNIT_OF_AMPLITUDE = {"transverse": "m", "zigzag": "m", "bore": "rad"}
+UNIT_OF_AMPLITUDE = {"transverse": "m", "longitudinal": "m", "zigzag": "m", "bore": "rad"}
 """Scenes that oscillate, and the SI unit of what they oscillate in."""
 SCENES = (*UNIT_OF_AMPLITUDE, "continuous-bore")
 

@@ -87,10 +87,10 @@ def predict(
     """Friction of a sphere on a flat (or on a second sphere) under vibration.
 
     Quantities are texts with units ("5 mm"), pint quantities, or numbers in SI units.
-    scene: "transverse", "zigzag", "bore" or "continuous-bore"; young, nu: of the body, or material:
-    a name in materials.MATERIALS; counterbody: "rigid", such a name, or "E, nu" as in
-    "70 GPa, 0.22"; radius: of the sphere; counter_radius: of the counterbody, negative if hollow,
-    None if flat; load, mu: normal force and coefficient of friction; speed: of forward sliding;
+    scene: "transverse", "longitudinal", "zigzag", "bore" or "continuous-bore"; young, nu: of the
+    body, or material: a name in materials.MATERIALS; counterbody: "rigid", such a name, or "E, nu"
+    as in "70 GPa, 0.22"; radius: of the sphere; counter_radius: of the counterbody, negative if
+    hollow, None if flat; load, mu: normal force and coefficient of friction; speed: of sliding;
     amplitude: half stroke of the oscillation, a length or an angle; frequency: its frequency, not
     angular; rotation: angular speed of a continuous bore; reduction: instead of the amplitude, the
     share of friction to be taken away, in 0..1: the amplitude that does it is looked for; hardness,

@@ -49,7 +49,7 @@ which power of the steps it falls. That is below what the discretisation leaves 
 (rings at nu = 0: from 1e-4 to 1e-6), so that it takes part in no comparison."""
 
 
-TRANSLATIONS = ("transverse", "zigzag")
+TRANSLATIONS = ("transverse", "longitudinal", "zigzag")
 """Scenes without rotation."""
 
 

@@ -1,0 +1,72 @@
+"""Oscillation along two directions at once: lines, ellipses, figures of more cycles (Lissajous).
+
+    elliptic:forward=F,lateral=L,phase=P,forward_cycles=M,lateral_cycles=N
+
+moves by forward v~ t + A F sin(M t + P), lateral A L sin(N t): P in degrees, A the amplitude, in
+u_lim.  The defaults are a circle; F = 0 is the transverse scene, L = 0 the longitudinal one.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.path import HALF_PERIOD
+from microslip.scene import Scene, within_rings
+
+NAME = "elliptic"
+DEFAULTS = {
+    "forward": 1.0,
+    "lateral": 1.0,
+    "phase": 90.0,
+    "forward_cycles": 1.0,
+    "lateral_cycles": 1.0,
+}
+MOST_CYCLES = 20
+WHOLE_PERIOD = (*HALF_PERIOD, 1.5 * np.pi)
+_LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
+
+
+def scene(name, forward, lateral, phase, forward_cycles, lateral_cycles):
+    """The Scene of these numbers; raises ValueError for shares below 0, none at all, and cycles
+    that are no whole numbers."""
+    for key, share in (("forward", forward), ("lateral", lateral)):
+        if not 0.0 <= share <= 1.0:
+            raise ValueError(f"scene = {name!r}: {key} = {share:g}: allowed is a share in 0..1")
+    if max(forward, lateral) == 0.0:
+        raise ValueError(f"scene = {name!r}: allowed is forward or lateral above 0")
+    for key, count in (("forward_cycles", forward_cycles), ("lateral_cycles", lateral_cycles)):
+        if count != round(count) or not 1 <= count <= MOST_CYCLES:
+            raise ValueError(
+                f"scene = {name!r}: {key} = {count:g}: allowed is a whole number from 1 to "
+                f"{MOST_CYCLES}"
+            )
+    lead = np.deg2rad(phase % 360.0)
+
+    def displacement(phase, velocity, amplitude, poisson):
+        along = velocity * phase + amplitude * forward * np.sin(forward_cycles * phase + lead)
+        across = amplitude * lateral * np.sin(lateral_cycles * phase)
+        return along, across, np.zeros_like(phase)
+
+    ahead, aside, _ = displacement(_LOOP, 0.0, 1.0, 0.0)
+    reach = float(np.hypot(ahead, aside).max())
+    mirrored = lateral_cycles % 2 == 1 and (forward == 0.0 or forward_cycles % 2 == 0)
+    simple = forward_cycles == lateral_cycles == 1.0
+    return Scene(
+        name=name,
+        summary="forward sliding with an oscillation in two directions of the plane",
+        displacement=displacement,
+        periodic=True,
+        rotates=False,
+        half_period_mirror=mirrored,
+        focus=lambda velocity, amplitude: _focus(amplitude * reach),
+        velocity_label="v0 / (omega u_lim)",
+        amplitude_label="largest amplitude / u_lim, times forward and lateral",
+        turns=lambda velocity, amplitude: HALF_PERIOD if mirrored else WHOLE_PERIOD,
+        straight=simple and (forward == 0.0 or lead % np.pi == 0.0),
+        cycles=int(max(forward_cycles if forward else 1.0, lateral_cycles if lateral else 1.0)),
+    )
+
+
+def _focus(reach):
+    """Where the contact would stick if it went as far on a line (Eq 8)."""
+    return within_rings(np.sqrt(1.0 - reach)) if reach < 1.0 else None

@@ -1,0 +1,26 @@
+"""A march seen step by step: the tractions at every phase of a path."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+
+def frames(contact, path, state, tolerance):
+    """Tractions at every phase of a path, (steps + 1, 2, ...), and the forces, (steps + 1, 3).
+
+    contact: models.contact.Contact; state: tractions at the first phase; tolerance: of the steps.
+    """
+    tractions, forces = [state], []
+    for k in range(path.steps):
+        step = replace(
+            path,
+            phase=path.phase[k : k + 2],
+            positions=path.positions[k : k + 2],
+            stages=path.stages[k : k + 1],
+        )
+        march = contact.march(step, tractions[-1], tolerance)
+        tractions.append(march.state)
+        forces += list(march.forces[1 if forces else 0 :])
+    return np.array(tractions), np.array(forces)

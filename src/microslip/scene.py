@@ -1,0 +1,68 @@
+"""The record of a motion: where it goes, which symmetries it has.
+
+Names do not depend on the paper's axes: *forward* is the direction of sliding, *lateral* the one
+across it, with forward x lateral such that a positive angle moves points on the positive lateral
+side forward.  Displacements are in u_lim, angles in u_lim / a, time is the phase omega t.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from microslip.path import HALF_PERIOD
+
+FOCUS_RANGE = (0.05, 0.9995)
+"""Radii that rings may gather at; a stick zone smaller than the first carries next to no load."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One kind of motion.
+
+    displacement(phase, velocity, amplitude, poisson) -> (forward, lateral, angle), arrays of the
+    shape of ``phase``.
+    periodic: the motion oscillates with period 2 pi and needs an amplitude; otherwise it is steady.
+    rotates: the angle is not zero, so tractions depend on the angle around the contact, with mirror
+    symmetry across the lateral axis; without it they have point symmetry.
+    half_period_mirror: half a period later the motion is its own image under lateral -> -lateral.
+    Without it a whole period is marched.
+    straight: the oscillation alone goes to and fro on a line, from the phase -pi/2 to pi/2.
+    cycles: of the oscillation in a period, along the direction that has more.
+    turns(velocity, amplitude): phases at which the motion turns, from where a lap begins to where
+    it ends, half a period later or a whole one.
+    focus(velocity, amplitude): radius where the traction has its kink (None: nowhere special).
+    """
+
+    name: str
+    summary: str
+    displacement: Callable
+    periodic: bool
+    rotates: bool
+    half_period_mirror: bool
+    focus: Callable
+    velocity_label: str
+    amplitude_label: str = ""
+    turns: Callable = lambda velocity, amplitude: HALF_PERIOD
+    straight: bool = True
+    cycles: int = 1
+
+    def creep(self, velocity, amplitude, poisson):
+        """Mean forward displacement in one radian of phase, in u_lim."""
+        ends = np.array([0.0, 2.0 * np.pi])
+        forward, _, _ = self.displacement(ends, velocity, amplitude, poisson)
+        return float(forward[1] - forward[0]) / (2.0 * np.pi)
+
+    def stroke(self, amplitude, poisson):
+        """Half the way that the edge of the contact oscillates, in u_lim; 0 for steady scenes."""
+        if not self.periodic:
+            return 0.0
+        ends = self.displacement(np.array([-0.5, 0.5]) * np.pi, 0.0, amplitude, poisson)
+        return 0.5 * max(float(abs(part[1] - part[0])) for part in ends)
+
+
+def within_rings(radius):
+    """The radius, kept off the centre and the edge so that no ring degenerates."""
+    return float(np.clip(radius, *FOCUS_RANGE))

@@ -1,0 +1,102 @@
+"""Oscillation along two directions: special cases, other models, limits."""
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip.masing import longitudinal
+from microslip.scenes import scene_named
+
+CIRCLE = "elliptic"
+
+
+def mean_of_rigid(velocity, forward, lateral, lead):
+    """A block that always slips: mean of the forward part of the direction of its velocity."""
+    t = np.linspace(0, 2 * np.pi, 20001)[:-1]
+    ahead = velocity + forward * np.cos(t + lead)
+    return np.mean(ahead / np.hypot(ahead, lateral * np.cos(t)))
+
+
+def test_without_a_forward_part_it_is_the_transverse_scene():
+    one = microslip.solve("elliptic:forward=0", 0.1, 0.7)
+    other = microslip.solve("transverse", 0.1, 0.7)
+    assert one.mu_macro == other.mu_macro
+    assert microslip.solve("elliptic:forward=0", 0.0, 0.7, model="radial").converged
+
+
+@pytest.mark.parametrize("phase", [0, 90])
+def test_without_a_lateral_part_it_is_the_longitudinal_one(phase):
+    answer = microslip.solve(f"elliptic:lateral=0,phase={phase}", 0.1, 0.7)
+    assert answer.converged
+    assert abs(answer.mu_macro - longitudinal(0.1, 0.7)) <= answer.mu_macro_error
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [CIRCLE, "elliptic:phase=0", "elliptic:forward=0.5,phase=30", "elliptic:forward_cycles=2"],
+)
+def test_rings_and_squares_agree(scene):
+    rings = microslip.solve(scene, 0.1, 0.5)
+    squares = microslip.solve(scene, 0.1, 0.5, model="cartesian", cells=24, steps=96)
+    assert rings.converged
+    assert abs(rings.mu_macro - squares.mu_macro) <= rings.mu_macro_error + squares.mu_macro_error
+
+
+@pytest.mark.parametrize(("velocity", "amplitude"), [(0.05, 0.4), (0.5, 2.0), (0.01, 0.8)])
+def test_certificates_hold_against_finer_runs(velocity, amplitude):
+    answer = microslip.solve(CIRCLE, velocity, amplitude)
+    finer = microslip.solve(CIRCLE, velocity, amplitude, tolerance=1e-4)
+    assert answer.converged and finer.converged
+    assert abs(answer.mu_macro - finer.mu_macro) <= answer.mu_macro_error + finer.mu_macro_error
+
+
+@pytest.mark.parametrize(("forward", "phase"), [(1.0, 90), (0.5, 45), (1.0, 0)])
+def test_a_large_ellipse_is_that_of_a_rigid_block(forward, phase):
+    scene = f"elliptic:forward={forward},phase={phase}"
+    exact = mean_of_rigid(0.3, forward, 1.0, np.deg2rad(phase))
+    answer = microslip.solve(scene, 0.3 * 200, 200.0)
+    assert answer.mu_macro == pytest.approx(exact, abs=0.01)
+    rigid = microslip.solve(scene, 0.3 * 200, 200.0, model="rigid")
+    assert rigid.mu_macro == pytest.approx(exact, abs=1e-3)
+
+
+def test_a_path_and_its_mirror_image_have_the_same_friction():
+    one, other = (
+        microslip.solve(f"elliptic:phase={phase}", 0.1, 0.6, tolerance=3e-4) for phase in (60, 240)
+    )
+    assert abs(one.mu_macro - other.mu_macro) <= one.mu_macro_error + other.mu_macro_error
+
+
+def test_names_are_canonical():
+    assert scene_named("elliptic:phase=90,forward=1").name == "elliptic"
+    assert scene_named("elliptic:phase=30.0,forward=0.50").name == "elliptic:forward=0.5,phase=30"
+    assert microslip.solve("elliptic:phase=30.0", 0.5, 0.5).scene == "elliptic:phase=30"
+
+
+@pytest.mark.parametrize(
+    ("scene", "message"),
+    [
+        ("eliptic", "scene = 'eliptic': did you mean elliptic"),
+        ("elliptic:width=2", "unknown number width; allowed: forward, lateral, phase"),
+        ("elliptic:forward=2", "forward = 2: allowed is a share"),
+        ("elliptic:forward=0,lateral=0", "allowed is forward or lateral above 0"),
+        ("elliptic:forward_cycles=1.5", "forward_cycles = 1.5: allowed is a whole number"),
+        ("elliptic:phase", "allowed are numbers as in elliptic:key=0.5"),
+        ("transverse:phase=3", "unknown number phase; allowed: none"),
+        (None, "scene = None"),
+    ],
+)
+def test_what_names_no_motion_is_refused(scene, message):
+    with pytest.raises(ValueError, match=message):
+        microslip.solve(scene, 0.1, 1.0)
+
+
+def test_the_static_limit_of_a_loop_is_refused():
+    with pytest.raises(ValueError, match="velocity = 0.0: .* on a line"):
+        microslip.solve(CIRCLE, 0.0, 0.5)
+
+
+def test_every_point_of_a_circle_slips_as_far_as_the_sphere():
+    found = microslip.period(CIRCLE, 0.1, 0.6)
+    assert found.slip_forward[1:].sum(axis=0) == pytest.approx(0.2 * np.pi, rel=2e-3)
+    assert found.slip_lateral[1:].sum(axis=0) == pytest.approx(0.0, abs=2e-3)
