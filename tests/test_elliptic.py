@@ -1,9 +1,12 @@
 """Oscillation along two directions: special cases, other models, limits."""
 
+import json
+
 import numpy as np
 import pytest
 
 import microslip
+from microslip import cli
 from microslip.masing import longitudinal
 from microslip.scenes import scene_named
 
@@ -89,6 +92,25 @@ def test_names_are_canonical():
 def test_what_names_no_motion_is_refused(scene, message):
     with pytest.raises(ValueError, match=message):
         microslip.solve(scene, 0.1, 1.0)
+
+
+def test_the_command_line_takes_a_path(capsys):
+    words = [
+        "point",
+        "elliptic",
+        "--path",
+        "forward=0.5,phase=30",
+        "--velocity",
+        "0.5",
+        "--amplitude",
+        "0.5",
+    ]
+    assert cli.main([*words, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["scene"] == "elliptic:forward=0.5,phase=30"
+    words[3] = "width=3"
+    assert cli.main(words) == 2
+    assert capsys.readouterr().err.startswith("microslip point elliptic: --path = 'elliptic:width")
 
 
 def test_the_static_limit_of_a_loop_is_refused():

@@ -21,6 +21,11 @@ SCENES = {
         "v0 / (omega u_lim): as for transverse",
         "x0 / u_lim: half stroke of the oscillation over u_lim",
     ),
+    "elliptic": (
+        "sliding forward while oscillating along two directions",
+        "v0 / (omega u_lim): as for transverse",
+        "amplitude / u_lim, of which --path gives each direction a share",
+    ),
     "zigzag": (
         "sliding forward while moving sideways at constant speed, with abrupt turns",
         "v0 / (omega u_lim): as for transverse",
@@ -120,6 +125,13 @@ def build_parser():
             scene.add_argument(
                 "--amplitude", type=_real, required=True, metavar="A", help=amplitude
             )
+        if name == "elliptic":
+            scene.add_argument(
+                "--path",
+                metavar="NUMBERS",
+                help="such as forward=0.5,phase=30: shares forward and lateral (1), phase of the "
+                "forward part in degrees (90), forward_cycles and lateral_cycles (1)",
+            )
         _add_options(scene)
     cli_predict.add_parser(commands)
     return parser
@@ -182,7 +194,8 @@ def main(arguments=None):
         result = _answer(options, progress)
     except (ValueError, CacheError) as error:
         named = "--" if isinstance(error, ValueError) else "--results: "
-        _complain(f"microslip point {options.scene}: {named}{error}")
+        problem = str(error).replace("scene = ", "path = ", 1)  # the scene itself is known
+        _complain(f"microslip point {options.scene}: {named}{problem}")
         return 2
     finally:
         progress.close()
@@ -197,7 +210,9 @@ def _answer(options, progress):
     """What the options ask for; raises ValueError and CacheError as microslip.solve_stored."""
     from microslip import solve, solve_stored
 
-    place = (options.scene, options.velocity, getattr(options, "amplitude", None))
+    path = getattr(options, "path", None)
+    scene = f"{options.scene}:{path}" if path else options.scene
+    place = (scene, options.velocity, getattr(options, "amplitude", None))
     names = ("poisson", "model", "tolerance", "cells", "steps")
     settings = {name: getattr(options, name) for name in names}
     if options.results is None:

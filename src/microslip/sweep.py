@@ -96,7 +96,8 @@ def batches(requests, size, digest):
 
 def group(request):
     """Name the subfolder of the store that a request's result goes to."""
-    return "/".join([FOLDERS[request["kind"]], request.get("scene", request.get("model"))])
+    scene = request.get("scene", request.get("model"))
+    return "/".join([FOLDERS[request["kind"]], scene.partition(":")[0]])  # numbers apart
 
 
 def answer(request, store):
