@@ -95,16 +95,8 @@ def test_what_names_no_motion_is_refused(scene, message):
 
 
 def test_the_command_line_takes_a_path(capsys):
-    words = [
-        "point",
-        "elliptic",
-        "--path",
-        "forward=0.5,phase=30",
-        "--velocity",
-        "0.5",
-        "--amplitude",
-        "0.5",
-    ]
+    place = ["--velocity", "0.5", "--amplitude", "0.5"]
+    words = ["point", "elliptic", "--path", "forward=0.5,phase=30", *place]
     assert cli.main([*words, "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["scene"] == "elliptic:forward=0.5,phase=30"
