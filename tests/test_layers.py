@@ -27,7 +27,7 @@ LAYERS = [
     {"point"},
     {"inside", "trial"},
     {"keys", "schemas", "settings"},
-    {"cache", "config"},
+    {"cache", "config", "periods"},
     {"answers", "jobs", "watch", "limits", "columns", "summary"},
     {"sweep", "dataset"},
     {"stored", "si"},
