@@ -6,6 +6,7 @@ decimals, and which points slip is exact.
 """
 
 import base64
+import math
 
 import numpy as np
 
@@ -53,11 +54,8 @@ def unpacked(result):
     """
     angles, radius = result["angles"], np.array(result["radius"])
     found = {name: np.array(result[name]) for name in HISTORIES}
-    frames = (len(found["phase"]) + 1) // 2
-    shape = (frames, 2, angles, len(radius))
-    shares = values_of(result["tractions"], np.int8).reshape(shape) / SHARES
-    bits = np.unpackbits(values_of(result["slips"], np.uint8), count=frames * angles * len(radius))
-    slips = bits.astype(bool).reshape(frames, angles, len(radius))
+    steps, slips = unpacked_half(result)
+    shares = steps / SHARES
     # half a period later: theta to pi - theta, lateral tractions negated
     shares = np.concatenate([shares, shares[1:, :, ::-1] * np.array([[[1]], [[-1]]])])
     slips = np.concatenate([slips, slips[1:, ::-1]])
@@ -77,6 +75,18 @@ def unpacked(result):
         flat = [half.reshape(*half.shape[:-2], -1) for half in halves]
         found[name] = np.concatenate(flat, axis=-1)
     return found | {name: result[name] for name in ("mu_macro", "converged", "reason")}
+
+
+def unpacked_half(result):
+    """Tractions in steps of bound/127, int8, and slips, bool, as kept: half the disc, half a period.
+
+    Shapes (steps/2 + 1, 2, angles, cells), forward and lateral, and (steps/2 + 1, angles, cells).
+    """
+    frames = (len(result["phase"]) + 1) // 2
+    shape = frames, result["angles"], len(result["radius"])
+    shares = values_of(result["tractions"], np.int8).reshape(frames, 2, *shape[1:])
+    bits = np.unpackbits(values_of(result["slips"], np.uint8), count=math.prod(shape))
+    return shares, bits.astype(bool).reshape(shape)
 
 
 def text_of(values):

@@ -1,0 +1,45 @@
+"""Which periods the page needs: one for every point of the maps that moves and oscillates."""
+
+from ..keys import number
+
+MAPS = ("transverse", "bore")
+CELLS, ANGLES, STEPS = 10, 12, 32
+"""Rings, points on half a ring and steps in a period: what a drawing of some 300 pixels can show."""
+MOST_PERIODS = 1250
+"""Periods on a page; one takes some 6 kB of it, and all of it is to stay well below 15 MB."""
+
+
+def maps_of(configuration):
+    """Names of the sweeps that the page shows as maps, a list."""
+    return [
+        name
+        for name in MAPS
+        if name in configuration.sweeps and configuration.sweeps[name].spans_a_map
+    ]
+
+
+def period_requests(configuration, name):
+    """List the requests for periods of the points of a map, amplitude by amplitude.
+
+    Where there are more points than a page can hold, every second, third, ... of both axes has
+    one. Of several Poisson's ratios it is the smallest, as in the figures.
+    """
+    sweep = configuration.sweeps[name]
+    most = MOST_PERIODS // len(maps_of(configuration))
+    axes = [[value for value in axis if value > 0] for axis in (sweep.amplitude, sweep.velocity)]
+    every = 1
+    while len(axes[0][::every]) * len(axes[1][::every]) > most:
+        every += 1
+    common = {
+        "kind": "period",
+        "scene": sweep.scene,
+        "poisson": number(sweep.poisson[0]),
+        "cells": CELLS,
+        "angles": ANGLES,
+        "steps": STEPS,
+    }
+    return [
+        common | {"amplitude": number(amplitude), "velocity": number(velocity)}
+        for amplitude in axes[0][::every]
+        for velocity in axes[1][::every]
+    ]
