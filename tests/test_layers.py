@@ -33,6 +33,7 @@ LAYERS = [
     {"stored", "si"},
     {"studies"},
     {"plot", "launch"},
+    {"explorer"},
     {"cli_predict"},
     {"cli"},
 ]

@@ -29,6 +29,7 @@ NOT_SOLVER |= {
     "summary",
     "studies",
     "plot",
+    "explorer",
     "si",
 }
 # The command that starts the workflow, and the copy of the workflow in an installed package.

@@ -78,7 +78,7 @@ def unpacked(result):
 
 
 def unpacked_half(result):
-    """Tractions in steps of bound/127, int8, and slips, bool, as kept: half the disc, half a period.
+    """Tractions in steps of bound/127 (int8) and slips (bool) as kept: half the disc and period.
 
     Shapes (steps/2 + 1, 2, angles, cells), forward and lateral, and (steps/2 + 1, angles, cells).
     """

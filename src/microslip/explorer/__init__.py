@@ -44,5 +44,7 @@ def report(periods):
         bad = [record for record in records if not record["result"]["converged"]]
         yield f"explorer: {name}: {len(records)} periods, {len(bad) or 'none'} not converged"
         for record in bad:
-            where = ", ".join(f"{dim} {record['request'][dim]}" for dim in ("amplitude", "velocity"))
+            where = ", ".join(
+                f"{dim} {record['request'][dim]}" for dim in ("amplitude", "velocity")
+            )
             yield f"  not converged: {where}: {record['result']['reason']}"

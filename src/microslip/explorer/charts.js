@@ -66,6 +66,18 @@ function drawMap(element, map) {
   const bad = map.amplitude.flatMap((amplitude, i) =>
     columns.filter((j) => !map.points.converged[i][j]).map((j) => [map.velocity[j], amplitude])
   );
+  // Lines are white on dark colours and black on pale ones.
+  const levels = (start, end, color) => ({
+    type: "contour",
+    x: velocity,
+    y: map.amplitude,
+    z: mu,
+    contours: { coloring: "none", start, end, size: 0.1, showlabels: true, labelfont: { size: 10, color } },
+    line: { color, width: 1 },
+    showscale: false,
+    showlegend: false,
+    hoverinfo: "skip",
+  });
   const traces = [
     {
       type: "heatmap",
@@ -79,17 +91,8 @@ function drawMap(element, map) {
       zmax: 1,
       colorbar: { title: { text: MU, side: "right" }, thickness: 12, outlinewidth: 0.5, len: 1, y: 0.5 },
     },
-    {
-      type: "contour",
-      x: velocity,
-      y: map.amplitude,
-      z: mu,
-      contours: { coloring: "none", start: 0.1, end: 0.9, size: 0.1, showlabels: true,
-        labelfont: { size: 10, color: "#fff" } },
-      line: { color: "#fff", width: 1 },
-      showscale: false,
-      hoverinfo: "skip",
-    },
+    levels(0.1, 0.5, "#fff"),
+    levels(0.6, 0.9, INK),
     {
       type: "scatter",
       name: `not converged (${bad.length} of ${velocity.length * map.amplitude.length})`,
@@ -129,7 +132,7 @@ function markMap(element, map, row, column) {
   const up = { type: "line", yref: "paper", y0: 0, y1: 1, x0: velocity, x1: velocity, line };
   const seen = velocity > 0;
   Plotly.update(element, { x: [seen ? [velocity] : []], y: [seen ? [amplitude] : []] },
-    { shapes: seen ? [across, up] : [across] }, [3]);
+    { shapes: seen ? [across, up] : [across] }, [4]);
 }
 
 function muText(map, row, column) {
@@ -150,8 +153,9 @@ function limitAlong(map, given, along, fixed) {
   return [points, along === "velocity" ? given.values[fixed] : given.values.map((row) => row[fixed])];
 }
 
-// A cut through the map; along: the axis that it runs along, fixed: index on the other one.
-function drawCut(element, map, along, fixed, selected) {
+// A cut through the map; along: the axis that it runs along, fixed: index on the other one;
+// hidden: labels of limits that are switched off.
+function drawCut(element, map, along, fixed, selected, hidden) {
   const inVelocity = along === "velocity";
   const indices = inVelocity ? shownColumns(map) : map.amplitude.map((_, i) => i);
   const value = (name) => (k) => inVelocity ? map.points[name][fixed][k] : map.points[name][k][fixed];
@@ -164,6 +168,7 @@ function drawCut(element, map, along, fixed, selected) {
       type: "scatter",
       mode: "lines",
       name: given.label,
+      visible: !hidden.has(given.label),
       x: kept.map((k) => at[k]),
       y: kept.map((k) => limit[k]),
       line: { color: given.color, dash: given.dash, width: 1.8 },
@@ -178,7 +183,8 @@ function drawCut(element, map, along, fixed, selected) {
     x,
     y: indices.map(value("mu_macro")),
     customdata: indices,
-    error_y: { type: "data", array: indices.map(value("mu_macro_error")), thickness: 1, width: 2 },
+    error_y: { type: "data", array: indices.map(value("mu_macro_error")), color: INK,
+      thickness: 1, width: 2 },
     marker: {
       color: good.map((yes) => (yes ? INK : "#fff")),
       size: indices.map((k) => (k === selected ? 10 : 5)),
@@ -191,37 +197,41 @@ function drawCut(element, map, along, fixed, selected) {
   Plotly.react(element, traces, layout({
     xaxis: axis(map.labels[inVelocity ? 0 : 1], shown),
     yaxis: axis(MU, { range: [-0.04, 1.06], dtick: 0.2 }),
-    legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom", font: { size: 10 }, traceorder: "normal" },
-    margin: { l: 46, r: 8, t: 54, b: 42 },
-    uirevision: map.name, // what is switched off in the legend stays off
+    showlegend: false,
+    margin: { l: 46, r: 8, t: 8, b: 42 },
   }), CONFIG);
+}
+
+function inDegrees(phase) {
+  return (phase * 180) / Math.PI;
 }
 
 // Forward force over a period, with the certified mean, and against the other component.
 function drawForces(history, loop, period, mu, error) {
-  const degrees = period.phase.map((phase) => (phase * 180) / Math.PI);
+  const degrees = period.phase.map(inDegrees);
+  const [first, last] = [degrees[0], degrees[0] + 360];
   const spread = error === null ? 0 : error;
   const here = { type: "scatter", mode: "markers", x: [], y: [], hoverinfo: "skip", showlegend: false,
     marker: { color: VERMILLION, size: 9, line: { color: "#fff", width: 1 } } };
   const low = Math.min(-0.05, ...period.forward.map((force) => force - 0.05));
   const y = axis(FORWARD, { range: [low, 1.06], dtick: 0.2 });
   const mean = mu === null ? [] : [
-    { type: "scatter", mode: "lines", name: "its certificate", x: [0, 360, 360, 0], fill: "toself",
+    { type: "scatter", mode: "lines", name: "its error", x: [first, last, last, first], fill: "toself",
       y: [mu - spread, mu - spread, mu + spread, mu + spread], line: { width: 0 },
       fillcolor: "rgba(213,94,0,0.35)", hoverinfo: "skip" },
-    { type: "scatter", mode: "lines", name: "mean, certified", x: [0, 360], y: [mu, mu],
+    { type: "scatter", mode: "lines", name: "certified mean", x: [first, last], y: [mu, mu],
       line: { color: VERMILLION, width: 1.6, dash: "6px,3px" }, hovertemplate: "mean %{y:.5f}<extra></extra>" },
   ];
   const force = { type: "scatter", mode: "lines", line: { color: BLUE, width: 1.8 } };
   Plotly.react(history, [
     { ...here },
     ...mean,
-    { ...force, name: "forward force", x: degrees, y: period.forward,
+    { ...force, x: degrees, y: period.forward, showlegend: false,
       hovertemplate: "%{x:.0f}°: %{y:.4f}<extra></extra>" },
   ], layout({
-    xaxis: axis("phase  <i>ωt</i> (degrees)", { range: [0, 360], dtick: 90 }),
+    xaxis: axis("phase  <i>ωt</i> (degrees)", { range: [first, last], dtick: 90 }),
     yaxis: y,
-    legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom", font: { size: 10 } },
+    legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom", font: { size: 10 }, entrywidth: 90 },
     margin: { l: 46, r: 8, t: 24, b: 40 },
   }), CONFIG);
   Plotly.react(loop, [
@@ -237,6 +247,6 @@ function drawForces(history, loop, period, mu, error) {
 
 function markForces(history, loop, period, frame) {
   const y = [[period.forward[frame]]];
-  Plotly.restyle(history, { x: [[(period.phase[frame] * 180) / Math.PI]], y }, [0]);
+  Plotly.restyle(history, { x: [[inDegrees(period.phase[frame])]], y }, [0]);
   Plotly.restyle(loop, { x: [[period.other[frame]]], y }, [0]);
 }

@@ -42,7 +42,7 @@ function periodAt(map, row, column) {
   return {
     map,
     k,
-    phase: part(phases, rows, (2 * Math.PI) / NUMBERS.unsigned),
+    phase: part(phases, rows, (2 * Math.PI) / NUMBERS.unsigned).map((phase) => p.start + phase),
     forward: pairs.slice(0, rows),
     other: pairs.slice(rows),
     radius: part(radii, p.cells, 1 / NUMBERS.unsigned),
@@ -95,8 +95,9 @@ function cellsOf(period, frame) {
   return found;
 }
 
-// Four digits are more than any drawing shows.
+// A number in a few digits; small ones as 1.2e-4.
 function digits(value, count = 4) {
   if (value === null) return "none";
+  if (value !== 0 && Math.abs(value) < 1e-3) return value.toExponential(Math.min(count - 1, 2));
   return String(Number(value.toPrecision(count)));
 }

@@ -2,7 +2,7 @@
 
 const STICK = "#56B4E9", SLIP = "#E69F00";
 const LONGEST = 0.17; // length of an arrow, over a, where the traction is the largest bound
-const CLOSEST = 0.1; // arrows on a ring are no closer than this, over a
+const CLOSEST = 0.14; // arrows on a ring are no closer than this, over a
 
 // What a frame leaves as it is: outlines of the cells, and where arrows start.
 function discOf(period) {
@@ -76,9 +76,10 @@ function drawDisc(element, disc, frame) {
     { type: "scatter", mode: "lines", x: turns.map(Math.cos), y: turns.map(Math.sin),
       line: { color: INK, width: 1.2 }, hoverinfo: "skip", showlegend: false },
   ], layout({
-    xaxis: axis("lateral position / <i>a</i>", { range: [-1.06, 1.06], dtick: 0.5, showgrid: false }),
+    xaxis: axis("lateral position / <i>a</i>", { range: [-1.06, 1.06], dtick: 0.5, showgrid: false,
+      constrain: "domain" }),
     yaxis: axis("forward position / <i>a</i>", { range: [-1.06, 1.06], dtick: 0.5, showgrid: false,
-      scaleanchor: "x" }),
+      scaleanchor: "x", constrain: "domain" }),
     legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom", font: { size: 10 } },
     margin: { l: 46, r: 8, t: 40, b: 40 },
     dragmode: false,

@@ -1,7 +1,8 @@
 // The page: what is selected, the controls, the words.
 
 const element = (id) => document.getElementById(id);
-const STATE = { map: NUMBERS.maps[0], row: 0, column: 0, frame: 0, period: null, disc: null };
+const STATE = { map: NUMBERS.maps[0], row: 0, column: 0, frame: 0, period: null, disc: null,
+  hidden: new Set() };
 const SECONDS = 4; // that a period takes when it plays
 let playing = 0; // the request for the next picture, 0 at rest
 
@@ -13,6 +14,7 @@ function selectMap(map) {
   element("amplitude").max = map.amplitude.length - 1;
   element("velocity").max = map.velocity.length - 1;
   drawMap(element("map"), map);
+  offerLimits(map);
   // A point in the middle of what a period is stored for.
   const stored = map.periods.index.flatMap((row, i) => row.flatMap((k, j) => (k < 0 ? [] : [[i, j]])));
   const rows = [...new Set(stored.map((place) => place[0]))];
@@ -32,8 +34,7 @@ function select(row, column) {
     element(`${name}-value`).value = shown;
   }
   markMap(element("map"), map, row, column);
-  drawCut(element("along-velocity"), map, "velocity", row, column);
-  drawCut(element("along-amplitude"), map, "amplitude", column, row);
+  drawCuts();
   STATE.period = periodAt(map, row, column);
   STATE.disc = STATE.period && discOf(STATE.period);
   tell();
@@ -51,12 +52,17 @@ function select(row, column) {
   showFrame(STATE.frame, false);
 }
 
+function drawCuts() {
+  const { map, row, column, hidden } = STATE;
+  drawCut(element("along-velocity"), map, "velocity", row, column, hidden);
+  drawCut(element("along-amplitude"), map, "amplitude", column, row, hidden);
+}
+
 function showFrame(frame, moved = true) {
   STATE.frame = frame;
   if (moved) moveDisc(element("disc"), STATE.disc, frame);
   markForces(element("history"), element("loop"), STATE.period, frame);
-  const degrees = (STATE.period.phase[frame] * 180) / Math.PI;
-  const shown = `${degrees.toFixed(0)}°`;
+  const shown = `${inDegrees(STATE.period.phase[frame]).toFixed(0)}°`;
   element("phase").value = frame;
   element("phase").setAttribute("aria-valuetext", shown);
   element("phase-value").value = shown;
@@ -77,12 +83,13 @@ function tell() {
     `Poisson's ratio ${digits(map.poisson)}`;
   paragraph("certificate", at("converged") ? `At ${place}; converged. Its error by source:`
     : `At ${place}; not converged: ${at("reason")}`, !at("converged"));
-  table("spent", Object.entries(NUMBERS.errors).map(([name, source]) => [source, digits(at(name), 2)]));
+  table("sources", Object.entries(NUMBERS.errors).map(([name, source]) => [source, digits(at(name), 2)]));
   const counts = [["cells", "rings"], ["angles", "angles on half a ring"],
-    ["steps_per_period", "steps in a period"]].filter(([name]) => at(name) > 0);
+    ["steps_per_period", "steps in a period"]].filter(([name]) => at(name) > 1);
   const model = [`Model ${at("model")}`, ...counts.map(([name, word]) => `${at(name)} ${word}`)].join(", ");
   const limits = map.limits.map((given) => `${given.label} ${digits(limitAt(given, row, column))}`);
-  paragraph("theory", `${model}. Theory here: ${limits.join("; ")}.`);
+  paragraph("spent", `${model}.`);
+  paragraph("theory", `Theory here: ${limits.join("; ")}.`);
   if (!period) {
     paragraph("run", whyNone(map, row, column), map.amplitude[row] > 0 && map.velocity[column] > 0);
     return;
@@ -140,12 +147,13 @@ function pause() {
 function play() {
   element("play").textContent = "Pause";
   element("play").setAttribute("aria-pressed", "true");
-  let phase = STATE.period.phase[STATE.frame], before = performance.now();
+  const start = STATE.period.phase[0];
+  let phase = STATE.period.phase[STATE.frame] - start, before = performance.now();
   const next = (now) => {
     phase = (phase + ((now - before) / 1000 / SECONDS) * 2 * Math.PI) % (2 * Math.PI);
     before = now;
     // The last frame that has begun; frames are closer together where the motion turns.
-    const begun = STATE.period.phase.filter((start) => start <= phase).length;
+    const begun = STATE.period.phase.filter((at) => at - start <= phase).length;
     if (begun - 1 !== STATE.frame) showFrame(Math.max(begun - 1, 0));
     playing = requestAnimationFrame(next);
   };
@@ -167,6 +175,34 @@ function connect() {
     showFrame(Number(e.target.value));
   });
   element("play").addEventListener("click", () => (playing ? pause() : play()));
+}
+
+// The legend of the cuts: a box to switch every limit on and off.
+function offerLimits(map) {
+  const boxes = map.limits.map((given) => {
+    const label = document.createElement("label"), box = document.createElement("input");
+    Object.assign(box, { type: "checkbox", checked: !STATE.hidden.has(given.label) });
+    box.addEventListener("change", () => {
+      STATE.hidden[box.checked ? "delete" : "add"](given.label);
+      drawCuts();
+    });
+    label.title = given.long_name;
+    label.append(box, lineLike(given), given.label);
+    return label;
+  });
+  element("limits").replaceChildren(...boxes);
+}
+
+// A piece of a limit's line.
+function lineLike(given) {
+  const svg = (name) => document.createElementNS("http://www.w3.org/2000/svg", name);
+  const piece = svg("svg"), line = svg("line");
+  const looks = { x1: 0, x2: 26, y1: 5, y2: 5, stroke: given.color, "stroke-width": 2 };
+  if (given.dash !== "solid") looks["stroke-dasharray"] = given.dash.replace(/px/g, "");
+  for (const [name, value] of Object.entries(looks)) line.setAttribute(name, value);
+  piece.setAttribute("aria-hidden", "true");
+  piece.append(line);
+  return piece;
 }
 
 // Plotly adds events to an element when it first draws there.

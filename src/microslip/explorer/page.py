@@ -1,4 +1,4 @@
-"""The page as one file: markup, style, plotly.js, the scripts beside this module, and the numbers."""
+"""The page as one file: markup, style, plotly.js, the scripts beside this module, numbers."""
 
 from __future__ import annotations
 

@@ -155,7 +155,8 @@ def _packed(results, force):
     forces = np.array([[r["force_forward"], r[force]] for r in results])
     step = float(np.abs(forces).max()) / SIGNED
     count, frames, _, angles, cells = shares.shape
-    phases = np.array([r["phase"] for r in results]) / (2 * np.pi)
+    phases = np.array([r["phase"] for r in results])
+    start = float(phases[0, 0])  # the turning point that periods begin at
     return {
         "count": count,
         "frames": 2 * frames,
@@ -166,7 +167,8 @@ def _packed(results, force):
         "slips": text_of(np.packbits(slips.reshape(count, -1), axis=1)),
         "force_step": step,
         "forces": text_of(np.round(forces / step).astype(np.int16)),
-        "phases": text_of(_unsigned(phases)),
+        "start": start,
+        "phases": text_of(_unsigned((phases - start) / (2 * np.pi))),
         "radii": text_of(_unsigned([r["radius"] for r in results])),
         "bounds": text_of(_unsigned([r["bound"] for r in results])),
         "mean": [r["mu_macro"] for r in results],

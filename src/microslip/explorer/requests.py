@@ -4,7 +4,7 @@ from ..keys import number
 
 MAPS = ("transverse", "bore")
 CELLS, ANGLES, STEPS = 10, 12, 32
-"""Rings, points on half a ring and steps in a period: what a drawing of some 300 pixels can show."""
+"""Rings, points on half a ring, steps in a period: what a drawing of some 300 pixels can show."""
 MOST_PERIODS = 1250
 """Periods on a page; one takes some 6 kB of it, and all of it is to stay well below 15 MB."""
 
