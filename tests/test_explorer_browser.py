@@ -123,7 +123,7 @@ def test_a_click_shows_the_points_value_and_its_loop(made, page, name, velocity,
     click_on_map(page, velocity, amplitude)
     point = datasets[name].sel(velocity=velocity, amplitude=amplitude)
     mu, error = float(point.mu_macro), float(point.mu_macro_error)
-    shown = re.search(r"μ macro (-?[\d.]+) ± ([\d.e-]+)", page.inner_text("#value"))
+    shown = re.search(r"mu_macro (-?[\d.]+) ± ([\d.e-]+)", page.inner_text("#value"))
     assert float(shown[1]) == pytest.approx(mu, abs=5.1e-6)
     assert float(shown[2]) == pytest.approx(error, rel=0.06)
     assert f"velocity {velocity:g}, amplitude {amplitude:g}" in page.inner_text("#certificate")

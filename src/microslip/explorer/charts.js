@@ -47,15 +47,18 @@ function shownColumns(map) {
   return map.velocity.map((_, j) => j).filter((j) => map.velocity[j] > 0);
 }
 
-function drawMap(element, map) {
+// Edges of the cells of the map; half way between velocities is meant in equal ratios.
+function cellEdges(map) {
+  const exponents = shownColumns(map).map((j) => Math.log10(map.velocity[j]));
+  return { x: edges(exponents).map((exponent) => 10 ** exponent), y: edges(map.amplitude) };
+}
+
+function drawMap(element, map, row, column) {
   const columns = shownColumns(map);
   const pick = (table) => table.map((row) => columns.map((j) => row[j]));
   const velocity = columns.map((j) => map.velocity[j]);
   const mu = pick(map.points.mu_macro);
-  const bounds = {
-    x: edges(velocity.map(Math.log10)).map((exponent) => 10 ** exponent),
-    y: edges(map.amplitude),
-  };
+  const bounds = cellEdges(map);
   const text = map.amplitude.map((amplitude, i) =>
     columns.map((j) => {
       const at = `velocity ${digits(map.velocity[j])}, amplitude ${digits(amplitude)}`;
@@ -103,15 +106,6 @@ function drawMap(element, map) {
       hoverinfo: "skip",
       showlegend: bad.length > 0,
     },
-    {
-      type: "scatter",
-      mode: "markers",
-      x: [],
-      y: [],
-      marker: { symbol: "circle-open", size: 13, color: VERMILLION, line: { width: 3 } },
-      hoverinfo: "skip",
-      showlegend: false,
-    },
   ];
   const ends = (list) => [list[0], list[list.length - 1]];
   Plotly.react(element, traces, layout({
@@ -119,27 +113,35 @@ function drawMap(element, map) {
       exponentformat: "power", showgrid: false }),
     yaxis: axis(map.labels[1], { range: ends(bounds.y), showgrid: false }),
     dragmode: false,
+    shapes: cross(map, row, column),
     margin: { l: 52, r: 10, t: bad.length ? 24 : 8, b: 42 },
     legend: { orientation: "h", x: 1, xanchor: "right", y: 1.0, yanchor: "bottom" },
   }), CONFIG);
 }
 
-// The cross on the map: the selected point and the two cuts through it.
-function markMap(element, map, row, column) {
+// The cross on the map: the cell of the selected point, and the two cuts through it.
+function cross(map, row, column) {
   const velocity = map.velocity[column], amplitude = map.amplitude[row];
   const line = { color: VERMILLION, width: 1.2, dash: "dot" };
   const across = { type: "line", xref: "paper", x0: 0, x1: 1, y0: amplitude, y1: amplitude, line };
+  if (velocity === 0) return [across]; // it has no place on the axis
   const up = { type: "line", yref: "paper", y0: 0, y1: 1, x0: velocity, x1: velocity, line };
-  const seen = velocity > 0;
-  Plotly.update(element, { x: [seen ? [velocity] : []], y: [seen ? [amplitude] : []] },
-    { shapes: seen ? [across, up] : [across] }, [4]);
+  const { x, y } = cellEdges(map);
+  const j = column - map.velocity.length + x.length - 1; // the first velocity may be 0
+  const cell = { type: "rect", x0: x[j], x1: x[j + 1], y0: y[row], y1: y[row + 1],
+    line: { color: VERMILLION, width: 3 } };
+  return [across, up, cell];
+}
+
+function markMap(element, map, row, column) {
+  Plotly.relayout(element, { shapes: cross(map, row, column) });
 }
 
 function muText(map, row, column) {
   const { mu_macro, mu_macro_error } = map.points;
   const mu = mu_macro[row][column], error = mu_macro_error[row][column];
-  if (mu === null) return "μ macro: none";
-  return `μ macro ${mu.toFixed(5)} ± ${error === null ? "unknown" : error.toPrecision(2)}`;
+  if (mu === null) return "mu_macro: none";
+  return `mu_macro ${mu.toFixed(5)} ± ${error === null ? "unknown" : error.toPrecision(2)}`;
 }
 
 // A limit's values along a cut: its fine curve, its value on every point, or a level line.
@@ -191,7 +193,7 @@ function drawCut(element, map, along, fixed, selected, hidden) {
       line: { color: indices.map((k) => (k === selected ? VERMILLION : INK)),
         width: indices.map((k) => (k === selected ? 2.5 : 1)) },
     },
-    hovertemplate: `${along} %{x:.4g}<br>μ macro %{y:.5f}<extra></extra>`,
+    hovertemplate: `${along} %{x:.4g}<br>mu_macro %{y:.5f}<extra></extra>`,
   });
   const shown = inVelocity ? { type: "log", dtick: 1, exponentformat: "power" } : {};
   Plotly.react(element, traces, layout({
@@ -206,12 +208,13 @@ function inDegrees(phase) {
   return (phase * 180) / Math.PI;
 }
 
-// Forward force over a period, with the certified mean, and against the other component.
-function drawForces(history, loop, period, mu, error) {
+// Forward force over a period, with the certified mean, and against the other component; a dot is
+// at the frame.
+function drawForces(history, loop, period, mu, error, frame) {
   const degrees = period.phase.map(inDegrees);
   const [first, last] = [degrees[0], degrees[0] + 360];
   const spread = error === null ? 0 : error;
-  const here = { type: "scatter", mode: "markers", x: [], y: [], hoverinfo: "skip", showlegend: false,
+  const here = { type: "scatter", mode: "markers", y: [period.forward[frame]], hoverinfo: "skip", showlegend: false,
     marker: { color: VERMILLION, size: 9, line: { color: "#fff", width: 1 } } };
   const low = Math.min(-0.05, ...period.forward.map((force) => force - 0.05));
   const y = axis(FORWARD, { range: [low, 1.06], dtick: 0.2 });
@@ -219,29 +222,29 @@ function drawForces(history, loop, period, mu, error) {
     { type: "scatter", mode: "lines", name: "its error", x: [first, last, last, first], fill: "toself",
       y: [mu - spread, mu - spread, mu + spread, mu + spread], line: { width: 0 },
       fillcolor: "rgba(213,94,0,0.35)", hoverinfo: "skip" },
-    { type: "scatter", mode: "lines", name: "certified mean", x: [first, last], y: [mu, mu],
+    { type: "scatter", mode: "lines", name: "mean", x: [first, last], y: [mu, mu],
       line: { color: VERMILLION, width: 1.6, dash: "6px,3px" }, hovertemplate: "mean %{y:.5f}<extra></extra>" },
   ];
   const force = { type: "scatter", mode: "lines", line: { color: BLUE, width: 1.8 } };
   Plotly.react(history, [
-    { ...here },
+    { ...here, x: [degrees[frame]] },
     ...mean,
     { ...force, x: degrees, y: period.forward, showlegend: false,
       hovertemplate: "%{x:.0f}°: %{y:.4f}<extra></extra>" },
   ], layout({
     xaxis: axis("phase  <i>ωt</i> (degrees)", { range: [first, last], dtick: 90 }),
     yaxis: y,
-    legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom", font: { size: 10 }, entrywidth: 90 },
-    margin: { l: 46, r: 8, t: 24, b: 40 },
+    legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom", font: { size: 10 }, entrywidth: 55 },
+    margin: { l: 46, r: 14, t: 24, b: 40 },
   }), CONFIG);
   Plotly.react(loop, [
-    { ...here },
+    { ...here, x: [period.other[frame]] },
     { ...force, x: period.other, y: period.forward, showlegend: false,
       hovertemplate: "%{x:.4f}, %{y:.4f}<extra></extra>" },
   ], layout({
     xaxis: axis(period.map.labels[2], { range: [-1.06, 1.06], dtick: 0.5 }),
     yaxis: y,
-    margin: { l: 46, r: 8, t: 8, b: 40 },
+    margin: { l: 46, r: 14, t: 8, b: 40 },
   }), CONFIG);
 }
 

@@ -42,7 +42,7 @@ function filled(disc, cells, slipping) {
     x.push(...xs, null);
     y.push(...ys, null);
   });
-  return [x, y];
+  return x.length ? [x, y] : [[NaN], [NaN]]; // so that the legend keeps its name
 }
 
 // Arrows as one line with gaps: shaft, and two barbs at the tip.

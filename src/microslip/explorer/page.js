@@ -13,14 +13,15 @@ function selectMap(map) {
   }
   element("amplitude").max = map.amplitude.length - 1;
   element("velocity").max = map.velocity.length - 1;
-  drawMap(element("map"), map);
   offerLimits(map);
   // A point in the middle of what a period is stored for.
   const stored = map.periods.index.flatMap((row, i) => row.flatMap((k, j) => (k < 0 ? [] : [[i, j]])));
   const rows = [...new Set(stored.map((place) => place[0]))];
   const row = rows.length ? rows[rows.length >> 2] : 0;
   const columns = stored.filter((place) => place[0] === row);
-  select(row, columns.length ? columns[columns.length >> 1][1] : 0);
+  const column = columns.length ? columns[columns.length >> 1][1] : 0;
+  drawMap(element("map"), map, row, column);
+  select(row, column);
 }
 
 function select(row, column) {
@@ -33,7 +34,6 @@ function select(row, column) {
     element(name).setAttribute("aria-valuetext", shown);
     element(`${name}-value`).value = shown;
   }
-  markMap(element("map"), map, row, column);
   drawCuts();
   STATE.period = periodAt(map, row, column);
   STATE.disc = STATE.period && discOf(STATE.period);
@@ -47,9 +47,14 @@ function select(row, column) {
   STATE.frame = Math.min(STATE.frame, map.periods.frames);
   element("phase").max = map.periods.frames;
   drawForces(element("history"), element("loop"), STATE.period, mu_macro[row][column],
-    mu_macro_error[row][column]);
+    mu_macro_error[row][column], STATE.frame);
   drawDisc(element("disc"), STATE.disc, STATE.frame);
-  showFrame(STATE.frame, false);
+  tellPhase();
+}
+
+function selectAndMark(row, column) {
+  select(row, column);
+  markMap(element("map"), STATE.map, row, column);
 }
 
 function drawCuts() {
@@ -58,12 +63,16 @@ function drawCuts() {
   drawCut(element("along-amplitude"), map, "amplitude", column, row, hidden);
 }
 
-function showFrame(frame, moved = true) {
+function showFrame(frame) {
   STATE.frame = frame;
-  if (moved) moveDisc(element("disc"), STATE.disc, frame);
+  moveDisc(element("disc"), STATE.disc, frame);
   markForces(element("history"), element("loop"), STATE.period, frame);
-  const shown = `${inDegrees(STATE.period.phase[frame]).toFixed(0)}°`;
-  element("phase").value = frame;
+  tellPhase();
+}
+
+function tellPhase() {
+  const shown = `${inDegrees(STATE.period.phase[STATE.frame]).toFixed(0)}°`;
+  element("phase").value = STATE.frame;
   element("phase").setAttribute("aria-valuetext", shown);
   element("phase-value").value = shown;
 }
@@ -168,8 +177,8 @@ function connect() {
     button.addEventListener("click", () => selectMap(map));
     element("tabs").append(button);
   }
-  element("amplitude").addEventListener("input", (e) => select(Number(e.target.value), STATE.column));
-  element("velocity").addEventListener("input", (e) => select(STATE.row, Number(e.target.value)));
+  element("amplitude").addEventListener("input", (e) => selectAndMark(Number(e.target.value), STATE.column));
+  element("velocity").addEventListener("input", (e) => selectAndMark(STATE.row, Number(e.target.value)));
   element("phase").addEventListener("input", (e) => {
     pause();
     showFrame(Number(e.target.value));
@@ -209,14 +218,14 @@ function lineLike(given) {
 function connectCharts() {
   element("map").on("plotly_click", ({ points }) => {
     const cell = points.find((point) => point.data.type === "heatmap");
-    if (cell) select(cell.pointIndex[0], shownColumns(STATE.map)[cell.pointIndex[1]]);
+    if (cell) selectAndMark(cell.pointIndex[0], shownColumns(STATE.map)[cell.pointIndex[1]]);
   });
   const along = (id, choose) => element(id).on("plotly_click", ({ points }) => {
     const point = points.find((candidate) => candidate.customdata !== undefined);
     if (point) choose(point.customdata);
   });
-  along("along-velocity", (column) => select(STATE.row, column));
-  along("along-amplitude", (row) => select(row, STATE.column));
+  along("along-velocity", (column) => selectAndMark(STATE.row, column));
+  along("along-amplitude", (row) => selectAndMark(row, STATE.column));
 }
 
 tellWhatMade();
