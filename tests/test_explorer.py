@@ -106,6 +106,15 @@ def test_a_finer_map_has_periods_for_some_points_of_both_axes():
     assert len({request["amplitude"] for request in asked}) == 17
 
 
+def test_a_map_that_has_no_room_is_refused():
+    fine = {"log": {"start": 0.001, "stop": 10, "count": 101}}
+    configuration = stub.configured(velocity=fine, amplitude=[0, *range(1, 51)])
+    assert explorer.refusal(stub.configured()) is None
+    assert explorer.refusal(configuration) == (
+        "sweeps.transverse: 5,151 points have no room in the explorer; allowed: up to 5,000"
+    )
+
+
 def test_the_page_asks_for_nothing_outside(made, monkeypatch):
     monkeypatch.setattr(page, "get_plotlyjs", lambda: "// the library")
     text = page.page(made[2])

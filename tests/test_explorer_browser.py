@@ -73,6 +73,8 @@ def click_on_map(page, velocity, amplitude):
     )
     page.mouse.move(x - 3, y - 3)
     page.mouse.move(x, y)
+    page.locator("#map .hovertext").wait_for()
+    assert f"velocity {velocity:g}, amplitude {amplitude:g}" in page.text_content("#map .hovertext")
     page.mouse.click(x, y)
     page.wait_for_timeout(100)
 

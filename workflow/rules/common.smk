@@ -134,12 +134,10 @@ def batches_of_study(dataset):
 
 
 def datasets_explored():
-    """Files of the datasets that the explorer shows; refused where there is none."""
-    if not EXPLORED:
-        sys.exit(
-            f"Error in {ORIGIN}: sweeps: the explorer has nothing to show; allowed: transverse or "
-            "bore with two amplitudes and two velocities above 0"
-        )
+    """Files of the datasets that the explorer shows, if it can show them."""
+    problem = explorer.refusal(CONFIGURATION)
+    if problem:
+        sys.exit(f"Error in {ORIGIN}: {problem}")
     return [f"{RESULTS}/{name}.nc" for name in EXPLORED]
 
 

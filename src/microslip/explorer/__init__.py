@@ -13,9 +13,9 @@ import hashlib
 from pathlib import Path
 
 from ..keys import digest_of_modules
-from .requests import maps_of, period_requests
+from .requests import maps_of, period_requests, refusal
 
-__all__ = ["ASSETS", "digest", "maps_of", "period_requests", "report", "write"]
+__all__ = ["ASSETS", "digest", "maps_of", "period_requests", "refusal", "report", "write"]
 
 #: What the page is made of besides numbers and plotly.js, in the order in which scripts run.
 ASSETS = ("page.html", "style.css", "data.js", "charts.js", "disc.js", "page.js")

@@ -6,7 +6,9 @@ MAPS = ("transverse", "bore")
 CELLS, ANGLES, STEPS = 10, 12, 32
 """Rings, points on half a ring, steps in a period: what a drawing of some 300 pixels can show."""
 MOST_PERIODS = 1250
-"""Periods on a page; one takes some 6 kB of it, and all of it is to stay well below 15 MB."""
+"""Periods on a page; one takes some 6 kB of it, and all of it is to stay below 15 MB."""
+MOST_POINTS = 5000
+"""Points of a map on a page; one takes some 260 bytes of it."""
 
 
 def maps_of(configuration):
@@ -16,6 +18,25 @@ def maps_of(configuration):
         for name in MAPS
         if name in configuration.sweeps and configuration.sweeps[name].spans_a_map
     ]
+
+
+def refusal(configuration):
+    """Why there can be no page for a configuration, one line; None if there can."""
+    names = maps_of(configuration)
+    if not names:
+        return (
+            "sweeps: the explorer has nothing to show; allowed: transverse or bore with two "
+            "amplitudes and two velocities above 0"
+        )
+    for name in names:
+        sweep = configuration.sweeps[name]
+        count = len(sweep.amplitude) * len(sweep.velocity)
+        if count > MOST_POINTS:
+            return (
+                f"sweeps.{name}: {count:,} points have no room in the explorer; "
+                f"allowed: up to {MOST_POINTS:,}"
+            )
+    return None
 
 
 def period_requests(configuration, name):
