@@ -207,6 +207,9 @@ def test_sliders_reach_every_point_by_keyboard_and_boxes_switch_limits(made, pag
     ):
         shown = page.evaluate("(id) => element(id).data.at(-1).y", chart)
         assert shown == pytest.approx(cut.mu_macro.values, abs=1e-12)
+        lines = page.evaluate("(id) => element(id).data.slice(0, -1).map((t) => t.x.length)", chart)
+        assert len(lines) == 4
+        assert min(lines) >= 2  # level lines too
     box = page.get_by_label("Eq 7")
     visible = "element('along-amplitude').data.find((t) => t.name.startsWith('Eq 7')).visible"
     assert page.evaluate(visible) is True

@@ -115,7 +115,7 @@ function drawMap(element, map, row, column) {
     dragmode: false,
     shapes: cross(map, row, column),
     margin: { l: 52, r: 10, t: bad.length ? 24 : 8, b: 42 },
-    legend: { orientation: "h", x: 1, xanchor: "right", y: 1.0, yanchor: "bottom" },
+    legend: { orientation: "h", x: 1, xanchor: "right", y: 1.01, yanchor: "bottom" },
   }), CONFIG);
 }
 
@@ -150,7 +150,8 @@ function limitAlong(map, given, along, fixed) {
   const other = along === "velocity" ? "amplitude" : "velocity";
   if (given.dims.length === 1 && given.dims[0] === along) return given.curve;
   if (given.dims.length === 1 && given.dims[0] === other) {
-    return [[points[0], points[points.length - 1]], Array(2).fill(given.values[fixed])];
+    const shown = along === "velocity" ? points.filter((velocity) => velocity > 0) : points;
+    return [[shown[0], shown[shown.length - 1]], Array(2).fill(given.values[fixed])];
   }
   return [points, along === "velocity" ? given.values[fixed] : given.values.map((row) => row[fixed])];
 }
