@@ -13,6 +13,11 @@
 #                                                +--> results/{points,trials,probes,scaling}
 #   pieces of a study --> collect_study --> results/{accuracy_cost,stability}.nc --> draw_figure
 #
+# snakemake explorer makes one page to look behind every point of the maps.
+#
+#   points of the maps --> periods, cut into batches --> solve_batch --> results/periods
+#   datasets, periods --> explorer --> results/explorer.html
+#
 # Batches are named by the hashes of their points, points by what they depend on: the physics, the
 # tolerance and the solver's sources. So what is there is never stale, and never computed twice.
 
@@ -47,6 +52,7 @@ include: "workflow/rules/common.smk"
 include: "workflow/rules/points.smk"
 include: "workflow/rules/datasets.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/explorer.smk"
 
 
 onstart:

@@ -65,6 +65,21 @@ def _field(request):
     return microslip.traction_field(request["scene"], **_of_single_run(request))
 
 
+def _period(request):
+    """A period of the periodic state in few bytes, see microslip.periods."""
+    from .periods import packed
+
+    counts = {name: request[name] for name in ("cells", "angles", "steps")}
+
+    def run():
+        return packed(microslip.period(**_place(request), **counts), request["angles"])
+
+    try:
+        return _survived(run)
+    except ValueError as error:  # no state was found
+        return {"converged": False, "reason": str(error)}
+
+
 def _trial(request):
     """One run at one resolution; `applies` is False where there is nothing to run."""
     from . import trial
@@ -115,6 +130,7 @@ _KINDS = {
     "point": _point,
     "history": _history,
     "field": _field,
+    "period": _period,
     "trial": _trial,
     "choice": _choice,
     "probe": _probe,

@@ -28,6 +28,7 @@ FOLDERS = {
     "point": "points",
     "history": "histories",
     "field": "histories",
+    "period": "periods",
     "trial": "trials",
     "choice": "trials",
     "probe": "probes",
