@@ -111,6 +111,25 @@ def _scaling(request):
     return trial.measure_steps(request["model"], *sizes)
 
 
+def _run(request):
+    """One run at one resolution, with nothing timed: equal requests have equal results."""
+    from . import trial
+
+    names = ("model", "method", "cells", "angles", "steps")
+    settings = {name: request[name] for name in names}
+    tolerance = float(request["tolerance"])
+    return _survived(
+        lambda: trial.run_trial(**_place(request), **settings, tolerance=tolerance)
+    )
+
+
+def _period(request):
+    from .patches import patches
+
+    sizes = {name: request[name] for name in ("cells", "angles", "steps")}
+    return _survived(lambda: patches(**_place(request), **sizes))
+
+
 _KINDS = {
     "point": _point,
     "history": _history,
@@ -119,6 +138,8 @@ _KINDS = {
     "choice": _choice,
     "probe": _probe,
     "scaling": _scaling,
+    "run": _run,
+    "period": _period,
 }
 
 

@@ -17,6 +17,7 @@ from .settings import (
     MODELS_OF_SCENE,
     SCENE_OF_SWEEP,
     Accuracy,
+    Claims,
     ConfigError,
     Configuration,
     Stability,
@@ -87,6 +88,7 @@ def from_mapping(mapping, source="configuration"):
         histories=filled["histories"],
         accuracy=_accuracy(filled["accuracy"], f"{source}: accuracy"),
         stability=_stability(filled["stability"], f"{source}: stability"),
+        claims=_claims(filled["claims"], f"{source}: claims"),
     )
 
 
@@ -125,6 +127,20 @@ def _stability(given, where):
         methods=_methods(given["methods"], where),
         tolerance=float(number(given["tolerance"])),
         axes=None if axes is None else tuple(_once(axes, f"{where}.axes")),
+    )
+
+
+def _claims(given, where):
+    names = ("velocity", "amplitude_transverse", "amplitude_bore")
+    axes = {name: _axis(given[name], f"{where}.{name}", positive=True) for name in names}
+    for name in names[1:]:
+        count = len(axes["velocity"]) * len(axes[name])
+        _refuse_crowd(count, f"{where}.velocity x {name}", MOST_MAP_POINTS)
+    return Claims(
+        tolerance=float(number(given["tolerance"])),
+        velocity=axes["velocity"],
+        amplitude={s: axes[f"amplitude_{s}"] for s in ("transverse", "bore")},
+        cells=given["cells"],
     )
 
 

@@ -34,7 +34,10 @@ NOT_SOLVER |= {
 # The command that starts the workflow, and the copy of the workflow in an installed package.
 NOT_SOLVER |= {"launch", "bundle"}
 # These count for the requests that name them, see further_files.
-NOT_SOLVER |= {"trial", "methods"}
+NOT_SOLVER |= {"trial", "patches", "methods"}
+
+# Modules that single kinds of requests depend on besides.
+BEHIND = {"trial": "trial.py", "scaling": "trial.py", "run": "trial.py", "period": "patches.py"}
 
 PACKAGE = Path(__file__).parent
 
@@ -111,11 +114,11 @@ def further_files(kind, method, package=None):
     """List the modules that a request depends on besides the solver, as (name, Path), sorted.
 
     kind, method: of the request, see microslip.studies.requests; method: such as "admm:penalty=1",
-    "" for none. What runs trials counts for these, and a method's file with all that it imports
-    from its folder, so that another method makes no result stale.
+    "" for none. What BEHIND names for a kind counts for it, and a method's file with all that it
+    imports from its folder, so that another method makes no result stale.
     """
     package = Path(package or PACKAGE)
-    names = {"trial.py"} if kind in ("trial", "scaling") else set()
+    names = {BEHIND[kind]} if kind in BEHIND else set()
     waiting = [method.partition(":")[0].replace("-", "_")]
     while waiting:
         name = f"methods/{waiting.pop()}.py"

@@ -32,6 +32,8 @@ FOLDERS = {
     "choice": "trials",
     "probe": "probes",
     "scaling": "scaling",
+    "run": "runs",
+    "period": "periods",
 }
 
 
