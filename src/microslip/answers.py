@@ -118,9 +118,7 @@ def _run(request):
     names = ("model", "method", "cells", "angles", "steps")
     settings = {name: request[name] for name in names}
     tolerance = float(request["tolerance"])
-    return _survived(
-        lambda: trial.run_trial(**_place(request), **settings, tolerance=tolerance)
-    )
+    return _survived(lambda: trial.run_trial(**_place(request), **settings, tolerance=tolerance))
 
 
 def _period(request):

@@ -70,8 +70,9 @@ def _contact(axes: Axes, at: xr.Dataset) -> object:
     axes.add_patch(Circle((0, 0), 1.0, facecolor="none", edgecolor=look.BLACK, linewidth=0.9))
     edge = (at[f"patch_edge_{n}"].values for n in ("lateral", "forward"))
     axes.plot(*edge, color=look.VERMILLION, linestyle=look.DASHED, linewidth=1.3, gid="theory")
-    phase = look.number(float(at["patch_moment_phase"]) / np.pi)
-    axes.text(0.5, 0.02, rf"$\Omega t = {phase}\,\pi$", transform=axes.transAxes, ha="center")
+    phase = float(at["patch_moment_phase"]) / np.pi
+    text = rf"{look.number(phase)}\,\pi" if abs(phase) > 1e-9 else "0"
+    axes.text(0.5, 0.04, rf"$\Omega t = {text}$", transform=axes.transAxes, ha="center")
     axes.set(xlim=(-1.08, 1.08), ylim=(-1.32, 1.08), xlabel=r"lateral position  $x/a$")
     axes.set(xticks=(-1, 0, 1), yticks=(-1, 0, 1))
     return shade

@@ -56,7 +56,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         _friction(axes, dataset, *scene)
         look.legend_above(axes, upper, scene[1])
         _shares(below, dataset, scene[0])
-        look.legend_above(below, lower, "share of the friction bound in the stick zone")
+        look.legend_above(below, lower, "share of the friction bound")
     return figure
 
 
@@ -74,7 +74,8 @@ def _friction(axes: Axes, dataset: xr.Dataset, scene: str, _: str, label: str, c
         values, errors = (dataset[f"{scene}_{n}"].values for n in (variable, f"{variable}_error"))
         text = rf"$\tilde{{v}} = {look.number(velocity)}$"
         good = np.isfinite(errors)
-        computed(axes, at, values, errors, good, text, marker=marker, color=look.BLACK)
+        ink = {"marker": marker, "color": look.BLACK, "clip_on": False}
+        computed(axes, at, values, errors, good, text, **ink)
     axes.plot(
         at,
         dataset[f"{scene}_paper"].values,
@@ -87,6 +88,7 @@ def _friction(axes: Axes, dataset: xr.Dataset, scene: str, _: str, label: str, c
         markeredgecolor=look.VERMILLION,
         markeredgewidth=1.1,
         zorder=6,
+        clip_on=False,
     )
     axes.set(xlim=(0.0, amplitude[-1]), xlabel=label, ylabel=look.MU_MACRO)
     look.unit_range(axes)
@@ -105,6 +107,6 @@ def _shares(axes: Axes, dataset: xr.Dataset, scene: str) -> None:
         axes.plot(radius, used, color=color, linestyle=look.SOLID, label=text, gid="used")
         axes.plot(radius, left, color=color, linestyle=look.DASHED, gid="left")
     for linestyle, text in ((look.SOLID, "used"), (look.DASHED, "left, forward")):
-        axes.plot([], [], color=look.GREY, linestyle=linestyle, label=text)
+        axes.plot([], [], color=look.BLACK, linestyle=linestyle, label=text)
     axes.set(xlim=(0.0, 1.0), xlabel=r"radius  $r/a$", ylabel="share of the bound")
     look.unit_range(axes)

@@ -1,9 +1,9 @@
 """Studies: how accuracy is paid for, where methods fail, and which of the paper's claims hold.
 
 `ladders` says in which resolutions a model is run; `accuracy_cost`, `stability` and `claims` say
-what is asked; `fronts` picks and fits; the modules with `dataset` in their name turn the answers into
-datasets. What is asked is plain data that imports nothing heavy, since the workflow reads it
-whenever it is parsed.
+what is asked; `fronts` picks and fits, `verdicts` judges; the modules with `dataset` in their name
+turn the answers into datasets. What is asked is plain data that imports nothing heavy, since the
+workflow reads it whenever it is parsed.
 """
 
 from dataclasses import asdict

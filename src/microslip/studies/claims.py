@@ -32,7 +32,7 @@ FIELD_VELOCITIES = (0.2, 0.5, 0.8, 1.2)
 PERIOD_STEPS = 64
 NEAR_STATIC = PAPER_VELOCITY
 """Largest velocity at which an oscillating bore counts as near static friction."""
-FEW = 4
+FEW = 2
 """Runs of the paper in one job."""
 
 
@@ -69,9 +69,11 @@ def paper_run(scene, amplitude):
 def transient(start, cells):
     """Forces of the continuous bore from one of the three initial states on; cells: of CELLS."""
     numbers = {"velocity": number(TRANSIENT_VELOCITY), "travel": number(TRAVEL)}
-    return {"kind": "history", "scene": "continuous-bore", "start": start} | numbers | {
-        "cells": CELLS[cells]
-    }
+    return (
+        {"kind": "history", "scene": "continuous-bore", "start": start}
+        | numbers
+        | {"cells": CELLS[cells]}
+    )
 
 
 def field(velocity, cells):
@@ -122,9 +124,7 @@ def pieces(study):
     for row in rows(study):
         (slow if row[0]["scene"] == "bore" else fast).append(row)
     inside = [
-        period(study, *place, coarse=coarse)
-        for place in periods(study)
-        for coarse in (False, True)
+        period(study, *place, coarse=coarse) for place in periods(study) for coarse in (False, True)
     ]
     statics = [
         ask(study, scene, a)

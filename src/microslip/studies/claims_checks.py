@@ -206,9 +206,7 @@ def _rises(groups):
     for row in groups:
         for (_, slow), (place, fast) in pairwise(row):
             (before, its_error), (mu, error) = friction(slow), friction(fast)
-            found.append(
-                check(mu, before, mu - before, error + its_error, [fast, slow], **place)
-            )
+            found.append(check(mu, before, mu - before, error + its_error, [fast, slow], **place))
     return found
 
 

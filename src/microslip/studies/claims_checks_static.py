@@ -3,8 +3,6 @@
 As in claims_checks: one function for each part, (study, runs) -> list of verdicts.Check.
 """
 
-import numpy as np
-
 from .. import theory
 from . import claims as asked
 from . import claims_statements as say

@@ -138,10 +138,15 @@ def flags(dims, values, long_name, meanings):
     dims, values, attributes = variable(dims, values, long_name, np.int8)
     del attributes["units"]
     numbers = np.arange(len(meanings), dtype=np.int8)
-    return dims, values, attributes | {
-        "flag_values": numbers,
-        "flag_meanings": " ".join(meanings),
-    }
+    return (
+        dims,
+        values,
+        attributes
+        | {
+            "flag_values": numbers,
+            "flag_meanings": " ".join(meanings),
+        },
+    )
 
 
 # Runs, and the patches of the oscillating bore
@@ -257,7 +262,9 @@ def _edges(amplitude, moments):
         edges.append(circle * np.stack([np.cos(turn), np.sin(turn)]) if k % 2 else side * leaf)
     dims = ("patch_moment", "patch_edge")
     return {
-        f"patch_edge_{name}": variable(dims, [edge[i] for edge in edges], f"{name} position, {EDGE}")
+        f"patch_edge_{name}": variable(
+            dims, [edge[i] for edge in edges], f"{name} position, {EDGE}"
+        )
         for i, name in enumerate(("lateral", "forward"))
     }
 
