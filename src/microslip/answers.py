@@ -125,7 +125,14 @@ def _period(request):
     from .patches import patches
 
     sizes = {name: request[name] for name in ("cells", "angles", "steps")}
-    return _survived(lambda: patches(**_place(request), **sizes))
+
+    def run():
+        try:
+            return patches(**_place(request), **sizes)
+        except ValueError as error:  # the request is sound: no period was found
+            raise RuntimeError(str(error)) from error
+
+    return _survived(run)
 
 
 _KINDS = {

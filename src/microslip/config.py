@@ -30,6 +30,9 @@ from .settings import (
 MOST_POINTS = 1_000_000
 MOST_MAP_POINTS = 10_000
 
+# Up to these amplitudes there is static friction to be judged, by the maps of the paper.
+STATIC_AMPLITUDES = {"transverse": 1.0, "bore": 5.0}
+
 
 def load(path):
     """Read and check the YAML file `path`; return a Configuration or raise ConfigError."""
@@ -136,10 +139,17 @@ def _claims(given, where):
     for name in names[1:]:
         count = len(axes["velocity"]) * len(axes[name])
         _refuse_crowd(count, f"{where}.velocity x {name}", MOST_MAP_POINTS)
+    amplitude = {s: axes[f"amplitude_{s}"] for s in ("transverse", "bore")}
+    for scene, values in amplitude.items():
+        if values[0] > STATIC_AMPLITUDES[scene]:
+            raise ConfigError(
+                f"{where}.amplitude_{scene}: {list(values)} is not allowed; allowed: at least one "
+                f"number up to {STATIC_AMPLITUDES[scene]:g}, where there is static friction"
+            )
     return Claims(
         tolerance=float(number(given["tolerance"])),
         velocity=axes["velocity"],
-        amplitude={s: axes[f"amplitude_{s}"] for s in ("transverse", "bore")},
+        amplitude=amplitude,
         cells=given["cells"],
     )
 

@@ -14,11 +14,11 @@ def patches(scene, velocity, amplitude, *, poisson=0.0, cells=16, angles=16, ste
 
     Arguments and errors as for ``microslip.period``.  Returns a dict: mu_macro, converged, reason;
     phase, stick_right, stick_left: lists over the steps, the last two the shares of the contact's
-    area that stick at positive and at negative lateral positions; forward_position,
-    lateral_position, area: of the points (units a and a^2, the areas add up to pi); moment_phase:
-    phases of single moments, and moment_share, shape (moments, points): size of the traction over
-    the bound there, 1 where a point slips.  The moments are: when least of the contact sticks in a
-    stroke, the middle of the stroke, and the same of the stroke back.
+    area that stick at positive and at negative lateral positions; least_stick: of both together;
+    forward_position, lateral_position, area: of the points (units a and a^2, the areas add up to
+    pi); moment_phase: phases of single moments, and moment_share, shape (moments, points): size of
+    the traction over the bound there, 1 where a point slips.  The moments are: when least of the
+    contact sticks in a stroke, the middle of the stroke, and the same of the stroke back.
     """
     found = period(
         scene, velocity, amplitude, poisson=poisson, cells=cells, angles=angles, steps=steps
@@ -38,6 +38,7 @@ def patches(scene, velocity, amplitude, *, poisson=0.0, cells=16, angles=16, ste
         "phase": found.phase,
         "stick_right": sticking[:, right].sum(axis=1),
         "stick_left": sticking[:, ~right].sum(axis=1),
+        "least_stick": sticking[1:].sum(axis=1).min(),
         "forward_position": found.forward_position,
         "lateral_position": found.lateral_position,
         "area": area,

@@ -5,7 +5,7 @@ what is asked and what is judged cannot drift apart. Certified points come first
 own numbers or a look inside are wanted there are single runs.
 """
 
-from ..config import StudyPoint
+from ..config import STATIC_AMPLITUDES, StudyPoint
 from ..keys import number
 from . import requests
 from .ladders import exact_model
@@ -16,8 +16,6 @@ PAPER_SQUARES, PAPER_STEPS = 32, 100
 """The paper's squares along a side, and steps in a period that its run here has."""
 PAPER_TOLERANCE = 1e-3
 """The paper's error of stresses."""
-LARGEST_SHOWN = {"transverse": 3.0, "bore": 5.0}
-"""Largest amplitudes of the paper's maps."""
 
 STEADY_VELOCITIES = (0.1, 0.3, 0.5, 0.8, 1.2, 3.0)
 TRANSIENT_VELOCITY = 0.8
@@ -92,8 +90,7 @@ def period(study, velocity, amplitude, coarse=False):
 
 def limited(study, scene):
     """Amplitudes at which there is static friction that the paper's maps show."""
-    most = 1.0 if scene == "transverse" else LARGEST_SHOWN[scene]
-    return [amplitude for amplitude in study.amplitude[scene] if amplitude <= most]
+    return [a for a in study.amplitude[scene] if a <= STATIC_AMPLITUDES[scene]]
 
 
 def periods(study):

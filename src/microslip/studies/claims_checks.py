@@ -157,12 +157,13 @@ def steady_nears(study, runs):
 
 
 def _sticking(run):
-    """Area shares that stick, (steps,): right, left."""
-    return [np.asarray(run.result[f"stick_{side}"][1:], float) for side in ("right", "left")]
+    """Area shares that stick, (steps,): right, left; and that of the smallest cell."""
+    sides = [np.asarray(run.result[f"stick_{side}"][1:], float) for side in ("right", "left")]
+    return *sides, min(run.result["area"]) / np.pi
 
 
 def _periods(study, runs, judge):
-    """judge(right, left) -> (value, against, margin); the error is what half the rings change."""
+    """judge(right, left, cell) -> (value, against, margin); error: what half the rings change."""
     found = []
     for velocity, amplitude in asked.periods(study):
         requests = [asked.period(study, velocity, amplitude, coarse) for coarse in (False, True)]
@@ -178,15 +179,15 @@ def _periods(study, runs, judge):
 
 
 def some_sticks(study, runs):
-    def judge(right, left):
+    def judge(right, left, cell):
         least = (right + left).min()
-        return least, 0.0, least
+        return least, cell, least - cell
 
     return _periods(study, runs, judge)
 
 
 def alternates(study, runs):
-    def judge(right, left):
+    def judge(right, left, _):
         half = right.size // 2
         least = int(np.argmin((right + left)[:half]))
         leads = []

@@ -207,16 +207,17 @@ def _force(run):
 
 def _patches(settings, runs):
     """The slowest period seen from inside at the amplitude nearest 1, and theory's edges in it."""
-    places = asked.periods(settings)
-    velocity = min(v for v, _ in places)
-    amplitude = min((a for _, a in places), key=lambda a: abs(np.log(a)))
-    result = runs(asked.period(settings, velocity, amplitude)).result
-    found = {
-        "patch_velocity": variable((), velocity, "velocity of the patches"),
-        "patch_amplitude": variable((), amplitude, "amplitude of the patches"),
-    }
-    if "phase" not in result:  # the solver gave up
+    slowest = min(v for v, _ in asked.periods(settings))
+    places = [(v, a) for v, a in asked.periods(settings) if v == slowest]
+    found = {}
+    for velocity, amplitude in sorted(places, key=lambda place: abs(np.log(place[1]))):
+        result = runs(asked.period(settings, velocity, amplitude)).result
+        if value_of(result, "converged", bool):
+            break
+    else:
         return found
+    found["patch_velocity"] = variable((), velocity, "velocity of the patches")
+    found["patch_amplitude"] = variable((), amplitude, "amplitude of the patches")
     share = "size of the traction over the friction bound, 1 where a point slips"
     sides = {side: np.asarray(result[f"stick_{side}"], float) for side in ("right", "left")}
     for side, values in sides.items():

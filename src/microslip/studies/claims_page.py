@@ -10,7 +10,7 @@ import numpy as np
 import yaml
 
 from ..cache import writing_beside
-from .claims_static import FORMULAS
+from .claims_static import FORMULAS, SPLIT
 from .verdicts import OUTCOMES, WORDS
 
 STYLE = """
@@ -22,8 +22,10 @@ code { font-size: 12px; overflow-wrap: anywhere; }
 .v1 { background: #d7e9f7; } .v2 { background: #fbf0cf; } .v3 { background: #f7d9cc; }
 .v0, .aside { color: #555; } h2 { margin-top: 1.8em; }
 """
+COUNTED = {"holds": "for it", "fails": "against", "open": "open"}
 NAMES = {"slider": "Eq 7", "zone_printed": "Eq 33 as printed"}
 ZONES = {"transverse": "Eq 11", "bore": "Eq 33"}
+PARTS_OF_SHIFT = ("from_velocity", "from_resolution")
 SCENES = {"transverse": "Transverse oscillation", "bore": "Oscillating bore"}
 
 
@@ -83,7 +85,7 @@ def _with_error(value, error):
         return f"{_number(value)}, no error known"
     decimals = int(np.clip(1 - np.floor(np.log10(max(error, 1e-12))), 1, 6))
     rounded = f"{value:.{decimals}f}"
-    return f"{rounded if float(rounded) else _number(value)} &plusmn; {error:.1g}"
+    return f"{rounded if float(rounded) else _number(value)} &plusmn; {error:.2g}"
 
 
 def _summary(data):
@@ -91,8 +93,15 @@ def _summary(data):
     for i, claim in enumerate(data["claim"]):
         words, kind = _verdict(data["verdict"][i])
         link = f'<a href="#claim{claim}">{claim}</a>'
-        rows.append([(link, "n"), (escape(str(data["statement"][i])), ""), (words, kind)])
-    return _table(("", "what the paper says", "verdict"), rows)
+        shown = [
+            _link(_row_of(data, data["check_run"][chosen]))
+            for k in np.flatnonzero((data["part_claim"] == claim) & data["part_counts"])
+            if (chosen := _decisive(data, k)) is not None
+        ]
+        runs = ", ".join(dict.fromkeys(shown))
+        statement = escape(str(data["statement"][i]))
+        rows.append([(link, "n"), (statement, ""), (words, kind), (runs, "")])
+    return _table(("", "what the paper says", "verdict", "shown by"), rows)
 
 
 def _claim(data, index):
@@ -101,7 +110,7 @@ def _claim(data, index):
     rows, listed = [], []
     for k in np.flatnonzero(data["part_claim"] == number):
         verdict, its_kind = _verdict(data["part_verdict"][k])
-        counts = ", ".join(f"{data[f'part_{o}'][k]} {o}" for o in ("holds", "fails", "open"))
+        counts = ", ".join(f"{data[f'part_{o}'][k]} {word}" for o, word in COUNTED.items())
         text = escape(str(data["part_text"][k]))
         if not data["part_counts"][k]:
             text = f'<span class="aside">Beside the verdict: {text}</span>'
@@ -169,32 +178,32 @@ def _checks(data, part):
 
 def _static(data, scene):
     """A table over the amplitudes, and where the paper's formulas are off most."""
-    zone = ZONES[scene]
-    head = ["amplitude", "limit", zone, f"{zone} less limit", "paper's run", "less limit"]
-    head += ["of it from velocity", "of it from resolution", "squares alone, v &rarr; 0"]
-    columns = {name: data[f"{scene}_{name}"] for name in ("amplitude", "limit", "zone", "paper")}
+    names = {name: NAMES.get(name, ZONES[scene]) for name in FORMULAS[scene]}
+    slow, slowest = (float(data[f"claims_{n}"]) for n in ("paper_velocity", "slowest"))
+    head = ["amplitude", "limit", f"at velocity {slowest:g}"]
+    head += [f"{name} (less limit)" for name in names.values()]
+    head += [f"of the bound inside, {ZONES[scene]} less limit"]
+    head += [f"paper's run at {slow:g} (less limit)", "of it from velocity"]
+    head += ["of it from resolution", "squares alone, velocity to 0"]
+    of = {name: data[f"{scene}_{name}"] for name in (*SPLIT, *names, "lost", "amplitude")}
     rows = []
-    for k, amplitude in enumerate(columns["amplitude"]):
-        limit, its_error = columns["limit"][k], data[f"{scene}_limit_error"][k]
-        parts = [
-            _with_error(data[f"{scene}_from_{n}"][k], data[f"{scene}_from_{n}_error"][k])
-            for n in ("velocity", "resolution")
-        ]
+    for k, limit in enumerate(of["limit"]):
+        both = [f"{of[name][k]:.4f} ({of[name][k] - limit:+.4f})" for name in (*names, "paper")]
+        lost = of["lost"][k]
         texts = [
-            _number(amplitude),
-            _with_error(limit, its_error),
-            f"{columns['zone'][k]:.4f}",
-            f"{columns['zone'][k] - limit:+.4f}",
-            f"{columns['paper'][k]:.4f}",
-            f"{data[f'{scene}_paper_shift'][k]:+.4f}",
-            *parts,
-            f"{data[f'{scene}_squares_shift'][k]:+.4f}",
+            _number(of["amplitude"][k]),
+            *(_with_error(of[n][k], of[f"{n}_error"][k]) for n in ("limit", "march")),
+            *both[:-1],
+            f"{100 * lost:.1f} %" if np.isfinite(lost) else "",
+            both[-1],
+            *(_with_error(of[n][k], of[f"{n}_error"][k]) for n in PARTS_OF_SHIFT),
+            f"{of['squares_shift'][k]:+.4f}",
         ]
         rows.append([(text, "n") for text in texts])
     most = "; ".join(
-        f"{NAMES.get(name, zone)} by {float(data[f'{scene}_gap_{name}']):.4f} at amplitude "
-        f"{float(data[f'{scene}_gap_{name}_at']):.3g}"
-        for name in FORMULAS[scene]
+        f"{name} by {float(data[f'{scene}_gap_{key}']):.4f} at amplitude "
+        f"{float(data[f'{scene}_gap_{key}_at']):.3g}"
+        for key, name in names.items()
     )
     text = f"<h3>{SCENES[scene]}</h3>{_table(head, rows)}<p>Most above the limit: {most}."
     if scene == "bore":

@@ -74,7 +74,7 @@ _CALLS = {
     "field": (("cells",), "microslip traction_field(...)"),
     "period": (
         ("poisson", "cells", "angles", "steps"),
-        "microslip.patches patches(...)['mu_macro']",
+        "microslip.patches patches(...)['least_stick']",
     ),
     "run": (
         ("poisson", "model", "method", "cells", "angles", "steps", "tolerance"),

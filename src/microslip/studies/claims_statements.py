@@ -25,6 +25,8 @@ ALIGNED = 4.0
 """Largest angle in degrees between traction and slip: what the paper itself allows."""
 ALTERNATES = 0.5
 """Part of the sticking area by which one side has to lead where patches alternate."""
+VANISHES = 1e-9
+"""Friction over mu F_z up to which there counts as being none."""
 FAR = 3.0
 """Bore amplitude from which on the stick zone is small and an asymptote may be asked for."""
 
@@ -37,7 +39,8 @@ STATEMENTS = {
     "starts from full stick, full rotational slip or full lateral slip.",
     4: "In the steady continuous bore nothing sticks, even with the centre of rotation inside the "
     "contact.",
-    5: "Under oscillating bore of large amplitude the contact is steady at every instant (Eq 29).",
+    5: "Under oscillating bore of large amplitude friction is that of a contact which is steady at "
+    "every instant (Eq 29).",
     6: "Under oscillating bore Eq 33 is good for static friction at amplitudes above 2, and "
     "underestimates the reduction below.",
     7: "Near static friction the oscillating bore never slides fully; patches of stick alternate "
@@ -120,14 +123,19 @@ PARTS = (
         f"Eq 33 as printed, without the square, is within {GOOD:g}, above {TURNING_BORE:g}",
         counts=False,
     ),
-    Part(7, "some_sticks", "at every phase part of the contact sticks"),
+    Part(7, "some_sticks", "at every phase part of the contact sticks, more than one cell"),
     Part(
         7,
         "alternates",
         f"when least sticks one side leads by {ALTERNATES:g} of it, the other half a period later",
     ),
-    Part(8, "limit_positive", "the static limit is above 0 (closed form)"),
-    Part(8, "limit_positive_rings", "the static limit is above 0 (computed on rings)"),
+    Part(8, "limit_positive", f"the static limit is above {VANISHES:g} (closed form)"),
+    Part(
+        8,
+        "limit_positive_rings",
+        f"the static limit is above {VANISHES:g} on rings too, with no closed form",
+        counts=False,
+    ),
     Part(
         8,
         "limit_asymptote",

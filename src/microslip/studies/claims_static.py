@@ -10,6 +10,7 @@ import numpy as np
 from scipy.special import j0
 
 from .. import hertz, theory
+from ..config import STATIC_AMPLITUDES
 from . import claims as asked
 from .claims_runs import friction
 from .tables import value_of, variable
@@ -29,8 +30,6 @@ FORMULAS = {
     },
 }
 """The paper's formulas by scene: name -> (function of the amplitude, long_name)."""
-RANGES = {"transverse": 1.0, "bore": 5.0}
-"""Largest amplitude of the curves."""
 CURVE_POINTS = 501
 SHARE_AMPLITUDES = {"transverse": (0.1, 0.25, 0.5, 0.75), "bore": (0.25, 0.5, 1.0, 2.0)}
 RADII = 201
@@ -102,7 +101,7 @@ def variables(study, runs):
 
 
 def _curves(scene):
-    amplitude = np.linspace(0.0, RANGES[scene], CURVE_POINTS)
+    amplitude = np.linspace(0.0, STATIC_AMPLITUDES[scene], CURVE_POINTS)
     dim = f"{scene}_curve_amplitude"
     exact = LIMITS[scene](amplitude)
     found = {
@@ -147,9 +146,14 @@ def _split(study, runs, scene):
     for name, (formula, long_name) in FORMULAS[scene].items():
         values = [float(formula(amplitude)) for amplitude in amplitudes]
         found[f"{scene}_{name}"] = variable(dim, values, long_name)
+    zone = np.array(found[f"{scene}_zone"][1], float)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        lost = 1.0 - np.array([row["limit"] for row in rows]) / zone
+    found[f"{scene}_lost"] = variable(dim, np.where(zone > 0.0, lost, np.nan), LOST)
     return found
 
 
+LOST = "part of the bound inside the stick zone that is not left for the forward direction"
 SPLIT = {
     "limit": "static friction, exact limit",
     "limit_error": "error of the limit, from that on rings",
