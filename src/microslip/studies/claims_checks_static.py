@@ -54,7 +54,7 @@ def slider_above_march(study, runs):
     return _above_march(study, runs, "transverse", theory.static_slider, _below_one)
 
 
-def _above_march(study, runs, scene, formula, chosen=lambda amplitude: True):
+def _above_march(study, runs, scene, formula, chosen):
     """A formula against the smallest velocity that is marched. Friction rises with velocity, so
     that this bounds the limit from above, whatever one thinks of closed forms for it."""
     velocity, found = asked.velocities(study)[0], []
@@ -105,7 +105,7 @@ def bore_zone_printed(study, runs):
 
 
 def bore_zone_above_march(study, runs):
-    return _above_march(study, runs, "bore", theory.static_bore)
+    return _above_march(study, runs, "bore", theory.static_bore, _below_turning)
 
 
 def bore_zone_seen(study, runs):

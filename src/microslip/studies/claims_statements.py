@@ -114,7 +114,7 @@ PARTS = (
     Part(
         6,
         "bore_zone_above_march",
-        "Eq 33 lies above even the friction at the smallest velocity, a bound of the limit",
+        "there Eq 33 lies above even the friction at the smallest velocity, a bound of the limit",
         counts=False,
     ),
     Part(
