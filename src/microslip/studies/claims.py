@@ -93,6 +93,12 @@ def limited(study, scene):
     return [a for a in study.amplitude[scene] if a <= STATIC_AMPLITUDES[scene]]
 
 
+def sliding(study):
+    """The largest transverse amplitude, in a list, if the contact slides in every stroke there."""
+    largest = study.amplitude["transverse"][-1]
+    return [largest] if largest > STATIC_AMPLITUDES["transverse"] else []
+
+
 def periods(study):
     """(velocity, amplitude) of the periods that are looked into, those near static friction."""
     slow = [v for v in velocities(study) if v <= NEAR_STATIC]
@@ -115,7 +121,8 @@ def steady(study):
 
 def pieces(study):
     """What one job each answers: two lists of lists of requests, those that take long first."""
-    of_paper = [paper_run(scene, a) for scene in study.amplitude for a in limited(study, scene)]
+    of_paper = [paper_run("transverse", amplitude) for amplitude in sliding(study)]
+    of_paper += [paper_run(scene, a) for scene in study.amplitude for a in limited(study, scene)]
     long = [of_paper[i : i + FEW] for i in range(0, len(of_paper), FEW)]
     slow, fast = [], []
     for row in rows(study):

@@ -47,6 +47,21 @@ def rigid_below(study, runs):
     return _map(study, runs, "transverse", formula, lambda mu, eq: mu - eq)
 
 
+def rigid_below_squares(study, runs):
+    """The paper's run claims no error: it is what the certified point next to it tells."""
+    found = []
+    for amplitude in asked.sliding(study):
+        place = {"amplitude": amplitude, "velocity": asked.PAPER_VELOCITY}
+        paper = runs(asked.paper_run("transverse", amplitude))
+        point = runs(asked.point(study, "transverse", asked.PAPER_VELOCITY, amplitude))
+        certified, its_error = friction(point)
+        mu = value_of(paper.result, "mu_macro")
+        eq = theory.large_amplitude_transverse(asked.PAPER_VELOCITY, amplitude)
+        error = its_error + abs(mu - certified)
+        found.append(check(mu, eq, mu - eq, error, [paper, point], **place))
+    return found
+
+
 def rigid_near(study, runs):
     formula = theory.large_amplitude_transverse
     return _map(study, runs, "transverse", formula, lambda mu, eq: say.SLIGHT - abs(mu - eq))

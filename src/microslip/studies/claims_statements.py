@@ -67,6 +67,13 @@ class Part:
 PARTS = (
     Part(1, "rigid_below", "Eq 6 lies below the computed friction"),
     Part(1, "rigid_near", f"... and within {SLIGHT:g} of it"),
+    Part(
+        1,
+        "rigid_below_squares",
+        "Eq 6 lies below the friction of the paper's own run, at its smallest velocity and the "
+        "largest amplitude",
+        counts=False,
+    ),
     Part(2, "slider_above", "Eq 7 lies above the static limit"),
     Part(2, "zone_nearer", "Eq 11 is nearer to the static limit than Eq 7"),
     Part(
