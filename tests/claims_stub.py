@@ -77,7 +77,7 @@ def result(request):
         return {"force_forward": force, "torque": [0.0, *[float(theory.bore_torque(0.8))] * 30]}
     if kind == "field":
         return steady(request)
-    if kind == "period":
+    if kind == "patches":
         return period(request)
     off = 0.002 if request["model"] == "cartesian" else 0.0
     found = {"mu_macro": friction(request) + off, "converged": True, "reason": ""}

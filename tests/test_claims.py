@@ -163,8 +163,8 @@ FLIPPED = {
     "Eq 33 exact": (6, of_points("bore", eq33, static=True), NOT_DECIDED),
     "Eq 33 as the paper has it": (6, of_points("bore", below_eq33_below_two, static=True), HOLDS),
     "Eq 33 too low": (6, of_points("bore", lambda v, a: 0.8, static=True), NOT),
-    "full sliding": (7, of_kind("period", full_sliding), NOT),
-    "stick on both sides": (7, of_kind("period", even_sides), PARTLY),
+    "full sliding": (7, of_kind("patches", full_sliding), NOT),
+    "stick on both sides": (7, of_kind("patches", even_sides), PARTLY),
     "no friction left": (8, of_points("bore", lambda v, a: 0.0, static=True), NOT),
     "bore falls with velocity": (9, of_points("bore", lambda v, a: 1 / (1 + v)), PARTLY),
 }

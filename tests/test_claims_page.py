@@ -81,7 +81,7 @@ def test_the_line_for_a_point_asks_for_that_point(request_):
     assert given == {name: request_[name] for name in given}
 
 
-@pytest.mark.parametrize("kind", ["history", "field", "period", "run"])
+@pytest.mark.parametrize("kind", ["history", "field", "patches", "run"])
 def test_other_lines_call_what_is_there_with_what_was_asked(kind):
     request_ = next(r for r in requests() if r["kind"] == kind)
     python, dash, code = shlex.split(command(request_))

@@ -106,7 +106,7 @@ def test_a_period_that_is_not_found_is_a_gap(error, tmp_path, monkeypatch):
 
     monkeypatch.setattr("microslip.patches.period", fails)
     place = {"scene": "bore", "velocity": "0.1", "amplitude": "1", "poisson": "0"}
-    request = {"kind": "period", "cells": 8, "angles": 8, "steps": 16} | place
+    request = {"kind": "patches", "cells": 8, "angles": 8, "steps": 16} | place
     record, _ = sweep.answer(request, Store(tmp_path))
     assert record["result"]["converged"] is False
     assert "no periodic state" in record["result"]["reason"]

@@ -182,7 +182,7 @@ def package(tmp_path):
         ("trial", "shipped", ["trial.py"]),
         ("scaling", "", ["trial.py"]),
         ("run", "alone", ["methods/alone.py", "trial.py"]),
-        ("period", "", ["patches.py"]),
+        ("patches", "", ["patches.py"]),
         ("probe", "alone:step=2", ["methods/alone.py"]),
         ("trial", "alone", ["methods/alone.py", "trial.py"]),
         ("probe", "one", ["methods/_deeper.py", "methods/_shared.py", "methods/one.py"]),

@@ -121,7 +121,8 @@ def _run(request):
     return _survived(lambda: trial.run_trial(**_place(request), **settings, tolerance=tolerance))
 
 
-def _period(request):
+def _patches(request):
+    """Where the contact sticks over a period."""
     from .patches import patches
 
     sizes = {name: request[name] for name in ("cells", "angles", "steps")}
@@ -144,7 +145,7 @@ _KINDS = {
     "probe": _probe,
     "scaling": _scaling,
     "run": _run,
-    "period": _period,
+    "patches": _patches,
 }
 
 

@@ -36,8 +36,9 @@ NOT_SOLVER |= {"launch", "bundle"}
 # These count for the requests that name them, see further_files.
 NOT_SOLVER |= {"trial", "patches", "methods"}
 
-# Modules that single kinds of requests depend on besides.
-BEHIND = {"trial": "trial.py", "scaling": "trial.py", "run": "trial.py", "period": "patches.py"}
+# What answers requests of a kind besides the solver.
+BESIDE_SOLVER = {"trial": "trial.py", "scaling": "trial.py"}
+BESIDE_SOLVER |= {"run": "trial.py", "patches": "patches.py"}
 
 PACKAGE = Path(__file__).parent
 
@@ -114,11 +115,11 @@ def further_files(kind, method, package=None):
     """List the modules that a request depends on besides the solver, as (name, Path), sorted.
 
     kind, method: of the request, see microslip.studies.requests; method: such as "admm:penalty=1",
-    "" for none. What BEHIND names for a kind counts for it, and a method's file with all that it
+    "" for none. What BESIDE_SOLVER names counts for a kind, and a method's file with all that it
     imports from its folder, so that another method makes no result stale.
     """
     package = Path(package or PACKAGE)
-    names = {BEHIND[kind]} if kind in BEHIND else set()
+    names = {BESIDE_SOLVER[kind]} if kind in BESIDE_SOLVER else set()
     waiting = [method.partition(":")[0].replace("-", "_")]
     while waiting:
         name = f"methods/{waiting.pop()}.py"

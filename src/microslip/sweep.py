@@ -33,7 +33,7 @@ FOLDERS = {
     "probe": "probes",
     "scaling": "scaling",
     "run": "runs",
-    "period": "periods",
+    "patches": "patches",
 }
 
 

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
-from matplotlib.tri import Triangulation
+from scipy.spatial import cKDTree
 
 from microslip.plot import style as look
 from microslip.plot.data import require
@@ -26,6 +26,8 @@ VARIABLES = (
     "patch_edge_lateral",
     "patch_edge_forward",
 )
+#: Pixels along a side of the picture of a contact; each shows the point next to it.
+PIXELS = 401
 #: The moments that are shown, and what they are.
 MOMENTS = ((0, "before one turning point"), (1, "mid-stroke"), (2, "before the other"))
 AREAS = (
@@ -54,17 +56,19 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 def _contact(axes: Axes, at: xr.Dataset) -> object:
     """What sticks, shaded by the share of the bound in use; what slips is left white."""
     x, y, share = (at[f"patch_{n}"].values for n in ("lateral", "forward", "share"))
-    mesh = Triangulation(x, y)
-    corners = share[mesh.triangles]
-    mesh.set_mask((corners >= 1.0).any(axis=1))  # part of the triangle slips
-    shade = axes.tripcolor(
-        mesh,
-        facecolors=corners.mean(axis=1),
+    line = np.linspace(-1.0, 1.0, PIXELS)
+    pixels = np.stack(np.meshgrid(line, line), axis=-1)
+    _, nearest = cKDTree(np.column_stack((x, y))).query(pixels)
+    shown = np.where(np.hypot(*np.moveaxis(pixels, -1, 0)) < 1.0, share[nearest], 1.0)
+    edge = 1.0 + 0.5 * (line[1] - line[0])
+    shade = axes.imshow(
+        np.ma.masked_greater_equal(shown, 1.0),
         cmap=look.COLOURMAP,
         vmin=0.0,
         vmax=1.0,
-        edgecolors="face",  # no hairlines between the triangles in a PDF
-        linewidth=0.2,
+        origin="lower",
+        extent=(-edge, edge, -edge, edge),
+        interpolation="nearest",
         gid="sticks",
     )
     axes.add_patch(Circle((0, 0), 1.0, facecolor="none", edgecolor=look.BLACK, linewidth=0.9))

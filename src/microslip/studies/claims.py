@@ -85,7 +85,7 @@ def period(study, velocity, amplitude, coarse=False):
     cells = 2 * (study.cells // 4) if coarse else study.cells
     place = StudyPoint("", "bore", velocity, amplitude, 0.0, "")
     sizes = {"cells": cells, "angles": cells, "steps": PERIOD_STEPS}
-    return requests.of_point(place) | {"kind": "period"} | sizes
+    return requests.of_point(place) | {"kind": "patches"} | sizes
 
 
 def limited(study, scene):

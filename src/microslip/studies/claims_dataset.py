@@ -195,7 +195,7 @@ def _runs(found):
 
 
 def _model(run):
-    polar = run.request["kind"] in ("history", "field", "period")
+    polar = run.request["kind"] in ("history", "field", "patches")
     return value_of(run.result, "model", str) or run.request.get("model") or "polar" * polar
 
 

@@ -72,7 +72,7 @@ def command(request):
 _CALLS = {
     "history": (("start", "travel", "cells"), "microslip history(...).force_forward[-1]"),
     "field": (("cells",), "microslip traction_field(...)"),
-    "period": (
+    "patches": (
         ("poisson", "cells", "angles", "steps"),
         "microslip.patches patches(...)['least_stick']",
     ),
@@ -99,7 +99,7 @@ def made_by(request):
         "point": "certified point",
         "history": f"transient from {request.get('start')}",
         "field": "steady tractions",
-        "period": "a period from inside",
+        "patches": "a period from inside",
         "run": f"single run, method {request.get('method')}",
     }
     limit = request["kind"] == "point" and request["velocity"] == "0"
