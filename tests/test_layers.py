@@ -32,6 +32,7 @@ LAYERS = [
     {"answers", "jobs", "watch", "limits", "columns", "summary"},
     {"sweep", "dataset"},
     {"stored", "si"},
+    {"query"},
     {"studies"},
     {"plot", "launch"},
     {"cli_predict"},
@@ -105,4 +106,4 @@ def test_physics_knows_no_files_workflow_or_plots(path):
 
 def test_theory_and_the_solvers_meet_only_in_the_public_answer():
     users = {top_name(path) for path in MODULES if "theory" in imported(path)[0]}
-    assert users <= {"any_pressure", "choice", "limits", "dataset", "studies"}
+    assert users <= {"any_pressure", "choice", "limits", "dataset", "studies", "query"}

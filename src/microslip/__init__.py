@@ -13,6 +13,7 @@ _WHERE = {
     "warm_up": "microslip.point",
     "solve_stored": "microslip.stored",
     "predict": "microslip.si.predict",
+    "open_map": "microslip.query",
     "history": "microslip.inside",
     "History": "microslip.inside",
     "traction_field": "microslip.inside",
