@@ -7,11 +7,13 @@
 #
 # snakemake --report report.zip makes one page of figures, captions and what made them.
 #
-# Two studies compare methods: snakemake accuracy, snakemake stability.
+# Two studies compare methods: snakemake accuracy, snakemake stability; a third one judges what the
+# paper says: snakemake claims.
 #
-#   methods, points --> pieces --> solve_batch --+--> results/batches/{accuracy,stability}*/*.json
-#                                                +--> results/{points,trials,probes,scaling}
-#   pieces of a study --> collect_study --> results/{accuracy_cost,stability}.nc --> draw_figure
+#   methods, points --> pieces --> solve_batch --+--> results/batches/{accuracy,stability,claims}*/
+#                                                +--> results/{points,trials,probes,scaling,...}
+#   pieces of a study --> collect_study --> results/{accuracy_cost,stability,claims}.nc
+#   datasets --> draw_figure
 #
 # snakemake explorer makes one page to look behind every point of the maps.
 #
@@ -83,3 +85,9 @@ rule stability:
     input:
         datasets_of(["stability"]),
         figures_of(["stability"]),
+
+
+rule claims:
+    input:
+        datasets_of(["claims"]),
+        figures_of(["claims"]),

@@ -28,6 +28,7 @@ LAYERS = [
     {"choice"},
     {"point"},
     {"inside", "trial"},
+    {"patches"},
     {"keys", "schemas", "settings"},
     {"cache", "config", "periods"},
     {"answers", "jobs", "watch", "limits", "columns", "summary"},

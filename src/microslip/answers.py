@@ -126,6 +126,31 @@ def _scaling(request):
     return trial.measure_steps(request["model"], *sizes)
 
 
+def _run(request):
+    """One run at one resolution, with nothing timed: equal requests have equal results."""
+    from . import trial
+
+    names = ("model", "method", "cells", "angles", "steps")
+    settings = {name: request[name] for name in names}
+    tolerance = float(request["tolerance"])
+    return _survived(lambda: trial.run_trial(**_place(request), **settings, tolerance=tolerance))
+
+
+def _patches(request):
+    """Where the contact sticks over a period."""
+    from .patches import patches
+
+    sizes = {name: request[name] for name in ("cells", "angles", "steps")}
+
+    def run():
+        try:
+            return patches(**_place(request), **sizes)
+        except ValueError as error:  # the request is sound: no period was found
+            raise RuntimeError(str(error)) from error
+
+    return _survived(run)
+
+
 _KINDS = {
     "point": _point,
     "history": _history,
@@ -135,6 +160,8 @@ _KINDS = {
     "choice": _choice,
     "probe": _probe,
     "scaling": _scaling,
+    "run": _run,
+    "patches": _patches,
 }
 
 

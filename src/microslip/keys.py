@@ -25,12 +25,13 @@ NOT_SOLVER |= {"studies", "plot", "explorer", "si", "query"}
 # The command that starts the workflow, and the copy of the workflow in an installed package.
 NOT_SOLVER |= {"launch", "bundle"}
 # These count for the requests that name them, see further_files.
-NOT_SOLVER |= {"trial", "methods", "periods"}
+NOT_SOLVER |= {"trial", "patches", "periods", "methods"}
 
 PACKAGE = Path(__file__).parent
 
 # What answers requests of a kind besides the solver.
-BESIDE_SOLVER = {"trial": "trial.py", "scaling": "trial.py", "period": "periods.py"}
+BESIDE_SOLVER = {"trial": "trial.py", "scaling": "trial.py", "run": "trial.py"}
+BESIDE_SOLVER |= {"period": "periods.py", "patches": "patches.py"}
 
 # Raise it when the content of a record changes without any change in the solver.
 RECORD_FORMAT = 1
@@ -105,8 +106,8 @@ def further_files(kind, method, package=None):
     """List the modules that a request depends on besides the solver, as (name, Path), sorted.
 
     kind, method: of the request, see microslip.studies.requests; method: such as "admm:penalty=1",
-    "" for none. What runs trials or packs periods counts for these, and a method's file with all
-    that it imports from its folder, so that another method makes no result stale.
+    "" for none. What BESIDE_SOLVER names counts for a kind, and a method's file with all that it
+    imports from its folder, so that another method makes no result stale.
     """
     package = Path(package or PACKAGE)
     names = {BESIDE_SOLVER[kind]} if kind in BESIDE_SOLVER else set()

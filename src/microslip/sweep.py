@@ -33,6 +33,8 @@ FOLDERS = {
     "choice": "trials",
     "probe": "probes",
     "scaling": "scaling",
+    "run": "runs",
+    "patches": "patches",
 }
 
 
