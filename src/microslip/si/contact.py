@@ -49,7 +49,9 @@ class TwoBodies:
     @property
     def poisson(self):
         """Poisson's ratio of the equal half-space on a rigid one, sum(nu/G) / sum(1/G)."""
-        return self.G * sum(body.poisson / body.shear_modulus for body in self.bodies)
+        compliances = [1.0 / body.shear_modulus for body in self.bodies]
+        total = sum(compliances)  # of one elastic body it is that body's ratio, to the last bit
+        return sum(b.poisson * (c / total) for b, c in zip(self.bodies, compliances, strict=True))
 
     @property
     def G_star(self):
