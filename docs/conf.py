@@ -27,6 +27,7 @@ autodoc_member_order = "bysource"
 
 html_theme = "furo"
 html_title = f"microslip {release}"
+html_show_copyright = False
 html_copy_source = False
 html_show_sourcelink = False
 html_static_path = ["_static"]

@@ -3,6 +3,8 @@
 The translation is that of docutils, on which Sphinx stands.
 """
 
+import re
+
 from docutils.utils.math import MathError
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.errors import ExtensionError
@@ -10,9 +12,11 @@ from sphinx.errors import ExtensionError
 
 def _mathml(node, as_block):
     try:
-        return tex2mathml(node.astext(), as_block=as_block)
+        drawn = tex2mathml(node.astext(), as_block=as_block)
     except MathError as error:
         raise ExtensionError(f"formula {node.astext()!r}: {error}") from error
+    # Bars around a value: as high as a letter, and close to it.
+    return re.sub(r"<mo[^>]*>\|</mo>", '<mo stretchy="false" lspace="0" rspace="0">|</mo>', drawn)
 
 
 def _inline(translator, node):

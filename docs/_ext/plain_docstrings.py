@@ -30,12 +30,15 @@ def _paragraphs(lines):
 def _as_list(text, names):
     """Lines for a paragraph; its entries in a list, what returns or raises in lines of its own."""
     name = "|".join(sorted(map(re.escape, names), key=len, reverse=True)) or "(?!)"
-    group = rf"(?:{name})(?: (?:>=?|<=?) [\d.]+)?"
+    group = rf"(?:{name})(?: (?:>=?|<=?) [\d.]+)?(?: \([^()]*\))?"
     many = rf"{group}(?:,? (?:and )?{group})*"
     parts = re.split(rf"(?:^|(?<=[;.]) )({many}): ", text)
     out = [parts[0], ""] if parts[0] else []
-    for given, entry in zip(parts[1::2], parts[2::2], strict=True):
-        entry, *after = re.split(r"(?<=[.;]) (?=Returns? |Raises |Allowed )", entry, maxsplit=1)
+    last = len(parts) // 2 - 1
+    for number, (given, entry) in enumerate(zip(parts[1::2], parts[2::2], strict=True)):
+        # What follows the last entry is about all of them.
+        words = "[A-Z]" if number == last else "(?:Returns?|Raises|Allowed) "
+        entry, *after = re.split(rf"(?<=\.) (?={words})", entry, maxsplit=1)
         out.append(f"- **{given}**: {entry.rstrip(';. ')}")
         if after:
             out += ["", *after, ""]
