@@ -7,11 +7,18 @@
 #
 # snakemake --report report.zip makes one page of figures, captions and what made them.
 #
-# Two studies compare methods: snakemake accuracy, snakemake stability.
+# Two studies compare methods: snakemake accuracy, snakemake stability; a third one judges what the
+# paper says: snakemake claims.
 #
-#   methods, points --> pieces --> solve_batch --+--> results/batches/{accuracy,stability}*/*.json
-#                                                +--> results/{points,trials,probes,scaling}
-#   pieces of a study --> collect_study --> results/{accuracy_cost,stability}.nc --> draw_figure
+#   methods, points --> pieces --> solve_batch --+--> results/batches/{accuracy,stability,claims}*/
+#                                                +--> results/{points,trials,probes,scaling,...}
+#   pieces of a study --> collect_study --> results/{accuracy_cost,stability,claims}.nc
+#   datasets --> draw_figure
+#
+# snakemake explorer makes one page to look behind every point of the maps.
+#
+#   points of the maps --> periods, cut into batches --> solve_batch --> results/periods
+#   datasets, periods --> explorer --> results/explorer.html
 #
 # Batches are named by the hashes of their points, points by what they depend on: the physics, the
 # tolerance and the solver's sources. So what is there is never stale, and never computed twice.
@@ -47,6 +54,7 @@ include: "workflow/rules/common.smk"
 include: "workflow/rules/points.smk"
 include: "workflow/rules/datasets.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/explorer.smk"
 
 
 onstart:
@@ -77,3 +85,9 @@ rule stability:
     input:
         datasets_of(["stability"]),
         figures_of(["stability"]),
+
+
+rule claims:
+    input:
+        datasets_of(["claims"]),
+        figures_of(["claims"]),

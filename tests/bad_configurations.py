@@ -158,6 +158,13 @@ STUDIES = [
     ("accuracy.map.tolerance", "[]", "[] is not allowed", "a list of a number"),
     ("accuracy.map.tolerance", "[0.01, 0.01]", "0.01 occurs twice", "different values"),
     ("accuracy.map.tolerance[1]", "1", "1 is not allowed", TOLERANCES),
+    ("claims.tolerance", "0", "0 is not allowed", TOLERANCES),
+    ("claims.velocity", "[0, 1]", "0 is not allowed", "> 0"),
+    ("claims.amplitude_bore", "[1, 1]", "1 occurs twice", "different values"),
+    ("claims.amplitude_bore", "[6, 10]", "[6.0, 10.0] is not allowed", "up to 5"),
+    ("claims.amplitude_transverse", "[2]", "[2.0] is not allowed", "up to 1"),
+    ("claims.amplitude", "[1]", "unknown key; did you mean amplitude_bore?"),
+    ("claims.cells", "9", "9 is not allowed", "an even number"),
 ]
 
 # What GOOD lacks and cases above change a part of.
@@ -169,6 +176,8 @@ accuracy:
 stability:
   methods: [shipped, admm]
   axes: [edge]
+claims:
+  tolerance: 0.01
 """
 
 

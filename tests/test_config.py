@@ -83,6 +83,7 @@ def test_the_studies_need_not_be_given():
     assert replace(found.accuracy, methods=()) == replace(shipped.accuracy, methods=())
     assert replace(found.stability, methods=()) == replace(shipped.stability, methods=())
     assert found.accuracy.map_tolerance == (1e-2, 1e-3)
+    assert found.claims == shipped.claims
 
 
 def test_points_of_a_study_have_numbers_and_titles():

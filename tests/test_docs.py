@@ -42,6 +42,7 @@ SHARED_FOLDERS = ("benchmarks", "config", "docs", "profiles", "tests", "workflow
 
 INSTALLS = "installs packages; .ci/run does this in a new environment"
 FULL = "the full sweeps take minutes; .ci/run runs the same rules on config/smoke.yaml"
+SMALL = "about a minute of computing; .ci/run makes it for config/smoke.yaml"
 BENCHMARK = "minutes to hours; nobody runs it but who wants the numbers of the page"
 CLUSTER = "needs a cluster or a cloud; not run"
 # Blocks that are not run, by page and first line: why not, and where they are.
@@ -62,6 +63,8 @@ NOT_RUN = {
         "processes of a workflow; a sweep is run as it stands by docs/start.md"
     ),
     ("docs/methods.md", ".venv/bin/snakemake -j2 accuracy stability"): FULL,
+    ("docs/claims.md", ".venv/bin/snakemake -j2 claims"): SMALL,
+    ("docs/explorer.md", ".venv/bin/snakemake -j2 explorer"): SMALL,
     ("docs/accuracy.md", "python benchmarks/certificates.py"): BENCHMARK,
     ("docs/accuracy.md", "python benchmarks/static_approach.py"): BENCHMARK,
     ("docs/accuracy.md", "python benchmarks/sweep_cost.py"): BENCHMARK,

@@ -158,6 +158,7 @@ def package(tmp_path):
     files = {
         "solver.py": "A = 1",
         "trial.py": "B = 1",
+        "patches.py": "B = 2",
         "methods/__init__.py": "C = 1",
         "methods/_shared.py": "D = 1",
         "methods/_deeper.py": "E = 1",
@@ -180,6 +181,8 @@ def package(tmp_path):
         ("probe", "shipped", []),
         ("trial", "shipped", ["trial.py"]),
         ("scaling", "", ["trial.py"]),
+        ("run", "alone", ["methods/alone.py", "trial.py"]),
+        ("patches", "", ["patches.py"]),
         ("probe", "alone:step=2", ["methods/alone.py"]),
         ("trial", "alone", ["methods/alone.py", "trial.py"]),
         ("probe", "one", ["methods/_deeper.py", "methods/_shared.py", "methods/one.py"]),

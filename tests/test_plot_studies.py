@@ -1,9 +1,10 @@
-"""Figures of the two studies: they draw what `accuracy_cost.nc` and `stability.nc` hold."""
+"""Figures of the studies: they draw what `accuracy_cost.nc`, `stability.nc`, `claims.nc` hold."""
 
 from __future__ import annotations
 
 import warnings
 
+import claims_stub
 import numpy as np
 import pytest
 import xarray as xr
@@ -12,7 +13,7 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.legend import Legend
 from matplotlib.text import Text
 
-from microslip import plot
+from microslip import plot, studies
 from microslip.plot import style as look
 
 MODELS = ("rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian")
@@ -225,26 +226,33 @@ def fake_stability(axes: int = 13, cases: int = 7, methods: tuple[str, ...] = ST
 
 
 FIGURES = ("accuracy_vs_cost", "accuracy_vs_work", "model_map", "scaling", "stability_atlas")
+ALL = (*FIGURES, "claims_static", "claims_patches")
 
 
 @pytest.fixture(scope="module")
 def datasets() -> dict[str, xr.Dataset]:
-    """Both datasets, as large as the real ones."""
-    return {"accuracy_cost": fake_accuracy(), "stability": fake_stability()}
+    """The datasets, as large as the real ones."""
+    return {"accuracy_cost": fake_accuracy(), "stability": fake_stability(), "claims": claims()}
 
 
 @pytest.fixture(scope="module")
 def small() -> dict[str, xr.Dataset]:
-    """Both datasets with few points, methods and axes."""
+    """The datasets with few points, methods and axes."""
     methods = ("shipped", "full-newton")
     stability = fake_stability(axes=2, cases=3, methods=("shipped", "paper"))
-    return {"accuracy_cost": fake_accuracy(2, methods), "stability": stability}
+    few = claims(amplitude_bore=[1], amplitude_transverse=[0.5])
+    return {"accuracy_cost": fake_accuracy(2, methods), "stability": stability, "claims": few}
 
 
 @pytest.fixture(scope="module")
 def figures(datasets):
     """All figures of the studies, drawn once."""
-    return {name: plot.draw(name, datasets) for name in FIGURES}
+    return {name: plot.draw(name, datasets) for name in ALL}
+
+
+def claims(**changes) -> xr.Dataset:
+    """The dataset of the claims, of made-up answers."""
+    return studies.build("claims", claims_stub.configured(**changes), claims_stub.answered()[0])
 
 
 def artists(where, gid: str) -> list:
@@ -292,7 +300,7 @@ def test_figures_name_their_datasets():
     assert {plot.FIGURES[name] for name in FIGURES[:-1]} == {("accuracy_cost",)}
 
 
-@pytest.mark.parametrize("name", FIGURES)
+@pytest.mark.parametrize("name", ALL)
 def test_saves_whole_and_reproducibly(name, small, tmp_path):
     for kind, start in (("png", b"\x89PNG"), ("pdf", b"%PDF")):
         first = plot.save(plot.draw(name, small), tmp_path / f"first.{kind}").read_bytes()
@@ -302,7 +310,7 @@ def test_saves_whole_and_reproducibly(name, small, tmp_path):
         assert b"Date" not in first
 
 
-@pytest.mark.parametrize("name", FIGURES)
+@pytest.mark.parametrize("name", ALL)
 def test_fits_the_page_and_no_texts_meet(name, figures):
     figure = figures[name]
     figure.draw_without_rendering()
@@ -324,7 +332,7 @@ def test_fits_the_page_and_no_texts_meet(name, figures):
     assert not [(drawn[i].get_text(), drawn[j].get_text()) for i, j in np.argwhere(meet)]
 
 
-@pytest.mark.parametrize("name", FIGURES)
+@pytest.mark.parametrize("name", ALL)
 def test_legends_hide_no_panel_and_no_other_legend(name, figures):
     figure = figures[name]
     figure.draw_without_rendering()
@@ -334,7 +342,7 @@ def test_legends_hide_no_panel_and_no_other_legend(name, figures):
         assert not any(box.overlaps(other) for other in [*panels, *legends[index + 1 :]])
 
 
-@pytest.mark.parametrize("name", FIGURES)
+@pytest.mark.parametrize("name", ALL)
 def test_a_small_dataset_is_drawn_without_complaint(name, small):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -350,6 +358,8 @@ def test_a_small_dataset_is_drawn_without_complaint(name, small):
         *(("model_map", n) for n in ("bore_cheapest", "map_tolerance", "transverse_velocity")),
         *(("scaling", n) for n in ("scaling_memory", "scaling_exponent_seconds")),
         *(("stability_atlas", n) for n in ("outcome", "case_axis", "axis_note", "method")),
+        *(("claims_static", n) for n in ("bore_curve_limit", "transverse_paper", "share_radius")),
+        *(("claims_patches", n) for n in ("patch_share", "patch_edge_forward", "patch_stick")),
     ],
 )
 def test_a_missing_variable_is_named(name, variable, small):

@@ -23,7 +23,9 @@ def test_every_figure_has_a_caption_of_its_own(figure):
     assert rendered("figure", figure=figure) not in others
 
 
-@pytest.mark.parametrize("wildcards", [{"sweep": "bore"}, {"dataset": "stability"}])
+@pytest.mark.parametrize(
+    "wildcards", [{"sweep": "bore"}, {"dataset": "stability"}, {"dataset": "claims"}]
+)
 def test_every_dataset_has_a_caption(wildcards):
     assert "``results/any.nc``" in rendered("dataset", **wildcards)
 

@@ -65,6 +65,21 @@ def _field(request):
     return microslip.traction_field(request["scene"], **_of_single_run(request))
 
 
+def _period(request):
+    """A period of the periodic state in few bytes, see microslip.periods."""
+    from .periods import packed
+
+    counts = {name: request[name] for name in ("cells", "angles", "steps")}
+
+    def run():
+        return packed(microslip.period(**_place(request), **counts), request["angles"])
+
+    try:
+        return _survived(run)
+    except ValueError as error:  # no state was found
+        return {"converged": False, "reason": str(error)}
+
+
 def _trial(request):
     """One run at one resolution; `applies` is False where there is nothing to run."""
     from . import trial
@@ -111,14 +126,42 @@ def _scaling(request):
     return trial.measure_steps(request["model"], *sizes)
 
 
+def _run(request):
+    """One run at one resolution, with nothing timed: equal requests have equal results."""
+    from . import trial
+
+    names = ("model", "method", "cells", "angles", "steps")
+    settings = {name: request[name] for name in names}
+    tolerance = float(request["tolerance"])
+    return _survived(lambda: trial.run_trial(**_place(request), **settings, tolerance=tolerance))
+
+
+def _patches(request):
+    """Where the contact sticks over a period."""
+    from .patches import patches
+
+    sizes = {name: request[name] for name in ("cells", "angles", "steps")}
+
+    def run():
+        try:
+            return patches(**_place(request), **sizes)
+        except ValueError as error:  # the request is sound: no period was found
+            raise RuntimeError(str(error)) from error
+
+    return _survived(run)
+
+
 _KINDS = {
     "point": _point,
     "history": _history,
     "field": _field,
+    "period": _period,
     "trial": _trial,
     "choice": _choice,
     "probe": _probe,
     "scaling": _scaling,
+    "run": _run,
+    "patches": _patches,
 }
 
 

@@ -17,6 +17,7 @@ from .settings import (
     MODELS_OF_SCENE,
     SCENE_OF_SWEEP,
     Accuracy,
+    Claims,
     ConfigError,
     Configuration,
     Stability,
@@ -28,6 +29,9 @@ from .settings import (
 # it starts. The points of a study's map are computed by every model, at every tolerance.
 MOST_POINTS = 1_000_000
 MOST_MAP_POINTS = 10_000
+
+# Up to these amplitudes there is static friction to be judged, by the maps of the paper.
+STATIC_AMPLITUDES = {"transverse": 1.0, "bore": 5.0}
 
 
 def load(path):
@@ -87,6 +91,7 @@ def from_mapping(mapping, source="configuration"):
         histories=filled["histories"],
         accuracy=_accuracy(filled["accuracy"], f"{source}: accuracy"),
         stability=_stability(filled["stability"], f"{source}: stability"),
+        claims=_claims(filled["claims"], f"{source}: claims"),
     )
 
 
@@ -125,6 +130,27 @@ def _stability(given, where):
         methods=_methods(given["methods"], where),
         tolerance=float(number(given["tolerance"])),
         axes=None if axes is None else tuple(_once(axes, f"{where}.axes")),
+    )
+
+
+def _claims(given, where):
+    names = ("velocity", "amplitude_transverse", "amplitude_bore")
+    axes = {name: _axis(given[name], f"{where}.{name}", positive=True) for name in names}
+    for name in names[1:]:
+        count = len(axes["velocity"]) * len(axes[name])
+        _refuse_crowd(count, f"{where}.velocity x {name}", MOST_MAP_POINTS)
+    amplitude = {s: axes[f"amplitude_{s}"] for s in ("transverse", "bore")}
+    for scene, values in amplitude.items():
+        if values[0] > STATIC_AMPLITUDES[scene]:
+            raise ConfigError(
+                f"{where}.amplitude_{scene}: {list(values)} is not allowed; allowed: at least one "
+                f"number up to {STATIC_AMPLITUDES[scene]:g}, where there is static friction"
+            )
+    return Claims(
+        tolerance=float(number(given["tolerance"])),
+        velocity=axes["velocity"],
+        amplitude=amplitude,
+        cells=given["cells"],
     )
 
 

@@ -21,13 +21,17 @@ from pathlib import Path
 NOT_SOLVER = {"__init__", "__main__", "cli", "cli_predict"}
 NOT_SOLVER |= {"config", "schemas", "keys", "cache", "answers", "sweep", "stored", "jobs", "watch"}
 NOT_SOLVER |= {"settings", "limits", "any_pressure", "columns", "dataset", "summary"}
-NOT_SOLVER |= {"studies", "plot", "si", "query"}
+NOT_SOLVER |= {"studies", "plot", "explorer", "si", "query"}
 # The command that starts the workflow, and the copy of the workflow in an installed package.
 NOT_SOLVER |= {"launch", "bundle"}
 # These count for the requests that name them, see further_files.
-NOT_SOLVER |= {"trial", "methods"}
+NOT_SOLVER |= {"trial", "patches", "periods", "methods"}
 
 PACKAGE = Path(__file__).parent
+
+# What answers requests of a kind besides the solver.
+BESIDE_SOLVER = {"trial": "trial.py", "scaling": "trial.py", "run": "trial.py"}
+BESIDE_SOLVER |= {"period": "periods.py", "patches": "patches.py"}
 
 # Raise it when the content of a record changes without any change in the solver.
 RECORD_FORMAT = 1
@@ -102,11 +106,11 @@ def further_files(kind, method, package=None):
     """List the modules that a request depends on besides the solver, as (name, Path), sorted.
 
     kind, method: of the request, see microslip.studies.requests; method: such as "admm:penalty=1",
-    "" for none. What runs trials counts for these, and a method's file with all that it imports
-    from its folder, so that another method makes no result stale.
+    "" for none. What BESIDE_SOLVER names counts for a kind, and a method's file with all that it
+    imports from its folder, so that another method makes no result stale.
     """
     package = Path(package or PACKAGE)
-    names = {"trial.py"} if kind in ("trial", "scaling") else set()
+    names = {BESIDE_SOLVER[kind]} if kind in BESIDE_SOLVER else set()
     waiting = [method.partition(":")[0].replace("-", "_")]
     while waiting:
         name = f"methods/{waiting.pop()}.py"

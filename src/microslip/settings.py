@@ -85,6 +85,16 @@ class Stability:
 
 
 @dataclass(frozen=True)
+class Claims:
+    """What is asked to judge the statements of the paper. All numbers are dimensionless."""
+
+    tolerance: float
+    velocity: tuple
+    amplitude: dict  # scene -> tuple
+    cells: int  # rings, and angles on half the disc, of periods seen from inside
+
+
+@dataclass(frozen=True)
 class Configuration:
     """A checked configuration with its defaults filled in and its axes expanded."""
 
@@ -94,6 +104,7 @@ class Configuration:
     histories: dict  # transverse, field, transients -> dict of settings, as in the schema
     accuracy: Accuracy
     stability: Stability
+    claims: Claims
 
     def of_sweep(self, name):
         """All settings that the dataset of the sweep `name` depends on, as a dict for JSON."""

@@ -28,10 +28,13 @@ FOLDERS = {
     "point": "points",
     "history": "histories",
     "field": "histories",
+    "period": "periods",
     "trial": "trials",
     "choice": "trials",
     "probe": "probes",
     "scaling": "scaling",
+    "run": "runs",
+    "patches": "patches",
 }
 
 

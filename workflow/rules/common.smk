@@ -4,7 +4,7 @@ from glob import glob
 
 from snakemake.logging import logger as snakemake_log
 
-from microslip import jobs, keys, plot, schemas, studies, sweep
+from microslip import explorer, jobs, keys, plot, schemas, studies, sweep
 from microslip.watch import Watch
 
 # In a module the files are those of another workflow, which may hold more than this one knows.
@@ -24,6 +24,7 @@ with refused_in_one_line(ORIGIN):
 
 DIGEST = keys.source_digest()
 COUNTER = f"{PLACE}/logs/points_done"
+PERIODS_PER_JOB = 150  # a few seconds of work
 
 # BATCHES[group][name]: requests of that batch. A group is a sweep, or the single runs beside it.
 BATCHES = {}
@@ -40,6 +41,12 @@ for study in STUDIES.values():
     for group, cuts in zip((f"{study}_first", study), studies.pieces(study, CONFIGURATION)):
         batches = (sweep.batches(cut, len(cut), DIGEST) for cut in cuts)
         BATCHES[group] = {name: cut for batch in batches for name, cut in batch.items()}
+
+# The periods that the explorer shows.
+EXPLORED = explorer.maps_of(CONFIGURATION)
+for name in EXPLORED:
+    periods = explorer.period_requests(CONFIGURATION, name)
+    BATCHES[f"{name}_periods"] = sweep.batches(periods, PERIODS_PER_JOB, DIGEST)
 
 # The figures that there is data for, each with the name of its dataset.
 FIGURES = {
@@ -70,7 +77,9 @@ def figures_of(datasets):
 
 
 NAMES = [*CONFIGURATION.sweeps, *STUDIES]
-MADE = [str(workflow.modifier.modify_path(p)) for p in datasets_of(NAMES) + figures_of(NAMES)]
+PAGE = f"{RESULTS}/explorer.html"
+FILES_MADE = [*datasets_of(NAMES), *figures_of(NAMES), PAGE]
+MADE = [str(workflow.modifier.modify_path(path)) for path in FILES_MADE]
 GROUPS = {"batches", "figures", "logs", "warm_up", *sweep.FOLDERS.values()}
 
 with refused_in_one_line(ORIGIN):
@@ -122,6 +131,14 @@ def batches_of_study(dataset):
     """Index files of all that a study asks for; dataset: its name."""
     study = STUDIES[dataset]
     return indices_of(f"{study}_first", study)
+
+
+def datasets_explored():
+    """Files of the datasets that the explorer shows, if it can show them."""
+    problem = explorer.refusal(CONFIGURATION)
+    if problem:
+        sys.exit(f"Error in {ORIGIN}: {problem}")
+    return [f"{RESULTS}/{name}.nc" for name in EXPLORED]
 
 
 def indices_of(*groups):

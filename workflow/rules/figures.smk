@@ -8,9 +8,10 @@ rule draw_figure:
         report(
             f"{RESULTS}/figures/{{figure}}.png",
             caption="../report/figure.rst",
-            category=lambda wildcards: (
-                "Methods" if FIGURES[wildcards.figure] in STUDIES else "The paper's figures"
-            ),
+            category=lambda wildcards: {
+                "claims": "The paper's claims",
+                **dict.fromkeys(CONFIGURATION.sweeps, "The paper's figures"),
+            }.get(FIGURES[wildcards.figure], "Methods"),
             labels={"figure": "{figure}"},
         ),
         f"{RESULTS}/figures/{{figure}}.pdf",

@@ -4,10 +4,11 @@ Output: netCDF-4, CF conventions, all quantities dimensionless but for seconds a
   accuracy_cost.nc  dims trial, point, scaling_model, scaling_size, map_tolerance, and the axes of
                     the maps
   stability.nc      dims (method, case), axis
+  claims.nc         dims claim, part, check, run, and axes of curves and patches
 and an HTML page that sums it up.
 """
 
-from microslip import config, dataset, studies, summary, sweep
+from microslip import config, dataset, studies, sweep
 from microslip.cache import Store
 from microslip.jobs import job_log
 
@@ -21,4 +22,4 @@ with job_log(snakemake.log[0]) as log:
     lines = list(studies.report(study, data))
     for line in lines:
         log.info(line)
-    summary.write(snakemake.output.summary, data, lines)
+    studies.write_page(study, snakemake.output.summary, data, lines)

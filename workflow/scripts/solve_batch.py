@@ -2,8 +2,8 @@
 
 Output: JSON with `keys`, the names of the results in the order of the requests, and
 `not_converged`, a count. The results themselves are files of their own under the store's folders
-points, histories, trials, probes and scaling; all numbers in them are dimensionless, but for the
-times (s) and sizes of memory (byte) of trials and scaling.
+that sweep.FOLDERS names; all numbers in them are dimensionless, but for the times (s) and sizes of
+memory (byte) of trials and scaling.
 """
 
 import json

@@ -39,6 +39,8 @@ FIGURES: dict[str, tuple[str, ...]] = {
     "model_map": ("accuracy_cost",),
     "scaling": ("accuracy_cost",),
     "stability_atlas": ("stability",),
+    "claims_static": ("claims",),
+    "claims_patches": ("claims",),
 }
 
 #: File formats `save` can write: metadata that would otherwise hold dates or versions of libraries,
@@ -62,6 +64,8 @@ _MODULES = {
     "model_map": "model_map",
     "scaling": "scaling",
     "stability_atlas": "atlas",
+    "claims_static": "claims_static",
+    "claims_patches": "claims_patches",
 }
 
 __all__ = ["FIGURES", "FORMATS", "draw", "save"]

@@ -1,20 +1,21 @@
-"""Studies: how accuracy is paid for, and where methods fail.
+"""Studies: how accuracy is paid for, where methods fail, and which of the paper's claims hold.
 
-`ladders` says in which resolutions a model is run; `accuracy_cost` and `stability` say what is
-asked; `fronts` picks and fits; the modules with `dataset` in their name turn the answers into
-datasets. What is asked is plain data that imports nothing heavy, since the workflow reads it
-whenever it is parsed.
+`ladders` says in which resolutions a model is run; `accuracy_cost`, `stability` and `claims` say
+what is asked; `fronts` picks and fits, `verdicts` judges; the modules with `dataset` in their name
+turn the answers into datasets. What is asked is plain data that imports nothing heavy, since the
+workflow reads it whenever it is parsed.
 """
 
 from dataclasses import asdict
 from importlib import import_module
 
-from . import accuracy_cost, stability
+from .. import summary
+from . import accuracy_cost, claims, stability
 
 # Studies, named as in the configuration, and their datasets.
-DATASETS = {"accuracy": "accuracy_cost", "stability": "stability"}
+DATASETS = {"accuracy": "accuracy_cost", "stability": "stability", "claims": "claims"}
 
-_ASKED = {"accuracy": accuracy_cost, "stability": stability}
+_ASKED = {"accuracy": accuracy_cost, "stability": stability, "claims": claims}
 
 
 def pieces(study, configuration):
@@ -38,6 +39,15 @@ def build(study, configuration, answer):
 def report(study, dataset):
     """Lines of text that sum up the dataset of a study."""
     return _dataset_of(study).report(dataset)
+
+
+def write_page(study, path, dataset, lines):
+    """Write the page about a study's dataset; lines: those of its report.
+
+    Raises CacheError as `cache.writing_beside` does.
+    """
+    page = import_module(".claims_page", __name__) if study == "claims" else summary
+    page.write(path, dataset, lines)
 
 
 def _dataset_of(study):

@@ -1,0 +1,68 @@
+"""How large the explorer is and how soon it opens in Chromium, from a file and without a network.
+
+Run ``python benchmarks/explorer_opening.py results/explorer.html --markdown
+docs/measured/explorer.md`` after ``snakemake explorer``.  Every opening has a new profile, so that
+nothing is cached.  The page is open when all of its charts are drawn and it answers a click.
+"""
+
+import argparse
+import os
+import shutil
+import statistics
+import tempfile
+import time
+from pathlib import Path
+
+from playwright.sync_api import sync_playwright
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+FLAGS = ["--disable-gpu", "--disable-background-networking", "--no-first-run"]
+
+
+def open_once(playwright, path):
+    """Wall and CPU seconds (of the page's main thread) from the request to the last chart."""
+    with tempfile.TemporaryDirectory() as profile:
+        context = playwright.chromium.launch_persistent_context(
+            profile, executable_path=CHROMIUM, args=FLAGS, viewport={"width": 1280, "height": 800}
+        )
+        page = context.new_page()
+        session = context.new_cdp_session(page)
+        session.send("Performance.enable", {"timeDomain": "threadTicks"})
+        begun = time.perf_counter()
+        page.goto(path.resolve().as_uri())
+        page.locator("body[data-ready]").wait_for()
+        wall = time.perf_counter() - begun
+        metrics = session.send("Performance.getMetrics")["metrics"]
+        context.close()
+    return wall, next(m["value"] for m in metrics if m["name"] == "TaskDuration")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("page", type=Path)
+    parser.add_argument("--times", type=int, default=9)
+    parser.add_argument("--markdown", type=Path)
+    given = parser.parse_args()
+    with sync_playwright() as playwright:
+        wall, cpu = zip(
+            *(open_once(playwright, given.page) for _ in range(given.times)), strict=True
+        )
+    rows = [
+        ("size (MB), at most 15", f"{given.page.stat().st_size / 1e6:.1f}"),
+        ("wall time (s), at most 3: median", f"{statistics.median(wall):.2f}"),
+        ("wall time (s): smallest, largest", f"{min(wall):.2f}, {max(wall):.2f}"),
+        ("load average of the machine meanwhile", f"{os.getloadavg()[0]:.1f}"),
+        ("cores", f"{os.cpu_count()}"),
+        ("CPU time of the page's thread (s): median", f"{statistics.median(cpu):.2f}"),
+    ]
+    head = (
+        f"The explorer, opened {given.times} times in Chromium by `benchmarks/explorer_opening.py`."
+    )
+    lines = [head, "", "| what | measured |", "|---|---|", *(f"| {a} | {b} |" for a, b in rows)]
+    print("\n".join(lines))
+    if given.markdown:
+        given.markdown.write_text("\n".join(lines) + "\n")
+
+
+if __name__ == "__main__":
+    main()

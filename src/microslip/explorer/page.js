@@ -1,0 +1,235 @@
+// The page: what is selected, the controls, the words.
+
+const element = (id) => document.getElementById(id);
+const STATE = { map: NUMBERS.maps[0], row: 0, column: 0, frame: 0, period: null, disc: null,
+  hidden: new Set() };
+const SECONDS = 4; // that a period takes when it plays
+let playing = 0; // the request for the next picture, 0 at rest
+
+function selectMap(map) {
+  STATE.map = map;
+  for (const button of element("tabs").children) {
+    button.setAttribute("aria-pressed", String(button.dataset.map === map.name));
+  }
+  element("amplitude").max = map.amplitude.length - 1;
+  element("velocity").max = map.velocity.length - 1;
+  offerLimits(map);
+  // A point in the middle of what a period is stored for.
+  const stored = map.periods.index.flatMap((row, i) => row.flatMap((k, j) => (k < 0 ? [] : [[i, j]])));
+  const rows = [...new Set(stored.map((place) => place[0]))];
+  const row = rows.length ? rows[rows.length >> 2] : 0;
+  const columns = stored.filter((place) => place[0] === row);
+  const column = columns.length ? columns[columns.length >> 1][1] : 0;
+  drawMap(element("map"), map, row, column);
+  select(row, column);
+}
+
+function select(row, column) {
+  Object.assign(STATE, { row, column });
+  const { map } = STATE;
+  const sliders = { amplitude: row, velocity: column };
+  for (const [name, index] of Object.entries(sliders)) {
+    const shown = digits(map[name][index]);
+    element(name).value = index;
+    element(name).setAttribute("aria-valuetext", shown);
+    element(`${name}-value`).value = shown;
+  }
+  drawCuts();
+  STATE.period = periodAt(map, row, column);
+  STATE.disc = STATE.period && discOf(STATE.period);
+  tell();
+  element("inside").style.visibility = STATE.period ? "visible" : "hidden";
+  if (!STATE.period) {
+    pause();
+    return;
+  }
+  const { mu_macro, mu_macro_error } = map.points;
+  STATE.frame = Math.min(STATE.frame, map.periods.frames);
+  element("phase").max = map.periods.frames;
+  drawForces(element("history"), element("loop"), STATE.period, mu_macro[row][column],
+    mu_macro_error[row][column], STATE.frame);
+  drawDisc(element("disc"), STATE.disc, STATE.frame);
+  tellPhase();
+}
+
+function selectAndMark(row, column) {
+  select(row, column);
+  markMap(element("map"), STATE.map, row, column);
+}
+
+function drawCuts() {
+  const { map, row, column, hidden } = STATE;
+  drawCut(element("along-velocity"), map, "velocity", row, column, hidden);
+  drawCut(element("along-amplitude"), map, "amplitude", column, row, hidden);
+}
+
+function showFrame(frame) {
+  STATE.frame = frame;
+  moveDisc(element("disc"), STATE.disc, frame);
+  markForces(element("history"), element("loop"), STATE.period, frame);
+  tellPhase();
+}
+
+function tellPhase() {
+  const shown = `${inDegrees(STATE.period.phase[STATE.frame]).toFixed(0)}°`;
+  element("phase").value = STATE.frame;
+  element("phase").setAttribute("aria-valuetext", shown);
+  element("phase-value").value = shown;
+}
+
+// Words
+
+function paragraph(id, text, bad = false) {
+  element(id).textContent = text;
+  element(id).className = bad ? "bad" : "";
+}
+
+function tell() {
+  const { map, row, column, period } = STATE;
+  const at = (name) => map.points[name][row][column];
+  paragraph("value", muText(map, row, column));
+  const place = `velocity ${digits(map.velocity[column])}, amplitude ${digits(map.amplitude[row])}, ` +
+    `Poisson's ratio ${digits(map.poisson)}`;
+  paragraph("certificate", at("converged") ? `At ${place}; converged. Its error by source:`
+    : `At ${place}; not converged: ${at("reason")}`, !at("converged"));
+  table("sources", Object.entries(NUMBERS.errors).map(([name, source]) => [source, digits(at(name), 2)]));
+  const counts = [["cells", "rings"], ["angles", "angles on half a ring"],
+    ["steps_per_period", "steps in a period"]].filter(([name]) => at(name) > 1);
+  const model = [`Model ${at("model")}`, ...counts.map(([name, word]) => `${at(name)} ${word}`)].join(", ");
+  const limits = map.limits.map((given) => `${given.label} ${digits(limitAt(given, row, column))}`);
+  paragraph("spent", `${model}.`);
+  paragraph("theory", `Theory here: ${limits.join("; ")}.`);
+  if (!period) {
+    paragraph("run", whyNone(map, row, column), map.amplitude[row] > 0 && map.velocity[column] > 0);
+    return;
+  }
+  const p = map.periods;
+  const run = `Drawn below: one run of the polar model, ${p.cells} rings, ${2 * p.angles} angles, ` +
+    `${p.frames} steps; its mean is ${period.mean.toFixed(4)}.`;
+  paragraph("run", period.converged ? run : `${run} It did not converge: ${period.reason}`,
+    !period.converged);
+}
+
+function table(id, rows) {
+  const body = document.createElement("table");
+  for (let k = 0; k < rows.length; k += 2) {
+    const line = body.insertRow();
+    for (const [name, value] of rows.slice(k, k + 2)) {
+      const head = document.createElement("th");
+      head.textContent = name;
+      line.append(head);
+      line.insertCell().textContent = value;
+    }
+  }
+  element(id).replaceChildren(body);
+}
+
+function limitAt(given, row, column) {
+  if (given.dims.length === 2) return given.values[row][column];
+  return given.values[given.dims[0] === "amplitude" ? row : column];
+}
+
+function tellWhatMade() {
+  for (const map of NUMBERS.maps) {
+    const list = document.createElement("dl");
+    for (const [name, text] of map.made) {
+      const head = document.createElement("dt"), body = document.createElement("dd");
+      const inside = name === "configuration" ? document.createElement("pre") : body;
+      head.textContent = name;
+      inside.textContent = text;
+      if (inside !== body) body.append(inside);
+      list.append(head, body);
+    }
+    element("made").append(list);
+  }
+}
+
+// Controls
+
+function pause() {
+  cancelAnimationFrame(playing);
+  playing = 0;
+  element("play").textContent = "Play";
+  element("play").setAttribute("aria-pressed", "false");
+}
+
+function play() {
+  element("play").textContent = "Pause";
+  element("play").setAttribute("aria-pressed", "true");
+  const start = STATE.period.phase[0];
+  let phase = STATE.period.phase[STATE.frame] - start, before = performance.now();
+  const next = (now) => {
+    phase = (phase + ((now - before) / 1000 / SECONDS) * 2 * Math.PI) % (2 * Math.PI);
+    before = now;
+    // The last frame that has begun; frames are closer together where the motion turns.
+    const begun = STATE.period.phase.filter((at) => at - start <= phase).length;
+    if (begun - 1 !== STATE.frame) showFrame(Math.max(begun - 1, 0));
+    playing = requestAnimationFrame(next);
+  };
+  playing = requestAnimationFrame(next);
+}
+
+function connect() {
+  for (const map of NUMBERS.maps) {
+    const button = document.createElement("button");
+    Object.assign(button, { type: "button", textContent: map.title });
+    button.dataset.map = map.name;
+    button.addEventListener("click", () => selectMap(map));
+    element("tabs").append(button);
+  }
+  element("amplitude").addEventListener("input", (e) => selectAndMark(Number(e.target.value), STATE.column));
+  element("velocity").addEventListener("input", (e) => selectAndMark(STATE.row, Number(e.target.value)));
+  element("phase").addEventListener("input", (e) => {
+    pause();
+    showFrame(Number(e.target.value));
+  });
+  element("play").addEventListener("click", () => (playing ? pause() : play()));
+}
+
+// The legend of the cuts: a box to switch every limit on and off.
+function offerLimits(map) {
+  const boxes = map.limits.map((given) => {
+    const label = document.createElement("label"), box = document.createElement("input");
+    Object.assign(box, { type: "checkbox", checked: !STATE.hidden.has(given.label) });
+    box.addEventListener("change", () => {
+      STATE.hidden[box.checked ? "delete" : "add"](given.label);
+      drawCuts();
+    });
+    label.title = given.long_name;
+    label.append(box, lineLike(given), given.label);
+    return label;
+  });
+  element("limits").replaceChildren(...boxes);
+}
+
+// A piece of a limit's line.
+function lineLike(given) {
+  const svg = (name) => document.createElementNS("http://www.w3.org/2000/svg", name);
+  const piece = svg("svg"), line = svg("line");
+  const looks = { x1: 0, x2: 26, y1: 5, y2: 5, stroke: given.color, "stroke-width": 2 };
+  if (given.dash !== "solid") looks["stroke-dasharray"] = given.dash.replace(/px/g, "");
+  for (const [name, value] of Object.entries(looks)) line.setAttribute(name, value);
+  piece.setAttribute("aria-hidden", "true");
+  piece.append(line);
+  return piece;
+}
+
+// Plotly adds events to an element when it first draws there.
+function connectCharts() {
+  element("map").on("plotly_click", ({ points }) => {
+    const cell = points.find((point) => point.data.type === "heatmap");
+    if (cell) selectAndMark(cell.pointIndex[0], shownColumns(STATE.map)[cell.pointIndex[1]]);
+  });
+  const along = (id, choose) => element(id).on("plotly_click", ({ points }) => {
+    const point = points.find((candidate) => candidate.customdata !== undefined);
+    if (point) choose(point.customdata);
+  });
+  along("along-velocity", (column) => selectAndMark(STATE.row, column));
+  along("along-amplitude", (row) => selectAndMark(row, STATE.column));
+}
+
+tellWhatMade();
+connect();
+selectMap(NUMBERS.maps[0]);
+connectCharts();
+document.body.dataset.ready = "yes";

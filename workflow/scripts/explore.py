@@ -1,0 +1,25 @@
+"""Put the maps and a period behind each of their points on one page.
+
+Output: HTML, one file that needs no network; the numbers in it are dimensionless.
+"""
+
+from microslip import config, explorer, sweep
+from microslip.cache import Store
+from microslip.jobs import job_log
+from microslip.plot.data import loaded
+
+with job_log(snakemake.log[0]) as log:
+    configuration = config.from_mapping(snakemake.config)
+    store = Store(snakemake.params.store)
+    names = snakemake.params.names
+    periods = {
+        name: [
+            sweep.answer(request, store)[0]
+            for request in explorer.period_requests(configuration, name)
+        ]
+        for name in names
+    }
+    datasets = {name: loaded(p) for name, p in zip(names, snakemake.input.datasets, strict=True)}
+    explorer.write(snakemake.output[0], datasets, periods)
+    for line in explorer.report(periods):
+        log.info(line)
