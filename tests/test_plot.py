@@ -259,6 +259,20 @@ def test_history_mean_and_phase(datasets):
     assert artists(figure, "forward")[0].get_xdata()[-1] == pytest.approx(4.0)
 
 
+@pytest.mark.parametrize(
+    ("scene", "name", "label"),
+    [
+        ("transverse", "fig2_transverse_map", r"limit at $\nu = 0$"),
+        ("bore", "fig6_bore_map", "exact limit"),
+    ],
+)
+def test_the_static_limit_is_called_exact_only_where_it_is(datasets, scene, name, label):
+    for poisson, expected in ((0.0, "exact limit"), (0.3, label)):
+        given = {scene: datasets[scene].assign_coords(poisson=poisson)}
+        (line,) = artists(plot.draw(name, given), "mu_static")
+        assert line.get_label() == expected
+
+
 def test_the_poisson_ratio_nearest_zero_is_drawn(datasets):
     first, other = datasets["bore"], datasets["bore"].copy(deep=True)
     other["mu_macro"] += 0.1

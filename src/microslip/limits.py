@@ -12,6 +12,7 @@ CURVE_POINTS = 241
 
 _WHOLE_ZONE = "static friction of the whole stick zone"
 _EXACT = "static friction, exact limit of mu_macro for velocity to 0"
+_EXACT_AT_0 = f"{_EXACT} at Poisson's ratio 0"
 
 # scene -> name -> (dims, function of the coordinates of these dims, long_name)
 LIMITS = {
@@ -31,7 +32,7 @@ LIMITS = {
             theory.static_transverse,
             f"{_WHOLE_ZONE} (Eq 11)",
         ),
-        "mu_static": (("amplitude",), theory.static_limit_transverse, _EXACT),
+        "mu_static": (("amplitude",), theory.static_limit_transverse, _EXACT_AT_0),
     },
     "bore": {
         "mu_large_amplitude": (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -47,6 +47,8 @@ class Map:
 
 
 EXACT = Overlay("mu_static", "exact limit", look.BLUE, look.SOLID)
+#: Exact for Poisson's ratio 0 alone; at any other it is shown as what it is.
+EXACT_AT_0 = replace(EXACT, label=r"limit at $\nu = 0$")
 
 MAPS = {
     "fig2_transverse_map": Map(
@@ -87,6 +89,9 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     needed = ["amplitude", "velocity", "mu_macro", "mu_macro_error", "converged", *overlays]
     require(name, plan.key, dataset, needed)
     dataset, poisson = sweep(dataset, ("amplitude", "velocity"))
+    if poisson > 0 and plan.key == "transverse":
+        static = (EXACT_AT_0 if overlay is EXACT else overlay for overlay in plan.static)
+        plan = replace(plan, static=tuple(static))
 
     figure = look.new_figure(look.DOUBLE, 4.2)
     left, right = figure.subfigures(1, 2, width_ratios=(1.3, 1.0))

@@ -1,0 +1,67 @@
+"""Docstrings as the package writes them, "name: what it is; other: what that is", as lists.
+
+A name counts if it is a parameter of the function or a field of the dataclass, so that prose with a
+colon in it stays prose.
+"""
+
+import dataclasses
+import inspect
+import re
+
+
+def _names(what, obj):
+    """What a docstring may describe as ``name: ...``."""
+    if dataclasses.is_dataclass(obj):
+        return [field.name for field in dataclasses.fields(obj)]
+    try:
+        return list(inspect.signature(obj).parameters)
+    except (TypeError, ValueError):
+        return []
+
+
+def _paragraphs(lines):
+    """Texts of one line each; indented ones stay as they are."""
+    for block in "\n".join(lines).split("\n\n"):
+        if block.strip():
+            plain = not block.startswith(" ") and not re.search(r"^( {2,}|[-*|] )", block, re.M)
+            yield (" ".join(block.split()), True) if plain else (block, False)
+
+
+def _as_list(text, names):
+    """Lines for a paragraph; its entries in a list, what returns or raises in lines of its own."""
+    name = "|".join(sorted(map(re.escape, names), key=len, reverse=True)) or "(?!)"
+    group = rf"(?:{name})(?: (?:>=?|<=?) [\d.]+)?(?: \([^()]*\))?"
+    many = rf"{group}(?:,? (?:and )?{group})*"
+    parts = re.split(rf"(?:^|(?<=[;.]) )({many}): ", text)
+    out = [parts[0], ""] if parts[0] else []
+    last = len(parts) // 2 - 1
+    for number, (given, entry) in enumerate(zip(parts[1::2], parts[2::2], strict=True)):
+        # What follows the last entry is about all of them.
+        words = "[A-Z]" if number == last else "(?:Returns?|Raises|Allowed) "
+        entry, *after = re.split(rf"(?<=\.) (?={words})", entry, maxsplit=1)
+        out.append(f"- **{given}**: {entry.rstrip(';. ')}")
+        if after:
+            out += ["", *after, ""]
+    return [*out, ""]
+
+
+def _process(app, what, name, obj, options, lines):
+    names, out = _names(what, obj), []
+    for text, plain in _paragraphs(lines):
+        # Single backticks stand for code; a bar and two stars for themselves.
+        if plain:
+            text = re.sub(r"(?<!`)`([^`]+)`(?!`)", r"``\1``", text)
+            text = re.sub(r"\||\*\*(?=\w)", r"\\\g<0>", text)
+        out += _as_list(text, names) if plain else [*text.split("\n"), ""]
+    lines[:] = out
+
+
+def _signature(app, what, name, obj, options, signature, result):
+    """Records are made by the package: what counts is their fields, which are listed below."""
+    return ("", None) if dataclasses.is_dataclass(obj) else (signature, result)
+
+
+def setup(app):
+    app.connect("autodoc-process-docstring", _process)
+    app.connect("autodoc-process-signature", _signature)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

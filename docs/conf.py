@@ -1,0 +1,64 @@
+"""How the documentation is built: sphinx-build -W -n docs build/docs. It needs no network."""
+
+import sys
+from pathlib import Path
+
+import microslip
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE / "_ext"))
+
+project = "microslip"
+author = "the developers of microslip"
+version = release = microslip.__version__
+
+extensions = ["myst_parser", "sphinx.ext.autodoc", "offline_math", "plain_docstrings"]
+root_doc = "index"
+exclude_patterns = ["_ext"]
+nitpicky = True
+
+myst_enable_extensions = ["dollarmath"]
+myst_heading_anchors = 3
+myst_update_mathjax = False
+html_math_renderer = "mathml"
+
+autodoc_typehints = "none"
+autodoc_member_order = "bysource"
+
+html_theme = "furo"
+html_title = f"microslip {release}"
+html_show_copyright = False
+html_copy_source = False
+html_show_sourcelink = False
+html_static_path = ["_static"]
+html_css_files = ["microslip.css"]
+
+# Files outside this folder that links lead to, with the pages that include them. The links as they
+# stand are for readers of the plain files.
+INCLUDED = {
+    "../README.md": "index.md",
+    "../CONTRIBUTING.md": "contributing.md",
+    "../config/README.md": "configuration.md",
+}
+
+
+def _adapt(app, name, source):
+    if name.startswith("measured/"):  # what benchmarks write has no title
+        source[0] = f"# Measured: {name.split('/')[1].replace('_', ' ')}\n\n" + source[0]
+    for file, page in INCLUDED.items():
+        source[0] = source[0].replace(f"]({file}", f"]({page}")
+
+
+def setup(app):
+    app.connect("source-read", _adapt)
+
+
+def _lexers():
+    """Snakefiles are Python with a few more words."""
+    from pygments.lexers.python import PythonLexer
+    from sphinx.highlighting import lexers
+
+    lexers["snakemake"] = PythonLexer()
+
+
+_lexers()
