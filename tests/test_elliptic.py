@@ -114,3 +114,31 @@ def test_every_point_of_a_circle_slips_as_far_as_the_sphere():
     found = microslip.period(CIRCLE, 0.1, 0.6)
     assert found.slip_forward[1:].sum(axis=0) == pytest.approx(0.2 * np.pi, rel=2e-3)
     assert found.slip_lateral[1:].sum(axis=0) == pytest.approx(0.0, abs=2e-3)
+
+
+def test_a_figure_of_eight_may_drive_the_contact_forward():
+    """Mean forces below zero are told, and agree with a plain march."""
+    scene, place = "elliptic:forward_cycles=2,phase=45", (0.02, 1.0)
+    answer = microslip.solve(scene, *place)
+    plain = microslip.history(scene, *place, cells=24, steps=256, periods=40)
+    last = plain.phase >= plain.phase[-1] - 2 * np.pi - 1e-9
+    mean = np.trapezoid(plain.force_forward[last], plain.phase[last]) / (2 * np.pi)
+    assert answer.converged
+    assert answer.mu_macro == pytest.approx(mean, abs=5e-3)
+    opposite = microslip.solve("elliptic:forward_cycles=2,phase=225", *place)
+    assert min(answer.mu_macro, opposite.mu_macro) < -0.02
+
+
+@pytest.mark.parametrize("scene", ["elliptic", "elliptic:forward_cycles=2,phase=20"])
+def test_friction_never_falls_with_velocity(scene):
+    found = [microslip.solve(scene, v, 0.8) for v in (0.01, 0.05, 0.2, 0.5, 1.0, 3.0)]
+    for slow, fast in zip(found, found[1:], strict=False):
+        assert fast.mu_macro >= slow.mu_macro - slow.mu_macro_error - fast.mu_macro_error
+
+
+def test_a_stored_point_has_the_folder_of_its_family(tmp_path):
+    one = microslip.solve_stored("elliptic:phase=30", 0.5, 0.5, results=tmp_path)
+    other = microslip.solve_stored("elliptic:phase=30.0,lateral=1", 0.5, 0.5, results=tmp_path)
+    assert one.mu_macro == other.mu_macro
+    (stored,) = (path for path in tmp_path.rglob("*.json") if path.is_file())
+    assert stored.relative_to(tmp_path).parts[:2] == ("points", "elliptic")

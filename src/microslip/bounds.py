@@ -12,6 +12,12 @@ creep x period.  With F the force (|F| <= 1) and d = 1 - mu:
 - longitudinal (forward v t + x sin t): the sphere never turns back where v >= x, so d = 0.
 
 All hold for any nu and any stiffness.  Arguments are the paper's dimensionless groups.
+
+Friction never falls with the forward velocity: two marches of the same oscillation at velocities v1
+and v2 that have become periodic dissipate no less than nothing on the difference of their motions,
+(mu1 - mu2)(v1 - v2) >= 0, since Coulomb's law at given pressure is monotone and the half-space is
+elastic.  Where half a period later the oscillation is its own negative, friction is odd in the
+velocity, and so it is never negative for v > 0.  Other paths may drive the contact (scene.drives).
 """
 
 from __future__ import annotations

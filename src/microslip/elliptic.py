@@ -50,6 +50,7 @@ def scene(name, forward, lateral, phase, forward_cycles, lateral_cycles):
     ahead, aside, _ = displacement(_LOOP, 0.0, 1.0, 0.0)
     reach = float(np.hypot(ahead, aside).max())
     mirrored = lateral_cycles % 2 == 1 and (forward == 0.0 or forward_cycles % 2 == 0)
+    both_odd = forward_cycles % 2 == lateral_cycles % 2 == 1
     simple = forward_cycles == lateral_cycles == 1.0
     return Scene(
         name=name,
@@ -63,6 +64,7 @@ def scene(name, forward, lateral, phase, forward_cycles, lateral_cycles):
         amplitude_label="largest amplitude / u_lim, times forward and lateral",
         turns=lambda velocity, amplitude: HALF_PERIOD if mirrored else WHOLE_PERIOD,
         straight=simple and (forward == 0.0 or lead % np.pi == 0.0),
+        drives=forward > 0.0 and lateral > 0.0 and not both_odd,
         cycles=int(max(forward_cycles if forward else 1.0, lateral_cycles if lateral else 1.0)),
     )
 

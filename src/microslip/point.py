@@ -147,7 +147,7 @@ def solve(
     return Result(
         **point,
         model=name,
-        mu_macro=min(max(certified.mu, 0.0), 1.0) if math.isfinite(certified.mu) else math.nan,
+        mu_macro=_within(kind, certified.mu),
         mu_macro_error=certified.error,
         **{f"error_{source}": error for source, error in certified.errors.items()},
         error_model=0.0,
@@ -167,6 +167,12 @@ def solve(
         retried=certified.retried,
         solve_time_s=time.perf_counter() - started,
     )
+
+
+def _within(kind, mu):
+    """A mean force brought to where it can be: what lies beyond is rounding and error."""
+    least = -1.0 if kind.drives else 0.0
+    return min(max(mu, least), 1.0) if math.isfinite(mu) else math.nan
 
 
 def checked_point(scene, velocity, amplitude, poisson):

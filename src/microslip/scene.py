@@ -30,6 +30,8 @@ class Scene:
     half_period_mirror: half a period later the motion is its own image under lateral -> -lateral.
     Without it a whole period is marched.
     straight: the oscillation alone goes to and fro on a line, from the phase -pi/2 to pi/2.
+    drives: the oscillation alone may drive the contact forward, so that friction may be negative;
+    without it the mean force resists, see bounds.py.
     cycles: of the oscillation in a period, along the direction that has more.
     turns(velocity, amplitude): phases at which the motion turns, from where a lap begins to where
     it ends, half a period later or a whole one.
@@ -47,6 +49,7 @@ class Scene:
     amplitude_label: str = ""
     turns: Callable = lambda velocity, amplitude: HALF_PERIOD
     straight: bool = True
+    drives: bool = False
     cycles: int = 1
 
     def creep(self, velocity, amplitude, poisson):
