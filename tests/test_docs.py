@@ -161,7 +161,7 @@ def make_place(page, folder, results):
 
 
 def run_python(block, page, namespace, environment):
-    if environment.get("PYTHONPATH") == "src":  # a copy of the package, which this process has not loaded
+    if environment.get("PYTHONPATH") == "src":  # a copy, which this process has not loaded
         return run_command([sys.executable, "-c", block.text], page, block, environment)
     said = io.StringIO()
     code = compile("\n" * block.line + block.text, page, "exec")
