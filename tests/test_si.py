@@ -158,6 +158,7 @@ def test_a_reduction_that_no_amplitude_gives_is_refused():
 MILD = EXAMPLE | {"counterbody": "210 GPa, 0.3", "amplitude": "0.3 um"}
 WARNED = {
     "yields": {"hardness": "1.5 GPa"},
+    "contact yields": {"hardness": "7 GPa", "counter_hardness": "1.5 GPa"},
     "half-spaces": {"young": "1 MPa", "nu": 0.5},
     "amplitude": {"amplitude": "20 um"},
     "shear wave crosses": {"density": "7850 kg/m^3", "frequency": "20 MHz"},
@@ -178,8 +179,17 @@ def test_what_breaks_is_warned_of(word, monkeypatch):
     assert sum(word in text for text in found.warnings) == 1
 
 
+def test_a_rigid_counterbody_has_no_hardness():
+    given = MILD | {"counterbody": "rigid", "counter_hardness": "7 GPa"}
+    with pytest.raises(ValueError, match="counter_hardness = '7 GPa': .* not a rigid one"):
+        microslip.predict("transverse", **given)
+
+
 def test_what_was_not_checked_is_said():
     assert len(microslip.predict("transverse", **MILD).not_checked) == 2
+    both = {"hardness": "7 GPa", "counter_hardness": "6 GPa"}
+    both |= {"density": "7850 kg/m^3", "counter_density": "7850 kg/m^3"}
+    assert microslip.predict("transverse", **MILD | both).not_checked == ()
     glass = BALL | {"material": "glass", "amplitude": "1 um", "frequency": "1 kHz"}
     assert microslip.predict("transverse", **glass).not_checked == ()
 

@@ -21,6 +21,8 @@ OPTIONS = {
     "reduction": ("SHARE", "instead of an amplitude: find the one that takes '50 %%' away"),
     "hardness": ("H", "of the body, to warn of yielding, such as '7 GPa'"),
     "density": ("RHO", "of the body, to warn of inertia, such as '7850 kg/m^3'"),
+    "counter-hardness": ("H2", "of the counterbody"),
+    "counter-density": ("RHO2", "of the counterbody"),
 }
 NEEDED = ("radius", "load", "mu", "speed")
 

@@ -82,6 +82,8 @@ def predict(
     reduction=None,
     hardness=None,
     density=None,
+    counter_hardness=None,
+    counter_density=None,
     tolerance=1e-3,
 ):
     """Friction of a sphere on a flat (or on a second sphere) under vibration.
@@ -94,13 +96,14 @@ def predict(
     amplitude: half stroke of the oscillation, a length or an angle; frequency: its frequency, not
     angular; rotation: angular speed of a continuous bore; reduction: instead of the amplitude, the
     share of friction to be taken away, in 0..1: the amplitude that does it is looked for; hardness,
-    density: of the body, for the warnings alone; tolerance: on mu_macro.
+    density, counter_hardness, counter_density: of the body and the counterbody, for the warnings
+    alone; tolerance: on mu_macro.
     Returns a Prediction.  Raises ValueError, naming the argument, for what is missing or out of
     range, and where no amplitude takes that much friction away.
     """
     contact = _contact(
         _body(young, nu, material, hardness, density),
-        _counterbody(counterbody),
+        _counterbody(counterbody, counter_hardness, counter_density),
         *(radius, counter_radius, load, mu),
     )
     motion = _motion(scene, speed, amplitude, frequency, rotation, reduction)
@@ -161,10 +164,18 @@ def _body(young, nu, material, hardness, density):
         raise ValueError(f"{missing} = None: needed, or a material by name")
     else:
         body = _elastic("young", young, "nu", nu)
-    if hardness is not None:
-        body = replace(body, hardness=si_value("hardness", hardness, "Pa"))
-    if density is not None:
-        body = replace(body, density=si_value("density", density, "kg/m^3"))
+    return _completed(body, "", hardness, density)
+
+
+def _completed(body, side, hardness, density):
+    """The body with what is given of hardness and density; side: of the names of the arguments."""
+    for name, given, unit in (("hardness", hardness, "Pa"), ("density", density, "kg/m^3")):
+        if given is not None and body.rigid:
+            raise ValueError(
+                f"{side}{name} = {given!r}: allowed for an elastic body, not a rigid one"
+            )
+        if given is not None:
+            body = replace(body, **{name: si_value(f"{side}{name}", given, unit)})
     return body
 
 
@@ -174,7 +185,11 @@ def _elastic(young_name, young, nu_name, nu):
     )
 
 
-def _counterbody(given):
+def _counterbody(given, hardness, density):
+    return _completed(_body_opposite(given), "counter_", hardness, density)
+
+
+def _body_opposite(given):
     if isinstance(given, Material):
         return given
     if not isinstance(given, str):
