@@ -74,6 +74,15 @@ def test_a_list_of_poissons_ratios_is_a_dimension(tmp_path, solver):
         assert data.mu_macro.dims == ("poisson", "amplitude", "velocity")
         assert data.sel(poisson=0.3, velocity=1, amplitude=2).mu_macro.size == 1
         assert data.mu_static.dims == ("amplitude",)
+        change = data.mu_macro - data.mu_macro.sel(poisson=0)
+        assert data.mu_macro_change.values == pytest.approx(change.values)
+        both = data.mu_macro_error + data.mu_macro_error.sel(poisson=0)
+        assert data.mu_macro_change_error.values == pytest.approx(both.values)
+
+
+def test_one_poissons_ratio_changes_nothing(tmp_path, solver):
+    with on_disk("transverse", tmp_path) as data:
+        assert "mu_macro_change" not in data
 
 
 def test_errors_convergence_and_effort_are_there(tmp_path, monkeypatch):

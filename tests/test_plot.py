@@ -283,6 +283,31 @@ def test_the_poisson_ratio_nearest_zero_is_drawn(datasets):
     )
 
 
+def at_ratios(dataset, *ratios):
+    """A dataset with a dimension poisson; each ratio adds a tenth of itself to mu_macro."""
+    parts = [dataset.assign(mu_macro=dataset.mu_macro + 0.1 * nu) for nu in ratios]
+    both = xr.concat(parts, xr.Variable("poisson", list(ratios)), data_vars=["mu_macro"])
+    both["mu_macro_change"] = both.mu_macro - both.mu_macro.isel(poisson=0)
+    return both.assign_attrs(tolerance=1e-3)
+
+
+def test_what_poissons_ratio_changes(datasets):
+    given = {name: at_ratios(datasets[name], 0.0, 0.5) for name in ("transverse", "bore")}
+    figure = plot.draw("poisson", given)
+    check_nothing_cut_off(figure)
+    words = [text.get_text() for text in figure.findobj(Text)]
+    assert r"$\nu = 0.5$" in words
+    bars = [axes.get_yticks() for axes in figure.axes if "less that" in axes.get_ylabel()]
+    assert len(bars) == 2
+    for ticks in bars:  # twice the tolerance is pale, and the change of 0.05 is on the scale
+        assert sorted(ticks)[1:3] == pytest.approx([-2e-3, 2e-3])
+        assert 0.05 - 1e-9 <= max(ticks) <= 0.054
+    many = {name: at_ratios(datasets[name], *np.linspace(0, 0.5, 5)) for name in given}
+    for bad in (datasets, many):
+        with pytest.raises(ValueError, match="poisson"):
+            plot.draw("poisson", bad)
+
+
 def test_a_theory_curve_may_have_a_finer_axis_of_its_own(datasets):
     fine = np.linspace(0, 1, 50)
     line = xr.DataArray(1 - fine**1.5, {"amplitude_fine": fine}, "amplitude_fine")

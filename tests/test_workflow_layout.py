@@ -37,7 +37,7 @@ def rendered(name, **wildcards):
     snakemake = SimpleNamespace(
         wildcards=SimpleNamespace(**wildcards, keys=lambda: wildcards.keys()),
         config=schemas.filled(config.read_yaml(ROOT / "config" / "config.yaml")),
-        input=SimpleNamespace(dataset="results/any.nc"),
+        input=["results/any.nc"],
         output=["results/any.nc"],
     )
     text = (ROOT / "workflow" / "report" / f"{name}.rst").read_text()

@@ -33,6 +33,11 @@ TORQUE_VARIABLES = {
     "mu_torque": (float, "torque about the normal over its value at zero forward velocity"),
     "mu_torque_error": (float, "estimated error of mu_torque"),
 }
+CHANGES = {
+    "mu_macro_change": ("mu_macro", -1.0, "mu_macro less that at the smallest Poisson's ratio"),
+    "mu_macro_change_error": ("mu_macro_error", 1.0, "estimated error of mu_macro_change"),
+}
+"""Variables of a sweep over Poisson's ratios: name -> (of what, sign of the first, long_name)."""
 MISSING = {float: np.nan, bool: False, np.int32: 0, np.int64: 0, str: ""}
 
 BLOCK = 4096
@@ -56,11 +61,24 @@ def append(file, sweep, axes, points):
         versions.update(canonical_json(record["versions"]) for record in block)
         for name, (kind, _) in table.items():
             file[name][box] = _column(block, name, kind).reshape(extent)
+    if len(axes.get("poisson", ())) > 1:
+        _add_changes(file, tuple(axes), boxes[0] if len(boxes) > 1 else None)
     count += sum(1 for _ in islice(records, 1))
     size = int(np.prod(shape))
     if count != size:
         raise ValueError(f"{sweep.name}: {min(count, size + 1)} results for {size} points")
     return versions
+
+
+def _add_changes(file, dims, box):
+    """What Poisson's ratio changes: mu_macro less that at the smallest one, and the errors of both,
+    one ratio at a time."""
+    file.set_auto_mask(False)
+    for name, (source, sign, long_name) in CHANGES.items():
+        _create(file, name, float, long_name, dims, box)
+        first = file[source][0]
+        for i in range(file[source].shape[0]):
+            file[name][i] = file[source][i] + sign * first
 
 
 def _boxes(shape):

@@ -48,14 +48,16 @@ for name in EXPLORED:
     periods = explorer.period_requests(CONFIGURATION, name)
     BATCHES[f"{name}_periods"] = sweep.batches(periods, PERIODS_PER_JOB, DIGEST)
 
-# The figures that there is data for, each with the name of its dataset.
+# The figures that there is data for, each with the names of its datasets.
 FIGURES = {
-    figure: name
-    for figure, (name,) in plot.FIGURES.items()
-    if name in CONFIGURATION.sweeps or name in STUDIES
+    figure: names
+    for figure, names in plot.FIGURES.items()
+    if all(name in CONFIGURATION.sweeps or name in STUDIES for name in names)
 }
-for figure in ("fig2_transverse_map", "fig6_bore_map"):
-    if figure in FIGURES and not CONFIGURATION.sweeps[FIGURES[figure]].spans_a_map:
+for figure in {"fig2_transverse_map", "fig6_bore_map", "poisson"} & FIGURES.keys():
+    grids = [CONFIGURATION.sweeps[name] for name in FIGURES[figure]]
+    counts = range(2, plot.MOST_POISSONS + 1) if figure == "poisson" else range(1, sys.maxsize)
+    if not all(grid.spans_a_map and len(grid.poisson) in counts for grid in grids):
         del FIGURES[figure]
 
 
@@ -70,8 +72,8 @@ def figures_of(datasets):
     """Files of all figures that are drawn from these datasets."""
     return [
         f"{RESULTS}/figures/{figure}.{form}"
-        for figure, name in FIGURES.items()
-        if name in datasets
+        for figure, names in FIGURES.items()
+        if set(names) <= set(datasets)
         for form in ("png", "pdf")
     ]
 

@@ -3,7 +3,7 @@
 
 rule draw_figure:
     input:
-        dataset=lambda wildcards: f"{RESULTS}/{FIGURES[wildcards.figure]}.nc",
+        lambda wildcards: [f"{RESULTS}/{name}.nc" for name in FIGURES[wildcards.figure]],
     output:
         report(
             f"{RESULTS}/figures/{{figure}}.png",
@@ -11,7 +11,7 @@ rule draw_figure:
             category=lambda wildcards: {
                 "claims": "The paper's claims",
                 **dict.fromkeys(CONFIGURATION.sweeps, "The paper's figures"),
-            }.get(FIGURES[wildcards.figure], "Methods"),
+            }.get(FIGURES[wildcards.figure][0], "Methods"),
             labels={"figure": "{figure}"},
         ),
         f"{RESULTS}/figures/{{figure}}.pdf",
@@ -24,7 +24,7 @@ rule draw_figure:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 10 * attempt,
     params:
-        name=lambda wildcards: FIGURES[wildcards.figure],
+        names=lambda wildcards: FIGURES[wildcards.figure],
         # Not read by the script; it makes Snakemake notice a change.
         code=lambda wildcards: keys.digest_of_modules("plot"),
     script:

@@ -1,4 +1,4 @@
-"""Draw one figure from its dataset.
+"""Draw one figure from its datasets.
 
 Output: the figure as PNG and as PDF.
 """
@@ -8,7 +8,8 @@ from microslip.jobs import job_log
 from microslip.plot.data import loaded
 
 with job_log(snakemake.log[0]):
-    data = loaded(snakemake.input.dataset)
-    figure = plot.draw(snakemake.wildcards.figure, {snakemake.params.name: data})
+    names = snakemake.params.names
+    data = {name: loaded(path) for name, path in zip(names, snakemake.input, strict=True)}
+    figure = plot.draw(snakemake.wildcards.figure, data)
     for path in snakemake.output:
         plot.save(figure, path)

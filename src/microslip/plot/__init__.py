@@ -34,6 +34,7 @@ FIGURES: dict[str, tuple[str, ...]] = {
     "fig4_continuous_bore": ("continuous_bore",),
     "fig5_transients": ("continuous_bore",),
     "fig6_bore_map": ("bore",),
+    "poisson": ("transverse", "bore"),
     "accuracy_vs_cost": ("accuracy_cost",),
     "accuracy_vs_work": ("accuracy_cost",),
     "model_map": ("accuracy_cost",),
@@ -42,6 +43,9 @@ FIGURES: dict[str, tuple[str, ...]] = {
     "claims_static": ("claims",),
     "claims_patches": ("claims",),
 }
+
+#: Lines that the figure of Poisson's ratios can tell apart.
+MOST_POISSONS = 4
 
 #: File formats `save` can write: metadata that would otherwise hold dates or versions of libraries,
 #: and the name of the one that says what the figure was made from.
@@ -59,6 +63,7 @@ _MODULES = {
     "fig4_continuous_bore": "steady",
     "fig5_transients": "transients",
     "fig6_bore_map": "maps",
+    "poisson": "poisson",
     "accuracy_vs_cost": "work_precision",
     "accuracy_vs_work": "work_precision",
     "model_map": "model_map",

@@ -1,0 +1,93 @@
+"""What Poisson's ratio changes: both maps at several of its values, and by how much they differ."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
+
+from microslip.plot import style as look
+from microslip.plot.data import require
+from microslip.plot.maps import MAPS, Map
+
+LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9)
+LOOKS = (
+    (look.BLACK, look.SOLID),
+    (look.BLUE, look.DASHED),
+    (look.VERMILLION, look.DOTTED),
+    (look.GREEN, look.DASHDOT),
+)
+"""For up to so many of Poisson's ratios, from the smallest on."""
+#: Pale in the middle, and evenly darker on both sides.
+DIVERGING = "PuOr"
+
+
+def draw(name: str, transverse: xr.Dataset, bore: xr.Dataset) -> Figure:
+    """Draw contours for every Poisson's ratio, and beside them what the largest one changes."""
+    figure = look.new_figure(look.DOUBLE, 5.6)
+    rows = zip(
+        (MAPS["fig2_transverse_map"], MAPS["fig6_bore_map"]), (transverse, bore), strict=True
+    )
+    panels = figure.subplots(2, 2, width_ratios=(1.0, 1.15))
+    for (left, right), (plan, dataset), letters in zip(panels, rows, ("ab", "cd"), strict=True):
+        needed = ["amplitude", "velocity", "poisson", "mu_macro", "mu_macro_change"]
+        require(name, plan.key, dataset, needed)
+        shown = dataset.isel(velocity=dataset["velocity"].values > 0)
+        shown = shown.transpose("poisson", "amplitude", "velocity", ...)
+        if not 2 <= shown.sizes["poisson"] <= len(LOOKS):
+            raise ValueError(f"figure {name}: two to {len(LOOKS)} of Poisson's ratios are needed")
+        _contours(left, shown, plan, letters[0])
+        _change(right, shown, plan, letters[1])
+    return figure
+
+
+def _contours(axes: Axes, shown: xr.Dataset, plan: Map, letter: str) -> None:
+    for (color, linestyle), (_, one) in zip(LOOKS, shown.groupby("poisson"), strict=False):
+        values = one["mu_macro"].squeeze("poisson").values
+        lines = axes.contour(
+            one["velocity"].values,
+            one["amplitude"].values,
+            values,
+            levels=LEVELS,
+            colors=[color],
+            linestyles=[linestyle],
+            linewidths=1.1,
+        )
+        if color == LOOKS[0][0]:
+            axes.clabel(lines, fmt="%.1f", fontsize=look.SMALLEST, inline_spacing=3)
+        label = rf"$\nu = {look.number(float(one['poisson'].squeeze()))}$"
+        axes.plot([], [], color=color, linestyle=linestyle, label=label)
+    _share(axes, shown, plan)
+    look.legend_above(axes, letter, plan.key, ncols=shown.sizes["poisson"])
+
+
+def _change(axes: Axes, shown: xr.Dataset, plan: Map, letter: str) -> None:
+    """Pale is what the errors of the points leave open: twice the tolerance."""
+    last = shown.isel(poisson=-1)
+    values = np.ma.masked_invalid(last["mu_macro_change"].values)
+    step = 2.0 * float(shown.attrs["tolerance"])
+    count = max(2, int(np.ceil(np.abs(values).max() / step)))
+    levels = step * np.array([k for k in range(-count, count + 1) if k])
+    filled = axes.contourf(
+        last["velocity"].values, last["amplitude"].values, values, levels, cmap=DIVERGING
+    )
+    filled.set_edgecolor("face")
+    _share(axes, shown, plan)
+    ends = (levels[0], -step, step, levels[-1])
+    bar = axes.figure.colorbar(filled, ax=axes, pad=0.02, aspect=24, ticks=ends)
+    first = look.number(float(shown["poisson"][0]))
+    at = look.number(float(last["poisson"]))
+    bar.set_label(rf"{look.MU_MACRO} at $\nu = {at}$ less that at ${first}$")
+    bar.ax.tick_params(direction="out")
+    look.letter(axes, letter, "")
+
+
+def _share(axes: Axes, shown: xr.Dataset, plan: Map) -> None:
+    velocity, amplitude = shown["velocity"].values, shown["amplitude"].values
+    axes.set_xscale("log")
+    axes.set(xlim=(velocity[0], velocity[-1]), ylim=(amplitude[0], amplitude[-1]))
+    axes.set(xlabel=plan.velocity_label, ylabel=plan.amplitude_label)
+    axes.xaxis.set_major_locator(LogLocator(numticks=12))
+    axes.tick_params(which="both", direction="out", top=False, right=False)
