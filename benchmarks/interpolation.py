@@ -19,6 +19,7 @@ import argparse
 from pathlib import Path
 
 import numpy as np
+import tables
 import xarray as xr
 from tqdm import tqdm
 
@@ -94,8 +95,7 @@ def main():
         rows.append(row(scene, "lines left out", *left_out(dataset)))
         for where, place in places(dataset, options.points, rng).items():
             rows.append(row(scene, where, *solved(dataset, *place, f"{scene}, {where}")))
-    lines = [list(rows[0]), ["---"] * len(rows[0]), *(list(map(str, r.values())) for r in rows)]
-    table = "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+    table = tables.markdown(rows)
     print(table)
     if options.markdown:
         options.markdown.write_text(f"{table}\n", encoding="utf-8")

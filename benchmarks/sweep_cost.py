@@ -17,6 +17,7 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
+import tables
 from tqdm import tqdm
 
 import microslip
@@ -60,8 +61,7 @@ def main():
     options = parser.parse_args()
     microslip.warm_up()
     rows = [cost(sweep) for sweep in config.load(options.config).sweeps.values()]
-    lines = [list(rows[0]), ["---"] * len(rows[0]), *(list(row.values()) for row in rows)]
-    table = "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)
+    table = tables.markdown(rows)
     print(table)
     if options.markdown:
         options.markdown.write_text(table + "\n", encoding="utf-8")

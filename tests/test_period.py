@@ -65,21 +65,15 @@ def test_the_work_of_the_forces_is_dissipated(given):
     spent = work(found.force_forward, found.forward) + work(found.force_lateral, found.lateral)
     spent += TORQUE_FULL_SLIP * work(found.torque, found.angle)
     size = np.hypot(found.slip_forward, found.slip_lateral)
-    weight = _weights(found)
-    lost = np.sum((weight * found.bound) @ size[1:].T)
+    lost = np.sum((found.area * found.bound) @ size[1:].T)
     assert spent == pytest.approx(lost, rel=0.03), scene
 
 
-def _weights(found):
-    """Areas of the points: the same for all points of a ring; the bound integrates to 1 on it."""
-    radius = np.hypot(found.forward_position, found.lateral_position).round(9)
-    rings, index, count = np.unique(radius, return_inverse=True, return_counts=True)
-    edges = [0.0]
-    for r in rings:  # a ring's radius is the mean of its edges' squares, or near it
-        edges.append(np.sqrt(max(2 * r**2 - edges[-1] ** 2, r**2)))
-    area = np.pi * np.diff(np.square(edges))
-    area *= np.pi / area.sum()
-    return (area / count)[index]
+def test_areas_fill_the_disc_and_carry_the_load(given):
+    _, found = given
+    assert found.area.sum() == pytest.approx(np.pi)
+    assert np.sum(found.area * found.bound) == pytest.approx(1.0)
+    assert np.sum(found.area * found.lateral_position) == pytest.approx(0.0, abs=1e-12)
 
 
 def test_the_contact_never_slides_fully_near_the_static_limit():

@@ -17,6 +17,7 @@ from PIL import Image
 
 from microslip import plot, theory
 from microslip.cache import CacheError
+from microslip.plot import poisson
 
 #: The paper's figures; those of the studies have tests of their own.
 PAPERS = [name for name in plot.FIGURES if name.startswith("fig")]
@@ -267,8 +268,8 @@ def test_history_mean_and_phase(datasets):
     ],
 )
 def test_the_static_limit_is_called_exact_only_where_it_is(datasets, scene, name, label):
-    for poisson, expected in ((0.0, "exact limit"), (0.3, label)):
-        given = {scene: datasets[scene].assign_coords(poisson=poisson)}
+    for ratio, expected in ((0.0, "exact limit"), (0.3, label)):
+        given = {scene: datasets[scene].assign_coords(poisson=ratio)}
         (line,) = artists(plot.draw(name, given), "mu_static")
         assert line.get_label() == expected
 
@@ -292,6 +293,7 @@ def at_ratios(dataset, *ratios):
 
 
 def test_what_poissons_ratio_changes(datasets):
+    assert len(poisson.LOOKS) == plot.MOST_POISSONS
     given = {name: at_ratios(datasets[name], 0.0, 0.5) for name in ("transverse", "bore")}
     figure = plot.draw("poisson", given)
     check_nothing_cut_off(figure)

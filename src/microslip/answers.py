@@ -69,15 +69,7 @@ def _period(request):
     """A period of the periodic state in few bytes, see microslip.periods."""
     from .periods import packed
 
-    counts = {name: request[name] for name in ("cells", "angles", "steps")}
-
-    def run():
-        return packed(microslip.period(**_place(request), **counts), request["angles"])
-
-    try:
-        return _survived(run)
-    except ValueError as error:  # no state was found
-        return {"converged": False, "reason": str(error)}
+    return _if_found(lambda **sizes: packed(microslip.period(**sizes), request["angles"]), request)
 
 
 def _trial(request):
@@ -140,15 +132,7 @@ def _patches(request):
     """Where the contact sticks over a period."""
     from .patches import patches
 
-    sizes = {name: request[name] for name in ("cells", "angles", "steps")}
-
-    def run():
-        try:
-            return patches(**_place(request), **sizes)
-        except ValueError as error:  # the request is sound: no period was found
-            raise RuntimeError(str(error)) from error
-
-    return _survived(run)
+    return _if_found(patches, request)
 
 
 _KINDS = {
@@ -206,6 +190,15 @@ def _survived(run):
     except (ArithmeticError, RuntimeError, MemoryError, _linear_algebra_error()) as error:
         # One point that fails is a gap in the map, not the end of the sweep.
         return {"converged": False, "reason": f"{type(error).__name__}: {error}"}
+
+
+def _if_found(look, request):
+    """What `look` sees in a period, or why there is none: the request itself is sound."""
+    sizes = {name: request[name] for name in ("cells", "angles", "steps")}
+    try:
+        return _survived(lambda: look(**_place(request), **sizes))
+    except ValueError as error:
+        return {"converged": False, "reason": str(error)}
 
 
 def _timed_if_survived(run, repeats):

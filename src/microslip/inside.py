@@ -107,21 +107,16 @@ def traction_field(scene, velocity, amplitude=None, *, poisson=0.0, cells=None):
     motion = Motion(kind, velocity, None, poisson)
     contact = _contact(motion, "polar", cells)
     found = steady_state(contact, motion.displacement, velocity, 1e-6, STEP_TOLERANCE)
-    forward, lateral = -found.state
-    half = {
-        "lateral_position": contact.lateral_position,
-        "forward_position": contact.forward_position,
+    (forward,), (lateral,) = _whole_disc(contact, -found.state[None])
+    forward_position, lateral_position, bound, _ = _points(contact)
+    return {
+        "lateral_position": lateral_position,
+        "forward_position": forward_position,
         "traction_lateral": lateral,
         "traction_forward": forward,
-        "bound": np.broadcast_to(contact.bound, forward.shape),
+        "bound": bound,
+        "centre_lateral": -velocity,
     }
-    # the other half of the disc is the mirror image across the lateral axis
-    odd = {"forward_position", "traction_lateral"}
-    field = {
-        name: np.concatenate([values.ravel(), (-values if name in odd else values).ravel()])
-        for name, values in half.items()
-    }
-    return field | {"centre_lateral": -velocity}
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,11 +127,12 @@ class Period:
     lateral: rigid displacement in u_lim, angle: in u_lim / a, same shape; force_forward,
     force_lateral: over mu F_z, torque: over its full-slip value, same shape.
     forward_position, lateral_position: points, over a, shape (points,); bound: over mu F_z / a^2,
-    same shape.  traction_forward, traction_lateral: on the flat, in the direction of the motion
-    that they resist, over mu F_z / a^2, shape (steps + 1, points); slip_forward, slip_lateral: in
-    the step that ends at this phase (first row: in the last step), in u_lim, and slips: whether a
-    point slips when the step ends, same shape.  mu_macro: mean of force_forward; converged, reason:
-    whether this is the periodic state of this resolution, else why not.
+    and area, over a^2 and pi in all, same shape.  traction_forward, traction_lateral: on the flat,
+    in the direction of the motion that they resist, over mu F_z / a^2, shape (steps + 1, points);
+    slip_forward, slip_lateral: in the step that ends at this phase (first row: in the last step),
+    in u_lim, and slips: whether a point slips when the step ends, same shape.  mu_macro: mean of
+    force_forward; converged, reason: whether this is the periodic state of this resolution, else
+    why not.
     """
 
     phase: np.ndarray
@@ -149,6 +145,7 @@ class Period:
     forward_position: np.ndarray
     lateral_position: np.ndarray
     bound: np.ndarray
+    area: np.ndarray
     traction_forward: np.ndarray
     traction_lateral: np.ndarray
     slip_forward: np.ndarray
@@ -202,7 +199,7 @@ def period(
         phase = np.concatenate([phase, phase[1:] + np.pi])
     slip_forward, slip_lateral = _whole_disc(contact, np.concatenate([slip[-1:], slip]))
     forward, lateral = _whole_disc(contact, tractions)
-    forward_position, lateral_position, bound = _points(contact)
+    forward_position, lateral_position, bound, area = _points(contact)
     along = forward * slip_forward + lateral * slip_lateral > 0.0
     return Period(
         phase,
@@ -213,6 +210,7 @@ def period(
         forward_position,
         lateral_position,
         bound,
+        area,
         forward,
         lateral,
         slip_forward,
@@ -236,11 +234,13 @@ def _slip(contact, path, tractions):
 
 
 def _points(contact):
-    """Forward and lateral positions and bounds on the whole disc, (points,) each."""
+    """Forward and lateral positions, bounds and areas on the whole disc, (points,) each."""
     forward, lateral = contact.forward_position, contact.lateral_position
     other = lateral if contact.rotates else -lateral
     bound = np.broadcast_to(contact.bound, forward.shape)
-    parts = (forward, -forward), (lateral, other), (bound, bound)
+    # a point of the half that is resolved stands for its image, too
+    area = np.broadcast_to(0.5 * contact.weight, forward.shape)
+    parts = (forward, -forward), (lateral, other), (bound, bound), (area, area)
     return [np.concatenate([half.ravel() for half in part]) for part in parts]
 
 

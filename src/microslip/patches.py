@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from microslip.inside import period
-from microslip.motion import Motion, Resolution, build_contact
-from microslip.scenes import scene_named
 
 
 def patches(scene, velocity, amplitude, *, poisson=0.0, cells=16, angles=16, steps=64):
     """Stick and slip over a period of the periodic state, reduced to what figures and checks need.
 
-    Arguments and errors as for ``microslip.period``.  Returns a dict: mu_macro, converged, reason;
+    Arguments and errors as for ``microslip.period``; a scene whose second half of a period mirrors
+    the first.  Returns a dict: mu_macro, converged, reason;
     phase, stick_right, stick_left: lists over the steps, the last two the shares of the contact's
     area that stick at positive and at negative lateral positions; least_stick: of both together;
     forward_position, lateral_position, area: of the points (units a and a^2, the areas add up to
@@ -23,8 +22,7 @@ def patches(scene, velocity, amplitude, *, poisson=0.0, cells=16, angles=16, ste
     found = period(
         scene, velocity, amplitude, poisson=poisson, cells=cells, angles=angles, steps=steps
     )
-    area = _areas(scene, velocity, amplitude, poisson, Resolution(cells, angles, steps // 2))
-    sticking = np.where(found.slips, 0.0, area / np.pi)
+    sticking = np.where(found.slips, 0.0, found.area / np.pi)
     right = found.lateral_position > 0.0
     # the first row repeats the last one: a stroke is rows 1 to half
     half = steps // 2
@@ -41,16 +39,7 @@ def patches(scene, velocity, amplitude, *, poisson=0.0, cells=16, angles=16, ste
         "least_stick": sticking[1:].sum(axis=1).min(),
         "forward_position": found.forward_position,
         "lateral_position": found.lateral_position,
-        "area": area,
+        "area": found.area,
         "moment_phase": found.phase[moments],
         "moment_share": np.where(found.slips[moments], 1.0, np.minimum(share, 1.0)),
     }
-
-
-def _areas(scene, velocity, amplitude, poisson, resolution):
-    """Areas of the points of a period, (points,): both halves of the disc have the same."""
-    motion = Motion(scene_named(scene), float(velocity), float(amplitude), float(poisson))
-    contact = build_contact(motion, "polar", resolution)
-    half = np.broadcast_to(contact.weight, contact.forward_position.shape).ravel()
-    area = np.concatenate([half, half])
-    return area * (np.pi / area.sum())

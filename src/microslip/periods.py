@@ -20,6 +20,8 @@ HISTORIES = ("phase", "forward", "lateral", "angle", "force_forward", "force_lat
 def packed(period, angles):
     """A microslip.inside.Period as a dict of plain values and texts; angles: points on half a ring.
 
+    Of a scene whose second half of a period is the mirror image of the first.
+
     radius, bound: of the rings, lists of (cells,); the names in HISTORIES: lists of (steps + 1,);
     tractions: base64 of int8, (steps/2 + 1, 2, angles, cells), forward and lateral, over bound/127;
     slips: base64 of bits, (steps/2 + 1, angles, cells); turned: whether the other half of the disc
@@ -49,8 +51,8 @@ def packed(period, angles):
 def unpacked(result):
     """What `packed` kept, on the whole disc and over the whole period: a dict of arrays.
 
-    The names and shapes are those of microslip.inside.Period, without slip_forward and
-    slip_lateral. traction_forward and traction_lateral are off by bound/254 at most.
+    The names and shapes are those of microslip.inside.Period, without slip_forward, slip_lateral
+    and area. traction_forward and traction_lateral are off by bound/254 at most.
     """
     angles, radius = result["angles"], np.array(result["radius"])
     found = {name: np.array(result[name]) for name in HISTORIES}

@@ -9,6 +9,7 @@ for numbers, such as elliptic.py.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -125,6 +126,12 @@ def scene_named(name):
         return SCENES[name]
     if not isinstance(name, str):
         raise ValueError(f"scene = {name!r}: allowed is one of {', '.join([*SCENES, *FAMILIES])}")
+    return _of_family(name)
+
+
+@lru_cache(maxsize=64)
+def _of_family(name):
+    """One record for a name: what is prepared for a motion is found again by it."""
     family, numbers = parameters.split(name, "scene", [*SCENES, *FAMILIES])
     defaults, build = FAMILIES.get(family, ({}, None))
     problem = parameters.unknown(name, "scene", numbers, list(defaults))

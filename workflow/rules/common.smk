@@ -56,8 +56,10 @@ FIGURES = {
 }
 for figure in {"fig2_transverse_map", "fig6_bore_map", "poisson"} & FIGURES.keys():
     grids = [CONFIGURATION.sweeps[name] for name in FIGURES[figure]]
-    counts = range(2, plot.MOST_POISSONS + 1) if figure == "poisson" else range(1, sys.maxsize)
-    if not all(grid.spans_a_map and len(grid.poisson) in counts for grid in grids):
+    drawable = all(grid.spans_a_map for grid in grids)
+    if figure == "poisson":
+        drawable &= all(1 < len(grid.poisson) <= plot.MOST_POISSONS for grid in grids)
+    if not drawable:
         del FIGURES[figure]
 
 

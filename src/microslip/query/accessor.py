@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -43,6 +42,7 @@ class Friction:
             )
         self._dataset = dataset
         self._scene = dataset.attrs["scene"]
+        self._tables = {}  # by Poisson's ratio, each made when it is first asked
 
     def at(self, velocity, amplitude=None, *, poisson=None, tolerance=None):
         """Friction and a bound of its error, whatever the point.
@@ -93,10 +93,6 @@ class Friction:
         # An outer product has the order of the datasets.
         amplitude, velocity = xr.broadcast(_labelled("amplitude", amplitude), velocity)
         return velocity, amplitude
-
-    @cached_property
-    def _tables(self):
-        return {}
 
     def _table(self, nu):
         """The map for one Poisson's ratio; nodes that did not converge are not known."""

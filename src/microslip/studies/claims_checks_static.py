@@ -26,12 +26,18 @@ def _below_one(amplitude):
     return amplitude < 1.0  # beyond there is no static friction, and nothing to compare
 
 
-def slider_above(study, runs):
-    def judge(amplitude, limit):
-        slider = theory.static_slider(amplitude)
-        return slider, slider - limit
+def _formula_above(study, runs, scene, formula, chosen):
+    """Whether a formula lies above the static limit."""
 
-    return _at_limit(study, runs, "transverse", judge, _below_one)
+    def judge(amplitude, limit):
+        value = formula(amplitude)
+        return value, value - limit
+
+    return _at_limit(study, runs, scene, judge, chosen)
+
+
+def slider_above(study, runs):
+    return _formula_above(study, runs, "transverse", theory.static_slider, _below_one)
 
 
 def zone_nearer(study, runs):
@@ -43,11 +49,7 @@ def zone_nearer(study, runs):
 
 
 def zone_above(study, runs):
-    def judge(amplitude, limit):
-        zone = theory.static_transverse(amplitude)
-        return zone, zone - limit
-
-    return _at_limit(study, runs, "transverse", judge, _below_one)
+    return _formula_above(study, runs, "transverse", theory.static_transverse, _below_one)
 
 
 def slider_above_march(study, runs):
@@ -93,7 +95,7 @@ def bore_zone_relative(study, runs):
 
 
 def bore_zone_above(study, runs):
-    return _bore_zone(study, runs, lambda eq, mu: eq - mu, _below_turning)
+    return _formula_above(study, runs, "bore", theory.static_bore, _below_turning)
 
 
 def bore_zone_printed(study, runs):
@@ -122,20 +124,23 @@ def bore_zone_seen(study, runs):
 
 
 def limit_positive(study, runs):
-    found = []
-    for amplitude in study.amplitude["bore"]:
-        run = runs(asked.point(study, "bore", 0.0, amplitude))
-        mu, error = friction(run)
-        found.append(check(mu, 0.0, mu - say.VANISHES, error, [run], amplitude=amplitude))
-    return found
+    asked_for = [asked.point(study, "bore", 0.0, a) for a in study.amplitude["bore"]]
+    return _positive(runs, asked_for)
 
 
 def limit_positive_rings(study, runs):
+    amplitudes = asked.limited(study, "bore")
+    return _positive(runs, [asked.resolved_limit(study, "bore", a) for a in amplitudes])
+
+
+def _positive(runs, asked_for):
+    """Whether friction is left, for a list of requests."""
     found = []
-    for amplitude in asked.limited(study, "bore"):
-        run = runs(asked.resolved_limit(study, "bore", amplitude))
+    for request in asked_for:
+        run = runs(request)
         mu, error = friction(run)
-        found.append(check(mu, 0.0, mu - say.VANISHES, error, [run], amplitude=amplitude))
+        place = {"amplitude": float(request["amplitude"])}
+        found.append(check(mu, 0.0, mu - say.VANISHES, error, [run], **place))
     return found
 
 
