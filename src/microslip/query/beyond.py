@@ -2,7 +2,8 @@
 
 Known without a map: friction without vibration (1), the static limit, the largest drop that
 the energy balance allows.  Between these and the edge of a map a value is bracketed, as friction
-rises with the velocity and falls with the amplitude; what a bracket leaves open is in the error.
+rises with the velocity (bounds.py) and, in all that was computed, falls with the amplitude; what a
+bracket leaves open is in the error.
 
 For large amplitudes friction tends to a limit (Eqs 6 and 29), but not from one side: how far it is
 from there changes its sign with the velocity.  The largest distance that the upper edge of the map
