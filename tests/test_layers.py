@@ -11,9 +11,10 @@ PACKAGE = Path(microslip.__file__).parent
 
 # From the ground up; modules on one line do not know each other.
 LAYERS = [
-    {"hertz"},
-    {"theory", "masing", "bounds", "halfspace", "friction", "path"},
-    {"rings", "scene", "any_pressure", "parameters", "frames"},
+    {"hertz", "parameters"},
+    {"pressures"},
+    {"theory", "masing", "bounds", "halfspace", "friction", "path", "indenter_limits"},
+    {"rings", "scene", "any_pressure", "frames"},
     {"elliptic"},
     {"scenes"},
     {"models"},
@@ -30,7 +31,7 @@ LAYERS = [
     {"inside", "trial"},
     {"patches"},
     {"keys", "schemas", "settings"},
-    {"cache", "config", "periods"},
+    {"cache", "config", "periods", "pressure_files"},
     {"answers", "jobs", "watch", "limits", "columns", "summary"},
     {"sweep", "dataset"},
     {"stored", "si"},

@@ -45,7 +45,9 @@ POINTS = {
 
 def contact_of(name, velocity, amplitude):
     model, scene, nu, cells, angles = CASES[name]
-    return MODELS[model].build(scene, nu, cells, angles, scene.focus(velocity, amplitude))
+    return MODELS[model].build(
+        scene, nu, cells, angles, scene.focus(velocity, amplitude, scene.pressure)
+    )
 
 
 def path_of(name, velocity, amplitude, integrator=SDIRK2, whole=False):

@@ -7,10 +7,11 @@ from scipy.integrate import quad, solve_ivp
 import microslip
 from microslip import hertz, theory
 from microslip.models.contact import forces
-from microslip.models.dahl import STIFFNESS, DahlContact
+from microslip.models.dahl import DahlContact
 from microslip.models.mdr import mdr_contact
 from microslip.models.radial import RadialContact
 from microslip.path import EULER, make_path
+from microslip.pressures import HERTZ
 
 
 def straight(displacements):
@@ -69,12 +70,14 @@ def test_springs_in_a_row_come_close_to_the_rings():
 
 
 def test_a_bristle_loads_exponentially():
-    march = DahlContact().march(straight([0.0, 0.2, 0.7]), np.zeros((2, 1, 1)), 1e-12)
-    expected = 1.0 - np.exp(-STIFFNESS * np.array([0.0, 0.2, 0.7]))
+    march = DahlContact(HERTZ.stiffness).march(
+        straight([0.0, 0.2, 0.7]), np.zeros((2, 1, 1)), 1e-12
+    )
+    expected = 1.0 - np.exp(-HERTZ.stiffness * np.array([0.0, 0.2, 0.7]))
     assert march.forces[:, 1] == pytest.approx(expected, rel=1e-13)
     # the same stiffness at first as the half-space
     slope = (hertz.mindlin_force(1e-6) - hertz.mindlin_force(0.0)) / 1e-6
-    assert slope == pytest.approx(STIFFNESS, rel=1e-5)
+    assert slope == pytest.approx(HERTZ.stiffness, rel=1e-5)
 
 
 @pytest.mark.parametrize(("velocity", "amplitude"), [(0.05, 0.5), (0.5, 2.0), (2.0, 1.0)])
@@ -83,7 +86,7 @@ def test_a_bristle_solves_its_differential_equation(velocity, amplitude):
 
     def rate(phase, force):
         motion = np.array([velocity, amplitude * np.cos(phase)])
-        return STIFFNESS * (motion - np.hypot(*motion) * force)
+        return HERTZ.stiffness * (motion - np.hypot(*motion) * force)
 
     periods = 4 + int(2.0 / min(velocity, 1.0))
     times = np.linspace(0.0, 2 * np.pi, 4001) + 2 * np.pi * periods
@@ -113,7 +116,7 @@ def test_what_has_no_extension_cannot_turn(model):
 
 
 def test_full_slip_carries_the_whole_friction():
-    for contact in (mdr_contact(7, 0.6), DahlContact()):
+    for contact in (mdr_contact(7, 0.6), DahlContact(HERTZ.stiffness)):
         ones = np.ones((1, len(contact.bound)))
         full_slip = np.stack([ones, 0.0 * ones]) * contact.bound
         assert forces(contact, full_slip)[0] == pytest.approx(1.0)

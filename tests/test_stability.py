@@ -160,7 +160,7 @@ def periodic_force(velocity, share, search):
     """Mean forward force of the periodic state found from the oscillation's own tractions plus a
     share of all the forward traction that they leave room for."""
     motion = Motion(TRANSVERSE, velocity, 0.5, 0.0)
-    contact = RadialContact.resolved(16, TRANSVERSE.focus(velocity, 0.5))
+    contact = RadialContact.resolved(16, TRANSVERSE.focus(velocity, 0.5, TRANSVERSE.pressure))
     path = motion.path(contact, 32)
     room, oscillating = static_state(contact, motion.oscillation, 1e-12)
     found = search(Cycle(contact, path), oscillating + share * room, 1e-6, 1e-9, 200)

@@ -11,7 +11,7 @@ from microslip.static import oscillating_part, residual_part, static_state
 
 
 def contact_for(scene, amplitude, model, cells, angles=1, poisson=0.0):
-    focus = scene.focus(0.0, amplitude)
+    focus = scene.focus(0.0, amplitude, scene.pressure)
     return MODELS[model].build(scene, poisson, cells, angles, focus)
 
 

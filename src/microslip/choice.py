@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from microslip import bounds, masing, theory
+from functools import partial
+
+from microslip import bounds, hertz, masing, theory
 from microslip.accuracy import Axis
 from microslip.method import SHIPPED
 from microslip.models import MODELS
 from microslip.motion import Resolution
+from microslip.pressures import HERTZ
+from microslip.pressures.elliptic import NAME as ELLIPSE
 
 STEPLESS = ("rigid", "dahl")
 """Models whose march is an evaluation: no step of theirs is solved."""
@@ -34,7 +38,12 @@ STATIC_LIMITS = {
     "longitudinal": theory.static_limit_longitudinal,
     "bore": theory.static_limit_bore,  # any nu: it only scales the angle
 }
+LIKE_A_SPHERE = ("transverse", "zigzag", "longitudinal")
+"""Static limits that an elliptic Hertz contact shares with the sphere at nu = 0: its stick zones
+are ellipses of the same shape (Vermeulen and Johnson), and only their size counts."""
 STEADY_STATES = {"continuous-bore": (theory.bore_forward, theory.bore_torque)}  # Eqs 21 and 22
+QUADRATURE = 1e-7
+"""Error of Eqs 17 and 18 for another pressure, which may have kinks."""
 WHOLE_MOTIONS = {"longitudinal": masing.longitudinal}
 """At nu = 0, whatever the velocity and the amplitude."""
 MASING_ROUNDING = 1e-9
@@ -50,11 +59,14 @@ def choose_model(scene, poisson, model="auto"):
     """The model to use: the cheapest that is exact for the scene, or the one asked for.
 
     Rings where the traction depends on the radius alone (translation at nu = 0), angular modes
-    otherwise: squares are never cheaper on a circular contact.  The slider and the rigid contact
-    are never chosen: what they leave out can only be bounded by running the rings, which then are
-    the answer.  Raises ValueError for an unknown model or one that does not apply.
+    where half of the contact tells the other half: squares are never cheaper then.  The slider
+    and the rigid contact are never chosen: what they leave out can only be bounded by running the
+    rings, which then are the answer.  Raises ValueError for an unknown model or one that does not
+    apply.
     """
     if model == "auto":
+        if not (scene.pressure.is_round and scene.half_disc):
+            return "cartesian"
         return "polar" if scene.rotates or poisson > 0.0 else "radial"
     if not isinstance(model, str) or model not in MODELS:
         raise ValueError(f"model = {model!r}: allowed is one of auto, {', '.join(MODELS)}")
@@ -97,21 +109,69 @@ def closed_form(scene, velocity, amplitude, poisson, tolerance):
     that the bracket of bounds.py is within the tolerance.
     """
     if not scene.periodic:
-        forward, torque = STEADY_STATES[scene.name]
-        return float(forward(velocity)), float(torque(velocity)), ROUNDING
+        return _steady(scene, velocity)
     if velocity == 0.0:
         known = STATIC_LIMITS.get(scene.name)
         if known is None or (poisson > 0.0 and not scene.rotates):
             return None
-        return float(known(amplitude)), None, ROUNDING
+        return _static(scene, known, amplitude, poisson)
     if scene.name in WHOLE_MOTIONS and poisson == 0.0:
-        return float(WHOLE_MOTIONS[scene.name](velocity, amplitude)), None, MASING_ROUNDING
+        curve = _loading_curve(scene.pressure)
+        if curve is not None:
+            whole = WHOLE_MOTIONS[scene.name](velocity, amplitude, curve)
+            return float(whole), None, MASING_ROUNDING
     largest_drop = LARGEST_DROPS.get(scene.name)
-    if largest_drop is not None:
+    if largest_drop is not None and not (scene.rotates and scene.pressure is not HERTZ):
         drop = largest_drop(velocity, amplitude)
         if 0.5 * drop + ROUNDING <= tolerance:
             return 1.0 - 0.5 * drop, None, 0.5 * drop + ROUNDING
     return None
+
+
+def _steady(scene, velocity):
+    """Eqs 17 and 18; 21 and 22 for a sphere."""
+    if scene.pressure is HERTZ:
+        forward, torque = STEADY_STATES[scene.name]
+        return float(forward(velocity)), float(torque(velocity)), ROUNDING
+    if not scene.pressure.is_round:
+        return None
+    from microslip import any_pressure  # only now: integration takes a while to load
+
+    forward, torque = any_pressure.bore_of(scene.pressure.bound, velocity)
+    return float(forward), float(torque), QUADRATURE
+
+
+def _static(scene, of_sphere, amplitude, poisson):
+    """The limit of vanishing velocity, if it has a closed form under this pressure."""
+    pressure = scene.pressure
+    if pressure is HERTZ or (_is_ellipse(pressure) and scene.name in LIKE_A_SPHERE):
+        return float(of_sphere(amplitude)), None, ROUNDING
+    if not pressure.is_indenter:
+        return None
+    from microslip import indenter_limits as limits  # only now, as above
+
+    if scene.rotates:
+        mu = limits.static_bore(pressure, float(hertz.bore_angle(amplitude, poisson)), poisson)
+    elif scene.name == "longitudinal":
+        mu = limits.static_longitudinal(pressure, amplitude)
+    else:
+        mu = limits.static_transverse(pressure, amplitude)
+    return mu, None, limits.PRECISION
+
+
+def _loading_curve(pressure):
+    """Force after a displacement from rest, nu = 0, if that is known in closed form, else None."""
+    if pressure is HERTZ or _is_ellipse(pressure):
+        return hertz.mindlin_force
+    if not pressure.is_indenter:
+        return None
+    from microslip.indenter_limits import loading  # only now, as above
+
+    return partial(loading, pressure)
+
+
+def _is_ellipse(pressure):
+    return pressure.name.partition(":")[0] == ELLIPSE
 
 
 def plan(scene, name, velocity, amplitude, poisson, tolerance, cells=None, steps=None):

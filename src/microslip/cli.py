@@ -139,6 +139,14 @@ def build_parser():
 
 def _add_options(parser):
     parser.add_argument(
+        "--pressure",
+        default="hertz",
+        metavar="NAME",
+        help="hertz (a sphere), power:exponent=1 (a cone; any power), punch:flat=0.8 (rounded "
+        "edge), ring:inner=0.5, ellipse:ratio=0.5 (across=1: long axis across), or file:FILE, a "
+        "grid of forward,lateral,pressure (hertz)",
+    )
+    parser.add_argument(
         "--poisson", type=_real, default=0.0, metavar="NU", help="Poisson's ratio, 0 to 0.5 (0)"
     )
     parser.add_argument(
@@ -213,7 +221,7 @@ def _answer(options, progress):
     path = getattr(options, "path", None)
     scene = f"{options.scene}:{path}" if path else options.scene
     place = (scene, options.velocity, getattr(options, "amplitude", None))
-    names = ("poisson", "model", "tolerance", "cells", "steps")
+    names = ("pressure", "poisson", "model", "tolerance", "cells", "steps")
     settings = {name: getattr(options, name) for name in names}
     if options.results is None:
         return solve(*place, **settings, method=options.method, progress=progress)

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from microslip.path import HALF_PERIOD
-from microslip.scene import Scene, within_rings
+from microslip.scene import Scene, stick_focus
 
 NAME = "elliptic"
 DEFAULTS = {
@@ -59,7 +59,7 @@ def scene(name, forward, lateral, phase, forward_cycles, lateral_cycles):
         periodic=True,
         rotates=False,
         half_period_mirror=mirrored,
-        focus=lambda velocity, amplitude: _focus(amplitude * reach),
+        focus=lambda velocity, amplitude, pressure: stick_focus(amplitude * reach, pressure),
         velocity_label="v0 / (omega u_lim)",
         amplitude_label="largest amplitude / u_lim, times forward and lateral",
         turns=lambda velocity, amplitude: HALF_PERIOD if mirrored else WHOLE_PERIOD,
@@ -67,8 +67,3 @@ def scene(name, forward, lateral, phase, forward_cycles, lateral_cycles):
         drives=forward > 0.0 and lateral > 0.0 and not both_odd,
         cycles=int(max(forward_cycles if forward else 1.0, lateral_cycles if lateral else 1.0)),
     )
-
-
-def _focus(reach):
-    """Where the contact would stick if it went as far on a line (Eq 8)."""
-    return within_rings(np.sqrt(1.0 - reach)) if reach < 1.0 else None

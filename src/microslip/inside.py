@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from microslip import hertz
 from microslip.choice import choose_model
 from microslip.frames import frames
 from microslip.models.contact import FORWARD, LATERAL, TORQUE, forward_slip, full_slip
@@ -89,7 +88,7 @@ def history(
         displacement_forward=path.positions[:, 0],
         force_forward=march.forces[:, 0],
         force_lateral=march.forces[:, 1],
-        torque=march.forces[:, 2] / hertz.TORQUE_FULL_SLIP,
+        torque=march.forces[:, 2] / kind.pressure.torque,
     )
 
 
@@ -206,7 +205,7 @@ def period(
         *(np.array(part) for part in motion.displacement(phase)),
         forces[:, FORWARD],
         forces[:, LATERAL],
-        forces[:, TORQUE] / hertz.TORQUE_FULL_SLIP,
+        forces[:, TORQUE] / kind.pressure.torque,
         forward_position,
         lateral_position,
         bound,

@@ -78,7 +78,7 @@ def _focus_strength(creep):
 def build_contact(motion, model, resolution):
     """The contact, its rings gathered where the slip starts: the closer, the slower the creep."""
     scene = motion.scene
-    focus = radius = scene.focus(motion.velocity, motion.amplitude)
+    focus = radius = scene.focus(motion.velocity, motion.amplitude, scene.pressure)
     if radius is not None and scene.periodic:
         creep = motion.creep
         focus = Focus(radius, _focus_strength(creep) if creep > 0.0 else STATIC_FOCUS)

@@ -38,6 +38,7 @@ class Result:
     """
 
     scene: str
+    pressure: str
     velocity: float
     amplitude: float | None
     poisson: float
@@ -76,6 +77,7 @@ def solve(
     velocity,
     amplitude=None,
     *,
+    pressure="hertz",
     poisson=0.0,
     model="auto",
     tolerance=1e-3,
@@ -88,7 +90,9 @@ def solve(
     """Macroscopic friction of a vibrated contact at one point.
 
     scene: "transverse", "bore" or "continuous-bore"; velocity, amplitude: the paper's dimensionless
-    groups (amplitude: None for continuous-bore; velocity 0: the limit v -> 0); poisson: nu;
+    groups (amplitude: None for continuous-bore; velocity 0: the limit v -> 0), in units of the
+    pressure's own u_lim; pressure: "hertz", "power:exponent=1", "file:measured.csv", see
+    microslip.pressures; poisson: nu;
     model: "auto" or a name in models.MODELS; tolerance: absolute, on mu_macro; cells, steps (in a
     full period): impose a resolution instead of letting the tolerance choose; method: one of
     methods.names(), to be compared with what ships; most_work: step solves x unknowns, over all
@@ -97,7 +101,9 @@ def solve(
     Returns a Result; ``converged`` is False, with the reason, where the tolerance was not met.
     Raises ValueError, naming the argument, for input out of range or a model that does not apply.
     """
-    kind, velocity, amplitude, poisson = checked_point(scene, velocity, amplitude, poisson)
+    kind, velocity, amplitude, poisson = checked_point(
+        scene, velocity, amplitude, poisson, pressure
+    )
     tolerance, cells, steps = checked_accuracy(tolerance, cells, steps)
     if not most_work > 0.0:
         raise ValueError(f"most_work = {most_work!r}: allowed is a number above 0")
@@ -106,6 +112,7 @@ def solve(
     started = time.perf_counter()
     point = {
         "scene": kind.name,
+        "pressure": kind.pressure.name,
         "velocity": velocity,
         "amplitude": amplitude,
         "poisson": poisson,
@@ -175,9 +182,9 @@ def _within(kind, mu):
     return min(max(mu, least), 1.0) if math.isfinite(mu) else math.nan
 
 
-def checked_point(scene, velocity, amplitude, poisson):
+def checked_point(scene, velocity, amplitude, poisson, pressure="hertz"):
     """Scene record and numbers of a point; raises ValueError naming the argument at fault."""
-    kind = scene_named(scene)
+    kind = scene_named(scene, pressure)
     velocity = _number("velocity", velocity, 0.0, LARGEST["velocity"])
     poisson = _number("poisson", poisson, 0.0, 0.5)
     if kind.periodic:

@@ -1,7 +1,7 @@
 """Rings of a circular contact: edges that follow the scene, areas, bounds and lever arms.
 
-Radii are r = sin(psi): equal steps in psi already refine the edge of the contact, where Hertz's
-pressure falls like a square root.
+Radii are r = sin(psi), psi equidistant but for what a scene asks for: so the edge of the contact is
+refined, where pressures of smooth bodies fall like a square root, and the edge of a hole alike.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from microslip import hertz
+from microslip.pressures import HERTZ
 
 
 class Focus(NamedTuple):
@@ -23,7 +23,7 @@ class Focus(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Rings:
-    """n rings between psi = 0 and pi/2; arrays of shape (n,) but psi, shape (n + 1,).
+    """n rings up to psi = pi/2; arrays of shape (n,) but psi, shape (n + 1,).
 
     area: ring areas (units a^2); bound: mean friction bound, area-weighted sum 1; radius: mean
     lever arm of a traction shaped like the bound, so that full slip has the exact torque.
@@ -35,9 +35,9 @@ class Rings:
     radius: np.ndarray
 
 
-def make_rings(count, focus=None):
-    """Rings for ``count`` unknown radii, refined around ``focus`` (a Focus or just its radius;
-    None: nowhere).
+def make_rings(count, focus=None, pressure=HERTZ):
+    """Rings for ``count`` unknown radii under a round pressures.Pressure, refined around ``focus``
+    (a Focus or just its radius; None: nowhere).
 
     An edge lies on the focus exactly: the traction has a kink at the stick radius, and a ring that
     straddles it costs an order of accuracy.  Raises ValueError for count < 2 or focus outside 0..1.
@@ -48,12 +48,10 @@ def make_rings(count, focus=None):
         psi = np.linspace(0.0, np.pi / 2, count + 1)
     else:
         psi = _focused(count, _as_focus(focus))
-    radii = np.sin(psi)
-    # Integral of sin^2 cos^2 over each ring is the first moment of the bound
-    moment = np.diff(psi / 8 - np.sin(4 * psi) / 32)
-    load = -np.diff(np.cos(psi) ** 3) / 3
-    area = np.pi * np.diff(radii**2)
-    return Rings(psi, area, hertz.ring_bounds(np.minimum(radii, 1.0)), moment / load)
+    if pressure.inner > 0.0:
+        hole = pressure.inner**2
+        psi = np.arcsin(np.sqrt(hole + (1.0 - hole) * np.sin(psi) ** 2))
+    return Rings(psi, np.pi * np.diff(np.sin(psi) ** 2), *pressure.ring_means(psi))
 
 
 def _as_focus(focus):

@@ -1,4 +1,4 @@
-"""The record of a motion: where it goes, which symmetries it has.
+"""The record of a motion: where it goes, which symmetries it has, what pressure it is under.
 
 Names do not depend on the paper's axes: *forward* is the direction of sliding, *lateral* the one
 across it, with forward x lateral such that a positive angle moves points on the positive lateral
@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from microslip.path import HALF_PERIOD
+from microslip.pressures import HERTZ, Pressure
 
 FOCUS_RANGE = (0.05, 0.9995)
 """Radii that rings may gather at; a stick zone smaller than the first carries next to no load."""
@@ -25,8 +26,10 @@ class Scene:
     displacement(phase, velocity, amplitude, poisson) -> (forward, lateral, angle), arrays of the
     shape of ``phase``.
     periodic: the motion oscillates with period 2 pi and needs an amplitude; otherwise it is steady.
-    rotates: the angle is not zero, so tractions depend on the angle around the contact, with mirror
-    symmetry across the lateral axis; without it they have point symmetry.
+    rotates: the angle is not zero, so tractions depend on the angle around the contact.
+    half_disc: half of a round contact tells the other half: where the motion rotates by mirror
+    symmetry across the lateral axis, else by point symmetry.  A rotation together with a lateral
+    motion has neither.
     half_period_mirror: half a period later the motion is its own image under lateral -> -lateral.
     Without it a whole period is marched.
     straight: the oscillation alone goes to and fro on a line, from the phase -pi/2 to pi/2.
@@ -35,7 +38,9 @@ class Scene:
     cycles: of the oscillation in a period, along the direction that has more.
     turns(velocity, amplitude): phases at which the motion turns, from where a lap begins to where
     it ends, half a period later or a whole one.
-    focus(velocity, amplitude): radius where the traction has its kink (None: nowhere special).
+    focus(velocity, amplitude, pressure): radius where the traction has its kink (None: nowhere
+    special).
+    pressure: how the load is spread; it does not change while the contact moves.
     """
 
     name: str
@@ -51,6 +56,8 @@ class Scene:
     straight: bool = True
     drives: bool = False
     cycles: int = 1
+    half_disc: bool = True
+    pressure: Pressure = HERTZ
 
     def creep(self, velocity, amplitude, poisson):
         """Mean forward displacement in one radian of phase, in u_lim."""
@@ -69,3 +76,10 @@ class Scene:
 def within_rings(radius):
     """The radius, kept off the centre and the edge so that no ring degenerates."""
     return float(np.clip(radius, *FOCUS_RANGE))
+
+
+def stick_focus(reach, pressure):
+    """Where the contact would stick if it went so far (u_lim) along a line and back (Eq 8 for a
+    sphere); nowhere once all of it slides, or if that is not a circle."""
+    radius = pressure.stick_radius(reach) if reach < 1.0 else None
+    return None if radius is None else within_rings(radius)

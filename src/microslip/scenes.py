@@ -14,7 +14,8 @@ from functools import lru_cache
 import numpy as np
 
 from microslip import elliptic, hertz, parameters
-from microslip.scene import Scene, within_rings
+from microslip.pressures import HERTZ, pressure_named
+from microslip.scene import Scene, stick_focus, within_rings
 
 
 def _transverse(phase, velocity, amplitude, poisson):
@@ -51,17 +52,18 @@ def _continuous_bore(phase, velocity, amplitude, poisson):
     return velocity * phase, np.zeros_like(phase), phase + 0.0
 
 
-def _transverse_focus(velocity, amplitude):
-    """Mindlin's stick radius of the oscillation alone (Eq 8); nowhere once it slides fully."""
-    return within_rings(np.sqrt(1.0 - amplitude)) if amplitude < 1.0 else None
+def _transverse_focus(velocity, amplitude, pressure):
+    """The stick radius of the oscillation alone (Eq 8); nowhere once it slides fully."""
+    return stick_focus(amplitude, pressure)
 
 
-def _bore_focus(velocity, amplitude):
-    """Lubkin's stick radius of the oscillation alone (Eq 30)."""
+def _bore_focus(velocity, amplitude, pressure):
+    """Lubkin's stick radius of the oscillation alone (Eq 30); under another pressure rings there do
+    no harm."""
     return within_rings(hertz.lubkin_stick_radius(hertz.bore_angle(amplitude)))
 
 
-def _steady_focus(velocity, amplitude):
+def _steady_focus(velocity, amplitude, pressure):
     """The instantaneous centre of rotation, while it lies inside the contact (Eq 14)."""
     return within_rings(velocity) if velocity < 1.0 else None
 
@@ -119,9 +121,20 @@ FAMILIES = {elliptic.NAME: (elliptic.DEFAULTS, elliptic.scene)}
 """Name -> numbers with their defaults, and what makes a Scene of them."""
 
 
-def scene_named(name):
+def scene_named(name, pressure=HERTZ.name):
     """The scene of this name, or of a family for the numbers that follow its name, such as
-    "elliptic:forward=0.5,phase=90".  Raises ValueError saying what is allowed."""
+    "elliptic:forward=0.5,phase=90", under the pressure of this name (see pressures.pressure_named).
+    Raises ValueError saying what is allowed."""
+    scene = _motion_named(name)
+    return scene if pressure == HERTZ.name else _under(scene, pressure_named(pressure))
+
+
+@lru_cache(maxsize=64)
+def _under(scene, pressure):
+    return replace(scene, pressure=pressure)
+
+
+def _motion_named(name):
     if isinstance(name, str) and name in SCENES:
         return SCENES[name]
     if not isinstance(name, str):

@@ -6,13 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from microslip import hertz
 from microslip.cycle import Cycle, Pace
 from microslip.friction import project
 from microslip.method import SHIPPED
 from microslip.models.contact import (
     FORWARD,
-    UNIT_STIFFNESS,
     StepFailure,
     forces,
     forward_slip,
@@ -115,7 +113,7 @@ def _run(motion, model, resolution, tolerance, guess, method, careful):
     step_tolerance = STEP_SHARE * tolerance
     if not motion.scene.periodic:
         return _steady_run(contact, motion, tolerance, step_tolerance)
-    slow_share = UNIT_STIFFNESS * motion.creep * np.pi * STEP_SHARE
+    slow_share = contact.stiffness * motion.creep * np.pi * STEP_SHARE
     floor = CAREFUL * SLOW_STEP_SHARE if careful else SLOW_STEP_SHARE
     share = min(max(slow_share, floor), STEP_SHARE, MARCH_SHARE / resolution.steps)
     step_tolerance = share * tolerance
@@ -148,7 +146,7 @@ class _Search:
         self.contact, self.motion, self.method, self.steps = contact, motion, method, steps
         self.tolerance, self.step_tolerance = tolerance, step_tolerance
         lap = np.pi if motion.scene.half_period_mirror else 2.0 * np.pi
-        self.pace = Pace(0.0, UNIT_STIFFNESS * motion.creep * lap)
+        self.pace = Pace(0.0, contact.stiffness * motion.creep * lap)
         self.path = self._path(steps)
         self.done = []
 
@@ -224,7 +222,7 @@ class _Search:
             reason = f"a step was left unsolved: residual {found.solver_residual:.1e}"
         return Run(
             mu=float(mean[0]),
-            torque=float(mean[2]) / hertz.TORQUE_FULL_SLIP,
+            torque=float(mean[2]) / self.motion.scene.pressure.torque,
             distance=found.distance,
             solver_residual=found.solver_residual,
             periods=periods,
@@ -277,7 +275,7 @@ def _steady_run(contact, motion, tolerance, step_tolerance):
     found = steady_state(contact, motion.displacement, motion.velocity, tolerance, step_tolerance)
     return Run(
         mu=float(found.forces[0]),
-        torque=float(found.forces[2]) / hertz.TORQUE_FULL_SLIP,
+        torque=float(found.forces[2]) / motion.scene.pressure.torque,
         distance=found.distance,
         solver_residual=found.solver_residual,
         periods=found.stretches,

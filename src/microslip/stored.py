@@ -17,6 +17,7 @@ def solve_stored(
     amplitude=None,
     *,
     results="results",
+    pressure="hertz",
     poisson=0.0,
     model="auto",
     tolerance=1e-3,
@@ -32,7 +33,9 @@ def solve_stored(
     Raises ValueError as ``solve`` does, cache.CacheError if the folder cannot be used.
     """
     started = time.perf_counter()
-    kind, velocity, amplitude, poisson = checked_point(scene, velocity, amplitude, poisson)
+    kind, velocity, amplitude, poisson = checked_point(
+        scene, velocity, amplitude, poisson, pressure
+    )
     tolerance, cells, steps = checked_accuracy(tolerance, cells, steps)
     choose_model(kind, poisson, model)
     grid = Sweep(

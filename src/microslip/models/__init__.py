@@ -47,7 +47,9 @@ class Model:
     axes: Callable
 
 
-def _refuse_rotation_and_poisson(scene, poisson):
+def _refuse_rings(scene, poisson):
+    if not scene.pressure.is_round:
+        return f"rings cannot resolve the pressure {scene.pressure.name}"
     if scene.rotates:
         return "rings alone cannot resolve a rotation"
     return "rings alone cannot resolve nu > 0" if poisson > 0.0 else ""
@@ -57,12 +59,28 @@ def _refuse_rotation(scene, poisson):
     return "it has no extension that could turn" if scene.rotates else ""
 
 
+def _refuse_springs(scene, poisson):
+    if not scene.pressure.is_indenter:
+        return f"it is known for axisymmetric indenters only, not for {scene.pressure.name}"
+    return _refuse_rotation(scene, poisson)
+
+
+def _refuse_half_disc(scene, poisson):
+    if not scene.pressure.is_round:
+        return f"rings cannot resolve the pressure {scene.pressure.name}"
+    return "" if scene.half_disc else "half of the contact does not tell the other half"
+
+
+def _refuse_rigid(scene, poisson):
+    return _refuse_half_disc(scene, poisson) if scene.rotates else ""
+
+
 MODELS = {
     "rigid": Model(
         build=lambda scene, poisson, cells, angles, focus: RigidContact(
-            cells, angles, scene.rotates
+            cells, angles, scene.rotates, scene.pressure
         ),
-        refuses=lambda scene, poisson: "",
+        refuses=_refuse_rigid,
         exact=lambda scene: not scene.periodic,
         axes=lambda scene: ("cells", "angles") if scene.rotates else (),
     ),
@@ -73,33 +91,39 @@ MODELS = {
         axes=lambda scene: (),
     ),
     "dahl": Model(
-        build=lambda scene, poisson, cells, angles, focus: DahlContact(),
+        build=lambda scene, poisson, cells, angles, focus: DahlContact(scene.pressure.stiffness),
         refuses=_refuse_rotation,
         exact=lambda scene: False,
         axes=lambda scene: (),
     ),
     "mdr": Model(
-        build=lambda scene, poisson, cells, angles, focus: mdr_contact(cells, focus),
-        refuses=_refuse_rotation,
+        build=lambda scene, poisson, cells, angles, focus: mdr_contact(
+            cells, focus, scene.pressure
+        ),
+        refuses=_refuse_springs,
         exact=lambda scene: False,
         axes=lambda scene: ("cells",),
     ),
     "radial": Model(
-        build=lambda scene, poisson, cells, angles, focus: RadialContact.resolved(cells, focus),
-        refuses=_refuse_rotation_and_poisson,
+        build=lambda scene, poisson, cells, angles, focus: RadialContact.resolved(
+            cells, focus, scene.pressure
+        ),
+        refuses=_refuse_rings,
         exact=lambda scene: True,
         axes=lambda scene: ("cells",),
     ),
     "polar": Model(
         build=lambda scene, poisson, cells, angles, focus: PolarContact(
-            cells, angles, scene.rotates, poisson, focus
+            cells, angles, scene.rotates, poisson, focus, scene.pressure
         ),
-        refuses=lambda scene, poisson: "",
+        refuses=_refuse_half_disc,
         exact=lambda scene: True,
         axes=lambda scene: ("cells", "angles"),
     ),
     "cartesian": Model(
-        build=lambda scene, poisson, cells, angles, focus: CartesianContact(cells, poisson),
+        build=lambda scene, poisson, cells, angles, focus: CartesianContact(
+            cells, poisson, scene.pressure
+        ),
         refuses=lambda scene, poisson: "",
         exact=lambda scene: True,
         axes=lambda scene: ("cells",),

@@ -16,6 +16,7 @@ from microslip.friction import JIT, extended, shrink
 from microslip.models import contact
 from microslip.models.convolution import convolve, square_convolution, workspace
 from microslip.models.points import rigid_displacement, sum_forces
+from microslip.pressures import HERTZ
 
 MAX_ITERATIONS = 5000
 PATIENCE = 60
@@ -37,15 +38,18 @@ class CartesianContact:
     sticks = True
     angles = 1
 
-    def __init__(self, cells, poisson=0.0):
+    def __init__(self, cells, poisson=0.0, pressure=HERTZ):
         if cells < 2:
             raise ValueError(f"cells = {cells}: allowed is a whole number of at least 2")
         self.size = 2.0 / cells
         centres = (np.arange(cells) + 0.5) * self.size - 1.0
         self.forward_position, self.lateral_position = np.meshgrid(centres, centres, indexing="ij")
         self.weight = np.full((cells, cells), self.size**2)
-        self.bound = _cell_loads(cells) / self.size**2
-        self.operator, self.scale, self.largest = square_convolution(cells, poisson)
+        self.bound = pressure.cell_loads(cells) / self.size**2
+        self.stiffness = pressure.stiffness
+        self.operator, self.scale, self.largest = square_convolution(
+            cells, poisson, pressure.G_star
+        )
         self.compliance = np.full((cells, cells), self.scale)
 
     def displacement(self, state):
@@ -229,18 +233,3 @@ def _extrapolate(start, later, earlier, bound, out):
             lateral = start[1, i, j] + later[1, i, j] - earlier[1, i, j]
             f = shrink(forward, lateral, bound[i, j])
             out[0, i, j], out[1, i, j] = f * forward, f * lateral
-
-
-def _cell_loads(cells):
-    """Friction bound integrated over each square, (cells, cells); sums to 1."""
-    edges = np.arange(cells + 1) * 2.0 / cells - 1.0
-    x, y = edges[:, None], edges[None, :]
-    # load of the rectangle from the centre to (x, y), odd in both, then second differences; past
-    # the edge of the disc the bound is zero, and so is the root
-    root = np.sqrt(np.maximum(1.0 - x * x - y * y, 0.0))
-    load = x * y * root - np.arctan2(x * y, root)
-    load = load + 0.5 * x * (3.0 - x * x) * np.arctan2(y, root)
-    load = load + 0.5 * y * (3.0 - y * y) * np.arctan2(x, root)
-    loads = np.diff(np.diff(load / (2.0 * np.pi), axis=0), axis=1)
-    loads[loads < 1e-13] = 0.0
-    return loads / loads.sum()

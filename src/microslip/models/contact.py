@@ -7,11 +7,6 @@ from typing import Protocol
 
 import numpy as np
 
-UNIT_STIFFNESS = 1.5
-"""Force over mu F_z per uniform displacement u_lim without slip, 2 G* a: turns an energy norm into
-a bound on a force, |dF| <= sqrt(1.5 <dq, A dq>)."""
-
-
 FORWARD, LATERAL, TORQUE = range(3)
 """Columns of the forces."""
 
@@ -52,6 +47,7 @@ class Contact(Protocol):
     compliance: displacement of a point under unit traction on itself, broadcast likewise;
     forward_position, lateral_position: where the points are (units a), same shape;
     has_sensitivity: whether ``march(..., sensitivity=True)`` is to be had cheaply;
+    stiffness: force over mu F_z per uniform displacement u_lim without slip, at least;
     sticks: whether points may stick, so that something is left of it in the static limit.
     """
 
@@ -61,6 +57,7 @@ class Contact(Protocol):
     forward_position: np.ndarray
     lateral_position: np.ndarray
     has_sensitivity: bool
+    stiffness: float
     sticks: bool
 
     def displacement(self, state) -> np.ndarray:
@@ -77,9 +74,10 @@ class Contact(Protocol):
 
 
 def energy_norm(contact, change):
-    """Bound on the force (over mu F_z) that a change of tractions carries, from its energy."""
+    """Bound on the force (over mu F_z) that a change of tractions carries, from its energy:
+    |dF| <= sqrt(stiffness <dq, A dq>)."""
     energy = np.vdot(contact.weight * change, contact.displacement(change))
-    return float(np.sqrt(UNIT_STIFFNESS * max(energy, 0.0)))
+    return float(np.sqrt(contact.stiffness * max(energy, 0.0)))
 
 
 def full_slip(contact, forward, lateral):

@@ -36,14 +36,14 @@ class Convolution(NamedTuple):
 
 
 @lru_cache(maxsize=8)
-def square_convolution(cells, poisson):
+def square_convolution(cells, poisson, modulus=G_STAR):
     """Convolution of ``cells`` x ``cells`` squares over [-1, 1]^2, their self-influence, and an
-    upper bound on the eigenvalues (u_lim per unit traction)."""
+    upper bound on the eigenvalues (u_lim per unit traction); modulus: G* in working units."""
     padded = _padded(cells)
     radices = _radices(padded)
     turns = 2.0 * np.pi * np.arange(padded) / padded
     order = _order(list(radices))
-    coefficients = influence(cells, padded, poisson)
+    coefficients = influence(cells, padded, poisson, modulus)
     kernel, cross = (np.fft.fft2(part).T[np.ix_(order, order)] for part in coefficients)
     largest = np.abs(kernel).max() + np.abs(cross).max()
     # each factor of the inverse transform brings its size along: divide once, here
@@ -59,7 +59,7 @@ def square_convolution(cells, poisson):
     return operator, float(coefficients[0][0, 0]), float(largest)
 
 
-def influence(cells, padded, poisson):
+def influence(cells, padded, poisson, modulus=G_STAR):
     """Influence coefficients on the traction and on its conjugate, (P, P) each; u_lim per unit
     traction, first axis forward, second lateral offset, negative offsets wrapped around.
 
@@ -78,7 +78,7 @@ def influence(cells, padded, poisson):
             single = single + sx * sy * (u * log_v + v * log_u)
             squares = squares + sx * sy * (v * log_u - u * log_v)
             product = product - sx * sy * r
-    scale = 1.0 / (np.pi * G_STAR)
+    scale = 1.0 / (np.pi * modulus)
     kappa = poisson / (2.0 - poisson)
     return scale * single, scale * kappa * (squares + 2j * product)
 

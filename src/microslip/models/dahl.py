@@ -14,8 +14,6 @@ import numpy as np
 
 from microslip.models import contact
 
-STIFFNESS = contact.UNIT_STIFFNESS
-
 
 class DahlContact:
     """A single bristle (see models.contact.Contact); states have shape (2, 1, 1)."""
@@ -24,14 +22,15 @@ class DahlContact:
     sticks = False  # no point of it ever sticks: nothing is left of it in the static limit
     angles = 1
 
-    def __init__(self):
+    def __init__(self, stiffness):
+        self.stiffness = stiffness
         self.bound = self.weight = np.ones(1)
-        self.compliance = np.full(1, 1.0 / STIFFNESS)
+        self.compliance = np.full(1, 1.0 / stiffness)
         self.forward_position = self.lateral_position = np.zeros((1, 1))
 
     def displacement(self, state):
         """Deflection of the bristle, shape (2, 1, 1)."""
-        return state / STIFFNESS
+        return state / self.stiffness
 
     def mirrored(self, state):
         """Lateral traction negated."""
@@ -46,7 +45,7 @@ class DahlContact:
         for k, (move, length) in enumerate(zip(moves, lengths, strict=True)):
             if length > 0.0:
                 end = move / length
-                traction = end + (traction - end) * np.exp(-STIFFNESS * length)
+                traction = end + (traction - end) * np.exp(-self.stiffness * length)
             forces[k + 1, :2] = traction
         return contact.March(
             state=traction.reshape(2, 1, 1),
@@ -54,5 +53,7 @@ class DahlContact:
             residual=0.0,
             iterations=0,
             solves=path.steps,
-            sensitivity=np.exp(-STIFFNESS * lengths.sum()) * np.eye(2) if sensitivity else None,
+            sensitivity=np.exp(-self.stiffness * lengths.sum()) * np.eye(2)
+            if sensitivity
+            else None,
         )

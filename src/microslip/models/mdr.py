@@ -1,27 +1,34 @@
 """The method of dimensionality reduction: a row of independent springs with friction.
 
 For tangential loading in one direction it reproduces the half-space exactly (Cattaneo and Mindlin,
-any axisymmetric profile); with two components of slip it is an approximation, since its springs
-know nothing of each other.  Springs at -a < x < a have the stiffness G* per length, and Hertz's
-parabola gives each the friction bound 3/4 (1 - x^2) per length (dimensionless), so that it yields
-at (1 - x^2) u_lim.
+any axisymmetric indenter); with two components of slip it is an approximation, since its springs
+know nothing of each other.  Springs at -a < x < a have the stiffness G* per length, and the
+indenter gives each the friction bound G* (1 - h(x)) per length (dimensionless), h(x) the share of
+the depth at which the contact radius is x, so that it yields at (1 - h) u_lim: 1 - x^2 for a
+sphere.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from microslip.hertz import G_STAR
 from microslip.models.radial import RadialContact
+from microslip.pressures import HERTZ
 from microslip.rings import make_rings
 
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+_NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 
-def mdr_contact(cells, focus=None):
-    """``cells`` springs on 0 < x < 1 with their mirror images, gathered around x = ``focus``.
+
+def mdr_contact(cells, focus=None, pressure=HERTZ):
+    """``cells`` springs under an indenter's Pressure on 0 < x < 1 with their mirror images,
+    gathered around x = ``focus``.
 
     The spring at x stands for both halves of a ring: what a spring carries is force over length.
     """
     edges = np.sin(make_rings(cells, focus).psi)
     length = np.diff(edges)
-    bound = 0.75 * (1.0 - np.diff(edges**3) / (3.0 * length))
-    return RadialContact(np.eye(cells) / G_STAR, bound, 2.0 * length)
+    x = edges[:-1, None] + length[:, None] * _NODES
+    bound = pressure.G_star * (1.0 - pressure.depth(x)) @ _WEIGHTS
+    influence = np.eye(cells) / pressure.G_star
+    return RadialContact(influence, bound, 2.0 * length, pressure.stiffness)

@@ -29,6 +29,7 @@ from microslip.models.sectors import (
     shifted_inverse,
     unfold,
 )
+from microslip.pressures import HERTZ
 from microslip.rings import make_rings
 
 MAX_ITERATIONS = 4000
@@ -219,17 +220,17 @@ class PolarContact:
     has_sensitivity = False
     sticks = True
 
-    def __init__(self, cells, angles, rotates, poisson=0.0, focus=None):
+    def __init__(self, cells, angles, rotates, poisson=0.0, focus=None, pressure=HERTZ):
         if angles < 2 or angles % 2:
             raise ValueError(f"angles = {angles}: allowed is an even number of at least 2")
-        self.rings = make_rings(cells, focus)
-        self.angles, self.rotates = angles, rotates
+        self.rings = make_rings(cells, focus, pressure)
+        self.angles, self.rotates, self.stiffness = angles, rotates, pressure.stiffness
         theta = (np.arange(angles) + 0.5) * np.pi / angles
         self.lateral_position = np.cos(theta)[:, None] * self.rings.radius
         self.forward_position = np.sin(theta)[:, None] * self.rings.radius
         self.bound = self.rings.bound
         self.weight = self.rings.area / angles
-        key = (cells, angles, rotates, poisson, focus)
+        key = (cells, angles, rotates, poisson, focus, pressure)
         self.influence, self.inverse, self.compliance = _prepared(*key)
         self.penalty = PENALTY * self.compliance
 
@@ -275,8 +276,8 @@ class PolarContact:
 
 
 @lru_cache(maxsize=32)
-def _prepared(cells, angles, rotates, poisson, focus):
+def _prepared(cells, angles, rotates, poisson, focus, pressure):
     """The operator, (A + penalty)^-1, and the self-influence of each ring."""
-    operator, compliance = influence_sectors(cells, angles, rotates, poisson, focus)
+    operator, compliance = influence_sectors(cells, angles, rotates, poisson, focus, pressure)
     inverse = shifted_inverse(operator, PENALTY * compliance)
     return quickest(operator), quickest(inverse), compliance

@@ -11,8 +11,10 @@ from functools import lru_cache
 import numpy as np
 
 from microslip.halfspace import ring_influence
+from microslip.hertz import G_STAR
 from microslip.models import contact, ring_march
 from microslip.models.ring_factors import cholesky
+from microslip.pressures import HERTZ
 from microslip.rings import make_rings
 
 
@@ -20,7 +22,8 @@ class RadialContact:
     """Contact of ``cells`` rings (see models.contact.Contact); states have shape (2, 1, cells).
 
     influence: (cells, cells), mean ring tractions to ring-averaged displacements, symmetric once
-    its rows are weighted; bound, weight: friction bound and area of each ring.  ``resolved`` builds
+    its rows are weighted; bound, weight: friction bound and area of each ring; stiffness: of the
+    whole, see there, by default that of the matrix.  ``resolved`` builds
     the half-space's; the elastic slider is the one-ring contact of unit compliance.
     """
 
@@ -28,19 +31,22 @@ class RadialContact:
     sticks = True
     angles = 1
 
-    def __init__(self, influence, bound, weight):
+    def __init__(self, influence, bound, weight, stiffness=None):
         self.influence = np.ascontiguousarray(influence, dtype=float)
         self.bound, self.weight = bound, weight
         self.compliance = np.diag(self.influence)
         self.forward_position = self.lateral_position = np.zeros((1, len(bound)))
-        stiffness = weight[:, None] * self.influence
-        self._stiffness = 0.5 * (stiffness + stiffness.T)
+        weighted = weight[:, None] * self.influence
+        self._stiffness = 0.5 * (weighted + weighted.T)
         self._factor = cholesky(self._stiffness)
+        if stiffness is None:  # the force that moves all points by one
+            stiffness = weight @ np.linalg.solve(self._stiffness, weight)
+        self.stiffness = float(stiffness)
 
     @staticmethod
-    def resolved(cells, focus=None):
+    def resolved(cells, focus=None, pressure=HERTZ):
         """The half-space on ``cells`` rings refined around the radius ``focus``."""
-        return _resolved(cells, focus)
+        return _resolved(cells, focus, pressure)
 
     def displacement(self, state):
         """A q; shapes (2, 1, cells)."""
@@ -83,8 +89,9 @@ class RadialContact:
 
 
 @lru_cache(maxsize=32)
-def _resolved(cells, focus):
+def _resolved(cells, focus, pressure):
     """Shared by runs that differ in their motion only: a contact never changes."""
-    rings = make_rings(cells, focus)
+    rings = make_rings(cells, focus, pressure)
     near, _ = ring_influence(rings.psi, 1, False)
-    return RadialContact(near[0], rings.bound, rings.area)
+    influence = near[0] * (G_STAR / pressure.G_star)
+    return RadialContact(influence, rings.bound, rings.area, pressure.stiffness)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from microslip.models import contact
+from microslip.pressures import HERTZ
 from microslip.rings import make_rings
 
 GRADING = 0.98
@@ -22,10 +23,11 @@ class RigidContact:
     sticks = False
     grading = GRADING
 
-    def __init__(self, cells, angles, rotates):
+    def __init__(self, cells, angles, rotates, pressure=HERTZ):
+        self.stiffness = pressure.stiffness
         self.angles = angles if rotates else 1
         if rotates:
-            rings = make_rings(cells)
+            rings = make_rings(cells, pressure=pressure)
             theta = (np.arange(angles) + 0.5) * np.pi / angles
             self.lateral_position = np.cos(theta)[:, None] * rings.radius
             self.forward_position = np.sin(theta)[:, None] * rings.radius

@@ -1,0 +1,115 @@
+"""Closed forms for any axisymmetric indenter at Poisson's ratio 0 (bore: any): the curve of first
+loading, and the static limits under an oscillation.
+
+For a sphere they are those of theory.py, which are quicker and better tested; here they are
+integrals over the record of a pressures.Pressure, to about 1e-8.  Dimensionless as there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import brentq
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(128)
+_NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
+PRECISION = 1e-8
+SMALLEST_STICK_RADIUS = 1e-6
+
+
+def loading(pressure, displacement):
+    """Tangential force over mu F_z after a displacement (u_lim, >= 0, any shape) from rest.
+
+    What slips at the depth 1 less what would still slip at the depth 1 - u: the load of a smaller
+    contact is missing (Ciavarella 1998, Jaeger 1998).
+    """
+    left = np.maximum(1.0 - np.asarray(displacement, float), 0.0)
+    radius = pressure.radius(left)
+    return 1.0 - np.where(left > 0.0, pressure.load(radius, radius), 0.0)
+
+
+def static_transverse(pressure, amplitude):
+    """Static friction under transverse oscillation, v -> 0, nu = 0; amplitude >= 0 (a float).
+
+    Integral over the stick zone of sqrt(g^2 - (g - g_c)^2), see theory.static_limit_transverse.
+    """
+    if amplitude >= 1.0:
+        return 0.0
+    c = float(pressure.radius(1.0 - amplitude))
+
+    def left(r):
+        inner = pressure.inner_bound(r, c)
+        return np.sqrt(inner * np.maximum(2.0 * pressure.inner_bound(r, 1.0) - inner, 0.0))
+
+    return min(_over_the_circle(left, c, _kink(pressure)), 1.0)
+
+
+def static_longitudinal(pressure, amplitude):
+    """Static friction under oscillation along the forward direction, nu = 0; amplitude >= 0."""
+    return float(1.0 - loading(pressure, amplitude))
+
+
+def torsion_angle(pressure, stick_radius, poisson=0.0):
+    """Angle of pure torsion, from rest, that leaves a stick circle, in u_lim/a (Eq 24 for a
+    sphere); 0 < stick_radius <= 1.
+
+    Torsion is a sum of turned flat punches, whose inversion by Abel gives
+    phi = 1/(2 G) Integral_c^1 g / sqrt(r^2 - c^2) dr.
+    """
+    end = np.arccosh(1.0 / stick_radius)
+    eta = end * np.sin(0.5 * np.pi * _NODES)  # the bound falls like a root at the edge
+    step = end * 0.5 * np.pi * np.cos(0.5 * np.pi * _NODES) * _WEIGHTS
+    bound = pressure.inner_bound(np.minimum(stick_radius * np.cosh(eta), 1.0), 1.0)
+    return 2.0 / ((2.0 - poisson) * pressure.G_star) * float(np.sum(step * bound))
+
+
+def torsion_traction(pressure, r, stick_radius):
+    """Circumferential traction of pure torsion inside the stick circle, r < stick_radius (array).
+
+    The turned punches summed up: (2 r/pi) Integral g(t)/t d(theta), t^2 = c^2 + (c^2 - r^2) tan^2.
+    """
+    r = np.asarray(r, float)[..., None]
+    inside = stick_radius**2 - r**2
+    end = np.arctan2(np.sqrt(1.0 - stick_radius**2), np.sqrt(inside))
+    theta = end * np.sin(0.5 * np.pi * _NODES)
+    step = end * 0.5 * np.pi * np.cos(0.5 * np.pi * _NODES) * _WEIGHTS
+    t = np.minimum(np.sqrt(stick_radius**2 + inside * np.tan(theta) ** 2), 1.0)
+    return 2.0 / np.pi * r[..., 0] * np.sum(step * pressure.inner_bound(t, 1.0) / t, axis=-1)
+
+
+def static_bore(pressure, angle, poisson=0.0):
+    """Static friction under oscillating bore, v -> 0; angle >= 0 in u_lim/a.
+
+    4 Integral_0^c g arccos(tau / g) r dr, see theory.static_limit_bore.
+    """
+    if angle <= 0.0:
+        return 1.0
+
+    def excess(log_c):
+        return torsion_angle(pressure, np.exp(log_c), poisson) - angle
+
+    smallest = np.log(SMALLEST_STICK_RADIUS)
+    if excess(smallest) < 0.0:
+        return 0.0
+    c = float(np.exp(brentq(excess, smallest, 0.0, xtol=1e-13)))
+
+    def left(r):
+        bound = pressure.inner_bound(r, 1.0)
+        share = np.clip(torsion_traction(pressure, r, c) / bound, 0.0, 1.0)
+        return 2.0 / np.pi * bound * np.arccos(share)
+
+    return min(_over_the_circle(left, c, _kink(pressure)), 1.0)
+
+
+def _kink(pressure):
+    """Radius of the flat end of an indenter, where its pressure has a kink; 0 if it has none."""
+    return float(pressure.radius(1e-300))
+
+
+def _over_the_circle(function, radius, kink):
+    """Integral of a function of the radius over a circle, at whose edge it falls like a root."""
+    total = 0.0
+    for start, end in ((0.0, min(kink, radius)), (min(kink, radius), radius)):
+        r = end - (end - start) * _NODES**4
+        step = (end - start) * 4.0 * _NODES**3 * _WEIGHTS
+        total += 2.0 * np.pi * float(np.sum(step * r * function(r))) if end > start else 0.0
+    return total

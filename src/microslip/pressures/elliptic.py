@@ -1,0 +1,92 @@
+"""Hertz's pressure over an ellipse, and so that over a circle, which the paper is about."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.special import ellipk
+
+from microslip import hertz
+from microslip.pressures.record import Pressure
+from microslip.pressures.squares import of_corner_loads
+
+NAME = "ellipse"
+DEFAULTS = {"ratio": 0.5, "across": 0.0}
+SMALLEST_RATIO = 0.05
+
+
+def pressure(name, ratio, across):
+    """The Pressure of an elliptic Hertz contact of semi-axes a and ratio a.
+
+    across: 0 if the long axis is the forward one, 1 if it is the lateral one.  u_lim is the
+    displacement under full slip at the centre, so that G* = 3 K / (2 pi), K the complete elliptic
+    integral of the eccentricity: 3/4 for a circle.  Raises ValueError for a ratio outside 0.05..1
+    and another ``across``.
+    """
+    if not SMALLEST_RATIO <= ratio <= 1.0:
+        raise ValueError(
+            f"pressure = {name!r}: ratio = {ratio:g}: allowed is a number in {SMALLEST_RATIO:g}..1"
+        )
+    if across not in (0.0, 1.0):
+        raise ValueError(f"pressure = {name!r}: across = {across:g}: allowed is 0 or 1")
+    axes = (ratio, 1.0) if across else (1.0, ratio)
+    return Pressure(
+        name=name,
+        summary=f"a Hertz contact on an ellipse of ratio {ratio:g}",
+        G_star=1.5 / np.pi * float(ellipk(1.0 - ratio**2)),
+        torque=_torque(ratio),
+        cell_loads=lambda cells: ellipse_loads(cells, axes),
+    )
+
+
+def _torque(ratio):
+    """Mean distance from the centre under Hertz's pressure: on the unit circle it is 3 pi/16, and
+    along the ray at an angle t of the squeezed circle it is stretched by hypot(cos t, ratio sin t).
+    """
+    angle = (np.arange(512) + 0.5) * (np.pi / 1024)
+    return hertz.TORQUE_FULL_SLIP * float(np.hypot(np.cos(angle), ratio * np.sin(angle)).mean())
+
+
+def ellipse_loads(cells, axes=(1.0, 1.0)):
+    """Hertz's pressure integrated over each square, (cells, cells); axes: semi-axes, the forward
+    one first."""
+    edges = np.arange(cells + 1) * 2.0 / cells - 1.0
+    x, y = (np.clip(edges / axis, -1.0, 1.0) for axis in axes)
+    x, y = x[:, None], y[None, :]
+    # load of the rectangle from the centre to (x, y), odd in both; past the edge of the disc the
+    # bound is zero, and so is the root
+    root = np.sqrt(np.maximum(1.0 - x * x - y * y, 0.0))
+    load = x * y * root - np.arctan2(x * y, root)
+    load = load + 0.5 * x * (3.0 - x * x) * np.arctan2(y, root)
+    load = load + 0.5 * y * (3.0 - y * y) * np.arctan2(x, root)
+    return of_corner_loads(load / (2.0 * np.pi))
+
+
+def _hertz_means(psi):
+    radii = np.sin(psi)
+    # Integral of sin^2 cos^2 over each ring is the first moment of the bound
+    moment = np.diff(psi / 8 - np.sin(4 * psi) / 32)
+    load = -np.diff(np.cos(psi) ** 3) / 3
+    return hertz.ring_bounds(np.minimum(radii, 1.0)), moment / load
+
+
+def _hertz_bound(r, c=1.0):
+    return 1.5 / np.pi * np.sqrt(np.maximum((c - r) * (c + r), 0.0))
+
+
+def _hertz_load(r, c=1.0):
+    return c**3 - np.maximum((c - r) * (c + r), 0.0) ** 1.5
+
+
+HERTZ = Pressure(
+    name="hertz",
+    summary="a sphere on a flat",
+    G_star=hertz.G_STAR,
+    torque=hertz.TORQUE_FULL_SLIP,
+    cell_loads=ellipse_loads,
+    ring_means=_hertz_means,
+    bound=_hertz_bound,
+    depth=lambda c: c * c,
+    radius=lambda depth: np.sqrt(np.maximum(depth, 0.0)),
+    load=_hertz_load,
+    inner_bound=_hertz_bound,
+)

@@ -1,0 +1,27 @@
+"""Power-law indenters, f(r) ~ r^n: a cone (1), a sphere (2), ever flatter ends (8, 20)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.pressures.indenters import indenter
+
+NAME = "power"
+DEFAULTS = {"exponent": 2.0}
+SMALLEST, LARGEST = 1.0, 100.0
+
+
+def pressure(name, exponent):
+    """The Pressure of an indenter r^exponent; raises ValueError for one below 1 or above 100."""
+    if not SMALLEST <= exponent <= LARGEST:
+        raise ValueError(
+            f"pressure = {name!r}: exponent = {exponent:g}: allowed is a number in "
+            f"{SMALLEST:g}..{LARGEST:g}"
+        )
+    return indenter(
+        name,
+        f"an indenter with the profile r^{exponent:g}",
+        depth=lambda c: np.asarray(c, float) ** exponent,
+        slope=lambda c: exponent * c ** (exponent - 1.0),
+        radius=lambda depth: np.maximum(depth, 0.0) ** (1.0 / exponent),
+    )

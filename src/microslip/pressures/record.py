@@ -1,0 +1,92 @@
+"""The record of a pressure: what carries the load, and how much friction each point may take.
+
+Working units, dimensionless: a = 1 (outer radius, or half the longer side of what bounds the
+contact), mu F_z = 1 and u_lim = 1.  Here u_lim is the displacement at which the whole contact
+slides, pushed in one direction from rest: the largest displacement that full slip of the whole
+contact causes anywhere,
+
+    u_lim = max of 1/(pi G*) Integral mu p(z') / |z - z'| dA',
+
+which for every indenter pressed to a depth d is mu d E*/G*, the usual 3 mu F_z/(4 G* a) for a
+sphere.  What these units leave of the stiffness is the number G*, 3/4 for a sphere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+STICK_NOWHERE = 0.0
+
+
+@dataclass(frozen=True)
+class Pressure:
+    """One distribution of the load over the contact.
+
+    G_star: reduced shear modulus 4G/(2 - nu) in working units; torque: of a contact that slips
+    everywhere about its centre, in mu F_z a;
+    cell_loads(cells): load on each of cells x cells squares over [-1, 1]^2, forward axis first,
+    sum 1.
+
+    Of contacts whose pressure depends on the radius alone, else None:
+    ring_means(psi) -> (bound, lever): mean friction bound of the rings between r = sin(psi), and
+    mean lever arm of a traction shaped like it, (n,) each, from shape (n + 1,);
+    bound(r): friction bound mu p; inner: radius of the hole in the middle.
+
+    Of axisymmetric indenters, which touch a full circle and whose contact grows with the load (else
+    None); c is a contact radius, other than 1 if the load is not the mean one:
+    depth(c): indentation; radius(depth): its inverse, 0 for no contact;
+    load(r, c): load within r; inner_bound(r, c): friction bound; both as functions of arrays that
+    broadcast.
+    """
+
+    name: str
+    summary: str
+    G_star: float
+    torque: float
+    cell_loads: Callable
+    ring_means: Callable | None = None
+    bound: Callable | None = None
+    inner: float = 0.0
+    depth: Callable | None = None
+    radius: Callable | None = None
+    load: Callable | None = None
+    inner_bound: Callable | None = None
+
+    @property
+    def is_round(self):
+        """Whether it depends on the radius alone."""
+        return self.ring_means is not None
+
+    @property
+    def is_indenter(self):
+        """Whether it is that of an axisymmetric indenter."""
+        return self.depth is not None
+
+    @property
+    def stiffness(self):
+        """Force over mu F_z per uniform displacement u_lim without slip, 2 G* a; of a contact that
+        does not fill the circle of radius a an upper bound."""
+        return 2.0 * self.G_star
+
+    def stick_radius(self, displacement):
+        """Stick radius after a displacement (u_lim) in one direction from rest: that of the contact
+        whose indentation is less by this share (Ciavarella, Jaeger); None if it is not known, and
+        0.0 where all slides.  displacement >= 0: a float."""
+        if self.depth is None:
+            return None
+        if displacement >= 1.0:
+            return STICK_NOWHERE
+        return float(self.radius(1.0 - displacement))
+
+
+def of_radii(ring_loads, ring_moments, psi):
+    """ring_means from loads and first moments of the bound between the radii r = sin(psi)."""
+    loads, moments = ring_loads(psi), ring_moments(psi)
+    area = np.pi * np.diff(np.sin(psi) ** 2)
+    radii = np.sin(psi)
+    # a ring without load has a lever arm all the same
+    lever = np.where(loads > 0.0, moments / np.where(loads > 0.0, loads, 1.0), radii[1:])
+    return loads / area, lever
