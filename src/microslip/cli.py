@@ -36,11 +36,22 @@ SCENES = {
         "v0 / (Omega phi0 a): forward speed over the largest rotation speed of the contact's edge",
         "phi0 / phi_lk(a/2): angular amplitude over the angle that leaves half the radius sticking",
     ),
+    "transverse-bore": (
+        "sliding forward while oscillating sideways and in rotation",
+        "v0 / (omega u_lim): as for transverse",
+        "of both oscillations as for transverse and bore, of which --path gives each a share",
+    ),
     "continuous-bore": (
         "sliding forward while rotating steadily about the contact normal",
         "v0 / (omega a): forward speed over the rotation speed of the contact's edge",
         None,
     ),
+}
+PATHS = {
+    "elliptic": "such as forward=0.5,phase=30: shares forward and lateral (1), phase of the "
+    "forward part in degrees (90), forward_cycles and lateral_cycles (1)",
+    "transverse-bore": "such as angle=0.5,phase=90: shares lateral and angle (1), phase of the "
+    "rotation in degrees (0)",
 }
 
 
@@ -125,13 +136,8 @@ def build_parser():
             scene.add_argument(
                 "--amplitude", type=_real, required=True, metavar="A", help=amplitude
             )
-        if name == "elliptic":
-            scene.add_argument(
-                "--path",
-                metavar="NUMBERS",
-                help="such as forward=0.5,phase=30: shares forward and lateral (1), phase of the "
-                "forward part in degrees (90), forward_cycles and lateral_cycles (1)",
-            )
+        if name in PATHS:
+            scene.add_argument("--path", metavar="NUMBERS", help=PATHS[name])
         _add_options(scene)
     cli_predict.add_parser(commands)
     return parser

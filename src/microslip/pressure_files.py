@@ -59,8 +59,9 @@ def _csv(path):
             raise ValueError(
                 f"the first line is {','.join(head)[:80]!r}; allowed: {','.join(COLUMNS)}"
             )
+        lines = [line for line in file if line.strip()]
         try:
-            rows = np.loadtxt(file, delimiter=",", ndmin=2)
+            rows = np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.empty((0, 3))
         except ValueError as error:
             raise ValueError(f"not three numbers a line: {str(error)[:120]}") from None
     if rows.shape[1:] != (3,) or len(rows) == 0:

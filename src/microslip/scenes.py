@@ -13,7 +13,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from microslip import elliptic, hertz, parameters
+from microslip import combined, elliptic, hertz, parameters
 from microslip.pressures import HERTZ, pressure_named
 from microslip.scene import Scene, stick_focus, within_rings
 
@@ -117,8 +117,8 @@ CONTINUOUS_BORE = Scene(
 )
 
 SCENES = {scene.name: scene for scene in (TRANSVERSE, LONGITUDINAL, ZIGZAG, BORE, CONTINUOUS_BORE)}
-FAMILIES = {elliptic.NAME: (elliptic.DEFAULTS, elliptic.scene)}
-"""Name -> numbers with their defaults, and what makes a Scene of them."""
+FAMILIES = {family.NAME: family for family in (elliptic, combined)}
+"""Name -> module with DEFAULTS, numbers and their values if not given, and scene(name, ...)."""
 
 
 def scene_named(name, pressure=HERTZ.name):
@@ -131,7 +131,15 @@ def scene_named(name, pressure=HERTZ.name):
 
 @lru_cache(maxsize=64)
 def _under(scene, pressure):
-    return replace(scene, pressure=pressure)
+    if pressure.mirrored or not scene.half_period_mirror:
+        return replace(scene, pressure=pressure)
+
+    def turns(velocity, amplitude):
+        """The second half of the period is no mirror image: it turns as the first one does."""
+        first = scene.turns(velocity, amplitude)
+        return (*first, *(phase + np.pi for phase in first[1:]))
+
+    return replace(scene, pressure=pressure, half_period_mirror=False, turns=turns)
 
 
 def _motion_named(name):
@@ -146,10 +154,11 @@ def _motion_named(name):
 def _of_family(name):
     """One record for a name: what is prepared for a motion is found again by it."""
     family, numbers = parameters.split(name, "scene", [*SCENES, *FAMILIES])
-    defaults, build = FAMILIES.get(family, ({}, None))
+    module = FAMILIES.get(family)
+    defaults = module.DEFAULTS if module else {}
     problem = parameters.unknown(name, "scene", numbers, list(defaults))
     if problem:
         raise ValueError(problem)
     given = {key: value for key, value in sorted(numbers.items()) if value != defaults[key]}
     words = ",".join(f"{key}={value:.12g}" for key, value in given.items())
-    return build(f"{family}:{words}" if words else family, **(defaults | given))
+    return module.scene(f"{family}:{words}" if words else family, **(defaults | given))

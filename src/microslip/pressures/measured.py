@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from microslip.pressures.record import Pressure
+from microslip.pressures.squares import of_loads
 
 AXES = ("forward", "lateral")
 FINE = 256
@@ -15,12 +16,12 @@ REGULAR = 1e-3
 
 def of_grid(name, forward, lateral, values):
     """The Pressure of values on a regular grid; forward, lateral: increasing, (n,) and (m,), in one
-    unit of length; values: (n, m), 0 outside the contact, in any unit.  Every point stands for a
-    rectangle around it, with the pressure constant in it.
+    unit of length; values: (n, m), 0 outside the contact, in any unit.  Between the points the
+    pressure is bilinear, and it ends one point beyond the last above 0.
 
-    a is half the longer side of the rectangle around all points with pressure, and its centre is
-    the one that rotations turn about.  Raises ValueError for a grid that is not regular, values
-    below 0 or not finite, and a load that is 0.
+    a is half the longer side of the rectangle that holds all pressure, and its centre is the one
+    that rotations turn about.  Raises ValueError for a grid that is not regular, values below 0 or
+    not finite, and a load that is 0.
     """
     widths = [_width(label, axis) for label, axis in zip(AXES, (forward, lateral), strict=True)]
     if not np.isfinite(values).all() or values.min() < 0.0:
@@ -29,32 +30,36 @@ def of_grid(name, forward, lateral, values):
     loaded = values > 0.0
     if not loaded.any():
         raise ValueError("pressure is 0 everywhere; allowed: a load above 0")
-    edges, centres, halves = [], [], []
+    centres, halves = [], []
     for axis, width, other in ((forward, widths[0], 1), (lateral, widths[1], 0)):
         used = axis[loaded.any(axis=other)]
-        edges.append(np.append(axis - 0.5 * width, axis[-1] + 0.5 * width))
         centres.append(0.5 * (used[0] + used[-1]))
-        halves.append(0.5 * (used[-1] - used[0] + width))
-    edges = [(edge - centre) / max(halves) for edge, centre in zip(edges, centres, strict=True)]
-    total = np.zeros((len(forward) + 1, len(lateral) + 1))
-    total[1:, 1:] = values.cumsum(axis=0).cumsum(axis=1)
-    total /= total[-1, -1]
-    middles = [0.5 * (edge[1:] + edge[:-1]) for edge in edges]
+        halves.append(0.5 * (used[-1] - used[0]) + width)
+    axes = [
+        (axis - centre) / max(halves)
+        for axis, centre in zip((forward, lateral), centres, strict=True)
+    ]
+    shares = values / values.sum()
 
     def cell_loads(cells):
-        corners = np.arange(cells + 1) * 2.0 / cells - 1.0
-        part = np.stack([np.interp(corners, edges[1], row) for row in total])
-        part = np.stack([np.interp(corners, edges[0], column) for column in part.T], axis=1)
-        return np.maximum(np.diff(np.diff(part, axis=0), axis=1), 0.0)
+        edges = np.arange(cells + 1) * 2.0 / cells - 1.0
+        along, across = (_hat_integrals(axis, edges) for axis in axes)
+        return of_loads(along @ shares @ across.T)
 
-    load = values / values.sum()
     return Pressure(
         name=name,
         summary="a pressure from a file",
         G_star=_largest_displacement(cell_loads(FINE)),
-        torque=float(np.sum(load * np.hypot(middles[0][:, None], middles[1][None, :]))),
+        torque=float(np.sum(shares * np.hypot(axes[0][:, None], axes[1][None, :]))),
         cell_loads=cell_loads,
+        mirrored=False,  # what is measured never is
     )
+
+
+def _hat_integrals(axis, edges):
+    """Share of the hat function of each point of an axis that lies in each cell, (cells, n)."""
+    t = np.clip((edges[:, None] - axis) / (axis[1] - axis[0]), -1.0, 1.0)
+    return np.diff(0.5 + t - 0.5 * t * np.abs(t), axis=0)
 
 
 def _width(label, axis):

@@ -28,7 +28,7 @@ class Pressure:
     G_star: reduced shear modulus 4G/(2 - nu) in working units; torque: of a contact that slips
     everywhere about its centre, in mu F_z a;
     cell_loads(cells): load on each of cells x cells squares over [-1, 1]^2, forward axis first,
-    sum 1.
+    sum 1; mirrored: whether it is its own image under lateral -> -lateral.
 
     Of contacts whose pressure depends on the radius alone, else None:
     ring_means(psi) -> (bound, lever): mean friction bound of the rings between r = sin(psi), and
@@ -47,6 +47,7 @@ class Pressure:
     G_star: float
     torque: float
     cell_loads: Callable
+    mirrored: bool = True
     ring_means: Callable | None = None
     bound: Callable | None = None
     inner: float = 0.0

@@ -12,8 +12,12 @@ SMALLEST_LOAD = 1e-13
 def of_corner_loads(load):
     """Loads of cells, sum 1, from the load of the rectangle from the centre to each corner (odd in
     both coordinates), (cells + 1, cells + 1)."""
-    loads = np.diff(np.diff(load, axis=0), axis=1)
-    loads[loads < SMALLEST_LOAD * loads.sum()] = 0.0
+    return of_loads(np.diff(np.diff(load, axis=0), axis=1))
+
+
+def of_loads(loads):
+    """The same from loads of cells that rounding has touched."""
+    loads = np.where(loads < SMALLEST_LOAD * loads.sum(), 0.0, loads)
     return loads / loads.sum()
 
 

@@ -1,0 +1,50 @@
+"""Oscillation sideways and in rotation at once.
+
+    transverse-bore:lateral=L,angle=B,phase=P
+
+moves by lateral A L sin(t) and turns by the bore amplitude A B, angle ~ sin(t + P): P in degrees, A
+the amplitude.  B = 0 is the transverse scene, L = 0 the bore with its velocity over omega u_lim.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip import hertz
+from microslip.scene import Scene, stick_focus, within_rings
+
+NAME = "transverse-bore"
+DEFAULTS = {"lateral": 1.0, "angle": 1.0, "phase": 0.0}
+
+
+def scene(name, lateral, angle, phase):
+    """The Scene of these numbers; raises ValueError for shares below 0, and none at all."""
+    for key, share in (("lateral", lateral), ("angle", angle)):
+        if not 0.0 <= share <= 1.0:
+            raise ValueError(f"scene = {name!r}: {key} = {share:g}: allowed is a share in 0..1")
+    if max(lateral, angle) == 0.0:
+        raise ValueError(f"scene = {name!r}: allowed is lateral or angle above 0")
+    lead = np.deg2rad(phase % 360.0) if lateral > 0.0 else 0.0
+
+    def displacement(phase, velocity, amplitude, poisson):
+        turned = hertz.bore_angle(amplitude * angle, poisson) * np.sin(phase + lead)
+        return velocity * phase, amplitude * lateral * np.sin(phase), turned
+
+    def focus(velocity, amplitude, pressure):
+        if lateral > 0.0:
+            return stick_focus(amplitude * lateral, pressure)
+        return within_rings(hertz.lubkin_stick_radius(hertz.bore_angle(amplitude * angle)))
+
+    return Scene(
+        name=name,
+        summary="forward sliding with an oscillation sideways and in rotation",
+        displacement=displacement,
+        periodic=True,
+        rotates=angle > 0.0,
+        half_disc=angle == 0.0 or lateral == 0.0,
+        half_period_mirror=True,
+        focus=focus,
+        velocity_label="v0 / (omega u_lim)",
+        amplitude_label="y0 / u_lim over lateral, and phi0 / phi_lk(a/2) over angle",
+        straight=angle == 0.0 or lead % np.pi == 0.0,
+    )

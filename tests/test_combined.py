@@ -1,0 +1,85 @@
+"""Sideways and rotation at once: its parts alone, symmetry, and the static limit."""
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip import hertz
+from microslip.motion import Motion
+from microslip.scenes import scene_named
+
+
+def test_without_a_rotation_it_is_the_transverse_scene():
+    one = microslip.solve("transverse", 0.1, 0.6)
+    other = microslip.solve("transverse-bore:angle=0", 0.1, 0.6)
+    assert other.model == "radial"
+    assert abs(one.mu_macro - other.mu_macro) <= one.mu_macro_error + other.mu_macro_error
+
+
+def test_without_the_way_sideways_it_is_the_bore_at_another_velocity():
+    one = microslip.solve("bore", 0.3, 0.8, tolerance=3e-3)
+    angle = float(hertz.bore_angle(0.8))
+    other = microslip.solve("transverse-bore:lateral=0", 0.3 * angle, 0.8, tolerance=3e-3)
+    assert other.model == "polar"
+    assert abs(one.mu_macro - other.mu_macro) <= one.mu_macro_error + other.mu_macro_error
+
+
+@pytest.mark.parametrize("phase", [0.0, 90.0])
+def test_a_small_part_changes_little(phase):
+    """Squares, which know no symmetry, next to rings that do."""
+    one = microslip.solve("transverse", 0.1, 0.6, tolerance=3e-3)
+    other = microslip.solve(f"transverse-bore:angle=0.01,phase={phase:g}", 0.1, 0.6, tolerance=3e-3)
+    assert other.model == "cartesian"
+    # the edge of the contact moves by no more than the angle, and friction by no more than that
+    allowed = float(hertz.bore_angle(0.006)) + one.mu_macro_error + other.mu_macro_error
+    assert abs(one.mu_macro - other.mu_macro) <= allowed
+
+
+def test_turning_the_phase_by_half_a_period_is_looking_in_a_mirror():
+    """lateral -> -lateral at the same rotation is a mirror image across the forward axis, with the
+    motion forward reversed; friction resists the same."""
+    both = [
+        microslip.solve(f"transverse-bore:phase={phase}", 0.1, 0.5, tolerance=5e-3)
+        for phase in (30, 210)
+    ]
+    assert both[0].mu_macro == pytest.approx(both[1].mu_macro, abs=1e-3)
+
+
+def test_the_motion_is_its_own_mirror_image_half_a_period_later():
+    motion = Motion(scene_named("transverse-bore:phase=40"), 0.3, 0.7, 0.2)
+    phase = np.linspace(-3.0, 3.0, 41)
+    now, later = motion.displacement(phase), motion.displacement(phase + np.pi)
+    for one, other, sign, way in zip(now, later, (1, -1, -1), (0.3 * np.pi, 0, 0), strict=True):
+        assert other == pytest.approx(sign * one + way, abs=1e-12)
+
+
+def test_the_static_limit_is_approached_by_marches():
+    limit = microslip.solve("transverse-bore", 0.0, 0.5, tolerance=3e-3)
+    above = [
+        microslip.solve("transverse-bore", v, 0.5, tolerance=2e-3).mu_macro for v in (4e-3, 5e-4)
+    ]
+    # differences shrink like v^(2/3): an eighth of the velocity leaves a quarter of them
+    guess = above[1] - (above[0] - above[1]) / 3.0
+    assert limit.converged
+    assert limit.mu_macro < above[1] < above[0]
+    assert guess == pytest.approx(limit.mu_macro, abs=8e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "problem"),
+    [
+        ("transverse-bore:lateral=0,angle=0", "allowed is lateral or angle above 0"),
+        ("transverse-bore:angle=2", "angle = 2: allowed is a share in 0..1"),
+        ("transverse-bore:turn=1", "unknown number turn; allowed: lateral, angle, phase"),
+    ],
+)
+def test_what_is_no_motion_is_refused(name, problem):
+    with pytest.raises(ValueError, match=problem):
+        microslip.solve(name, 0.1, 0.5)
+
+
+def test_models_that_know_half_the_contact_only_say_so():
+    with pytest.raises(ValueError, match="half of the contact does not tell the other half"):
+        microslip.solve("transverse-bore", 0.1, 0.5, model="polar")
+    with pytest.raises(ValueError, match="velocity = 0.0"):
+        microslip.solve("transverse-bore:phase=90", 0.0, 0.5)

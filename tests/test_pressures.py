@@ -1,0 +1,316 @@
+"""Pressures: their records against integrals, their closed forms against marches and each other."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.signal import fftconvolve
+
+import microslip
+from microslip import hertz, indenter_limits, theory
+from microslip.models import MODELS
+from microslip.models.contact import forward_slip
+from microslip.path import EULER, make_path
+from microslip.pressures import FAMILIES, HERTZ, pressure_named
+from microslip.rings import make_rings
+from microslip.scenes import scene_named
+
+INDENTERS = ["power", "power:exponent=1", "power:exponent=8", "punch", "punch:flat=0.5"]
+ROUND = ["hertz", *INDENTERS, "ring", "ring:inner=0.9"]
+PLANAR = ["ellipse", "ellipse:ratio=0.3,across=1"]
+
+
+def pushed(name, model, cells, displacement, steps=40):
+    """Forward force after each share of a displacement from rest."""
+    contact = MODELS[model].build(scene_named("longitudinal", name), 0.0, cells, 8, None)
+    way = np.linspace(0.0, displacement, steps + 1)
+    path = make_path(lambda t: (t, 0.0 * t, 0.0 * t), way, EULER)
+    start = np.zeros_like(forward_slip(contact))
+    return way, contact.march(path, start, 1e-9).forces[:, 0]
+
+
+# The records
+
+
+@pytest.mark.parametrize("name", ROUND)
+def test_a_round_bound_carries_the_load_and_the_full_slip_torque(name):
+    pressure = pressure_named(name)
+    settings = {"epsabs": 1e-11, "epsrel": 1e-10, "limit": 500}
+    parts = [0.0, pressure.inner or 0.5, 0.8, 1.0]
+    pairs = list(zip(parts[:-1], parts[1:], strict=True))
+
+    def integral(power):
+        def ring(r):
+            return 2.0 * np.pi * r**power * float(pressure.bound(r))
+
+        return sum(quad(ring, *pair, **settings)[0] for pair in pairs if pair[1] > pair[0])
+
+    assert integral(1) == pytest.approx(1.0, abs=1e-8)
+    assert integral(2) == pytest.approx(pressure.torque, abs=1e-8)
+
+
+@pytest.mark.parametrize("name", ROUND)
+def test_rings_carry_the_load_and_the_torque(name):
+    pressure = pressure_named(name)
+    rings = make_rings(12, 0.95, pressure)
+    assert rings.area @ rings.bound == pytest.approx(1.0, abs=1e-10)
+    assert rings.area @ (rings.bound * rings.radius) == pytest.approx(pressure.torque, abs=1e-10)
+    middle = np.sin(0.5 * (rings.psi[1:] + rings.psi[:-1]))
+    assert np.all(np.abs(rings.radius - middle) <= np.diff(np.sin(rings.psi)))
+    assert np.sin(rings.psi[0]) == pytest.approx(pressure.inner)
+
+
+@pytest.mark.parametrize("cells", [15, 32])
+@pytest.mark.parametrize("name", [*ROUND, *PLANAR])
+def test_squares_carry_the_load_and_the_torque(name, cells):
+    pressure = pressure_named(name)
+    loads = pressure.cell_loads(cells)
+    centres = (np.arange(cells) + 0.5) * 2.0 / cells - 1.0
+    lever = np.hypot(centres[:, None], centres)
+    assert loads.shape == (cells, cells)
+    assert loads.min() >= 0.0
+    assert loads.sum() == pytest.approx(1.0, abs=1e-12)
+    assert np.sum(loads * lever) == pytest.approx(pressure.torque, abs=0.6 / cells**2 + 1e-3)
+    assert loads == pytest.approx(loads[::-1], abs=1e-12)
+    assert loads == pytest.approx(loads[:, ::-1], abs=1e-12)
+
+
+def test_thin_rings_give_the_loads_of_squares_in_closed_form():
+    difference = pressure_named("power").cell_loads(32) - HERTZ.cell_loads(32)
+    assert np.abs(difference).sum() < 5e-5
+
+
+@pytest.mark.parametrize("name", [*ROUND, *PLANAR])
+def test_u_lim_is_the_largest_displacement_under_full_slip(name):
+    """Summed up on points of a fine grid, the middle cell by its own closed form."""
+    pressure = pressure_named(name)
+    found = []
+    for n in (81, 161):
+        distance = np.hypot(*np.meshgrid(*2 * [np.arange(1 - n, n) * 2.0 / n]))
+        own = 4.0 * np.arcsinh(1.0) / (2.0 / n)
+        kernel = np.where(distance > 0.0, 1.0 / np.where(distance > 0.0, distance, 1.0), own)
+        loads = pressure.cell_loads(n)
+        field = fftconvolve(loads, kernel)[n - 1 : 2 * n - 1, n - 1 : 2 * n - 1]
+        found.append(field[loads > 0.0].max() / (np.pi * pressure.G_star))
+    assert 2.0 * found[1] - found[0] == pytest.approx(1.0, abs=3e-3)
+
+
+def test_the_power_2_is_a_sphere():
+    power, r = pressure_named("power:exponent=2"), np.linspace(0.0, 1.2, 25)
+    assert power.G_star == pytest.approx(hertz.G_STAR, rel=1e-12)
+    assert power.bound(r) == pytest.approx(hertz.friction_bound(r), abs=1e-8)
+    assert power.load(r, 1.0) == pytest.approx(hertz.load_inside(r), abs=1e-11)
+    assert power.load(r, 0.6) == pytest.approx(HERTZ.load(np.minimum(r, 0.6), 0.6), abs=1e-11)
+    for one, other in zip(
+        power.ring_means(make_rings(9).psi), HERTZ.ring_means(make_rings(9).psi), strict=True
+    ):
+        assert one == pytest.approx(other, abs=1e-9)
+
+
+def test_the_cone_is_loves():
+    """p ~ arccosh(1/r), u_lim = mu d E*/G* with F = (E*/2) d a, hence G* = 1."""
+    cone, r = pressure_named("power:exponent=1"), np.array([0.01, 0.3, 0.9])
+    assert cone.G_star == pytest.approx(1.0, rel=1e-12)
+    assert cone.bound(r) == pytest.approx(np.arccosh(1.0 / r) / np.pi, rel=1e-12)
+
+
+def test_punches_lie_between_a_sphere_and_a_flat_end():
+    round_end, flat_end = pressure_named("punch:flat=0"), pressure_named("punch:flat=0.99")
+    r = np.linspace(0.0, 0.9, 10)
+    assert round_end.bound(r) == pytest.approx(HERTZ.bound(r), abs=1e-10)
+    assert flat_end.G_star == pytest.approx(0.5, abs=5e-3)
+    assert flat_end.bound(r) == pytest.approx(0.5 / np.pi / np.sqrt(1.0 - r**2), rel=0.03)
+
+
+@pytest.mark.parametrize("name", INDENTERS)
+def test_the_radius_is_the_inverse_of_the_depth(name):
+    pressure = pressure_named(name)
+    depth = np.array([1e-3, 0.3, 1.0, 2.5])
+    assert pressure.depth(pressure.radius(depth)) == pytest.approx(depth, rel=1e-9)
+    assert pressure.radius(0.0) == 0.0
+    assert pressure.stick_radius(0.3) == pytest.approx(float(pressure.radius(0.7)))
+    assert pressure.stick_radius(1.0) == 0.0
+
+
+# What marches make of them
+
+
+@pytest.mark.parametrize("name", ["hertz", *INDENTERS])
+@pytest.mark.parametrize("model", ["radial", "mdr"])
+def test_the_first_loading_is_a_smaller_contact_missing(name, model):
+    way, force = pushed(name, model, 64, 1.05)
+    exact = indenter_limits.loading(pressure_named(name), way)
+    assert force == pytest.approx(exact, abs=2e-3)
+    assert force[-1] == pytest.approx(1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", PLANAR)
+def test_an_ellipse_is_loaded_like_a_sphere(name):
+    way, force = pushed(name, "cartesian", 32, 1.05, steps=10)
+    assert force == pytest.approx(hertz.mindlin_force(way), abs=6e-3)
+
+
+@pytest.mark.parametrize("name", ["ring", "ring:inner=0.9"])
+def test_a_ring_slides_as_a_whole_at_u_lim_and_not_before(name):
+    way, force = pushed(name, "radial", 64, 1.1, steps=44)
+    assert force[-1] == pytest.approx(1.0, abs=1e-6)
+    assert force[way > 1.02].min() > 1.0 - 1e-6
+    assert force[way < 0.9].max() < 1.0 - 1e-4
+
+
+# Closed forms
+
+
+@pytest.mark.parametrize("name", ["hertz", "power"])
+def test_integrals_over_the_record_are_the_closed_forms_of_a_sphere(name):
+    pressure = pressure_named(name)
+    for amplitude in (1e-3, 0.25, 0.9):
+        found = indenter_limits.static_transverse(pressure, amplitude)
+        assert found == pytest.approx(theory.static_limit_transverse(amplitude), abs=1e-9)
+        found = indenter_limits.static_longitudinal(pressure, amplitude)
+        assert found == pytest.approx((1.0 - amplitude) ** 1.5, abs=1e-9)
+    for amplitude in (0.1, 1.0, 3.0):
+        found = indenter_limits.static_bore(pressure, float(hertz.bore_angle(amplitude)))
+        assert found == pytest.approx(theory.static_limit_bore(amplitude), abs=1e-9)
+    r = np.array([0.05, 0.2, 0.399])
+    angle = indenter_limits.torsion_angle(pressure, 0.4, 0.3)
+    assert angle == pytest.approx(hertz.lubkin_angle(0.4, 0.3), rel=1e-10)
+    found = indenter_limits.torsion_traction(pressure, r, 0.4)
+    assert found == pytest.approx(hertz.lubkin_traction(r, 0.4), rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["power:exponent=1", "power:exponent=8", "punch"])
+@pytest.mark.parametrize(
+    ("scene", "amplitude", "model"),
+    [("transverse", 0.5, "radial"), ("longitudinal", 0.5, "radial"), ("bore", 1.0, "polar")],
+)
+def test_static_limits_agree_with_those_point_by_point(name, scene, amplitude, model):
+    exact = microslip.solve(scene, 0.0, amplitude, pressure=name)
+    found = microslip.solve(scene, 0.0, amplitude, pressure=name, model=model, tolerance=5e-3)
+    assert exact.model == "closed-form"
+    assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error + exact.mu_macro_error
+
+
+@pytest.mark.parametrize("name", ["power:exponent=1", "power:exponent=8", "punch"])
+@pytest.mark.parametrize("velocity", [0.01, 0.3])
+def test_rings_agree_with_the_closed_form_along_a_line(name, velocity):
+    exact = microslip.solve("longitudinal", velocity, 0.6, pressure=name)
+    found = microslip.solve("longitudinal", velocity, 0.6, pressure=name, model="radial")
+    assert (exact.model, found.model) == ("closed-form", "radial")
+    assert found.converged
+    assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error + exact.mu_macro_error
+
+
+@pytest.mark.parametrize("name", ["power:exponent=1", "punch", "ring"])
+def test_the_steady_bore_is_eqs_17_and_18(name):
+    exact = microslip.solve("continuous-bore", 0.6, pressure=name)
+    found = microslip.solve("continuous-bore", 0.6, pressure=name, model="polar")
+    assert exact.model == "closed-form"
+    assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error + 1e-6
+    assert abs(found.mu_torque - exact.mu_torque) <= found.mu_torque_error + 1e-3
+
+
+# One model against the next
+
+
+@pytest.mark.parametrize("name", ["power:exponent=1", "punch", "ring"])
+@pytest.mark.parametrize(
+    ("scene", "velocity", "amplitude"), [("transverse", 0.1, 0.6), ("bore", 0.3, 1.0)]
+)
+def test_rings_and_squares_agree(name, scene, velocity, amplitude):
+    settings = {"pressure": name, "tolerance": 4e-3}
+    rings = microslip.solve(scene, velocity, amplitude, **settings)
+    squares = microslip.solve(scene, velocity, amplitude, model="cartesian", **settings)
+    assert rings.converged
+    assert squares.converged
+    assert abs(rings.mu_macro - squares.mu_macro) <= rings.mu_macro_error + squares.mu_macro_error
+
+
+@pytest.mark.parametrize(
+    ("scene", "velocity", "amplitude", "poisson"),
+    [("transverse", 0.1, 0.5, 0.0), ("transverse", 0.1, 0.5, 0.4), ("bore", 0.3, 1.0, 0.0)],
+)
+def test_an_ellipse_of_ratio_1_is_a_sphere(scene, velocity, amplitude, poisson):
+    settings = {"poisson": poisson, "tolerance": 3e-3}
+    one = microslip.solve(scene, velocity, amplitude, **settings)
+    other = microslip.solve(scene, velocity, amplitude, pressure="ellipse:ratio=1", **settings)
+    assert other.model == "cartesian"
+    assert abs(one.mu_macro - other.mu_macro) <= one.mu_macro_error + other.mu_macro_error
+
+
+def test_the_power_2_is_a_sphere_in_motion():
+    for scene, model in (("transverse", "radial"), ("bore", "polar")):
+        one, other = (
+            microslip.solve(scene, 0.2, 0.7, pressure=name, tolerance=5e-3)
+            for name in ("hertz", "power")
+        )
+        assert one.model == other.model == model
+        assert other.mu_macro == pytest.approx(one.mu_macro, abs=1e-7)
+
+
+def test_translation_at_poissons_ratio_0_cannot_tell_how_an_ellipse_lies():
+    """Directions of traction and places of points meet nowhere but in nu and in rotation."""
+    settings = {"tolerance": 5e-3}
+
+    def both(scene, velocity, amplitude, poisson):
+        return (
+            microslip.solve(
+                scene,
+                velocity,
+                amplitude,
+                poisson=poisson,
+                pressure=f"ellipse:ratio=0.4,across={n}",
+                **settings,
+            )
+            for n in (0, 1)
+        )
+
+    along, across = both("transverse", 0.1, 0.5, 0.0)
+    assert along.mu_macro == pytest.approx(across.mu_macro, abs=1e-4)
+    for place in (("transverse", 0.1, 0.5, 0.5), ("bore", 0.3, 1.0, 0.0)):
+        along, across = both(*place)
+        errors = along.mu_macro_error + across.mu_macro_error
+        assert abs(along.mu_macro - across.mu_macro) > errors
+
+
+# Names
+
+
+@pytest.mark.parametrize(
+    ("name", "problem"),
+    [
+        ("powr", "did you mean power?"),
+        ("hertz:x=1", "unknown number x; allowed: none"),
+        ("power:n=1", "unknown number n; allowed: exponent"),
+        ("power:exponent=0.5", "exponent = 0.5: allowed is a number in 1..100"),
+        ("punch:flat=1", "flat = 1: allowed is a share of the contact radius in 0..0.99"),
+        ("ring:inner=0", "inner = 0: allowed is a share of the outer radius in 0.05..0.95"),
+        ("ellipse:ratio=2", "ratio = 2: allowed is a number in 0.05..1"),
+        ("ellipse:across=0.5", "across = 0.5: allowed is 0 or 1"),
+        (3, "pressure = 3: allowed is one of hertz, power"),
+    ],
+)
+def test_what_is_no_pressure_is_refused_by_name(name, problem):
+    with pytest.raises(ValueError, match="pressure = ") as refused:
+        microslip.solve("transverse", 0.1, 0.5, pressure=name)
+    assert problem in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("model", "name", "problem"),
+    [
+        ("radial", "ellipse", "rings cannot resolve the pressure ellipse"),
+        ("polar", "ellipse", "rings cannot resolve the pressure ellipse"),
+        ("mdr", "ring", "axisymmetric indenters only, not for ring"),
+    ],
+)
+def test_models_that_cannot_take_a_pressure_say_so(model, name, problem):
+    with pytest.raises(ValueError, match=problem):
+        microslip.solve("transverse", 0.1, 0.5, pressure=name, model=model)
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_a_family_has_one_record_for_a_name(family):
+    module = FAMILIES[family]
+    given = ",".join(f"{key}={value:g}" for key, value in module.DEFAULTS.items())
+    assert pressure_named(f"{family}:{given}").name == family
+    assert pressure_named(family) is pressure_named(family)
