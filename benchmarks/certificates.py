@@ -1,15 +1,17 @@
 """Do the certificates hold?  Random points, each against a reference four times as fine.
 
     python benchmarks/certificates.py [--points N] [--seed S] [--workers W] [--output FILE]
-                                  [--markdown FILE]
+                                  [--markdown FILE] [--extended]
 
 Velocity log-uniform in 1e-4..1e2, amplitude log-uniform in 1e-2..1e2, both oscillating scenes,
-nu one of 0, 0.3, 0.5; tolerances 1e-2, 1e-3 and 1e-4 in turn.  A point is covered if
+nu one of 0, 0.3, 0.5; tolerances 1e-2, 1e-3 and 1e-4 in turn.  With --extended other motions and
+pressures take their turns, with velocity in 1e-3..10, amplitude in 0.05..5, nu 0, tolerances 1e-2
+and 1e-3.  A point is covered if
 
     |mu_macro - reference| <= mu_macro_error <= tolerance.
 
 The reference has four times the rings, angles and steps that the point was certified with (no more
-than 192 rings, 64 angles and 2048 steps in half a period), each refined by itself from a base that
+than 192 rings or squares, 64 angles and 2048 steps in half a period), each refined by itself from a base that
 is finer than any certificate starts from, every periodic state searched for from scratch, to a
 tenth of the tolerance.  What is left of its own error is estimated from the run with half of the
 refinement.  Results go to a file of JSON lines, point by point; an interrupted run goes on where it
@@ -33,16 +35,31 @@ import numpy as np
 import microslip
 from microslip.choice import choose_model
 from microslip.motion import Resolution
-from microslip.scenes import SCENES
+from microslip.scenes import scene_named
 from microslip.simulate import simulate
 
 TOLERANCES = (1e-2, 1e-3, 1e-4)
 POISSON = (0.0, 0.3, 0.5)
 VELOCITIES, AMPLITUDES = (-4.0, 2.0), (-2.0, 2.0)
 """Decimal logarithms of the ranges."""
+EXTENDED = [
+    *(
+        (scene, pressure)
+        for pressure in ("power:exponent=1", "power:exponent=8", "punch", "ring", "ellipse")
+        for scene in ("transverse", "bore")
+    ),
+    ("elliptic", "hertz"),
+    ("elliptic:forward=0.5,phase=30", "hertz"),
+    ("elliptic:forward=0.5,phase=0,forward_cycles=2", "hertz"),
+    ("transverse-bore", "hertz"),
+    ("transverse-bore:phase=90", "hertz"),
+]
+"""Motions and pressures besides the paper's."""
+EXTENDED_VELOCITIES, EXTENDED_AMPLITUDES = (-3.0, 1.0), (-1.3, 0.7)
 FINER = 4
 BASE = {"radial": Resolution(32, 1, 48), "polar": Resolution(24, 12, 32)}
 LEAST = {"radial": Resolution(64, 1, 96), "polar": Resolution(48, 16, 64)}
+BASE["cartesian"], LEAST["cartesian"] = Resolution(32, 1, 32), Resolution(96, 1, 64)
 MOST = Resolution(192, 64, 2048)
 """Resolutions (steps in half a period) of the reference: its base, and bounds of its finest."""
 PERIODICITY = 0.1
@@ -61,11 +78,25 @@ def sample(points, seed):
     return out
 
 
-def reference(scene, velocity, amplitude, poisson, tolerance, certified):
+def sample_extended(points, seed):
+    """The same for other motions and pressures; with the name of the pressure at the end."""
+    draw = np.random.default_rng(seed)
+    out = []
+    for k in range(points):
+        velocity = float(f"{10 ** draw.uniform(*EXTENDED_VELOCITIES):.4g}")
+        amplitude = float(f"{10 ** draw.uniform(*EXTENDED_AMPLITUDES):.4g}")
+        scene, pressure = EXTENDED[k % len(EXTENDED)]
+        tolerance = TOLERANCES[k // len(EXTENDED) % 2]
+        out.append((scene, velocity, amplitude, 0.0, tolerance, pressure))
+    return out
+
+
+def reference(scene, velocity, amplitude, poisson, tolerance, certified, pressure="hertz"):
     """(mu, uncertainty) four times as fine as the ``certified`` Result."""
-    kind = SCENES[scene]
+    kind = scene_named(scene, pressure)
     model = choose_model(kind, poisson)
     stroke = min(max(kind.stroke(amplitude, poisson), 1.0), 16.0) ** 0.5
+    stroke *= kind.cycles
     base = replace(BASE[model], steps=2 * round(0.5 * BASE[model].steps * stroke))
 
     left = []  # distances from the periodic states
@@ -79,7 +110,7 @@ def reference(scene, velocity, amplitude, poisson, tolerance, certified):
     at_base, mu, uncertainty = mean(), 0.0, 0.0
     used = Resolution(certified.cells, certified.angles, certified.steps_per_period // 2)
     for axis in ("cells", "angles", "steps"):
-        if axis == "angles" and model == "radial":
+        if axis == "angles" and model != "polar":
             continue
         finest = max(FINER * getattr(used, axis), getattr(LEAST[model], axis))
         finest = min(finest, getattr(MOST, axis))
@@ -97,9 +128,11 @@ def reference(scene, velocity, amplitude, poisson, tolerance, certified):
 
 def examine(point):
     """One line of the output: the point, its certificate, the reference."""
-    scene, velocity, amplitude, poisson, tolerance = point
-    result = microslip.solve(scene, velocity, amplitude, poisson=poisson, tolerance=tolerance)
-    mu, uncertainty = reference(*point, result)
+    scene, velocity, amplitude, poisson, tolerance, *pressure = point
+    settings = {"poisson": poisson, "tolerance": tolerance}
+    settings |= {"pressure": pressure[0]} if pressure else {}
+    result = microslip.solve(scene, velocity, amplitude, **settings)
+    mu, uncertainty = reference(*point[:5], result, *pressure)
     error = abs(result.mu_macro - mu)
     return {
         "point": list(point),
@@ -129,7 +162,8 @@ def summary(lines):
         )
         missed += [line for line in group if not line["covered"]]
     for line in missed:
-        scene, velocity, amplitude, poisson, tolerance = line["point"]
+        scene, velocity, amplitude, poisson, tolerance, *pressure = line["point"]
+        scene = " under ".join([scene, *pressure])
         certified = line["certified"]
         error = abs(certified["mu_macro"] - line["reference"])
         out.append(
@@ -159,9 +193,11 @@ def main():
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--output", type=Path, default=Path("results/certificates.jsonl"))
     parser.add_argument("--markdown", type=Path)
+    parser.add_argument("--extended", action="store_true")
     options = parser.parse_args()
     options.output.parent.mkdir(parents=True, exist_ok=True)
-    wanted = sample(options.points, options.seed)
+    draw = sample_extended if options.extended else sample
+    wanted = draw(options.points, options.seed)
     known = options.output.read_text() if options.output.exists() else ""
     lines = {tuple(line["point"]): line for line in parsed(known)}
     with ProcessPoolExecutor(options.workers) as pool, options.output.open("a") as file:

@@ -56,6 +56,9 @@ NUMBERS = [
 ]
 
 NAMES = [
+    (f"{TRANSVERSE} --pressure cone", "--pressure = 'cone'", "allowed is one of hertz"),
+    (f"{TRANSVERSE} --pressure power:exponent=0.5", "exponent = 0.5", "allowed is a number in 1.."),
+    (f"{TRANSVERSE} --pressure ellipse --model radial", "--model = 'radial'", "rings cannot"),
     (f"{TRANSVERSE} --model best", "--model = 'best'", "auto, rigid, slider"),
     (f"{TRANSVERSE} --model Polar", "--model = 'Polar'", "polar"),
     (f"{TRANSVERSE} --model ''", "--model = ''", "auto, rigid, slider"),

@@ -196,7 +196,7 @@ def package(tmp_path):
 def test_a_request_depends_on_the_method_that_it_names_and_on_no_other(
     kind, method, names, package
 ):
-    found = keys.further_files(kind, method, package)
+    found = keys.further_files(kind, method, package=package)
     assert [name for name, _ in found] == names
     assert all(path == package / name for name, path in found)
 
@@ -205,13 +205,49 @@ def test_no_method_counts_for_an_ordinary_point(package):
     assert [name for name, _ in keys.solver_files(package)] == ["solver.py"]
 
 
+def test_another_motion_or_pressure_makes_no_result_stale(package):
+    files = {
+        "motions/__init__.py": "",
+        "motions/to_and_fro.py": "from package.motions import shared",
+        "motions/shared.py": "F = 1",
+        "motions/round.py": "G = 1",
+        "pressures/__init__.py": "",
+        "pressures/hertz.py": "",
+        "pressures/measured.py": "",
+        "pressures/power.py": "from package.pressures.record import Pressure",
+        "pressures/record.py": "",
+    }
+    for name, text in files.items():
+        (package / name).parent.mkdir(exist_ok=True)
+        (package / name).write_text(text)
+
+    def further(**named):
+        return [name for name, _ in keys.further_files("point", package=package, **named)]
+
+    assert further(scene="to-and-fro:x=1") == [
+        "motions/shared.py",
+        "motions/to_and_fro.py",
+        "pressures/hertz.py",
+    ]
+    assert further(scene="round", pressure="power:exponent=1") == [
+        "motions/round.py",
+        "pressures/power.py",
+        "pressures/record.py",
+    ]
+    assert further(scene="round", pressure="file:p.csv")[1:] == ["pressures/measured.py"]
+    motions = [name for name in files if name.startswith("motions/") and "__" not in name]
+    assert further()[:-1] == sorted(motions)  # who names none may mean any
+    counted = [name for name, _ in keys.solver_files(package)]
+    assert counted == ["motions/__init__.py", "pressures/__init__.py", "solver.py"]
+
+
 def test_requests_differ_by_the_method_and_by_its_file(monkeypatch):
     shipped = {"kind": "probe", "method": "shipped"}
     probe = {"kind": "probe", "method": "euler"}
-    monkeypatch.setattr(keys, "_further_digest", lambda kind, method: "")
+    monkeypatch.setattr(keys, "_further_digest", lambda kind, *named: "")
     assert keys.result_key(shipped, "d") != keys.result_key(probe, "d")
     before = keys.result_key(probe, "d")
-    monkeypatch.setattr(keys, "_further_digest", lambda kind, method: "of another file")
+    monkeypatch.setattr(keys, "_further_digest", lambda kind, *named: "of another file")
     assert keys.result_key(probe, "d") != before
 
 

@@ -15,7 +15,7 @@ LAYERS = [
     {"pressures"},
     {"theory", "masing", "bounds", "halfspace", "friction", "path", "indenter_limits"},
     {"rings", "scene", "any_pressure", "frames"},
-    {"elliptic", "combined"},
+    {"motions"},
     {"scenes"},
     {"models"},
     {"motion"},

@@ -57,5 +57,5 @@ def test_how_periods_are_packed_counts_for_them_and_for_nothing_else(tmp_path):
     for name in names:
         (tmp_path / name).write_text("A = 1\n")
     assert [name for name, _ in keys.solver_files(tmp_path)] == ["inside.py"]
-    assert [name for name, _ in keys.further_files("period", "", tmp_path)] == ["periods.py"]
-    assert keys.further_files("point", "", tmp_path) == []
+    assert [name for name, _ in keys.further_files("period", package=tmp_path)] == ["periods.py"]
+    assert keys.further_files("point", package=tmp_path) == []

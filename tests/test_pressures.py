@@ -286,7 +286,7 @@ def test_translation_at_poissons_ratio_0_cannot_tell_how_an_ellipse_lies():
         ("ring:inner=0", "inner = 0: allowed is a share of the outer radius in 0.05..0.95"),
         ("ellipse:ratio=2", "ratio = 2: allowed is a number in 0.05..1"),
         ("ellipse:across=0.5", "across = 0.5: allowed is 0 or 1"),
-        (3, "pressure = 3: allowed is one of hertz, power"),
+        (3, "pressure = 3: allowed is one of hertz, ellipse, power"),
     ],
 )
 def test_what_is_no_pressure_is_refused_by_name(name, problem):

@@ -10,7 +10,6 @@ from microslip.method import SHIPPED
 from microslip.models import MODELS
 from microslip.motion import Resolution
 from microslip.pressures import HERTZ
-from microslip.pressures.elliptic import NAME as ELLIPSE
 
 STEPLESS = ("rigid", "dahl")
 """Models whose march is an evaluation: no step of theirs is solved."""
@@ -171,7 +170,7 @@ def _loading_curve(pressure):
 
 
 def _is_ellipse(pressure):
-    return pressure.name.partition(":")[0] == ELLIPSE
+    return pressure.name.partition(":")[0] == "ellipse"
 
 
 def plan(scene, name, velocity, amplitude, poisson, tolerance, cells=None, steps=None):

@@ -9,51 +9,6 @@ import sys
 
 from microslip import __version__, cli_predict, launch
 
-SCENES = {
-    "transverse": (
-        "sliding forward while oscillating sideways",
-        "v0 / (omega u_lim): forward speed over angular frequency and u_lim, the tangential "
-        "displacement at which the whole contact slides",
-        "y0 / u_lim: half stroke of the lateral oscillation over u_lim",
-    ),
-    "longitudinal": (
-        "sliding forward while oscillating along the same direction",
-        "v0 / (omega u_lim): as for transverse",
-        "x0 / u_lim: half stroke of the oscillation over u_lim",
-    ),
-    "elliptic": (
-        "sliding forward while oscillating along two directions",
-        "v0 / (omega u_lim): as for transverse",
-        "amplitude / u_lim, of which --path gives each direction a share",
-    ),
-    "zigzag": (
-        "sliding forward while moving sideways at constant speed, with abrupt turns",
-        "v0 / (omega u_lim): as for transverse",
-        "y0 / u_lim: half stroke of the lateral motion over u_lim",
-    ),
-    "bore": (
-        "sliding forward while oscillating in rotation about the contact normal",
-        "v0 / (Omega phi0 a): forward speed over the largest rotation speed of the contact's edge",
-        "phi0 / phi_lk(a/2): angular amplitude over the angle that leaves half the radius sticking",
-    ),
-    "transverse-bore": (
-        "sliding forward while oscillating sideways and in rotation",
-        "v0 / (omega u_lim): as for transverse",
-        "of both oscillations as for transverse and bore, of which --path gives each a share",
-    ),
-    "continuous-bore": (
-        "sliding forward while rotating steadily about the contact normal",
-        "v0 / (omega a): forward speed over the rotation speed of the contact's edge",
-        None,
-    ),
-}
-PATHS = {
-    "elliptic": "such as forward=0.5,phase=30: shares forward and lateral (1), phase of the "
-    "forward part in degrees (90), forward_cycles and lateral_cycles (1)",
-    "transverse-bore": "such as angle=0.5,phase=90: shares lateral and angle (1), phase of the "
-    "rotation in degrees (0)",
-}
-
 
 class _OneLineParser(argparse.ArgumentParser):
     """Bad input gets one line on standard error and exit code 2."""
@@ -105,8 +60,8 @@ def _whole(text):
         ) from None
 
 
-def build_parser():
-    """Parser of the whole command line."""
+def build_parser(asked=None):
+    """Parser of the command line, with all that follows the command ``asked``."""
     parser = _OneLineParser(
         allow_abbrev=False,
         prog="microslip",
@@ -124,23 +79,45 @@ def build_parser():
         "1 means that the vibration does nothing, 0 that it takes all friction away.",
     )
     commands.add_parser("sweep", help="the workflow: maps, datasets and figures, by Snakemake")
-    scenes = point.add_subparsers(dest="scene", required=True, metavar="SCENE")
-    for name, (summary, velocity, amplitude) in SCENES.items():
-        scene = scenes.add_parser(
-            name, help=summary, description=f"The indenter is {summary}.", allow_abbrev=False
-        )
-        scene.add_argument(
-            "--velocity", type=_real, required=True, metavar="V", help=f"{velocity}; 0: v -> 0"
-        )
-        if amplitude:
-            scene.add_argument(
-                "--amplitude", type=_real, required=True, metavar="A", help=amplitude
-            )
-        if name in PATHS:
-            scene.add_argument("--path", metavar="NUMBERS", help=PATHS[name])
-        _add_options(scene)
+    if asked == "point":
+        _add_motions(point)
+    else:
+        point.add_argument("scene", metavar="SCENE")
     cli_predict.add_parser(commands)
     return parser
+
+
+def _add_motions(parser):
+    """A parser for each motion; what they are is asked of the solver, so only where it counts."""
+    from microslip.scenes import FAMILIES, SCENES
+
+    scenes = parser.add_subparsers(dest="scene", required=True, metavar="SCENE")
+    known = {name: (scene.summary, scene.periodic, None) for name, scene in SCENES.items()}
+    known |= {name: (family.SUMMARY, True, family.HELP) for name, family in FAMILIES.items()}
+    for name, (summary, periodic, path) in known.items():
+        scene = scenes.add_parser(
+            name,
+            help=summary,
+            description=f"The indenter is {summary}. u_lim: the tangential displacement at which "
+            "the whole contact slides; a: contact radius; phi_lk(a/2): the angle that leaves half "
+            "of it sticking.",
+            allow_abbrev=False,
+        )
+        record = SCENES.get(name) or FAMILIES[name].scene(name, **FAMILIES[name].DEFAULTS)
+        scene.add_argument(
+            "--velocity",
+            type=_real,
+            required=True,
+            metavar="V",
+            help=f"{record.velocity_label}; 0: v -> 0",
+        )
+        if periodic:
+            scene.add_argument(
+                "--amplitude", type=_real, required=True, metavar="A", help=record.amplitude_label
+            )
+        if path:
+            scene.add_argument("--path", metavar="NUMBERS", help=path)
+        _add_options(scene)
 
 
 def _add_options(parser):
@@ -197,7 +174,7 @@ def main(arguments=None):
     arguments = sys.argv[1:] if arguments is None else arguments
     if arguments[:1] == ["sweep"]:  # not for argparse: what follows is Snakemake's
         return launch.main(arguments[1:])
-    options = build_parser().parse_args(_joined(arguments))
+    options = build_parser(next(iter(arguments), None)).parse_args(_joined(arguments))
     if options.command == "predict":
         return cli_predict.run(options)
     from microslip.answers import plain  # only now: --help and bad options need no solver

@@ -26,12 +26,17 @@ NOT_SOLVER |= {"studies", "plot", "explorer", "si", "query"}
 NOT_SOLVER |= {"launch", "bundle"}
 # These count for the requests that name them, see further_files.
 NOT_SOLVER |= {"trial", "patches", "periods", "methods"}
+NAMED = ("motions", "pressures")
+"""Folders whose files count for the requests that name them, too; but what is in all of them."""
 
 PACKAGE = Path(__file__).parent
 
 # What answers requests of a kind besides the solver.
 BESIDE_SOLVER = {"trial": "trial.py", "scaling": "trial.py", "run": "trial.py"}
 BESIDE_SOLVER |= {"period": "periods.py", "patches": "patches.py"}
+
+# Names of files in requests, and what stands for one that is left out.
+NAMES_IN_REQUESTS = {"method": "", "scene": "", "pressure": "hertz"}
 
 # Raise it when the content of a record changes without any change in the solver.
 RECORD_FORMAT = 1
@@ -71,9 +76,8 @@ def result_key(request, digest):
     request: dict of canonical strings, integers and None, see microslip.sweep.
     """
     content = {"request": request, "source": digest, "format": RECORD_FORMAT}
-    further = _further_digest(request["kind"], request.get("method", ""))
-    if further:
-        content["further"] = further
+    named = (request.get(key, default) for key, default in NAMES_IN_REQUESTS.items())
+    content["further"] = _further_digest(request["kind"], *named)
     return sha256(canonical_json(content))
 
 
@@ -99,24 +103,29 @@ def solver_files(package=None):
         (name.as_posix(), path)
         for name, path in files
         if name.parts[0].removesuffix(".py") not in NOT_SOLVER
+        and (name.parts[0] not in NAMED or name.stem == "__init__")
     )
 
 
-def further_files(kind, method, package=None):
+def further_files(kind, method="", scene="", pressure="hertz", package=None):
     """List the modules that a request depends on besides the solver, as (name, Path), sorted.
 
-    kind, method: of the request, see microslip.studies.requests; method: such as "admm:penalty=1",
-    "" for none. What BESIDE_SOLVER names counts for a kind, and a method's file with all that it
-    imports from its folder, so that another method makes no result stale.
+    kind, method, scene, pressure: of the request, see microslip.sweep and studies.requests; names
+    such as "admm:penalty=1", "" for none; without a scene all motions count. What BESIDE_SOLVER
+    names counts for a kind, and the file of a method, a motion or a pressure with all that it
+    imports from its folder, so that another one makes no result stale.
     """
     package = Path(package or PACKAGE)
     names = {BESIDE_SOLVER[kind]} if kind in BESIDE_SOLVER else set()
-    waiting = [method.partition(":")[0].replace("-", "_")]
-    while waiting:
-        name = f"methods/{waiting.pop()}.py"
-        if name not in names and (package / name).is_file():
-            names.add(name)
-            waiting += _imported_beside(package / name)
+    motions = [scene] if scene else [file.stem for file in (package / "motions").glob("[!_]*.py")]
+    of_file = "measured" if pressure.startswith("file:") else pressure
+    for folder, named in (("methods", [method]), ("motions", motions), ("pressures", [of_file])):
+        waiting = [name.partition(":")[0].replace("-", "_") for name in named]
+        while waiting:
+            name = f"{folder}/{waiting.pop()}.py"
+            if name not in names and (package / name).is_file():
+                names.add(name)
+                waiting += _imported_beside(package / name)
     return sorted((name, package / name) for name in names)
 
 
@@ -132,9 +141,8 @@ def _imported_beside(path):
 
 
 @cache
-def _further_digest(kind, method):
-    files = further_files(kind, method)
-    return digest_of_files(files) if files else ""
+def _further_digest(kind, *named):
+    return digest_of_files(further_files(kind, *named))
 
 
 @cache

@@ -1,27 +1,46 @@
 """Pressures: how the load is spread over the contact, and so what every point can take.
 
-A pressure is one ``Pressure`` record (see record.py for it and for the working units).  A family
-gives one for numbers that follow its name; to add one write a file beside these and a row in
-``FAMILIES``.
+A pressure is one ``Pressure`` record (see record.py for it and for the working units), in a file
+of its name, as PRESSURE.  A family gives one for numbers that follow its name: its file holds
+DEFAULTS, the numbers and their values if they are not given, and pressure(name, **numbers), which
+raises ValueError for numbers out of range.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
+from importlib import import_module
+from pkgutil import iter_modules
 
 from microslip import parameters
-from microslip.pressures import elliptic, power, punch, ring
-from microslip.pressures.elliptic import HERTZ
+from microslip.pressures.hertz import PRESSURE as HERTZ
 from microslip.pressures.record import Pressure
 
 __all__ = ["FAMILIES", "HERTZ", "PRESSURES", "Pressure", "pressure_named"]
 
 PRESSURES = {HERTZ.name: HERTZ}
-FAMILIES = {family.NAME: family for family in (power, punch, ring, elliptic)}
+"""Name -> Pressure."""
+FAMILIES = {}
 """Name -> module with DEFAULTS, numbers and their values if not given, and pressure(name, ...)."""
 SOURCES = {}
 """Name -> function that makes a Pressure of what follows the name and a colon; modules that know
 files put themselves here, since this package knows none."""
+
+
+def find(folder):
+    """Make the families in a folder known: those of the package, or one's own."""
+    if str(folder) not in __path__:
+        __path__.append(str(folder))
+    for file in iter_modules([str(folder)]):
+        module = import_module(f"{__name__}.{file.name}")
+        if hasattr(module, "PRESSURE"):
+            PRESSURES[file.name] = module.PRESSURE
+        elif hasattr(module, "DEFAULTS"):
+            FAMILIES[file.name.replace("_", "-")] = module
+
+
+for _folder in list(__path__):
+    find(_folder)
 
 
 def pressure_named(name):

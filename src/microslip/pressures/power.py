@@ -6,7 +6,6 @@ import numpy as np
 
 from microslip.pressures.indenters import indenter
 
-NAME = "power"
 DEFAULTS = {"exponent": 2.0}
 SMALLEST, LARGEST = 1.0, 100.0
 

@@ -6,7 +6,6 @@ import numpy as np
 
 from microslip.pressures.indenters import indenter
 
-NAME = "punch"
 DEFAULTS = {"flat": 0.8}
 LARGEST_FLAT = 0.99
 _HALVINGS = 100

@@ -12,7 +12,6 @@ from scipy.special import ellipkm1
 from microslip.pressures.record import Pressure, of_radii
 from microslip.pressures.squares import round_loads
 
-NAME = "ring"
 DEFAULTS = {"inner": 0.5}
 SMALLEST, LARGEST = 0.05, 0.95
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)

@@ -13,7 +13,11 @@ import numpy as np
 from microslip.path import HALF_PERIOD
 from microslip.scene import Scene, stick_focus
 
-NAME = "elliptic"
+SUMMARY = "sliding forward while oscillating along two directions"
+HELP = (
+    "such as forward=0.5,phase=30: shares forward and lateral (1), phase of the forward part in "
+    "degrees (90), forward_cycles and lateral_cycles (1)"
+)
 DEFAULTS = {
     "forward": 1.0,
     "lateral": 1.0,
@@ -54,7 +58,7 @@ def scene(name, forward, lateral, phase, forward_cycles, lateral_cycles):
     simple = forward_cycles == lateral_cycles == 1.0
     return Scene(
         name=name,
-        summary="forward sliding with an oscillation in two directions of the plane",
+        summary=SUMMARY,
         displacement=displacement,
         periodic=True,
         rotates=False,

@@ -13,7 +13,10 @@ import numpy as np
 from microslip import hertz
 from microslip.scene import Scene, stick_focus, within_rings
 
-NAME = "transverse-bore"
+SUMMARY = "sliding forward while oscillating sideways and in rotation"
+HELP = (
+    "such as angle=0.5,phase=90: shares lateral and angle (1), phase of the rotation in degrees (0)"
+)
 DEFAULTS = {"lateral": 1.0, "angle": 1.0, "phase": 0.0}
 
 
@@ -37,7 +40,7 @@ def scene(name, lateral, angle, phase):
 
     return Scene(
         name=name,
-        summary="forward sliding with an oscillation sideways and in rotation",
+        summary=SUMMARY,
         displacement=displacement,
         periodic=True,
         rotates=angle > 0.0,

@@ -1,4 +1,4 @@
-"""Hertz's pressure over an ellipse, and so that over a circle, which the paper is about."""
+"""Hertz's pressure over an ellipse."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from microslip import hertz
 from microslip.pressures.record import Pressure
 from microslip.pressures.squares import of_corner_loads
 
-NAME = "ellipse"
 DEFAULTS = {"ratio": 0.5, "across": 0.0}
 SMALLEST_RATIO = 0.05
 
@@ -59,34 +58,3 @@ def ellipse_loads(cells, axes=(1.0, 1.0)):
     load = load + 0.5 * x * (3.0 - x * x) * np.arctan2(y, root)
     load = load + 0.5 * y * (3.0 - y * y) * np.arctan2(x, root)
     return of_corner_loads(load / (2.0 * np.pi))
-
-
-def _hertz_means(psi):
-    radii = np.sin(psi)
-    # Integral of sin^2 cos^2 over each ring is the first moment of the bound
-    moment = np.diff(psi / 8 - np.sin(4 * psi) / 32)
-    load = -np.diff(np.cos(psi) ** 3) / 3
-    return hertz.ring_bounds(np.minimum(radii, 1.0)), moment / load
-
-
-def _hertz_bound(r, c=1.0):
-    return 1.5 / np.pi * np.sqrt(np.maximum((c - r) * (c + r), 0.0))
-
-
-def _hertz_load(r, c=1.0):
-    return c**3 - np.maximum((c - r) * (c + r), 0.0) ** 1.5
-
-
-HERTZ = Pressure(
-    name="hertz",
-    summary="a sphere on a flat",
-    G_star=hertz.G_STAR,
-    torque=hertz.TORQUE_FULL_SLIP,
-    cell_loads=ellipse_loads,
-    ring_means=_hertz_means,
-    bound=_hertz_bound,
-    depth=lambda c: c * c,
-    radius=lambda depth: np.sqrt(np.maximum(depth, 0.0)),
-    load=_hertz_load,
-    inner_bound=_hertz_bound,
-)

@@ -1,0 +1,32 @@
+"""Forward sliding with an oscillating rotation about the contact normal, the paper's second
+motion."""
+
+import numpy as np
+
+from microslip import hertz
+from microslip.scene import Scene, within_rings
+
+
+def displacement(phase, velocity, amplitude, poisson):
+    """Eq 23 with Eqs 27 and 28: forward v~ phi_0 t, angle phi_0 sin t."""
+    angle = hertz.bore_angle(amplitude, poisson)
+    return velocity * angle * phase, np.zeros_like(phase), angle * np.sin(phase)
+
+
+def focus(velocity, amplitude, pressure):
+    """Lubkin's stick radius of the oscillation alone (Eq 30); under another pressure rings there do
+    no harm."""
+    return within_rings(hertz.lubkin_stick_radius(hertz.bore_angle(amplitude)))
+
+
+SCENE = Scene(
+    name="bore",
+    summary="sliding forward while oscillating in rotation about the contact normal",
+    displacement=displacement,
+    periodic=True,
+    rotates=True,
+    half_period_mirror=True,
+    focus=focus,
+    velocity_label="v0 / (Omega phi0 a)",
+    amplitude_label="phi0 / phi_lk(a/2)",
+)

@@ -1,0 +1,30 @@
+"""Forward sliding with an oscillation along the same direction."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from microslip.motions import transverse
+
+
+def displacement(phase, velocity, amplitude, poisson):
+    """Forward v~ t + x~ sin t."""
+    forward = velocity * phase + amplitude * np.sin(phase)
+    return forward, np.zeros_like(phase), np.zeros_like(phase)
+
+
+def turns(velocity, amplitude):
+    """Where the sphere turns back and forth, if it does: v~ + x~ cos t = 0."""
+    back = np.arccos(-velocity / amplitude) if velocity < amplitude else np.pi / 2
+    return -back, back, 2.0 * np.pi - back
+
+
+SCENE = replace(
+    transverse.SCENE,
+    name="longitudinal",
+    summary="sliding forward while oscillating along the same direction",
+    displacement=displacement,
+    half_period_mirror=False,
+    turns=turns,
+    amplitude_label="x0 / u_lim",
+)
