@@ -6,7 +6,7 @@ from scipy.integrate import quad
 from scipy.signal import fftconvolve
 
 import microslip
-from microslip import hertz, indenter_limits, theory
+from microslip import hertz, indenter_limits, pressures, theory
 from microslip.models import MODELS
 from microslip.models.contact import forward_slip
 from microslip.path import EULER, make_path
@@ -314,3 +314,54 @@ def test_a_family_has_one_record_for_a_name(family):
     given = ",".join(f"{key}={value:g}" for key, value in module.DEFAULTS.items())
     assert pressure_named(f"{family}:{given}").name == family
     assert pressure_named(family) is pressure_named(family)
+
+
+BLUNT = '''"""Between a sphere and an end that is flatter: depth (1 - w) c^2 + w c^4."""
+
+import numpy as np
+
+from microslip.pressures.indenters import indenter
+
+DEFAULTS = {"share": 0.5}
+
+
+def pressure(name, share):
+    """The Pressure of this indenter; ValueError for a share outside 0..1."""
+    if not 0.0 <= share <= 1.0:
+        raise ValueError(f"pressure = {name!r}: share = {share:g}: allowed is a number in 0..1")
+
+    def radius(depth):
+        half = 0.5 * (1.0 - share)
+        return np.sqrt((np.sqrt(half**2 + share * np.maximum(depth, 0.0)) - half) / share)
+
+    return indenter(
+        name,
+        "a blunt sphere",
+        depth=lambda c: (1.0 - share) * c**2 + share * c**4,
+        slope=lambda c: 2.0 * (1.0 - share) * c + 4.0 * share * c**3,
+        radius=radius,
+    )
+'''
+
+
+@pytest.fixture
+def blunt(tmp_path):
+    """A pressure in one file of one's own; what it changes in the registry is undone."""
+    known, path = dict(FAMILIES), list(pressures.__path__)
+    (tmp_path / "blunt.py").write_text(BLUNT)
+    pressures.find(tmp_path)
+    yield "blunt:share=0.4"
+    FAMILIES.clear()
+    FAMILIES.update(known)
+    pressures.__path__[:] = path
+
+
+def test_a_pressure_is_one_file(blunt):
+    """Closed forms, rings and springs take it from its record."""
+    assert pressure_named(blunt).G_star == pytest.approx(0.5 / (1.0 - 0.6 / 3.0 - 0.4 / 5.0))
+    exact = microslip.solve("longitudinal", 0.1, 0.5, pressure=blunt)
+    rings = microslip.solve("longitudinal", 0.1, 0.5, pressure=blunt, model="radial")
+    springs = microslip.solve("longitudinal", 0.1, 0.5, pressure=blunt, model="mdr")
+    assert exact.model == "closed-form"
+    for found in (rings, springs):
+        assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error + 1e-8

@@ -1,10 +1,13 @@
 """Scenes: what their displacement promises, and the zigzag against closed forms."""
 
+import json
+
 import numpy as np
 import pytest
 
 import microslip
-from microslip import theory
+from microslip import motions, scenes, theory
+from microslip.cli import main
 from microslip.motion import Motion, Resolution
 from microslip.scenes import SCENES, TRANSVERSE, ZIGZAG
 from microslip.simulate import simulate_static
@@ -71,3 +74,57 @@ def test_a_slow_zigzag_tends_to_the_static_limit():
     limit = theory.static_limit_transverse(0.5)
     assert slow.converged
     assert -slow.mu_macro_error < slow.mu_macro - limit < 5e-3
+
+
+CUBE = '''"""To and fro across the motion like the cube of a sine: slow in the middle."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from microslip.motions import transverse
+
+
+def displacement(phase, velocity, amplitude, poisson):
+    """Forward v~ t, lateral y~ sin^3 t."""
+    return velocity * phase, amplitude * np.sin(phase) ** 3, np.zeros_like(phase)
+
+
+SCENE = replace(
+    transverse.SCENE,
+    name="sine-cubed",
+    summary="sliding forward while oscillating sideways, slowly in the middle",
+    displacement=displacement,
+)
+'''
+
+
+@pytest.fixture
+def cube(tmp_path):
+    """A motion in one file of one's own; what it changes in the registry is undone."""
+    known, path = dict(scenes.SCENES), list(motions.__path__)
+    (tmp_path / "sine_cubed.py").write_text(CUBE)
+    scenes.find(tmp_path)
+    yield "sine-cubed"
+    scenes.SCENES.clear()
+    scenes.SCENES.update(known)
+    motions.__path__[:] = path
+
+
+def test_a_motion_is_one_file(cube, capsys):
+    """It is solved with a certificate by every name that it needs, and turns where others do: its
+    static limit is theirs."""
+    arguments = ["point", cube, "--velocity", "0.1", "--amplitude", "0.5", "--json"]
+    assert main(arguments) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["scene"] == cube
+    assert answer["model"] == "radial"
+    assert 0.0 < answer["mu_macro_error"] <= answer["tolerance"]
+    squares = microslip.solve(cube, 0.1, 0.5, model="cartesian", tolerance=3e-3)
+    assert abs(squares.mu_macro - answer["mu_macro"]) <= squares.mu_macro_error + 1e-3
+    found = microslip.solve(cube, 0.0, 0.5)
+    assert found.mu_macro == pytest.approx(
+        theory.static_limit_transverse(0.5), abs=found.mu_macro_error
+    )
+    with pytest.raises(ValueError, match="allowed is one of transverse, .*, sine-cubed"):
+        microslip.solve("cubed", 0.1, 0.5)

@@ -196,6 +196,8 @@ def _cells(scene, name, velocity, amplitude, poisson, imposed):
     if name == "cartesian":  # doubled, since cells come and go at the edge
         return Axis("cells", SQUARES, 1, (0, 1, 2), regular=True)
     base = RINGS.index(BASE_RINGS)
+    if name == "mdr":  # springs know nothing of each other, and slip one by one
+        return Axis("cells", RINGS, base + 2, (base + 1, base + 2, base + 3))
     if not scene.periodic:  # the centre of rotation stays where it is, and only fine rings see it
         return Axis("cells", RINGS, base + 1, (base, base + 1, base + 2), regular=True)
     if velocity == 0.0:  # a stick zone that is not circular cuts rings, and the corners are steep
