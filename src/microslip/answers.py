@@ -154,12 +154,15 @@ _KINDS = {
 
 def _place(request):
     amplitude = request["amplitude"]
-    return {
+    place = {
         "scene": request["scene"],
         "velocity": float(request["velocity"]),
         "amplitude": None if amplitude is None else float(amplitude),
         "poisson": float(request["poisson"]),
     }
+    if "pressure" in request:
+        place["pressure"] = request["pressure"]
+    return place
 
 
 def _of_single_run(request):

@@ -76,6 +76,11 @@ _MODULES = {
 __all__ = ["FIGURES", "FORMATS", "draw", "save"]
 
 
+def figure_of(group: str) -> str:
+    """Name of the figure of a group of sweeps in `extended`."""
+    return f"extended_{group}"
+
+
 def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     """Draw one figure.
 
