@@ -79,7 +79,8 @@ def from_mapping(mapping, source="configuration", ask_solver=True):
     }
     others = extended.sweeps(filled["extended"], f"{source}: extended")
     if ask_solver:
-        extended.refuse_unsolvable(others.values(), f"{source}: extended")
+        extended.refuse_unsolvable(list(others.values()), f"{source}: extended")
+    extended.refuse_mixtures(list(others.values()), f"{source}: extended")
     given = filled["sweeps"] | filled["extended"]
     return Configuration(
         results=filled["results"],

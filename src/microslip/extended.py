@@ -30,13 +30,16 @@ def sweeps(given, where):
         more["title"] = settings["title"] or name
         found[name] = grids.grid_of(name, settings["scene"], settings, f"{where}.{name}", **more)
         grids.refuse_static_model(found[name], f"{where}.{name}")
-    for group in dict.fromkeys(sweep.group for sweep in found.values()):
-        _refuse_mixture([s for s in found.values() if s.group == group], where)
     return found
 
 
+def refuse_mixtures(given, where):
+    """Raise ConfigError for a group of Sweeps that cannot be one figure; where: as above."""
+    for group in dict.fromkeys(sweep.group for sweep in given):
+        _refuse_mixture([sweep for sweep in given if sweep.group == group], where)
+
+
 def _refuse_mixture(together, where):
-    """Raise ConfigError for a group that cannot be one figure."""
     first, last = together[0], together[-1]
     for sweep in together:
         if sweep.drawn_over != first.drawn_over:
