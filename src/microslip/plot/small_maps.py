@@ -40,11 +40,14 @@ def draw(name: str, datasets: Sequence[xr.Dataset]) -> Figure:
     width = look.DOUBLE if columns > 1 else 0.65 * look.DOUBLE
     height = rows * HEIGHT[columns] + AROUND
     figure = look.new_figure(width, height)
-    levels = levels_of(datasets)
+    fills, contours, labelled = levels_of(datasets)
     panels = figure.subplots(rows, columns, squeeze=False).ravel()
     hatched = 0
     for axes, letter, dataset in zip(panels, LETTERS, datasets, strict=False):
-        filled, unsure = fill(axes, dataset, *levels, look.SMALLEST)
+        # Where the contact drives itself, the contour of 0 is next to that of 0.1, and worth more.
+        spare = 0.1 if float(dataset["mu_macro"].min()) < -BEYOND else None
+        numbered = labelled[labelled != spare]
+        filled, unsure = fill(axes, dataset, fills, contours, numbered, look.SMALLEST)
         hatched += unsure
         axes.set_gid("map")
         title = look.wrapped(dataset.attrs.get("title", ""), 0.8 * width / columns - 0.4, 8.0)
@@ -53,7 +56,6 @@ def draw(name: str, datasets: Sequence[xr.Dataset]) -> Figure:
         axes.remove()
     used = list(panels[: len(datasets)])
     _label(figure, used, datasets, columns, height / rows)
-    fills, *_ = levels
     ticks = fills[np.isclose(np.round(5 * fills), 5 * fills)]
     bar = figure.colorbar(filled, ax=used, pad=0.02, aspect=20 * rows, ticks=ticks)
     bar.set_label(look.MU_MACRO)
@@ -73,8 +75,7 @@ def levels_of(datasets: Sequence[xr.Dataset]) -> tuple[np.ndarray, np.ndarray, n
     fills = np.linspace(low / 10, high / 10, round(2 * (high - low)) + 1)
     if low == 0:
         return fills, CONTOURS, LABELLED
-    # where the contact drives itself, the contour of 0 is worth more than that of 0.1
-    contours = np.concatenate([-CONTOURS[::-1], [0.0], CONTOURS[1:]])
+    contours = np.concatenate([-CONTOURS[::-1], [0.0], CONTOURS])
     contours = contours[contours > fills[0]]
     return fills, contours, contours[np.isin(contours, [-0.7, -0.3, 0.0, *LABELLED])]
 
