@@ -1,7 +1,6 @@
 """Sweeps of other motions and pressures: configured, asked for, collected, found again."""
 
 import json
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -21,10 +20,7 @@ def configured(**sweeps):
     return config.from_mapping({"sweeps": PAPER, "extended": sweeps})
 
 
-def with_pressure(monkeypatch):
-    """A solver that knows other pressures, whatever their names."""
-    found = SimpleNamespace(pressure_named=lambda name: SimpleNamespace(name=name.lower()))
-    monkeypatch.setattr(extended, "import_module", lambda name: found)
+POWER = "power:exponent=1"
 
 
 # Configuration
@@ -109,7 +105,6 @@ def test_equal_motions_are_asked_for_alike():
 
 
 def test_a_pressure_is_part_of_the_request_and_is_handed_to_the_solver(monkeypatch, tmp_path):
-    with_pressure(monkeypatch)
     solver, seen = Solver(monkeypatch), []
 
     def solve(*place, **given):
@@ -117,12 +112,24 @@ def test_a_pressure_is_part_of_the_request_and_is_handed_to_the_solver(monkeypat
         return solver.solve(*place, **given)
 
     monkeypatch.setattr("microslip.solve", solve)
-    requests = requests_of(pressure="Power:exponent=1")
-    assert {request["pressure"] for request in requests} == {"power:exponent=1"}
+    requests = requests_of(pressure="power:exponent=1.0")
+    assert {request["pressure"] for request in requests} == {POWER}
     sweep.run_batch(requests, Store(tmp_path))
     sweep.run_batch(requests_of(), Store(tmp_path))
-    assert seen == 4 * ["power:exponent=1"] + 4 * [None]
+    assert seen == 4 * [POWER] + 4 * [None]
     assert sweep.label(requests[0]).startswith("elliptic at pressure power:exponent=1, poisson 0")
+
+
+def test_a_pressure_from_a_file_is_named_by_its_content(tmp_path):
+    file = tmp_path / "even.csv"
+    rows = [f"{x},{y},1" for x in (-1, 0, 1) for y in (-1, 0, 1)]
+    file.write_text("\n".join(["forward,lateral,pressure", *rows]))
+    first = requests_of(pressure=f"file:{file}")[0]["pressure"]
+    assert first.startswith(f"file:{file},sha256=")
+    file.write_text(file.read_text().replace("0,0,1", "0,0,2"))
+    assert requests_of(pressure=f"file:{file}")[0]["pressure"] != first
+    with pytest.raises(config.ConfigError, match="circle.pressure: 'file:gone.csv': .* No such"):
+        requests_of(pressure="file:gone.csv")
 
 
 def test_python_finds_the_points_of_a_sweep(monkeypatch, tmp_path):
@@ -173,7 +180,7 @@ def test_limits_stand_beside_the_points_of_motions_that_have_some(monkeypatch, t
 
 def test_limits_are_those_of_the_paper_under_its_pressure_alone():
     assert limits.LIMITS.keys() <= SCENES.keys()
-    assert limits.formulas("transverse", "power:exponent=1") == {}
+    assert limits.formulas("transverse", POWER) == {}
     assert limits.formulas("elliptic") == {}
     assert "mu_static" in limits.formulas("bore")
 
@@ -220,8 +227,7 @@ def test_static_friction_is_interpolated_along_the_amplitude(monkeypatch, tmp_pa
 
 def test_a_dataset_under_another_pressure_has_none_of_hertzs_limits(monkeypatch, tmp_path):
     Solver(monkeypatch)
-    with_pressure(monkeypatch)
-    built(tmp_path, scene="transverse", pressure="power:exponent=1")
+    built(tmp_path, scene="transverse", pressure=POWER)
     friction = microslip.open_map("circle", tmp_path).friction
     with pytest.raises(ValueError, match="no limit of pressure power:exponent=1 is known"):
         friction.at(0.01, 1)

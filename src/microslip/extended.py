@@ -5,8 +5,6 @@ What the solver calls a motion or a pressure is a name with numbers, such as
 functions that ask it, and by nothing else: the workflow reads this whenever it is parsed.
 """
 
-from importlib import import_module
-
 from . import grids
 from .settings import TAKEN, ConfigError
 
@@ -68,10 +66,7 @@ def refuse_unsolvable(given, where):
 
 def _ask_solver(sweep):
     """Raise ValueError, in the solver's words, for what it does not know or do."""
-    from .scenes import scene_named
-
-    scene = scene_named(sweep.scene)
-    _pressure_named(sweep.pressure)
+    scene = _scene_of(sweep)
     if scene.periodic and sweep.amplitude is None:
         raise ValueError(f"amplitude = missing; required for {scene.name}")
     if sweep.amplitude is not None and not scene.periodic:
@@ -85,7 +80,8 @@ def _ask_solver(sweep):
     if sweep.velocity[0] == 0:
         from .point import checked_point
 
-        checked_point(sweep.scene, 0, sweep.amplitude and sweep.amplitude[0], sweep.poisson[-1])
+        amplitude = sweep.amplitude and sweep.amplitude[0]
+        checked_point(sweep.scene, 0, amplitude, sweep.poisson[-1], sweep.pressure)
 
 
 def solver_names(sweep):
@@ -93,20 +89,16 @@ def solver_names(sweep):
 
     Equal ones are written alike, so that their points are found again.
     """
-    scene, pressure = sweep.scene, sweep.pressure
-    if ":" in scene:
-        from .scenes import scene_named
-
-        scene = scene_named(scene).name
-    return scene, _pressure_named(pressure) if ":" in pressure else pressure
+    if ":" not in sweep.scene + sweep.pressure:
+        return sweep.scene, sweep.pressure  # there are no two ways to write a plain name
+    scene = _scene_of(sweep)
+    return scene.name, scene.pressure.name
 
 
-def _pressure_named(name):
-    """The solver's name of a pressure; raises ValueError where it knows none of that name."""
-    if name == "hertz":
-        return name
-    try:
-        pressures = import_module("microslip.pressures")
-    except ModuleNotFoundError:
-        raise ValueError(f"pressure = {name!r}: allowed is hertz") from None
-    return pressures.pressure_named(name).name
+def _scene_of(sweep):
+    """The Scene of a Sweep; raises ValueError where the solver knows no such motion or pressure."""
+    from .scenes import scene_named
+
+    if sweep.pressure.startswith("file:"):
+        from . import pressure_files  # noqa: F401  tells the solver how to read them
+    return scene_named(sweep.scene, sweep.pressure)
