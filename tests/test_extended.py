@@ -1,6 +1,8 @@
 """Sweeps of other motions and pressures: configured, asked for, collected, found again."""
 
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -76,6 +78,22 @@ def test_jobs_do_not_ask_the_solver(monkeypatch):
     given = {"sweeps": PAPER, "extended": {"circle": CIRCLE | {"scene": "no such"}}}
     found = config.from_mapping(given, ask_solver=False)
     assert found.extended["circle"].scene == "no such"
+
+
+ALONE = """
+import sys
+from microslip import config, sweep
+given = {"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}, "extended": {"ellipse": {
+    "scene": "elliptic:phase=30", "group": "g", "velocity": [1], "amplitude": [1]}}}
+found = config.from_mapping(given, ask_solver=False)
+list(sweep.PointRequests(found.sweeps["bore"]))
+print("numpy" in sys.modules)
+"""
+
+
+def test_jobs_of_other_sweeps_do_not_import_the_solver():
+    done = subprocess.run([sys.executable, "-c", ALONE], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
 
 
 def test_a_static_limit_is_allowed_where_the_solver_knows_it():
