@@ -13,7 +13,7 @@ from test_plot import artists, check_nothing_cut_off, fake_map
 from microslip import plot, theory
 from microslip.plot import lines, small_maps
 from microslip.plot.formulas import mathtext
-from microslip.scenes import SCENES, scene_named
+from microslip.scenes import FAMILIES, SCENES, scene_named
 
 VELOCITY = "v0 / (omega u_lim)"
 
@@ -244,7 +244,7 @@ def test_formulas_become_math(formula, expected):
     assert mathtext(formula) == expected
 
 
-@pytest.mark.parametrize("name", [*SCENES, "elliptic"])
+@pytest.mark.parametrize("name", [*SCENES, *FAMILIES])
 def test_labels_of_every_scene_can_be_set(name):
     from matplotlib.mathtext import MathTextParser
 
