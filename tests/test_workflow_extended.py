@@ -15,7 +15,7 @@ TINY = {
     "sweeps": {"transverse": {"velocity": [1], "amplitude": [0]}},
     "extended": {
         "circle": {**MOTIONS, "scene": "elliptic:phase=90", "title": "a circle"},
-        "line": {**MOTIONS, "scene": "elliptic:forward=0.5,phase=0"},
+        "line_first": {**MOTIONS, "scene": "elliptic:forward=0.5,phase=0"},
         "cone": {**STATIC, "pressure": "power:exponent=1"},
     },
     "points_per_job": 4,
@@ -41,7 +41,7 @@ def finished(tmp_path_factory):
 
 def test_one_command_makes_the_datasets_and_a_figure_of_each_group(finished):
     results = finished.folder / "results"
-    assert {path.stem for path in results.glob("*.nc")} == {"circle", "line", "cone"}
+    assert {path.stem for path in results.glob("*.nc")} == {"circle", "line_first", "cone"}
     for name in ("extended_motions", "extended_static"):
         for form in ("png", "pdf"):
             assert (results / f"figures/{name}.{form}").stat().st_size > 0
@@ -70,8 +70,8 @@ def test_another_way_to_write_a_motion_computes_nothing(finished):
 
 
 def test_a_motion_with_a_new_amplitude_computes_its_points_only(finished):
-    line = {**TINY["extended"]["line"], "amplitude": [0, 0.5, 1, 2]}
-    finished.configure({**TINY, "extended": {**TINY["extended"], "line": line}})
+    line = {**TINY["extended"]["line_first"], "amplitude": [0, 0.5, 1, 2]}
+    finished.configure({**TINY, "extended": {**TINY["extended"], "line_first": line}})
     planned = finished.planned("extended")
     finished.configure(TINY)
     assert planned == {"solve_batch": 1, "collect": 1, "draw_figure": 1, "extended": 1}

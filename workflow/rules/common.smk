@@ -52,6 +52,7 @@ for name in EXPLORED:
 # Names of motions with numbers are read by the solver, so these are made when they are asked for:
 # jobs for other sweeps do without it.
 ON_DEMAND = dict.fromkeys(CONFIGURATION.extended)
+EARLY = [f"{study}_first" for study in STUDIES.values()]
 
 
 def batches_in(group):
@@ -144,7 +145,7 @@ def show_the_end():
 
 def batches_of(name):
     """Index files of a sweep's points and of the single runs in the same dataset."""
-    return indices_of(name, *(g for g in [f"{name}_histories"] if g in BATCHES))
+    return indices_of(name, *({f"{name}_histories"} & BATCHES.keys()))
 
 
 def batches_of_study(dataset):
@@ -172,6 +173,6 @@ wildcard_constraints:
     sweep="|".join(CONFIGURATION.grids),
     dataset="|".join(STUDIES),
     group="|".join([*BATCHES, *ON_DEMAND]),
-    early="|".join(f"{study}_first" for study in STUDIES.values()),
+    early="|".join(EARLY),
     batch="[0-9a-f]+",
     figure="|".join(FIGURES),

@@ -27,7 +27,7 @@ rule solve_batch:
     log:
         f"{RESULTS}/logs/solve_batch/{{group}}/{{batch}}.log",
     wildcard_constraints:
-        group="|".join(group for group in [*BATCHES, *ON_DEMAND] if not group.endswith("_first")),
+        group="|".join(group for group in [*BATCHES, *ON_DEMAND] if group not in EARLY),
     conda:
         "../envs/microslip.yaml"
     threads: 1
