@@ -15,6 +15,9 @@
 #   pieces of a study --> collect_study --> results/{accuracy_cost,stability,claims}.nc
 #   datasets --> draw_figure
 #
+# Sweeps of other motions and pressures, those under `extended`, come the same way: snakemake extended
+# makes results/NAME.nc of each, and a figure extended_GROUP of each of their groups.
+#
 # snakemake explorer makes one page to look behind every point of the maps.
 #
 #   points of the maps --> periods, cut into batches --> solve_batch --> results/periods
@@ -73,6 +76,12 @@ rule all:
     input:
         datasets_of(CONFIGURATION.sweeps),
         figures_of(CONFIGURATION.sweeps),
+
+
+rule extended:
+    input:
+        datasets_of(CONFIGURATION.extended),
+        figures_of(CONFIGURATION.extended),
 
 
 rule accuracy:

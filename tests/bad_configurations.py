@@ -167,6 +167,32 @@ STUDIES = [
     ("claims.cells", "9", "9 is not allowed", "an even number"),
 ]
 
+E = "extended.circle"
+
+# What the solver says of motions and pressures, and names that others have.
+EXTENDED = [
+    ("extended", "[circle]", '["circle"] is not allowed', "a mapping of names"),
+    ("extended", "{Circle: {}}", '"Circle" is not allowed', "small letters, digits and _"),
+    ("extended", "{1: {}}", "1 is not allowed", "small letters, digits and _"),
+    (f"{E}.scenes", "bore", "unknown key; did you mean scene?", "group, title"),
+    (f"{E}.scene", None, "missing; required: scene, group, velocity"),
+    (f"{E}.scene", "5", "5 is not allowed", "text"),
+    (f"{E}.scene", "eliptic", "'eliptic'", "did you mean elliptic?", "transverse, longitudinal"),
+    (f"{E}.scene", "'elliptic:phas=0'", "unknown number phas", "forward, lateral, phase"),
+    (f"{E}.scene", "'elliptic:forward=2'", "forward = 2", "allowed is a share in 0..1"),
+    (f"{E}.pressure", "hertzian", "'hertzian'", "allowed is ", "hertz"),
+    (f"{E}.pressure", "0", "0 is not allowed", "text"),
+    (f"{E}.group", "My figure", '"My figure" is not allowed', "small letters, digits and _"),
+    (f"{E}.title", "''", '"" is not allowed', "text or null"),
+    (f"{E}.velocity", "[0, 1]", "0.0: allowed is a number above 0", "static limit"),
+    (f"{E}.velocity", None, "missing; required: scene, group, velocity"),
+    (f"{E}.velocity[1]", "-1", "-1 is not allowed", ">= 0"),
+    (f"{E}.amplitude", None, "missing; required for elliptic"),
+    (f"{E}.amplitude", "[1, 1]", "1 occurs twice", "different values"),
+    (f"{E}.model", "slidr", '"slidr" is not allowed', "did you mean slider?"),
+    (f"{E}.tolerance", "1", "1 is not allowed", TOLERANCES),
+]
+
 # What GOOD lacks and cases above change a part of.
 STUDIED = """
 accuracy:
@@ -179,6 +205,11 @@ stability:
 claims:
   tolerance: 0.01
 """
+MOVED = """
+extended:
+  circle: {scene: elliptic, group: loops, velocity: [0.1, 1], amplitude: [0.5, 1]}
+  line: {scene: "elliptic:phase=0", group: loops, velocity: [0.1, 1], amplitude: [0.5, 1]}
+"""
 
 
 def changed(settings):
@@ -186,6 +217,8 @@ def changed(settings):
     mapping = yaml.safe_load(GOOD)
     if any(key.startswith(("accuracy", "stability")) for key in settings):
         mapping |= yaml.safe_load(STUDIED)
+    if any(key.startswith("extended") for key in settings):
+        mapping |= yaml.safe_load(MOVED)
     for key, text in settings.items():
         *way, last = (int(k) if k.isdigit() else k for k in re.findall(r"[^.\[\]]+", key))
         place = mapping
@@ -210,6 +243,16 @@ TOGETHER = [
     ({f"{T}.model": "radial", f"{T}.poisson": "[0, 0.2]"}, f"{T}.poisson", "0.2", "allowed: 0"),
     ({f"{B}.velocity.linear": SPACED % 2}, f"{B}.velocity", '{"log": {', "linear or log"),
     ({f"{POINT}.scene": "continuous-bore"}, f"{POINT}.amplitude", "1", "has no amplitude"),
+    ({f"{E}.model": "radial", f"{E}.poisson": "0.3"}, f"{E}.model", "'radial'", "nu > 0"),
+    ({f"{E}.velocity": "[0, 1]", f"{E}.model": "polar"}, f"{E}.velocity", "0, the static", "auto"),
+    ({f"{E}.scene": "bore", f"{E}.model": "slider"}, f"{E}.model", "'slider'", "bore"),
+    ({f"{E}.scene": "continuous-bore"}, f"{E}.amplitude", "[0.5, 1.0]", "has no amplitude"),
+    (
+        {"extended.line.amplitude": "[1]"},
+        "extended.line.group",
+        "over velocity and amplitude, as circle asks",
+        "allowed: another group",
+    ),
     ({f"{B}.amplitude": CLOSE}, f"{B}.amplitude", "1 occurs twice", "different values"),
     (
         {f"{T}.velocity": GRID % 1001, f"{T}.amplitude": GRID % 1000},

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 import yaml
 from bad_command_lines import COMMAND_LINES, NAMES, NUMBERS, RESULTS
-from bad_configurations import FILES, KEYS, STUDIES, TOGETHER, changed
+from bad_configurations import EXTENDED, FILES, KEYS, STUDIES, TOGETHER, changed
 
 import microslip
 from microslip import cli, config, point, schemas
@@ -105,7 +105,7 @@ def test_what_is_changed_is_good_before():
 
 @pytest.mark.parametrize(
     ("settings", "named", "parts"),
-    [({key: value}, key, parts) for key, value, *parts in KEYS + STUDIES]
+    [({key: value}, key, parts) for key, value, *parts in KEYS + STUDIES + EXTENDED]
     + [(settings, named, parts) for settings, named, *parts in TOGETHER],
     ids=lambda value: value if isinstance(value, str) else "",
 )
@@ -115,7 +115,7 @@ def test_a_bad_setting_is_one_line_that_begins_with_its_key(settings, named, par
     message = refusal(path)
     assert message.startswith(f"{path}: {named}: ")
     assert [part for part in parts if part not in message] == []
-    assert re.search("allowed|required|write |no amplitude", message)
+    assert re.search("allowed|required|write |no amplitude|does not apply", message)
 
 
 @pytest.mark.parametrize("case", FILES)

@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from bad_configurations import FILES, GOOD, KEYS, changed
+from bad_configurations import EXTENDED, FILES, GOOD, KEYS, changed
 
 ROOT = Path(__file__).parent.parent
 SNAKEMAKE = Path(sys.executable).with_name("snakemake")
@@ -34,8 +34,8 @@ def beside(make):
 
 
 def key(name, value):
-    """The case of bad_configurations.KEYS with this key and value, and its line."""
-    ((*_, first),) = [case[:3] for case in KEYS if case[:2] == (name, value)]
+    """The case of bad_configurations with this key and value, and its line."""
+    ((*_, first),) = [case[:3] for case in KEYS + EXTENDED if case[:2] == (name, value)]
     return given(changed({name: value})), GIVEN, f"given.yaml: {name}: {first}"
 
 
@@ -49,6 +49,8 @@ CASES = {
     "not a number": key("sweeps.transverse.velocity[1]", ".nan"),
     "an odd number": key("sweeps.continuous_bore.cells", "7"),
     "another model": key("sweeps.continuous_bore.model", "poler"),
+    "a misspelt motion": key("extended.circle.scene", "eliptic"),
+    "an unknown pressure": key("extended.circle.pressure", "hertzian"),
     "a key twice": (given(FILES["a key twice"][0]), GIVEN, "given.yaml: not valid YAML: the key"),
     "overridden": (
         given(),

@@ -11,13 +11,13 @@ from studies_stub import configured
 
 import microslip
 from microslip import keys, methods, trial
-from microslip.config import MODELS_OF_SCENE
 from microslip.methods import aspher
 from microslip.models import MODELS
 from microslip.models.cartesian import CartesianContact
 from microslip.motion import Motion, Resolution
 from microslip.path import EULER, make_path
 from microslip.scenes import SCENES, TRANSVERSE
+from microslip.settings import MODELS_OF_SCENE
 from microslip.studies import accuracy_cost, ladders
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # read when the package is first imported

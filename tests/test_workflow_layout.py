@@ -12,19 +12,23 @@ from microslip import config, keys, plot, schemas, summary
 ROOT = Path(__file__).parent.parent
 
 
-@pytest.mark.parametrize("figure", plot.FIGURES)
+FIGURES = [*plot.FIGURES, "extended_motions", "extended_static"]
+
+
+@pytest.mark.parametrize("figure", FIGURES)
 def test_every_figure_has_a_caption_of_its_own(figure):
     docutils = pytest.importorskip("docutils.core")
     caption = docutils.publish_string(
         rendered("figure", figure=figure), settings_overrides={"halt_level": 2}
     ).decode()
-    others = [rendered("figure", figure=name) for name in plot.FIGURES if name != figure]
+    others = [rendered("figure", figure=name) for name in FIGURES if name != figure]
     assert len(caption) > 200
     assert rendered("figure", figure=figure) not in others
 
 
 @pytest.mark.parametrize(
-    "wildcards", [{"sweep": "bore"}, {"dataset": "stability"}, {"dataset": "claims"}]
+    "wildcards",
+    [{"sweep": "bore"}, {"sweep": "circle"}, {"dataset": "stability"}, {"dataset": "claims"}],
 )
 def test_every_dataset_has_a_caption(wildcards):
     assert "``results/any.nc``" in rendered("dataset", **wildcards)

@@ -103,7 +103,8 @@ def _probe(request):
     from .scenes import scene_named
 
     place = _place(request)
-    model = choose_model(scene_named(place["scene"]), place["poisson"], request["model"])
+    scene = scene_named(place["scene"], place.get("pressure", "hertz"))
+    model = choose_model(scene, place["poisson"], request["model"])
     reason = trial.applies(place["scene"], place["poisson"], model, request["method"])
     if reason:
         return {"applies": False, "converged": False, "reason": reason}
@@ -154,12 +155,15 @@ _KINDS = {
 
 def _place(request):
     amplitude = request["amplitude"]
-    return {
+    place = {
         "scene": request["scene"],
         "velocity": float(request["velocity"]),
         "amplitude": None if amplitude is None else float(amplitude),
         "poisson": float(request["poisson"]),
     }
+    if "pressure" in request:
+        place["pressure"] = request["pressure"]
+    return place
 
 
 def _of_single_run(request):

@@ -6,15 +6,12 @@ of every key. What it cannot say is checked here: duplicates, and settings that 
 Imports nothing heavy, since the workflow reads it whenever it is parsed.
 """
 
-import math
-from itertools import pairwise
-
 import yaml
 
-from . import methods, schemas
+from . import extended, grids, methods, schemas
+from .grids import axis_of, refuse_crowd
 from .keys import number
 from .settings import (
-    MODELS_OF_SCENE,
     SCENE_OF_SWEEP,
     Accuracy,
     Claims,
@@ -22,12 +19,9 @@ from .settings import (
     Configuration,
     Stability,
     StudyPoint,
-    Sweep,
 )
 
-# More points than this are a slip of the pen: naming them all takes the workflow a minute whenever
-# it starts. The points of a study's map are computed by every model, at every tolerance.
-MOST_POINTS = 1_000_000
+# The points of a study's map are computed by every model, at every tolerance.
 MOST_MAP_POINTS = 10_000
 
 # Up to these amplitudes there is static friction to be judged, by the maps of the paper.
@@ -64,10 +58,12 @@ def read_yaml(path):
     return mapping
 
 
-def from_mapping(mapping, source="configuration"):
+def from_mapping(mapping, source="configuration", ask_solver=True):
     """Check a parsed configuration and return it as a Configuration.
 
-    source: how messages name the origin, usually the file. Raises ConfigError.
+    source: how messages name the origin, usually the file. ask_solver: whether the solver, which
+    takes some half a second to import, is to say if it knows what `extended` names; nothing else
+    in what is returned depends on it. Raises ConfigError.
     """
     try:
         problem = schemas.problem(mapping)
@@ -77,17 +73,23 @@ def from_mapping(mapping, source="configuration"):
         raise ConfigError(f"{source}: {_one_line(problem)}")
     filled = schemas.filled(mapping)
     sweeps = {
-        name: _sweep(name, filled["sweeps"][name], source)
+        name: grids.of_paper(name, filled["sweeps"][name], f"{source}: sweeps.{name}")
         for name in SCENE_OF_SWEEP
         if name in filled["sweeps"]
     }
+    others = extended.sweeps(filled["extended"], f"{source}: extended")
+    if ask_solver:
+        extended.refuse_unsolvable(list(others.values()), f"{source}: extended")
+    extended.refuse_mixtures(list(others.values()), f"{source}: extended")
+    given = filled["sweeps"] | filled["extended"]
     return Configuration(
         results=filled["results"],
         points_per_job={
-            name: filled["sweeps"][name]["points_per_job"] or filled["points_per_job"]
-            for name in sweeps
+            name: given[name]["points_per_job"] or filled["points_per_job"]
+            for name in (*sweeps, *others)
         },
         sweeps=sweeps,
+        extended=others,
         histories=filled["histories"],
         accuracy=_accuracy(filled["accuracy"], f"{source}: accuracy"),
         stability=_stability(filled["stability"], f"{source}: stability"),
@@ -101,7 +103,7 @@ def from_mapping(mapping, source="configuration"):
 def _accuracy(given, where):
     grid = given["map"]
     axes = {
-        name: _axis(grid[name], f"{where}.map.{name}", positive=True)
+        name: axis_of(grid[name], f"{where}.map.{name}", positive=True)
         for name in ("velocity", "amplitude_transverse", "amplitude_bore", "tolerance")
     }
     for name, values in axes.items():
@@ -111,7 +113,7 @@ def _accuracy(given, where):
             )
     for name in ("amplitude_transverse", "amplitude_bore"):
         count = len(axes["velocity"]) * len(axes[name])
-        _refuse_crowd(count, f"{where}.map.velocity x {name}", MOST_MAP_POINTS)
+        refuse_crowd(count, f"{where}.map.velocity x {name}", MOST_MAP_POINTS)
     points = [_study_point(name, p, f"{where}.points") for name, p in given["points"].items()]
     return Accuracy(
         methods=_methods(given["methods"], where),
@@ -135,10 +137,10 @@ def _stability(given, where):
 
 def _claims(given, where):
     names = ("velocity", "amplitude_transverse", "amplitude_bore")
-    axes = {name: _axis(given[name], f"{where}.{name}", positive=True) for name in names}
+    axes = {name: axis_of(given[name], f"{where}.{name}", positive=True) for name in names}
     for name in names[1:]:
         count = len(axes["velocity"]) * len(axes[name])
-        _refuse_crowd(count, f"{where}.velocity x {name}", MOST_MAP_POINTS)
+        refuse_crowd(count, f"{where}.velocity x {name}", MOST_MAP_POINTS)
     amplitude = {s: axes[f"amplitude_{s}"] for s in ("transverse", "bore")}
     for scene, values in amplitude.items():
         if values[0] > STATIC_AMPLITUDES[scene]:
@@ -186,90 +188,6 @@ def _once(values, where):
     if twice is not None:
         raise ConfigError(f"{where}: {twice} occurs twice; allowed: different values")
     return values
-
-
-# From settings to sweeps
-
-
-def _sweep(name, given, source):
-    where = f"{source}: sweeps.{name}"
-    scene = SCENE_OF_SWEEP[name]
-    poisson = given["poisson"]
-    sweep = Sweep(
-        name=name,
-        scene=scene,
-        velocity=_axis(given["velocity"], f"{where}.velocity"),
-        amplitude=_axis(given["amplitude"], f"{where}.amplitude") if "amplitude" in given else None,
-        poisson=_axis(poisson if isinstance(poisson, list) else [poisson], f"{where}.poisson"),
-        poisson_is_axis=isinstance(poisson, list),
-        model=given["model"],
-        tolerance=float(number(given["tolerance"])),
-        cells=given["cells"],
-        steps=given["steps"],
-    )
-    _refuse_mismatch(sweep, where)
-    points = len(sweep.velocity) * len(sweep.amplitude or (None,)) * len(sweep.poisson)
-    _refuse_crowd(points, where, MOST_POINTS)
-    return sweep
-
-
-def _refuse_crowd(points, where, most):
-    if points > most:
-        raise ConfigError(f"{where}: {points} points are not allowed; allowed: at most {most}")
-
-
-def _axis(given, where, positive=False):
-    if isinstance(given, list):
-        values = [float(number(value)) for value in given]
-    else:
-        ((spacing, spec),) = given.items()
-        values = _spaced(spacing, spec, f"{where}.{spacing}")
-    values.sort()
-    for low, high in pairwise(values):
-        if high - low <= 1e-9 * high:
-            raise ConfigError(f"{where}: {high:.12g} occurs twice; allowed: different values")
-    if positive and values[0] <= 0:
-        raise ConfigError(f"{where}: {values[0]:g} is not allowed; allowed: numbers > 0")
-    return tuple(values)
-
-
-def _spaced(spacing, spec, where):
-    start, stop, count = spec["start"], spec["stop"], spec["count"]
-    if stop <= start:
-        raise ConfigError(f"{where}.stop: {stop} is not allowed; allowed: a number above {start}")
-    if spacing == "log" and math.isinf(stop / start):
-        raise ConfigError(f"{where}.start: {start} is not allowed; allowed: a number nearer {stop}")
-    if spacing == "linear":
-        values = (start + (stop - start) * i / (count - 1) for i in range(count))
-    else:
-        values = (start * math.exp(math.log(stop / start) * i / (count - 1)) for i in range(count))
-    # Six digits make the coordinates readable, and the same on every machine.
-    return [float(f"{value:.6g}") for value in values]
-
-
-def _refuse_mismatch(sweep, where):
-    """Refuse settings that are fine one by one but not together."""
-    known = MODELS_OF_SCENE[sweep.scene]
-    if sweep.model not in known:
-        raise ConfigError(
-            f'{where}.model: "{sweep.model}" does not apply to {sweep.scene}; '
-            f"allowed: {', '.join(known)}"
-        )
-    if sweep.model == "radial" and sweep.poisson[-1] > 0:
-        raise ConfigError(
-            f"{where}.poisson: {sweep.poisson[-1]:g} does not go with model radial; allowed: 0"
-        )
-    static = sweep.velocity[0] == 0
-    if static and sweep.model != "auto":
-        raise ConfigError(
-            f"{where}.velocity: 0, the static limit, does not go with model {sweep.model}; "
-            "allowed: numbers > 0, or model auto"
-        )
-    if static and sweep.scene == "transverse" and sweep.poisson[-1] > 0:
-        raise ConfigError(
-            f"{where}.velocity: 0, the static limit, is known for poisson 0 only; "
-            "allowed: numbers > 0"
-        )
 
 
 def _one_line(text):

@@ -13,7 +13,9 @@ import microslip
 
 from . import columns, limits, theory
 from .cache import writing_beside
+from .extended import solver_names
 from .keys import canonical_json, source_digest
+from .scenes import scene_named
 
 CONVENTIONS = "CF-1.11"
 PAPER = "R. Pohrt, Front. Mech. Eng. 6:566440 (2020), doi:10.3389/fmech.2020.566440"
@@ -40,13 +42,16 @@ def write_sweep(path, sweep, points, histories, settings):
     if there are not as many points as the grid has, CacheError as `write` does.
     """
     frame, axes = _frame(sweep, histories), _axes(sweep)
-    title = f"Friction of a vibrated Hertz contact, scene {sweep.scene}"
+    scene, pressure = solver_names(sweep)
+    title = sweep.title or f"Friction of a vibrated Hertz contact, scene {scene}"
+    about = {"scene": scene, "pressure": pressure, "tolerance": sweep.tolerance}
+    if sweep.group is not None:
+        about["group"] = sweep.group
     versions = {canonical_json(record["versions"]) for record in histories}
     with writing_beside(path, sealed=True) as beside:
         _to_netcdf(frame, beside)
         with netCDF4.Dataset(beside, "a") as file:
             versions |= columns.append(file, sweep, axes, points)
-            about = {"scene": sweep.scene, "tolerance": sweep.tolerance}
             file.setncatts(provenance(title, settings, versions, **about))
 
 
@@ -95,11 +100,14 @@ def _to_netcdf(dataset, path):
     dataset.to_netcdf(path, engine="netcdf4", format="NETCDF4", encoding=encoding)
 
 
-def report(dataset):
-    """Lines of text: how many points there are and, one each, those that did not converge."""
+def report(dataset, name=None):
+    """Lines of text: how many points there are and, one each, those that did not converge.
+
+    name: of the sweep, that of its scene unless told.
+    """
     converged = dataset["converged"]
     bad = np.argwhere(~converged.values)
-    yield f"{dataset.scene}: {converged.size} points, {len(bad) or 'none'} not converged"
+    yield f"{name or dataset.scene}: {converged.size} points, {len(bad) or 'none'} not converged"
     for index in bad:
         point = dataset.isel(dict(zip(converged.dims, index, strict=True)))
         where = ", ".join(f"{dim} {float(point[dim]):g}" for dim in converged.dims)
@@ -114,11 +122,15 @@ def _axes(sweep):
 
 
 def _describe_axes(dataset, sweep):
-    names = {"velocity": VELOCITY[sweep.scene], "poisson": "Poisson's ratio"}
+    """Name the axes; `formula` is what a coordinate is, in the words of the scene."""
+    scene = scene_named(sweep.scene)
+    names = {"velocity": (VELOCITY, "forward velocity", scene.velocity_label)}
     if sweep.amplitude is not None:
-        names["amplitude"] = AMPLITUDE[sweep.scene]
-    for name, long_name in names.items():
-        dataset[name].attrs = {"long_name": long_name, "units": "1"}
+        names["amplitude"] = (AMPLITUDE, "amplitude", scene.amplitude_label)
+    for name, (of_paper, quantity, formula) in names.items():
+        long_name = of_paper.get(scene.name, f"{quantity}, {formula}")
+        dataset[name].attrs = {"long_name": long_name, "units": "1", "formula": formula}
+    dataset["poisson"].attrs = {"long_name": "Poisson's ratio", "units": "1"}
 
 
 # Single runs, the data of Figures 1, 3 and 5

@@ -6,7 +6,8 @@ fine enough to draw. A formula added here appears in the dataset of its scene.
 
 import numpy as np
 
-from . import theory
+from . import masing, theory
+from .extended import solver_names
 
 CURVE_POINTS = 241
 
@@ -14,7 +15,7 @@ _WHOLE_ZONE = "static friction of the whole stick zone"
 _EXACT = "static friction, exact limit of mu_macro for velocity to 0"
 _EXACT_AT_0 = f"{_EXACT} at Poisson's ratio 0"
 
-# scene -> name -> (dims, function of the coordinates of these dims, long_name)
+# scene, under Hertz's pressure -> name -> (dims, function of their coordinates, long_name)
 LIMITS = {
     "transverse": {
         "mu_large_amplitude": (
@@ -52,11 +53,28 @@ LIMITS = {
         ),
         "mu_static": (("amplitude",), theory.static_limit_bore, _EXACT),
     },
+    "longitudinal": {
+        "mu_closed_form": (
+            ("velocity", "amplitude"),
+            masing.longitudinal,
+            "mu_macro in closed form at Poisson's ratio 0 (Mindlin's curve with Masing's memory)",
+        ),
+        "mu_static": (("amplitude",), theory.static_limit_longitudinal, _EXACT_AT_0),
+    },
+    "zigzag": {
+        "mu_static": (("amplitude",), theory.static_limit_transverse, _EXACT_AT_0),
+    },
     "continuous-bore": {
         "mu_forward_theory": (("velocity",), theory.bore_forward, "steady mu_macro (Eq 21)"),
         "mu_torque_theory": (("velocity",), theory.bore_torque, "steady mu_torque (Eq 22)"),
     },
 }
+
+
+def formulas(scene, pressure="hertz"):
+    """What theory says about a scene under a pressure, by the solver's names; as a row of LIMITS,
+    {} if it says nothing."""
+    return LIMITS.get(scene, {}) if pressure == "hertz" else {}
 
 
 def variables(sweep):
@@ -66,7 +84,7 @@ def variables(sweep):
     `velocity_curve`; of a limit that depends on both it is the one at the largest amplitude.
     """
     found = {}
-    for name, (dims, function, long_name) in LIMITS[sweep.scene].items():
+    for name, (dims, function, long_name) in formulas(*solver_names(sweep)).items():
         axes = [np.array(getattr(sweep, dim)) for dim in dims]
         # meshgrid puts the first coordinate last, as the datasets do
         found[name] = _variable(dims[::-1], function(*np.meshgrid(*axes)), long_name)

@@ -15,6 +15,11 @@ HISTORIES_OF_SWEEP = {
     "bore": (),
     "continuous_bore": ("field", "transients"),
 }
+# Names that no other sweep may have: of datasets, and of folders of batches.
+TAKEN = (*SCENE_OF_SWEEP, "accuracy", "accuracy_cost", "stability", "claims")
+TAKEN += tuple(f"{name}_histories" for name in SCENE_OF_SWEEP)
+TAKEN += tuple(f"{name}_periods" for name in SCENE_OF_SWEEP)
+TAKEN += tuple(f"{study}_first" for study in ("accuracy", "stability", "claims"))
 # What microslip.models refuses, which takes too long to import here; a test keeps them the same.
 MODELS_OF_SCENE = {
     "transverse": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
@@ -34,7 +39,7 @@ class Sweep:
     """A grid of points. The axes are ascending tuples of floats, all dimensionless."""
 
     name: str
-    scene: str
+    scene: str  # with numbers as they were given; extended.solver_names writes equal ones alike
     velocity: tuple
     amplitude: tuple | None  # None: the scene has no amplitude
     poisson: tuple
@@ -43,12 +48,22 @@ class Sweep:
     tolerance: float
     cells: int | None
     steps: int | None
+    pressure: str = "hertz"  # as for scene
+    group: str | None = None  # of the figure that shows it, None for the paper's
+    title: str | None = None  # there
 
     @property
     def spans_a_map(self):
         """Whether there is an area to draw: two amplitudes and two velocities above 0 at least."""
         positive = [velocity for velocity in self.velocity if velocity > 0]
         return len(self.amplitude or ()) > 1 and len(positive) > 1
+
+    @property
+    def drawn_over(self):
+        """What the figure of a group shows friction over."""
+        if self.spans_a_map:
+            return "velocity and amplitude"
+        return "amplitude" if len(self.amplitude or ()) > 1 else "velocity"
 
 
 @dataclass(frozen=True)
@@ -101,16 +116,31 @@ class Configuration:
 
     results: str
     sweeps: dict  # name -> Sweep, in the order of SCENE_OF_SWEEP
+    extended: dict  # name -> Sweep, of other motions and pressures
     points_per_job: dict  # name of a sweep -> int; no dataset depends on it
     histories: dict  # transverse, field, transients -> dict of settings, as in the schema
     accuracy: Accuracy
     stability: Stability
     claims: Claims
 
+    @property
+    def grids(self):
+        """All sweeps by name, the paper's first."""
+        return self.sweeps | self.extended
+
+    @property
+    def groups(self):
+        """Names of the sweeps in `extended` by group, a dict of tuples."""
+        groups = dict.fromkeys(sweep.group for sweep in self.extended.values())
+        return {
+            group: tuple(s.name for s in self.extended.values() if s.group == group)
+            for group in groups
+        }
+
     def of_sweep(self, name):
         """All settings that the dataset of the sweep `name` depends on, as a dict for JSON."""
-        names = HISTORIES_OF_SWEEP[name]
+        names = HISTORIES_OF_SWEEP.get(name, ())
         return {
-            "sweep": asdict(self.sweeps[name]),
+            "sweep": asdict(self.grids[name]),
             "histories": {history: self.histories[history] for history in names},
         }

@@ -49,10 +49,11 @@ def solve_stored(
         tolerance=tolerance,
         cells=cells,
         steps=steps,
+        pressure=kind.pressure.name,
     )
     (request,) = sweep.PointRequests(grid)
     record, _ = sweep.answer(request, Store(results))
-    given = request | record["result"]
+    given = {"pressure": kind.pressure.name} | request | record["result"]
     given |= {k: float(given[k]) for k in ("velocity", "poisson", "tolerance")}
     if amplitude is not None:
         given["amplitude"] = float(given["amplitude"])

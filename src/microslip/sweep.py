@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from functools import cache
 
 from . import answers
+from .extended import solver_names
 from .keys import batch_name, number, result_key, source_digest
 from .settings import HISTORIES_OF_SWEEP
 
@@ -45,14 +46,17 @@ class PointRequests(Sequence):
     """
 
     def __init__(self, sweep):
+        scene, pressure = solver_names(sweep)
         self._common = {
             "kind": "point",
-            "scene": sweep.scene,
+            "scene": scene,
             "model": sweep.model,
             "tolerance": number(sweep.tolerance),
             "cells": sweep.cells,
             "steps": sweep.steps,
         }
+        if pressure != "hertz":  # which goes without saying, as it did before there were others
+            self._common["pressure"] = pressure
         amplitudes = [None] if sweep.amplitude is None else [number(a) for a in sweep.amplitude]
         velocities = [number(velocity) for velocity in sweep.velocity]
         self._axes = ([number(nu) for nu in sweep.poisson], amplitudes, velocities)
@@ -71,7 +75,8 @@ class PointRequests(Sequence):
 
 
 def history_requests(configuration, name):
-    """List the requests for the single runs that go into the dataset of the sweep `name`."""
+    """List the requests for the single runs that go into the dataset of the sweep `name`; none for
+    one of `extended`."""
     given = configuration.histories
     requests = {
         "transverse": lambda settings: [
@@ -82,7 +87,7 @@ def history_requests(configuration, name):
             _single("history", "continuous-bore", settings, start=start) for start in STARTS
         ],
     }
-    return [r for run in HISTORIES_OF_SWEEP[name] for r in requests[run](given[run])]
+    return [r for run in HISTORIES_OF_SWEEP.get(name, ()) for r in requests[run](given[run])]
 
 
 def _single(kind, scene, settings, **more):
@@ -146,7 +151,7 @@ def run_batch(requests, store, progress=iter):
 
 def label(request):
     """Describe a request in a few words, for messages."""
-    names = ["poisson", "amplitude", "velocity", "start"]
+    names = ["pressure", "poisson", "amplitude", "velocity", "start"]
     if request["kind"] != "point":
         names += ["model", "method", "cells", "angles", "steps"]
     given = ", ".join(f"{name} {request[name]}" for name in names if request.get(name) is not None)

@@ -16,7 +16,8 @@ ORIGIN = ", ".join([*FILES, *OVERRIDDEN]) or f"configuration{OF_MODULE}"
 with refused_in_one_line(ORIGIN):
     for file in FILES:
         microslip_config.read_yaml(file)  # refuses a key that occurs twice
-    CONFIGURATION = microslip_config.from_mapping(config, ORIGIN)
+    # Jobs parse this again, and need not pay for asking the solver what it knows.
+    CONFIGURATION = microslip_config.from_mapping(config, ORIGIN, workflow.is_main_process)
     config = schemas.filled(config)  # captions name the defaults too
     RESULTS = os.path.normpath(CONFIGURATION.results)
     # RESULTS with the prefix that a module may have; Snakemake adds it to the paths of rules itself.
@@ -48,6 +49,20 @@ for name in EXPLORED:
     periods = explorer.period_requests(CONFIGURATION, name)
     BATCHES[f"{name}_periods"] = sweep.batches(periods, PERIODS_PER_JOB, DIGEST)
 
+# Names of motions with numbers are read by the solver, so these are made when they are asked for:
+# jobs for other sweeps do without it.
+ON_DEMAND = dict.fromkeys(CONFIGURATION.extended)
+EARLY = [f"{study}_first" for study in STUDIES.values()]
+
+
+def batches_in(group):
+    """The batches of a group by name."""
+    if group in ON_DEMAND and ON_DEMAND[group] is None:
+        points = sweep.PointRequests(CONFIGURATION.extended[group])
+        ON_DEMAND[group] = sweep.batches(points, CONFIGURATION.points_per_job[group], DIGEST)
+    return ON_DEMAND.get(group) or BATCHES[group]
+
+
 # The figures that there is data for, each with the names of its datasets.
 FIGURES = {
     figure: names
@@ -61,6 +76,7 @@ for figure in {"fig2_transverse_map", "fig6_bore_map", "poisson"} & FIGURES.keys
         drawable &= all(1 < len(grid.poisson) <= plot.MOST_POISSONS for grid in grids)
     if not drawable:
         del FIGURES[figure]
+FIGURES |= {plot.figure_of(group): names for group, names in CONFIGURATION.groups.items()}
 
 
 def datasets_of(names):
@@ -80,7 +96,7 @@ def figures_of(datasets):
     ]
 
 
-NAMES = [*CONFIGURATION.sweeps, *STUDIES]
+NAMES = [*CONFIGURATION.grids, *STUDIES]
 PAGE = f"{RESULTS}/explorer.html"
 FILES_MADE = [*datasets_of(NAMES), *figures_of(NAMES), PAGE]
 MADE = [str(workflow.modifier.modify_path(path)) for path in FILES_MADE]
@@ -114,7 +130,8 @@ def points_to_do():
         job.wildcards for job in workflow.dag.needrun_jobs() if "batch" in job.wildcards.keys()
     ]
     # Where this is a module, others may have batches too.
-    return sum(len(BATCHES.get(w[0], {}).get(w.batch, ())) for w in asked)
+    known = [w for w in asked if w[0] in BATCHES or w[0] in ON_DEMAND]
+    return sum(len(batches_in(w[0]).get(w.batch, ())) for w in known)
 
 
 def show_the_end():
@@ -128,7 +145,7 @@ def show_the_end():
 
 def batches_of(name):
     """Index files of a sweep's points and of the single runs in the same dataset."""
-    return indices_of(name, f"{name}_histories")
+    return indices_of(name, *({f"{name}_histories"} & BATCHES.keys()))
 
 
 def batches_of_study(dataset):
@@ -148,14 +165,14 @@ def datasets_explored():
 def indices_of(*groups):
     """Index files of all batches of these groups."""
     return [
-        f"{RESULTS}/batches/{group}/{batch}.json" for group in groups for batch in BATCHES[group]
+        f"{RESULTS}/batches/{group}/{batch}.json" for group in groups for batch in batches_in(group)
     ]
 
 
 wildcard_constraints:
-    sweep="|".join(CONFIGURATION.sweeps),
+    sweep="|".join(CONFIGURATION.grids),
     dataset="|".join(STUDIES),
-    group="|".join(BATCHES),
-    early="|".join(f"{study}_first" for study in STUDIES.values()),
+    group="|".join([*BATCHES, *ON_DEMAND]),
+    early="|".join(EARLY),
     batch="[0-9a-f]+",
     figure="|".join(FIGURES),

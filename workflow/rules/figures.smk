@@ -11,6 +11,7 @@ rule draw_figure:
             category=lambda wildcards: {
                 "claims": "The paper's claims",
                 **dict.fromkeys(CONFIGURATION.sweeps, "The paper's figures"),
+                **dict.fromkeys(CONFIGURATION.extended, "Other motions and pressures"),
             }.get(FIGURES[wildcards.figure][0], "Methods"),
             labels={"figure": "{figure}"},
         ),

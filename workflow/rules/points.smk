@@ -27,7 +27,7 @@ rule solve_batch:
     log:
         f"{RESULTS}/logs/solve_batch/{{group}}/{{batch}}.log",
     wildcard_constraints:
-        group="|".join(group for group in BATCHES if not group.endswith("_first")),
+        group="|".join(group for group in [*BATCHES, *ON_DEMAND] if group not in EARLY),
     conda:
         "../envs/microslip.yaml"
     threads: 1
@@ -36,7 +36,7 @@ rule solve_batch:
         runtime=lambda wildcards, attempt: 60 * attempt,
     params:
         # One string: Snakemake compares parameters as a set and would miss two swapped numbers.
-        requests=lambda wildcards: keys.canonical_json(BATCHES[wildcards.group][wildcards.batch]),
+        requests=lambda wildcards: keys.canonical_json(batches_in(wildcards.group)[wildcards.batch]),
         store=lambda wildcards, output: str(Path(output[0]).parents[2]),
         counter=COUNTER,
     script:

@@ -4,6 +4,7 @@ Output: netCDF-4, CF conventions, all quantities dimensionless (units 1, phases 
   transverse.nc       dims (amplitude, velocity), history_step
   bore.nc             dims (amplitude, velocity)
   continuous_bore.nc  dims (velocity), cell, (start, transient_step)
+  any of `extended`   dims (amplitude, velocity), or (velocity) if its motion is steady
 A sweep with a list of Poisson's ratios has the dim poisson before these. Beside it an HTML
 page that sums it up.
 """
@@ -17,9 +18,9 @@ from microslip.jobs import job_log
 name = snakemake.wildcards.sweep
 
 with job_log(snakemake.log[0]) as log:
-    configuration = config.from_mapping(snakemake.config)
+    configuration = config.from_mapping(snakemake.config, ask_solver=False)
     store = Store(snakemake.params.store)
-    grid = configuration.sweeps[name]
+    grid = configuration.grids[name]
     points = (sweep.answer(request, store)[0] for request in sweep.PointRequests(grid))
     histories = sweep.history_requests(configuration, name)
     dataset.write_sweep(
@@ -30,7 +31,7 @@ with job_log(snakemake.log[0]) as log:
         configuration.of_sweep(name),
     )
     with xr.open_dataset(snakemake.output[0]) as data:
-        lines = list(dataset.report(data))
+        lines = list(dataset.report(data, grid.group and name))
         for line in lines:
             log.info(line)
         summary.write(snakemake.output.summary, data, lines)

@@ -15,7 +15,7 @@ from microslip.jobs import job_log
 study = snakemake.params.study
 
 with job_log(snakemake.log[0]) as log:
-    configuration = config.from_mapping(snakemake.config)
+    configuration = config.from_mapping(snakemake.config, ask_solver=False)
     store = Store(snakemake.params.store)
     data = studies.build(study, configuration, lambda request: sweep.answer(request, store)[0])
     dataset.write(data, snakemake.output[0])

@@ -9,7 +9,7 @@ from microslip.jobs import job_log
 from microslip.plot.data import loaded
 
 with job_log(snakemake.log[0]) as log:
-    configuration = config.from_mapping(snakemake.config)
+    configuration = config.from_mapping(snakemake.config, ask_solver=False)
     store = Store(snakemake.params.store)
     names = snakemake.params.names
     periods = {

@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-#: Every figure and the datasets it is drawn from.
+#: Every figure and the datasets it is drawn from, but for those of groups in `extended`, which have
+#: the names that `figure_of` gives and all the datasets of their group.
 FIGURES: dict[str, tuple[str, ...]] = {
     "fig1_force_history": ("transverse",),
     "fig2_transverse_map": ("transverse",),
@@ -76,34 +77,52 @@ _MODULES = {
 __all__ = ["FIGURES", "FORMATS", "draw", "save"]
 
 
+def figure_of(group: str) -> str:
+    """Name of the figure of a group of sweeps in `extended`."""
+    return f"extended_{group}"
+
+
 def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     """Draw one figure.
 
-    name: a key of `FIGURES`. datasets: at least the datasets that `FIGURES[name]` lists, by their
-    key; others are ignored. Raises ValueError if the name is unknown, a dataset is of another
-    scene, or a dataset, variable or dimension the figure needs is missing. The figure belongs to no
-    window and no global state.
+    name: a key of `FIGURES`, or what `figure_of` gives for a group. datasets: at least those that
+    `FIGURES[name]` lists, by their key, or all of that group; others are ignored. Raises ValueError
+    if the name is unknown, a dataset is of another scene, or a dataset, variable or dimension the
+    figure needs is missing. The figure belongs to no window and no global state.
     """
-    if name not in FIGURES:
-        raise ValueError(f"unknown figure {name!r}; known figures: {', '.join(FIGURES)}")
-    missing = [key for key in FIGURES[name] if key not in datasets]
+    keys = _keys_of(name, datasets)
+    missing = [key for key in keys if key not in datasets]
     if missing:
         given = ", ".join(map(repr, datasets)) or "none"
         raise ValueError(f"figure {name} needs the dataset {missing[0]!r}; given: {given}")
-    for key in FIGURES[name]:
+    for key in keys:
         scene, found = SCENE_OF_SWEEP.get(key), datasets[key].attrs.get("scene")
         if scene and found not in (scene, None):
             raise ValueError(f"figure {name}: dataset {key!r} is of {found!r}; allowed: {scene!r}")
     from microslip.plot.style import style
 
-    module = importlib.import_module(f"microslip.plot.{_MODULES[name]}")
+    module = importlib.import_module(f"microslip.plot.{_MODULES.get(name, 'groups')}")
     with style():
-        figure = module.draw(name, *(datasets[key] for key in FIGURES[name]))
+        figure = module.draw(name, *(datasets[key] for key in keys))
         for _ in range(2):  # the layout settles, and is then fixed: every save gives the same
             figure.draw_without_rendering()
         figure.set_layout_engine("none")
-    figure.made_from = made_from(datasets[key] for key in FIGURES[name])
+    figure.made_from = made_from(datasets[key] for key in keys)
     return figure
+
+
+def _keys_of(name: str, datasets: Mapping[str, xr.Dataset]) -> tuple[str, ...]:
+    """Keys of the datasets that a figure is drawn from."""
+    if name in FIGURES:
+        return FIGURES[name]
+    groups = {key: dataset.attrs.get("group") for key, dataset in datasets.items()}
+    keys = tuple(key for key, group in groups.items() if group and figure_of(group) == name)
+    if not keys:
+        raise ValueError(
+            f"unknown figure {name!r}; known figures: {', '.join(FIGURES)}, and extended_GROUP for "
+            "the group of datasets that are given"
+        )
+    return keys
 
 
 def made_from(datasets: Iterable[xr.Dataset]) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
+from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, NullFormatter
@@ -104,7 +105,36 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
 
 def _map(axes: Axes, dataset: xr.Dataset, plan: Map, note: str) -> None:
-    """Filled and labelled contours; hatched cells where a point is not converged."""
+    """The map with its colours, its letter, and its hatching explained under it."""
+    filled, hatched = fill(axes, dataset)
+    axes.set(xlabel=plan.velocity_label, ylabel=plan.amplitude_label)
+    bar = axes.figure.colorbar(filled, ax=axes, pad=0.02, aspect=32, ticks=np.linspace(0, 1, 6))
+    bar.set_label(look.MU_MACRO)
+    bar.ax.tick_params(direction="out")
+    look.letter(axes, "a", note)
+    if hatched:
+        axes.legend(
+            handles=[unconverged(f"not converged ({hatched} of {dataset['mu_macro'].size})")],
+            loc="lower right",
+            bbox_to_anchor=(1.0, 1.0),
+            borderaxespad=0.2,
+        )
+
+
+def fill(
+    axes: Axes,
+    dataset: xr.Dataset,
+    fills: np.ndarray = FILL_LEVELS,
+    lines: np.ndarray = LINE_LEVELS,
+    labelled: np.ndarray = LINE_LEVELS,
+    size: float = 7.5,
+) -> tuple[ContourSet, int]:
+    """Fill a panel with `mu_macro` over velocity and amplitude: bands, contours, and hatched cells
+    where a point is not converged.
+
+    fills, lines, labelled: levels of bands, of contours and of those that have a number, ascending;
+    size: of the numbers. Returns the bands, for a colour bar, and the number of hatched cells.
+    """
     shown = dataset.isel(velocity=dataset["velocity"].values > 0)
     if min(shown.sizes["amplitude"], shown.sizes["velocity"]) < 2:
         raise ValueError("a map needs two amplitudes and two positive velocities at least")
@@ -115,53 +145,48 @@ def _map(axes: Axes, dataset: xr.Dataset, plan: Map, note: str) -> None:
     filled = axes.contourf(
         velocity,
         amplitude,
-        np.clip(values, 0.0, 1.0),  # rounding beyond the ends must not leave white holes
-        levels=FILL_LEVELS,
+        np.clip(values, fills[0], fills[-1]),  # rounding beyond the ends must leave no white holes
+        levels=fills,
         cmap=look.COLOURMAP,
     )
     filled.set_edgecolor("face")  # no hairlines between the bands in a PDF
     filled.set_linewidth(0.3)
-    ink = ["white" if level < 0.55 else "black" for level in LINE_LEVELS]
-    lines = axes.contour(
-        velocity, amplitude, values, levels=LINE_LEVELS, colors=ink, linewidths=0.7
-    )
+    dark = fills[0] + 0.55 * (fills[-1] - fills[0])
+    ink = ["white" if level < dark else "black" for level in lines]
+    contours = axes.contour(velocity, amplitude, values, levels=lines, colors=ink, linewidths=0.7)
     axes.set_xscale("log")
     axes.set(xlim=(velocity[0], velocity[-1]), ylim=(amplitude[0], amplitude[-1]))
     axes.xaxis.set_major_locator(LogLocator(numticks=12))
     axes.tick_params(which="both", direction="out", top=False, right=False)
-    axes.clabel(lines, fmt="%.1f", fontsize=7.5, inline_spacing=3)
-    _hatch(axes, velocity, amplitude, shown["converged"].values != 0)
-
-    axes.set(xlabel=plan.velocity_label, ylabel=plan.amplitude_label)
-    bar = axes.figure.colorbar(filled, ax=axes, pad=0.02, aspect=32, ticks=np.linspace(0, 1, 6))
-    bar.set_label(look.MU_MACRO)
-    bar.ax.tick_params(direction="out")
-    look.letter(axes, "a", note)
+    axes.clabel(contours, labelled, fmt="%.1f", fontsize=size, inline_spacing=3)
+    return filled, _hatch(axes, velocity, amplitude, shown["converged"].values != 0)
 
 
-def _hatch(axes: Axes, velocity: np.ndarray, amplitude: np.ndarray, done: np.ndarray) -> None:
-    """Hatch the cell around every point that is not converged and say so under the map."""
-    if done.all():
-        return
+_HATCHED = {
+    "facecolor": (1.0, 1.0, 1.0, 0.45),
+    "edgecolor": look.BLACK,
+    "linewidth": 0.0,
+    "hatch": "//////",
+}
+
+
+def unconverged(label: str) -> Patch:
+    """What a legend shows for hatched cells."""
+    return Patch(label=label, **_HATCHED)
+
+
+def _hatch(axes: Axes, velocity: np.ndarray, amplitude: np.ndarray, done: np.ndarray) -> int:
+    """Hatch the cell around every point that is not converged, and count them."""
     x = np.exp(_cell_edges(np.log(velocity)))
     y = _cell_edges(amplitude)
     cells = [
         [(x[j], y[i]), (x[j + 1], y[i]), (x[j + 1], y[i + 1]), (x[j], y[i + 1])]
         for i, j in np.argwhere(~done)
     ]
-    ink = {
-        "facecolor": (1.0, 1.0, 1.0, 0.45),
-        "edgecolor": look.BLACK,
-        "linewidth": 0.0,
-        "hatch": "//////",
-    }
-    axes.add_collection(PolyCollection(cells, gid="unconverged", zorder=4, **ink), autolim=False)
-    axes.legend(
-        handles=[Patch(label=f"not converged ({len(cells)} of {done.size})", **ink)],
-        loc="lower right",
-        bbox_to_anchor=(1.0, 1.0),
-        borderaxespad=0.2,
-    )
+    if cells:
+        hatched = PolyCollection(cells, gid="unconverged", zorder=4, **_HATCHED)
+        axes.add_collection(hatched, autolim=False)
+    return len(cells)
 
 
 def _cell_edges(points: np.ndarray) -> np.ndarray:

@@ -28,21 +28,24 @@ def open_map(
 ):
     """Open the dataset of a sweep, with the accessor ``friction`` for certified answers.
 
-    name: transverse, bore or continuous_bore, or the path of such a dataset; results: folder that
-    the workflow wrote to; chunks: as for xarray.open_dataset, {} for dask.  Returns an
-    xarray.Dataset.  Raises ValueError for another name, CacheError, one line, for a file that is
-    missing, damaged, or not from a sweep.
+    name: transverse, bore, continuous_bore or another sweep of the configuration, or the path of
+    such a dataset; results: folder that the workflow wrote to; chunks: as for xarray.open_dataset,
+    {} for dask.  Returns an xarray.Dataset.  Raises ValueError for another name, CacheError, one
+    line, for a file that is missing, damaged, or not from a sweep.
     """
     path = Path(name)
     if path.suffix != ".nc":
-        if str(name) not in SCENE_OF_SWEEP:
-            raise ValueError(f"name = {name!r}: allowed is {', '.join(SCENE_OF_SWEEP)}, or a path")
         path = Path(results, f"{name}.nc")
+        if str(name) not in SCENE_OF_SWEEP and not path.is_file():
+            raise ValueError(
+                f"name = {name!r}: allowed is {', '.join(SCENE_OF_SWEEP)}, another sweep of which "
+                f"{results} has the dataset, or a path"
+            )
     if not path.is_file():
         raise CacheError(f"{path} is not there: run the workflow first, or name its results folder")
     if is_damaged(path):
         raise CacheError(f"{path} is damaged: run the workflow again, which makes it anew")
     dataset = xr.open_dataset(path, engine="netcdf4", chunks=chunks)
-    if dataset.attrs.get("scene") not in SCENE_OF_SWEEP.values():
+    if "scene" not in dataset.attrs or "mu_macro" not in dataset:
         raise CacheError(f"{path} is not the dataset of a sweep")
     return dataset

@@ -8,10 +8,12 @@ import numpy as np
 import xarray as xr
 
 from microslip import hertz, theory
+from microslip.scenes import scene_named
 from microslip.stored import solve_stored
 
 from . import beyond
 from .interpolation import Axis, Table
+from .within import refuse_beyond, within
 
 SOURCES = (
     "map",
@@ -36,12 +38,15 @@ class Friction:
     """
 
     def __init__(self, dataset):
-        if dataset.attrs.get("scene") not in (*beyond.LIMITS, "continuous-bore"):
+        try:
+            self._motion = scene_named(dataset.attrs.get("scene"))
+        except ValueError:
             raise ValueError(
                 "no scene of microslip: allowed is the dataset of a sweep, with its attributes"
-            )
+            ) from None
         self._dataset = dataset
-        self._scene = dataset.attrs["scene"]
+        self._scene = self._motion.name
+        self._pressure = dataset.attrs.get("pressure", "hertz")
         self._tables = {}  # by Poisson's ratio, each made when it is first asked
 
     def at(self, velocity, amplitude=None, *, poisson=None, tolerance=None):
@@ -56,17 +61,22 @@ class Friction:
         interpolation leaves (see `interpolation`) and what the nodes themselves may be off; beyond
         the map see `beyond`.  Next to a point that did not converge mu_macro is NaN and its error
         infinite.  Raises ValueError, naming the argument, for what is no such number, and for what
-        no limit is proved for.
+        no limit is proved for: of other motions and pressures than the paper's, all beyond the map,
+        unless there is a tolerance.
         """
         nu = self._one_poisson(poisson)
         velocity, amplitude = self._points(velocity, amplitude)
         flat_velocity = velocity.values.ravel().astype(float)
-        if self._scene == "continuous-bore":
-            value, error, source = self._steady(flat_velocity, nu)
-            flat_amplitude = np.full(len(value), np.nan)
-        else:
+        flat_amplitude = np.full(len(flat_velocity), np.nan)
+        if amplitude is not None:
             flat_amplitude = amplitude.values.ravel().astype(float)
-            value, error, source = self._oscillating(flat_velocity, flat_amplitude, nu)
+        if not beyond.is_known(self._scene, self._pressure):
+            answer = self._map_alone(flat_velocity, flat_amplitude, nu, tolerance)
+        elif amplitude is None:
+            answer = self._steady(flat_velocity, nu)
+        else:
+            answer = self._oscillating(flat_velocity, flat_amplitude, nu)
+        value, error, source = answer
         if tolerance is not None:
             hertz.checked("tolerance", tolerance, low_open=True)
             point = flat_velocity, flat_amplitude
@@ -84,7 +94,7 @@ class Friction:
         return float(known[np.argmin(np.abs(known - poisson))])
 
     def _points(self, velocity, amplitude):
-        if (amplitude is None) != (self._scene == "continuous-bore"):
+        if (amplitude is None) == self._motion.periodic:
             need = "none" if amplitude is not None else "a number"
             raise ValueError(f"amplitude = {amplitude}: allowed for {self._scene} is {need}")
         velocity = _labelled("velocity", velocity)
@@ -94,13 +104,19 @@ class Friction:
         amplitude, velocity = xr.broadcast(_labelled("amplitude", amplitude), velocity)
         return velocity, amplitude
 
-    def _table(self, nu):
-        """The map for one Poisson's ratio; nodes that did not converge are not known."""
-        if nu not in self._tables:
+    def _table(self, nu, still=False):
+        """The map for one Poisson's ratio, above velocity 0 or of that alone (None: there is none).
+
+        Nodes that did not converge are not known.
+        """
+        if (nu, still) not in self._tables:
             chosen = self._dataset[["mu_macro", "mu_macro_error", "converged"]]
             if "poisson" in chosen.dims:
                 chosen = chosen.sel(poisson=nu, method="nearest")
-            chosen = chosen.where(chosen["velocity"] > 0, drop=True).compute()
+            is_still = chosen["velocity"].values == 0
+            chosen = chosen.isel(velocity=is_still if still else ~is_still).compute()
+            if not chosen.sizes["velocity"]:
+                return None
             dims = [dim for dim in ("amplitude", "velocity") if dim in chosen.dims]
             chosen = chosen.transpose(*dims).sortby(dims)
             good = chosen["converged"] == 1
@@ -109,8 +125,21 @@ class Friction:
                 for name in ("mu_macro", "mu_macro_error")
             )
             rows = chosen["amplitude"].values if "amplitude" in dims else np.zeros(1)
-            self._tables[nu] = Table(Axis(rows), Axis(chosen["velocity"].values), values, errors)
-        return self._tables[nu]
+            self._tables[nu, still] = Table(
+                Axis(rows), Axis(chosen["velocity"].values), values, errors
+            )
+        return self._tables[nu, still]
+
+    # What no limit is known of
+
+    def _map_alone(self, velocity, amplitude, nu, tolerance):
+        rows = np.nan_to_num(amplitude)
+        tables = self._table(nu), self._table(nu, still=True)
+        if tolerance is None:
+            what = self._scene if self._pressure == "hertz" else f"pressure {self._pressure}"
+            refuse_beyond(*tables, velocity, rows, what)
+        value, error = within(*tables, velocity, rows)
+        return value, error, np.full(len(value), MAP)
 
     # Steady motion
 
@@ -169,7 +198,7 @@ class Friction:
         """Replace what is not good enough by what the solver says."""
         value, error, source = answer
         path = self._dataset.encoding.get("source")
-        settings = {"poisson": nu, "tolerance": tolerance}
+        settings = {"poisson": nu, "tolerance": tolerance, "pressure": self._pressure}
         settings["results"] = str(Path(path).parent) if path else "results"
         for k in np.flatnonzero(~(error <= tolerance)):
             velocity, amplitude = (float(part[k]) for part in point)

@@ -59,6 +59,11 @@ LIMITS = {
 }
 
 
+def is_known(scene, pressure):
+    """Whether limits of a scene under a pressure are proved."""
+    return pressure == "hertz" and (scene in LIMITS or scene == "continuous-bore")
+
+
 def slower(limits, edge, edge_error, velocity, amplitude, slowest):
     """Value and error for velocities from 0 to the slowest of a map, shape (n,) each.
 

@@ -138,12 +138,11 @@ def _allowed(rule):
         one = _allowed(_resolved(rule["items"]))
         return " ".join([f"a list of {one}", *(["or null"] if "null" in kinds else [])])
     if kinds == ["object"] and "properties" not in rule:
-        return "a mapping of names, one at least"
+        return "a mapping of names" + (", one at least" if rule.get("minProperties") else "")
     if kinds == ["object"]:
         return f"a mapping with the keys {', '.join(rule['properties'])}"
     words = {"number": "a number", "integer": "a whole number", "array": "or a list of them"}
-    folder = "text for a folder, without braces, *, ? and line breaks"
-    words |= {"string": folder if "pattern" in rule else "text", "null": "or null"}
+    words |= {"string": rule.get("title", "text"), "null": "or null"}
     limits = {"minimum": ">=", "exclusiveMinimum": ">", "maximum": "<="}
     ranges = [f"{sign} {rule[key]:g}" for key, sign in limits.items() if key in rule]
     if rule.get("multipleOf") == 2:

@@ -7,8 +7,8 @@ which model applies where, as plain data; a test keeps it the same as what the s
 
 from typing import NamedTuple
 
-from ..config import MODELS_OF_SCENE
 from ..methods import SHIPPED, declared, missing, split
+from ..settings import MODELS_OF_SCENE
 
 
 class Level(NamedTuple):

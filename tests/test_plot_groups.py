@@ -1,0 +1,253 @@
+"""Figures of groups of sweeps: a map of each with one scale, or a line of each."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.collections import PolyCollection
+from matplotlib.legend import Legend
+from matplotlib.text import Text
+from test_plot import artists, check_nothing_cut_off, fake_map
+
+from microslip import plot, theory
+from microslip.plot import lines, small_maps
+from microslip.plot.formulas import mathtext
+from microslip.scenes import FAMILIES, SCENES, scene_named
+
+VELOCITY = "v0 / (omega u_lim)"
+
+
+def spanning(title="", shift=0.0, amplitude_label="x0 / u_lim", group="motions") -> xr.Dataset:
+    """A map that falls from 1 to `shift`."""
+    amplitude, velocity = np.linspace(0, 2, 7), np.geomspace(1e-3, 10, 9)
+    mu = theory.large_amplitude_transverse(velocity, amplitude[:, None])
+    return labelled(
+        xr.Dataset(
+            fake_map(shift + (1 - shift) * mu),
+            coords={"amplitude": amplitude, "velocity": velocity, "poisson": 0.0},
+            attrs={"title": title, "group": group},
+        ),
+        amplitude_label,
+    )
+
+
+def static(title="", velocity=(0.0, 1e-3), power=1.0, **more) -> xr.Dataset:
+    """Static friction against amplitude, and friction at a small velocity."""
+    amplitude, velocity = np.linspace(0, 1.2, 7), np.array(velocity)
+    mu = np.maximum(1 - amplitude[:, None], 0) ** power + 10 * velocity * (amplitude[:, None] > 0)
+    dataset = xr.Dataset(
+        fake_map(mu) | more,
+        coords={"amplitude": amplitude, "velocity": velocity, "poisson": 0.0},
+        attrs={"title": title, "group": "static"},
+    )
+    return labelled(dataset, "y0 / u_lim")
+
+
+def labelled(dataset, amplitude_label):
+    dataset["velocity"].attrs["formula"] = VELOCITY
+    if "amplitude" in dataset:
+        dataset["amplitude"].attrs["formula"] = amplitude_label
+    return dataset
+
+
+def words(figure) -> str:
+    return " ".join(text.get_text() for text in figure.findobj(Text))
+
+
+def panels(figure) -> list:
+    return [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
+
+
+def motions(count=3):
+    return {f"m{i}": spanning(f"motion {i}") for i in range(count)}
+
+
+# Which datasets a figure is drawn from
+
+
+def test_a_group_is_drawn_from_its_own_datasets_in_their_order():
+    given = {"s": static("still"), "b": spanning("second"), "a": spanning("first")}
+    figure = plot.draw("extended_motions", given)
+    titles = [axes.get_title(loc="left") for axes in panels(figure)]
+    assert [title.split()[-1] for title in titles] == ["second", "first"]
+
+
+def test_a_group_that_is_not_there_or_is_mixed_is_refused():
+    with pytest.raises(ValueError, match="unknown figure 'extended_loops'; known figures: fig1"):
+        plot.draw("extended_loops", motions())
+    odd = {"a": spanning("a"), "b": spanning("flat").isel(amplitude=[1])}
+    with pytest.raises(ValueError, match="'flat' spans no map"):
+        plot.draw("extended_motions", odd)
+    lacking = {"a": spanning("a").drop_vars("converged")}
+    with pytest.raises(ValueError, match="'a' has no variable 'converged'"):
+        plot.draw("extended_motions", lacking)
+    with pytest.raises(ValueError, match="allowed: up to 12"):
+        plot.draw("extended_motions", motions(13))
+    many = {f"s{i}": static(f"s{i}") for i in range(9)}
+    with pytest.raises(ValueError, match="allowed: up to 8"):
+        plot.draw("extended_static", many)
+
+
+@pytest.mark.parametrize("given", [motions(2), {"a": static("a"), "b": static("b")}])
+def test_saves_whole_and_reproducibly(given, tmp_path):
+    name = plot.figure_of(next(iter(given.values())).attrs["group"])
+    for kind in ("png", "pdf"):
+        first, again = (
+            plot.save(plot.draw(name, given), tmp_path / f"{i}.{kind}").read_bytes()
+            for i in range(2)
+        )
+        assert first == again
+
+
+# Maps
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 8, 12])
+def test_any_number_of_maps_has_room(count):
+    figure = plot.draw("extended_motions", motions(count))
+    size, edges = figure.get_size_inches(), figure.get_tightbbox().extents
+    assert np.all(edges[:2] > -0.02) and np.all(edges[2:] < size + 0.02)
+    assert len(artists(figure, "map")) == count
+    boxes = [axes.get_tightbbox() for axes in panels(figure)]
+    assert not any(
+        one.padded(-2).overlaps(other.padded(-2))
+        for i, one in enumerate(boxes)
+        for other in boxes[:i]
+    )
+    widths = [axes.get_position().width * size[0] for axes in panels(figure)]
+    assert min(widths) > 1.3 and size[1] < 8.5  # a page
+    small = [t.get_fontsize() for t in figure.findobj(Text) if t.get_text()]
+    assert min(small) >= 7.0
+
+
+def test_maps_share_one_scale_and_their_labels():
+    figure = plot.draw("extended_motions", motions(3))
+    (bar,) = [axes for axes in figure.axes if axes.get_label() == "<colorbar>"]
+    assert bar.get_ylim() == (0, 1)
+    said = words(figure)
+    assert said.count(r"$v_{0}/(\omega\,u_{\mathrm{lim}})$") == 1
+    assert said.count(r"$x_{0}/u_{\mathrm{lim}}$") == 1
+    other = motions(2) | {"c": spanning("c", amplitude_label="phi0 / phi_lk(a/2)")}
+    labels = [axes.get_ylabel() for axes in panels(plot.draw("extended_motions", other))]
+    assert labels[2] == r"$\varphi_{0}/\varphi_{\mathrm{lk}}(a/2)$"
+    assert labels[0] == r"$x_{0}/u_{\mathrm{lim}}$"
+
+
+def test_friction_below_zero_widens_the_scale_of_all():
+    fills, contours, labels = small_maps.levels_of([spanning(), spanning(shift=-0.234)])
+    assert (fills[0], fills[-1]) == pytest.approx((-0.3, 1.0))
+    assert np.diff(fills) == pytest.approx(0.05)
+    assert 0 in contours and 0 in labels
+    fills, *_ = small_maps.levels_of([spanning(shift=-0.004)])  # an error, no more
+    assert (fills[0], fills[-1]) == (0.0, 1.0)
+    given = {"a": spanning("a"), "b": spanning("b", shift=-0.234)}
+    check_nothing_cut_off(plot.draw("extended_motions", given))
+
+
+def test_what_did_not_converge_is_hatched_and_said_once():
+    given = motions(2)
+    for dataset in given.values():
+        dataset["converged"][2:4, 1] = 0
+        dataset["mu_macro"][2, 1] = np.nan
+    figure = plot.draw("extended_motions", given)
+    hatched = [a for a in artists(figure, "unconverged") if isinstance(a, PolyCollection)]
+    assert [len(cells.get_paths()) for cells in hatched] == [2, 2]
+    assert words(figure).count("not converged") == 1
+
+
+def test_the_poissons_ratio_nearest_zero_is_drawn():
+    first = spanning("a")
+    other = first.assign_coords(poisson=0.3)
+    both = xr.concat([other, first], "poisson", data_vars="all", combine_attrs="override")
+    assert len(panels(plot.draw("extended_motions", {"a": both}))) == 1
+
+
+# Lines
+
+
+def test_lines_show_the_limit_and_marks_the_smallest_velocity():
+    slow, loop = static("line", velocity=(0.0, 1e-3, 0.5)), static("loop", velocity=(1e-3,))
+    slow = slow.isel(velocity=[0, 1])
+    figure = plot.draw("extended_static", {"a": slow, "b": loop})
+    check_nothing_cut_off(figure)
+    (line,) = artists(figure, "limit")  # a loop has none
+    np.testing.assert_array_equal(line.get_ydata(), slow["mu_macro"].sel(velocity=0))
+    marks = figure.axes[0].containers
+    for container, dataset in zip(marks, (slow, loop), strict=True):
+        np.testing.assert_array_equal(
+            container.lines[0].get_ydata(), dataset["mu_macro"].sel(velocity=1e-3)
+        )
+    (legend,) = figure.findobj(Legend)
+    assert [text.get_text() for text in legend.get_texts()] == ["line", "loop"]
+    assert "marks: velocity $0.001$" in words(figure)
+
+
+def test_a_limit_from_theory_is_drawn_on_its_finer_axis():
+    fine = np.linspace(0, 1.2, 50)
+    curve = ("amplitude_curve", np.maximum(1 - fine, 0))
+    dataset = static("a", mu_static=("amplitude", np.zeros(7)), mu_static_curve=curve)
+    dataset = dataset.assign_coords(amplitude_curve=fine)
+    (line,) = artists(plot.draw("extended_static", {"a": dataset}), "limit")
+    assert len(line.get_xdata()) == 50
+    # It holds for Poisson's ratio 0 alone.
+    other = dataset.assign_coords(poisson=0.3)
+    (line,) = artists(plot.draw("extended_static", {"a": other}), "limit")
+    assert len(line.get_xdata()) == 7
+
+
+def test_marks_that_did_not_converge_are_hollow():
+    dataset = static("a")
+    dataset["converged"][3, 1] = 0
+    figure = plot.draw("extended_static", {"a": dataset})
+    faces = [c.lines[0].get_markerfacecolor() for c in figure.axes[0].containers]
+    assert faces == [lines.LOOKS[0][0], "white"]
+
+
+def test_a_steady_motion_is_drawn_over_its_velocity():
+    velocity = np.geomspace(0.01, 100, 9)
+    force = theory.bore_forward(velocity)
+    steady = {name: ("velocity", part[1][0]) for name, part in fake_map(force[None]).items()}
+    dataset = labelled(
+        xr.Dataset(
+            steady | {"mu_forward_theory": ("velocity", force)},
+            coords={"velocity": velocity, "poisson": 0.0},
+            attrs={"title": "spin", "group": "steady"},
+        ),
+        "",
+    )
+    figure = plot.draw("extended_steady", {"spin": dataset})
+    assert figure.axes[0].get_xscale() == "log"
+    (line,) = artists(figure, "limit")
+    np.testing.assert_array_equal(line.get_ydata(), force)
+
+
+def test_every_look_differs_from_the_others_in_colour_and_in_marker():
+    colours, markers, _ = zip(*lines.LOOKS, strict=True)
+    assert len(set(colours)) == len(set(markers)) == len(lines.LOOKS)
+
+
+# Formulas
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected"),
+    [
+        (VELOCITY, r"$v_{0}/(\omega\,u_{\mathrm{lim}})$"),
+        ("v0 / (Omega phi0 a)", r"$v_{0}/(\Omega\,\varphi_{0}\,a)$"),
+        ("phi0 / phi_lk(a/2)", r"$\varphi_{0}/\varphi_{\mathrm{lk}}(a/2)$"),
+        ("", ""),
+        ("largest amplitude / u_lim, if a", r"largest amplitude / $u_{\mathrm{lim}}$, if a"),
+    ],
+)
+def test_formulas_become_math(formula, expected):
+    assert mathtext(formula) == expected
+
+
+@pytest.mark.parametrize("name", [*SCENES, *FAMILIES])
+def test_labels_of_every_scene_can_be_set(name):
+    from matplotlib.mathtext import MathTextParser
+
+    scene = scene_named(name)
+    for label in (scene.velocity_label, scene.amplitude_label):
+        MathTextParser("path").parse(mathtext(label))
