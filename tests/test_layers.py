@@ -34,6 +34,7 @@ LAYERS = [
     {"grids", "pressure_files"},
     {"extended"},
     {"cache", "config", "periods"},
+    {"limits_of_pressures"},
     {"answers", "jobs", "watch", "limits", "columns", "summary"},
     {"sweep", "dataset"},
     {"stored", "si"},
@@ -112,4 +113,5 @@ def test_physics_knows_no_files_workflow_or_plots(path):
 
 def test_theory_and_the_solvers_meet_only_in_the_public_answer():
     users = {top_name(path) for path in MODULES if "theory" in imported(path)[0]}
-    assert users <= {"any_pressure", "choice", "limits", "dataset", "studies", "query"}
+    limits = {"limits", "limits_of_pressures"}
+    assert users <= limits | {"any_pressure", "choice", "dataset", "studies", "query"}

@@ -43,6 +43,11 @@ def static_transverse(pressure, amplitude):
     return min(_over_the_circle(left, c, _kink(pressure)), 1.0)
 
 
+def static_stick_zone(pressure, stick_radius):
+    """Share of the load inside a stick radius, 0..1 (Eq 9; any shape)."""
+    return pressure.load(stick_radius, 1.0)
+
+
 def static_longitudinal(pressure, amplitude):
     """Static friction under oscillation along the forward direction, nu = 0; amplitude >= 0."""
     return float(1.0 - loading(pressure, amplitude))
@@ -60,6 +65,19 @@ def torsion_angle(pressure, stick_radius, poisson=0.0):
     step = end * 0.5 * np.pi * np.cos(0.5 * np.pi * _NODES) * _WEIGHTS
     bound = pressure.inner_bound(np.minimum(stick_radius * np.cosh(eta), 1.0), 1.0)
     return 2.0 / ((2.0 - poisson) * pressure.G_star) * float(np.sum(step * bound))
+
+
+def torsion_stick_radius(pressure, angle, poisson=0.0):
+    """Stick radius left by pure torsion through an angle (u_lim/a, >= 0) from rest, the inverse of
+    torsion_angle; 0 below SMALLEST_STICK_RADIUS."""
+    if angle <= 0.0:
+        return 1.0
+
+    def excess(log_c):
+        return torsion_angle(pressure, np.exp(log_c), poisson) - angle
+
+    smallest = np.log(SMALLEST_STICK_RADIUS)
+    return float(np.exp(brentq(excess, smallest, 0.0, xtol=1e-13))) if excess(smallest) > 0 else 0.0
 
 
 def torsion_traction(pressure, r, stick_radius):
@@ -81,16 +99,9 @@ def static_bore(pressure, angle, poisson=0.0):
 
     4 Integral_0^c g arccos(tau / g) r dr, see theory.static_limit_bore.
     """
-    if angle <= 0.0:
-        return 1.0
-
-    def excess(log_c):
-        return torsion_angle(pressure, np.exp(log_c), poisson) - angle
-
-    smallest = np.log(SMALLEST_STICK_RADIUS)
-    if excess(smallest) < 0.0:
-        return 0.0
-    c = float(np.exp(brentq(excess, smallest, 0.0, xtol=1e-13)))
+    c = torsion_stick_radius(pressure, angle, poisson)
+    if c in (0.0, 1.0):
+        return c
 
     def left(r):
         bound = pressure.inner_bound(r, 1.0)

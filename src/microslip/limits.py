@@ -74,7 +74,11 @@ LIMITS = {
 def formulas(scene, pressure="hertz"):
     """What theory says about a scene under a pressure, by the solver's names; as a row of LIMITS,
     {} if it says nothing."""
-    return LIMITS.get(scene, {}) if pressure == "hertz" else {}
+    if pressure == "hertz":
+        return LIMITS.get(scene, {})
+    from .limits_of_pressures import formulas_under  # what it needs takes a while to load
+
+    return formulas_under(scene, pressure)
 
 
 def variables(sweep):

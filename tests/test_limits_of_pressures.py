@@ -1,0 +1,122 @@
+"""What theory says about other pressures, beside what is computed."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import microslip
+from microslip import any_pressure, config, hertz, indenter_limits, limits, theory
+from microslip.limits_of_pressures import formulas_under
+from microslip.pressures import pressure_named
+
+AMPLITUDE = np.array([0.0, 0.2, 0.6, 0.9, 1.0, 1.5])
+
+
+def value(scene, name, row, *at):
+    return formulas_under(scene, name)[row][1](*(np.array(x) for x in at))
+
+
+@pytest.mark.parametrize("scene", ["transverse", "bore"])
+def test_under_the_power_2_they_are_the_papers(scene):
+    for row in ("mu_static_stick_zone", "mu_static"):
+        sphere = limits.LIMITS[scene][row][1](AMPLITUDE)
+        assert value(scene, "power", row, AMPLITUDE) == pytest.approx(sphere, abs=1e-8)
+
+
+@pytest.mark.parametrize("name", ["power:exponent=1", "punch", "power:exponent=8"])
+def test_eq_9_is_the_load_where_the_displacement_reaches(name):
+    """The stick radius found by hand from the equivalent plane profile, the load by quadrature."""
+    pressure = pressure_named(name)
+    found = value("transverse", name, "mu_static_stick_zone", 0.4)
+    radius = np.linspace(0.0, 1.0, 100001)
+    stick = radius[np.searchsorted(pressure.depth(radius), 0.6)]
+    assert found == pytest.approx(
+        any_pressure.static_stick_zone_of(lambda r: float(pressure.bound(r)), stick), abs=1e-4
+    )
+    assert indenter_limits.static_stick_zone(pressure, stick) == pytest.approx(found, abs=1e-4)
+
+
+@pytest.mark.parametrize("name", ["power:exponent=1", "punch", "ellipse:ratio=0.3"])
+def test_the_whole_stick_zone_is_more_than_what_is_left(name):
+    zone = value("transverse", name, "mu_static_stick_zone", AMPLITUDE)
+    exact = value("transverse", name, "mu_static", AMPLITUDE)
+    assert zone[0] == pytest.approx(exact[0])
+    assert np.all(zone[1:4] > exact[1:4] + 1e-3)
+    assert zone[4:] == pytest.approx([0.0, 0.0])
+    assert exact[4:] == pytest.approx([0.0, 0.0])
+
+
+@pytest.mark.parametrize("name", ["power:exponent=1", "ellipse"])
+def test_the_closed_form_along_a_line_has_both_of_its_limits(name):
+    rows = formulas_under("longitudinal", name)
+    whole, static = rows["mu_closed_form"][1], rows["mu_static"][1]
+    # springs that all yield at once would give the rigid limit (2/pi) arcsin(v/x)
+    rigid = 2.0 / np.pi * np.arcsin(0.3)
+    assert whole(np.array(300.0), np.array(1000.0)) == pytest.approx(rigid, abs=2e-3)
+    assert whole(np.array(1e-7), np.array(0.5)) == pytest.approx(static(np.array(0.5)), abs=1e-3)
+
+
+def test_the_steady_bore_is_eqs_17_and_18():
+    name = "power:exponent=1"
+    bound = pressure_named(name).bound
+    load = quad(lambda r: float(bound(r)) * r, 0.0, 1.0)[0]
+
+    def resistance(v):  # Eq 17 as it stands, for one velocity
+        def ring(r):
+            return quad(lambda t: _share(v, r, t), 0.0, np.pi)[0] / np.pi * float(bound(r)) * r
+
+        return quad(ring, 0.0, 1.0, limit=200, points=[v] if v < 1.0 else None)[0] / load
+
+    found = value("continuous-bore", name, "mu_forward_theory", [1.5])
+    assert found == pytest.approx([resistance(1.5)], abs=1e-6)
+
+
+def _share(v, r, t):
+    """Forward share of the slip direction at (r, t) under v forward and a unit rotation."""
+    forward, lateral = v + r * np.cos(t), -r * np.sin(t)
+    return forward / np.hypot(forward, lateral)
+
+
+def test_datasets_of_other_pressures_have_them():
+    given = {
+        "sweeps": {"continuous_bore": {"velocity": [0.5]}},
+        "extended": {
+            "cone": {
+                "scene": "transverse",
+                "pressure": "power:exponent=1",
+                "group": "profiles",
+                "velocity": [0.1, 1.0],
+                "amplitude": [0.2, 0.5],
+            }
+        },
+    }
+    found = limits.variables(config.from_mapping(given).extended["cone"])
+    names = {"mu_large_amplitude", "mu_static_slider", "mu_static_stick_zone", "mu_static"}
+    assert names <= found.keys()
+    dims, values, attributes = found["mu_static_stick_zone"]
+    assert dims == ("amplitude",)
+    assert values[1] == pytest.approx(
+        indenter_limits.static_stick_zone(pressure_named("power:exponent=1"), 0.5)
+    )
+    assert "Eq 9" in attributes["long_name"]
+
+
+def test_nothing_is_said_where_nothing_is_known():
+    assert formulas_under("bore", "ring") == {}
+    assert "mu_static" not in formulas_under("transverse", "ring")
+    assert formulas_under("elliptic", "power") == {}
+
+
+def test_the_limit_of_a_march_is_the_exact_one_and_not_eq_9():
+    name = "power:exponent=1"
+    zone = float(value("transverse", name, "mu_static_stick_zone", 0.5))
+    exact = float(value("transverse", name, "mu_static", 0.5))
+    above = [
+        microslip.solve("transverse", v, 0.5, pressure=name, tolerance=3e-4).mu_macro
+        for v in (8e-4, 1e-4)
+    ]
+    guess = above[1] - (above[0] - above[1]) / 3.0  # differences shrink like v^(2/3)
+    assert guess == pytest.approx(exact, abs=3e-3)
+    assert zone - guess > 0.05
+    assert float(hertz.mindlin_stick_radius(0.5)) != pytest.approx(0.5)  # that of a sphere
+    assert theory.static_limit_transverse(0.5) != pytest.approx(exact, abs=0.05)
