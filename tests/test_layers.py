@@ -12,9 +12,10 @@ PACKAGE = Path(microslip.__file__).parent
 # From the ground up; modules on one line do not know each other.
 LAYERS = [
     {"hertz"},
-    {"theory", "masing", "bounds", "halfspace", "friction", "path"},
-    {"rings", "scene", "any_pressure", "parameters", "frames"},
+    {"theory", "masing", "bounds", "halfspace", "friction", "path", "depth"},
+    {"rings", "scene", "any_pressure", "parameters", "frames", "pulsating"},
     {"elliptic"},
+    {"normal"},
     {"scenes"},
     {"models"},
     {"motion"},

@@ -37,7 +37,7 @@ STATIC_LIMITS = {
 STEADY_STATES = {"continuous-bore": (theory.bore_forward, theory.bore_torque)}  # Eqs 21 and 22
 WHOLE_MOTIONS = {"longitudinal": masing.longitudinal}
 """At nu = 0, whatever the velocity and the amplitude."""
-MASING_ROUNDING = 1e-9
+WHOLE_ROUNDING = 1e-9
 LARGEST_DROPS = {
     "longitudinal": bounds.largest_drop_longitudinal,
     "transverse": bounds.largest_drop_transverse,
@@ -55,7 +55,11 @@ def choose_model(scene, poisson, model="auto"):
     the answer.  Raises ValueError for an unknown model or one that does not apply.
     """
     if model == "auto":
-        return "polar" if scene.rotates or poisson > 0.0 else "radial"
+        name = "polar" if scene.rotates or poisson > 0.0 else "radial"
+        refusal = MODELS[name].refuses(scene, poisson)
+        if refusal:
+            raise ValueError(f"poisson = {poisson:g}: {scene.name}: {refusal}")
+        return name
     if not isinstance(model, str) or model not in MODELS:
         raise ValueError(f"model = {model!r}: allowed is one of auto, {', '.join(MODELS)}")
     refusal = MODELS[model].refuses(scene, poisson)
@@ -72,9 +76,13 @@ def method_refusal(scene, model, method):
             return f"it is a run of the model {method.model}"
         if not scene.periodic:
             return "nothing oscillates"
+        if scene.depth is not None:
+            return "it knows a constant normal load alone"
         return "it knows translations alone" if scene.rotates and not method.turns else ""
     if method == SHIPPED:
         return ""
+    if scene.depth is not None and (method.dress is not None or method.integrator.end < 1.0):
+        return "its steps know one friction bound"
     if model in STEPLESS:
         return "no step of the model has to be solved"
     if not scene.periodic and method.dress is None:
@@ -99,13 +107,16 @@ def closed_form(scene, velocity, amplitude, poisson, tolerance):
     if not scene.periodic:
         forward, torque = STEADY_STATES[scene.name]
         return float(forward(velocity)), float(torque(velocity)), ROUNDING
+    if scene.whole is not None and poisson == 0.0:
+        rounding = WHOLE_ROUNDING if velocity > 0.0 else ROUNDING
+        return float(scene.whole(velocity, amplitude)), None, rounding
     if velocity == 0.0:
         known = STATIC_LIMITS.get(scene.name)
         if known is None or (poisson > 0.0 and not scene.rotates):
             return None
         return float(known(amplitude)), None, ROUNDING
     if scene.name in WHOLE_MOTIONS and poisson == 0.0:
-        return float(WHOLE_MOTIONS[scene.name](velocity, amplitude)), None, MASING_ROUNDING
+        return float(WHOLE_MOTIONS[scene.name](velocity, amplitude)), None, WHOLE_ROUNDING
     largest_drop = LARGEST_DROPS.get(scene.name)
     if largest_drop is not None:
         drop = largest_drop(velocity, amplitude)

@@ -26,6 +26,12 @@ SCENES = {
         "v0 / (omega u_lim): as for transverse",
         "amplitude / u_lim, of which --path gives each direction a share",
     ),
+    "normal": (
+        "sliding forward while its normal load oscillates, or its indentation",
+        "v0 / (omega u_lim): as for transverse, u_lim at the mean load",
+        "change of the load over its mean (from 1 on contact is lost); with --path of the "
+        "indentation, and in the plane over u_lim",
+    ),
     "zigzag": (
         "sliding forward while moving sideways at constant speed, with abrupt turns",
         "v0 / (omega u_lim): as for transverse",
@@ -41,6 +47,14 @@ SCENES = {
         "v0 / (omega a): forward speed over the rotation speed of the contact's edge",
         None,
     ),
+}
+
+PATHS = {
+    "elliptic": "such as forward=0.5,phase=30: shares forward and lateral (1), phase of the "
+    "forward part in degrees (90), forward_cycles and lateral_cycles (1)",
+    "normal": "such as lateral=1,phase=90: shares of the amplitude load (1), indentation (0: the "
+    "load oscillates), lateral and forward (0), phase of the latter two in degrees (0), "
+    "normal_cycles, lateral_cycles and forward_cycles (1)",
 }
 
 
@@ -125,13 +139,8 @@ def build_parser():
             scene.add_argument(
                 "--amplitude", type=_real, required=True, metavar="A", help=amplitude
             )
-        if name == "elliptic":
-            scene.add_argument(
-                "--path",
-                metavar="NUMBERS",
-                help="such as forward=0.5,phase=30: shares forward and lateral (1), phase of the "
-                "forward part in degrees (90), forward_cycles and lateral_cycles (1)",
-            )
+        if name in PATHS:
+            scene.add_argument("--path", metavar="NUMBERS", help=PATHS[name])
         _add_options(scene)
     cli_predict.add_parser(commands)
     return parser

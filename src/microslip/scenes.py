@@ -3,7 +3,7 @@
 A scene is one ``Scene`` record (see scene.py for it and for the names of directions).  To add a
 motion write its displacement and say which symmetries it has; nothing else in the package names a
 scene, but for closed forms that hold for it alone (choice.py).  A family of motions gives a Scene
-for numbers, such as elliptic.py.
+for numbers, such as elliptic.py and normal.py.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from microslip import elliptic, hertz, parameters
+from microslip import elliptic, hertz, normal, parameters
 from microslip.scene import Scene, within_rings
 
 
@@ -115,7 +115,7 @@ CONTINUOUS_BORE = Scene(
 )
 
 SCENES = {scene.name: scene for scene in (TRANSVERSE, LONGITUDINAL, ZIGZAG, BORE, CONTINUOUS_BORE)}
-FAMILIES = {elliptic.NAME: (elliptic.DEFAULTS, elliptic.scene)}
+FAMILIES = {family.NAME: (family.DEFAULTS, family.scene) for family in (elliptic, normal)}
 """Name -> numbers with their defaults, and what makes a Scene of them."""
 
 

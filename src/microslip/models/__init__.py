@@ -10,6 +10,8 @@
 | polar     | exact              | exact              | exact (rings x angular modes)      |
 | cartesian | exact              | exact              | exact (squares, any outline)       |
 
+In mdr and radial the normal load may change; for motion along one line mdr is exact then, too.
+
 "Exact" means: converges to the solution of the contact problem as its cells and steps are refined;
 "approximate": leaves out elasticity, partial slip or how points of the contact act on each other,
 and no refinement brings it back.
@@ -47,6 +49,17 @@ class Model:
     axes: Callable
 
 
+LOAD_CHANGES = "it knows a constant normal load alone"
+
+
+def _refuse_pulsation(scene, poisson):
+    return LOAD_CHANGES if scene.depth is not None else ""
+
+
+def _refuse_rotation_and_pulsation(scene, poisson):
+    return _refuse_rotation(scene, poisson) or _refuse_pulsation(scene, poisson)
+
+
 def _refuse_rotation_and_poisson(scene, poisson):
     if scene.rotates:
         return "rings alone cannot resolve a rotation"
@@ -62,19 +75,19 @@ MODELS = {
         build=lambda scene, poisson, cells, angles, focus: RigidContact(
             cells, angles, scene.rotates
         ),
-        refuses=lambda scene, poisson: "",
+        refuses=_refuse_pulsation,
         exact=lambda scene: not scene.periodic,
         axes=lambda scene: ("cells", "angles") if scene.rotates else (),
     ),
     "slider": Model(
         build=lambda scene, poisson, cells, angles, focus: slider_contact(),
-        refuses=_refuse_rotation,
+        refuses=_refuse_rotation_and_pulsation,
         exact=lambda scene: False,
         axes=lambda scene: (),
     ),
     "dahl": Model(
         build=lambda scene, poisson, cells, angles, focus: DahlContact(),
-        refuses=_refuse_rotation,
+        refuses=_refuse_rotation_and_pulsation,
         exact=lambda scene: False,
         axes=lambda scene: (),
     ),
@@ -94,13 +107,13 @@ MODELS = {
         build=lambda scene, poisson, cells, angles, focus: PolarContact(
             cells, angles, scene.rotates, poisson, focus
         ),
-        refuses=lambda scene, poisson: "",
+        refuses=_refuse_pulsation,
         exact=lambda scene: True,
         axes=lambda scene: ("cells", "angles"),
     ),
     "cartesian": Model(
         build=lambda scene, poisson, cells, angles, focus: CartesianContact(cells, poisson),
-        refuses=lambda scene, poisson: "",
+        refuses=_refuse_pulsation,
         exact=lambda scene: True,
         axes=lambda scene: ("cells",),
     ),

@@ -52,7 +52,9 @@ class Contact(Protocol):
     compliance: displacement of a point under unit traction on itself, broadcast likewise;
     forward_position, lateral_position: where the points are (units a), same shape;
     has_sensitivity: whether ``march(..., sensitivity=True)`` is to be had cheaply;
-    sticks: whether points may stick, so that something is left of it in the static limit.
+    sticks: whether points may stick, so that something is left of it in the static limit;
+    radius: of the contact at its largest, over the reference one, where the normal load changes: 1
+    if it is not there, and ``bound`` is that at the start of a lap then.
     """
 
     bound: np.ndarray
@@ -79,7 +81,8 @@ class Contact(Protocol):
 def energy_norm(contact, change):
     """Bound on the force (over mu F_z) that a change of tractions carries, from its energy."""
     energy = np.vdot(contact.weight * change, contact.displacement(change))
-    return float(np.sqrt(UNIT_STIFFNESS * max(energy, 0.0)))
+    stiffness = UNIT_STIFFNESS * getattr(contact, "radius", 1.0)
+    return float(np.sqrt(stiffness * max(energy, 0.0)))
 
 
 def full_slip(contact, forward, lateral):

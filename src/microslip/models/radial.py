@@ -9,11 +9,22 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
+from microslip import depth
+from microslip.depth import Growth, load_on_rings
 from microslip.halfspace import ring_influence
 from microslip.models import contact, ring_march
 from microslip.models.ring_factors import cholesky
 from microslip.rings import make_rings
+
+JOINING = 1.0
+"""Width over which a ring takes over its share of the load, over half a ring's.
+
+While the contact grows, a ring joins it when the contact is as stiff as halfway between what it is
+without and with the ring, so that it has the right stiffness in the mean: were it to join where the
+edge of the contact reaches it, all of it would be held too early by its inner part, an error of
+first order.  Joining at once would be a jump, which a time integrator does not like."""
 
 
 class RadialContact:
@@ -22,15 +33,18 @@ class RadialContact:
     influence: (cells, cells), mean ring tractions to ring-averaged displacements, symmetric once
     its rows are weighted; bound, weight: friction bound and area of each ring.  ``resolved`` builds
     the half-space's; the elastic slider is the one-ring contact of unit compliance.
+    growth: depth.Growth of the rings, without which the normal load cannot change.
     """
 
     has_sensitivity = True
     sticks = True
     angles = 1
 
-    def __init__(self, influence, bound, weight):
+    radius = 1.0
+
+    def __init__(self, influence, bound, weight, growth=None):
         self.influence = np.ascontiguousarray(influence, dtype=float)
-        self.bound, self.weight = bound, weight
+        self.bound, self.weight, self.growth = bound, weight, growth
         self.compliance = np.diag(self.influence)
         self.forward_position = self.lateral_position = np.zeros((1, len(bound)))
         stiffness = weight[:, None] * self.influence
@@ -41,6 +55,45 @@ class RadialContact:
     def resolved(cells, focus=None):
         """The half-space on ``cells`` rings refined around the radius ``focus``."""
         return _resolved(cells, focus)
+
+    def pressed(self, deepest, start):
+        """The same rings spread over the contact at its ``deepest``, with the bound at ``start``.
+
+        Both are depths (see depth.py), deepest > 0.
+        """
+        growth, radius = self.growth, float(depth.radius(deepest))
+        out = RadialContact(
+            self.influence * radius**growth.influence_power,
+            self.bound,
+            self.weight * radius**growth.weight_power,
+            growth._replace(edges=growth.edges * radius),
+        )
+        out.radius = radius
+        radii = out._effective_radii()
+        out._joins = 0.5 * (radii[1:-1] + radii[2:])
+        out._joining = JOINING * 0.5 * (radii[2:] - radii[1:-1])
+        out.bound = out.bounds(np.array([start]))[0]
+        return out
+
+    def _effective_radii(self):
+        """Radius of the contact that is as stiff as the first k rings, stuck together, for k from 0
+        to all; shape (cells + 1,).  It is a little less than their outer edge."""
+        upper = np.triu(self._factor)
+        np.fill_diagonal(upper, 1.0 / np.diag(upper))
+        part = solve_triangular(upper, self.weight, trans="T")
+        # w^T B^-1 w of the first k rings
+        return np.concatenate([[0.0], np.cumsum(part**2) / contact.UNIT_STIFFNESS])
+
+    def bounds(self, depths):
+        """Mean friction bound of each ring at each depth, shape (len(depths), cells).
+
+        What is outside of the rings in contact counts for the last of them.
+        """
+        carried = self.growth.carried(self.growth.edges, depths)
+        share = (depth.radius(depths)[:, None] - self._joins) / self._joining
+        beyond = carried[:, -1:] - carried[:, 1:-1]
+        carried[:, 1:-1] = carried[:, -1:] - np.clip(share, 0.0, 1.0) * beyond
+        return np.maximum(np.diff(carried, axis=1), 0.0) / self.weight
 
     def displacement(self, state):
         """A q; shapes (2, 1, cells)."""
@@ -63,7 +116,7 @@ class RadialContact:
         end, tractions, forces, residual, iterations, derivative = ring_march.march(
             self._stiffness,
             self._factor,
-            self.bound,
+            self.bound[None] if path.depth is None else self.bounds(path.depth),
             self.weight,
             (path.positions, path.stages, path.carry, path.end),
             np.ascontiguousarray(state[:, 0]),
@@ -87,4 +140,5 @@ def _resolved(cells, focus):
     """Shared by runs that differ in their motion only: a contact never changes."""
     rings = make_rings(cells, focus)
     near, _ = ring_influence(rings.psi, 1, False)
-    return RadialContact(near[0], rings.bound, rings.area)
+    growth = Growth(np.sin(rings.psi), load_on_rings, influence_power=1, weight_power=2)
+    return RadialContact(near[0], rings.bound, rings.area, growth)
