@@ -116,8 +116,10 @@ class _Motion:
                 yield float(contact.radius(self.depth(at))[0])
 
     def lack(self, start, high, later):
-        """Integral over time of phi - min phi from ``start`` (n,) on; phi rises until ``high`` and in
-        the intervals ``later``."""
+        """Integral over time of phi - min phi from ``start`` (n,) on.
+
+        phi rises until ``high``, and in the intervals ``later``.
+        """
         level = self.phi(start)
         last = later[-1][1] if later else high
         low, end = np.full_like(start, last), np.full_like(start, 2.0 * np.pi)
