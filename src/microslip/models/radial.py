@@ -18,14 +18,6 @@ from microslip.models import contact, ring_march
 from microslip.models.ring_factors import cholesky
 from microslip.rings import make_rings
 
-JOINING = 1.0
-"""Width over which a ring takes over its share of the load, over half a ring's.
-
-While the contact grows, a ring joins it when the contact is as stiff as halfway between what it is
-without and with the ring, so that it has the right stiffness in the mean: were it to join where the
-edge of the contact reaches it, all of it would be held too early by its inner part, an error of
-first order.  Joining at once would be a jump, which a time integrator does not like."""
-
 
 class RadialContact:
     """Contact of ``cells`` rings (see models.contact.Contact); states have shape (2, 1, cells).
@@ -71,29 +63,52 @@ class RadialContact:
         out.radius = radius
         radii = out._effective_radii()
         out._joins = 0.5 * (radii[1:-1] + radii[2:])
-        out._joining = JOINING * 0.5 * (radii[2:] - radii[1:-1])
         out.bound = out.bounds(np.array([start]))[0]
         return out
 
     def _effective_radii(self):
         """Radius of the contact that is as stiff as the first k rings, stuck together, for k from 0
-        to all; shape (cells + 1,).  It is a little less than their outer edge."""
+        to all; shape (cells + 1,).
+
+        It is a little less than their outer edge.  A ring joins the contact halfway from the radius
+        without it to that with it: then a growing contact has the right stiffness in the mean.
+        Were it to join where the edge of the contact reaches it, all of it would be held too early
+        by its inner part, an error of first order.
+        """
         upper = np.triu(self._factor)
         np.fill_diagonal(upper, 1.0 / np.diag(upper))
         part = solve_triangular(upper, self.weight, trans="T")
         # w^T B^-1 w of the first k rings
         return np.concatenate([[0.0], np.cumsum(part**2) / contact.UNIT_STIFFNESS])
 
-    def bounds(self, depths):
+    def bounds(self, depths, edge=None):
         """Mean friction bound of each ring at each depth, shape (len(depths), cells).
 
-        What is outside of the rings in contact counts for the last of them.
+        edge: radii (len(depths),) that say which rings are in contact, by default those of the
+        contact.  What is outside of these rings counts for the last of them.
         """
         carried = self.growth.carried(self.growth.edges, depths)
-        share = (depth.radius(depths)[:, None] - self._joins) / self._joining
-        beyond = carried[:, -1:] - carried[:, 1:-1]
-        carried[:, 1:-1] = carried[:, -1:] - np.clip(share, 0.0, 1.0) * beyond
+        edge = depth.radius(depths) if edge is None else edge
+        outside = edge[:, None] <= self._joins
+        carried[:, 1:-1] = np.where(outside, carried[:, -1:], carried[:, 1:-1])
         return np.maximum(np.diff(carried, axis=1), 0.0) / self.weight
+
+    def _bounds_along(self, path):
+        """Bounds at the start and at every stage of a path, (1 + steps stages, cells).
+
+        Rings join or leave at the last stage of a step only: what jumps at an earlier one would be
+        carried on by the integrator.  At steady pace a ring that joins there has been stretched for
+        the share 1 / (1 + carried) of the step, where it should be half of it in the mean: the edge
+        of the contact is seen as early as makes up for it.
+        """
+        stages = path.stages.shape[1]
+        ends = depth.radius(path.depth[::stages])
+        shift = 0.5 - 1.0 / (1.0 + path.carry[-1].sum())
+        seen = ends.copy()
+        seen[:-1] += shift * np.diff(ends)  # the last as it is: there the next lap begins
+        edge = np.repeat(seen[:-1, None], stages, axis=1)
+        edge[:, -1] = seen[1:]
+        return self.bounds(path.depth, np.append(seen[:1], edge))
 
     def displacement(self, state):
         """A q; shapes (2, 1, cells)."""
@@ -116,7 +131,7 @@ class RadialContact:
         end, tractions, forces, residual, iterations, derivative = ring_march.march(
             self._stiffness,
             self._factor,
-            self.bound[None] if path.depth is None else self.bounds(path.depth),
+            self.bound[None] if path.depth is None else self._bounds_along(path),
             self.weight,
             (path.positions, path.stages, path.carry, path.end),
             np.ascontiguousarray(state[:, 0]),
