@@ -13,8 +13,8 @@ PACKAGE = Path(microslip.__file__).parent
 LAYERS = [
     {"hertz", "parameters"},
     {"pressures"},
-    {"theory", "masing", "bounds", "halfspace", "friction", "path", "indenter_limits"},
-    {"rings", "scene", "any_pressure", "frames"},
+    {"theory", "masing", "bounds", "halfspace", "friction", "path", "indenter_limits", "depth"},
+    {"rings", "scene", "any_pressure", "frames", "pulsating"},
     {"motions"},
     {"scenes"},
     {"models"},

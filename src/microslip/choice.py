@@ -45,7 +45,7 @@ QUADRATURE = 1e-7
 """Error of Eqs 17 and 18 for another pressure, which may have kinks."""
 WHOLE_MOTIONS = {"longitudinal": masing.longitudinal}
 """At nu = 0, whatever the velocity and the amplitude."""
-MASING_ROUNDING = 1e-9
+WHOLE_ROUNDING = 1e-9
 LARGEST_DROPS = {
     "longitudinal": bounds.largest_drop_longitudinal,
     "transverse": bounds.largest_drop_transverse,
@@ -65,8 +65,16 @@ def choose_model(scene, poisson, model="auto"):
     """
     if model == "auto":
         if not (scene.pressure.is_round and scene.half_disc):
-            return "cartesian"
-        return "polar" if scene.rotates or poisson > 0.0 else "radial"
+            name = "cartesian"
+        else:
+            name = "polar" if scene.rotates or poisson > 0.0 else "radial"
+        refusal = MODELS[name].refuses(scene, poisson)
+        if refusal:
+            given = f"poisson = {poisson:g}"
+            if scene.pressure is not HERTZ:
+                given = f"pressure = {scene.pressure.name!r}"
+            raise ValueError(f"{given}: does not go with {scene.name}: {refusal}")
+        return name
     if not isinstance(model, str) or model not in MODELS:
         raise ValueError(f"model = {model!r}: allowed is one of auto, {', '.join(MODELS)}")
     refusal = MODELS[model].refuses(scene, poisson)
@@ -83,9 +91,13 @@ def method_refusal(scene, model, method):
             return f"it is a run of the model {method.model}"
         if not scene.periodic:
             return "nothing oscillates"
+        if scene.depth is not None:
+            return "it knows a constant normal load alone"
         return "it knows translations alone" if scene.rotates and not method.turns else ""
     if method == SHIPPED:
         return ""
+    if scene.depth is not None and (method.dress is not None or method.integrator.end < 1.0):
+        return "its steps know one friction bound"
     if model in STEPLESS:
         return "no step of the model has to be solved"
     if not scene.periodic and method.dress is None:
@@ -109,6 +121,9 @@ def closed_form(scene, velocity, amplitude, poisson, tolerance):
     """
     if not scene.periodic:
         return _steady(scene, velocity)
+    if scene.whole is not None and poisson == 0.0:
+        rounding = WHOLE_ROUNDING if velocity > 0.0 else ROUNDING
+        return float(scene.whole(velocity, amplitude)), None, rounding
     if velocity == 0.0:
         known = STATIC_LIMITS.get(scene.name)
         if known is None or (poisson > 0.0 and not scene.rotates):
@@ -118,7 +133,7 @@ def closed_form(scene, velocity, amplitude, poisson, tolerance):
         curve = _loading_curve(scene.pressure)
         if curve is not None:
             whole = WHOLE_MOTIONS[scene.name](velocity, amplitude, curve)
-            return float(whole), None, MASING_ROUNDING
+            return float(whole), None, WHOLE_ROUNDING
     largest_drop = LARGEST_DROPS.get(scene.name)
     if largest_drop is not None and not (scene.rotates and scene.pressure is not HERTZ):
         drop = largest_drop(velocity, amplitude)

@@ -81,7 +81,7 @@ def history(
     contact = _contact(motion, model, cells)
     end = 2 * np.pi * periods if kind.periodic else travel / velocity
     count = (steps or STEPS) * (periods if kind.periodic else 1)
-    path = make_path(motion.displacement, np.linspace(0.0, end, count + 1))
+    path = make_path(motion.displacement, np.linspace(0.0, end, count + 1), depth=motion.depth)
     march = contact.march(path, _start(contact, start), STEP_TOLERANCE)
     return History(
         phase=path.phase,
@@ -181,6 +181,7 @@ def period(
         whole = isinstance(count, int | np.integer) and not isinstance(count, bool)
         if not (whole and count >= least and count % 2 == 0):
             raise ValueError(f"{name} = {count!r}: allowed is an even number of at least {least}")
+    choose_model(kind, poisson, "polar")
     motion = Motion(kind, velocity, amplitude, poisson)
     resolution = Resolution(cells, angles, steps // 2)
     run = simulate(kind, velocity, amplitude, poisson, "polar", resolution, PERIOD_TOLERANCE)

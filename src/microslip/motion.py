@@ -43,6 +43,17 @@ class Motion:
         return self.scene.displacement(phase, 0.0, self.amplitude, self.poisson)
 
     @cached_property
+    def depth(self):
+        """Indentation over the reference one, a function of the phase; None: it does not change."""
+        depth = self.scene.depth
+        return None if depth is None else lambda phase: depth(phase, self.amplitude)
+
+    @cached_property
+    def mean_load(self):
+        """Mean of the normal load over a period, over that of the reference state."""
+        return float(self.scene.mean_load(self.amplitude))
+
+    @cached_property
     def creep(self):
         """Forward displacement in one radian of phase, in u_lim."""
         return self.scene.creep(self.velocity, self.amplitude, self.poisson)
@@ -61,7 +72,8 @@ class Motion:
 @lru_cache(maxsize=32)
 def _path(motion, steps, grading, integrator):
     turns = motion.scene.turns(motion.velocity, motion.amplitude)
-    return make_path(motion.displacement, phases_between(turns, steps, grading), integrator)
+    phases = phases_between(turns, steps, grading)
+    return make_path(motion.displacement, phases, integrator, motion.depth)
 
 
 def _focus_strength(creep):
@@ -83,4 +95,8 @@ def build_contact(motion, model, resolution):
         creep = motion.creep
         focus = Focus(radius, _focus_strength(creep) if creep > 0.0 else STATIC_FOCUS)
     build = MODELS[model].build
-    return build(scene, motion.poisson, resolution.cells, resolution.angles, focus)
+    contact = build(scene, motion.poisson, resolution.cells, resolution.angles, focus)
+    if scene.depth is None:
+        return contact
+    start = scene.turns(motion.velocity, motion.amplitude)[0]
+    return contact.pressed(scene.deepest(motion.amplitude), float(motion.depth(np.array(start))))

@@ -83,7 +83,8 @@ class Path:
 
     phase: shape (steps + 1,); positions: displacement at every phase, shape (steps + 1, 3)
     (forward, lateral, angle); stages: the same at every stage, shape (steps, stages, 3); carry:
-    shape (stages, stages); end: see Integrator.
+    shape (stages, stages); end: see Integrator; depth: indentation over the reference one at the
+    start and at every stage, shape (1 + steps * stages,), None where it does not change.
     """
 
     phase: np.ndarray
@@ -91,6 +92,7 @@ class Path:
     stages: np.ndarray
     carry: np.ndarray
     end: float = 1.0
+    depth: np.ndarray | None = None
 
     @property
     def steps(self):
@@ -101,8 +103,9 @@ class Path:
         return np.trapezoid(values, self.phase, axis=0) / (self.phase[-1] - self.phase[0])
 
 
-def make_path(displacement, phase, integrator=SDIRK2):
-    """Path through the given phases; displacement(phase) -> (forward, lateral, angle)."""
+def make_path(displacement, phase, integrator=SDIRK2, depth=None):
+    """Path through the given phases; displacement(phase) -> (forward, lateral, angle); depth(phase)
+    -> indentation over the reference one, None: it does not change."""
     phase = np.asarray(phase, dtype=float)
     times = phase[:-1, None] + np.asarray(integrator.times) * np.diff(phase)[:, None]
     stages = np.stack(displacement(times), axis=-1)
@@ -111,7 +114,12 @@ def make_path(displacement, phase, integrator=SDIRK2):
     stages[:, -1] = positions[:-1] + integrator.end * np.diff(positions, axis=0)
     if integrator.end == 1.0:
         stages[:, -1] = positions[1:]
-    return Path(phase, positions, stages, integrator.carry_matrix(), integrator.end)
+    depths = None
+    if depth is not None:
+        if integrator.end == 1.0:
+            times[:, -1] = phase[1:]  # to the last bit: the end of a lap is where the next begins
+        depths = depth(np.concatenate([phase[:1], times.ravel()]))
+    return Path(phase, positions, stages, integrator.carry_matrix(), integrator.end, depths)
 
 
 HALF_PERIOD = (-np.pi / 2, np.pi / 2)

@@ -43,6 +43,8 @@ no fewer are left than these, and no tighter than this."""
 class Run:
     """Outcome of one run: forward friction and torque over their full-slip values, and the effort.
 
+    Where the normal load changes, forces are over mu times its mean.
+
     distance: estimated distance from the periodic (steady) state; solver_residual: summed over the
     last period; both forces over mu F_z.  periods, iterations, solves: of all searches together;
     work: step solves x unknowns; effort: iterations x unknowns; retried: 1 if the run is a second
@@ -89,6 +91,7 @@ def simulate(
     Run; never raises for want of convergence.
     """
     motion = Motion(scene, velocity, amplitude, poisson)
+    tolerance = tolerance * motion.mean_load  # so far forces are over mu F_z
     if method.run is not None:
         return method.run(motion, model, resolution, tolerance)
     try:
@@ -210,7 +213,8 @@ class _Search:
         return self.done[-1]
 
     def _summary(self, found):
-        mean = self.path.mean(found.forces)
+        full = self.motion.mean_load
+        forward, _, torque = self._mean_forces(found)
         solves = sum(one.solves for one in self.done)
         solved = found.solver_residual <= _solved_sum(self.path, self.step_tolerance)
         halves = 1 if self.motion.scene.half_period_mirror else 2
@@ -221,10 +225,10 @@ class _Search:
         elif not solved:
             reason = f"a step was left unsolved: residual {found.solver_residual:.1e}"
         return Run(
-            mu=float(mean[0]),
-            torque=float(mean[2]) / self.motion.scene.pressure.torque,
-            distance=found.distance,
-            solver_residual=found.solver_residual,
+            mu=float(forward) / full,
+            torque=float(torque) / self.motion.scene.pressure.torque,
+            distance=found.distance / full,
+            solver_residual=found.solver_residual / full,
             periods=periods,
             iterations=sum(one.iterations for one in self.done),
             solves=solves,
@@ -236,6 +240,16 @@ class _Search:
             inverse=found.inverse,
             static_force=self.pace.static_force,
         )
+
+    def _mean_forces(self, found):
+        """Means of the forces over a lap, shape (3,)."""
+        if self.motion.depth is None:
+            return self.path.mean(found.forces)
+        # by what they lack of full slip, whose mean is known: less is left to the trapezoidal rule,
+        # and to how the rings in contact follow its edge
+        bounds = self.contact.bounds(self.motion.depth(self.path.phase))
+        full = (bounds @ self.contact.weight)[:, None] * [1.0, 0.0, 0.0]
+        return [self.motion.mean_load, 0.0, 0.0] - self.path.mean(full - found.forces)
 
 
 def _solved_sum(path, step_tolerance):
@@ -257,7 +271,7 @@ def simulate_static(scene, amplitude, poisson, model, resolution, tolerance, met
         force = float(forces(contact, residual)[FORWARD])
         solves = STEPS // 2
     return Run(
-        mu=force,
+        mu=force / motion.mean_load,
         torque=0.0,
         distance=0.0,
         solver_residual=STEP_SHARE * tolerance * solves,

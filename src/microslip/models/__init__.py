@@ -10,6 +10,8 @@
 | polar     | exact              | exact              | exact (rings x angular modes)      |
 | cartesian | exact              | exact              | exact (squares, any outline)       |
 
+In mdr and radial the normal load may change; for motion along one line mdr is exact then, too.
+
 "Exact" means: converges to the solution of the contact problem as its cells and steps are refined;
 "approximate": leaves out elasticity, partial slip or how points of the contact act on each other,
 and no refinement brings it back.
@@ -30,6 +32,7 @@ from microslip.models.polar import PolarContact
 from microslip.models.radial import RadialContact
 from microslip.models.rigid import RigidContact
 from microslip.models.slider import slider_contact
+from microslip.pressures import HERTZ
 
 
 @dataclass(frozen=True)
@@ -45,6 +48,24 @@ class Model:
     refuses: Callable
     exact: Callable
     axes: Callable
+
+
+LOAD_CHANGES = "it knows a constant normal load alone"
+
+
+def _refuse_pulsation(scene, poisson):
+    return LOAD_CHANGES if scene.depth is not None else ""
+
+
+def _refuse_other_loads(scene, poisson):
+    if scene.depth is None or scene.pressure is HERTZ:
+        return ""
+    return f"the normal load of a sphere may change, not that of {scene.pressure.name}"
+
+
+def _any_of(*refusals):
+    """What the first refusal says that says something."""
+    return lambda scene, poisson: next(filter(None, (r(scene, poisson) for r in refusals)), "")
 
 
 def _refuse_rings(scene, poisson):
@@ -80,19 +101,19 @@ MODELS = {
         build=lambda scene, poisson, cells, angles, focus: RigidContact(
             cells, angles, scene.rotates, scene.pressure
         ),
-        refuses=_refuse_rigid,
+        refuses=_any_of(_refuse_pulsation, _refuse_rigid),
         exact=lambda scene: not scene.periodic,
         axes=lambda scene: ("cells", "angles") if scene.rotates else (),
     ),
     "slider": Model(
         build=lambda scene, poisson, cells, angles, focus: slider_contact(),
-        refuses=_refuse_rotation,
+        refuses=_any_of(_refuse_rotation, _refuse_pulsation),
         exact=lambda scene: False,
         axes=lambda scene: (),
     ),
     "dahl": Model(
         build=lambda scene, poisson, cells, angles, focus: DahlContact(scene.pressure.stiffness),
-        refuses=_refuse_rotation,
+        refuses=_any_of(_refuse_rotation, _refuse_pulsation),
         exact=lambda scene: False,
         axes=lambda scene: (),
     ),
@@ -100,7 +121,7 @@ MODELS = {
         build=lambda scene, poisson, cells, angles, focus: mdr_contact(
             cells, focus, scene.pressure
         ),
-        refuses=_refuse_springs,
+        refuses=_any_of(_refuse_other_loads, _refuse_springs),
         exact=lambda scene: False,
         axes=lambda scene: ("cells",),
     ),
@@ -108,7 +129,7 @@ MODELS = {
         build=lambda scene, poisson, cells, angles, focus: RadialContact.resolved(
             cells, focus, scene.pressure
         ),
-        refuses=_refuse_rings,
+        refuses=_any_of(_refuse_other_loads, _refuse_rings),
         exact=lambda scene: True,
         axes=lambda scene: ("cells",),
     ),
@@ -116,7 +137,7 @@ MODELS = {
         build=lambda scene, poisson, cells, angles, focus: PolarContact(
             cells, angles, scene.rotates, poisson, focus, scene.pressure
         ),
-        refuses=_refuse_half_disc,
+        refuses=_any_of(_refuse_pulsation, _refuse_half_disc),
         exact=lambda scene: True,
         axes=lambda scene: ("cells", "angles"),
     ),
@@ -124,7 +145,7 @@ MODELS = {
         build=lambda scene, poisson, cells, angles, focus: CartesianContact(
             cells, poisson, scene.pressure
         ),
-        refuses=lambda scene, poisson: "",
+        refuses=_refuse_pulsation,
         exact=lambda scene: True,
         axes=lambda scene: ("cells",),
     ),

@@ -48,7 +48,9 @@ class Contact(Protocol):
     forward_position, lateral_position: where the points are (units a), same shape;
     has_sensitivity: whether ``march(..., sensitivity=True)`` is to be had cheaply;
     stiffness: force over mu F_z per uniform displacement u_lim without slip, at least;
-    sticks: whether points may stick, so that something is left of it in the static limit.
+    sticks: whether points may stick, so that something is left of it in the static limit;
+    radius: of the contact at its largest, over the reference one, where the normal load changes: 1
+    if it is not there, and ``bound`` is that at the start of a lap then.
     """
 
     bound: np.ndarray

@@ -5,13 +5,14 @@ any axisymmetric indenter); with two components of slip it is an approximation, 
 know nothing of each other.  Springs at -a < x < a have the stiffness G* per length, and the
 indenter gives each the friction bound G* (1 - h(x)) per length (dimensionless), h(x) the share of
 the depth at which the contact radius is x, so that it yields at (1 - h) u_lim: 1 - x^2 for a
-sphere.
+sphere.  At another indentation d these are (d - x^2) u_lim, for |x| < sqrt(d).
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from microslip.depth import Growth, load_on_springs
 from microslip.models.radial import RadialContact
 from microslip.pressures import HERTZ
 from microslip.rings import make_rings
@@ -31,4 +32,5 @@ def mdr_contact(cells, focus=None, pressure=HERTZ):
     x = edges[:-1, None] + length[:, None] * _NODES
     bound = pressure.G_star * (1.0 - pressure.depth(x)) @ _WEIGHTS
     influence = np.eye(cells) / pressure.G_star
-    return RadialContact(influence, bound, 2.0 * length, pressure.stiffness)
+    growth = Growth(edges, load_on_springs, influence_power=0, weight_power=1)
+    return RadialContact(influence, bound, 2.0 * length, pressure.stiffness, growth)

@@ -11,6 +11,8 @@ than rings x rings is ever factorised:
     B = U^T U  over the sticking rings,  Schur complement C over the slipping ones,
     tangent matrix  M_ik = C_ik (d_i . d_k) + delta_ik |slip_i| / bound_i,   d_i: unit tangents.
 
+A ring that has lost contact (bound 0) counts as slipping, its angle held where it is.
+
 As slip starts at the edge, the sticking rings mostly are the innermost ones, and for these U is
 part of the factor of B as a whole, which is computed once.  The products are loops of ours: BLAS
 would spread matrices this small over threads, and lose time by it.
@@ -27,6 +29,8 @@ from microslip.friction import JIT
 
 ON_BOUND = 1.0 - 1e-12
 """Share of the bound from which on a traction counts as being on it."""
+HELD = 1e30
+"""Resistance of a traction to turning where the bound is 0: out of contact a ring slips freely."""
 
 
 class Factors(NamedTuple):
@@ -127,6 +131,13 @@ def cholesky(stiffness):
     return upper
 
 
+@njit(inline="always", **JIT)
+def turning(slip_forward, slip_lateral, bound):
+    """|slip| / bound: how much a traction on the bound resists being turned away from its slip."""
+    size = np.sqrt(slip_forward * slip_forward + slip_lateral * slip_lateral)
+    return size / bound if bound > 0.0 else HELD
+
+
 @njit(**JIT)
 def _split(q, slip, bound, factors):
     """Put sticking rings before slipping ones; returns (how many stick, whether that is news)."""
@@ -137,6 +148,7 @@ def _split(q, slip, bound, factors):
         x, y = q[0, i], q[1, i]
         limit = bound[i] * ON_BOUND
         slips = x * x + y * y >= limit * limit and x * slip[0, i] + y * slip[1, i] > 0.0
+        slips = slips or bound[i] == 0.0
         flags[i] = 1.0 if slips else 0.0
         if not slips:
             news = news or order[stick] != i
@@ -147,9 +159,12 @@ def _split(q, slip, bound, factors):
     for i in range(n):
         if flags[i] == 1.0:
             order[at] = i
-            size = 1.0 / np.sqrt(q[0, i] * q[0, i] + q[1, i] * q[1, i])
-            factors.direction[0, at] = -q[1, i] * size
-            factors.direction[1, at] = q[0, i] * size
+            if bound[i] > 0.0:
+                size = 1.0 / np.sqrt(q[0, i] * q[0, i] + q[1, i] * q[1, i])
+                factors.direction[0, at] = -q[1, i] * size
+                factors.direction[1, at] = q[0, i] * size
+            else:
+                factors.direction[0, at], factors.direction[1, at] = 0.0, 1.0
             at += 1
     factors.count[0] = stick
     return stick, news
@@ -206,5 +221,5 @@ def factorise(stiffness, whole, bound, q, slip, factors):
         for s in range(p, slipping):
             row[s] = schur[s] * (x * along[s] + y * across[s])
         i = order[stick + p]  # turning the traction also turns it away from the slip
-        row[p] += np.sqrt(slip[0, i] * slip[0, i] + slip[1, i] * slip[1, i]) / bound[i]
+        row[p] += turning(slip[0, i], slip[1, i], bound[i])
     return stick if _eliminate(matrix, 0, slipping, factors.change[0]) else -1

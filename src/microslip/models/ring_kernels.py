@@ -123,7 +123,7 @@ def solve_step(stiffness, whole, imposed, bound, weight, q, slip, tolerance, fac
                 i = factors.order[p]
                 x, y = q[0, i] + factors.change[0, p], q[1, i] + factors.change[1, p]
                 f = shrink(x, y, bound[i])
-                if p >= stick:  # a slipping traction ends on the bound
+                if p >= stick and bound[i] > 0.0:  # a slipping traction ends on the bound
                     f = bound[i] / np.sqrt(x * x + y * y)
                 trial[0, i], trial[1, i] = x * f, y * f
             weighted_slip(stiffness, imposed, trial, trial_slip)

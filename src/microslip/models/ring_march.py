@@ -23,6 +23,7 @@ from microslip.models.ring_factors import (
     factorise,
     make_factors,
     subtract,
+    turning,
 )
 from microslip.models.ring_kernels import solve_step, weighted_slip
 
@@ -121,7 +122,7 @@ def _slip_tangent(factors, stick, transfer, slip, bound, dz, touched, dslip, wor
             schur = factors.upper[stick + min(p, s), stick + max(p, s)]
             scratch[s] = schur * (y * direction[0, stick + s] - x * direction[1, stick + s])
         combine(across[p], scratch, turn, slipping)
-        stiff = np.sqrt(slip[0, i] * slip[0, i] + slip[1, i] * slip[1, i]) / bound[i]
+        stiff = turning(slip[0, i], slip[1, i], bound[i])
         for column in range(columns):
             u, v = stiff * turn[p, column], across[p, column]
             dslip[0, i, column] = x * u + y * v
@@ -173,11 +174,14 @@ def _follow(q, bound, now, before):
 
 
 @njit(**JIT)
-def _extrapolate(q, bound, before, ratio):
-    """First guess: go on as from ``before`` to q, ``ratio`` times as far; slip stays slip."""
+def _extrapolate(q, last, bound, before, ratio):
+    """First guess: go on as from ``before`` to q, ``ratio`` times as far; slip stays slip.
+
+    last, bound: those that q obeys, and that the guess shall.
+    """
     for i in range(len(bound)):
         x, y = q[0, i], q[1, i]
-        limit = bound[i] * ON_BOUND
+        limit = last[i] * ON_BOUND
         slips = x * x + y * y >= limit * limit
         x += ratio * (x - before[0, i])
         y += ratio * (y - before[1, i])
@@ -196,16 +200,26 @@ def _stretch(way, at):
 
 
 @njit(**JIT)
-def march(stiffness, whole, bound, weight, path, state, known, tolerance, tangent):
+def _within(q, bound):
+    """Shrink q onto the bound."""
+    for i in range(len(bound)):
+        f = shrink(q[0, i], q[1, i], bound[i])
+        q[0, i], q[1, i] = q[0, i] * f, q[1, i] * f
+
+
+@njit(**JIT)
+def march(stiffness, whole, bounds, weight, path, state, known, tolerance, tangent):
     """March along a path.
 
-    stiffness, whole: B and its Cholesky factor; path: (positions, stages, carry, end), see
+    stiffness, whole: B and its Cholesky factor; bounds: at the start and at every stage, (1 + steps
+    stages, n), or (1, n) where they do not change; path: (positions, stages, carry, end), see
     path.Path; state: (2, n); known: tractions of another march, at its start and after every stage,
     (1 + steps stages, 2, n), or empty.  Returns (end state, the tractions of this march, forces
     (steps + 1, 3), residual sum, iterations, derivative of the end state (2 n, 2 n) or empty).
     """
     positions, rigid, carry, end = path
-    n, steps, stages = len(bound), rigid.shape[0], rigid.shape[1]
+    n, steps, stages = len(weight), rigid.shape[0], rigid.shape[1]
+    changes = 1 if len(bounds) > 1 else 0
     columns = 2 * n if tangent else 0
     dz, work = np.zeros((2, n, columns)), np.empty((2, n, columns))
     dslips = np.empty((stages, 2, n, columns))
@@ -240,10 +254,14 @@ def march(stiffness, whole, bound, weight, path, state, known, tolerance, tangen
                     b[c, i] = z[c, i] + weight[i] * way[at, c]
                 for j in range(s):
                     subtract(b[c], carry[s, j], slips[j, c])
+            bound = bounds[changes * at]
+            if changes and at == 1:
+                _within(q, bound)
             if len(known) > 0:
                 _follow(q, bound, known[at], known[at - 1])
             elif at > 1:
-                _extrapolate(q, bound, tractions[at - 2], _stretch(way, at))
+                last = bounds[changes * (at - 1)]
+                _extrapolate(q, last, bound, tractions[at - 2], _stretch(way, at))
             count, residual = solve_step(
                 stiffness, whole, b, bound, weight, q, slips[s], tolerance, factors
             )

@@ -1,0 +1,134 @@
+"""Oscillation of the normal load or of the indentation, alone or with one in the plane.
+
+    normal:load=1,indentation=0,lateral=L,forward=F,phase=P,normal_cycles=K,lateral_cycles=N,...
+
+With the amplitude A the normal load is 1 + A load sin(K t) of its mean, or the indentation
+1 + A indentation sin(K t) of its mean, whichever is above 0; contact is lost where that falls to 0.
+In the plane the sphere moves forward by v~ t + A F sin(M t + P), sideways by A L sin(N t + P), P in
+degrees, in u_lim.  Reference of u_lim, a and mu F_z is the state without oscillation, and friction
+is over mu times the mean of the load as it is.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip import depth as contact_depth
+from microslip import pulsating
+from microslip.motions.elliptic import MOST_CYCLES
+from microslip.scene import Scene, within_rings
+
+SUMMARY = "sliding forward while the normal load oscillates, or the indentation"
+HELP = (
+    "such as lateral=1,phase=90: shares of the amplitude load (1), indentation (0: the load "
+    "oscillates), lateral and forward (0), phase of the latter two in degrees (0), normal_cycles, "
+    "lateral_cycles and forward_cycles (1)"
+)
+DEFAULTS = {
+    "load": 1.0,
+    "indentation": 0.0,
+    "lateral": 0.0,
+    "forward": 0.0,
+    "phase": 0.0,
+    "normal_cycles": 1.0,
+    "lateral_cycles": 1.0,
+    "forward_cycles": 1.0,
+}
+
+
+def scene(
+    name,
+    load,
+    indentation,
+    lateral,
+    forward,
+    phase,
+    normal_cycles,
+    lateral_cycles,
+    forward_cycles,
+):
+    """The Scene of these numbers; raises ValueError for shares out of 0..1, where neither or both
+    of load and indentation oscillate, and for cycles that are no whole numbers."""
+    cycles = {
+        "normal_cycles": normal_cycles,
+        "lateral_cycles": lateral_cycles,
+        "forward_cycles": forward_cycles,
+    }
+    shares = {"load": load, "indentation": indentation, "lateral": lateral, "forward": forward}
+    _check(name, shares, cycles)
+    by_load = indentation == 0.0
+    share = load if by_load else indentation
+    lead = np.deg2rad(phase % 360.0)
+
+    def displacement(phase, velocity, amplitude, poisson):
+        along = velocity * phase + amplitude * forward * np.sin(forward_cycles * phase + lead)
+        across = amplitude * lateral * np.sin(lateral_cycles * phase + lead)
+        return along, across, np.zeros_like(phase)
+
+    def depth(phase, amplitude):
+        height = np.maximum(1.0 + amplitude * share * np.sin(normal_cycles * phase), 0.0)
+        return contact_depth.of_load(height) if by_load else height
+
+    def extreme(sign, amplitude):
+        height = max(1.0 + sign * amplitude * share, 0.0)
+        return float(contact_depth.of_load(height)) if by_load else height
+
+    def focus(velocity, amplitude, pressure):
+        """The edge of what never loses contact."""
+        least = contact_depth.radius(extreme(-1.0, amplitude))
+        return within_rings(least / contact_depth.radius(extreme(1.0, amplitude)))
+
+    def turns(velocity, amplitude):
+        least = -0.5 * np.pi / normal_cycles
+        return tuple(least + np.pi * np.arange(2 if mirrored else 3))
+
+    def whole(velocity, amplitude):
+        return pulsating.friction(velocity / normal_cycles, amplitude * share, by_load)
+
+    aside_odd = lateral == 0.0 or lateral_cycles % 2 == 1
+    mirrored = normal_cycles % 2 == 0 and aside_odd and (forward == 0.0 or forward_cycles % 2 == 0)
+    opposite = normal_cycles % 2 == 0 and aside_odd and forward_cycles % 2 == 1
+    return Scene(
+        name=name,
+        summary=SUMMARY,
+        displacement=displacement,
+        periodic=True,
+        rotates=False,
+        half_period_mirror=mirrored,
+        focus=focus,
+        velocity_label="v0 / (omega u_lim)",
+        amplitude_label="largest change of load over its mean, or of indentation; in the plane "
+        "the same times u_lim",
+        turns=turns,
+        straight=lateral == forward == 0.0,
+        drives=forward > 0.0 and not opposite,
+        cycles=int(
+            max(
+                normal_cycles,
+                lateral_cycles if lateral else 1.0,
+                forward_cycles if forward else 1.0,
+            )
+        ),
+        depth=depth,
+        deepest=lambda amplitude: extreme(1.0, amplitude),
+        mean_load=lambda amplitude: pulsating.mean_load(amplitude * share, by_load),
+        whole=whole if lateral == forward == 0.0 else None,
+    )
+
+
+def _check(name, shares, cycles):
+    for key, share in shares.items():
+        if not 0.0 <= share <= 1.0:
+            raise ValueError(f"scene = {name!r}: {key} = {share:g}: allowed is a share in 0..1")
+    if shares["load"] == shares["indentation"] == 0.0:
+        raise ValueError(f"scene = {name!r}: allowed is load or indentation above 0")
+    if shares["indentation"] > 0.0 and shares["load"] != DEFAULTS["load"]:
+        raise ValueError(
+            f"scene = {name!r}: load = {shares['load']:g}: allowed is no load beside an indentation"
+        )
+    for key, count in cycles.items():
+        if count != round(count) or not 1 <= count <= MOST_CYCLES:
+            raise ValueError(
+                f"scene = {name!r}: {key} = {count:g}: allowed is a whole number from 1 to "
+                f"{MOST_CYCLES}"
+            )
