@@ -42,7 +42,8 @@ class Axis:
     three.
     regular: the error falls smoothly, with the second power of the levels, so that it can be
     extrapolated; imposed: the last level is what was asked for, and its error, the spread of the
-    last three again, is only reported; caution: errors of irregular axes over their spread.
+    last three again, is only reported; caution: errors of irregular axes over their spread; tied:
+    name and levels of what is refined together with it, where neither converges without the other.
     """
 
     name: str
@@ -52,6 +53,7 @@ class Axis:
     regular: bool = False
     imposed: bool = False
     caution: float = 1.0
+    tied: tuple[str, tuple[int, ...]] | None = None
 
 
 @dataclass(frozen=True)
@@ -93,6 +95,8 @@ class _Runs:
         """The base with some indices replaced, as a motion.Resolution."""
         at = self.base | indices
         levels = {name: self.axes[name].levels[index] for name, index in at.items()}
+        tied = ((self.axes[name].tied, index) for name, index in at.items())
+        levels |= {pair[0]: pair[1][index] for pair, index in tied if pair is not None}
         return replace(self.coarsest, **levels)
 
     def __call__(self, **indices):

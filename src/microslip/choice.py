@@ -29,6 +29,10 @@ TURNING_CAUTION = 2.0
 """Error in time over the spread of the runs where the contact turns or slides back: the first step
 after a turning point, in which all points stick and slip again, errs to one side whatever its
 length."""
+SWEEPING_STEPS = 4
+"""Steps in half a period over rings where the edge of the contact sweeps over these.  They join it
+one by one, and the error scatters unless both are refined together."""
+SWEEPING_CAUTION = 2.0
 LONGEST_STROKE = 16.0
 """Stroke in u_lim beyond which more steps are left to the estimate of the error."""
 STATIC_LIMITS = {
@@ -194,6 +198,9 @@ def plan(scene, name, velocity, amplitude, poisson, tolerance, cells=None, steps
     name: of the model; cells, steps (in a full period): impose a resolution instead.
     """
     resolved, axes = MODELS[name].axes(scene), []
+    if scene.depth is not None and velocity > 0.0 and cells is None and steps is None:
+        axis = _sweeping(scene, amplitude, poisson, tolerance)
+        return Resolution(cells=1, angles=1, steps=STEPS[0]), (axis,)
     if "cells" in resolved:
         axes.append(_cells(scene, name, velocity, amplitude, poisson, cells))
     if "angles" in resolved:
@@ -232,12 +239,26 @@ def _imposed(name, count):
     return Axis(name, levels, 2, (0, 1, 2), imposed=True)
 
 
+def _sweeping(scene, amplitude, poisson, tolerance):
+    """Steps and rings together."""
+    rings = RINGS[RINGS.index(BASE_RINGS) :]
+    levels = _step_levels(scene, amplitude, poisson, [SWEEPING_STEPS * count for count in rings])
+    base = 1 if tolerance >= 5e-3 else 2
+    first = (base - 1, base, base + 1)
+    return Axis("steps", levels, base, first, caution=SWEEPING_CAUTION, tied=("cells", rings))
+
+
+def _step_levels(scene, amplitude, poisson, counts):
+    """Even numbers of steps that stay short against u_lim where the stroke is long."""
+    stroke = min(max(1.0, scene.stroke(amplitude, poisson)), LONGEST_STROKE)
+    return tuple(2 * round(0.5 * count * scene.cycles * stroke**0.5) for count in counts)
+
+
 def _steps(scene, amplitude, poisson, tolerance, imposed):
     if imposed is not None:
         return _imposed("steps", imposed // 2)
-    # second order in time, and steps that stay short against u_lim where the stroke is long
-    stroke = min(max(1.0, scene.stroke(amplitude, poisson)), LONGEST_STROKE)
-    levels = tuple(2 * round(0.5 * count * scene.cycles * stroke**0.5) for count in STEPS)
+    levels = _step_levels(scene, amplitude, poisson, STEPS)
+    # second order in time
     wanted = BASE_STEPS * max(1.0, (1e-3 / tolerance) ** 0.5)
     base = next(k for k, count in enumerate(STEPS) if count >= wanted)
     turns = scene.rotates or not scene.half_period_mirror
