@@ -32,7 +32,7 @@ length."""
 SWEEPING_STEPS = 4
 """Steps in half a period over rings where the edge of the contact sweeps over these.  They join it
 one by one, and the error scatters unless both are refined together."""
-SWEEPING_CAUTION = 2.0
+SWEEPING_CAUTION = 1.5
 LONGEST_STROKE = 16.0
 """Stroke in u_lim beyond which more steps are left to the estimate of the error."""
 STATIC_LIMITS = {
@@ -244,7 +244,7 @@ def _sweeping(scene, amplitude, poisson, tolerance):
     rings = RINGS[RINGS.index(BASE_RINGS) :]
     levels = _step_levels(scene, amplitude, poisson, [SWEEPING_STEPS * count for count in rings])
     base = 1 if tolerance >= 5e-3 else 2
-    first = (base - 1, base, base + 1)
+    first = tuple(range(base - 1, base + 3))
     return Axis("steps", levels, base, first, caution=SWEEPING_CAUTION, tied=("cells", rings))
 
 
