@@ -11,11 +11,11 @@ and 1e-3.  A point is covered if
     |mu_macro - reference| <= mu_macro_error <= tolerance.
 
 The reference has four times the rings, angles and steps that the point was certified with (no more
-than 192 rings or squares, 64 angles and 2048 steps in half a period), each refined by itself from a base that
-is finer than any certificate starts from, every periodic state searched for from scratch, to a
-tenth of the tolerance.  What is left of its own error is estimated from the run with half of the
-refinement.  Results go to a file of JSON lines, point by point; an interrupted run goes on where it
-stopped.
+than 192 rings or squares, 64 angles and 2048 steps in half a period), each refined by itself from a
+base that is finer than any certificate starts from, every periodic state searched for from scratch,
+to a tenth of the tolerance.  What is left of its own error is estimated from the run with half of
+the refinement.  Results go to a file of JSON lines, point by point; an interrupted run goes on
+where it stopped.
 """
 
 from __future__ import annotations

@@ -8,11 +8,12 @@ import pytest
 import microslip
 from microslip import cli, depth, pulsating
 from microslip.models import MODELS
-from microslip.models.contact import UNIT_STIFFNESS, energy_norm
+from microslip.models.contact import energy_norm
 from microslip.models.mdr import mdr_contact
 from microslip.models.radial import RadialContact
 from microslip.motion import Motion, Resolution, build_contact
 from microslip.path import EULER, make_path
+from microslip.pressures import HERTZ
 from microslip.scenes import scene_named
 from microslip.simulate import simulate
 
@@ -137,7 +138,7 @@ def test_a_contact_that_grows_keeps_load_and_stiffness(contact):
     assert wide.bounds(depths) @ wide.weight == pytest.approx(depth.load(depths), abs=1e-12)
     assert wide.bound @ wide.weight == pytest.approx(0.5**1.5)
     stuck = np.linalg.solve(wide.influence, np.ones(12)) @ wide.weight
-    assert stuck == pytest.approx(1.3 * UNIT_STIFFNESS, rel=0.03)
+    assert stuck == pytest.approx(1.3 * HERTZ.stiffness, rel=0.03)
 
 
 def test_contact_that_is_lost_forgets():
