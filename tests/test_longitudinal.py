@@ -88,6 +88,24 @@ def test_limits():
     assert longitudinal(0.3 * 1e5, 1e5) == pytest.approx(rigid, abs=1e-4)
 
 
+@pytest.mark.parametrize(
+    ("velocity", "amplitude"), [(0.1, 0.5), (0.3, 2.0), (0.02, 0.9), (0.5, 9.0)]
+)
+def test_the_rigid_contact_and_the_elastic_slider_have_closed_forms_of_their_own(
+    velocity, amplitude
+):
+    """Slip to and fro by the share of the time; one spring, straight up to u_lim, with Masing's
+    memory."""
+    rigid = microslip.solve("longitudinal", velocity, amplitude, model="rigid", tolerance=1e-4)
+    exact = 2.0 / np.pi * np.arcsin(min(velocity / amplitude, 1.0))
+    assert abs(rigid.mu_macro - exact) <= rigid.mu_macro_error + 1e-9
+    slider = microslip.solve("longitudinal", velocity, amplitude, model="slider", tolerance=1e-4)
+    exact = longitudinal(velocity, amplitude, lambda way: np.minimum(way, 1.0))
+    # the corner of its curve lies within a panel of the quadrature
+    assert abs(slider.mu_macro - exact) <= slider.mu_macro_error + 1e-4
+    assert longitudinal(1e-9, 0.3, lambda way: np.minimum(way, 1.0)) == pytest.approx(0.7, abs=1e-3)
+
+
 def test_the_static_limit_is_computed_too():
     answer = microslip.solve("longitudinal", 0.0, 0.5, model="radial", tolerance=1e-4)
     assert abs(answer.mu_macro - 0.5**1.5) <= answer.mu_macro_error

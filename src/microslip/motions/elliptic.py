@@ -15,7 +15,7 @@ from microslip.scene import Scene, stick_focus
 
 SUMMARY = "sliding forward while oscillating along two directions"
 HELP = (
-    "such as forward=0.5,phase=30: shares forward and lateral (1), phase of the forward part in "
+    "such as forward=0.5,phase=30: shares of A, forward and lateral (1), phase of the forward part in "
     "degrees (90), forward_cycles and lateral_cycles (1)"
 )
 DEFAULTS = {
@@ -65,7 +65,7 @@ def scene(name, forward, lateral, phase, forward_cycles, lateral_cycles):
         half_period_mirror=mirrored,
         focus=lambda velocity, amplitude, pressure: stick_focus(amplitude * reach, pressure),
         velocity_label="v0 / (omega u_lim)",
-        amplitude_label="largest amplitude / u_lim, times forward and lateral",
+        amplitude_label="A / u_lim",
         turns=lambda velocity, amplitude: HALF_PERIOD if mirrored else WHOLE_PERIOD,
         straight=simple and (forward == 0.0 or lead % np.pi == 0.0),
         drives=forward > 0.0 and lateral > 0.0 and not both_odd,

@@ -20,9 +20,9 @@ from microslip.scene import Scene, within_rings
 
 SUMMARY = "sliding forward while the normal load oscillates, or the indentation"
 HELP = (
-    "such as lateral=1,phase=90: shares of the amplitude load (1), indentation (0: the load "
-    "oscillates), lateral and forward (0), phase of the latter two in degrees (0), normal_cycles, "
-    "lateral_cycles and forward_cycles (1)"
+    "such as lateral=1,phase=90: shares of A, load (1, over the mean) or indentation (0: the load "
+    "oscillates), lateral and forward (0, over u_lim), phase of the latter two in degrees (0), "
+    "normal_cycles, lateral_cycles and forward_cycles (1)"
 )
 DEFAULTS = {
     "load": 1.0,
@@ -97,8 +97,7 @@ def scene(
         half_period_mirror=mirrored,
         focus=focus,
         velocity_label="v0 / (omega u_lim)",
-        amplitude_label="largest change of load over its mean, or of indentation; in the plane "
-        "the same times u_lim",
+        amplitude_label="A",
         turns=turns,
         straight=lateral == forward == 0.0,
         drives=forward > 0.0 and not opposite,

@@ -15,7 +15,8 @@ from microslip.scene import Scene, stick_focus, within_rings
 
 SUMMARY = "sliding forward while oscillating sideways and in rotation"
 HELP = (
-    "such as angle=0.5,phase=90: shares lateral and angle (1), phase of the rotation in degrees (0)"
+    "such as angle=0.5,phase=90: shares of A, lateral (1, over u_lim) and angle (1, over "
+    "phi_lk(a/2)), phase of the rotation in degrees (0)"
 )
 DEFAULTS = {"lateral": 1.0, "angle": 1.0, "phase": 0.0}
 
@@ -48,6 +49,6 @@ def scene(name, lateral, angle, phase):
         half_period_mirror=True,
         focus=focus,
         velocity_label="v0 / (omega u_lim)",
-        amplitude_label="y0 / u_lim over lateral, and phi0 / phi_lk(a/2) over angle",
+        amplitude_label="A",
         straight=angle == 0.0 or lead % np.pi == 0.0,
     )
