@@ -107,3 +107,20 @@ def test_what_has_no_period_is_refused(arguments, name):
 def test_odd_counts_are_refused(name):
     with pytest.raises(ValueError, match=f"{name} = 7"):
         microslip.period("bore", 0.1, 1.0, **{name: 7})
+
+
+@pytest.mark.parametrize("pressure", ["power:exponent=1", "ring"])
+def test_a_period_under_another_pressure(pressure):
+    """Its bound is that pressure's, its mean force that of the certified answer."""
+    found = microslip.period("bore", 0.3, 1.0, pressure=pressure, cells=24, angles=16, steps=96)
+    answer = microslip.solve("bore", 0.3, 1.0, pressure=pressure, tolerance=5e-3)
+    assert found.converged
+    assert float(found.area @ found.bound) == pytest.approx(1.0)
+    size = np.hypot(found.traction_forward, found.traction_lateral)
+    assert np.all(size <= found.bound * (1.0 + 1e-9))
+    assert found.mu_macro == pytest.approx(answer.mu_macro, abs=1e-2)
+
+
+def test_a_period_needs_a_pressure_that_rings_can_take():
+    with pytest.raises(ValueError, match="rings cannot resolve the pressure ellipse"):
+        microslip.period("bore", 0.3, 1.0, pressure="ellipse")

@@ -49,6 +49,7 @@ def history(
     velocity,
     amplitude=None,
     *,
+    pressure="hertz",
     poisson=0.0,
     model="auto",
     cells=None,
@@ -59,12 +60,14 @@ def history(
 ):
     """Forces from an initial state on: ``periods`` periods, or ``travel`` u_lim of a steady motion.
 
-    scene, velocity, amplitude, poisson, model: as for ``microslip.solve``; cells: rings or squares;
-    steps: per period (steady scenes: over the whole travel); start: "stress-free" (full stick),
-    "full-slip" (forward slip everywhere) or "full-rotation" (rotational slip everywhere).
+    scene, velocity, amplitude, pressure, poisson, model: as for ``microslip.solve``; cells: rings or
+    squares; steps: per period (steady scenes: over the whole travel); start: "stress-free" (full
+    stick), "full-slip" (forward slip everywhere) or "full-rotation" (rotational slip everywhere).
     Returns a History.  Raises ValueError naming the argument for bad input.
     """
-    kind, velocity, amplitude, poisson = checked_point(scene, velocity, amplitude, poisson)
+    kind, velocity, amplitude, poisson = checked_point(
+        scene, velocity, amplitude, poisson, pressure
+    )
     if velocity <= 0.0:
         raise ValueError(f"velocity = {velocity!r}: a history needs velocity > 0")
     if start not in STARTS:
@@ -160,6 +163,7 @@ def period(
     velocity,
     amplitude,
     *,
+    pressure="hertz",
     poisson=0.0,
     cells=PERIOD_CELLS,
     angles=ANGLES,
@@ -167,11 +171,14 @@ def period(
 ):
     """Forces, tractions and slip over one period of the periodic state, at one resolution.
 
-    scene: one that oscillates; velocity > 0, amplitude > 0, poisson: as for ``microslip.solve``;
-    cells: rings; angles: points on half a ring; steps: in a period; both even numbers.  Returns a
-    Period.  Raises ValueError naming the argument for bad input.
+    scene: one that oscillates; velocity > 0, amplitude > 0, pressure (one that depends on the
+    radius alone), poisson: as for ``microslip.solve``; cells: rings; angles: points on half a ring;
+    steps: in a period; both even numbers.  Returns a Period.  Raises ValueError naming the argument
+    for bad input.
     """
-    kind, velocity, amplitude, poisson = checked_point(scene, velocity, amplitude, poisson)
+    kind, velocity, amplitude, poisson = checked_point(
+        scene, velocity, amplitude, poisson, pressure
+    )
     if not kind.periodic:
         raise ValueError(f"scene = {scene!r}: allowed is one that oscillates")
     for name, value in (("velocity", velocity), ("amplitude", amplitude)):

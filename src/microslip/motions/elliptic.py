@@ -15,7 +15,7 @@ from microslip.scene import Scene, stick_focus
 
 SUMMARY = "sliding forward while oscillating along two directions"
 HELP = (
-    "such as forward=0.5,phase=30: shares of A, forward and lateral (1), phase of the forward part in "
+    "such as forward=0.5,phase=30: shares of A, forward and lateral (1), phase of forward in "
     "degrees (90), forward_cycles and lateral_cycles (1)"
 )
 DEFAULTS = {
