@@ -147,8 +147,9 @@ def _split(q, slip, bound, factors):
     for i in range(n):
         x, y = q[0, i], q[1, i]
         limit = bound[i] * ON_BOUND
-        slips = x * x + y * y >= limit * limit and x * slip[0, i] + y * slip[1, i] > 0.0
-        slips = slips or bound[i] == 0.0
+        slips = x * x + y * y >= limit * limit and (
+            x * slip[0, i] + y * slip[1, i] > 0.0 or limit == 0.0
+        )
         flags[i] = 1.0 if slips else 0.0
         if not slips:
             news = news or order[stick] != i
