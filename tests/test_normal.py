@@ -44,12 +44,12 @@ def marched_springs(scene, velocity, amplitude, count, periods=8):
     What a spring at x can hold is the overlap with the flat, d - x^2; mean force over mean load.
     """
     scene = scene_named(scene)
-    widest = np.sqrt(scene.deepest(amplitude))
+    widest = np.sqrt(scene.deepest(amplitude, HERTZ))
     edges = widest * np.sqrt(np.linspace(0.0, 1.0, count + 1))
     x, width = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
     phase = np.linspace(-np.pi / 2, 1.5 * np.pi, 10 * count + 1)
     ahead, _, _ = scene.displacement(phase, velocity, amplitude, 0.0)
-    overlap = np.maximum(scene.depth(phase, amplitude)[:, None] - x**2, 0.0)
+    overlap = np.maximum(scene.depth(phase, amplitude, HERTZ)[:, None] - x**2, 0.0)
     stretch, force = overlap[0], np.empty(len(phase))
     for _ in range(periods):
         force[0] = stretch @ width
@@ -67,7 +67,7 @@ def run(scene, velocity, amplitude, model="radial", cells=32, steps=128):
 @pytest.mark.parametrize("place", ALONE, ids=str)
 def test_the_closed_form_is_that_of_springs_marched_one_by_one(place):
     scene, velocity, amplitude = place
-    exact = scene_named(scene).whole(velocity, amplitude)
+    exact = scene_named(scene).whole(velocity, amplitude, HERTZ)
     coarse, fine = (marched_springs(*place, count, periods=2) for count in (100, 200))
     assert abs(fine - exact) < 1e-3
     assert 2.0 * fine - coarse == pytest.approx(exact, abs=1e-4)  # they err in first order
@@ -79,7 +79,7 @@ def test_springs_and_rings_agree_with_the_closed_form(place, model):
     scene, velocity, amplitude = place
     answer = microslip.solve(*place, model=model)
     assert answer.converged
-    assert abs(answer.mu_macro - scene_named(scene).whole(velocity, amplitude)) < 1e-3
+    assert abs(answer.mu_macro - scene_named(scene).whole(velocity, amplitude, HERTZ)) < 1e-3
 
 
 @pytest.mark.parametrize("place", ALONG, ids=str)
@@ -119,12 +119,12 @@ def test_the_mean_load_is_that_of_the_sum():
 @pytest.mark.parametrize("carried", [depth.load_on_rings, depth.load_on_springs])
 def test_the_parts_of_a_contact_carry_its_load(carried):
     edges, depths = np.linspace(0.0, 1.3, 14), np.array([0.0, 0.3, 1.0, 1.69])
-    load = carried(edges, depths)
+    load = carried(HERTZ, edges, depths)
     assert load[:, 0] == pytest.approx(0.0)
-    assert load[:, -1] == pytest.approx(depth.load(depths))
+    assert load[:, -1] == pytest.approx(HERTZ.total(depths))
     assert (np.diff(load, axis=1) >= -1e-15).all()
-    assert depth.load(depth.of_load(depths)) == pytest.approx(depths)
-    assert depth.load(depth.radius(depths) ** 2) == pytest.approx(depth.load(depths))
+    assert HERTZ.total(HERTZ.of_load(depths)) == pytest.approx(depths)
+    assert HERTZ.total(HERTZ.radius(depths) ** 2) == pytest.approx(HERTZ.total(depths))
 
 
 @pytest.mark.parametrize("contact", [RadialContact.resolved(12, 0.6), mdr_contact(12, 0.6)])
@@ -135,7 +135,7 @@ def test_a_contact_that_grows_keeps_load_and_stiffness(contact):
     assert same.bound == pytest.approx(contact.bound, rel=1e-9)
     wide = contact.pressed(1.69, 0.5)
     depths = np.linspace(0.0, 1.69, 30)
-    assert wide.bounds(depths) @ wide.weight == pytest.approx(depth.load(depths), abs=1e-12)
+    assert wide.bounds(depths) @ wide.weight == pytest.approx(HERTZ.total(depths), abs=1e-12)
     assert wide.bound @ wide.weight == pytest.approx(0.5**1.5)
     stuck = np.linalg.solve(wide.influence, np.ones(12)) @ wide.weight
     assert stuck == pytest.approx(1.3 * HERTZ.stiffness, rel=0.03)
@@ -152,7 +152,7 @@ def test_contact_that_is_lost_forgets():
     one, other = (contact.march(path, start, 1e-10) for start in starts)
     assert energy_norm(contact, one.state - other.state) < 1e-8
     assert not np.allclose(one.forces[1], other.forces[1])
-    away = scene.depth(path.phase, 1.3) == 0.0
+    away = scene.depth(path.phase, 1.3, HERTZ) == 0.0
     assert away.any()
     assert not one.forces[away].any()
 
@@ -216,7 +216,7 @@ def test_work_is_dissipated(place):
 def test_slow_sliding_tends_to_the_least_load():
     """The whole contact waits for the moment at which it is pressed the least."""
     for scene, power in (("normal", 1.0), ("normal:indentation=1", 1.5)):
-        mean = scene_named(scene).mean_load(0.6)
+        mean = scene_named(scene).mean_load(0.6, HERTZ)
         exact = 0.4**power / mean
         assert microslip.solve(scene, 0.0, 0.6).mu_macro == pytest.approx(exact, abs=1e-12)
         rings = microslip.solve(scene, 0.0, 0.6, model="radial")
@@ -246,8 +246,8 @@ def test_without_vibration_friction_is_that_of_coulomb():
 
 def test_a_small_change_of_the_load_is_one_of_the_indentation():
     """Load goes like the power 3/2 of the indentation, so that small shares differ by that."""
-    load = 1.0 - scene_named("normal").whole(1e-3, 0.015)
-    indentation = 1.0 - scene_named("normal:indentation=1").whole(1e-3, 0.01)
+    load = 1.0 - scene_named("normal").whole(1e-3, 0.015, HERTZ)
+    indentation = 1.0 - scene_named("normal:indentation=1").whole(1e-3, 0.01, HERTZ)
     assert load == pytest.approx(indentation, rel=0.01)
 
 
@@ -282,7 +282,9 @@ def test_half_a_period_suffices_where_it_is_mirrored():
 def test_friction_rises_with_velocity_and_falls_with_amplitude():
     for scene in ("normal", "normal:indentation=1"):
         whole = scene_named(scene).whole
-        table = np.array([[whole(v, a) for v in (1e-3, 0.03, 0.1, 0.4)] for a in (0.2, 0.7, 1.3)])
+        table = np.array(
+            [[whole(v, a, HERTZ) for v in (1e-3, 0.03, 0.1, 0.4)] for a in (0.2, 0.7, 1.3)]
+        )
         assert (np.diff(table, axis=1) > 0.0).all()
         assert (np.diff(table, axis=0) < 0.0).all()
 
@@ -329,7 +331,9 @@ def test_methods_that_know_one_load_are_refused(method):
 
 def test_a_method_with_another_integrator_finds_the_same():
     answer = microslip.solve("normal", 0.1, 0.5, model="radial", method="euler", tolerance=1e-2)
-    assert abs(answer.mu_macro - scene_named("normal").whole(0.1, 0.5)) <= answer.mu_macro_error
+    assert (
+        abs(answer.mu_macro - scene_named("normal").whole(0.1, 0.5, HERTZ)) <= answer.mu_macro_error
+    )
 
 
 def test_an_imposed_resolution_is_kept():
@@ -351,3 +355,51 @@ def test_a_history_follows_the_load():
     found = microslip.history("normal", 200.0, 0.7, start="full-slip", periods=1)
     expected = 1.0 + 0.7 * np.sin(found.phase)
     assert found.force_forward[1:] == pytest.approx(expected[1:], abs=1e-6)
+
+
+# Other indenters
+
+
+@pytest.mark.parametrize("pressure", ["power:exponent=1", "power:exponent=8", "punch"])
+@pytest.mark.parametrize(
+    ("scene", "velocity", "amplitude"),
+    [("normal", 0.1, 0.5), ("normal:indentation=1", 0.03, 1.4)],
+)
+def test_closed_form_springs_and_rings_agree_for_other_indenters(
+    pressure, scene, velocity, amplitude
+):
+    exact = microslip.solve(scene, velocity, amplitude, pressure=pressure)
+    assert exact.model == "closed-form"
+    for model in ("mdr", "radial"):
+        settings = {"pressure": pressure, "model": model, "tolerance": 5e-3}
+        found = microslip.solve(scene, velocity, amplitude, **settings)
+        assert found.converged
+        assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error
+
+
+@pytest.mark.parametrize("exponent", [1.0, 8.0])
+def test_static_friction_of_power_laws(exponent):
+    """The load goes like the power (n + 1)/n of the depth, and the least one is what is left."""
+    pressure = f"power:exponent={exponent:g}"
+    by_load = microslip.solve("normal", 0.0, 0.4, pressure=pressure)
+    assert by_load.mu_macro == pytest.approx(0.6, abs=1e-9)
+    by_depth = microslip.solve("normal:indentation=1", 0.0, 0.4, pressure=pressure)
+    phase = np.linspace(0.0, 2.0 * np.pi, 1001)[:-1]
+    power = (exponent + 1.0) / exponent
+    mean = np.mean((1.0 + 0.4 * np.sin(phase)) ** power)
+    assert by_depth.mu_macro == pytest.approx(0.6**power / mean, abs=1e-9)
+    assert microslip.solve("normal", 0.0, 1.0, pressure=pressure).mu_macro == 0.0
+
+
+def test_the_power_2_is_a_sphere_under_a_load_that_changes():
+    for scene in ("normal", "normal:indentation=1"):
+        one, other = (
+            microslip.solve(scene, 0.1, 1.2, pressure=name).mu_macro for name in ("hertz", "power")
+        )
+        assert other == pytest.approx(one, abs=1e-10)
+
+
+@pytest.mark.parametrize("pressure", ["ring", "ellipse"])
+def test_the_load_of_what_is_no_indenter_cannot_change(pressure):
+    with pytest.raises(ValueError, match=f"pressure = '{pressure}': does not go with normal"):
+        microslip.solve("normal", 0.1, 0.5, pressure=pressure)

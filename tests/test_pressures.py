@@ -127,6 +127,9 @@ def test_the_radius_is_the_inverse_of_the_depth(name):
     depth = np.array([1e-3, 0.3, 1.0, 2.5])
     assert pressure.depth(pressure.radius(depth)) == pytest.approx(depth, rel=1e-9)
     assert pressure.radius(0.0) == 0.0
+    assert pressure.total(pressure.of_load(depth)) == pytest.approx(depth, rel=1e-9)
+    assert pressure.total(1.0) == pytest.approx(1.0, rel=1e-10)
+    assert pressure.of_load(0.0) == 0.0
     assert pressure.stick_radius(0.3) == pytest.approx(float(pressure.radius(0.7)))
     assert pressure.stick_radius(1.0) == 0.0
 

@@ -126,8 +126,9 @@ def closed_form(scene, velocity, amplitude, poisson, tolerance):
     if not scene.periodic:
         return _steady(scene, velocity)
     if scene.whole is not None and poisson == 0.0:
-        rounding = WHOLE_ROUNDING if velocity > 0.0 else ROUNDING
-        return float(scene.whole(velocity, amplitude)), None, rounding
+        whole = scene.whole(velocity, amplitude, scene.pressure)
+        if whole is not None:
+            return float(whole), None, WHOLE_ROUNDING if velocity > 0.0 else ROUNDING
     if velocity == 0.0:
         known = STATIC_LIMITS.get(scene.name)
         if known is None or (poisson > 0.0 and not scene.rotates):

@@ -1,7 +1,7 @@
-"""The contact while its normal load changes: how wide it is, and what each part of it carries.
+"""The contact while its normal load changes: what each part of it carries.
 
 Depth is the indentation over that of the reference state (radius a, load F_z); everything else is
-dimensionless as in hertz.  At depth d Hertz's contact has the radius sqrt(d) and carries d^(3/2).
+in the working units of a pressures.Pressure, that of an axisymmetric indenter.
 """
 
 from __future__ import annotations
@@ -11,44 +11,34 @@ from typing import NamedTuple
 
 import numpy as np
 
-
-def radius(depth):
-    """Contact radius over the reference one; depth >= 0, any shape."""
-    return np.sqrt(depth)
+from microslip.pressures import Pressure
 
 
-def load(depth):
-    """Normal load over the reference one; depth >= 0, any shape."""
-    return depth**1.5
-
-
-def of_load(share):
-    """The depth at which the normal load is ``share`` >= 0 of the reference one, any shape."""
-    return np.cbrt(share) ** 2
-
-
-def load_on_rings(edges, depth):
+def load_on_rings(pressure, edges, depth):
     """Load within each radius in ``edges`` (n + 1,) at each depth (k,), shape (k, n + 1)."""
-    left = np.maximum(depth[:, None] - edges**2, 0.0)
-    return load(depth)[:, None] - load(left)
+    return pressure.load(edges, pressure.radius(depth)[:, None])
 
 
-def load_on_springs(edges, depth):
+def load_on_springs(pressure, edges, depth):
     """Load of the springs of dimensionality reduction within |x| < edges, as load_on_rings.
 
-    The spring at x carries 3/4 (d - x^2) per length.
+    The spring at x carries G* (d - h(x)) per length, h(x) the depth at which the contact radius
+    is x; the integral of x h' is the load of a contact of that radius.
     """
-    inside = np.minimum(edges, radius(depth)[:, None])
-    return 1.5 * (depth[:, None] * inside - inside**3 / 3.0)
+    inside = np.minimum(edges, pressure.radius(depth)[:, None])
+    left = depth[:, None] - pressure.depth(inside)
+    return pressure.stiffness * inside * left + pressure.load(inside, inside)
 
 
 class Growth(NamedTuple):
     """How a row of rings or springs that fills the reference contact fills one of another size.
 
-    edges: (n + 1,) from 0 to 1; carried(edges, depth) -> load within each edge, (k, n + 1); powers
-    of the contact radius by which influence and weights grow.
+    pressure: of an axisymmetric indenter; edges: (n + 1,) from 0 to 1; carried(pressure, edges,
+    depth) -> load within each edge, (k, n + 1); powers of the contact radius by which influence and
+    weights grow.
     """
 
+    pressure: Pressure
     edges: np.ndarray
     carried: Callable
     influence_power: int

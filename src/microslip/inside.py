@@ -60,8 +60,8 @@ def history(
 ):
     """Forces from an initial state on: ``periods`` periods, or ``travel`` u_lim of a steady motion.
 
-    scene, velocity, amplitude, pressure, poisson, model: as for ``microslip.solve``; cells: rings or
-    squares; steps: per period (steady scenes: over the whole travel); start: "stress-free" (full
+    scene, velocity, amplitude, pressure, poisson, model: as for ``microslip.solve``; cells: rings
+    or squares; steps: per period (steady scenes: over the whole travel); start: "stress-free" (full
     stick), "full-slip" (forward slip everywhere) or "full-rotation" (rotational slip everywhere).
     Returns a History.  Raises ValueError naming the argument for bad input.
     """

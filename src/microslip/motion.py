@@ -45,13 +45,13 @@ class Motion:
     @cached_property
     def depth(self):
         """Indentation over the reference one, a function of the phase; None: it does not change."""
-        depth = self.scene.depth
-        return None if depth is None else lambda phase: depth(phase, self.amplitude)
+        depth, pressure = self.scene.depth, self.scene.pressure
+        return None if depth is None else lambda phase: depth(phase, self.amplitude, pressure)
 
     @cached_property
     def mean_load(self):
         """Mean of the normal load over a period, over that of the reference state."""
-        return float(self.scene.mean_load(self.amplitude))
+        return float(self.scene.mean_load(self.amplitude, self.scene.pressure))
 
     @cached_property
     def creep(self):
@@ -99,4 +99,5 @@ def build_contact(motion, model, resolution):
     if scene.depth is None:
         return contact
     start = scene.turns(motion.velocity, motion.amplitude)[0]
-    return contact.pressed(scene.deepest(motion.amplitude), float(motion.depth(np.array(start))))
+    deepest = scene.deepest(motion.amplitude, scene.pressure)
+    return contact.pressed(deepest, float(motion.depth(np.array(start))))

@@ -1,14 +1,15 @@
 """Sliding forward while the normal load or the indentation oscillates, without marching.
 
-While a contact moves along one line its force is that of independent springs at |x| < sqrt(d), d
-the indentation over its mean, each of which yields at the way d - x^2 (in u_lim; Popov, Popov and
-Popov, Mater. Res. 4, 2017).  A spring that came into contact at T has been stretched to
+While a contact moves along one line its force is that of independent springs at |x| < c(d), d the
+indentation over its mean and c the contact radius, each of which yields at the way d - h(x) in
+u_lim, h(x) the depth at which that radius is x: x^2 for a sphere (Popov, Popov and Popov, Mater.
+Res. 4, 2017).  A spring that came into contact at T has been stretched to
 
-    least of  v (t - tau) + d(tau) - x^2  over  tau from T to t,
+    least of  v (t - tau) + d(tau) - h(x)  over  tau from T to t,
 
 since it lost what it carried above its bound at every tau.  So, with phi(t) = d(t) - v t, it lacks
 phi(t) - min phi of its bound, whatever its x, and the mean over the springs is one over T.  Exact
-for Poisson's ratio 0.  Dimensionless: d, load and radius are those of Hertz, over their reference.
+for Poisson's ratio 0.  Dimensionless, in the working units of an indenter's pressures.Pressure.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from microslip import depth as contact
+from microslip.pressures import HERTZ
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
 _ANGLES = 0.25 * np.pi * (_NODES + 1.0)
@@ -27,19 +28,19 @@ _HALVINGS = 60
 _LOOKED_AT = 2001
 
 
-def mean_load(amplitude, by_load):
+def mean_load(amplitude, by_load, pressure=HERTZ):
     """Mean normal load over that of the reference state, for a change of the load (by_load), or of
     the indentation, by ``amplitude`` >= 0 of its mean."""
-    motion = _Motion(0.0, amplitude, by_load)
+    motion = _Motion(0.0, amplitude, by_load, pressure)
     loss = np.pi - motion.touch
     if by_load:
         return float(loss + amplitude * np.sin(loss)) / np.pi
     # at the height where contact is lost the load goes like its power 3/2: clustered twice
     t = np.pi - loss * _NODES**2
-    return float(loss * (2.0 * _NODES * _WEIGHTS) @ contact.load(motion.depth(t))) / np.pi
+    return float(loss * (2.0 * _NODES * _WEIGHTS) @ pressure.total(motion.depth(t))) / np.pi
 
 
-def friction(velocity, amplitude, by_load):
+def friction(velocity, amplitude, by_load, pressure=HERTZ):
     """Mean forward friction over mu times the mean normal load.
 
     velocity >= 0 over omega u_lim (0: the limit), omega the frequency of the oscillation;
@@ -47,15 +48,15 @@ def friction(velocity, amplitude, by_load):
     """
     if amplitude == 0.0:
         return 1.0
-    mean = mean_load(amplitude, by_load)
-    motion = _Motion(velocity, amplitude, by_load)
+    mean = mean_load(amplitude, by_load, pressure)
+    motion = _Motion(velocity, amplitude, by_load, pressure)
     if velocity == 0.0:
-        return float(contact.load(motion.depth(np.array(0.0)))) / mean
+        return float(pressure.total(motion.depth(np.array(0.0)))) / mean
     lacking, before = 0.0, 0.0
     rises = motion.rises()
     for i, (low, high) in enumerate(rises):
         later = rises[i + 1 :]
-        start, end = (float(contact.radius(motion.depth(np.array(t)))) for t in (low, high))
+        start, end = (float(pressure.radius(motion.depth(np.array(t)))) for t in (low, high))
         # springs that come into contact while phi falls, or never lose it, lack what those at its
         # next low do
         lacking += (start - before) * motion.lack(np.array([low]), high, later)[0]
@@ -64,34 +65,36 @@ def friction(velocity, amplitude, by_load):
             when = np.clip(motion.touched(one + width * _NODES), low, high)
             lacking += width * float(_WEIGHTS @ motion.lack(when, high, later))
         before = end
-    return 1.0 - 1.5 * lacking / (2.0 * np.pi) / mean
+    return 1.0 - pressure.stiffness * lacking / (2.0 * np.pi) / mean
 
 
 class _Motion:
     """The indentation over a period, from its least at t = 0 to its largest at pi and back."""
 
-    def __init__(self, velocity, amplitude, by_load):
+    def __init__(self, velocity, amplitude, by_load, pressure):
         self.velocity, self.amplitude, self.by_load = velocity, amplitude, by_load
+        self.pressure = pressure
         self.touch = float(np.arccos(1.0 / amplitude)) if amplitude > 1.0 else 0.0
 
     def depth(self, t):
         height = np.maximum(1.0 - self.amplitude * np.cos(t), 0.0)
-        return contact.of_load(height) if self.by_load else height
+        return self.pressure.of_load(height) if self.by_load else height
 
     def phi(self, t):
         return self.depth(t) - self.velocity * t
 
     def touched(self, radius):
         """When the growing contact has a radius."""
-        depth = radius**2
-        height = contact.load(depth) if self.by_load else depth
+        load = self.pressure.load(radius, radius)
+        height = load if self.by_load else self.pressure.depth(radius)
         return np.arccos(np.clip((1.0 - height) / self.amplitude, -1.0, 1.0))
 
     def _climbs(self, t):
         """Of the sign of phi', and finite where contact begins."""
         height = np.maximum(1.0 - self.amplitude * np.cos(t), 0.0)
-        if self.by_load:
-            return 2.0 / 3.0 * self.amplitude * np.sin(t) - self.velocity * np.cbrt(height)
+        if self.by_load:  # the load grows by the stiffness of the contact as it is
+            radius = self.pressure.radius(self.pressure.of_load(height))
+            return self.amplitude * np.sin(t) - self.velocity * self.pressure.stiffness * radius
         return self.amplitude * np.sin(t) - self.velocity
 
     def rises(self):
@@ -113,7 +116,7 @@ class _Motion:
                 at = _first_not(
                     lambda t, level=level: self.phi(t) < level, np.array([low]), np.array([high])
                 )
-                yield float(contact.radius(self.depth(at))[0])
+                yield float(self.pressure.radius(self.depth(at))[0])
 
     def lack(self, start, high, later):
         """Integral over time of phi - min phi from ``start`` (n,) on.

@@ -36,12 +36,12 @@ class Scene:
     drives: the oscillation alone may drive the contact forward, so that friction may be negative;
     without it the mean force resists, see bounds.py.
     cycles: of the oscillation in a period, along the direction that has more.
-    depth(phase, amplitude): indentation over that of the reference state, >= 0 (0: no contact), of
-    the shape of ``phase``; None: it does not change.
-    deepest, mean_load(amplitude): its largest value, and the mean of the normal load over that of
-    the reference state.
-    whole(velocity, amplitude): mean friction in closed form at nu = 0, velocity 0 as its limit;
-    None: there is none (or choice.py knows it).
+    depth(phase, amplitude, pressure): indentation over that of the reference state, >= 0 (0: no
+    contact), of the shape of ``phase``; None: it does not change.
+    deepest, mean_load(amplitude, pressure): its largest value, and the mean of the normal load over
+    that of the reference state.
+    whole(velocity, amplitude, pressure): mean friction in closed form at nu = 0, velocity 0 as its
+    limit, or None if there is none; None: there never is (or choice.py knows it).
     turns(velocity, amplitude): phases at which the motion turns, from where a lap begins to where
     it ends, half a period later or a whole one.
     focus(velocity, amplitude, pressure): radius where the traction has its kink (None: nowhere
@@ -65,8 +65,8 @@ class Scene:
     half_disc: bool = True
     pressure: Pressure = HERTZ
     depth: Callable | None = None
-    deepest: Callable = lambda amplitude: 1.0
-    mean_load: Callable = lambda amplitude: 1.0
+    deepest: Callable = lambda amplitude, pressure: 1.0
+    mean_load: Callable = lambda amplitude, pressure: 1.0
     whole: Callable | None = None
 
     def creep(self, velocity, amplitude, poisson):

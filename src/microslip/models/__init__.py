@@ -32,7 +32,6 @@ from microslip.models.polar import PolarContact
 from microslip.models.radial import RadialContact
 from microslip.models.rigid import RigidContact
 from microslip.models.slider import slider_contact
-from microslip.pressures import HERTZ
 
 
 @dataclass(frozen=True)
@@ -58,9 +57,9 @@ def _refuse_pulsation(scene, poisson):
 
 
 def _refuse_other_loads(scene, poisson):
-    if scene.depth is None or scene.pressure is HERTZ:
+    if scene.depth is None or scene.pressure.is_indenter:
         return ""
-    return f"the normal load of a sphere may change, not that of {scene.pressure.name}"
+    return f"the load of axisymmetric indenters may change, not that of {scene.pressure.name}"
 
 
 def _any_of(*refusals):

@@ -5,7 +5,7 @@ any axisymmetric indenter); with two components of slip it is an approximation, 
 know nothing of each other.  Springs at -a < x < a have the stiffness G* per length, and the
 indenter gives each the friction bound G* (1 - h(x)) per length (dimensionless), h(x) the share of
 the depth at which the contact radius is x, so that it yields at (1 - h) u_lim: 1 - x^2 for a
-sphere.  At another indentation d these are (d - x^2) u_lim, for |x| < sqrt(d).
+sphere.  At another indentation d these are (d - h) u_lim, where that is above 0.
 """
 
 from __future__ import annotations
@@ -17,9 +17,6 @@ from microslip.models.radial import RadialContact
 from microslip.pressures import HERTZ
 from microslip.rings import make_rings
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
-_NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
-
 
 def mdr_contact(cells, focus=None, pressure=HERTZ):
     """``cells`` springs under an indenter's Pressure on 0 < x < 1 with their mirror images,
@@ -29,8 +26,7 @@ def mdr_contact(cells, focus=None, pressure=HERTZ):
     """
     edges = np.sin(make_rings(cells, focus).psi)
     length = np.diff(edges)
-    x = edges[:-1, None] + length[:, None] * _NODES
-    bound = pressure.G_star * (1.0 - pressure.depth(x)) @ _WEIGHTS
+    bound = 0.5 * np.diff(load_on_springs(pressure, edges, np.ones(1))[0]) / length
     influence = np.eye(cells) / pressure.G_star
-    growth = Growth(edges, load_on_springs, influence_power=0, weight_power=1)
+    growth = Growth(pressure, edges, load_on_springs, influence_power=0, weight_power=1)
     return RadialContact(influence, bound, 2.0 * length, pressure.stiffness, growth)

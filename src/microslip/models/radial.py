@@ -11,7 +11,6 @@ from functools import lru_cache
 import numpy as np
 from scipy.linalg import solve_triangular
 
-from microslip import depth
 from microslip.depth import Growth, load_on_rings
 from microslip.halfspace import ring_influence
 from microslip.hertz import G_STAR
@@ -59,7 +58,7 @@ class RadialContact:
 
         Both are depths (see depth.py), deepest > 0.
         """
-        growth, radius = self.growth, float(depth.radius(deepest))
+        growth, radius = self.growth, float(self.growth.pressure.radius(deepest))
         out = RadialContact(
             self.influence * radius**growth.influence_power,
             self.bound,
@@ -94,8 +93,8 @@ class RadialContact:
         edge: radii (len(depths),) that say which rings are in contact, by default those of the
         contact.  What is outside of these rings counts for the last of them.
         """
-        carried = self.growth.carried(self.growth.edges, depths)
-        edge = depth.radius(depths) if edge is None else edge
+        carried = self.growth.carried(self.growth.pressure, self.growth.edges, depths)
+        edge = self.growth.pressure.radius(depths) if edge is None else edge
         outside = edge[:, None] <= self._joins
         carried[:, 1:-1] = np.where(outside, carried[:, -1:], carried[:, 1:-1])
         return np.maximum(np.diff(carried, axis=1), 0.0) / self.weight
@@ -109,7 +108,7 @@ class RadialContact:
         of the contact is seen as early as makes up for it.
         """
         stages = path.stages.shape[1]
-        ends = depth.radius(path.depth[::stages])
+        ends = self.growth.pressure.radius(path.depth[::stages])
         shift = 0.5 - 1.0 / (1.0 + path.carry[-1].sum())
         seen = ends.copy()
         seen[:-1] += shift * np.diff(ends)  # the last as it is: there the next lap begins
@@ -163,5 +162,5 @@ def _resolved(cells, focus, pressure):
     rings = make_rings(cells, focus, pressure)
     near, _ = ring_influence(rings.psi, 1, False)
     influence = near[0] * (G_STAR / pressure.G_star)
-    growth = Growth(np.sin(rings.psi), load_on_rings, influence_power=1, weight_power=2)
+    growth = Growth(pressure, np.sin(rings.psi), load_on_rings, influence_power=1, weight_power=2)
     return RadialContact(influence, rings.bound, rings.area, pressure.stiffness, growth)

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip import depth as contact_depth
 from microslip import pulsating
 from microslip.motions.elliptic import MOST_CYCLES
 from microslip.scene import Scene, within_rings
@@ -65,25 +64,28 @@ def scene(
         across = amplitude * lateral * np.sin(lateral_cycles * phase + lead)
         return along, across, np.zeros_like(phase)
 
-    def depth(phase, amplitude):
+    def depth(phase, amplitude, pressure):
         height = np.maximum(1.0 + amplitude * share * np.sin(normal_cycles * phase), 0.0)
-        return contact_depth.of_load(height) if by_load else height
+        return pressure.of_load(height) if by_load else height
 
-    def extreme(sign, amplitude):
+    def extreme(sign, amplitude, pressure):
         height = max(1.0 + sign * amplitude * share, 0.0)
-        return float(contact_depth.of_load(height)) if by_load else height
+        return float(pressure.of_load(height)) if by_load else height
 
     def focus(velocity, amplitude, pressure):
         """The edge of what never loses contact."""
-        least = contact_depth.radius(extreme(-1.0, amplitude))
-        return within_rings(least / contact_depth.radius(extreme(1.0, amplitude)))
+        least = pressure.radius(extreme(-1.0, amplitude, pressure))
+        return within_rings(least / pressure.radius(extreme(1.0, amplitude, pressure)))
 
     def turns(velocity, amplitude):
         least = -0.5 * np.pi / normal_cycles
         return tuple(least + np.pi * np.arange(2 if mirrored else 3))
 
-    def whole(velocity, amplitude):
-        return pulsating.friction(velocity / normal_cycles, amplitude * share, by_load)
+    def whole(velocity, amplitude, pressure):
+        if not pressure.is_indenter:
+            return None
+        place = (velocity / normal_cycles, amplitude * share, by_load, pressure)
+        return pulsating.friction(*place)
 
     aside_odd = lateral == 0.0 or lateral_cycles % 2 == 1
     mirrored = normal_cycles % 2 == 0 and aside_odd and (forward == 0.0 or forward_cycles % 2 == 0)
@@ -109,8 +111,10 @@ def scene(
             )
         ),
         depth=depth,
-        deepest=lambda amplitude: extreme(1.0, amplitude),
-        mean_load=lambda amplitude: pulsating.mean_load(amplitude * share, by_load),
+        deepest=lambda amplitude, pressure: extreme(1.0, amplitude, pressure),
+        mean_load=lambda amplitude, pressure: pulsating.mean_load(
+            amplitude * share, by_load, pressure
+        ),
         whole=whole if lateral == forward == 0.0 else None,
     )
 

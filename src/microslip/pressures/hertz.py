@@ -35,6 +35,7 @@ PRESSURE = Pressure(
     bound=_hertz_bound,
     depth=lambda c: c * c,
     radius=lambda depth: np.sqrt(np.maximum(depth, 0.0)),
+    of_load=lambda share: np.cbrt(share) ** 2,
     load=_hertz_load,
     inner_bound=_hertz_bound,
 )

@@ -24,13 +24,16 @@ SMALLEST_RADIUS = 1e-7
 """Radii below this one, over the contact radius, are taken for it: some bounds have no finite value
 at the centre."""
 SMALLEST_CONTACT = 1e-100
+_GRID = np.linspace(0.0, 1.0, 257)
+_CORRECTIONS = 6
 
 
-def indenter(name, summary, depth, slope, radius, flat=0.0):
+def indenter(name, summary, depth, slope, radius, flat=0.0, of_load=None):
     """The Pressure of an axisymmetric indenter.
 
     depth(c): indentation that makes the contact radius c, 1 at 1; slope(c): its derivative, 0 below
-    the radius ``flat`` of a flat end; radius(depth): inverse of depth.  Functions of arrays.
+    the radius ``flat`` of a flat end; radius(depth): inverse of depth; of_load(share): depth of
+    a share of the load, searched for if it is not given.  Functions of arrays.
     """
     # x = flat + (1 - flat) s^2 takes the square root out of slopes that begin at a flat end
     x = flat + (1.0 - flat) * _NODES**2
@@ -65,6 +68,20 @@ def indenter(name, summary, depth, slope, radius, flat=0.0):
         lever = x**2 * np.arccos(np.minimum(r / x, 1.0)) + r * root
         return G_star * np.sum(weight * root * lever * slope(x), axis=-1)
 
+    def searched(share):
+        share = np.asarray(share, float)
+        largest = 1.0
+        while load(largest, largest) < share.max(initial=0.0):
+            largest = 2.0 * largest
+        grid = flat + (largest - flat) * _GRID**2
+        k = np.clip(np.searchsorted(load(grid, grid), share), 1, len(grid) - 1)
+        low, high = grid[k - 1], grid[k]
+        c = 0.5 * (low + high)
+        for _ in range(_CORRECTIONS):  # Newton's; the load grows by the stiffness 2 G* c
+            rise = 2.0 * G_star * c * slope(c)
+            c = np.clip(c - (load(c, c) - share) / np.maximum(rise, 1e-300), low, high)
+        return np.where(share > 0.0, depth(c), 0.0)[()]
+
     def ring_loads(psi):
         return -np.diff(_outside(np.sin(psi), 1.0))
 
@@ -81,6 +98,7 @@ def indenter(name, summary, depth, slope, radius, flat=0.0):
         bound=inner_bound,
         depth=depth,
         radius=radius,
+        of_load=of_load or searched,
         load=load,
         inner_bound=inner_bound,
     )

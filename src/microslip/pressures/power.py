@@ -23,4 +23,5 @@ def pressure(name, exponent):
         depth=lambda c: np.asarray(c, float) ** exponent,
         slope=lambda c: exponent * c ** (exponent - 1.0),
         radius=lambda depth: np.maximum(depth, 0.0) ** (1.0 / exponent),
+        of_load=lambda share: np.maximum(share, 0.0) ** (exponent / (exponent + 1.0)),
     )

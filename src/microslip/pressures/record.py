@@ -38,6 +38,7 @@ class Pressure:
     Of axisymmetric indenters, which touch a full circle and whose contact grows with the load (else
     None); c is a contact radius, other than 1 if the load is not the mean one:
     depth(c): indentation; radius(depth): its inverse, 0 for no contact;
+    of_load(share): the depth at which the load is that share of the mean one;
     load(r, c): load within r; inner_bound(r, c): friction bound; both as functions of arrays that
     broadcast.
     """
@@ -53,6 +54,7 @@ class Pressure:
     inner: float = 0.0
     depth: Callable | None = None
     radius: Callable | None = None
+    of_load: Callable | None = None
     load: Callable | None = None
     inner_bound: Callable | None = None
 
@@ -71,6 +73,11 @@ class Pressure:
         """Force over mu F_z per uniform displacement u_lim without slip, 2 G* a; of a contact that
         does not fill the circle of radius a an upper bound."""
         return 2.0 * self.G_star
+
+    def total(self, depth):
+        """Load of an indenter at a depth >= 0, any shape."""
+        radius = self.radius(depth)
+        return self.load(radius, radius)
 
     def stick_radius(self, displacement):
         """Stick radius after a displacement (u_lim) in one direction from rest: that of the contact
