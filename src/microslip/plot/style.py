@@ -183,4 +183,4 @@ def unit_range(axes: Axes, low: float = 0.0, high: float = 1.0, margin: float = 
     """The same vertical range, with a margin, for every panel that shows shares of mu F_z."""
     span = (high - low) * margin
     axes.set_ylim(low - span, high + span)
-    axes.set_yticks([low + i * (high - low) / 5 for i in range(6)])
+    axes.set_yticks([i / 5 for i in range(round(5 * low), round(5 * high) + 1)])
