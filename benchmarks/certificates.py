@@ -55,6 +55,14 @@ EXTENDED = [
     ("transverse-bore:phase=90", "hertz"),
 ]
 """Motions and pressures besides the paper's."""
+LOADS = [
+    ("normal:lateral=1", "hertz"),
+    ("normal:lateral=1,normal_cycles=2", "hertz"),
+    ("normal:forward=1,phase=90", "hertz"),
+]
+"""Motions with a normal load that changes, a fifth as many points of them."""
+SWEPT_RINGS, SWEPT_STEPS = (96, 192), 4
+"""Rings of their reference, and steps in half a period over that: both are refined together."""
 EXTENDED_VELOCITIES, EXTENDED_AMPLITUDES = (-3.0, 1.0), (-1.3, 0.7)
 FINER = 4
 BASE = {"radial": Resolution(32, 1, 48), "polar": Resolution(24, 12, 32)}
@@ -80,13 +88,17 @@ def sample(points, seed):
 
 def sample_extended(points, seed):
     """The same for other motions and pressures; with the name of the pressure at the end."""
+    return _sample_of(EXTENDED, points, seed) + _sample_of(LOADS, points // 5, seed + 1)
+
+
+def _sample_of(cases, points, seed):
     draw = np.random.default_rng(seed)
     out = []
     for k in range(points):
         velocity = float(f"{10 ** draw.uniform(*EXTENDED_VELOCITIES):.4g}")
         amplitude = float(f"{10 ** draw.uniform(*EXTENDED_AMPLITUDES):.4g}")
-        scene, pressure = EXTENDED[k % len(EXTENDED)]
-        tolerance = TOLERANCES[k // len(EXTENDED) % 2]
+        scene, pressure = cases[k % len(cases)]
+        tolerance = TOLERANCES[k // len(cases) % 2]
         out.append((scene, velocity, amplitude, 0.0, tolerance, pressure))
     return out
 
@@ -97,6 +109,20 @@ def reference(scene, velocity, amplitude, poisson, tolerance, certified, pressur
     model = choose_model(kind, poisson)
     stroke = min(max(kind.stroke(amplitude, poisson), 1.0), 16.0) ** 0.5
     stroke *= kind.cycles
+    if kind.depth is not None:
+        coarse, fine = (
+            simulate(
+                kind,
+                velocity,
+                amplitude,
+                poisson,
+                model,
+                Resolution(rings, 1, 2 * round(0.5 * SWEPT_STEPS * rings * stroke)),
+                PERIODICITY * tolerance,
+            )
+            for rings in SWEPT_RINGS
+        )
+        return fine.mu, abs(fine.mu - coarse.mu)
     base = replace(BASE[model], steps=2 * round(0.5 * BASE[model].steps * stroke))
 
     left = []  # distances from the periodic states
