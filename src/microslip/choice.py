@@ -15,6 +15,7 @@ STEPLESS = ("rigid", "dahl")
 """Models whose march is an evaluation: no step of theirs is solved."""
 RINGS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
 SQUARES = (8, 16, 32, 64, 128)
+STATIC_SQUARES = (16, 24, 32, 48, 64, 96, 128, 192)
 ANGLES = (2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)
 STEPS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768)
 """Levels: rings (squares along a side), angles on half the disc, steps in half a period."""
@@ -217,7 +218,10 @@ def _cells(scene, name, velocity, amplitude, poisson, imposed):
     if imposed is not None:
         return _imposed("cells", imposed)
     if name == "cartesian":  # doubled, since cells come and go at the edge
-        return Axis("cells", SQUARES, 1, (0, 1, 2), regular=True)
+        if velocity == 0.0:  # nothing is marched, so more of them are cheap; as below for rings
+            return Axis("cells", STATIC_SQUARES, 2, (0, 1, 2, 3, 4))
+        base = 2 if _is_slow(scene, velocity, amplitude, poisson) else 1
+        return Axis("cells", SQUARES, base, (base - 1, base, base + 1), regular=True)
     base = RINGS.index(BASE_RINGS)
     if name == "mdr":  # springs know nothing of each other, and slip one by one
         return Axis("cells", RINGS, base + 2, (base + 1, base + 2, base + 3))
@@ -226,12 +230,17 @@ def _cells(scene, name, velocity, amplitude, poisson, imposed):
     if velocity == 0.0:  # a stick zone that is not circular cuts rings, and the corners are steep
         return Axis("cells", RINGS, base + 2, tuple(range(base, base + 6)))
     if scene.rotates:
-        slow = scene.creep(velocity, amplitude, poisson) < SLOW_CREEP
+        slow = _is_slow(scene, velocity, amplitude, poisson)
         up = 1 if slow or SWEEPING_CENTRE[0] <= velocity < SWEEPING_CENTRE[1] else 0
     else:  # few unknowns; and at nu > 0 the front of slip is oval, which rings are not
         up = 2 if poisson > 0.0 else 1
     base, last = base + max(up - 1, 0), base + up
     return Axis("cells", RINGS, base, (last - 2, last - 1, last), regular=True)
+
+
+def _is_slow(scene, velocity, amplitude, poisson):
+    """Whether the layer at the stick radius is thin."""
+    return scene.periodic and 0.0 < scene.creep(velocity, amplitude, poisson) < SLOW_CREEP
 
 
 def _imposed(name, count):
