@@ -251,3 +251,19 @@ def test_labels_of_every_scene_can_be_set(name):
     scene = scene_named(name)
     for label in (scene.velocity_label, scene.amplitude_label):
         MathTextParser("path").parse(mathtext(label))
+
+
+def test_maps_at_several_of_poissons_ratios_show_what_these_change():
+    def at_ratios(title):
+        first = spanning(title)
+        other = first.assign(mu_macro=first.mu_macro - 0.01).assign_coords(poisson=0.5)
+        both = xr.concat([first, other], "poisson", data_vars="all", combine_attrs="override")
+        both["mu_macro_change"] = both.mu_macro - both.mu_macro.isel(poisson=0)
+        return both.assign_attrs(tolerance=1e-3)
+
+    given = {"one": at_ratios("along"), "other": at_ratios("across")}
+    figure = plot.draw("extended_motions", given)
+    check_nothing_cut_off(figure)
+    assert sum("less that" in axes.get_ylabel() for axes in figure.axes) == 2
+    said = words(figure)
+    assert all(part in said for part in ("along", "across", r"$\nu = 0.5$"))

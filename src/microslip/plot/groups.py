@@ -5,7 +5,7 @@ from __future__ import annotations
 import xarray as xr
 from matplotlib.figure import Figure
 
-from microslip.plot import lines, small_maps
+from microslip.plot import lines, poisson, small_maps
 from microslip.plot.data import require, sweep
 
 NEEDED = ("velocity", "mu_macro", "mu_macro_error", "converged")
@@ -13,7 +13,10 @@ NEEDED = ("velocity", "mu_macro", "mu_macro_error", "converged")
 
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
     """Draw maps where every dataset has two amplitudes and two velocities above 0, lines where none
-    has. Raises ValueError for a mixture of both."""
+    has; of maps at several of Poisson's ratios, what these change. Raises ValueError for a mixture
+    of maps and lines."""
+    if all(map(poisson.shows, datasets)) and all(map(small_maps.spans_a_map, datasets)):
+        return poisson.draw(name, *datasets)
     shown = []
     for dataset in datasets:
         key = dataset.attrs.get("title", name)

@@ -10,7 +10,7 @@ from matplotlib.ticker import LogLocator
 
 from microslip.plot import style as look
 from microslip.plot.data import require
-from microslip.plot.maps import MAPS, Map
+from microslip.plot.formulas import mathtext
 
 LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9)
 LOOKS = (
@@ -20,30 +20,37 @@ LOOKS = (
     (look.GREEN, look.DASHDOT),
 )
 """For up to so many of Poisson's ratios, from the smallest on."""
+LETTERS = ("ab", "cd", "ef")
 #: Pale in the middle, and evenly darker on both sides.
 DIVERGING = "PuOr"
 
 
-def draw(name: str, transverse: xr.Dataset, bore: xr.Dataset) -> Figure:
-    """Draw contours for every Poisson's ratio, and beside them what the largest one changes."""
-    figure = look.new_figure(look.DOUBLE, 5.6)
-    rows = zip(
-        (MAPS["fig2_transverse_map"], MAPS["fig6_bore_map"]), (transverse, bore), strict=True
-    )
-    panels = figure.subplots(2, 2, width_ratios=(1.0, 1.15))
-    for (left, right), (plan, dataset), letters in zip(panels, rows, ("ab", "cd"), strict=True):
+def shows(dataset: xr.Dataset) -> bool:
+    """Whether a dataset holds what several of Poisson's ratios change."""
+    return "mu_macro_change" in dataset and dataset.sizes.get("poisson", 1) > 1
+
+
+def draw(name: str, *datasets: xr.Dataset) -> Figure:
+    """Draw a row of panels for each dataset, up to three: contours for every Poisson's ratio, and
+    beside them what the largest one changes."""
+    if len(datasets) > len(LETTERS):
+        raise ValueError(f"figure {name}: {len(datasets)} maps; allowed: up to {len(LETTERS)}")
+    figure = look.new_figure(look.DOUBLE, 2.8 * len(datasets))
+    panels = figure.subplots(len(datasets), 2, width_ratios=(1.0, 1.15), squeeze=False)
+    for (left, right), dataset, letters in zip(panels, datasets, LETTERS, strict=False):
+        key = dataset.attrs.get("title", name)
         needed = ["amplitude", "velocity", "poisson", "mu_macro", "mu_macro_change"]
-        require(name, plan.key, dataset, needed)
+        require(name, key, dataset, needed)
         shown = dataset.isel(velocity=dataset["velocity"].values > 0)
         shown = shown.transpose("poisson", "amplitude", "velocity", ...)
         if not 2 <= shown.sizes["poisson"] <= len(LOOKS):
             raise ValueError(f"figure {name}: two to {len(LOOKS)} of Poisson's ratios are needed")
-        _contours(left, shown, plan, letters[0])
-        _change(right, shown, plan, letters[1])
+        _contours(left, shown, letters[0])
+        _change(right, shown, letters[1])
     return figure
 
 
-def _contours(axes: Axes, shown: xr.Dataset, plan: Map, letter: str) -> None:
+def _contours(axes: Axes, shown: xr.Dataset, letter: str) -> None:
     for (color, linestyle), (_, one) in zip(LOOKS, shown.groupby("poisson"), strict=False):
         values = one["mu_macro"].squeeze("poisson").values
         lines = axes.contour(
@@ -59,11 +66,12 @@ def _contours(axes: Axes, shown: xr.Dataset, plan: Map, letter: str) -> None:
             axes.clabel(lines, fmt="%.1f", fontsize=look.SMALLEST, inline_spacing=3)
         label = rf"$\nu = {look.number(float(one['poisson'].squeeze()))}$"
         axes.plot([], [], color=color, linestyle=linestyle, label=label)
-    _share(axes, shown, plan)
-    look.legend_above(axes, letter, plan.key, ncols=shown.sizes["poisson"])
+    _share(axes, shown)
+    key = "title" if "group" in shown.attrs else "scene"
+    look.legend_above(axes, letter, shown.attrs.get(key, ""), ncols=shown.sizes["poisson"])
 
 
-def _change(axes: Axes, shown: xr.Dataset, plan: Map, letter: str) -> None:
+def _change(axes: Axes, shown: xr.Dataset, letter: str) -> None:
     """Pale is what the errors of the points leave open: twice the tolerance."""
     last = shown.isel(poisson=-1)
     values = np.ma.masked_invalid(last["mu_macro_change"].values)
@@ -74,7 +82,7 @@ def _change(axes: Axes, shown: xr.Dataset, plan: Map, letter: str) -> None:
         last["velocity"].values, last["amplitude"].values, values, levels, cmap=DIVERGING
     )
     filled.set_edgecolor("face")
-    _share(axes, shown, plan)
+    _share(axes, shown)
     ends = (levels[0], -step, step, levels[-1])
     bar = axes.figure.colorbar(filled, ax=axes, pad=0.02, aspect=24, ticks=ends)
     first = look.number(float(shown["poisson"][0]))
@@ -84,10 +92,14 @@ def _change(axes: Axes, shown: xr.Dataset, plan: Map, letter: str) -> None:
     look.letter(axes, letter, "")
 
 
-def _share(axes: Axes, shown: xr.Dataset, plan: Map) -> None:
+def _share(axes: Axes, shown: xr.Dataset) -> None:
     velocity, amplitude = shown["velocity"].values, shown["amplitude"].values
     axes.set_xscale("log")
     axes.set(xlim=(velocity[0], velocity[-1]), ylim=(amplitude[0], amplitude[-1]))
-    axes.set(xlabel=plan.velocity_label, ylabel=plan.amplitude_label)
+    velocity_unit, amplitude_unit = (
+        mathtext(shown[dim].attrs.get("formula", "")) for dim in ("velocity", "amplitude")
+    )
+    axes.set_xlabel(f"forward velocity  {velocity_unit}".strip())
+    axes.set_ylabel(f"amplitude  {amplitude_unit}".strip())
     axes.xaxis.set_major_locator(LogLocator(numticks=12))
     axes.tick_params(which="both", direction="out", top=False, right=False)
