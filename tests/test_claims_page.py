@@ -72,7 +72,7 @@ def test_numbers_are_those_of_the_dataset(page, data):
 def test_the_line_for_a_point_asks_for_that_point(request_):
     program, *words = shlex.split(command(request_))
     assert program == "microslip"
-    options = cli.build_parser().parse_args(words)
+    options = cli.build_parser("point").parse_args(words)
     assert options.scene == request_["scene"]
     amplitude = getattr(options, "amplitude", None)
     given = {n: number(getattr(options, n)) for n in ("velocity", "poisson", "tolerance")}

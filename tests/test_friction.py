@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -19,6 +19,7 @@ def size(q):
     return np.hypot(q[0], q[1])
 
 
+@settings(deadline=None)
 @given(VECTORS, BOUNDS)
 def test_projection_is_the_nearest_point_of_the_disc(q, bound):
     nearest = project(q, bound)
@@ -31,6 +32,7 @@ def test_projection_is_the_nearest_point_of_the_disc(q, bound):
         assert np.all(((q - nearest) * (other - nearest)).sum(axis=0) <= 1e-13)
 
 
+@settings(deadline=None)
 @given(NUMBER, NUMBER, st.floats(0.0, 3.0))
 def test_shrink_is_the_factor_of_the_projection(forward, lateral, bound):
     factor = shrink(forward, lateral, bound)
@@ -59,6 +61,7 @@ def solutions(draw):
     return unit * bound * np.where(slips, 1, share), unit * slips * speed, bound, scale, weight
 
 
+@settings(deadline=None)
 @given(solutions())
 def test_residual_and_gap_vanish_for_solutions(solution):
     q, slip, bound, scale, weight = solution
@@ -91,6 +94,7 @@ def test_residual_counts_every_breach(q, slip, expected):
     assert coulomb_residual(q, slip, one, 7 * one, one) == pytest.approx(7 * expected, rel=1e-12)
 
 
+@settings(deadline=None)
 @given(VECTORS, VECTORS, BOUNDS, BOUNDS, BOUNDS)
 def test_residual_is_positive_unless_solved(q, slip, bound, weight, scale):
     residual = coulomb_residual(q, slip, bound, weight, scale)
@@ -98,6 +102,7 @@ def test_residual_is_positive_unless_solved(q, slip, bound, weight, scale):
     assert residual == pytest.approx(step.sum(), rel=1e-12, abs=1e-14)
 
 
+@settings(deadline=None)
 @given(SEEDS, SEEDS)
 def test_dissipation_gap_bounds_the_energy_error(operator_seed, traction_seed):
     """E(q) = 1/2 <q, A q> - <b, q> exceeds its minimum by at most the gap, and by at least

@@ -119,6 +119,18 @@ def test_what_a_file_must_not_hold_is_told_in_one_line(tmp_path, capsys, text, p
     assert "p.csv" in said
 
 
+def test_a_relative_path_may_count_from_a_folder_of_the_environment(tmp_path, monkeypatch):
+    csv(tmp_path / "p.csv")
+    with pytest.raises(ValueError, match="cannot be read"):
+        pressure_named("file:p.csv")
+    monkeypatch.setenv("MICROSLIP_FILES", str(tmp_path))
+    found = pressure_named("file:p.csv")
+    assert found.name.startswith("file:p.csv,sha256=")
+    monkeypatch.delenv("MICROSLIP_FILES")
+    monkeypatch.chdir(tmp_path)
+    assert pressure_named("file:p.csv").name == found.name  # wherever it was found
+
+
 def test_files_that_are_not_there_or_not_netcdf_are_refused(tmp_path):
     with pytest.raises(ValueError, match="cannot be read: No such file"):
         pressure_named(f"file:{tmp_path / 'none.csv'}")

@@ -138,8 +138,13 @@ def further_files(kind, method="", scene="", pressure="hertz", package=None):
     return sorted((name, package / name) for name in names)
 
 
+@cache
 def _imported_beside(path):
-    """Names of the modules that a file of a subpackage may import from its own folder."""
+    """Names of the modules that a file of a subpackage may import from its own folder, a tuple."""
+    return tuple(_imported(path))
+
+
+def _imported(path):
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             for alias in node.names:
@@ -167,8 +172,13 @@ def digest_of_modules(*names):
 
 def digest_of_files(files):
     """Digest of modules given as (name, Path) pairs; comments and docstrings do not count."""
-    parts = [(name, digest_of_source(path.read_text(encoding="utf-8"))) for name, path in files]
-    return sha256(canonical_json(parts))
+    return sha256(canonical_json([(name, _digest_of_file(path)) for name, path in files]))
+
+
+@cache
+def _digest_of_file(path):
+    """That of its source; most files count for many requests."""
+    return digest_of_source(path.read_text(encoding="utf-8"))
 
 
 def digest_of_source(text):

@@ -2,12 +2,14 @@
 
 CSV: one line a point, forward,lateral,pressure, with a first line that says so; netCDF: a variable
 ``pressure`` with the coordinates ``forward`` and ``lateral``.  The points fill a regular grid, in
-any unit of length and of pressure.
+any unit of length and of pressure.  A relative path counts from the working directory, or from the
+folder that the environment names as MICROSLIP_FILES if there is no such file.
 """
 
 from __future__ import annotations
 
 import hashlib
+import os
 from functools import lru_cache
 from pathlib import Path
 
@@ -32,21 +34,24 @@ def pressure(text):
     said = f"pressure = {'file:' + text!r}"
     if not path:
         raise ValueError(f"{said}: allowed is a file, as in file:measured.csv")
+    there = Path(path)
+    if not there.exists():
+        there = Path(os.environ.get("MICROSLIP_FILES", ""), path)
     try:
-        content = Path(path).read_bytes()
+        content = there.read_bytes()
     except OSError as error:
         raise ValueError(f"{said}: {path} cannot be read: {error.strerror}") from None
     found = hashlib.sha256(content).hexdigest()[:DIGITS]
     if digest not in ("", found):
         raise ValueError(f"{said}: {path} has changed: its sha256 begins with {found}")
-    return _of_content(path, found)
+    return _of_content(path, str(there), found)
 
 
 @lru_cache(maxsize=8)
-def _of_content(path, digest):
+def _of_content(path, there, digest):
     name = f"{NAME}:{path},sha256={digest}"
     try:
-        table = _netcdf(path) if path.endswith((".nc", ".nc4", ".cdf")) else _csv(path)
+        table = _netcdf(there) if path.endswith((".nc", ".nc4", ".cdf")) else _csv(there)
         return of_grid(name, *table)
     except ValueError as error:
         raise ValueError(f"pressure = {NAME + ':' + path!r}: {error}") from None
