@@ -6,14 +6,13 @@ from scipy.integrate import quad
 
 import microslip
 from microslip import any_pressure, config, hertz, indenter_limits, limits, theory
-from microslip.limits_of_pressures import formulas_under
 from microslip.pressures import pressure_named
 
 AMPLITUDE = np.array([0.0, 0.2, 0.6, 0.9, 1.0, 1.5])
 
 
 def value(scene, name, row, *at):
-    return formulas_under(scene, name)[row][1](*(np.array(x) for x in at))
+    return limits.formulas(scene, name)[row][1](*(np.array(x) for x in at))
 
 
 @pytest.mark.parametrize("scene", ["transverse", "bore"])
@@ -48,7 +47,7 @@ def test_the_whole_stick_zone_is_more_than_what_is_left(name):
 
 @pytest.mark.parametrize("name", ["power:exponent=1", "ellipse"])
 def test_the_closed_form_along_a_line_has_both_of_its_limits(name):
-    rows = formulas_under("longitudinal", name)
+    rows = limits.formulas("longitudinal", name)
     whole, static = rows["mu_closed_form"][1], rows["mu_static"][1]
     # springs that all yield at once would give the rigid limit (2/pi) arcsin(v/x)
     rigid = 2.0 / np.pi * np.arcsin(0.3)
@@ -102,9 +101,9 @@ def test_datasets_of_other_pressures_have_them():
 
 
 def test_nothing_is_said_where_nothing_is_known():
-    assert formulas_under("bore", "ring") == {}
-    assert "mu_static" not in formulas_under("transverse", "ring")
-    assert formulas_under("elliptic", "power") == {}
+    assert limits.formulas("bore", "ring") == {}
+    assert "mu_static" not in limits.formulas("transverse", "ring")
+    assert limits.formulas("elliptic", "power") == {}
 
 
 def test_the_limit_of_a_march_is_the_exact_one_and_not_eq_9():

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from functools import partial
-
-from microslip import bounds, hertz, masing, theory
+from microslip import bounds, hertz, theory
 from microslip.accuracy import Axis
 from microslip.method import SHIPPED
 from microslip.models import MODELS
@@ -39,18 +37,15 @@ LONGEST_STROKE = 16.0
 STATIC_LIMITS = {
     "transverse": theory.static_limit_transverse,  # nu = 0
     "zigzag": theory.static_limit_transverse,  # it knows the turning points alone
-    "longitudinal": theory.static_limit_longitudinal,
     "bore": theory.static_limit_bore,  # any nu: it only scales the angle
 }
-LIKE_A_SPHERE = ("transverse", "zigzag", "longitudinal")
-"""Static limits that an elliptic Hertz contact shares with the sphere at nu = 0: its stick zones
-are ellipses of the same shape (Vermeulen and Johnson), and only their size counts."""
 STEADY_STATES = {"continuous-bore": (theory.bore_forward, theory.bore_torque)}  # Eqs 21 and 22
 QUADRATURE = 1e-7
 """Error of Eqs 17 and 18 for another pressure, which may have kinks."""
-WHOLE_MOTIONS = {"longitudinal": masing.longitudinal}
-"""At nu = 0, whatever the velocity and the amplitude."""
 WHOLE_ROUNDING = 1e-9
+OF_RECORD = 1e-8
+"""Error of closed forms by quadrature: of a whole motion, and of what follows from the record of an
+indenter's pressure."""
 LARGEST_DROPS = {
     "longitudinal": bounds.largest_drop_longitudinal,
     "transverse": bounds.largest_drop_transverse,
@@ -129,17 +124,13 @@ def closed_form(scene, velocity, amplitude, poisson, tolerance):
     if scene.whole is not None and poisson == 0.0:
         whole = scene.whole(velocity, amplitude, scene.pressure)
         if whole is not None:
-            return float(whole), None, WHOLE_ROUNDING if velocity > 0.0 else ROUNDING
+            error = WHOLE_ROUNDING if velocity > 0.0 else ROUNDING
+            return float(whole), None, error if scene.pressure.hertzian else OF_RECORD
     if velocity == 0.0:
         known = STATIC_LIMITS.get(scene.name)
         if known is None or (poisson > 0.0 and not scene.rotates):
             return None
         return _static(scene, known, amplitude, poisson)
-    if scene.name in WHOLE_MOTIONS and poisson == 0.0:
-        curve = _loading_curve(scene.pressure)
-        if curve is not None:
-            whole = WHOLE_MOTIONS[scene.name](velocity, amplitude, curve)
-            return float(whole), None, WHOLE_ROUNDING
     largest_drop = LARGEST_DROPS.get(scene.name)
     if largest_drop is not None and not (scene.rotates and scene.pressure is not HERTZ):
         drop = largest_drop(velocity, amplitude)
@@ -164,7 +155,7 @@ def _steady(scene, velocity):
 def _static(scene, of_sphere, amplitude, poisson):
     """The limit of vanishing velocity, if it has a closed form under this pressure."""
     pressure = scene.pressure
-    if pressure is HERTZ or (_is_ellipse(pressure) and scene.name in LIKE_A_SPHERE):
+    if pressure is HERTZ or (pressure.hertzian and not scene.rotates):
         return float(of_sphere(amplitude)), None, ROUNDING
     if not pressure.is_indenter:
         return None
@@ -172,26 +163,9 @@ def _static(scene, of_sphere, amplitude, poisson):
 
     if scene.rotates:
         mu = limits.static_bore(pressure, float(hertz.bore_angle(amplitude, poisson)), poisson)
-    elif scene.name == "longitudinal":
-        mu = limits.static_longitudinal(pressure, amplitude)
     else:
         mu = limits.static_transverse(pressure, amplitude)
-    return mu, None, limits.PRECISION
-
-
-def _loading_curve(pressure):
-    """Force after a displacement from rest, nu = 0, if that is known in closed form, else None."""
-    if pressure is HERTZ or _is_ellipse(pressure):
-        return hertz.mindlin_force
-    if not pressure.is_indenter:
-        return None
-    from microslip.indenter_limits import loading  # only now, as above
-
-    return partial(loading, pressure)
-
-
-def _is_ellipse(pressure):
-    return pressure.name.partition(":")[0] == "ellipse"
+    return mu, None, OF_RECORD
 
 
 def plan(scene, name, velocity, amplitude, poisson, tolerance, cells=None, steps=None):

@@ -255,10 +255,11 @@ def _smooth_ends_gauss(n):
     return t * t * (3.0 - 2.0 * t), w * 6.0 * t * (1.0 - t)
 
 
-def ring_influence(psi, n_modes, coupled, hertz=True):
+def ring_influence(psi, n_modes, coupled, hertz=True, modulus=G_STAR):
     """Mode matrices of a half-space under ring tractions.
 
-    psi: ring edges as angles, r = sin(psi), shape (n + 1,), increasing from 0 to pi/2.
+    psi: ring edges as angles, r = sin(psi), shape (n + 1,), increasing up to pi/2.  modulus: G* in
+    working units.
     Returns (near, far), each of shape (n_modes, n, n) and dimensionless:
     near[m] maps mean ring tractions (force per area) of mode m to ring-averaged displacements of
     mode m (also for mode -m); kappa * far[j] maps conj of the tractions of mode 1 - j to the
@@ -275,7 +276,7 @@ def ring_influence(psi, n_modes, coupled, hertz=True):
     apart = _unit_gauss(APART_POINTS, 1)
     _all_pairs(psi, n_modes, bool(coupled), outer, inner, apart, bool(hertz), near, far)
     area = np.diff(np.sin(psi) ** 2) / 2.0  # Integral r dr of each ring
-    scale = 2.0 / G_STAR * area[None, None, :]
+    scale = 2.0 / modulus * area[None, None, :]
     # the quadrature is not symmetric in its outer and inner variable; the operator is
     near = 0.5 * (near + near.transpose(0, 2, 1)) * scale
     return near, far * scale

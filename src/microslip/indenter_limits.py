@@ -1,5 +1,5 @@
-"""Closed forms for any axisymmetric indenter at Poisson's ratio 0 (bore: any): the curve of first
-loading, and the static limits under an oscillation.
+"""Closed forms for any axisymmetric indenter at Poisson's ratio 0 (bore: any): static limits
+under an oscillation, and torsion.
 
 For a sphere they are those of theory.py, which are quicker and better tested; here they are
 integrals over the record of a pressures.Pressure, to about 1e-8.  Dimensionless as there.
@@ -12,19 +12,7 @@ from scipy.optimize import brentq
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(128)
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
-PRECISION = 1e-8
 SMALLEST_STICK_RADIUS = 1e-6
-
-
-def loading(pressure, displacement):
-    """Tangential force over mu F_z after a displacement (u_lim, >= 0, any shape) from rest.
-
-    What slips at the depth 1 less what would still slip at the depth 1 - u: the load of a smaller
-    contact is missing (Ciavarella 1998, Jaeger 1998).
-    """
-    left = np.maximum(1.0 - np.asarray(displacement, float), 0.0)
-    radius = pressure.radius(left)
-    return 1.0 - np.where(left > 0.0, pressure.load(radius, radius), 0.0)
 
 
 def static_transverse(pressure, amplitude):
@@ -37,8 +25,8 @@ def static_transverse(pressure, amplitude):
     c = float(pressure.radius(1.0 - amplitude))
 
     def left(r):
-        inner = pressure.inner_bound(r, c)
-        return np.sqrt(inner * np.maximum(2.0 * pressure.inner_bound(r, 1.0) - inner, 0.0))
+        inner = pressure.bound(r, c)
+        return np.sqrt(inner * np.maximum(2.0 * pressure.bound(r, 1.0) - inner, 0.0))
 
     return min(_over_the_circle(left, c, _kink(pressure)), 1.0)
 
@@ -46,11 +34,6 @@ def static_transverse(pressure, amplitude):
 def static_stick_zone(pressure, stick_radius):
     """Share of the load inside a stick radius, 0..1 (Eq 9; any shape)."""
     return pressure.load(stick_radius, 1.0)
-
-
-def static_longitudinal(pressure, amplitude):
-    """Static friction under oscillation along the forward direction, nu = 0; amplitude >= 0."""
-    return float(1.0 - loading(pressure, amplitude))
 
 
 def torsion_angle(pressure, stick_radius, poisson=0.0):
@@ -63,7 +46,7 @@ def torsion_angle(pressure, stick_radius, poisson=0.0):
     end = np.arccosh(1.0 / stick_radius)
     eta = end * np.sin(0.5 * np.pi * _NODES)  # the bound falls like a root at the edge
     step = end * 0.5 * np.pi * np.cos(0.5 * np.pi * _NODES) * _WEIGHTS
-    bound = pressure.inner_bound(np.minimum(stick_radius * np.cosh(eta), 1.0), 1.0)
+    bound = pressure.bound(np.minimum(stick_radius * np.cosh(eta), 1.0), 1.0)
     return 2.0 / ((2.0 - poisson) * pressure.G_star) * float(np.sum(step * bound))
 
 
@@ -91,7 +74,7 @@ def torsion_traction(pressure, r, stick_radius):
     theta = end * np.sin(0.5 * np.pi * _NODES)
     step = end * 0.5 * np.pi * np.cos(0.5 * np.pi * _NODES) * _WEIGHTS
     t = np.minimum(np.sqrt(stick_radius**2 + inside * np.tan(theta) ** 2), 1.0)
-    return 2.0 / np.pi * r[..., 0] * np.sum(step * pressure.inner_bound(t, 1.0) / t, axis=-1)
+    return 2.0 / np.pi * r[..., 0] * np.sum(step * pressure.bound(t, 1.0) / t, axis=-1)
 
 
 def static_bore(pressure, angle, poisson=0.0):
@@ -104,7 +87,7 @@ def static_bore(pressure, angle, poisson=0.0):
         return c
 
     def left(r):
-        bound = pressure.inner_bound(r, 1.0)
+        bound = pressure.bound(r, 1.0)
         share = np.clip(torsion_traction(pressure, r, c) / bound, 0.0, 1.0)
         return 2.0 / np.pi * bound * np.arccos(share)
 

@@ -78,7 +78,7 @@ def formulas(scene, pressure="hertz"):
         return LIMITS.get(scene, {})
     from .limits_of_pressures import formulas_under  # what it needs takes a while to load
 
-    return formulas_under(scene, pressure)
+    return formulas_under(scene, pressure, LIMITS.get(scene, {}))
 
 
 def variables(sweep):

@@ -12,77 +12,54 @@ from . import any_pressure, hertz, indenter_limits, masing, theory
 from .pressures import pressure_named
 
 _ZONE = "static friction of the whole stick zone (Eq 9)"
-_EXACT = "static friction, exact limit of mu_macro for velocity to 0"
-_EXACT_AT_0 = f"{_EXACT} at Poisson's ratio 0"
-_ANY = {
-    "mu_large_amplitude": (
-        ("velocity", "amplitude"),
-        theory.large_amplitude_transverse,
-        "mu_macro at large amplitude, rigid slider (Eq 6)",
-    ),
-    "mu_static_slider": (
-        ("amplitude",),
-        theory.static_slider,
-        "static friction of an elastic slider (Eq 7)",
-    ),
-}
-"""Of a transverse oscillation, whatever the pressure."""
+ANY_PRESSURE = ("mu_large_amplitude", "mu_static_slider")
+"""Limits of a transverse oscillation that hold whatever the pressure (Eqs 6 and 7)."""
 
 
-def formulas_under(scene, name):
-    """What theory says about a scene under the pressure of this name, as a row of limits.LIMITS."""
+def formulas_under(scene, name, of_sphere):
+    """What theory says about a scene under the pressure of this name, as a row of limits.LIMITS;
+    of_sphere: that row, for Hertz's pressure."""
     pressure = pressure_named(name)
     if scene == "continuous-bore" and pressure.is_round:
         return _steady(pressure)
-    found = dict(_ANY) if scene == "transverse" else {}
+    found = {key: of_sphere[key] for key in ANY_PRESSURE if scene == "transverse"}
+    if scene == "longitudinal" and pressure.loading is not None:
+        return _along(pressure.loading, of_sphere)
+    if "mu_static" not in of_sphere:
+        return found
+    dims, exact, said = of_sphere["mu_static"]
     if pressure.is_indenter:
-        return found | _of_indenter(scene, pressure)
-    if name.partition(":")[0] == "ellipse":
-        return found | _of_ellipse(scene)
-    return found
+        zone, exact = _of_indenter(scene, pressure)
+    elif pressure.hertzian and scene != "bore":
+        zone = theory.static_transverse  # an ellipse of the same shape carries as much
+    else:
+        return found
+    found["mu_static_stick_zone"] = (dims, _each(zone), _ZONE)
+    return found | {"mu_static": (dims, _each(exact), said)}
 
 
 def _of_indenter(scene, pressure):
+    """Static friction of the whole stick zone, and the exact one, as functions of the amplitude."""
     if scene == "bore":
-        return _rows(
+        return (
             lambda a: _load_inside(pressure, _left_by_torsion(pressure, a)),
             lambda a: indenter_limits.static_bore(pressure, float(hertz.bore_angle(a))),
-            _EXACT,
         )
-    if scene in ("transverse", "zigzag"):
-        return _rows(
-            lambda a: _load_inside(pressure, pressure.stick_radius(a)),
-            partial(indenter_limits.static_transverse, pressure),
-            _EXACT_AT_0,
-        )
-    if scene == "longitudinal":
-        return _along(partial(indenter_limits.loading, pressure))
-    return {}
+    return (
+        lambda a: _load_inside(pressure, pressure.stick_radius(a)),
+        partial(indenter_limits.static_transverse, pressure),
+    )
 
 
-def _of_ellipse(scene):
-    """Its stick zone is an ellipse of the same shape, which carries the same share of the load."""
-    if scene in ("transverse", "zigzag"):
-        exact = theory.static_limit_transverse
-        return _rows(theory.static_transverse, exact, _EXACT_AT_0)
-    return _along(hertz.mindlin_force) if scene == "longitudinal" else {}
-
-
-def _along(curve):
+def _along(curve, of_sphere):
+    dims, _, said = of_sphere["mu_static"]
     return {
         "mu_closed_form": (
             ("velocity", "amplitude"),
             lambda velocity, amplitude: masing.longitudinal(velocity, amplitude, curve),
             "mu_macro in closed form at Poisson's ratio 0 (first loading with Masing's memory)",
         ),
-        "mu_static": (("amplitude",), lambda a: 1.0 - curve(a), _EXACT_AT_0),
-    }
-
-
-def _rows(zone, exact, said):
-    return {
-        "mu_static_stick_zone": (("amplitude",), _each(zone), _ZONE),
-        "mu_static": (("amplitude",), _each(exact), said),
+        "mu_static": (dims, lambda a: 1.0 - curve(a), said),
     }
 
 

@@ -35,3 +35,19 @@ def unknown(text, what, numbers, known):
         return ""
     allowed = ", ".join(known) or "none"
     return f"{what} = {text!r}: unknown number {strange[0]}; allowed: {allowed}"
+
+
+def refuse_shares(text, what, shares):
+    """Raise ValueError, beginning with ``what``, for a share outside 0..1; shares: dict."""
+    for key, share in shares.items():
+        if not 0.0 <= share <= 1.0:
+            raise ValueError(f"{what} = {text!r}: {key} = {share:g}: allowed is a share in 0..1")
+
+
+def refuse_counts(text, what, counts, most):
+    """... for what is no whole number from 1 to ``most``; counts: dict."""
+    for key, count in counts.items():
+        if count != round(count) or not 1 <= count <= most:
+            raise ValueError(
+                f"{what} = {text!r}: {key} = {count:g}: allowed is a whole number from 1 to {most}"
+            )

@@ -41,7 +41,7 @@ class Scene:
     deepest, mean_load(amplitude, pressure): its largest value, and the mean of the normal load over
     that of the reference state.
     whole(velocity, amplitude, pressure): mean friction in closed form at nu = 0, velocity 0 as its
-    limit, or None if there is none; None: there never is (or choice.py knows it).
+    limit, or None if there is none; None: there never is.
     turns(velocity, amplitude): phases at which the motion turns, from where a lap begins to where
     it ends, half a period later or a whole one.
     focus(velocity, amplitude, pressure): radius where the traction has its kink (None: nowhere

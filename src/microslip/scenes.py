@@ -37,7 +37,7 @@ def find(folder):
         name = file.name.replace("_", "-")
         if hasattr(module, "SCENE"):
             SCENES[name] = module.SCENE
-        else:
+        elif hasattr(module, "DEFAULTS"):
             FAMILIES[name] = module
 
 

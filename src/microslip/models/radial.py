@@ -13,7 +13,6 @@ from scipy.linalg import solve_triangular
 
 from microslip.depth import Growth, load_on_rings
 from microslip.halfspace import ring_influence
-from microslip.hertz import G_STAR
 from microslip.models import contact, ring_march
 from microslip.models.ring_factors import cholesky
 from microslip.pressures import HERTZ
@@ -160,7 +159,6 @@ class RadialContact:
 def _resolved(cells, focus, pressure):
     """Shared by runs that differ in their motion only: a contact never changes."""
     rings = make_rings(cells, focus, pressure)
-    near, _ = ring_influence(rings.psi, 1, False)
-    influence = near[0] * (G_STAR / pressure.G_star)
+    near, _ = ring_influence(rings.psi, 1, False, modulus=pressure.G_star)
     growth = Growth(pressure, np.sin(rings.psi), load_on_rings, influence_power=1, weight_power=2)
-    return RadialContact(influence, rings.bound, rings.area, pressure.stiffness, growth)
+    return RadialContact(near[0], rings.bound, rings.area, pressure.stiffness, growth)

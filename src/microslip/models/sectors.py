@@ -17,7 +17,6 @@ from numba import njit
 
 from microslip.friction import JIT
 from microslip.halfspace import ring_influence
-from microslip.hertz import G_STAR
 from microslip.pressures import HERTZ
 from microslip.rings import make_rings
 
@@ -210,8 +209,7 @@ def influence_sectors(cells, angles, rotates, poisson, focus, pressure=HERTZ):
     """The operator (a Sectors that keeps its modes) and the self-influence of each ring (N,)."""
     kappa = poisson / (2.0 - poisson)
     rings = make_rings(cells, focus, pressure)
-    near, far = ring_influence(rings.psi, angles + 1, poisson > 0.0)
-    near, far = near * (G_STAR / pressure.G_star), far * (G_STAR / pressure.G_star)
+    near, far = ring_influence(rings.psi, angles + 1, poisson > 0.0, modulus=pressure.G_star)
     ratio = rings.area[:, None] / rings.area[None, :]  # the transpose in the area-weighted product
     groups = _waves(angles, rotates, poisson > 0.0)
     z = len(groups[0])

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from microslip import parameters
 from microslip.path import HALF_PERIOD
 from microslip.scene import Scene, stick_focus
 
@@ -33,17 +34,11 @@ _LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
 def scene(name, forward, lateral, phase, forward_cycles, lateral_cycles):
     """The Scene of these numbers; raises ValueError for shares below 0, none at all, and cycles
     that are no whole numbers."""
-    for key, share in (("forward", forward), ("lateral", lateral)):
-        if not 0.0 <= share <= 1.0:
-            raise ValueError(f"scene = {name!r}: {key} = {share:g}: allowed is a share in 0..1")
+    parameters.refuse_shares(name, "scene", {"forward": forward, "lateral": lateral})
     if max(forward, lateral) == 0.0:
         raise ValueError(f"scene = {name!r}: allowed is forward or lateral above 0")
-    for key, count in (("forward_cycles", forward_cycles), ("lateral_cycles", lateral_cycles)):
-        if count != round(count) or not 1 <= count <= MOST_CYCLES:
-            raise ValueError(
-                f"scene = {name!r}: {key} = {count:g}: allowed is a whole number from 1 to "
-                f"{MOST_CYCLES}"
-            )
+    cycles = {"forward_cycles": forward_cycles, "lateral_cycles": lateral_cycles}
+    parameters.refuse_counts(name, "scene", cycles, MOST_CYCLES)
     lead = np.deg2rad(phase % 360.0)
 
     def displacement(phase, velocity, amplitude, poisson):

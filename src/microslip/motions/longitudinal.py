@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from microslip import masing
 from microslip.motions import transverse
 
 
@@ -19,6 +20,13 @@ def turns(velocity, amplitude):
     return -back, back, 2.0 * np.pi - back
 
 
+def whole(velocity, amplitude, pressure):
+    """First loading with Masing's memory, where the curve of first loading is known."""
+    if pressure.loading is None:
+        return None
+    return masing.longitudinal(velocity, amplitude, pressure.loading)
+
+
 SCENE = replace(
     transverse.SCENE,
     name="longitudinal",
@@ -27,4 +35,5 @@ SCENE = replace(
     half_period_mirror=False,
     turns=turns,
     amplitude_label="x0 / u_lim",
+    whole=whole,
 )

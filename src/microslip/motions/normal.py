@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip import pulsating
+from microslip import parameters, pulsating
 from microslip.motions.elliptic import MOST_CYCLES
 from microslip.scene import Scene, within_rings
 
@@ -120,18 +120,11 @@ def scene(
 
 
 def _check(name, shares, cycles):
-    for key, share in shares.items():
-        if not 0.0 <= share <= 1.0:
-            raise ValueError(f"scene = {name!r}: {key} = {share:g}: allowed is a share in 0..1")
+    parameters.refuse_shares(name, "scene", shares)
     if shares["load"] == shares["indentation"] == 0.0:
         raise ValueError(f"scene = {name!r}: allowed is load or indentation above 0")
     if shares["indentation"] > 0.0 and shares["load"] != DEFAULTS["load"]:
         raise ValueError(
             f"scene = {name!r}: load = {shares['load']:g}: allowed is no load beside an indentation"
         )
-    for key, count in cycles.items():
-        if count != round(count) or not 1 <= count <= MOST_CYCLES:
-            raise ValueError(
-                f"scene = {name!r}: {key} = {count:g}: allowed is a whole number from 1 to "
-                f"{MOST_CYCLES}"
-            )
+    parameters.refuse_counts(name, "scene", cycles, MOST_CYCLES)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip import hertz
+from microslip import hertz, parameters
 from microslip.scene import Scene, stick_focus, within_rings
 
 SUMMARY = "sliding forward while oscillating sideways and in rotation"
@@ -23,9 +23,7 @@ DEFAULTS = {"lateral": 1.0, "angle": 1.0, "phase": 0.0}
 
 def scene(name, lateral, angle, phase):
     """The Scene of these numbers; raises ValueError for shares below 0, and none at all."""
-    for key, share in (("lateral", lateral), ("angle", angle)):
-        if not 0.0 <= share <= 1.0:
-            raise ValueError(f"scene = {name!r}: {key} = {share:g}: allowed is a share in 0..1")
+    parameters.refuse_shares(name, "scene", {"lateral": lateral, "angle": angle})
     if max(lateral, angle) == 0.0:
         raise ValueError(f"scene = {name!r}: allowed is lateral or angle above 0")
     lead = np.deg2rad(phase % 360.0) if lateral > 0.0 else 0.0

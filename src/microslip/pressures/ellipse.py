@@ -34,6 +34,8 @@ def pressure(name, ratio, across):
         G_star=1.5 / np.pi * float(ellipk(1.0 - ratio**2)),
         torque=_torque(ratio),
         cell_loads=lambda cells: ellipse_loads(cells, axes),
+        loading=hertz.mindlin_force,
+        hertzian=True,
     )
 
 

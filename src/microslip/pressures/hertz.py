@@ -37,5 +37,6 @@ PRESSURE = Pressure(
     radius=lambda depth: np.sqrt(np.maximum(depth, 0.0)),
     of_load=lambda share: np.cbrt(share) ** 2,
     load=_hertz_load,
-    inner_bound=_hertz_bound,
+    loading=hertz.mindlin_force,
+    hertzian=True,
 )

@@ -48,10 +48,13 @@ def indenter(name, summary, depth, slope, radius, flat=0.0, of_load=None):
         c = c[..., None]
         first = np.arccosh(np.maximum(np.minimum(flat, c) / r, 1.0))
         length = np.arccosh(np.maximum(c / r, 1.0)) - first
-        eta = first + length * _NODES**2
-        return r * np.cosh(eta), length * 2.0 * _NODES * _WEIGHTS, r, r * np.sinh(eta)
+        # clustered at both ends: at a flat end the slope begins like a root, at the edge of a
+        # contact that is nearly flat all of it rises
+        eta = first + length * np.sin(0.5 * np.pi * _NODES) ** 2
+        step = length * 0.5 * np.pi * np.sin(np.pi * _NODES) * _WEIGHTS
+        return r * np.cosh(eta), step, r, r * np.sinh(eta)
 
-    def inner_bound(r, c=1.0):
+    def bound(r, c=1.0):
         x, weight, _, _ = rule(r, c)
         beyond = np.asarray(r, float) >= c
         return np.where(beyond, 0.0, G_star / np.pi * np.sum(weight * slope(x), axis=-1))[()]
@@ -67,6 +70,13 @@ def indenter(name, summary, depth, slope, radius, flat=0.0, of_load=None):
         x, weight, r, root = rule(r, 1.0)
         lever = x**2 * np.arccos(np.minimum(r / x, 1.0)) + r * root
         return G_star * np.sum(weight * root * lever * slope(x), axis=-1)
+
+    def loading(displacement):
+        """What slips at the depth 1 less what would still slip at the depth 1 - u: the load of a
+        smaller contact is missing (Ciavarella 1998, Jaeger 1998)."""
+        left = np.maximum(1.0 - np.asarray(displacement, float), 0.0)
+        c = radius(left)
+        return 1.0 - np.where(left > 0.0, load(c, c), 0.0)
 
     def searched(share):
         share = np.asarray(share, float)
@@ -95,10 +105,10 @@ def indenter(name, summary, depth, slope, radius, flat=0.0, of_load=None):
         torque=float(moment_outside(0.0)),
         cell_loads=lambda cells: round_loads(cells, ring_loads),
         ring_means=lambda psi: of_radii(ring_loads, ring_moments, psi),
-        bound=inner_bound,
+        bound=bound,
         depth=depth,
         radius=radius,
         of_load=of_load or searched,
         load=load,
-        inner_bound=inner_bound,
+        loading=loading,
     )

@@ -18,8 +18,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-STICK_NOWHERE = 0.0
-
 
 @dataclass(frozen=True)
 class Pressure:
@@ -33,14 +31,16 @@ class Pressure:
     Of contacts whose pressure depends on the radius alone, else None:
     ring_means(psi) -> (bound, lever): mean friction bound of the rings between r = sin(psi), and
     mean lever arm of a traction shaped like it, (n,) each, from shape (n + 1,);
-    bound(r): friction bound mu p; inner: radius of the hole in the middle.
+    bound(r): friction bound mu p, of arrays; inner: radius of the hole in the middle.
 
     Of axisymmetric indenters, which touch a full circle and whose contact grows with the load (else
     None); c is a contact radius, other than 1 if the load is not the mean one:
     depth(c): indentation; radius(depth): its inverse, 0 for no contact;
     of_load(share): the depth at which the load is that share of the mean one;
-    load(r, c): load within r; inner_bound(r, c): friction bound; both as functions of arrays that
-    broadcast.
+    load(r, c): load within r; both it and bound(r, c) are functions of arrays that broadcast;
+    loading(u): tangential force over mu F_z after a displacement u_lim >= 0 in one direction from
+    rest, nu = 0, of any shape; also of elliptic Hertz contacts (hertzian), whose stick zones are
+    ellipses of the same shape (Vermeulen and Johnson), so that they share it with the sphere.
     """
 
     name: str
@@ -56,7 +56,8 @@ class Pressure:
     radius: Callable | None = None
     of_load: Callable | None = None
     load: Callable | None = None
-    inner_bound: Callable | None = None
+    loading: Callable | None = None
+    hertzian: bool = False
 
     @property
     def is_round(self):
@@ -86,7 +87,7 @@ class Pressure:
         if self.depth is None:
             return None
         if displacement >= 1.0:
-            return STICK_NOWHERE
+            return 0.0
         return float(self.radius(1.0 - displacement))
 
 
