@@ -103,8 +103,7 @@ def _probe(request):
     from .scenes import scene_named
 
     place = _place(request)
-    scene = scene_named(place["scene"], place.get("pressure", "hertz"))
-    model = choose_model(scene, place["poisson"], request["model"])
+    model = choose_model(scene_named(place["scene"]), place["poisson"], request["model"])
     reason = trial.applies(place["scene"], place["poisson"], model, request["method"])
     if reason:
         return {"applies": False, "converged": False, "reason": reason}
