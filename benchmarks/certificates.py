@@ -6,7 +6,7 @@
 Velocity log-uniform in 1e-4..1e2, amplitude log-uniform in 1e-2..1e2, both oscillating scenes,
 nu one of 0, 0.3, 0.5; tolerances 1e-2, 1e-3 and 1e-4 in turn.  With --extended other motions and
 pressures take their turns, with velocity in 1e-3..10, amplitude in 0.05..5, nu 0, tolerances 1e-2
-and 1e-3.  A point is covered if
+and 1e-3; and the static limit of loops, at velocity 0.  A point is covered if
 
     |mu_macro - reference| <= mu_macro_error <= tolerance.
 
@@ -37,6 +37,7 @@ from microslip.choice import choose_model
 from microslip.motion import Resolution
 from microslip.scenes import scene_named
 from microslip.simulate import simulate
+from microslip.static_run import simulate_static
 
 TOLERANCES = (1e-2, 1e-3, 1e-4)
 POISSON = (0.0, 0.3, 0.5)
@@ -61,6 +62,14 @@ LOADS = [
     ("normal:forward=1,phase=90", "hertz"),
 ]
 """Motions with a normal load that changes, a fifth as many points of them."""
+LIMITS = [
+    *((scene, "hertz") for scene, _ in EXTENDED[-5:-2]),
+    *LOADS,
+    ("elliptic", "power:exponent=1"),
+    ("elliptic:forward=0.5,phase=30", "punch"),
+]
+"""Motions whose static limit takes a whole lap, as many."""
+LIMIT_AMPLITUDES = (-1.3, 0.1)
 SWEPT_RINGS, SWEPT_STEPS = (96, 192), 4
 """Rings of their reference, and steps in half a period over that: both are refined together."""
 EXTENDED_VELOCITIES, EXTENDED_AMPLITUDES = (-3.0, 1.0), (-1.3, 0.7)
@@ -88,15 +97,17 @@ def sample(points, seed):
 
 def sample_extended(points, seed):
     """The same for other motions and pressures; with the name of the pressure at the end."""
-    return _sample_of(EXTENDED, points, seed) + _sample_of(LOADS, points // 5, seed + 1)
+    few = points // 5
+    limits = _sample_of(LIMITS, few, seed + 2, None, LIMIT_AMPLITUDES)
+    return _sample_of(EXTENDED, points, seed) + _sample_of(LOADS, few, seed + 1) + limits
 
 
-def _sample_of(cases, points, seed):
+def _sample_of(cases, points, seed, velocities=EXTENDED_VELOCITIES, amplitudes=EXTENDED_AMPLITUDES):
     draw = np.random.default_rng(seed)
     out = []
     for k in range(points):
-        velocity = float(f"{10 ** draw.uniform(*EXTENDED_VELOCITIES):.4g}")
-        amplitude = float(f"{10 ** draw.uniform(*EXTENDED_AMPLITUDES):.4g}")
+        velocity = float(f"{10 ** draw.uniform(*velocities):.4g}") if velocities else 0.0
+        amplitude = float(f"{10 ** draw.uniform(*amplitudes):.4g}")
         scene, pressure = cases[k % len(cases)]
         tolerance = TOLERANCES[k // len(cases) % 2]
         out.append((scene, velocity, amplitude, 0.0, tolerance, pressure))
@@ -109,17 +120,17 @@ def reference(scene, velocity, amplitude, poisson, tolerance, certified, pressur
     model = choose_model(kind, poisson)
     stroke = min(max(kind.stroke(amplitude, poisson), 1.0), 16.0) ** 0.5
     stroke *= kind.cycles
+
+    def run(resolution):
+        if velocity == 0.0:
+            share = PERIODICITY * tolerance
+            return simulate_static(kind, amplitude, poisson, model, resolution, share)
+        where = (kind, velocity, amplitude, poisson)
+        return simulate(*where, model, resolution, PERIODICITY * tolerance)
+
     if kind.depth is not None:
         coarse, fine = (
-            simulate(
-                kind,
-                velocity,
-                amplitude,
-                poisson,
-                model,
-                Resolution(rings, 1, 2 * round(0.5 * SWEPT_STEPS * rings * stroke)),
-                PERIODICITY * tolerance,
-            )
+            run(Resolution(rings, 1, 2 * round(0.5 * SWEPT_STEPS * rings * stroke)))
             for rings in SWEPT_RINGS
         )
         return fine.mu, abs(fine.mu - coarse.mu)
@@ -129,9 +140,9 @@ def reference(scene, velocity, amplitude, poisson, tolerance, certified, pressur
 
     def mean(**changes):
         at = replace(base, **changes)
-        run = simulate(kind, velocity, amplitude, poisson, model, at, PERIODICITY * tolerance)
-        left.append(run.distance)
-        return run.mu
+        found = run(at)
+        left.append(found.distance)
+        return found.mu
 
     at_base, mu, uncertainty = mean(), 0.0, 0.0
     used = Resolution(certified.cells, certified.angles, certified.steps_per_period // 2)

@@ -13,7 +13,8 @@ from microslip.choice import choose_model, closed_form, plan
 from microslip.models import MODELS
 from microslip.motion import Resolution
 from microslip.scenes import BORE, CONTINUOUS_BORE, SCENES, TRANSVERSE
-from microslip.simulate import simulate, simulate_static
+from microslip.simulate import simulate
+from microslip.static_run import simulate_static
 
 TURNING = {"rigid", "polar", "cartesian"}
 WITH_CELLS = {"mdr", "radial", "polar", "cartesian"}

@@ -81,5 +81,3 @@ def test_what_is_no_motion_is_refused(name, problem):
 def test_models_that_know_half_the_contact_only_say_so():
     with pytest.raises(ValueError, match="half of the contact does not tell the other half"):
         microslip.solve("transverse-bore", 0.1, 0.5, model="polar")
-    with pytest.raises(ValueError, match="velocity = 0.0"):
-        microslip.solve("transverse-bore:phase=90", 0.0, 0.5)

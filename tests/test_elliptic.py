@@ -105,11 +105,6 @@ def test_the_command_line_takes_a_path(capsys):
     assert capsys.readouterr().err.startswith("microslip point elliptic: --path = 'elliptic:width")
 
 
-def test_the_static_limit_of_a_loop_is_refused():
-    with pytest.raises(ValueError, match="velocity = 0.0: .* on a line"):
-        microslip.solve(CIRCLE, 0.0, 0.5)
-
-
 def test_every_point_of_a_circle_slips_as_far_as_the_sphere():
     found = microslip.period(CIRCLE, 0.1, 0.6)
     assert found.slip_forward[1:].sum(axis=0) == pytest.approx(0.2 * np.pi, rel=2e-3)

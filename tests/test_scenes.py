@@ -10,7 +10,7 @@ from microslip import motions, scenes, theory
 from microslip.cli import main
 from microslip.motion import Motion, Resolution
 from microslip.scenes import SCENES, TRANSVERSE, ZIGZAG
-from microslip.simulate import simulate_static
+from microslip.static_run import simulate_static
 
 PERIODIC = [scene for scene in SCENES.values() if scene.periodic]
 MIRRORED = [scene for scene in PERIODIC if scene.half_period_mirror]

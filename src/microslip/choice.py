@@ -8,6 +8,7 @@ from microslip.method import SHIPPED
 from microslip.models import MODELS
 from microslip.motion import Resolution
 from microslip.pressures import HERTZ
+from microslip.static import at_turning_points
 
 STEPLESS = ("rigid", "dahl")
 """Models whose march is an evaluation: no step of theirs is solved."""
@@ -174,7 +175,8 @@ def plan(scene, name, velocity, amplitude, poisson, tolerance, cells=None, steps
     name: of the model; cells, steps (in a full period): impose a resolution instead.
     """
     resolved, axes = MODELS[name].axes(scene), []
-    if scene.depth is not None and velocity > 0.0 and cells is None and steps is None:
+    marches = scene.periodic and (velocity > 0.0 or not at_turning_points(scene))
+    if scene.depth is not None and marches and cells is None and steps is None:
         axis = _sweeping(scene, amplitude, poisson, tolerance)
         return Resolution(cells=1, angles=1, steps=STEPS[0]), (axis,)
     if "cells" in resolved:
@@ -183,7 +185,7 @@ def plan(scene, name, velocity, amplitude, poisson, tolerance, cells=None, steps
         # only nu > 0 makes tractions of a translation depend on the angle, and only a little
         base = ANGLES.index(BASE_ANGLES) + (not scene.periodic) - (not scene.rotates)
         axes.append(Axis("angles", ANGLES, base, (base - 1, base, base + 1)))
-    if scene.periodic and velocity > 0.0:
+    if marches:
         axes.append(_steps(scene, amplitude, poisson, tolerance, steps))
     return Resolution(cells=1, angles=1, steps=STEPS[0]), tuple(axes)
 
@@ -201,6 +203,8 @@ def _cells(scene, name, velocity, amplitude, poisson, imposed):
         return Axis("cells", RINGS, base + 2, (base + 1, base + 2, base + 3))
     if not scene.periodic:  # the centre of rotation stays where it is, and only fine rings see it
         return Axis("cells", RINGS, base + 1, (base, base + 1, base + 2), regular=True)
+    if velocity == 0.0 and not at_turning_points(scene):  # each run finds the edge by itself
+        return Axis("cells", RINGS, base + 3, tuple(range(base + 2, base + 6)))
     if velocity == 0.0:  # a stick zone that is not circular cuts rings, and the corners are steep
         return Axis("cells", RINGS, base + 2, tuple(range(base, base + 6)))
     if scene.rotates:

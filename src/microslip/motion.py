@@ -87,10 +87,12 @@ def _focus_strength(creep):
     return float(np.clip(1.0 - layer, WEAKEST_FOCUS, STRONGEST_FOCUS))
 
 
-def build_contact(motion, model, resolution):
-    """The contact, its rings gathered where the slip starts: the closer, the slower the creep."""
+def build_contact(motion, model, resolution, focus=None):
+    """The contact, its rings gathered where the slip starts, the closer, the slower the creep, or
+    at a rings.Focus."""
     scene = motion.scene
-    focus = radius = scene.focus(motion.velocity, motion.amplitude, scene.pressure)
+    radius = None if focus else scene.focus(motion.velocity, motion.amplitude, scene.pressure)
+    focus = focus or radius
     if radius is not None and scene.periodic:
         creep = motion.creep
         focus = Focus(radius, _focus_strength(creep) if creep > 0.0 else STATIC_FOCUS)

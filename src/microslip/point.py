@@ -13,7 +13,8 @@ from microslip.approach import run_safely
 from microslip.choice import choose_model, closed_form, method_refusal, no_vibration, plan
 from microslip.methods import SHIPPED, method_named, missing
 from microslip.scenes import scene_named
-from microslip.simulate import simulate, simulate_static
+from microslip.simulate import simulate
+from microslip.static_run import simulate_static
 
 PERIODICITY_SHARE = 0.07
 """Share of the tolerance that the distance from the periodic state may take."""
@@ -193,11 +194,6 @@ def checked_point(scene, velocity, amplitude, poisson, pressure="hertz"):
         amplitude = _number("amplitude", amplitude, 0.0, LARGEST["amplitude"])
     elif amplitude is not None:
         raise ValueError(f"amplitude = {amplitude}: {kind.name} has no amplitude")
-    if velocity == 0.0 and not kind.straight:
-        raise ValueError(
-            "velocity = 0.0: allowed is a number above 0: the static limit is known for motions to "
-            "and fro on a line"
-        )
     return kind, velocity, amplitude, poisson
 
 

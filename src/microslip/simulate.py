@@ -17,7 +17,7 @@ from microslip.models.contact import (
 )
 from microslip.motion import Motion, build_contact
 from microslip.periodic import MAX_PERIODS
-from microslip.static import STEPS, static_state
+from microslip.static import static_state
 from microslip.steady import steady_state
 
 STEP_SHARE = 1e-2
@@ -214,7 +214,7 @@ class _Search:
 
     def _summary(self, found):
         full = self.motion.mean_load
-        forward, _, torque = self._mean_forces(found)
+        forward, _, torque = mean_forces(self.contact, self.motion, self.path, found.forces)
         solves = sum(one.solves for one in self.done)
         solved = found.solver_residual <= _solved_sum(self.path, self.step_tolerance)
         halves = 1 if self.motion.scene.half_period_mirror else 2
@@ -241,48 +241,21 @@ class _Search:
             static_force=self.pace.static_force,
         )
 
-    def _mean_forces(self, found):
-        """Means of the forces over a lap, shape (3,)."""
-        if self.motion.depth is None:
-            return self.path.mean(found.forces)
-        # by what they lack of full slip, whose mean is known: less is left to the trapezoidal rule,
-        # and to how the rings in contact follow its edge
-        bounds = self.contact.bounds(self.motion.depth(self.path.phase))
-        full = (bounds @ self.contact.weight)[:, None] * [1.0, 0.0, 0.0]
-        return [self.motion.mean_load, 0.0, 0.0] - self.path.mean(full - found.forces)
+
+def mean_forces(contact, motion, path, forces):
+    """Means over a lap of the forces at its phases, shape (3,)."""
+    if motion.depth is None:
+        return path.mean(forces)
+    # by what they lack of full slip, whose mean is known: less is left to the trapezoidal rule,
+    # and to how the rings in contact follow its edge
+    bounds = contact.bounds(motion.depth(path.phase))
+    full = (bounds @ contact.weight)[:, None] * [1.0, 0.0, 0.0]
+    return [motion.mean_load, 0.0, 0.0] - path.mean(full - forces)
 
 
 def _solved_sum(path, step_tolerance):
     """Largest sum of residuals that a march solved to ``step_tolerance`` can leave."""
     return path.stages.shape[0] * path.stages.shape[1] * step_tolerance
-
-
-def simulate_static(scene, amplitude, poisson, model, resolution, tolerance, method=SHIPPED):
-    """The limit of vanishing velocity at one resolution (see static.py): a Run, without a march in
-    forward direction.  The rigid contact keeps no residual traction: 0."""
-    motion = Motion(scene, 0.0, amplitude, poisson)
-    contact = method.dressed(build_contact(motion, model, resolution))
-    force, solves = 0.0, 0
-    if contact.sticks:
-        try:
-            residual, _ = static_state(contact, motion.displacement, STEP_SHARE * tolerance)
-        except StepFailure as failure:
-            return failed_run(str(failure))
-        force = float(forces(contact, residual)[FORWARD])
-        solves = STEPS // 2
-    return Run(
-        mu=force / motion.mean_load,
-        torque=0.0,
-        distance=0.0,
-        solver_residual=STEP_SHARE * tolerance * solves,
-        periods=1,
-        iterations=0,
-        solves=solves,
-        work=solves * 2 * contact.forward_position.size,
-        effort=0,
-        converged=True,
-        reason="",
-    )
 
 
 def _steady_run(contact, motion, tolerance, step_tolerance):

@@ -9,7 +9,7 @@ its traction.  Creep so slow does not change q_osc, and the flow rule makes R th
 
 a ratcheting counterpart of Melan's shakedown theorem.  In between the turning points q_osc runs
 along the segment that joins them, so these two instants are the only ones that count.  Motions on
-a loop are left out: what their slipping ring carries depends on the creep, however slow.
+a loop, and a load that oscillates, are in static_loop.py.
 """
 
 from __future__ import annotations
@@ -22,6 +22,12 @@ STEPS = 4
 """Steps from one turning point to the next.  Between them the slip of each point keeps its
 direction and only grows, so that backward Euler steps of any size end in the same tractions.  (A
 method of second order may end a step below the bound, and the residual feels the square root.)"""
+
+
+def at_turning_points(scene):
+    """Whether the turning points tell the static limit of a scenes.Scene: motion on a line under a
+    load that stays."""
+    return scene.straight and scene.depth is None
 
 
 def oscillating_part(contact, oscillation, step_tolerance):

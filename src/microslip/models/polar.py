@@ -225,6 +225,7 @@ class PolarContact:
             raise ValueError(f"angles = {angles}: allowed is an even number of at least 2")
         self.rings = make_rings(cells, focus, pressure)
         self.angles, self.rotates, self.stiffness = angles, rotates, pressure.stiffness
+        self.edges = np.sin(self.rings.psi) if pressure.inner == 0.0 else None
         theta = (np.arange(angles) + 0.5) * np.pi / angles
         self.lateral_position = np.cos(theta)[:, None] * self.rings.radius
         self.forward_position = np.sin(theta)[:, None] * self.rings.radius

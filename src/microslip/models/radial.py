@@ -26,18 +26,21 @@ class RadialContact:
     its rows are weighted; bound, weight: friction bound and area of each ring; stiffness: of the
     whole, see there, by default that of the matrix.  ``resolved`` builds
     the half-space's; the elastic slider is the one-ring contact of unit compliance.
-    growth: depth.Growth of the rings, without which the normal load cannot change.
+    growth: depth.Growth of the rings, without which the normal load cannot change; edges: radii
+    between them before the contact is ``pressed``, None where there are none or it has a hole.
     """
 
     has_sensitivity = True
     sticks = True
     angles = 1
-
     radius = 1.0
+    edges = None
 
     def __init__(self, influence, bound, weight, stiffness=None, growth=None):
         self.influence = np.ascontiguousarray(influence, dtype=float)
         self.bound, self.weight, self.growth = bound, weight, growth
+        if growth is not None and growth.pressure.inner == 0.0:
+            self.edges = growth.edges
         self.compliance = np.diag(self.influence)
         self.forward_position = self.lateral_position = np.zeros((1, len(bound)))
         weighted = weight[:, None] * self.influence
@@ -65,7 +68,7 @@ class RadialContact:
             self.stiffness * radius,
             growth._replace(edges=growth.edges * radius),
         )
-        out.radius = radius
+        out.radius, out.edges = radius, self.edges
         radii = out._effective_radii()
         out._joins = 0.5 * (radii[1:-1] + radii[2:])
         out.bound = out.bounds(np.array([start]))[0]
@@ -98,7 +101,7 @@ class RadialContact:
         carried[:, 1:-1] = np.where(outside, carried[:, -1:], carried[:, 1:-1])
         return np.maximum(np.diff(carried, axis=1), 0.0) / self.weight
 
-    def _bounds_along(self, path):
+    def bounds_along(self, path):
         """Bounds at the start and at every stage of a path, (1 + steps stages, cells).
 
         Rings join or leave at the last stage of a step only: what jumps at an earlier one would be
@@ -136,7 +139,7 @@ class RadialContact:
         end, tractions, forces, residual, iterations, derivative = ring_march.march(
             self._stiffness,
             self._factor,
-            self.bound[None] if path.depth is None else self._bounds_along(path),
+            self.bound[None] if path.depth is None else self.bounds_along(path),
             self.weight,
             (path.positions, path.stages, path.carry, path.end),
             np.ascontiguousarray(state[:, 0]),

@@ -1,0 +1,42 @@
+"""The static limit of an oscillation that is not to and fro on a line, and of one of the load.
+
+static.py says why the limit is a problem of its own at every point.  On a line two instants count;
+here the whole lap does.  Let q(t) be the tractions that the oscillation alone settles into, g(t)
+the friction bound.  A constant traction s may be added wherever it leaves |q + s| <= g at all
+times, and where a point creeps forward s is the best there is:
+
+    mu F_z mu_static = Integral { mean of q_forward
+                                  + max s_forward : |q(t) + s| <= g(t) for all t } dA.
+
+Where points slip in every lap of the oscillation alone, no s but 0 is left, for q is on the bound
+in directions that balance.  Their mean counts: a loop that is not its own image under a turn by
+half a period drags the contact along.  Where points never slip, q is known up to a constant,
+whatever the lap began with, and the maximum makes up for it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+HALVINGS = 50
+"""Of the interval in which the largest shift is looked for: to rounding."""
+
+
+def largest_shift(tractions, bounds):
+    """Forward component of the furthest s with |q + s| <= g at all phases, shape (...).
+
+    tractions: q, (phases, 2, ...), forward first; bounds: g, broadcast to (phases, ...), where no q
+    is beyond it by more than rounding.  Where s = 0 fits, so does every smaller shift than the
+    largest one: the discs |q + s| <= g are convex, and so is what they share.
+    """
+    forward, lateral = tractions[:, 0], tractions[:, 1]
+    bounds = np.maximum(bounds, np.hypot(forward, lateral))  # s = 0 does fit
+    least, most = np.zeros(forward.shape[1:]), 2.0 * bounds.min(axis=0)
+    for _ in range(HALVINGS):
+        shift = 0.5 * (least + most)
+        across = bounds**2 - (forward + shift) ** 2
+        width = np.sqrt(np.maximum(across, 0.0))
+        within = (across >= 0.0).all(axis=0)
+        within &= (-lateral - width).max(axis=0) <= (width - lateral).min(axis=0)
+        least, most = np.where(within, shift, least), np.where(within, most, shift)
+    return least

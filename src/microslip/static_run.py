@@ -1,0 +1,133 @@
+"""One run of the static limit at one resolution: nothing moves forward, but it is a Run too."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from microslip import anderson
+from microslip.cycle import Cycle
+from microslip.frames import frames
+from microslip.method import SHIPPED
+from microslip.models.contact import FORWARD, StepFailure, forces
+from microslip.motion import STRONGEST_FOCUS, Motion, build_contact
+from microslip.rings import Focus
+from microslip.simulate import STEP_SHARE, Run, failed_run, mean_forces
+from microslip.static import STEPS, at_turning_points, static_state
+from microslip.static_loop import largest_shift
+
+SMALLEST_DISTANCE = 1e-10
+"""From the periodic state of the oscillation alone: what is left of the bound there, the force in
+the limit feels by its square root, so that the tolerance is squared, down to this."""
+LAPS, MOST_ROUNDS = 120, 3
+"""Of a search for it, and how often it starts again: rounding may stall an accelerated one."""
+ENOUGH = 64.0
+"""Squared share of the tolerance that does where rounding leaves no more to be had."""
+MOST_PASSES = 4
+NOTHING_LEFT = 1e-2
+"""Share of the largest bound that a ring outside of the stick radius may seem to have left."""
+
+
+def simulate_static(scene, amplitude, poisson, model, resolution, tolerance, method=SHIPPED):
+    """The limit of vanishing velocity at one resolution: arguments and Run as simulate.simulate.
+
+    The rigid contact keeps no residual traction: 0 where the oscillation is on a line.
+    """
+    motion = Motion(scene, 0.0, amplitude, poisson)
+    try:
+        if at_turning_points(scene):
+            contact = method.dressed(build_contact(motion, model, resolution))
+            return _on_a_line(contact, motion, tolerance)
+        return _on_a_loop(motion, model, resolution, tolerance, method)
+    except (StepFailure, ArithmeticError, np.linalg.LinAlgError) as failure:
+        return failed_run(str(failure))
+
+
+def _on_a_line(contact, motion, tolerance):
+    force, solves = 0.0, 0
+    if contact.sticks:
+        residual, _ = static_state(contact, motion.displacement, STEP_SHARE * tolerance)
+        force, solves = float(forces(contact, residual)[FORWARD]), STEPS // 2
+    return Run(
+        mu=force / motion.mean_load,
+        torque=0.0,
+        distance=0.0,
+        solver_residual=STEP_SHARE * tolerance * solves,
+        periods=1,
+        iterations=0,
+        solves=solves,
+        work=solves * 2 * contact.forward_position.size,
+        effort=0,
+        converged=True,
+        reason="",
+    )
+
+
+def _on_a_loop(motion, model, resolution, tolerance, method):
+    """Rings are gathered at the edge of what never slips, which no formula tells, in passes."""
+    done, focus = [], None
+    while len(done) < MOST_PASSES:
+        contact = method.dressed(build_contact(motion, model, resolution, focus))
+        run, shift = _on_these_points(contact, motion, resolution.steps, tolerance, method)
+        done.append(run)
+        radius = _stick_radius(contact, shift)
+        if not run.converged or radius is None or (focus is not None and radius == focus.radius):
+            break
+        focus = Focus(radius, STRONGEST_FOCUS)
+    spent = ("periods", "iterations", "solves", "work", "effort")
+    return replace(run, **{name: sum(getattr(one, name) for one in done) for name in spent})
+
+
+def _stick_radius(contact, shift):
+    """Outer edge of the last ring that has some traction left, or None: it has none, or rings tell
+    no edge."""
+    edges = getattr(contact, "edges", None)
+    if shift is None or edges is None:
+        return None
+    left = np.flatnonzero(np.median(shift, axis=0) > NOTHING_LEFT * contact.bound.max())
+    return float(edges[left[-1] + 1]) if left.size and left[-1] + 2 < len(edges) else None
+
+
+def _on_these_points(contact, motion, steps, tolerance, method):
+    """The Run on one contact, and the largest shifts if there are any."""
+    path, mirror = motion.path(contact, steps, method.integrator), motion.scene.half_period_mirror
+    distance = max(tolerance**2, SMALLEST_DISTANCE)
+    shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
+    cycle = Cycle(contact, path, mirror=mirror)
+    start, inner = np.zeros((2, *shape)), STEP_SHARE * distance
+    for _ in range(MOST_ROUNDS):
+        found = anderson.search(cycle, start, distance, inner, cycle.periods + LAPS)
+        start = found.start
+        if found.converged:
+            break
+    force, shift = mean_forces(contact, motion, path, found.forces)[FORWARD], None
+    if contact.sticks:
+        tractions, _ = frames(contact, path, found.start, inner)
+        bounds = contact.bound
+        if path.depth is not None:
+            bounds = contact.bounds_along(path)[:: path.stages.shape[1], None]
+        if mirror:
+            bounds = np.broadcast_to(bounds, tractions[:, 0].shape)
+            bounds = np.concatenate([bounds, bounds])
+            tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions]])
+        shift = largest_shift(tractions, bounds)
+        force += float(np.sum(contact.weight * shift))
+    near = found.converged or found.distance <= ENOUGH * tolerance**2  # and its error is told
+    reason = ""
+    if not near:
+        reason = f"no periodic state within {cycle.periods} laps: {found.distance:.1e} left"
+    run = Run(
+        mu=float(force) / motion.mean_load,
+        torque=0.0,
+        distance=float(np.sqrt(found.distance)) / motion.mean_load,
+        solver_residual=found.solver_residual / motion.mean_load,
+        periods=found.periods,
+        iterations=found.iterations,
+        solves=found.solves,
+        work=found.solves * found.start.size,
+        effort=found.iterations * found.start.size,
+        converged=near,
+        reason=reason,
+    )
+    return run, shift

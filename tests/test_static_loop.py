@@ -1,0 +1,152 @@
+"""The static limit of loops and of an oscillating load: closed forms, models, slow marches."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import microslip
+from microslip import theory
+from microslip.motion import Resolution
+from microslip.scenes import scene_named
+from microslip.simulate import simulate
+from microslip.static_loop import largest_shift
+from microslip.static_run import simulate_static
+
+NARROW = "elliptic:forward=0.5,phase=30"
+EIGHT = "elliptic:forward=0.5,phase=0,forward_cycles=2"
+ACROSS = "normal:lateral=1,normal_cycles=2"
+
+
+def within(found, expected, slack=0.0):
+    assert found.converged
+    assert abs(found.mu_macro - expected) <= found.mu_macro_error + slack
+
+
+def test_the_largest_shift_is_that_of_a_fine_grid():
+    rng = np.random.default_rng(5)
+    axis = np.linspace(-1.0, 1.0, 401)
+    forward, lateral = np.meshgrid(axis, axis, indexing="ij")
+    for _ in range(20):
+        bounds = rng.uniform(0.5, 1.0, (6, 1))
+        size, turn = bounds[:, 0] * rng.uniform(0.0, 1.0, 6), rng.uniform(0.0, 2.0 * np.pi, 6)
+        tractions = (size * np.stack([np.cos(turn), np.sin(turn)])).T
+        kept = np.ones(forward.shape, bool)
+        for q, bound in zip(tractions, bounds[:, 0], strict=True):
+            kept &= np.hypot(q[0] + forward, q[1] + lateral) <= bound
+        found = largest_shift(tractions[:, :, None], bounds)
+        assert found == pytest.approx(forward[kept].max(initial=0.0), abs=1.2e-2)
+
+
+def test_nothing_is_left_where_slip_goes_both_ways():
+    """On the bound in opposite directions no shift fits, however narrow the loop."""
+    tractions = np.array([[0.1, 1.0], [-0.1, -1.0]])[:, :, None] / np.hypot(0.1, 1.0)
+    assert largest_shift(tractions, np.ones((2, 1))) == pytest.approx(0.0, abs=1e-7)
+    # with the bound larger at one of them only, the disc of the other one touches still
+    assert largest_shift(tractions, np.array([[1.0], [2.0]])) > 0.05
+
+
+@pytest.mark.parametrize("amplitude", [0.2, 0.5, 0.8])
+def test_a_loop_of_no_width_has_the_limit_of_its_line(amplitude):
+    """A loop as narrow as this is within 2e-4 of the line, for which there are closed forms."""
+    across = microslip.solve("elliptic:forward=0.001", 0.0, amplitude)
+    within(across, float(theory.static_limit_transverse(amplitude)), 2e-4)
+    along = microslip.solve("elliptic:lateral=0.001", 0.0, amplitude)
+    within(along, float(theory.static_limit_longitudinal(amplitude)), 2e-4)
+
+
+def test_on_a_line_the_whole_lap_says_what_the_turning_points_say():
+    scene, resolution = scene_named("transverse"), Resolution(16, 1, 64)
+    line = simulate_static(scene, 0.5, 0.0, "radial", resolution, 1e-5).mu
+    loop = scene_named("elliptic:forward=0,phase=0,forward_cycles=2")  # not called a line
+    assert not loop.straight
+    found = simulate_static(loop, 0.5, 0.0, "radial", resolution, 1e-5).mu
+    assert found == pytest.approx(line, abs=2e-3)
+
+
+@pytest.mark.parametrize("amplitude", [0.1, 0.4, 0.7])
+def test_springs_on_a_circle_in_closed_form(amplitude):
+    """A spring that sticks goes round with the amplitude and has 1 - x^2 - amplitude left."""
+    found = microslip.solve("elliptic", 0.0, amplitude, model="mdr")
+    within(found, (1.0 - amplitude) ** 1.5)
+
+
+def test_where_all_slides_the_mean_of_the_directions_is_left():
+    def forward(t):
+        return np.cos(2.0 * t) / np.hypot(np.cos(2.0 * t), np.cos(t))
+
+    mean = quad(forward, 0.0, np.pi, points=[0.5 * np.pi])[0] / np.pi
+    rigid = microslip.solve(EIGHT, 0.0, 0.5, model="rigid")
+    within(rigid, mean)
+    # an elastic contact is late by a way of u_lim, the less the longer its path
+    late = [abs(microslip.solve(EIGHT, 0.0, a).mu_macro - mean) for a in (10.0, 40.0)]
+    assert late[0] < 0.05
+    assert late[1] < 0.5 * late[0]
+    assert microslip.solve("elliptic", 0.0, 3.0).mu_macro == pytest.approx(0.0, abs=1e-6)
+
+
+def test_mirror_images_have_the_same_limit_or_the_opposite_one():
+    one, other = (microslip.solve(f"elliptic:forward=0.5,phase={p}", 0.0, 0.5) for p in (30, 210))
+    within(one, other.mu_macro, other.mu_macro_error)
+    drags, drives = (
+        microslip.solve(f"elliptic:forward=0.5,phase={p},forward_cycles=2", 0.0, 1.2)
+        for p in (0, 180)
+    )
+    within(drags, -drives.mu_macro, drives.mu_macro_error)  # all of it slides
+
+
+def test_other_models_find_the_same_limit():
+    rings = microslip.solve("elliptic", 0.0, 0.5)
+    modes = microslip.solve("elliptic", 0.0, 0.5, model="polar", tolerance=1e-2)
+    within(modes, rings.mu_macro, rings.mu_macro_error)
+    # squares, too, and an elliptic contact, whose stick zones are ellipses of its own shape
+    for pressure in ("hertz", "ellipse:ratio=0.7"):
+        scene, resolution = scene_named("elliptic", pressure), Resolution(32, 1, 24)
+        squares = simulate_static(scene, 0.5, 0.0, "cartesian", resolution, 1e-3)
+        assert squares.converged
+        assert squares.mu == pytest.approx(rings.mu_macro, abs=8e-3)
+
+
+@pytest.mark.parametrize("scene", [NARROW, EIGHT, "elliptic", ACROSS, "normal:forward=1,phase=90"])
+def test_slow_marches_end_there(scene):
+    limit = microslip.solve(scene, 0.0, 0.5).mu_macro
+    slow = [
+        simulate(scene_named(scene), v, 0.5, 0.0, "radial", Resolution(64, 1, 256), 1e-5)
+        for v in (8e-3, 1e-3)
+    ]
+    assert slow[0].converged and slow[1].converged
+    above = [run.mu - limit for run in slow]
+    # what is left of it shrinks like v^(2/3), to a quarter, or faster
+    assert 0.0 < above[1] < 0.36 * above[0]
+
+
+@pytest.mark.parametrize("amplitude", [0.3, 0.8])
+def test_a_load_that_oscillates_leaves_its_least(amplitude):
+    """The closed form of the load alone, by the same problem over the whole lap; rings join and
+    leave the contact, and what oscillates beside the load tends to nothing."""
+    exact = microslip.solve("normal", 0.0, amplitude).mu_macro
+    assert exact == pytest.approx(1.0 - amplitude, abs=1e-12)
+    for scene, model in (("normal", "radial"), ("normal", "mdr"), ("normal:lateral=0.001", "auto")):
+        within(microslip.solve(scene, 0.0, amplitude, model=model), exact, 1e-5)
+
+
+def test_a_contact_that_lifts_off_has_no_limit_but_what_drives_it():
+    across = microslip.solve("normal:lateral=1", 0.0, 1.2)
+    within(across, 0.0)
+    along = microslip.solve("normal:forward=1,phase=90", 0.0, 1.2)
+    assert along.converged and along.mu_macro < -0.4  # under load it only goes back
+
+
+def test_poissons_ratio_and_squares_without_symmetry_are_in():
+    softer = microslip.solve("elliptic", 0.0, 0.5, poisson=0.4, tolerance=1e-2)
+    assert softer.converged and softer.model == "polar"
+    turning = microslip.solve("transverse-bore:phase=90", 0.0, 0.5, tolerance=2e-2)
+    assert turning.converged and turning.model == "cartesian"
+    alone = microslip.solve("transverse", 0.0, 0.5).mu_macro
+    assert 0.0 < turning.mu_macro < alone  # the bore beside it takes some more
+
+
+def test_a_state_that_does_not_settle_is_no_number(monkeypatch):
+    monkeypatch.setattr("microslip.static_run.LAPS", 1)
+    monkeypatch.setattr("microslip.static_run.MOST_ROUNDS", 1)
+    found = microslip.solve(NARROW, 0.0, 0.5)
+    assert not found.converged and "no periodic state" in found.reason
