@@ -70,8 +70,16 @@ LIMITS = [
 ]
 """Motions whose static limit takes a whole lap, as many."""
 LIMIT_AMPLITUDES = (-1.3, 0.1)
-SWEPT_RINGS, SWEPT_STEPS = (96, 192), 4
-"""Rings of their reference, and steps in half a period over that: both are refined together."""
+TURNED = [
+    ("normal:angle=1", "hertz"),
+    ("normal:angle=1,normal_cycles=2", "hertz"),
+    ("normal:indentation=1,angle=0.5,forward=1,phase=30", "hertz"),
+]
+"""... with a rotation, as many."""
+SWEPT = {"radial": ((96, 1), (192, 1)), "polar": ((64, 12), (96, 24))}
+SWEPT_STEPS = 4
+"""Rings and angles of their reference, and steps in half a period over rings: all are refined
+together."""
 EXTENDED_VELOCITIES, EXTENDED_AMPLITUDES = (-3.0, 1.0), (-1.3, 0.7)
 FINER = 4
 BASE = {"radial": Resolution(32, 1, 48), "polar": Resolution(24, 12, 32)}
@@ -98,8 +106,12 @@ def sample(points, seed):
 def sample_extended(points, seed):
     """The same for other motions and pressures; with the name of the pressure at the end."""
     few = points // 5
-    limits = _sample_of(LIMITS, few, seed + 2, None, LIMIT_AMPLITUDES)
-    return _sample_of(EXTENDED, points, seed) + _sample_of(LOADS, few, seed + 1) + limits
+    return [
+        *_sample_of(EXTENDED, points, seed),
+        *_sample_of(LOADS, few, seed + 1),
+        *_sample_of(LIMITS, few, seed + 2, None, LIMIT_AMPLITUDES),
+        *_sample_of(TURNED, few, seed + 3),
+    ]
 
 
 def _sample_of(cases, points, seed, velocities=EXTENDED_VELOCITIES, amplitudes=EXTENDED_AMPLITUDES):
@@ -130,8 +142,8 @@ def reference(scene, velocity, amplitude, poisson, tolerance, certified, pressur
 
     if kind.depth is not None:
         coarse, fine = (
-            run(Resolution(rings, 1, 2 * round(0.5 * SWEPT_STEPS * rings * stroke)))
-            for rings in SWEPT_RINGS
+            run(Resolution(rings, angles, 2 * round(0.5 * SWEPT_STEPS * rings * stroke)))
+            for rings, angles in SWEPT[model]
         )
         return fine.mu, abs(fine.mu - coarse.mu)
     base = replace(BASE[model], steps=2 * round(0.5 * BASE[model].steps * stroke))

@@ -312,7 +312,7 @@ def test_what_is_no_motion_is_refused(scene, message):
         microslip.solve(scene, 0.1, 0.5)
 
 
-@pytest.mark.parametrize("model", sorted(MODELS.keys() - {"mdr", "radial"}))
+@pytest.mark.parametrize("model", sorted(MODELS.keys() - {"mdr", "radial", "polar"}))
 def test_models_that_know_one_load_are_refused(model):
     with pytest.raises(ValueError, match=f"model = '{model}': .* constant normal load"):
         microslip.solve("normal", 0.1, 0.5, model=model)

@@ -13,6 +13,8 @@ POINTS = [
     ("bore", 0.05, 0.7, 0.0),
     ("bore", 0.02, 1.0, 0.3),
     ("zigzag", 0.1, 1.0, 0.0),
+    ("normal:lateral=1", 0.1, 0.6, 0.0),
+    ("normal:angle=1,normal_cycles=2", 0.1, 0.6, 0.3),
 ]
 
 
@@ -28,7 +30,8 @@ def test_the_mean_force_is_the_certified_one(given):
     assert found.converged
     mean = np.trapezoid(found.force_forward, found.phase) / (2 * np.pi)
     assert mean == pytest.approx(answer.mu_macro, abs=2e-3)
-    assert mean == pytest.approx(found.mu_macro, abs=1e-5)
+    # of a load that changes, mu_macro sees the rings join and leave the contact within steps
+    assert mean == pytest.approx(found.mu_macro, abs=1e-3 if scene.startswith("normal") else 1e-5)
 
 
 def test_a_period_ends_where_it_began(given):
@@ -47,13 +50,16 @@ def test_every_point_slips_forward_as_far_as_the_sphere_moves(given):
 def test_tractions_keep_to_the_bound_and_oppose_no_more_than_slip(given):
     _, found = given
     size = np.hypot(found.traction_forward, found.traction_lateral)
-    assert (size <= found.bound * (1 + 1e-9)).all()
+    assert (size <= found.bound * (1 + 1e-9) + 1e-15).all()
     slip = np.hypot(found.slip_forward, found.slip_lateral)
-    sliding = found.slips & (slip > 0.2 * slip.max())  # beyond rounding and the turns of a step
+    bound = np.broadcast_to(found.bound, slip.shape)
+    held = (bound > 0.0) & (np.concatenate([bound[-2:-1], bound[:-1]]) > 0.0)
+    # beyond rounding and the turns of a step, and in contact through all of it
+    sliding = found.slips & (slip > 0.2 * slip.max()) & held
     cosine = found.slip_forward * found.traction_forward
     cosine += found.slip_lateral * found.traction_lateral
     assert (cosine[sliding] > 0.9 * (slip * size)[sliding]).all()
-    assert slip[~found.slips].max() < 0.3 * slip.max()
+    assert slip[~found.slips & held].max() < 0.3 * slip.max()
 
 
 def test_the_work_of_the_forces_is_dissipated(given):
@@ -65,14 +71,21 @@ def test_the_work_of_the_forces_is_dissipated(given):
     spent = work(found.force_forward, found.forward) + work(found.force_lateral, found.lateral)
     spent += TORQUE_FULL_SLIP * work(found.torque, found.angle)
     size = np.hypot(found.slip_forward, found.slip_lateral)
-    lost = np.sum((found.area * found.bound) @ size[1:].T)
+    bound = np.broadcast_to(found.bound, size.shape)
+    between = 0.5 * (bound[1:] + bound[:-1])  # it may change in a step
+    lost = np.sum(found.area * between * size[1:])
     assert spent == pytest.approx(lost, rel=0.03), scene
 
 
 def test_areas_fill_the_disc_and_carry_the_load(given):
-    _, found = given
-    assert found.area.sum() == pytest.approx(np.pi)
-    assert np.sum(found.area * found.bound) == pytest.approx(1.0)
+    (scene, _, amplitude, _), found = given
+    load = np.ones(1)
+    if scene.startswith("normal"):
+        cycles = 2.0 if "normal_cycles=2" in scene else 1.0
+        load = 1.0 + amplitude * np.sin(cycles * found.phase)
+    largest = load.max() ** (2.0 / 3.0)  # a goes like the cube root of the load
+    assert found.area.sum() == pytest.approx(np.pi * largest, rel=1e-3)
+    assert (found.bound * found.area).sum(axis=-1) == pytest.approx(load, rel=1e-9)
     assert np.sum(found.area * found.lateral_position) == pytest.approx(0.0, abs=1e-12)
 
 

@@ -28,8 +28,6 @@ RESOLVED = 0.125
 SCATTER = 0.5
 """Share of the correction in time that its scatter may do to the differences of other chains."""
 MOST_REBASED = 6
-REBASED_TOGETHER = {"steps": ("steps",), "angles": ("cells", "angles")}
-"""Axes whose base is refined where corrections do not add up, by the cause."""
 SOURCES = {"cells": "space", "angles": "space", "steps": "time"}
 
 
@@ -158,15 +156,22 @@ def _extrapolation(values, levels):
     return (values[-1] - values[-2]) / ((levels[-1] / levels[-2]) ** 2 - 1.0)
 
 
+def _refines_cells(chains):
+    """Name of the axis that refines the cells, alone or together with its own, or None."""
+    tied = (name for name, chain in chains.items() if (chain.axis.tied or [""])[0] == "cells")
+    return "cells" if "cells" in chains else next(tied, None)
+
+
 def _mixed(runs, chains, name):
     """How far the corrections along cells and angles fail to add up: their mixed difference.
 
     It is taken next to the finest angles, since few of them may hide what cells are worth.
     """
-    if not {"cells", "angles"} <= chains.keys() or chains["cells"].axis.imposed:
+    first = _refines_cells(chains)
+    if first is None or "angles" not in chains or chains[first].axis.imposed:
         return 0.0
     beside = {}
-    for axis in ("cells", "angles"):
+    for axis in (first, "angles"):
         base = runs.base[axis]
         last = chains[axis].indices[-1]
         step = max(last - base - 1, 1) if axis == "angles" else 1
@@ -204,7 +209,7 @@ def certify(run, coarsest, axes, tolerance, most_work=math.inf):
         worst = max(left, key=left.get, default=None)
         cause = max(hidden, key=hidden.get)
         if hidden[cause] > left.get(worst, 0.0) and _can_rebase(chains, cause, rebased):
-            for name in REBASED_TOGETHER[cause]:
+            for name in _rebased_together(chains, cause):
                 runs.base[name] += 1
             rebased += 1
             for chain in chains.values():
@@ -226,8 +231,13 @@ def _can_rebase(chains, cause, rebased):
         name in chains
         and not chains[name].axis.imposed
         and chains[name].runs.base[name] + 1 < len(chains[name].axis.levels)
-        for name in REBASED_TOGETHER[cause]
+        for name in _rebased_together(chains, cause)
     )
+
+
+def _rebased_together(chains, cause):
+    """Axes whose base is refined where corrections do not add up, by the cause."""
+    return ("steps",) if cause == "steps" else (_refines_cells(chains), "angles")
 
 
 def _errors(runs, chains, hidden, tolerance):

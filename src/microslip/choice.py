@@ -177,17 +177,23 @@ def plan(scene, name, velocity, amplitude, poisson, tolerance, cells=None, steps
     resolved, axes = MODELS[name].axes(scene), []
     marches = scene.periodic and (velocity > 0.0 or not at_turning_points(scene))
     if scene.depth is not None and marches and cells is None and steps is None:
-        axis = _sweeping(scene, amplitude, poisson, tolerance)
-        return Resolution(cells=1, angles=1, steps=STEPS[0]), (axis,)
+        axes.append(_sweeping(scene, amplitude, poisson, tolerance))
+        if "angles" in resolved:
+            axes.append(_angles(scene))
+        return Resolution(cells=1, angles=1, steps=STEPS[0]), tuple(axes)
     if "cells" in resolved:
         axes.append(_cells(scene, name, velocity, amplitude, poisson, cells))
     if "angles" in resolved:
-        # only nu > 0 makes tractions of a translation depend on the angle, and only a little
-        base = ANGLES.index(BASE_ANGLES) + (not scene.periodic) - (not scene.rotates)
-        axes.append(Axis("angles", ANGLES, base, (base - 1, base, base + 1)))
+        axes.append(_angles(scene))
     if marches:
         axes.append(_steps(scene, amplitude, poisson, tolerance, steps))
     return Resolution(cells=1, angles=1, steps=STEPS[0]), tuple(axes)
+
+
+def _angles(scene):
+    # only nu > 0 makes tractions of a translation depend on the angle, and only a little
+    base = ANGLES.index(BASE_ANGLES) + (not scene.periodic) - (not scene.rotates)
+    return Axis("angles", ANGLES, base, (base - 1, base, base + 1))
 
 
 def _cells(scene, name, velocity, amplitude, poisson, imposed):

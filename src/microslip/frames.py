@@ -12,9 +12,9 @@ def frames(contact, path, state, tolerance):
 
     contact: models.contact.Contact; state: tractions at the first phase; tolerance: of the steps.
     """
-    if path.depth is not None:  # the contact keeps them anyway, and knows the bounds of the lap
+    if path.depth is not None:  # bounds belong to the lap as a whole
         march = contact.march(path, state, tolerance)
-        return march.stages[:: path.stages.shape[1], :, None], march.forces
+        return contact.at_phases(march, state), march.forces
     tractions, forces = [state], []
     for k in range(path.steps):
         step = replace(

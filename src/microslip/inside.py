@@ -133,8 +133,11 @@ class Period:
     in the direction of the motion that they resist, over mu F_z / a^2, shape (steps + 1, points);
     slip_forward, slip_lateral: in the step that ends at this phase (first row: in the last step),
     in u_lim, and slips: whether a point slips when the step ends, same shape.  mu_macro: mean of
-    force_forward; converged, reason: whether this is the periodic state of this resolution, else
-    why not.
+    force_forward over that of the load; converged, reason: whether this is the periodic state of
+    this resolution, else why not.
+    Where the normal load changes, F_z and a are those of the reference state, points fill the
+    contact at its largest, and bound is one at each phase, shape (steps + 1, points), 0 for a point
+    out of contact.
     """
 
     phase: np.ndarray
@@ -198,15 +201,19 @@ def period(
     path = motion.path(contact, steps // 2)
     tractions, forces = frames(contact, path, run.state, STEP_TOLERANCE)
     slip = _slip(contact, path, tractions)
-    phase = path.phase
+    phase, bounds = path.phase, contact.bound[None]
+    if path.depth is not None:
+        bounds = contact.bounds_along(path)[:: path.stages.shape[1]]
     if kind.half_period_mirror:  # the second half is the mirror image of the first
         tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions[1:]]])
         slip = np.concatenate([slip, [contact.mirrored(part) for part in slip]])
         forces = np.concatenate([forces, forces[1:] * MIRRORED_FORCES])
         phase = np.concatenate([phase, phase[1:] + np.pi])
+        bounds = np.concatenate([bounds, bounds[1:]])
     slip_forward, slip_lateral = _whole_disc(contact, np.concatenate([slip[-1:], slip]))
     forward, lateral = _whole_disc(contact, tractions)
-    forward_position, lateral_position, bound, area = _points(contact)
+    forward_position, lateral_position, _, area = _points(contact)
+    bound = np.tile(bounds, 2 * angles)
     along = forward * slip_forward + lateral * slip_lateral > 0.0
     return Period(
         phase,
@@ -216,7 +223,7 @@ def period(
         forces[:, TORQUE] / kind.pressure.torque,
         forward_position,
         lateral_position,
-        bound,
+        bound if kind.depth is not None else bound[0],
         area,
         forward,
         lateral,

@@ -249,7 +249,7 @@ def mean_forces(contact, motion, path, forces):
     # by what they lack of full slip, whose mean is known: less is left to the trapezoidal rule,
     # and to how the rings in contact follow its edge
     bounds = contact.bounds(motion.depth(path.phase))
-    full = (bounds @ contact.weight)[:, None] * [1.0, 0.0, 0.0]
+    full = contact.angles * (bounds @ contact.weight)[:, None] * [1.0, 0.0, 0.0]
     return [motion.mean_load, 0.0, 0.0] - path.mean(full - forces)
 
 

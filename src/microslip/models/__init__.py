@@ -10,7 +10,8 @@
 | polar     | exact              | exact              | exact (rings x angular modes)      |
 | cartesian | exact              | exact              | exact (squares, any outline)       |
 
-In mdr and radial the normal load may change; for motion along one line mdr is exact then, too.
+In mdr, radial and polar the normal load may change; for motion along one line at nu = 0 mdr is
+exact then, too.
 
 "Exact" means: converges to the solution of the contact problem as its cells and steps are refined;
 "approximate": leaves out elasticity, partial slip or how points of the contact act on each other,
@@ -136,7 +137,7 @@ MODELS = {
         build=lambda scene, poisson, cells, angles, focus: PolarContact(
             cells, angles, scene.rotates, poisson, focus, scene.pressure
         ),
-        refuses=_any_of(_refuse_pulsation, _refuse_half_disc),
+        refuses=_any_of(_refuse_other_loads, _refuse_half_disc),
         exact=lambda scene: True,
         axes=lambda scene: ("cells", "angles"),
     ),

@@ -118,6 +118,11 @@ class RadialContact:
         edge[:, -1] = seen[1:]
         return self.bounds(path.depth, np.append(seen[:1], edge))
 
+    def at_phases(self, march, start):
+        """Tractions at every phase of a march from ``start``, (steps + 1, 2, 1, cells)."""
+        stages = march.solves // (len(march.forces) - 1)
+        return march.stages[::stages, :, None]
+
     def displacement(self, state):
         """A q; shapes (2, 1, cells)."""
         return state @ self.influence.T

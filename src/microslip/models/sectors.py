@@ -243,6 +243,11 @@ def shifted_inverse(operator, shift):
     return operator._replace(blocks=blocks)
 
 
+def scaled(operator, factor):
+    """The operator times a number."""
+    return operator._replace(dense=operator.dense * factor, blocks=operator.blocks * factor)
+
+
 def quickest(operator):
     """The same operator in the form that is applied fastest at its size."""
     sectors, z = operator.to_modes.shape[:2]

@@ -1,37 +1,40 @@
 """Oscillation of the normal load or of the indentation, alone or with one in the plane.
 
-    normal:load=1,indentation=0,lateral=L,forward=F,phase=P,normal_cycles=K,lateral_cycles=N,...
+    normal:load=1,indentation=0,lateral=L,forward=F,angle=B,phase=P,normal_cycles=K,...
 
 With the amplitude A the normal load is 1 + A load sin(K t) of its mean, or the indentation
 1 + A indentation sin(K t) of its mean, whichever is above 0; contact is lost where that falls to 0.
-In the plane the sphere moves forward by v~ t + A F sin(M t + P), sideways by A L sin(N t + P), P in
-degrees, in u_lim.  Reference of u_lim, a and mu F_z is the state without oscillation, and friction
-is over mu times the mean of the load as it is.
+In the plane the sphere moves forward by v~ t + A F sin(M t + P), sideways by A L sin(N t + P), in
+u_lim, and turns by the bore amplitude A B, angle ~ sin(Q t + P): P in degrees.  Reference of u_lim,
+a and mu F_z is the state without oscillation, and friction is over mu times the mean of the load as
+it is.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from microslip import parameters, pulsating
+from microslip import hertz, parameters, pulsating
 from microslip.motions.elliptic import MOST_CYCLES
 from microslip.scene import Scene, within_rings
 
 SUMMARY = "sliding forward while the normal load oscillates, or the indentation"
 HELP = (
     "such as lateral=1,phase=90: shares of A, load (1, over the mean) or indentation (0: the load "
-    "oscillates), lateral and forward (0, over u_lim), phase of the latter two in degrees (0), "
-    "normal_cycles, lateral_cycles and forward_cycles (1)"
+    "oscillates), lateral and forward (0, over u_lim), angle (0, over phi_lk(a/2)), phase of these "
+    "in degrees (0), normal_cycles, lateral_cycles, forward_cycles and angle_cycles (1)"
 )
 DEFAULTS = {
     "load": 1.0,
     "indentation": 0.0,
     "lateral": 0.0,
     "forward": 0.0,
+    "angle": 0.0,
     "phase": 0.0,
     "normal_cycles": 1.0,
     "lateral_cycles": 1.0,
     "forward_cycles": 1.0,
+    "angle_cycles": 1.0,
 }
 
 
@@ -41,10 +44,12 @@ def scene(
     indentation,
     lateral,
     forward,
+    angle,
     phase,
     normal_cycles,
     lateral_cycles,
     forward_cycles,
+    angle_cycles,
 ):
     """The Scene of these numbers; raises ValueError for shares out of 0..1, where neither or both
     of load and indentation oscillate, and for cycles that are no whole numbers."""
@@ -52,8 +57,10 @@ def scene(
         "normal_cycles": normal_cycles,
         "lateral_cycles": lateral_cycles,
         "forward_cycles": forward_cycles,
+        "angle_cycles": angle_cycles,
     }
-    shares = {"load": load, "indentation": indentation, "lateral": lateral, "forward": forward}
+    in_plane = {"lateral": lateral, "forward": forward, "angle": angle}
+    shares = {"load": load, "indentation": indentation} | in_plane
     _check(name, shares, cycles)
     by_load = indentation == 0.0
     share = load if by_load else indentation
@@ -62,7 +69,8 @@ def scene(
     def displacement(phase, velocity, amplitude, poisson):
         along = velocity * phase + amplitude * forward * np.sin(forward_cycles * phase + lead)
         across = amplitude * lateral * np.sin(lateral_cycles * phase + lead)
-        return along, across, np.zeros_like(phase)
+        turn = np.sin(angle_cycles * phase + lead)
+        return along, across, hertz.bore_angle(amplitude * angle, poisson) * turn
 
     def depth(phase, amplitude, pressure):
         height = np.maximum(1.0 + amplitude * share * np.sin(normal_cycles * phase), 0.0)
@@ -88,26 +96,31 @@ def scene(
         return pulsating.friction(*place)
 
     aside_odd = lateral == 0.0 or lateral_cycles % 2 == 1
-    mirrored = normal_cycles % 2 == 0 and aside_odd and (forward == 0.0 or forward_cycles % 2 == 0)
+    turns_odd = angle == 0.0 or angle_cycles % 2 == 1
+    ahead_even = forward == 0.0 or forward_cycles % 2 == 0
+    mirrored = normal_cycles % 2 == 0 and aside_odd and turns_odd and ahead_even
     opposite = normal_cycles % 2 == 0 and aside_odd and forward_cycles % 2 == 1
+    alone = lateral == forward == angle == 0.0
     return Scene(
         name=name,
         summary=SUMMARY,
         displacement=displacement,
         periodic=True,
-        rotates=False,
+        rotates=angle > 0.0,
+        half_disc=angle == 0.0 or lateral == 0.0,
         half_period_mirror=mirrored,
         focus=focus,
         velocity_label="v0 / (omega u_lim)",
         amplitude_label="A",
         turns=turns,
-        straight=lateral == forward == 0.0,
+        straight=alone,
         drives=forward > 0.0 and not opposite,
         cycles=int(
             max(
                 normal_cycles,
                 lateral_cycles if lateral else 1.0,
                 forward_cycles if forward else 1.0,
+                angle_cycles if angle else 1.0,
             )
         ),
         depth=depth,
@@ -115,7 +128,7 @@ def scene(
         mean_load=lambda amplitude, pressure: pulsating.mean_load(
             amplitude * share, by_load, pressure
         ),
-        whole=whole if lateral == forward == 0.0 else None,
+        whole=whole if alone else None,
     )
 
 

@@ -1,0 +1,124 @@
+"""A normal load that oscillates beside a rotation, or at nu > 0: modes against rings, limits."""
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip import hertz, theory
+from microslip.motion import Motion, Resolution, build_contact
+from microslip.path import make_path
+from microslip.pressures import HERTZ
+from microslip.scenes import scene_named
+from microslip.simulate import simulate
+
+TURNING = "normal:angle=1"
+
+
+def run(scene, velocity, amplitude, model="polar", poisson=0.0, resolution=(24, 8, 96)):
+    where = (scene_named(scene), velocity, amplitude, poisson, model)
+    return simulate(*where, Resolution(*resolution), 1e-6)
+
+
+def within(found, other, slack=0.0):
+    assert found.converged and other.converged
+    gap = abs(found.mu_macro - other.mu_macro)
+    assert gap <= found.mu_macro_error + other.mu_macro_error + slack
+
+
+@pytest.mark.parametrize("scene", ["normal", "normal:lateral=1", "normal:forward=1,phase=60"])
+def test_modes_find_what_rings_find(scene):
+    """At the same resolution to the tolerance of the steps, for at nu = 0 they are the same."""
+    for amplitude in (0.6, 1.3):
+        rings, modes = (run(scene, 0.1, amplitude, model) for model in ("radial", "polar"))
+        assert rings.converged and modes.converged
+        assert modes.mu == pytest.approx(rings.mu, abs=2e-6)
+
+
+def test_the_static_limit_is_that_of_rings_too():
+    scene = "normal:lateral=1"
+    rings, modes = (
+        microslip.solve(scene, 0.0, 0.4, model=model, tolerance=5e-3)
+        for model in ("radial", "polar")
+    )
+    within(modes, rings)
+
+
+def test_a_small_part_changes_little():
+    """Next to no load beside a bore, next to no bore beside a load."""
+    bore = microslip.solve("transverse-bore:lateral=0", 0.1, 0.7)
+    within(microslip.solve("normal:load=0.0001,angle=1", 0.1, 0.7), bore, 1e-4)
+    load = microslip.solve("normal", 0.1, 0.7)
+    within(microslip.solve("normal:angle=0.0001", 0.1, 0.7), load, 1e-4)
+
+
+@pytest.mark.parametrize("velocity", [0.5, 5.0, 40.0])
+def test_where_all_slides_every_moment_is_a_steady_bore(velocity):
+    """Eq 21 at the contact radius and the rate of turning of the moment, weighted by the load."""
+    amplitude, share = 60.0, 0.5 / 60.0
+    found = microslip.solve(
+        f"normal:load={share!r},angle=1,phase=90", velocity, amplitude, tolerance=5e-3
+    )
+    phase = (np.arange(4000) + 0.5) * np.pi / 2000.0
+    load = 1.0 + 0.5 * np.sin(phase)
+    rate = np.abs(float(hertz.bore_angle(amplitude)) * np.sin(phase))
+    radius = HERTZ.radius(HERTZ.of_load(load))
+    steady = theory.bore_forward(velocity / (rate * radius))
+    assert found.converged
+    # the contact is late by about u_lim, a little of this path
+    assert found.mu_macro == pytest.approx(np.mean(load * steady), abs=0.015)
+
+
+def test_which_way_it_turns_does_not_matter():
+    one, other = (
+        microslip.solve(f"normal:angle=1,phase={p}", 0.1, 0.6, tolerance=3e-3) for p in (40, 220)
+    )
+    within(one, other)
+
+
+def test_half_a_period_suffices_where_it_is_mirrored():
+    scene = scene_named("normal:angle=1,normal_cycles=2")
+    assert scene.half_period_mirror and scene.half_disc
+    assert not scene_named(TURNING).half_period_mirror
+    motion = Motion(scene, 0.1, 0.8, 0.2)
+    contact = build_contact(motion, "polar", Resolution(12, 8, 64))
+    path = make_path(motion.displacement, np.linspace(-0.25, 1.75, 257) * np.pi, depth=motion.depth)
+    state = np.zeros((2, 8, 12))
+    for _ in range(12):
+        march = contact.march(path, state, 1e-8)
+        state = march.state
+    half = run(scene.name, 0.1, 0.8, poisson=0.2, resolution=(12, 8, 128))
+    assert path.mean(march.forces[:, 0]) == pytest.approx(half.mu, abs=2e-3)
+
+
+def test_a_turning_contact_that_lifts_off_has_no_static_friction():
+    found = microslip.solve(TURNING, 0.0, 1.2, tolerance=1e-2)
+    assert found.converged and found.mu_macro <= found.mu_macro_error
+
+
+def test_slow_marches_end_in_the_limit():
+    limit = microslip.solve(TURNING, 0.0, 0.5, tolerance=5e-3).mu_macro
+    above = [run(TURNING, v, 0.5, resolution=(48, 8, 192)).mu - limit for v in (2e-2, 2.5e-3)]
+    assert -5e-3 < above[1] < 0.36 * above[0]
+
+
+@pytest.mark.parametrize("scene", ["normal", "normal:lateral=1", TURNING])
+def test_certificates_hold_against_finer_runs(scene):
+    loose, tight = (
+        microslip.solve(scene, 0.08, 0.7, poisson=0.4, tolerance=t) for t in (1e-2, 1e-3)
+    )
+    assert loose.model == "polar"
+    within(loose, tight)
+    assert loose.mu_macro_error <= 1e-2 and tight.mu_macro_error <= 1e-3
+
+
+def test_another_indenter_may_turn_under_its_load():
+    cone = {"pressure": "power:exponent=1", "tolerance": 5e-3}
+    bore = microslip.solve("transverse-bore:lateral=0", 0.1, 0.7, **cone)
+    within(microslip.solve("normal:load=0.0001,angle=1", 0.1, 0.7, **cone), bore, 1e-4)
+
+
+def test_squares_do_not_know_such_a_load():
+    with pytest.raises(ValueError, match="does not go with normal:angle=1,lateral=1: .* load"):
+        microslip.solve("normal:angle=1,lateral=1", 0.1, 0.5)
+    with pytest.raises(ValueError, match="angle = 2: allowed is a share in 0..1"):
+        microslip.solve("normal:angle=2", 0.1, 0.5)
