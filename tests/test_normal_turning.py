@@ -90,6 +90,13 @@ def test_half_a_period_suffices_where_it_is_mirrored():
     assert path.mean(march.forces[:, 0]) == pytest.approx(half.mu, abs=2e-3)
 
 
+@pytest.mark.parametrize("poisson", [0.0, 0.4])
+def test_the_least_load_is_what_is_left_at_any_nu(poisson):
+    found = microslip.solve("normal", 0.0, 0.6, poisson=poisson, model="polar")
+    assert found.converged
+    assert found.mu_macro == pytest.approx(0.4, abs=found.mu_macro_error)
+
+
 def test_a_turning_contact_that_lifts_off_has_no_static_friction():
     found = microslip.solve(TURNING, 0.0, 1.2, tolerance=1e-2)
     assert found.converged and found.mu_macro <= found.mu_macro_error

@@ -33,6 +33,9 @@ SWEEPING_STEPS = 4
 """Steps in half a period over rings where the edge of the contact sweeps over these.  They join it
 one by one, and the error scatters unless both are refined together."""
 SWEEPING_CAUTION = 1.5
+EDGE_CAUTION = 1.25
+"""Error over the spread of four runs where each gathers its rings at a stick radius that it finds
+by itself, to the width of a ring."""
 LONGEST_STROKE = 16.0
 """Stroke in u_lim beyond which more steps are left to the estimate of the error."""
 STATIC_LIMITS = {
@@ -210,7 +213,9 @@ def _cells(scene, name, velocity, amplitude, poisson, imposed):
     if not scene.periodic:  # the centre of rotation stays where it is, and only fine rings see it
         return Axis("cells", RINGS, base + 1, (base, base + 1, base + 2), regular=True)
     if velocity == 0.0 and not at_turning_points(scene):  # each run finds the edge by itself
-        return Axis("cells", RINGS, base + 3, tuple(range(base + 2, base + 6)))
+        return Axis(
+            "cells", RINGS, base + 3, tuple(range(base + 2, base + 6)), caution=EDGE_CAUTION
+        )
     if velocity == 0.0:  # a stick zone that is not circular cuts rings, and the corners are steep
         return Axis("cells", RINGS, base + 2, tuple(range(base, base + 6)))
     if scene.rotates:
