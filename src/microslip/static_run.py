@@ -69,9 +69,9 @@ def _on_a_loop(motion, model, resolution, tolerance, method):
     done, focus = [], None
     while len(done) < MOST_PASSES:
         contact = method.dressed(build_contact(motion, model, resolution, focus))
-        run, shift = _on_these_points(contact, motion, resolution.steps, tolerance, method)
+        run, left = _on_these_points(contact, motion, resolution.steps, tolerance, method)
         done.append(run)
-        radius = _stick_radius(contact, shift)
+        radius = _stick_radius(contact, left)
         if not run.converged or radius is None or (focus is not None and radius == focus.radius):
             break
         focus = Focus(radius, STRONGEST_FOCUS)
@@ -79,18 +79,18 @@ def _on_a_loop(motion, model, resolution, tolerance, method):
     return replace(run, **{name: sum(getattr(one, name) for one in done) for name in spent})
 
 
-def _stick_radius(contact, shift):
-    """Outer edge of the last ring that has some traction left, or None: it has none, or rings tell
-    no edge."""
+def _stick_radius(contact, left):
+    """Outer edge of the last ring of which more than half has something ``left``, or None: there is
+    none, or the contact tells no edges."""
     edges = getattr(contact, "edges", None)
-    if shift is None or edges is None:
+    if left is None or edges is None:
         return None
-    left = np.flatnonzero(np.median(shift, axis=0) > NOTHING_LEFT * contact.bound.max())
-    return float(edges[left[-1] + 1]) if left.size and left[-1] + 2 < len(edges) else None
+    rings = np.flatnonzero(left.mean(axis=0) > 0.5)
+    return float(edges[rings[-1] + 1]) if rings.size and rings[-1] + 2 < len(edges) else None
 
 
 def _on_these_points(contact, motion, steps, tolerance, method):
-    """The Run on one contact, and the largest shifts if there are any."""
+    """The Run on one contact, and which points have something left to resist with, if any has."""
     path, mirror = motion.path(contact, steps, method.integrator), motion.scene.half_period_mirror
     distance = max(tolerance**2, SMALLEST_DISTANCE)
     shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
@@ -101,7 +101,7 @@ def _on_these_points(contact, motion, steps, tolerance, method):
         start = found.start
         if found.converged:
             break
-    force, shift = mean_forces(contact, motion, path, found.forces)[FORWARD], None
+    force, left = mean_forces(contact, motion, path, found.forces)[FORWARD], None
     if contact.sticks:
         tractions, _ = frames(contact, path, found.start, inner)
         bounds = contact.bound
@@ -113,6 +113,7 @@ def _on_these_points(contact, motion, steps, tolerance, method):
             tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions]])
         shift = largest_shift(tractions, bounds)
         force += float(np.sum(contact.weight * shift))
+        left = shift > NOTHING_LEFT * bounds.max()
     near = found.converged or found.distance <= ENOUGH * tolerance**2  # and its error is told
     reason = ""
     if not near:
@@ -130,4 +131,4 @@ def _on_these_points(contact, motion, steps, tolerance, method):
         converged=near,
         reason=reason,
     )
-    return run, shift
+    return run, left
