@@ -74,6 +74,8 @@ def choose_model(scene, poisson, model="auto"):
             name = "polar" if scene.rotates or poisson > 0.0 else "radial"
         refusal = MODELS[name].refuses(scene, poisson)
         if refusal:
+            if scene.pressure is HERTZ and poisson == 0.0:
+                raise ValueError(f"scene = {scene.name!r}: only {name} could resolve it: {refusal}")
             given = f"poisson = {poisson:g}"
             if scene.pressure is not HERTZ:
                 given = f"pressure = {scene.pressure.name!r}"
