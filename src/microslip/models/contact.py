@@ -51,6 +51,9 @@ class Contact(Protocol):
     sticks: whether points may stick, so that something is left of it in the static limit;
     radius: of the contact at its largest, over the reference one, where the normal load changes: 1
     if it is not there, and ``bound`` is that at the start of a lap then.
+
+    A contact whose normal load may change also has pressed, bounds, bounds_along and at_phases; one
+    of rings may tell its edges, for rings to be gathered at one of them: see radial.RadialContact.
     """
 
     bound: np.ndarray
