@@ -53,6 +53,11 @@ class Axis:
     caution: float = 1.0
     tied: tuple[str, tuple[int, ...]] | None = None
 
+    @property
+    def refines(self):
+        """Names of what it refines: itself, and what is tied to it."""
+        return (self.name,) if self.tied is None else (self.name, self.tied[0])
+
 
 @dataclass(frozen=True)
 class Certified:
@@ -157,9 +162,8 @@ def _extrapolation(values, levels):
 
 
 def _refines_cells(chains):
-    """Name of the axis that refines the cells, alone or together with its own, or None."""
-    tied = (name for name, chain in chains.items() if (chain.axis.tied or [""])[0] == "cells")
-    return "cells" if "cells" in chains else next(tied, None)
+    """Name of the axis that refines the cells, or None."""
+    return next((name for name, chain in chains.items() if "cells" in chain.axis.refines), None)
 
 
 def _mixed(runs, chains, name):

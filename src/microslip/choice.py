@@ -74,12 +74,13 @@ def choose_model(scene, poisson, model="auto"):
             name = "polar" if scene.rotates or poisson > 0.0 else "radial"
         refusal = MODELS[name].refuses(scene, poisson)
         if refusal:
+            why = f"only {name} could resolve it, and {refusal}"
             if scene.pressure is HERTZ and poisson == 0.0:
-                raise ValueError(f"scene = {scene.name!r}: only {name} could resolve it: {refusal}")
+                raise ValueError(f"scene = {scene.name!r}: {why}")
             given = f"poisson = {poisson:g}"
             if scene.pressure is not HERTZ:
                 given = f"pressure = {scene.pressure.name!r}"
-            raise ValueError(f"{given}: does not go with {scene.name}: {refusal}")
+            raise ValueError(f"{given}: does not go with {scene.name}: {why}")
         return name
     if not isinstance(model, str) or model not in MODELS:
         raise ValueError(f"model = {model!r}: allowed is one of auto, {', '.join(MODELS)}")
@@ -181,24 +182,18 @@ def plan(scene, name, velocity, amplitude, poisson, tolerance, cells=None, steps
     """
     resolved, axes = MODELS[name].axes(scene), []
     marches = scene.periodic and (velocity > 0.0 or not at_turning_points(scene))
-    if scene.depth is not None and marches and cells is None and steps is None:
+    sweeps = scene.depth is not None and marches and cells is None and steps is None
+    if sweeps:
         axes.append(_sweeping(scene, amplitude, poisson, tolerance))
-        if "angles" in resolved:
-            axes.append(_angles(scene))
-        return Resolution(cells=1, angles=1, steps=STEPS[0]), tuple(axes)
-    if "cells" in resolved:
+    elif "cells" in resolved:
         axes.append(_cells(scene, name, velocity, amplitude, poisson, cells))
     if "angles" in resolved:
-        axes.append(_angles(scene))
-    if marches:
+        # only nu > 0 makes tractions of a translation depend on the angle, and only a little
+        base = ANGLES.index(BASE_ANGLES) + (not scene.periodic) - (not scene.rotates)
+        axes.append(Axis("angles", ANGLES, base, (base - 1, base, base + 1)))
+    if marches and not sweeps:
         axes.append(_steps(scene, amplitude, poisson, tolerance, steps))
     return Resolution(cells=1, angles=1, steps=STEPS[0]), tuple(axes)
-
-
-def _angles(scene):
-    # only nu > 0 makes tractions of a translation depend on the angle, and only a little
-    base = ANGLES.index(BASE_ANGLES) + (not scene.periodic) - (not scene.rotates)
-    return Axis("angles", ANGLES, base, (base - 1, base, base + 1))
 
 
 def _cells(scene, name, velocity, amplitude, poisson, imposed):

@@ -1,4 +1,4 @@
-"""A march seen step by step: the tractions at every phase of a path."""
+"""A march seen step by step: the tractions at every phase of a path, and their bounds."""
 
 from __future__ import annotations
 
@@ -27,3 +27,10 @@ def frames(contact, path, state, tolerance):
         tractions.append(march.state)
         forces += list(march.forces[1 if forces else 0 :])
     return np.array(tractions), np.array(forces)
+
+
+def bounds_at_phases(contact, path):
+    """Friction bounds at every phase, (steps + 1, 1, n), or those that stay, (1, ...)."""
+    if path.depth is None:
+        return contact.bound[None]
+    return contact.bounds_along(path)[:: path.stages.shape[1], None]

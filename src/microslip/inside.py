@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from microslip.choice import choose_model
-from microslip.frames import frames
+from microslip.frames import bounds_at_phases, frames
 from microslip.models.contact import FORWARD, LATERAL, TORQUE, forward_slip, full_slip
 from microslip.motion import Motion, Resolution, build_contact
 from microslip.path import make_path
@@ -201,9 +201,8 @@ def period(
     path = motion.path(contact, steps // 2)
     tractions, forces = frames(contact, path, run.state, STEP_TOLERANCE)
     slip = _slip(contact, path, tractions)
-    phase, bounds = path.phase, contact.bound[None]
-    if path.depth is not None:
-        bounds = contact.bounds_along(path)[:: path.stages.shape[1]]
+    bounds = np.broadcast_to(bounds_at_phases(contact, path), tractions[:, 0].shape)
+    phase = path.phase
     if kind.half_period_mirror:  # the second half is the mirror image of the first
         tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions[1:]]])
         slip = np.concatenate([slip, [contact.mirrored(part) for part in slip]])
@@ -213,7 +212,7 @@ def period(
     slip_forward, slip_lateral = _whole_disc(contact, np.concatenate([slip[-1:], slip]))
     forward, lateral = _whole_disc(contact, tractions)
     forward_position, lateral_position, _, area = _points(contact)
-    bound = np.tile(bounds, 2 * angles)
+    bound = np.tile(bounds.reshape(len(bounds), -1), 2)  # the other half has the same
     along = forward * slip_forward + lateral * slip_lateral > 0.0
     return Period(
         phase,

@@ -87,15 +87,20 @@ def _focus_strength(creep):
     return float(np.clip(1.0 - layer, WEAKEST_FOCUS, STRONGEST_FOCUS))
 
 
-def build_contact(motion, model, resolution, focus=None):
-    """The contact, its rings gathered where the slip starts, the closer, the slower the creep, or
-    at a rings.Focus."""
+def _focus(motion):
+    """Where the slip starts: rings gather there, the closer, the slower the creep."""
     scene = motion.scene
-    radius = None if focus else scene.focus(motion.velocity, motion.amplitude, scene.pressure)
-    focus = focus or radius
-    if radius is not None and scene.periodic:
-        creep = motion.creep
-        focus = Focus(radius, _focus_strength(creep) if creep > 0.0 else STATIC_FOCUS)
+    radius = scene.focus(motion.velocity, motion.amplitude, scene.pressure)
+    if radius is None or not scene.periodic:
+        return radius
+    creep = motion.creep
+    return Focus(radius, _focus_strength(creep) if creep > 0.0 else STATIC_FOCUS)
+
+
+def build_contact(motion, model, resolution, focus=None):
+    """The contact, its rings gathered at a rings.Focus, by default where the slip starts."""
+    scene = motion.scene
+    focus = focus or _focus(motion)
     build = MODELS[model].build
     contact = build(scene, motion.poisson, resolution.cells, resolution.angles, focus)
     if scene.depth is None:

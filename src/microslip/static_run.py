@@ -8,7 +8,7 @@ import numpy as np
 
 from microslip import anderson
 from microslip.cycle import Cycle
-from microslip.frames import frames
+from microslip.frames import bounds_at_phases, frames
 from microslip.method import SHIPPED
 from microslip.models.contact import FORWARD, StepFailure, forces
 from microslip.motion import STRONGEST_FOCUS, Motion, build_contact
@@ -96,7 +96,7 @@ def _on_these_points(contact, motion, steps, tolerance, method):
     shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
     cycle = Cycle(contact, path, mirror=mirror)
     start, inner = np.zeros((2, *shape)), STEP_SHARE * distance
-    for _ in range(MOST_ROUNDS):
+    for _ in range(MOST_ROUNDS):  # not Newton's method: what never slips keeps what it began with
         found = anderson.search(cycle, start, distance, inner, cycle.periods + LAPS)
         start = found.start
         if found.converged:
@@ -104,11 +104,8 @@ def _on_these_points(contact, motion, steps, tolerance, method):
     force, left = mean_forces(contact, motion, path, found.forces)[FORWARD], None
     if contact.sticks:
         tractions, _ = frames(contact, path, found.start, inner)
-        bounds = contact.bound
-        if path.depth is not None:
-            bounds = contact.bounds_along(path)[:: path.stages.shape[1], None]
+        bounds = np.broadcast_to(bounds_at_phases(contact, path), tractions[:, 0].shape)
         if mirror:
-            bounds = np.broadcast_to(bounds, tractions[:, 0].shape)
             bounds = np.concatenate([bounds, bounds])
             tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions]])
         shift = largest_shift(tractions, bounds)

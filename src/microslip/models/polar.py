@@ -74,10 +74,8 @@ class PolarContact:
         out.forward_position = self.forward_position * radius
         out.lateral_position = self.lateral_position * radius
         out.bound, out.weight = out.loaded.bound, self.weight * radius**2
-        out.influence, out.inverse = (
-            scaled(self.influence, radius),
-            scaled(self.inverse, 1 / radius),
-        )
+        out.influence = scaled(self.influence, radius)
+        out.inverse = scaled(self.inverse, 1.0 / radius)
         out.compliance, out.penalty = self.compliance * radius, self.penalty * radius
         out.stiffness = self.stiffness * radius
         return out

@@ -99,17 +99,6 @@ def solve_step(influence, inverse, penalty, bound, weight, b, q, dual, slip, roo
 
 
 @njit(**JIT)
-def _add_projected(change, bound, q):
-    """q + change, projected on the friction bound; in place."""
-    for j in range(q.shape[1]):
-        for i in range(q.shape[2]):
-            forward, lateral = q[0, j, i] + change[0, j, i], q[1, j, i] + change[1, j, i]
-            f = shrink(forward, lateral, bound[i])
-            q[0, j, i] = f * forward
-            q[1, j, i] = f * lateral
-
-
-@njit(**JIT)
 def _shrink(q, bound):
     """q projected on the friction bound, which may have become smaller; in place."""
     for j in range(q.shape[1]):
@@ -167,12 +156,11 @@ def march(
                 _add(b, -carry[s, j], slips[j])
             _copy(before, q)
             if warm:
-                _add_projected(added[k, s], bound, q)
+                _add(q, 1.0, added[k, s])
                 _copy(dual, duals[k, s])
-            else:
-                _shrink(q, bound)
-                if k > 0:
-                    _copy(dual, duals[k - 1, s])
+            elif k > 0:
+                _copy(dual, duals[k - 1, s])
+            _shrink(q, bound)
             count, residual = solve_step(
                 influence,
                 inverse,
