@@ -7,6 +7,8 @@ that importing the package costs next to nothing.
 
 from importlib import import_module as _import_module
 
+from microslip import source_digest as _source_digest  # noqa: F401  reads what will be loaded
+
 _WHERE = {
     "solve": "microslip.point",
     "Result": "microslip.point",

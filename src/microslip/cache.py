@@ -11,6 +11,7 @@ import json
 import logging
 import os
 import time
+import uuid
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -124,8 +125,7 @@ def writing_beside(path, sealed=False):
     what to do, where the system refuses.
     """
     path = Path(path)
-    # The process number keeps two writers of one result apart.
-    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
+    beside = _unique_beside(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         yield beside
@@ -147,6 +147,15 @@ def writing_beside(path, sealed=False):
             beside.unlink()
 
 
+def _unique_beside(path):
+    """A name beside a path that no other thread, process or container writes to.
+
+    Process numbers are the same in many containers, so it takes a random part; the number is there
+    for `clear_abandoned`.
+    """
+    return path.with_name(f".{path.name}.{uuid.uuid4().hex[:12]}.{os.getpid()}.part")
+
+
 def _cause(error, beside):
     """What keeps files from being written beside one, if anything does, else the error itself.
 
@@ -155,15 +164,15 @@ def _cause(error, beside):
     if getattr(error, "errno", None) in NO_WRITING:
         return error
     try:
-        check_room(beside.parent, beside.with_suffix(".room.part").name)
+        check_room(beside.parent)
     except OSError as truth:
         return truth
     return error
 
 
-def check_room(folder, name=".room.part"):
+def check_room(folder):
     """Write a small file to a folder and remove it; raises OSError where that is refused."""
-    trial = Path(folder, name)
+    trial = _unique_beside(Path(folder, "room"))
     try:
         with open(trial, "wb") as file:
             file.write(bytes(LEAST_ROOM))
@@ -202,19 +211,44 @@ def _may_run(path):
     return True
 
 
-# Seals: a checksum beside a file, by which damage to it is noticed later
+# Seals: a checksum beside a file, and what the file is made of
 
 
 def seal_of(path):
-    """Path of the checksum that stands beside a file."""
+    """Path of the seal that stands beside a file."""
     path = Path(path)
     return path.with_name(f".{path.name}.sha256")
 
 
-def _write_seal(path, checksum):
+def _write_seal(path, *words):
     # Before the file itself: between the two a run that is killed leaves a seal that does not fit,
     # and the file is made again. The other way round it would leave an old seal on a good file.
-    write_atomically(seal_of(path), f"{checksum}\n".encode())
+    write_atomically(seal_of(path), f"{' '.join(words)}\n".encode())
+
+
+def _seal(path):
+    """The words of a seal, the checksum first; empty where there is none."""
+    try:
+        return seal_of(path).read_bytes().decode("ascii", errors="replace").split()
+    except FileNotFoundError:
+        return []
+
+
+def mark(paths, fingerprint):
+    """Add to the seals of files what they are made of; fingerprint: see keys.fingerprint.
+
+    Raises CacheError as `writing_beside` does.
+    """
+    for path in paths:
+        _write_seal(path, *_seal(path)[:1], fingerprint)
+
+
+def is_made_of(path, fingerprint):
+    """Whether a file is whole, and of these inputs by this code; False where there is no file."""
+    try:
+        return _seal(path)[1:] == [fingerprint] and Path(path).exists() and not is_damaged(path)
+    except OSError as error:
+        raise CacheError(advice("read", path, error)) from error
 
 
 def is_damaged(path):
@@ -227,26 +261,53 @@ def is_damaged(path):
         with open(path, "rb") as file:
             if not seal_of(path).exists():
                 return file.read(len(begins)) != begins
-            sealed = seal_of(path).read_bytes().strip()
-            return hashlib.file_digest(file, "sha256").hexdigest().encode() != sealed
+            return [hashlib.file_digest(file, "sha256").hexdigest()] != _seal(path)[:1]
     except FileNotFoundError:
         return False
     except OSError as error:
         raise CacheError(advice("read", path, error)) from error
 
 
-def set_damaged_aside(paths):
-    """Rename those of the files that are damaged; return their old names (list of Path).
+# Batches: the records of a job in one file, one a line
 
-    What is there under the new name is kept until the next time. Raises CacheError.
+
+def write_batch(path, records):
+    """Write records to the file of a batch, all of them or nothing.
+
+    Each line is as in the file of a single result; the last one is the checksum of all before it.
+    Raises CacheError as `writing_beside` does.
     """
-    found = [Path(path) for path in paths if is_damaged(path)]
-    for path in found:
-        try:
-            os.replace(path, path.with_name(f"{path.name}.damaged"))
-        except OSError as error:
-            raise CacheError(advice("rename damaged", path, error)) from error
-    return found
+    content = b"".join(_text(record) for record in records)
+    write_atomically(path, content + _last_line(content))
+
+
+def read_batch(path):
+    """The records in the file of a batch, in their order, a list; None if it is damaged.
+
+    Raises CacheError if there is no such file or reading is not allowed.
+    """
+    content = _batch_content(path)
+    records = content and [_parse(line) for line in content.splitlines(keepends=True)]
+    return records if records and None not in records else None
+
+
+def is_whole_batch(path):
+    """Whether the file of a batch is as it was written. Raises CacheError as `read_batch`."""
+    return bool(_batch_content(path))
+
+
+def _batch_content(path):
+    """What a batch holds above its last line; empty if that does not fit."""
+    try:
+        text = Path(path).read_bytes()
+    except OSError as error:
+        raise CacheError(advice("read", path, error)) from error
+    end = text.rfind(b"\n", 0, -1) + 1
+    return text[:end] if text[end:] == _last_line(text[:end]) else b""
+
+
+def _last_line(content):
+    return f"{hashlib.sha256(content).hexdigest()}\n".encode()
 
 
 def _text(record):

@@ -11,10 +11,10 @@ import xarray as xr
 
 import microslip
 
-from . import columns, limits, theory
+from . import columns, limits, source_digest, theory
 from .cache import writing_beside
 from .extended import solver_names
-from .keys import canonical_json, source_digest
+from .keys import canonical_json
 from .scenes import scene_named
 
 CONVENTIONS = "CF-1.11"
@@ -77,7 +77,7 @@ def provenance(title, settings, versions, **more):
         "title": title,
         "references": PAPER,
         "microslip_version": microslip.__version__,
-        "source_digest": source_digest(),
+        "source_digest": source_digest.of_solver(),
         "configuration": canonical_json(settings),
         "library_versions": "; ".join(sorted(versions)),
     } | more

@@ -13,26 +13,24 @@ Kernels on floats and flat arrays, dimensionless; no knowledge of grids, motion 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-JIT = {"cache": True, "nogil": True, "error_model": "numpy"}
-"""Options of every compiled function: compiled once, kept on disk, no fast-math reordering."""
+from microslip.compiled import kernel
 
 
-@njit(inline="always", **JIT)
+@kernel(inline="always")
 def shrink(forward, lateral, bound):
     """Factor in 0..1 that brings the traction (forward, lateral) onto the disc |q| <= bound."""
     size = np.sqrt(forward * forward + lateral * lateral)
     return min(1.0, bound / max(size, 1e-300))  # no branch: the compiler can vectorise it
 
 
-@njit(inline="always", **JIT)
+@kernel(inline="always")
 def extended(start, stage, end):
     """Value at the end of a step, given that at its start and that at its share ``end``."""
     return stage if end == 1.0 else start + (stage - start) / end
 
 
-@njit(**JIT)
+@kernel
 def coulomb_residual(q, slip, bound, weight, scale):
     """How far tractions are from Coulomb's law, as a force over mu F_z.
 

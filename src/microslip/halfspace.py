@@ -19,11 +19,9 @@ It knows nothing of friction, motion or time.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from microslip.compiled import kernel
 from microslip.hertz import G_STAR
-
-JIT = {"cache": True, "nogil": True, "error_model": "numpy"}
 
 # Gauss points of the outer (averaging) and the inner (singular) ring integral, and the power that
 # clusters the inner points at the nearest approach, where the kernels have a logarithm.
@@ -34,7 +32,7 @@ APART_POINTS = 5
 """Gauss points on each of two rings with at least a ring's width between them."""
 
 
-@njit(**JIT)
+@kernel
 def _elliptic_ke(kc):
     """Complete elliptic integrals (K, E) for the complementary modulus kc, by the AGM."""
     a, b = 1.0, kc
@@ -51,7 +49,7 @@ def _elliptic_ke(kc):
     return big_k, big_k * (1.0 - total)
 
 
-@njit(**JIT)
+@kernel
 def toroidal_kernels(r, s, out):
     """Fill out[m] = G_m(r, s) = Integral J_m(k r) J_m(k s) dk for m = 0 .. len(out) - 1.
 
@@ -86,7 +84,7 @@ def toroidal_kernels(r, s, out):
         out[m] *= out[m - 1]
 
 
-@njit(**JIT)
+@kernel
 def coupling_kernels(r, s, toroidal, out):
     """Fill out[j] = C_{j+1}(r, s) = Integral J_{j+1}(k r) J_{j-1}(k s) dk, j = 0 .. len(out) - 1.
 
@@ -113,7 +111,7 @@ def coupling_kernels(r, s, toroidal, out):
         value = q * value + toroidal[m - 1] - q * toroidal[m - 2]
 
 
-@njit(**JIT)
+@kernel
 def _kernels(r, s, n_modes, coupled, torus, pair):
     """Fill torus[m] = G_m and, if coupled, pair[j] = C_{j+1}; returns torus, perhaps enlarged."""
     top = n_modes
@@ -131,7 +129,7 @@ def _kernels(r, s, n_modes, coupled, torus, pair):
     return torus
 
 
-@njit(**JIT)
+@kernel
 def _close_pair(edges_i, edges_j, n_modes, coupled, outer, inner, hertz, near, far):
     """Average kernels over ring i (outer rule) and ring j (inner rule); angles psi, r = sin psi.
 
@@ -168,7 +166,7 @@ def _close_pair(edges_i, edges_j, n_modes, coupled, outer, inner, hertz, near, f
                         far[m] += w * pair[m]
 
 
-@njit(**JIT)
+@kernel
 def _pair_apart(edges_i, edges_j, n_modes, coupled, rule, hertz, near, far, far_back):
     """As ``_close_pair`` for rings with a gap between them, both ways at once (far_back: C with
     the rings exchanged): the kernels are smooth there."""
@@ -194,14 +192,14 @@ def _pair_apart(edges_i, edges_j, n_modes, coupled, rule, hertz, near, far, far_
                     far_back[m] += weight * pair[m]
 
 
-@njit(**JIT)
+@kernel
 def _weight(psi, hertz):
     """Shape times r dr/dpsi on r = sin psi: uniform traction, or one shaped like the bound."""
     c = np.cos(psi)
     return np.sin(psi) * c * (c if hertz else 1.0)
 
 
-@njit(**JIT)
+@kernel
 def _weight_integral(b0, b1, hertz):
     """Exact integral of _weight from b0 to b1."""
     c0, c1 = np.cos(b0), np.cos(b1)
@@ -210,7 +208,7 @@ def _weight_integral(b0, b1, hertz):
     return 0.5 * (c0 * c0 - c1 * c1)
 
 
-@njit(**JIT)
+@kernel
 def _all_pairs(psi, n_modes, coupled, outer, inner, apart, hertz, near, far):
     n = len(psi) - 1
     for i in range(n):

@@ -2,6 +2,7 @@
 
 import math
 import time
+import warnings
 from dataclasses import fields
 
 from . import sweep
@@ -52,7 +53,13 @@ def solve_stored(
         pressure=kind.pressure.name,
     )
     (request,) = sweep.PointRequests(grid)
-    record, _ = sweep.answer(request, Store(results))
+    try:
+        record, _ = sweep.answer(request, Store(results))
+    except sweep.SourcesEdited as edited:
+        if edited.record is None:
+            raise
+        warnings.warn(str(edited), stacklevel=2)
+        record = edited.record
     given = {"pressure": kind.pressure.name} | request | record["result"]
     given |= {k: float(given[k]) for k in ("velocity", "poisson", "tolerance")}
     if amplitude is not None:

@@ -5,17 +5,18 @@ with the digest of the solver it names a result. A job gets a batch of requests 
 that the store does not hold, so how points are cut into batches never decides what is computed.
 """
 
+import functools
 import importlib.metadata
 import logging
 import math
 import platform
 import time
 from collections.abc import Sequence
-from functools import cache
 
-from . import answers
+from . import answers, cache, source_digest
+from .cache import CacheError
 from .extended import solver_names
-from .keys import batch_name, number, result_key, source_digest
+from .keys import batch_name, number, result_key
 from .settings import HISTORIES_OF_SWEEP
 
 log = logging.getLogger(__name__)
@@ -96,10 +97,20 @@ def _single(kind, scene, settings, **more):
     return {"kind": kind, "scene": scene} | settings | numbers | more
 
 
-def batches(requests, size, digest):
+def key_of(request):
+    """Name of the result that answers a request with the code that is running."""
+    return result_key(request, source_digest.of_request(request))
+
+
+def batches(requests, size):
     """Cut requests into lists of `size` and return them by name; the name tells the content."""
     cuts = (requests[i : i + size] for i in range(0, len(requests), size))
-    return {batch_name([result_key(r, digest) for r in cut]): cut for cut in cuts}
+    return {name_of_batch(cut): cut for cut in cuts}
+
+
+def name_of_batch(requests):
+    """Name of the batch that answers these requests with the code that is running."""
+    return batch_name([key_of(request) for request in requests])
 
 
 def group(request):
@@ -114,7 +125,7 @@ def answer(request, store):
     It comes from the store if that has it (0 seconds), else it is computed and stored. The record
     is a dict: key, request, result, versions. Raises CacheError if it cannot be stored.
     """
-    key = result_key(request, source_digest())
+    key = key_of(request)
     record = store.read(group(request), key)
     if record is not None:
         return record, 0.0
@@ -125,28 +136,84 @@ def answer(request, store):
     # How long it took is left out: equal requests have equal records, bit for bit, but for those
     # that ask for a time.
     record = {"key": key, "request": request, "result": result, "versions": versions()}
+    edited = source_digest.LOADED.edited(source_digest.files_of_request(request))
+    if edited:
+        raise SourcesEdited(edited[0], record)
     store.write(group(request), key, record)
     return record, seconds
 
 
-def run_batch(requests, store, progress=iter):
-    """Answer every request; return the batch's index (dict) and its statistics (dict).
+class SourcesEdited(CacheError):
+    """The code on disk is no longer the one that is running.
 
-    progress: wraps the list of requests and yields them one by one, such as tqdm. The index
-    depends on the requests and the solver alone; times and counts are in the statistics.
+    A result may then be of either code, so it is not kept under the name of one.
+
+    Attributes
+    ----------
+    record : dict
+        What was computed, by code that was loaded before the edit or after it.
     """
-    keys, not_converged, computed, seconds = [], 0, 0, 0.0
+
+    def __init__(self, file, record=None):
+        super().__init__(
+            f"{file} was edited while its code was running, so what it computes is not kept; "
+            "run again: finished points are kept"
+        )
+        self.record = record
+
+
+def run_batch(requests, store, progress=iter, name=None):
+    """Answer every request; return the records (list) and statistics of the batch (dict).
+
+    progress: wraps the list of requests and yields them one by one, such as tqdm. The records
+    depend on the requests and the solver alone; times and counts are in the statistics. name: of
+    the batch where it was planned; raises SourcesEdited if it has another one by now.
+    """
+    if name not in (None, name_of_batch(requests)):
+        raise SourcesEdited("the solver")
+    records, computed, seconds = [], 0, 0.0
     for request in progress(requests):
         record, took = answer(request, store)
-        keys.append(record["key"])
+        records.append(record)
         computed += took > 0
         seconds += took
         if not record["result"].get("converged", True):
-            not_converged += 1
             log.info("not converged: %s: %s", label(request), record["result"]["reason"])
-    index = {"keys": keys, "not_converged": not_converged}
-    statistics = {"points": len(keys), "computed": computed, "solver_seconds": seconds}
-    return index, statistics
+    statistics = {"points": len(records), "computed": computed, "solver_seconds": seconds}
+    return records, statistics
+
+
+def records_in(paths):
+    """Records in the files of batches, one by one in their order.
+
+    Raises CacheError, one line that says what to do, for a file that is damaged.
+    """
+    for path in paths:
+        records = cache.read_batch(path)
+        if records is None:
+            raise CacheError(f"{path} is damaged; run again: it is made again from finished points")
+        yield from records
+
+
+def records_for(requests, paths):
+    """Records in the files of batches, one by one, each the answer to the next of the requests.
+
+    Raises CacheError as `records_in` does, and where a record answers another request.
+    """
+    records = records_in(paths)
+    for request, record in zip(requests, records, strict=True):
+        if record["request"] != request:
+            raise CacheError(
+                f"a batch answers {label(record['request'])} in the place of {label(request)}; "
+                "remove the folder batches and run again: finished points are kept"
+            )
+        yield record
+
+
+def lookup(records):
+    """A function that finds the record that answers a request among these."""
+    found = {record["key"]: record for record in records}
+    return lambda request: found[key_of(request)]
 
 
 def label(request):
@@ -158,7 +225,7 @@ def label(request):
     return f"{request.get('scene', request['kind'])} at {given}"
 
 
-@cache
+@functools.cache
 def versions():
     """Versions of Python and of the numerical libraries that compute a result, as a dict."""
     found = {name: importlib.metadata.version(name) for name in ("numpy", "scipy", "numba")}

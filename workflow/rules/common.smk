@@ -4,7 +4,8 @@ from glob import glob
 
 from snakemake.logging import logger as snakemake_log
 
-from microslip import explorer, jobs, keys, plot, schemas, studies, sweep
+from microslip import explorer, jobs, keys, plan, schemas, source_digest, studies, sweep
+from microslip.plan import Plan
 from microslip.watch import Watch
 
 # In a module the files are those of another workflow, which may hold more than this one knows.
@@ -23,93 +24,101 @@ with refused_in_one_line(ORIGIN):
     # RESULTS with the prefix that a module may have; Snakemake adds it to the paths of rules itself.
     PLACE = str(workflow.modifier.modify_path(RESULTS))
 
-DIGEST = keys.source_digest()
+PLAN = Plan(CONFIGURATION)
 COUNTER = f"{PLACE}/logs/points_done"
-PERIODS_PER_JOB = 150  # a few seconds of work
-
-# BATCHES[group][name]: requests of that batch. A group is a sweep, or the single runs beside it.
-BATCHES = {}
-for name, grid in CONFIGURATION.sweeps.items():
-    size = CONFIGURATION.points_per_job[name]
-    BATCHES[name] = sweep.batches(sweep.PointRequests(grid), size, DIGEST)
-    histories = sweep.history_requests(CONFIGURATION, name)
-    BATCHES[f"{name}_histories"] = sweep.batches(histories, size, DIGEST)
-
-# The studies by the names of their datasets. They cut their requests themselves; what takes long
-# starts first, in jobs of its own.
-STUDIES = {dataset: study for study, dataset in studies.DATASETS.items()}
-for study in STUDIES.values():
-    for group, cuts in zip((f"{study}_first", study), studies.pieces(study, CONFIGURATION)):
-        batches = (sweep.batches(cut, len(cut), DIGEST) for cut in cuts)
-        BATCHES[group] = {name: cut for batch in batches for name, cut in batch.items()}
-
-# The periods that the explorer shows.
-EXPLORED = explorer.maps_of(CONFIGURATION)
-for name in EXPLORED:
-    periods = explorer.period_requests(CONFIGURATION, name)
-    BATCHES[f"{name}_periods"] = sweep.batches(periods, PERIODS_PER_JOB, DIGEST)
-
-# Names of motions with numbers are read by the solver, so these are made when they are asked for:
-# jobs for other sweeps do without it.
-ON_DEMAND = dict.fromkeys(CONFIGURATION.extended)
-EARLY = [f"{study}_first" for study in STUDIES.values()]
+STUDIES = PLAN.studies
+EXPLORED = PLAN.explored
+EARLY = PLAN.early_groups
+FIGURES = PLAN.figures
+NAMES = PLAN.datasets
+PAGE = f"{RESULTS}/{plan.PAGE}"
 
 
-def batches_in(group):
-    """The batches of a group by name."""
-    if group in ON_DEMAND and ON_DEMAND[group] is None:
-        points = sweep.PointRequests(CONFIGURATION.extended[group])
-        ON_DEMAND[group] = sweep.batches(points, CONFIGURATION.points_per_job[group], DIGEST)
-    return ON_DEMAND.get(group) or BATCHES[group]
+def in_results(files):
+    """The files with the folder of results before them."""
+    return [f"{RESULTS}/{file}" for file in files]
 
 
-# The figures that there is data for, each with the names of its datasets.
-FIGURES = {
-    figure: names
-    for figure, names in plot.FIGURES.items()
-    if all(name in CONFIGURATION.sweeps or name in STUDIES for name in names)
-}
-for figure in {"fig2_transverse_map", "fig6_bore_map", "poisson"} & FIGURES.keys():
-    grids = [CONFIGURATION.sweeps[name] for name in FIGURES[figure]]
-    drawable = all(grid.spans_a_map for grid in grids)
-    if figure == "poisson":
-        drawable &= all(1 < len(grid.poisson) <= plot.MOST_POISSONS for grid in grids)
-    if not drawable:
-        del FIGURES[figure]
-FIGURES |= {plot.figure_of(group): names for group, names in CONFIGURATION.groups.items()}
+def placed(file):
+    """Path of a file in the folder of results, with the prefix that a module may have."""
+    return f"{PLACE}/{file}"
 
 
 def datasets_of(names):
     """Files of the datasets with these names, and the pages about them."""
-    return expand(
-        [f"{RESULTS}/{{name}}.nc", f"{RESULTS}/summaries/{{name}}.html"], name=list(names)
-    )
+    return in_results(PLAN.dataset_files(names))
 
 
 def figures_of(datasets):
     """Files of all figures that are drawn from these datasets."""
-    return [
-        f"{RESULTS}/figures/{figure}.{form}"
-        for figure, names in FIGURES.items()
-        if set(names) <= set(datasets)
-        for form in ("png", "pdf")
-    ]
+    return in_results(PLAN.figure_files(datasets))
 
 
-NAMES = [*CONFIGURATION.grids, *STUDIES]
-PAGE = f"{RESULTS}/explorer.html"
-FILES_MADE = [*datasets_of(NAMES), *figures_of(NAMES), PAGE]
-MADE = [str(workflow.modifier.modify_path(path)) for path in FILES_MADE]
+def look_after(*files):
+    """Have Snakemake make these files again if they are not of what they are to be made of.
+
+    Snakemake compares dates, and what it noted of the last run in a folder that may be gone or of
+    another run. A seal goes with its file.
+    """
+    for file in files:
+        there = placed(file)
+        if ASKING and os.path.lexists(there):
+            if cache.is_damaged(there):
+                make_again(there, "it is damaged")
+            elif not cache.is_made_of(there, PLAN.fingerprint_of(file)):
+                make_again(there)
+
+
+def whole_batches(*groups):
+    """Files of all batches of these groups; those that are damaged are made again."""
+    files = PLAN.batch_files(*groups)
+    for there in map(placed, files) if ASKING else ():
+        if os.path.lexists(there) and not cache.is_whole_batch(there):
+            make_again(there, "it is damaged")
+    return in_results(files)
+
+
+def make_again(path, why=""):
+    """Have Snakemake make a file in this run, if anything that is asked for depends on it."""
+    if why and path not in workflow.dag.forcefiles:
+        print(f"{path} is made again: {why}", file=sys.stderr)
+    workflow.dag.forcefiles.add(path)
+
+
+def requests_of(group, batch):
+    """Requests of a batch as one string: Snakemake compares parameters as a set and would miss two
+    swapped numbers."""
+    requests = PLAN.batches_in(group).get(batch)
+    if requests is None:  # in a job, where the sources are no longer those of the plan
+        sys.exit(f"Error: {sweep.SourcesEdited('the solver')}")
+    return keys.canonical_json(requests)
+
+
+def batches_for(dataset):
+    """Files of the batches that a dataset is made of."""
+    look_after(*PLAN.dataset_files([dataset]))
+    return whole_batches(*PLAN.groups_of(dataset))
+
+
+def histories_for(name):
+    """Files of the batches of the single runs beside a sweep."""
+    return whole_batches(*PLAN.groups_beside(name))
+
+
+def datasets_for(figure):
+    """Files of the datasets that a figure is drawn from."""
+    look_after(*(f"figures/{figure}.{form}" for form in ("png", "pdf")))
+    return in_results(f"{name}.nc" for name in FIGURES[figure])
+
+
 GROUPS = {"batches", "figures", "logs", "warm_up", *sweep.FOLDERS.values()}
+# Where another run may be writing, what looks damaged may be about to be whole.
+ASKING = workflow.is_main_process and not glob(".snakemake/locks/*")
 
 with refused_in_one_line(ORIGIN):
     if workflow.is_main_process:
-        cache.refuse_unusable([f"{PLACE}/{group}" for group in sorted(GROUPS)], MADE)
-    # What is there is used again, so damage to it has to be seen before anything is planned; but
-    # not while another run may be writing.
-    if workflow.is_main_process and not glob(".snakemake/locks/*"):
-        for path in cache.set_damaged_aside(MADE):
-            print(f"{path} was damaged: renamed to {path}.damaged, made again", file=sys.stderr)
+        folders = [placed(group) for group in sorted(GROUPS)]
+        cache.refuse_unusable(folders, map(placed, PLAN.made_files()))
 
 snakemake_log.addFilter(jobs.plain_words(PLACE))
 WATCH = Watch(COUNTER)
@@ -130,8 +139,8 @@ def points_to_do():
         job.wildcards for job in workflow.dag.needrun_jobs() if "batch" in job.wildcards.keys()
     ]
     # Where this is a module, others may have batches too.
-    known = [w for w in asked if w[0] in BATCHES or w[0] in ON_DEMAND]
-    return sum(len(batches_in(w[0]).get(w.batch, ())) for w in known)
+    known = [w for w in asked if w[0] in PLAN.groups]
+    return sum(len(PLAN.batches_in(w[0]).get(w.batch, ())) for w in known)
 
 
 def show_the_end():
@@ -143,36 +152,19 @@ def show_the_end():
         print(line, file=sys.stderr)
 
 
-def batches_of(name):
-    """Index files of a sweep's points and of the single runs in the same dataset."""
-    return indices_of(name, *({f"{name}_histories"} & BATCHES.keys()))
-
-
-def batches_of_study(dataset):
-    """Index files of all that a study asks for; dataset: its name."""
-    study = STUDIES[dataset]
-    return indices_of(f"{study}_first", study)
-
-
 def datasets_explored():
     """Files of the datasets that the explorer shows, if it can show them."""
+    look_after(plan.PAGE)
     problem = explorer.refusal(CONFIGURATION)
     if problem:
         sys.exit(f"Error in {ORIGIN}: {problem}")
-    return [f"{RESULTS}/{name}.nc" for name in EXPLORED]
-
-
-def indices_of(*groups):
-    """Index files of all batches of these groups."""
-    return [
-        f"{RESULTS}/batches/{group}/{batch}.json" for group in groups for batch in batches_in(group)
-    ]
+    return in_results(f"{name}.nc" for name in EXPLORED)
 
 
 wildcard_constraints:
     sweep="|".join(CONFIGURATION.grids),
     dataset="|".join(STUDIES),
-    group="|".join([*BATCHES, *ON_DEMAND]),
+    group="|".join(PLAN.groups),
     early="|".join(EARLY),
     batch="[0-9a-f]+",
     figure="|".join(FIGURES),

@@ -3,11 +3,13 @@
 
 rule collect:
     input:
-        batches=lambda wildcards: batches_of(wildcards.sweep),
+        batches=lambda wildcards: batches_for(wildcards.sweep),
+        histories=lambda wildcards: histories_for(wildcards.sweep),
     output:
-        f"{RESULTS}/{{sweep}}.nc",
+        # The old one stays until the new one is whole, whatever happens to the job.
+        update(f"{RESULTS}/{{sweep}}.nc"),
         summary=report(
-            f"{RESULTS}/summaries/{{sweep}}.html",
+            update(f"{RESULTS}/summaries/{{sweep}}.html"),
             caption="../report/dataset.rst",
             category="Datasets",
             labels={"dataset": "{sweep}.nc"},
@@ -21,23 +23,20 @@ rule collect:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 10 * attempt,
     params:
-        # These two are not read by the script; they make Snakemake notice a change.
-        code=lambda wildcards: keys.digest_of_modules(
-            "dataset.py", "columns.py", "limits.py", "summary.py"
-        ),
-        settings=lambda wildcards: keys.canonical_json(CONFIGURATION.of_sweep(wildcards.sweep)),
-        store=lambda wildcards, output: str(Path(output[0]).parent),
+        made_of=lambda wildcards: PLAN.fingerprint_of(f"{wildcards.sweep}.nc"),
+        code=lambda wildcards: PLAN.code_of(f"{wildcards.sweep}.nc"),
     script:
         "../scripts/collect.py"
 
 
 rule collect_study:
     input:
-        batches=lambda wildcards: batches_of_study(wildcards.dataset),
+        batches=lambda wildcards: batches_for(wildcards.dataset),
     output:
-        f"{RESULTS}/{{dataset}}.nc",
+        # The old one stays until the new one is whole, whatever happens to the job.
+        update(f"{RESULTS}/{{dataset}}.nc"),
         summary=report(
-            f"{RESULTS}/summaries/{{dataset}}.html",
+            update(f"{RESULTS}/summaries/{{dataset}}.html"),
             caption="../report/dataset.rst",
             category="Datasets",
             labels={"dataset": "{dataset}.nc"},
@@ -51,14 +50,8 @@ rule collect_study:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 10 * attempt,
     params:
-        # Not read by the script, as above.
-        code=lambda wildcards: keys.digest_of_modules(
-            "dataset.py", "columns.py", "summary.py", "studies"
-        ),
-        settings=lambda wildcards: keys.canonical_json(
-            studies.settings(STUDIES[wildcards.dataset], CONFIGURATION)
-        ),
+        made_of=lambda wildcards: PLAN.fingerprint_of(f"{wildcards.dataset}.nc"),
+        code=lambda wildcards: PLAN.code_of(f"{wildcards.dataset}.nc"),
         study=lambda wildcards: STUDIES[wildcards.dataset],
-        store=lambda wildcards, output: str(Path(output[0]).parent),
     script:
         "../scripts/collect_study.py"

@@ -4,10 +4,10 @@
 rule explorer:
     input:
         datasets=lambda wildcards: datasets_explored(),
-        batches=lambda wildcards: indices_of(*(f"{name}_periods" for name in EXPLORED)),
+        batches=lambda wildcards: whole_batches(*(f"{name}_periods" for name in EXPLORED)),
     output:
         report(
-            PAGE,
+            update(PAGE),
             caption="../report/explorer.rst",
             category="Explorer",
             labels={"page": "explorer.html"},
@@ -22,8 +22,7 @@ rule explorer:
         runtime=lambda wildcards, attempt: 10 * attempt,
     params:
         names=EXPLORED,
-        # Not read by the script; it makes Snakemake notice a change.
-        code=lambda wildcards: explorer.digest(),
-        store=lambda wildcards, output: str(Path(output[0]).parent),
+        made_of=lambda wildcards: PLAN.fingerprint_of(plan.PAGE),
+        code=lambda wildcards: PLAN.code_of(plan.PAGE),
     script:
         "../scripts/explore.py"

@@ -3,10 +3,10 @@
 
 rule draw_figure:
     input:
-        lambda wildcards: [f"{RESULTS}/{name}.nc" for name in FIGURES[wildcards.figure]],
+        lambda wildcards: datasets_for(wildcards.figure),
     output:
         report(
-            f"{RESULTS}/figures/{{figure}}.png",
+            update(f"{RESULTS}/figures/{{figure}}.png"),
             caption="../report/figure.rst",
             category=lambda wildcards: {
                 "claims": "The paper's claims",
@@ -15,7 +15,7 @@ rule draw_figure:
             }.get(FIGURES[wildcards.figure][0], "Methods"),
             labels={"figure": "{figure}"},
         ),
-        f"{RESULTS}/figures/{{figure}}.pdf",
+        update(f"{RESULTS}/figures/{{figure}}.pdf"),
     log:
         f"{RESULTS}/logs/draw_figure/{{figure}}.log",
     conda:
@@ -26,7 +26,7 @@ rule draw_figure:
         runtime=lambda wildcards, attempt: 10 * attempt,
     params:
         names=lambda wildcards: FIGURES[wildcards.figure],
-        # Not read by the script; it makes Snakemake notice a change.
-        code=lambda wildcards: keys.digest_of_modules("plot"),
+        made_of=lambda wildcards: PLAN.fingerprint_of(f"figures/{wildcards.figure}.png"),
+        code=lambda wildcards: PLAN.code_of(f"figures/{wildcards.figure}.png"),
     script:
         "../scripts/draw_figure.py"

@@ -4,7 +4,7 @@
 # Compiles the solver once, before jobs that would all do it at the same time.
 rule warm_up:
     output:
-        f"{RESULTS}/warm_up/{DIGEST[:16]}.txt",
+        f"{RESULTS}/warm_up/{source_digest.of_kernels()[:16]}.txt",
     log:
         f"{RESULTS}/logs/warm_up.log",
     conda:
@@ -20,14 +20,14 @@ rule warm_up:
 
 rule solve_batch:
     input:
-        # It only has to be there: its name holds the digest of the solver, as those of the points.
+        # It only has to be there: its name holds the digest of the compiled sources.
         ancient(rules.warm_up.output),
     output:
         f"{RESULTS}/batches/{{group}}/{{batch}}.json",
     log:
         f"{RESULTS}/logs/solve_batch/{{group}}/{{batch}}.log",
     wildcard_constraints:
-        group="|".join(group for group in [*BATCHES, *ON_DEMAND] if group not in EARLY),
+        group="|".join(group for group in PLAN.groups if group not in EARLY),
     conda:
         "../envs/microslip.yaml"
     threads: 1
@@ -35,8 +35,7 @@ rule solve_batch:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 60 * attempt,
     params:
-        # One string: Snakemake compares parameters as a set and would miss two swapped numbers.
-        requests=lambda wildcards: keys.canonical_json(batches_in(wildcards.group)[wildcards.batch]),
+        requests=lambda wildcards: requests_of(wildcards.group, wildcards.batch),
         store=lambda wildcards, output: str(Path(output[0]).parents[2]),
         counter=COUNTER,
     script:
@@ -51,6 +50,6 @@ use rule solve_batch as solve_early_batch with:
         f"{RESULTS}/logs/solve_batch/{{early}}/{{batch}}.log",
     priority: 10
     params:
-        requests=lambda wildcards: keys.canonical_json(BATCHES[wildcards.early][wildcards.batch]),
+        requests=lambda wildcards: requests_of(wildcards.early, wildcards.batch),
         store=lambda wildcards, output: str(Path(output[0]).parents[2]),
         counter=COUNTER,

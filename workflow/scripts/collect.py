@@ -1,4 +1,4 @@
-"""Assemble the dataset of one sweep from the store.
+"""Assemble the dataset of one sweep from its batches.
 
 Output: netCDF-4, CF conventions, all quantities dimensionless (units 1, phases in rad).
   transverse.nc       dims (amplitude, velocity), history_step
@@ -11,23 +11,21 @@ page that sums it up.
 
 import xarray as xr
 
-from microslip import config, dataset, summary, sweep
-from microslip.cache import Store
+from microslip import cache, config, dataset, summary, sweep
 from microslip.jobs import job_log
+from microslip.plan import Plan
 
 name = snakemake.wildcards.sweep
 
 with job_log(snakemake.log[0]) as log:
     configuration = config.from_mapping(snakemake.config, ask_solver=False)
-    store = Store(snakemake.params.store)
+    Plan(configuration).refuse_edited(f"{name}.nc", snakemake.params.code)
     grid = configuration.grids[name]
-    points = (sweep.answer(request, store)[0] for request in sweep.PointRequests(grid))
-    histories = sweep.history_requests(configuration, name)
     dataset.write_sweep(
         snakemake.output[0],
         grid,
-        points,
-        [sweep.answer(request, store)[0] for request in histories],
+        sweep.records_for(sweep.PointRequests(grid), snakemake.input.batches),
+        list(sweep.records_in(snakemake.input.histories)),
         configuration.of_sweep(name),
     )
     with xr.open_dataset(snakemake.output[0]) as data:
@@ -35,3 +33,4 @@ with job_log(snakemake.log[0]) as log:
         for line in lines:
             log.info(line)
         summary.write(snakemake.output.summary, data, lines)
+    cache.mark(snakemake.output, snakemake.params.made_of)

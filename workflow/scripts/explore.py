@@ -3,23 +3,21 @@
 Output: HTML, one file that needs no network; the numbers in it are dimensionless.
 """
 
-from microslip import config, explorer, sweep
-from microslip.cache import Store
+from microslip import cache, config, explorer, plan, sweep
 from microslip.jobs import job_log
 from microslip.plot.data import loaded
 
 with job_log(snakemake.log[0]) as log:
     configuration = config.from_mapping(snakemake.config, ask_solver=False)
-    store = Store(snakemake.params.store)
+    plan.Plan(configuration).refuse_edited(plan.PAGE, snakemake.params.code)
     names = snakemake.params.names
+    answer = sweep.lookup(sweep.records_in(snakemake.input.batches))
     periods = {
-        name: [
-            sweep.answer(request, store)[0]
-            for request in explorer.period_requests(configuration, name)
-        ]
+        name: [answer(request) for request in explorer.period_requests(configuration, name)]
         for name in names
     }
     datasets = {name: loaded(p) for name, p in zip(names, snakemake.input.datasets, strict=True)}
     explorer.write(snakemake.output[0], datasets, periods)
     for line in explorer.report(periods):
         log.info(line)
+    cache.mark(snakemake.output, snakemake.params.made_of)

@@ -1,24 +1,23 @@
 """Answer a batch of requests: points of a sweep, single runs for a figure, or part of a study.
 
-Output: JSON with `keys`, the names of the results in the order of the requests, and
-`not_converged`, a count. The results themselves are files of their own under the store's folders
-that sweep.FOLDERS names; all numbers in them are dimensionless, but for the times (s) and sizes of
-memory (byte) of trials and scaling.
+Output: the records of the batch, in the order of the requests, one a line as JSON with a checksum.
+All numbers in them are dimensionless, but for the times (s) and sizes of memory (byte) of trials
+and scaling. Each is kept in the store as well, as soon as it is computed, under the folders that
+sweep.FOLDERS names.
 """
 
 import json
 
-from microslip import sweep
-from microslip.cache import Store, write_atomically
+from microslip import cache, sweep
 from microslip.jobs import job_log
-from microslip.keys import canonical_json
 from microslip.watch import counted
 
 with job_log(snakemake.log[0]) as log:
-    index, done = sweep.run_batch(
+    records, done = sweep.run_batch(
         json.loads(snakemake.params.requests),
-        Store(snakemake.params.store),
+        cache.Store(snakemake.params.store),
         lambda requests: counted(requests, snakemake.params.counter),
+        name=snakemake.wildcards.batch,
     )
-    write_atomically(snakemake.output[0], canonical_json(index).encode())
+    cache.write_batch(snakemake.output[0], records)
     log.info("%(points)d points, %(computed)d computed in %(solver_seconds).2f s of CPU time", done)

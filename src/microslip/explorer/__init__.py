@@ -12,7 +12,7 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-from ..keys import digest_of_modules
+from .. import source_digest
 from .requests import maps_of, period_requests, refusal
 
 __all__ = ["ASSETS", "digest", "maps_of", "period_requests", "refusal", "report", "write"]
@@ -24,7 +24,7 @@ ASSETS = ("page.html", "style.css", "data.js", "charts.js", "disc.js", "page.js"
 def digest() -> str:
     """Digest of all that the page depends on besides datasets and periods."""
     parts = [Path(__file__).with_name(name).read_bytes() for name in ASSETS]
-    parts.append(digest_of_modules("explorer", "periods.py", "limits.py", "plot").encode())
+    parts.append(source_digest.of_modules("explorer", "periods.py").encode())
     return hashlib.sha256(b"\0".join(parts)).hexdigest()
 
 

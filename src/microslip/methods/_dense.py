@@ -13,9 +13,9 @@ friction.coulomb_residual.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from microslip.friction import JIT, coulomb_residual, shrink
+from microslip.compiled import kernel
+from microslip.friction import coulomb_residual, shrink
 from microslip.models.contact import March, StepFailure, forces
 
 FAR_FROM_SOLVED = 1e-2
@@ -112,7 +112,7 @@ def _matrix(contact, shape):
     return np.ascontiguousarray(columns.T)
 
 
-@njit(**JIT)
+@kernel
 def judge(matrix, scale, bound, weight, b, q, slip):
     """Fill slip = b - A q, all (2, K), and return the residual of the step."""
     slip[:] = b - (matrix @ q.ravel()).reshape(q.shape)
@@ -120,7 +120,7 @@ def judge(matrix, scale, bound, weight, b, q, slip):
     return coulomb_residual(q.reshape(points), slip.reshape(points), bound, weight, scale)
 
 
-@njit(**JIT)
+@kernel
 def project_in_place(q, bound):
     """Shrink every traction of q, (2, K), onto its bound."""
     for i in range(q.shape[1]):
@@ -129,7 +129,7 @@ def project_in_place(q, bound):
         q[1, i] *= f
 
 
-@njit(**JIT)
+@kernel
 def descend(matrix, scale, bound, weight, b, q, slip, tolerance, length):
     """Solve a step by projected gradient steps of fixed length, that of each point in ``length``,
     (K,); see the module's docstring."""

@@ -7,9 +7,8 @@ penalty; how fast depends on it.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from microslip.friction import JIT
+from microslip.compiled import kernel
 from microslip.method import Method
 from microslip.methods._dense import DenseContact, judge, project_in_place
 
@@ -22,7 +21,7 @@ def _inverse(matrix, scale, penalty, relaxation):
     return np.linalg.inv(matrix + np.diag(np.tile(added, 2))), added, relaxation
 
 
-@njit(**JIT)
+@kernel
 def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, settings):
     inverse, penalty, relaxation = settings
     residual = judge(matrix, scale, bound, weight, b, q, slip)

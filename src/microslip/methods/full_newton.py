@@ -7,16 +7,15 @@ and nothing brings it down.  Points where the bound is next to nothing flip firs
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from microslip.friction import JIT
+from microslip.compiled import kernel
 from microslip.method import Method
 from microslip.methods._dense import DenseContact, judge, project_in_place
 
 MAX_ITERATIONS = 60
 
 
-@njit(**JIT)
+@kernel
 def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, settings):
     n = q.shape[1]
     system, right = np.empty_like(matrix), np.empty(2 * n)

@@ -6,9 +6,9 @@ It lowers the energy with every point, so it converges for any relaxation betwee
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from microslip.friction import JIT, shrink
+from microslip.compiled import kernel
+from microslip.friction import shrink
 from microslip.method import Method
 from microslip.methods._dense import DenseContact, judge
 
@@ -20,7 +20,7 @@ def _columns(matrix, scale, relaxation):
     return np.ascontiguousarray(matrix.T), relaxation
 
 
-@njit(**JIT)
+@kernel
 def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, settings):
     columns, relaxation = settings
     n = q.shape[1]

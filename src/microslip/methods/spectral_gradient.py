@@ -5,9 +5,7 @@ The length of a step is what the last one measured of the matrix along its own d
 
 from __future__ import annotations
 
-from numba import njit
-
-from microslip.friction import JIT
+from microslip.compiled import kernel
 from microslip.method import Method
 from microslip.methods._dense import DenseContact, judge, project_in_place, safe_length
 
@@ -20,7 +18,7 @@ def _shortest(matrix, scale):
     return safe_length(matrix)
 
 
-@njit(**JIT)
+@kernel
 def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, shortest):
     residual = judge(matrix, scale, bound, weight, b, q, slip)
     length, best, best_at = shortest, residual, 0

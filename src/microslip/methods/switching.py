@@ -8,16 +8,15 @@ Nothing measures progress, so the guesses may chase each other for ever.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from microslip.friction import JIT
+from microslip.compiled import kernel
 from microslip.method import Method
 from microslip.methods._dense import DenseContact, judge
 
 MAX_ITERATIONS = 200
 
 
-@njit(**JIT)
+@kernel
 def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, settings):
     n = q.shape[1]
     residual = judge(matrix, scale, bound, weight, b, q, slip)

@@ -10,9 +10,9 @@ certain take over until it does.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from microslip.friction import JIT, extended, shrink
+from microslip.compiled import kernel
+from microslip.friction import extended, shrink
 from microslip.models import contact
 from microslip.models.convolution import convolve, square_convolution, workspace
 from microslip.models.points import rigid_displacement, sum_forces
@@ -89,7 +89,7 @@ class CartesianContact:
         return contact.March(state, forces, residual, iterations, steps * n_stages, stages=stages)
 
 
-@njit(**JIT)
+@kernel
 def _march(
     operator,
     scratch,
@@ -155,7 +155,7 @@ def _march(
     return held, total, iterations
 
 
-@njit(**JIT)
+@kernel
 def solve_step(operator, scratch, scales, bound, weight, b, q, slip, step, tolerance):
     """Solve one Coulomb step in place.
 
@@ -185,7 +185,7 @@ def solve_step(operator, scratch, scales, bound, weight, b, q, slip, step, toler
     return MAX_ITERATIONS, residual, step
 
 
-@njit(**JIT)
+@kernel
 def _projected_step(q, slip, bound, scale, step, new, room):
     """new = P(q + step slip); returns the residual over the weight, as friction.coulomb_residual.
 
@@ -207,7 +207,7 @@ def _projected_step(q, slip, bound, scale, step, new, room):
     return room.sum()
 
 
-@njit(**JIT)
+@kernel
 def _replace(q, slip, new, b, moved, bound, room):
     """q = new, slip = b - A new; returns <dq, dq>, -<dq, ds> and <ds, ds> of the change."""
     room[:] = 0.0
@@ -224,7 +224,7 @@ def _replace(q, slip, new, b, moved, bound, room):
     return room[0].sum(), room[1].sum(), room[2].sum()
 
 
-@njit(**JIT)
+@kernel
 def _extrapolate(start, later, earlier, bound, out):
     """out = P(start + later - earlier)."""
     for i in range(bound.shape[0]):

@@ -13,9 +13,8 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from microslip.friction import JIT
+from microslip.compiled import kernel
 from microslip.hertz import G_STAR
 
 
@@ -118,7 +117,7 @@ def workspace(operator):
     return np.zeros((2, padded, padded)), np.zeros((2, padded, padded))
 
 
-@njit(**JIT)
+@kernel
 def convolve(operator, scratch, q, out):
     """out = A q; q, out: forward and lateral parts, (2, n, n); scratch: from ``workspace``."""
     n = q.shape[1]
@@ -150,7 +149,7 @@ def convolve(operator, scratch, q, out):
     out[1] = first[0, :n, :n]
 
 
-@njit(**JIT)
+@kernel
 def _multiply_coupled(operator, given, out):
     """Kernel times transform, plus cross kernel times the transform of the conjugate traction."""
     padded = given.shape[1]
@@ -164,7 +163,7 @@ def _multiply_coupled(operator, given, out):
             out[1, i, k] = operator.kernel[i, k] * given[1, i, k] + cr * imag + ci * real
 
 
-@njit(**JIT)
+@kernel
 def _forward(re, im, columns, radices, roots):
     """Transform the first ``columns`` columns in place; frequencies end up in ``_order``."""
     length = padded = re.shape[0]
@@ -182,7 +181,7 @@ def _forward(re, im, columns, radices, roots):
         length = part
 
 
-@njit(**JIT)
+@kernel
 def _backward(re, im, columns, radices, roots):
     """Undo ``_forward``, up to the factor P."""
     part, padded = 1, re.shape[0]
@@ -200,7 +199,7 @@ def _backward(re, im, columns, radices, roots):
         part = length
 
 
-@njit(**JIT)
+@kernel
 def _forward_2(re, im, columns, a, part, roots, w):
     c1, s1 = roots[0, w], -roots[1, w]
     b = a + part
@@ -211,7 +210,7 @@ def _forward_2(re, im, columns, a, part, roots, w):
         re[b, k], im[b, k] = x * c1 - y * s1, x * s1 + y * c1
 
 
-@njit(**JIT)
+@kernel
 def _backward_2(re, im, columns, a, part, roots, w):
     c1, s1 = roots[0, w], roots[1, w]
     b = a + part
@@ -225,7 +224,7 @@ def _backward_2(re, im, columns, a, part, roots, w):
 _SIN_60 = np.sqrt(0.75)
 
 
-@njit(**JIT)
+@kernel
 def _forward_3(re, im, columns, a, part, roots, w):
     c1, s1, c2, s2 = roots[0, w], -roots[1, w], roots[0, 2 * w], -roots[1, 2 * w]
     b, c = a + part, a + 2 * part
@@ -241,7 +240,7 @@ def _forward_3(re, im, columns, a, part, roots, w):
         im[c, k] = (zr - yr) * s2 + (zi - yi) * c2
 
 
-@njit(**JIT)
+@kernel
 def _backward_3(re, im, columns, a, part, roots, w):
     c1, s1, c2, s2 = roots[0, w], roots[1, w], roots[0, 2 * w], roots[1, 2 * w]
     b, c = a + part, a + 2 * part
@@ -256,7 +255,7 @@ def _backward_3(re, im, columns, a, part, roots, w):
         re[c, k], im[c, k] = zr - yr, zi - yi
 
 
-@njit(**JIT)
+@kernel
 def _forward_4(re, im, columns, a, part, roots, w):
     c1, s1, c2, s2 = roots[0, w], -roots[1, w], roots[0, 2 * w], -roots[1, 2 * w]
     c3, s3 = roots[0, 3 * w], -roots[1, 3 * w]
@@ -275,7 +274,7 @@ def _forward_4(re, im, columns, a, part, roots, w):
         im[d, k] = (fr - hr) * s3 + (fi - hi) * c3
 
 
-@njit(**JIT)
+@kernel
 def _backward_4(re, im, columns, a, part, roots, w):
     c1, s1, c2, s2 = roots[0, w], roots[1, w], roots[0, 2 * w], roots[1, 2 * w]
     c3, s3 = roots[0, 3 * w], roots[1, 3 * w]

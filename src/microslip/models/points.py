@@ -6,12 +6,10 @@ point depends on its column alone.
 
 from __future__ import annotations
 
-from numba import njit
-
-from microslip.friction import JIT
+from microslip.compiled import kernel
 
 
-@njit(**JIT)
+@kernel
 def rigid_displacement(motion, positions, out):
     """Fill out, (2, rows, columns), for motion = (forward, lateral, angle); positions: (forward,
     lateral), (rows, columns) each."""
@@ -22,7 +20,7 @@ def rigid_displacement(motion, positions, out):
             out[1, j, i] = motion[1] - motion[2] * forward_position[j, i]
 
 
-@njit(**JIT)
+@kernel
 def sum_forces(q, weight, positions, out):
     """Fill out with forward force, lateral force and torque of tractions q, (2, rows, columns);
     weight: area of the points of each column, (columns,)."""

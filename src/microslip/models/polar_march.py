@@ -7,9 +7,9 @@ the friction bound is kept to point by point.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from microslip.friction import JIT, coulomb_residual, extended, shrink
+from microslip.compiled import kernel
+from microslip.friction import coulomb_residual, extended, shrink
 from microslip.models.points import rigid_displacement, sum_forces
 from microslip.models.sectors import apply_sectors, fold, unfold
 
@@ -19,7 +19,7 @@ FEWEST_BETWEEN, MOST_BETWEEN = 2, 12
 """Iterations between two looks at the residual, which costs more than an iteration."""
 
 
-@njit(**JIT)
+@kernel
 def _slip(influence, b, q, folded, image, slip):
     """slip = b - A q; folded, image: room for folded tractions."""
     fold(q, folded)
@@ -31,7 +31,7 @@ def _slip(influence, b, q, folded, image, slip):
                 slip[c, j, i] = b[c, j, i] - slip[c, j, i]
 
 
-@njit(**JIT)
+@kernel
 def _project(free, bound, q, dual):
     """Over-relaxed projection on the friction bound, the remainder kept in ``dual``; in place."""
     for j in range(q.shape[1]):
@@ -45,7 +45,7 @@ def _project(free, bound, q, dual):
             dual[1, j, i] = lateral - f * lateral
 
 
-@njit(**JIT)
+@kernel
 def _copy(out, values):
     """out[:] = values for shape (2, M, N); see ring_factors.copy."""
     for c in range(2):
@@ -54,7 +54,7 @@ def _copy(out, values):
                 out[c, j, i] = values[c, j, i]
 
 
-@njit(**JIT)
+@kernel
 def _add(out, factor, values):
     """out += factor values for shape (2, M, N)."""
     for c in range(2):
@@ -63,7 +63,7 @@ def _add(out, factor, values):
                 out[c, j, i] += factor * values[c, j, i]
 
 
-@njit(**JIT)
+@kernel
 def solve_step(influence, inverse, penalty, bound, weight, b, q, dual, slip, room, tolerance):
     """Solve one Coulomb step by over-relaxed ADMM, in place.
 
@@ -98,7 +98,7 @@ def solve_step(influence, inverse, penalty, bound, weight, b, q, dual, slip, roo
     return iterations, residual
 
 
-@njit(**JIT)
+@kernel
 def _shrink(q, bound):
     """q projected on the friction bound, which may have become smaller; in place."""
     for j in range(q.shape[1]):
@@ -108,7 +108,7 @@ def _shrink(q, bound):
             q[1, j, i] *= f
 
 
-@njit(**JIT)
+@kernel
 def march(
     influence,
     inverse,

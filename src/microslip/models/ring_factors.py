@@ -23,9 +23,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from microslip.friction import JIT
+from microslip.compiled import kernel
 
 ON_BOUND = 1.0 - 1e-12
 """Share of the bound from which on a traction counts as being on it."""
@@ -53,7 +52,7 @@ class Factors(NamedTuple):
     trial_slip: np.ndarray
 
 
-@njit(**JIT)
+@kernel
 def make_factors(n):
     """Empty scratch for n rings."""
     return Factors(
@@ -68,7 +67,7 @@ def make_factors(n):
     )
 
 
-@njit(**JIT)
+@kernel
 def copy(out, values):
     """out[:] = values for shape (2, n): no shapes are compared, and so none of the compiler's time
     goes into words for those that differ."""
@@ -77,14 +76,14 @@ def copy(out, values):
             out[c, i] = values[c, i]
 
 
-@njit(inline="always", **JIT)
+@kernel(inline="always")
 def subtract(y, factor, x):
     """y -= factor x."""
     for k in range(len(y)):
         y[k] -= factor * x[k]
 
 
-@njit(**JIT)
+@kernel
 def combine(y, factors, rows, count):
     """y -= Sum over k < count of factors[k] rows[k], four rows at a time to spare memory."""
     columns = len(y)
@@ -102,7 +101,7 @@ def combine(y, factors, rows, count):
         k += 1
 
 
-@njit(**JIT)
+@kernel
 def _eliminate(matrix, first, last, scratch):
     """Cholesky in place on the upper triangle: pivots before ``last``, the rest is left as Schur
     complement; rows before ``first`` are done already.  Reciprocals of the pivots go on the
@@ -122,7 +121,7 @@ def _eliminate(matrix, first, last, scratch):
     return True
 
 
-@njit(**JIT)
+@kernel
 def cholesky(stiffness):
     """Upper factor U of B = U^T U, reciprocals of its pivots on the diagonal, shape (n, n)."""
     upper = stiffness.copy()
@@ -131,14 +130,14 @@ def cholesky(stiffness):
     return upper
 
 
-@njit(inline="always", **JIT)
+@kernel(inline="always")
 def turning(slip_forward, slip_lateral, bound):
     """|slip| / bound: how much a traction on the bound resists being turned away from its slip."""
     size = np.sqrt(slip_forward * slip_forward + slip_lateral * slip_lateral)
     return size / bound if bound > 0.0 else HELD
 
 
-@njit(**JIT)
+@kernel
 def _split(q, slip, bound, factors):
     """Put sticking rings before slipping ones; returns (how many stick, whether that is news)."""
     order, flags = factors.order, factors.change[0]
@@ -171,7 +170,7 @@ def _split(q, slip, bound, factors):
     return stick, news
 
 
-@njit(**JIT)
+@kernel
 def _factorise_sticking(stiffness, whole, stick, factors):
     """Eliminate the sticking rings: fills factors.upper.  whole: U of all rings in their order."""
     order, upper, scratch = factors.order, factors.upper, factors.change[0]
@@ -201,7 +200,7 @@ def _factorise_sticking(stiffness, whole, stick, factors):
     return _eliminate(upper, inner, stick, scratch)
 
 
-@njit(**JIT)
+@kernel
 def factorise(stiffness, whole, bound, q, slip, factors):
     """Tangent problem at (q, slip), factorised; returns the number of sticking rings, -1 if it
     breaks down.  What belongs to the sticking rings is kept while these stay the same."""

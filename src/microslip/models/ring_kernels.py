@@ -8,9 +8,9 @@ all over-relaxed sweeps take over, and these always converge.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from microslip.friction import JIT, shrink
+from microslip.compiled import kernel
+from microslip.friction import shrink
 from microslip.models.ring_factors import copy, factorise, subtract
 
 MAX_ITERATIONS = 200
@@ -20,7 +20,7 @@ GOOD_STEP = 0.3
 """A Newton step that leaves more than this share of the residual is followed by a sweep."""
 
 
-@njit(**JIT)
+@kernel
 def weighted_slip(stiffness, imposed, q, out):
     """out = imposed - B q; all (2, n)."""
     n = q.shape[1]
@@ -33,7 +33,7 @@ def weighted_slip(stiffness, imposed, q, out):
                 out[c, i] -= stiffness[k, i] * x
 
 
-@njit(**JIT)
+@kernel
 def step_residual(stiffness, q, slip, bound, weight):
     """friction.coulomb_residual for weighted slips on rings."""
     total = 0.0
@@ -46,7 +46,7 @@ def step_residual(stiffness, q, slip, bound, weight):
     return total
 
 
-@njit(**JIT)
+@kernel
 def _sweep(stiffness, bound, q, slip, relaxation):
     """One projected Gauss-Seidel sweep; keeps slip = imposed - B q up to date."""
     for i in range(q.shape[1]):
@@ -61,7 +61,7 @@ def _sweep(stiffness, bound, q, slip, relaxation):
             subtract(slip[1], dy, stiffness[i])
 
 
-@njit(**JIT)
+@kernel
 def _newton_step(slip, stick, factors):
     """Fill factors.change (in the order of the factors) with the Newton step against ``slip``."""
     upper, matrix, change = factors.upper, factors.tangent, factors.change
@@ -99,7 +99,7 @@ def _newton_step(slip, stick, factors):
         change[0, j], change[1, j] = x * upper[j, j], y * upper[j, j]
 
 
-@njit(**JIT)
+@kernel
 def solve_step(stiffness, whole, imposed, bound, weight, q, slip, tolerance, factors):
     """Solve one Coulomb step on rings in place.
 

@@ -13,9 +13,9 @@ the rows of rings that have not slipped so far are still those of the identity.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from microslip.friction import JIT, extended, shrink
+from microslip.compiled import kernel
+from microslip.friction import extended, shrink
 from microslip.models.ring_factors import (
     ON_BOUND,
     combine,
@@ -31,7 +31,7 @@ LONGEST_STRETCH = 3.0
 """Longest extrapolation of tractions, over the stage that it is taken from."""
 
 
-@njit(**JIT)
+@kernel
 def _solve(upper, n, x, factors):
     """Solve U^T U y = x in place for the columns of x (first n rows); factors: scratch, (n,)."""
     columns = x.shape[1]
@@ -47,7 +47,7 @@ def _solve(upper, n, x, factors):
             x[i, c] *= upper[i, i]
 
 
-@njit(**JIT)
+@kernel
 def _transfer(factors, stick, out):
     """out[:stick, :slipping] = B_ss^-1 B_sl: how sticking rings pass their motion on."""
     n = len(factors.order)
@@ -62,7 +62,7 @@ def _transfer(factors, stick, out):
     factors.count[1] = 1
 
 
-@njit(**JIT)
+@kernel
 def _felt(order, stick, transfer, moved, rows, p, out):
     """out = R of slipping ring p, one component: its own row less what the sticking rings pass on.
 
@@ -85,7 +85,7 @@ def _felt(order, stick, transfer, moved, rows, p, out):
         k += 1
 
 
-@njit(**JIT)
+@kernel
 def _slip_tangent(factors, stick, transfer, slip, bound, dz, touched, dslip, work):
     """Derivative of the slips of one solved step: fills the rows of dslip of the slipping rings.
 
@@ -129,7 +129,7 @@ def _slip_tangent(factors, stick, transfer, slip, bound, dz, touched, dslip, wor
             dslip[1, i, column] = y * u - x * v
 
 
-@njit(**JIT)
+@kernel
 def _start_derivative(stiffness, whole, dz):
     """Derivative of the end tractions with respect to the first ones, B^-1 dz B, (2 n, 2 n)."""
     n = len(stiffness)
@@ -146,7 +146,7 @@ def _start_derivative(stiffness, whole, dz):
     return out
 
 
-@njit(inline="always", **JIT)
+@kernel(inline="always")
 def _carry_derivative(dz, touched, share, dslip, slid):
     """dz -= share dslip, where rings slipped; notes them as touched."""
     for i in range(len(slid)):
@@ -156,7 +156,7 @@ def _carry_derivative(dz, touched, share, dslip, slid):
             subtract(dz[1, i], share, dslip[1, i])
 
 
-@njit(**JIT)
+@kernel
 def _follow(q, bound, now, before):
     """First guess: move q as another march moved its tractions in the same stage.
 
@@ -173,7 +173,7 @@ def _follow(q, bound, now, before):
         q[0, i], q[1, i] = x, y
 
 
-@njit(**JIT)
+@kernel
 def _extrapolate(q, last, bound, before, ratio):
     """First guess: go on as from ``before`` to q, ``ratio`` times as far; slip stays slip.
 
@@ -191,7 +191,7 @@ def _extrapolate(q, last, bound, before, ratio):
         q[0, i], q[1, i] = x, y
 
 
-@njit(**JIT)
+@kernel
 def _stretch(way, at):
     """Length of the stage that ends at ``at`` over that of the stage before, at most 3."""
     before = np.hypot(way[at - 1, 0] - way[at - 2, 0], way[at - 1, 1] - way[at - 2, 1])
@@ -199,7 +199,7 @@ def _stretch(way, at):
     return length / before if length < LONGEST_STRETCH * before else LONGEST_STRETCH
 
 
-@njit(**JIT)
+@kernel
 def _within(q, bound):
     """Shrink q onto the bound."""
     for i in range(len(bound)):
@@ -207,7 +207,7 @@ def _within(q, bound):
         q[0, i], q[1, i] = q[0, i] * f, q[1, i] * f
 
 
-@njit(**JIT)
+@kernel
 def march(stiffness, whole, bounds, weight, path, state, known, tolerance, tangent):
     """March along a path.
 

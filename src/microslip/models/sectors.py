@@ -13,14 +13,13 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from microslip.friction import JIT
+from microslip.compiled import kernel
 from microslip.halfspace import ring_influence
 from microslip.pressures import HERTZ
 from microslip.rings import make_rings
 
-FUSED = JIT | {"fastmath": {"contract"}}
+FUSED = {"fastmath": {"contract"}}
 """Allows fused multiply-add, which keeps the order of operations."""
 LARGEST_DENSE = 96
 """Unknowns in a sector up to which its dense matrix is faster than its modes."""
@@ -44,7 +43,7 @@ class Sectors(NamedTuple):
     blocks: np.ndarray
 
 
-@njit(**JIT)
+@kernel
 def fold(x, out):
     """Even and odd parts (4, M/2, N) of tractions (2, M, N)."""
     last = x.shape[1] - 1
@@ -56,7 +55,7 @@ def fold(x, out):
             out[3, j, i] = 0.5 * (x[1, j, i] + x[1, last - j, i])
 
 
-@njit(**JIT)
+@kernel
 def unfold(x, out):
     """Tractions (2, M, N) from their folded parts."""
     last = out.shape[1] - 1
@@ -68,7 +67,7 @@ def unfold(x, out):
             out[1, last - j, i] = x[3, j, i] - x[1, j, i]
 
 
-@njit(**FUSED)
+@kernel(**FUSED)
 def _add_columns(matrix, given, result):
     """result += matrix^T given, eight columns at a time (which the compiler vectorises)."""
     n = len(given)
@@ -86,7 +85,7 @@ def _add_columns(matrix, given, result):
             result[i] += matrix[j, i] * a
 
 
-@njit(**FUSED)
+@kernel(**FUSED)
 def _transform(matrix, x, out):
     """out = matrix x for short rows of x; x, out: (Z, N)."""
     out[:] = 0.0
@@ -97,7 +96,7 @@ def _transform(matrix, x, out):
                 target[i] += a * source[i]
 
 
-@njit(**FUSED)
+@kernel(**FUSED)
 def apply_sectors(sectors, x, out):
     """Apply an operator to folded tractions x, all (4, M/2, N)."""
     dense, to_modes, to_points, members, blocks = sectors
@@ -123,7 +122,7 @@ def apply_sectors(sectors, x, out):
         _transform(to_points[s], images, result[s])
 
 
-@njit(**JIT)
+@kernel
 def _add_pairs(members, blocks, modes, images):
     """Apply the blocks of coupled modes."""
     n = modes.shape[1]

@@ -82,6 +82,11 @@ def figure_of(group: str) -> str:
     return f"extended_{group}"
 
 
+def modules_of(name: str) -> tuple[str, ...]:
+    """Paths inside the package of the modules that draw a figure, besides what they import."""
+    return "plot/__init__.py", f"plot/{_MODULES.get(name, 'groups')}.py"
+
+
 def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     """Draw one figure.
 
