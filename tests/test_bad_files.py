@@ -181,19 +181,16 @@ DAMAGES = {
 
 
 @pytest.mark.parametrize("case", DAMAGES)
-def test_a_damaged_dataset_is_set_aside(case, sealed):
-    assert cache.set_damaged_aside([sealed]) == []
+def test_damage_to_a_dataset_is_noticed(case, sealed):
+    assert not cache.is_damaged(sealed)
     DAMAGES[case](sealed)
-    content = sealed.read_bytes()
-    assert cache.set_damaged_aside([sealed]) == [sealed]
-    assert not sealed.exists()
-    assert sealed.with_name("bore.nc.damaged").read_bytes() == content
+    assert cache.is_damaged(sealed)
 
 
-def test_what_is_whole_or_absent_stays(sealed):
+def test_what_is_whole_or_absent_is_not_damaged(sealed):
     cache.seal_of(sealed).unlink()  # written by other means
-    assert cache.set_damaged_aside([sealed, sealed.with_name("transverse.nc")]) == []
-    assert sealed.exists()
+    assert not cache.is_damaged(sealed)
+    assert not cache.is_damaged(sealed.with_name("transverse.nc"))
 
 
 @pytest.mark.parametrize(

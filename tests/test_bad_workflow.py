@@ -162,12 +162,12 @@ def test_results_that_cannot_be_written_end_a_run_before_its_first_job(tmp_path)
     assert not list((folder / ".snakemake" / "locks").glob("*"))  # the next run may start
 
 
-def test_a_file_in_the_place_of_a_dataset_is_set_aside_not_lost(tmp_path):
+def test_a_file_in_the_place_of_a_dataset_is_no_dataset_and_stays_in_a_dry_run(tmp_path):
     folder = project(tmp_path / "foreign", given())
     (folder / "results").mkdir()
     (folder / "results" / "bore.nc").write_text("velocity,mu_macro\n")
     ended = snakemake(folder, "-n", *GIVEN)
     assert ended.returncode == 0
-    assert ended.stderr.count("results/bore.nc was damaged: renamed") == 1
-    assert (folder / "results" / "bore.nc.damaged").read_text() == "velocity,mu_macro\n"
+    assert ended.stderr.count("results/bore.nc is made again: it is damaged") == 1
+    assert (folder / "results" / "bore.nc").read_text() == "velocity,mu_macro\n"
     assert "collect" in ended.stdout

@@ -6,7 +6,7 @@ import re
 import explorer_stub as stub
 import numpy as np
 import pytest
-from test_workflow import AXES, ROOT, TINY, Project
+from workflow_project import AXES, ROOT, TINY, Project
 
 from microslip import config, explorer, limits, periods
 from microslip.cache import Store

@@ -1,4 +1,4 @@
-"""Seals: damage to datasets and figures is noticed, and what is damaged is set aside."""
+"""Seals: damage to datasets and figures is noticed, and what they are made of is known."""
 
 import pytest
 
@@ -29,24 +29,44 @@ DAMAGE = {
 
 
 @pytest.mark.parametrize("kind", DAMAGE)
-def test_damage_is_noticed_and_set_aside(kind, sealed):
+def test_damage_is_noticed_and_nothing_is_moved(kind, sealed):
+    cache.mark([sealed], "f00d")
     assert not cache.is_damaged(sealed)
-    assert cache.set_damaged_aside([sealed]) == []
+    assert cache.is_made_of(sealed, "f00d")
     DAMAGE[kind](sealed)
-    content = sealed.read_bytes()
     assert cache.is_damaged(sealed)
-    assert cache.set_damaged_aside([sealed]) == [sealed]
-    assert not sealed.exists()
-    assert sealed.with_name("friction.nc.damaged").read_bytes() == content
-    assert cache.set_damaged_aside([sealed]) == []
+    assert not cache.is_made_of(sealed, "f00d")
+    assert sealed.exists()
+
+
+def test_a_file_is_of_what_its_seal_says_and_of_nothing_else(sealed):
+    assert not cache.is_made_of(sealed, "f00d")  # whole, but of what?
+    cache.mark([sealed], "f00d")
+    assert cache.is_made_of(sealed, "f00d")
+    assert not cache.is_made_of(sealed, "beef")
+    with cache.writing_beside(sealed, sealed=True) as beside:
+        beside.write_bytes(b"friction " * 1000)
+    assert not cache.is_made_of(sealed, "f00d")  # the same bytes, but nobody says of what
+    cache.mark([sealed], "f00d")
+    cache.seal_of(sealed).unlink()
+    assert not cache.is_made_of(sealed, "f00d")
+    assert not cache.is_made_of(sealed.with_name("none.nc"), "f00d")
+
+
+def test_the_seal_of_another_file_is_no_seal(sealed):
+    """As where results are copied together from two places."""
+    cache.mark([sealed], "f00d")
+    other = sealed.with_name("other.nc")
+    other.write_bytes(b"another friction")
+    cache.seal_of(other).write_bytes(cache.seal_of(sealed).read_bytes())
+    assert not cache.is_made_of(other, "f00d")
 
 
 def test_without_a_file_or_a_seal_nothing_is_damaged(sealed):
     other = sealed.with_name("other.nc")
     other.write_bytes(b"\x89HDF, not sealed")
     sealed.unlink()
-    assert cache.set_damaged_aside([sealed, other]) == []
-    assert other.exists()
+    assert not cache.is_damaged(sealed) and not cache.is_damaged(other)
 
 
 def test_a_new_content_has_a_new_seal(sealed):
@@ -71,3 +91,16 @@ def test_a_run_that_is_killed_between_seal_and_file_leaves_no_good_looking_one(s
     ):
         beside.write_bytes(b"newer")
     assert cache.is_damaged(sealed)
+
+
+@pytest.mark.parametrize("spoil", [lambda path: cache.seal_of(path).unlink(), flip_a_bit])
+def test_what_the_workflow_did_not_make_is_kept_beside_the_new_file(spoil, sealed):
+    spoil(sealed)
+    content = sealed.read_bytes()
+    with cache.writing_beside(sealed, sealed=True) as beside:
+        beside.write_bytes(b"less friction")
+    assert sealed.read_bytes() == b"less friction"
+    assert sealed.with_name("friction.nc.damaged").read_bytes() == content
+    with cache.writing_beside(sealed, sealed=True) as beside:
+        beside.write_bytes(b"no friction")
+    assert sealed.with_name("friction.nc.damaged").read_bytes() == content

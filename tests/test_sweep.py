@@ -6,7 +6,7 @@ import math
 import pytest
 from sweep_stub import Solver
 
-from microslip import config, sweep
+from microslip import cache, config, source_digest, sweep
 from microslip.cache import Store
 
 
@@ -53,25 +53,70 @@ def test_single_runs_for_the_figures():
 @pytest.mark.parametrize("size", [1, 4, 6, 50])
 def test_batches_hold_every_request_once(size):
     requests = requests_of()
-    batches = sweep.batches(requests, size, "digest")
+    batches = sweep.batches(requests, size)
     assert [r for batch in batches.values() for r in batch] == requests
     assert len(batches) == math.ceil(6 / size)
 
 
-def test_a_batch_is_named_by_what_it_answers():
+def test_a_batch_is_named_by_what_it_answers(monkeypatch):
     requests = requests_of()
-    assert sweep.batches(requests, 6, "d") == sweep.batches(requests, 6, "d")
-    assert sweep.batches(requests, 6, "d").keys() != sweep.batches(requests, 6, "e").keys()
+    names = sweep.batches(requests, 6).keys()
+    assert sweep.batches(requests, 6).keys() == names
     longer = requests_of(amplitude=[0, 1, 2, 3])
-    assert sweep.batches(requests, 2, "d").keys() < sweep.batches(longer, 2, "d").keys()
+    assert sweep.batches(requests, 2).keys() < sweep.batches(longer, 2).keys()
+    monkeypatch.setattr(source_digest, "of_request", lambda request: "of other sources")
+    assert sweep.batches(requests, 6).keys() != names
+
+
+def test_what_a_batch_holds_is_what_the_solver_said(monkeypatch, store, tmp_path):
+    Solver(monkeypatch)
+    requests = requests_of()
+    cut = list(sweep.batches(requests, 4).values())
+    paths = [tmp_path / f"{i}.json" for i in range(len(cut))]
+    for path, part in zip(paths, cut, strict=True):
+        cache.write_batch(path, sweep.run_batch(part, store)[0])
+    alone = [sweep.answer(request, store)[0] for request in requests]
+    assert list(sweep.records_for(requests, paths)) == alone
+    answer = sweep.lookup(sweep.records_in(paths))
+    assert [answer(request) for request in reversed(requests)] == alone[::-1]
+    with pytest.raises(cache.CacheError, match="in the place of"):
+        list(sweep.records_for(requests[::-1], paths))
+    with pytest.raises(ValueError):  # not as many
+        list(sweep.records_for(requests, paths[:1]))
+
+
+BATCH_DAMAGE = {
+    "a bit": lambda text: text.replace(b'"0.5"', b'"0.6"', 1),
+    "the end": lambda text: text[:-1],
+    "half of it": lambda text: text[: len(text) // 2],
+    "all": lambda text: b"",
+    "a record": lambda text: text.partition(b"\n")[2],
+    "the checksum": lambda text: text[: text.rfind(b"\n", 0, -1) + 1],
+    "another file": lambda text: b"velocity,mu_macro\n",
+}
+
+
+@pytest.mark.parametrize("kind", BATCH_DAMAGE)
+def test_a_damaged_batch_is_noticed(kind, monkeypatch, store, tmp_path):
+    Solver(monkeypatch)
+    path = tmp_path / "batch.json"
+    cache.write_batch(path, sweep.run_batch(requests_of(velocity=[0.5]), store)[0])
+    assert cache.is_whole_batch(path)
+    whole = path.read_bytes()
+    path.write_bytes(BATCH_DAMAGE[kind](whole))
+    assert path.read_bytes() != whole
+    assert not cache.is_whole_batch(path)
+    assert cache.read_batch(path) is None
+    with pytest.raises(cache.CacheError, match="is damaged; run again"):
+        list(sweep.records_in([path]))
 
 
 def test_only_what_the_store_lacks_is_computed(monkeypatch, store):
     solver = Solver(monkeypatch)
-    index, done = sweep.run_batch(requests_of(), store)
+    records, done = sweep.run_batch(requests_of(), store)
     assert (done["points"], done["computed"], solver.calls) == (6, 6, 6)
     again, done = sweep.run_batch(requests_of(), store)
-    assert (again, done["computed"], solver.calls) == (index, 0, 6)
+    assert (again, done["computed"], solver.calls) == (records, 0, 6)
     _, done = sweep.run_batch(requests_of(amplitude=[0, 0.5, 1, 2]), store)
     assert (done["computed"], solver.calls) == (2, 8)
 
@@ -100,8 +145,8 @@ def test_a_record_is_the_same_computed_or_read(monkeypatch, store):
 
 def test_points_that_do_not_converge_are_data(monkeypatch, store):
     Solver(monkeypatch, fails=2.0)
-    index, _ = sweep.run_batch(requests_of(), store)
-    assert index["not_converged"] == 2
+    records, _ = sweep.run_batch(requests_of(), store)
+    assert [record["result"]["converged"] for record in records].count(False) == 2
     record, _ = sweep.answer(requests_of()[-1], store)
     assert record["result"]["mu_macro"] is None
     assert record["result"]["reason"] == "no periodic state"
@@ -113,8 +158,8 @@ def test_a_point_at_which_the_solver_fails_is_data_too(monkeypatch, store, error
         raise error
 
     monkeypatch.setattr("microslip.solve", fail, raising=False)
-    index, _ = sweep.run_batch(requests_of(), store)
-    assert index["not_converged"] == 6
+    records, _ = sweep.run_batch(requests_of(), store)
+    assert not any(record["result"]["converged"] for record in records)
     record, _ = sweep.answer(requests_of()[0], store)
     assert record["result"]["reason"] == f"{type(error).__name__}: {error}"
 

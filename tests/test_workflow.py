@@ -2,101 +2,14 @@
 
 import os
 import re
-import shutil
-import subprocess
-import sys
 import time
 from pathlib import Path
 
 import pytest
 import xarray as xr
-import yaml
+from workflow_project import ALL_JOBS, AXES, RUN, TINY, Project
 
-ROOT = Path(__file__).parent.parent
 pytestmark = pytest.mark.slow
-
-SNAKEMAKE = Path(sys.executable).with_name("snakemake")
-RUN = ["-j2", "--configfile", "tiny.yaml"]
-
-# Closed forms and the rigid model: points that cost nothing.
-AXES = {"velocity": [0.5, 2], "amplitude": [0, 1], "model": "rigid", "tolerance": 1e-2}
-TINY = {
-    "sweeps": {
-        "transverse": AXES,
-        "bore": AXES,
-        "continuous_bore": {"velocity": [0.5, 2], "model": "rigid", "tolerance": 1e-2},
-    },
-    "histories": {
-        "transverse": {"periods": 1, "cells": 4, "steps": 16},
-        "field": {"cells": 4},
-        "transients": {"travel": 1.0, "cells": 4, "steps": 16},
-    },
-    "points_per_job": 3,
-}
-ALL_JOBS = {"warm_up": 1, "solve_batch": 8, "collect": 3, "draw_figure": 6, "all": 1}
-
-
-class Project:
-    """A copy of the project to run and to edit."""
-
-    def __init__(self, folder):
-        self.folder = folder
-        for name in ("config", "profiles", "src", "workflow"):
-            shutil.copytree(ROOT / name, folder / name)
-        shutil.copy(ROOT / "Snakefile", folder)
-        self.configure(TINY)
-
-    def configure(self, configuration):
-        (self.folder / "tiny.yaml").write_text(yaml.safe_dump(configuration))
-
-    def snakemake(self, *arguments):
-        # Nothing of the environment is activated: only the path of the executable is known.
-        return subprocess.run(
-            [SNAKEMAKE, *arguments],
-            cwd=self.folder,
-            env={"PATH": "/usr/bin:/bin", "HOME": os.environ.get("HOME", str(self.folder))},
-            capture_output=True,
-            text=True,
-            timeout=300,
-        )
-
-    def run(self, *targets):
-        done = self.snakemake(*targets, *RUN)
-        assert done.returncode == 0, done.stderr
-        return done.stdout + done.stderr
-
-    def planned(self, *targets):
-        """Jobs that a run would do, by rule; {} if there is nothing to do."""
-        done = self.snakemake(*targets, *RUN, "--dry-run")
-        assert done.returncode == 0, done.stderr
-        table = re.search(r"^-+  -+\n(.*?)^total", done.stdout, re.MULTILINE | re.DOTALL)
-        rows = table[1].split("\n")[:-1] if table else []
-        return {name: int(count) for name, count in map(str.split, rows)}
-
-    def points(self):
-        return {p.name: p.read_bytes() for p in self.folder.glob("results/points/*/*/*.json")}
-
-    def append(self, path, text):
-        with open(self.folder / path, "a") as file:
-            file.write(text)
-
-
-@pytest.fixture(scope="module")
-def finished(tmp_path_factory):
-    """A project after its first run, and what that run said. To be left as it is."""
-    project = Project(tmp_path_factory.mktemp("finished"))
-    assert project.planned() == ALL_JOBS
-    project.said = project.run()
-    return project
-
-
-@pytest.fixture
-def project(finished, tmp_path):
-    """A copy of the finished project to edit."""
-    copy = object.__new__(Project)
-    copy.folder = tmp_path / "copy"
-    shutil.copytree(finished.folder, copy.folder)
-    return copy
 
 
 def test_one_run_makes_the_datasets_and_the_figures(finished):
@@ -139,8 +52,10 @@ def test_a_new_amplitude_computes_its_points_only(project):
         assert list(data.amplitude.values) == [0, 0.5, 1]
 
 
-def test_editing_a_plotting_module_draws_the_figures_again(project):
-    project.append("src/microslip/plot/maps.py", "\nSPARE = 1\n")
+def test_editing_a_plotting_module_draws_its_figures_again(project):
+    project.append("src/microslip/plot/field.py", "\nSPARE = 1\n")
+    assert project.planned() == {"draw_figure": 1, "all": 1}
+    project.append("src/microslip/plot/style.py", "\nSPARE = 1\n")
     assert project.planned() == {"draw_figure": 6, "all": 1}
 
 
@@ -170,23 +85,15 @@ def test_a_damaged_point_is_computed_again_where_it_is_needed(project):
     for path in project.folder.glob("results/points/transverse/*/*.json"):
         path.write_bytes(path.read_bytes()[:-9])
     dataset.unlink()
+    assert "damaged result" not in project.run("results/transverse.nc")  # its batches are whole
+    assert dataset.read_bytes() == expected
+    for path in project.folder.glob("results/batches/transverse/*.json"):
+        path.unlink()
+    dataset.unlink()
     said = project.run("results/transverse.nc")
     assert len({line for line in said.splitlines() if "damaged result" in line}) == 4
     assert project.points() == before
     assert dataset.read_bytes() == expected
-
-
-def test_a_damaged_dataset_page_and_figure_are_set_aside_and_made_again(project):
-    names = ("transverse.nc", "summaries/continuous_bore.html", "figures/fig6_bore_map.png")
-    expected = {path: path.read_bytes() for path in (project.folder / "results" / n for n in names)}
-    for path, whole in expected.items():
-        path.write_bytes(whole[: len(whole) // 2])
-    said = project.run()
-    for path, whole in expected.items():
-        assert f"{path.relative_to(project.folder)} was damaged: renamed" in said
-        assert path.with_name(f"{path.name}.damaged").read_bytes() == whole[: len(whole) // 2]
-        assert path.read_bytes() == whole
-    assert project.planned() == {}
 
 
 def test_what_a_killed_run_left_half_written_is_cleared_later(project):

@@ -2,7 +2,7 @@
 
 import pytest
 import xarray as xr
-from test_workflow import Project
+from workflow_project import Project
 
 from microslip import cache
 

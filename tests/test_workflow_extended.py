@@ -3,7 +3,7 @@
 import pytest
 import xarray as xr
 import yaml
-from test_workflow import RUN, Project
+from workflow_project import RUN, Project
 
 pytestmark = pytest.mark.slow
 

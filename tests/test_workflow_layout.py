@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 import yaml
 
-from microslip import config, keys, plot, schemas, summary
+from microslip import config, plot, schemas, source_digest, summary
 
 ROOT = Path(__file__).parent.parent
 
@@ -87,7 +87,8 @@ def keys_of(rule):
 
 
 def test_scripts_of_the_workflow_are_no_sources_of_the_solver(tmp_path):
-    for name in ("rings.py", "bundle/workflow/scripts/collect.py", "launch.py", "summary.py"):
+    names = ("point.py", "bundle/workflow/scripts/collect.py", "launch.py", "summary.py")
+    for name in names:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("A = 1\n")
-    assert [name for name, _ in keys.solver_files(tmp_path)] == ["rings.py"]
+    assert source_digest.Sources(tmp_path).of_request("point", ()) == {"point.py"}

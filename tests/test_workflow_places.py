@@ -12,9 +12,9 @@ import zipfile
 
 import pytest
 import yaml
-from test_workflow import AXES, ROOT, RUN, TINY, Project
+from workflow_project import AXES, ROOT, RUN, TINY, Project
 
-from microslip import keys
+from microslip import source_digest
 
 pytestmark = pytest.mark.slow
 
@@ -216,7 +216,7 @@ def test_the_report_is_made_offline_and_holds_captions_and_what_made_the_dataset
     assert "Figure 1.</strong>" in page and "Figure 2.</strong>" in page
     assert "How far friction falls" in page
     assert "transverse: 4 points, none not converged" in about
-    assert f"source_digest: {keys.source_digest()}" in about
+    assert f"source_digest: {source_digest.of_solver()}" in about
     assert "amplitude: [0.0, 1.0]" in about
 
 

@@ -6,7 +6,7 @@ import shutil
 import pytest
 import xarray as xr
 from matplotlib.text import Text
-from test_workflow import RUN, Project
+from workflow_project import RUN, Project
 
 from microslip import plot
 

@@ -121,6 +121,7 @@ def writing_beside(path, sealed=False):
     """Context that yields a Path beside `path` to write to, and puts it in place at its end.
 
     The file is flushed to disk before it is renamed; sealed: with its checksum, see `is_damaged`.
+    What is in its place and was not made like this, a file of the user's own perhaps, is renamed.
     After an error or an interrupt `path` is what it was. Raises CacheError, one line that says
     what to do, where the system refuses.
     """
@@ -132,6 +133,7 @@ def writing_beside(path, sealed=False):
         with open(beside, "rb") as file:
             os.fsync(file.fileno())
             if sealed:
+                _set_aside(path)
                 _write_seal(path, hashlib.file_digest(file, "sha256").hexdigest())
         os.replace(beside, path)
     except OSError as error:
@@ -232,6 +234,15 @@ def _seal(path):
         return seal_of(path).read_bytes().decode("ascii", errors="replace").split()
     except FileNotFoundError:
         return []
+
+
+def _set_aside(path):
+    """Rename a file that is damaged, or that the workflow did not make: it may be of use to
+    someone."""
+    if path.is_file() and (not _seal(path) or is_damaged(path)):
+        aside = path.with_name(f"{path.name}.damaged")
+        os.replace(path, aside)
+        log.warning("%s was not as the workflow made it: it is kept as %s", path, aside)
 
 
 def mark(paths, fingerprint):

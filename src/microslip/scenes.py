@@ -33,6 +33,8 @@ def find(folder):
     if str(folder) not in motions.__path__:
         motions.__path__.append(str(folder))
     for file in iter_modules([str(folder)]):
+        if not file.name.isidentifier():
+            continue  # a copy or a checkpoint of one, which nobody means
         module = import_module(f"{motions.__name__}.{file.name}")
         name = file.name.replace("_", "-")
         if hasattr(module, "SCENE"):

@@ -32,6 +32,8 @@ def find(folder):
     if str(folder) not in __path__:
         __path__.append(str(folder))
     for file in iter_modules([str(folder)]):
+        if not file.name.isidentifier():
+            continue  # a copy or a checkpoint of one, which nobody means
         module = import_module(f"{__name__}.{file.name}")
         if hasattr(module, "PRESSURE"):
             PRESSURES[file.name] = module.PRESSURE
