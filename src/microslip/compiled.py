@@ -40,11 +40,47 @@ def kernel(function=None, **options):
 @contextmanager
 def _kept_in(place):
     """Context in which Numba takes note of where to keep what it will compile."""
-    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(place)
+    config = numba.config
+    before = config.CACHE_DIR, getattr(config, "CACHE_LOCATOR_CLASSES", "")
+    # An older Numba that knows no locators of others takes the first alone: it keeps apart then
+    # what copies of the package in other places have compiled.
+    config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = str(place), f"{__name__}.BySources"
     try:
         yield
     finally:
-        numba.config.CACHE_DIR = before
+        config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = before
+
+
+class BySources:
+    """Tells Numba where a function's compiled code is: what it asks of a cache locator.
+
+    The folder is named by the sources, so no date or size has to be looked at, and a copy of the
+    package with the same sources finds the same code.
+    """
+
+    def __init__(self, function):
+        self.function = function
+
+    @classmethod
+    def from_function(cls, function, file):
+        """The locator of a function."""
+        return cls(function)
+
+    def ensure_cache_path(self):
+        """Make the folder; raises OSError."""
+        Path(self.get_cache_path()).mkdir(parents=True, exist_ok=True)
+
+    def get_cache_path(self):
+        """Folder of the function's module."""
+        return str(folder() / self.function.__module__)
+
+    def get_source_stamp(self):
+        """The same whenever it is asked: the folder changes with the sources."""
+        return ""
+
+    def get_disambiguator(self):
+        """Tells functions of the same name apart."""
+        return str(self.function.__code__.co_firstlineno)
 
 
 def folder() -> Path:
