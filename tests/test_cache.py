@@ -1,5 +1,6 @@
 """The store: what is written is read back or not at all, whatever happens to the files."""
 
+import concurrent.futures
 import errno
 import logging
 import multiprocessing
@@ -219,5 +220,17 @@ def _write_many(folder, seed):
 def test_two_writers_of_one_result_do_not_disturb_each_other(store):
     with multiprocessing.get_context("spawn").Pool(2) as pool:
         assert pool.starmap(_write_many, [(store.folder, 1), (store.folder, 2)]) == [1, 2]
+    assert store.read("a", KEY) == {**RECORD, "key": KEY}
+    assert not leftovers(store)
+
+
+def test_many_threads_and_containers_write_one_result_without_disturbing_each_other(
+    store, monkeypatch
+):
+    """Process numbers are the same in containers, and in threads: they keep nobody apart."""
+    monkeypatch.setattr(os, "getpid", lambda: 7)
+    with concurrent.futures.ThreadPoolExecutor(8) as pool:
+        done = [pool.submit(store.write, "a", KEY, RECORD) for _ in range(400)]
+    assert {future.result() for future in done} == {store.path("a", KEY)}
     assert store.read("a", KEY) == {**RECORD, "key": KEY}
     assert not leftovers(store)

@@ -200,7 +200,7 @@ answers.computed(request)
 print(json.dumps([m.__file__ for n, m in sys.modules.items() if n.startswith("microslip.")]))
 """
 NAMES = {"methods", "motions", "pressures"}
-BY_LISTING = {"masing.py", "pulsating.py", "pressure_files.py"}
+BY_LISTING = {"masing.py", "pulsating.py", "named_files.py"}
 """Loaded with other motions and pressures, when these are listed."""
 
 
@@ -218,6 +218,12 @@ def test_all_that_answering_a_request_loads_counts_for_it(request_):
     files = {Path(file).relative_to(PACKAGE).as_posix() for file in json.loads(done.stdout)}
     listed = {f for f in files if f.split("/")[0] in NAMES and "__init__" not in f}
     assert files - listed - BY_LISTING <= source_digest.files_of_request(asked)
+
+
+def test_what_reads_a_file_counts_for_its_pressure():
+    named = {"kind": "point", "scene": "bore", "pressure": "file:sha256=0123456789abcdef"}
+    files = source_digest.files_of_request(named)
+    assert {"pressures/from_file.py", "pressures/measured.py", "pressures/grid_csv.py"} <= files
 
 
 def test_every_kind_of_request_has_its_digest():

@@ -40,8 +40,9 @@ def copy_to_a_new_clone(project):
     """Results copied into another working directory; their dates are those of copying."""
     moved = project.folder.parent / "moved"
     shutil.copytree(project.folder, moved, ignore=shutil.ignore_patterns(".snakemake"))
+    now = time.time()
     for path in moved.rglob("*"):
-        os.utime(path)
+        os.utime(path, (now, now))
     project.folder = moved
 
 

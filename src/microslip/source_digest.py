@@ -290,6 +290,8 @@ def _named(request):
     """(folder, file) of what a request names; without a motion all of them count."""
     named = {folder: request.get(key) or "" for folder, key in NAMED_IN_REQUESTS.items()}
     files = {folder: text.partition(":")[0].replace("-", "_") for folder, text in named.items()}
+    if files["pressures"] == "file":
+        files["pressures"] = "from_file"
     every = () if files["motions"] else _files_in(["motions"])
     of_all = [("motions", Path(file).stem) for file in sorted(every)]
     return (*(item for item in files.items() if item[1]), *of_all)

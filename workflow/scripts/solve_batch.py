@@ -8,11 +8,13 @@ sweep.FOLDERS names.
 
 import json
 
-from microslip import cache, sweep
+from microslip import cache, named_files, sweep
 from microslip.jobs import job_log
 from microslip.watch import counted
 
 with job_log(snakemake.log[0]) as log:
+    # Requests name files by what these hold.
+    named_files.remember(given["pressure"] for given in snakemake.config["extended"].values())
     records, done = sweep.run_batch(
         json.loads(snakemake.params.requests),
         cache.Store(snakemake.params.store),
