@@ -213,6 +213,7 @@ def test_another_motion_or_pressure_makes_no_result_stale(package):
         "motions/round.py": "G = 1",
         "pressures/__init__.py": "",
         "pressures/hertz.py": "",
+        "pressures/from_file.py": "from package.pressures import measured",
         "pressures/measured.py": "",
         "pressures/power.py": "from package.pressures.record import Pressure",
         "pressures/record.py": "",
@@ -234,7 +235,8 @@ def test_another_motion_or_pressure_makes_no_result_stale(package):
         "pressures/power.py",
         "pressures/record.py",
     ]
-    assert further(scene="round", pressure="file:p.csv")[1:] == ["pressures/measured.py"]
+    of_file = further(scene="round", pressure="file:sha256=0123456789abcdef")
+    assert of_file[1:] == ["pressures/from_file.py", "pressures/measured.py"]
     motions = [name for name in files if name.startswith("motions/") and "__" not in name]
     assert further()[:-1] == sorted(motions)  # who names none may mean any
     counted = [name for name, _ in keys.solver_files(package)]

@@ -1,21 +1,25 @@
 """Pressures from files: what they hold is what is computed, and what they must not hold is told."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 import xarray as xr
 
 import microslip
+from microslip import named_files
 from microslip.cli import main
+from microslip.errors import InputError
 from microslip.pressures import HERTZ, pressure_named
+from microslip.pressures.measured import of_grid
 from microslip.scenes import scene_named
 
 AXIS = np.linspace(-1.25, 1.25, 51)
 HERTZIAN = np.sqrt(np.maximum(1.0 - AXIS[:, None] ** 2 - AXIS**2, 0.0))
-
-
-@pytest.fixture(autouse=True)
-def _files_known():
-    assert microslip.solve  # it is what makes names of files known
+HEAD = "forward,lateral,pressure\n"
+POINT = ("point", "transverse", "--velocity", "0.1", "--amplitude", "0.5")
 
 
 def csv(path, forward=AXIS, lateral=AXIS, values=HERTZIAN):
@@ -28,11 +32,183 @@ def csv(path, forward=AXIS, lateral=AXIS, values=HERTZIAN):
     return f"file:{path}"
 
 
-def netcdf(path, forward=AXIS, lateral=AXIS, values=HERTZIAN):
+def netcdf(path, forward=AXIS, lateral=AXIS, values=HERTZIAN, units=None):
     coordinates = {"forward": forward, "lateral": lateral}
     array = xr.DataArray(values, coordinates, ("forward", "lateral"), name="pressure")
-    array.to_netcdf(path)
+    data = array.to_dataset()
+    for name, unit in (units or {}).items():
+        data[name].attrs["units"] = unit
+    data.to_netcdf(path)
     return f"file:{path}"
+
+
+def text(path, content):
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return f"file:{path}"
+
+
+def refusal(name):
+    with pytest.raises(InputError) as refused:
+        pressure_named(name)
+    assert refused.value.argument == "pressure"
+    assert "\n" not in str(refused.value)
+    return str(refused.value)
+
+
+# What a grid means
+
+
+@pytest.mark.parametrize("reading", ["cells", "samples"])
+def test_a_uniform_square_is_one_pressure_at_any_resolution(reading):
+    """The torque is the mean distance of a square from its centre, u_lim that at the centre."""
+    for count in (2, 3, 41):
+        axis = np.linspace(3.0, 7.0, count)
+        square = of_grid("square", axis, axis, np.full((count, count), 5.0), reading)
+        assert square.torque == pytest.approx((np.sqrt(2.0) + np.arcsinh(1.0)) / 3.0, abs=1e-12)
+        # (1/pi) Integral of 1/distance over [-1, 1]^2 at load 1, seen from cells by the centre
+        assert square.G_star == pytest.approx(2.0 * np.arcsinh(1.0) / np.pi, abs=2e-5)
+        assert square.cell_loads(7) == pytest.approx(np.full((7, 7), 1.0 / 49.0), abs=1e-14)
+        for other in square.readings:
+            assert other.cell_loads(7) == pytest.approx(square.cell_loads(7), abs=1e-14)
+            assert other.G_star == pytest.approx(square.G_star, rel=1e-12)
+            assert other.torque == pytest.approx(square.torque, rel=1e-12)
+
+
+@pytest.mark.parametrize("scene", ["transverse", "bore"])
+def test_friction_of_a_uniform_square_does_not_depend_on_its_grid(tmp_path, scene):
+    found = []
+    for count in (2, 41):
+        axis = np.linspace(-1.0, 1.0, count)
+        axis *= 1.0 - 1.0 / count  # centres of the cells of one square
+        name = csv(tmp_path / f"{count}.csv", axis, axis, np.ones((count, count)))
+        found.append(microslip.solve(scene, 0.5, 0.5, pressure=name, tolerance=1e-2))
+    one, other = found
+    assert one.converged and other.converged
+    assert max(one.error_model, other.error_model) < 1e-6
+    assert one.mu_macro == pytest.approx(other.mu_macro, abs=1e-6)  # nine digits in the files
+
+
+def test_cells_are_even_up_to_half_a_step_beyond_the_points():
+    values = np.array([[1.0, 2.0], [3.0, 4.0]])
+    pressure = of_grid("four", [0.0, 1.0], [5.0, 6.0], values)
+    assert pressure.cell_loads(2) == pytest.approx(values / 10.0, abs=1e-14)
+    assert pressure.cell_loads(4) == pytest.approx(np.kron(values, np.ones((2, 2))) / 40.0)
+    # mean distance of the unit square from its corner, whichever carries more
+    assert pressure.torque == pytest.approx((np.sqrt(2.0) + np.arcsinh(1.0)) / 3.0, abs=1e-12)
+
+
+def test_samples_are_bilinear_between_the_points_and_end_there():
+    """p = 1 + x on [0, 1]^2: 5/12 and 7/12 of the load in the two halves."""
+    values = np.array([[1.0, 1.0], [2.0, 2.0]])
+    pressure = of_grid("ramp", [0.0, 1.0], [0.0, 1.0], values, "samples")
+    assert pressure.cell_loads(2).sum(axis=1) == pytest.approx([5.0 / 12.0, 7.0 / 12.0], abs=1e-14)
+    assert pressure.cell_loads(2).sum(axis=0) == pytest.approx([0.5, 0.5], abs=1e-14)
+    finer = np.linspace(0.0, 1.0, 5)
+    same = of_grid("ramp", finer, finer, np.repeat(1.0 + finer[:, None], 5, axis=1), "samples")
+    assert same.cell_loads(6) == pytest.approx(pressure.cell_loads(6), abs=1e-14)
+
+
+def test_oblong_cells_and_grids_keep_their_shape():
+    """Half as wide as long: a is half the longer side, and nothing lies beyond the shorter one."""
+    forward, lateral = np.arange(4) * 0.5, np.arange(8) * 0.125
+    loads = of_grid("oblong", forward, lateral, np.ones((4, 8))).cell_loads(8)
+    expected = np.zeros((8, 8))
+    expected[:, 2:6] = 1.0 / 32.0
+    assert loads == pytest.approx(expected, abs=1e-14)
+
+
+def test_zeros_around_the_contact_change_nothing():
+    values = np.array([[1.0, 2.0], [3.0, 4.0]])
+    inside = of_grid("four", [0.0, 1.0], [0.0, 1.0], values)
+    around = np.zeros((5, 5))
+    around[1:3, 2:4] = values
+    outside = of_grid("four", np.arange(-1.0, 4.0), np.arange(-2.0, 3.0), around)
+    assert outside.cell_loads(6) == pytest.approx(inside.cell_loads(6), abs=1e-14)
+    assert outside.torque == pytest.approx(inside.torque, abs=1e-14)
+
+
+@pytest.mark.parametrize("reading", ["cells", "samples"])
+def test_a_finer_grid_of_hertzs_pressure_is_nearer_to_it(reading):
+    def off(count):
+        axis = np.linspace(-1.0, 1.0, count + 1)
+        values = np.sqrt(np.maximum(1.0 - axis[:, None] ** 2 - axis**2, 0.0))
+        pressure = of_grid("sphere", axis, axis, values, reading)
+        return np.abs([pressure.torque - HERTZ.torque, pressure.G_star - HERTZ.G_star])
+
+    coarse, fine = off(16), off(64)
+    assert np.all(fine < 0.5 * coarse)
+    assert np.all(fine < 2e-2)
+
+
+# What it leaves open
+
+
+def sphere(x, y):
+    return np.sqrt(np.maximum(1.0 - x**2 - y**2, 0.0))
+
+
+def cone(x, y):
+    """Love's, its peak as high as it is a quarter of a step away from it."""
+    step = x.ravel()[1] - x.ravel()[0]
+    return np.arccosh(1.0 / np.clip(np.hypot(x, y), 0.25 * step, 1.0))
+
+
+TRUTHS = [("hertz", sphere), ("power:exponent=1", cone)]
+
+
+@pytest.mark.parametrize("reading", ["cells", "samples"])
+@pytest.mark.parametrize("count", [8, 16, 32, 64])
+@pytest.mark.parametrize(("name", "shape"), TRUTHS)
+def test_the_error_holds_what_the_resolution_of_a_file_leaves_open(
+    tmp_path, name, shape, count, reading
+):
+    """Values at the centres of cells over the disc, against rings."""
+    axis = (np.arange(count) + 0.5) * 2.0 / count - 1.0
+    file = csv(tmp_path / "p.csv", axis, axis, shape(axis[:, None], axis[None, :]))
+    truth = microslip.solve("transverse", 0.1, 0.5, pressure=name)
+    found = microslip.solve(
+        "transverse", 0.1, 0.5, pressure=f"{file},grid={reading}", tolerance=2e-2
+    )
+    assert truth.model == "radial"
+    assert found.error_model > 0.0
+    assert abs(found.mu_macro - truth.mu_macro) <= found.mu_macro_error + truth.mu_macro_error
+    assert found.converged == (found.mu_macro_error <= 2e-2)
+
+
+@pytest.mark.parametrize("reading", ["cells", "samples"])
+@pytest.mark.parametrize(("count", "shift"), [(8, 0.0), (16, 0.3), (32, 0.5)])
+def test_so_it_does_where_the_edge_lies_between_the_points(tmp_path, count, shift, reading):
+    """A rotation feels how large the contact is; here the grid does not end with it."""
+    axis = (np.arange(-count // 2 - 2, count // 2 + 3) + shift) * 2.0 / count
+    file = csv(tmp_path / "p.csv", axis, axis, sphere(axis[:, None], axis[None, :]))
+    truth = microslip.solve("bore", 0.5, 1.0, tolerance=5e-3)
+    found = microslip.solve("bore", 0.5, 1.0, pressure=f"{file},grid={reading}", tolerance=3e-2)
+    assert abs(found.mu_macro - truth.mu_macro) <= found.mu_macro_error + truth.mu_macro_error
+
+
+def test_a_file_too_coarse_for_the_tolerance_is_not_converged(tmp_path):
+    axis = np.linspace(-0.75, 0.75, 4)
+    file = csv(tmp_path / "p.csv", axis, axis, sphere(axis[:, None], axis[None, :]))
+    found = microslip.solve("transverse", 0.1, 0.5, pressure=file, tolerance=2e-3)
+    assert not found.converged
+    assert found.mu_macro_error > 2e-3
+    assert f"the file's own resolution leaves {found.error_model:.1e} open" in found.reason
+
+
+def test_sliding_fast_needs_no_resolution(tmp_path):
+    """The contact is rigid then, whatever its pressure."""
+    file = csv(tmp_path / "p.csv", *2 * [np.array([-0.5, 0.5])], np.array([[1.0, 2.0], [3.0, 4.0]]))
+    found = microslip.solve("transverse", 1e3, 0.5, pressure=file, tolerance=1e-3)
+    assert found.converged
+    assert found.mu_macro == pytest.approx(1.0, abs=1e-3)
+    marched = microslip.solve(
+        "transverse", 20.0, 0.5, pressure=file, tolerance=1e-2, cells=8, steps=32
+    )
+    rigid = microslip.solve("transverse", 20.0, 0.5, model="rigid")
+    assert abs(marched.mu_macro - rigid.mu_macro) <= 1e-3
+
+
+# Any file
 
 
 def test_units_and_formats_do_not_matter(tmp_path):
@@ -43,102 +219,211 @@ def test_units_and_formats_do_not_matter(tmp_path):
     assert one.cell_loads(20) == pytest.approx(other.cell_loads(20), abs=1e-8)
 
 
-def test_hertzs_pressure_from_a_file_is_hertzs(tmp_path):
-    """Along lines, where only the units u_lim count; the edge is blurred by a grid's width."""
-    name = csv(tmp_path / "p.csv")
-    assert pressure_named(name).torque == pytest.approx(HERTZ.torque, abs=5e-3)
-    for scene in ("transverse", "longitudinal"):
-        sphere = microslip.solve(scene, 0.1, 0.5)
-        found = microslip.solve(scene, 0.1, 0.5, pressure=name, tolerance=3e-3)
-        assert found.converged
-        assert abs(found.mu_macro - sphere.mu_macro) <= found.mu_macro_error + 1e-3
-
-
-def test_what_a_file_says_is_kept_where_it_says(tmp_path):
-    """A quarter of the load lies on the square that is one quarter of four."""
-    values = np.zeros((5, 5))
-    values[1, 1], values[1, 3], values[3, 1], values[3, 3] = 1.0, 2.0, 3.0, 4.0
-    name = csv(tmp_path / "p.csv", np.arange(5), np.arange(5), values)
-    assert pressure_named(name).cell_loads(2) == pytest.approx(
-        np.array([[0.1, 0.2], [0.3, 0.4]]), abs=1e-12
-    )
-
-
 def test_a_pressure_that_is_not_symmetric_is_marched_over_the_whole_period(tmp_path):
     values = HERTZIAN * (1.0 + 0.5 * AXIS)
     name = csv(tmp_path / "p.csv", values=values)
     scene = scene_named("bore", name)
     assert not scene.half_period_mirror
     assert scene.turns(0.1, 1.0) == pytest.approx((-np.pi / 2, np.pi / 2, 1.5 * np.pi))
-    found = microslip.solve("bore", 0.3, 1.0, pressure=name, tolerance=5e-3)
+    found = microslip.solve("bore", 0.3, 1.0, pressure=name, tolerance=4e-2)
     mirrored = csv(tmp_path / "m.csv", values=values[:, ::-1])
-    other = microslip.solve("bore", 0.3, 1.0, pressure=mirrored, tolerance=5e-3)
+    other = microslip.solve("bore", 0.3, 1.0, pressure=mirrored, tolerance=4e-2)
     assert found.converged
     # the mirror image of the motion is the same half a period later
     assert found.mu_macro == pytest.approx(other.mu_macro, abs=1e-3)
 
 
-def test_the_name_of_a_result_has_the_digest_of_the_file(tmp_path):
-    name = csv(tmp_path / "p.csv")
-    found = microslip.solve("transverse", 0.1, 0.5, pressure=name, tolerance=1e-2)
-    assert found.pressure.startswith(f"{name},sha256=")
-    again = microslip.solve("transverse", 0.1, 0.5, pressure=found.pressure, tolerance=1e-2)
-    assert again.mu_macro == found.mu_macro
-    csv(tmp_path / "p.csv", values=2.0 * HERTZIAN + HERTZIAN**2)
-    with pytest.raises(ValueError, match="has changed: its sha256 begins with"):
-        pressure_named(found.pressure)
-    assert pressure_named(name).name != found.pressure
+PLAIN = "forward,lateral,pressure\n0,0,1\n0,1,2\n1,0,3\n1,1,4\n"
+BOM = b"\xef\xbb\xbf"
 
 
 @pytest.mark.parametrize(
-    ("text", "problem"),
+    "content",
     [
-        ("", "the first line is ''; allowed: forward,lateral,pressure"),
-        ("x,y,p\n0,0,1\n", "the first line is 'x,y,p'; allowed: forward,lateral,pressure"),
-        ("forward,lateral,pressure\n", "allowed are lines of three numbers"),
-        ("forward,lateral,pressure\n0,0,a\n", "not three numbers a line"),
-        ("forward,lateral,pressure\n0,0\n", "three numbers"),
-        ("forward,lateral,pressure\n0,0,1\n0,1,1\n1,0,1\n", "3 points do not fill a grid of 2 x 2"),
-        ("forward,lateral,pressure\n0,0,1\n0,1,1\n1,0,1\n1,1,-1\n", "pressure -1 is not allowed"),
-        ("forward,lateral,pressure\n0,0,0\n0,1,0\n1,0,0\n1,1,0\n", "pressure is 0 everywhere"),
-        ("forward,lateral,pressure\n0,0,1\n0,1,1\n1,0,1\n1,1,nan\n", "do not fill a grid"),
-        ("forward,lateral,pressure\n0,0,1\n0,1,1\n1,0,1\n1,1,inf\n", "pressure inf is not allowed"),
-        (
-            "forward,lateral,pressure\n0,0,1\n0,1,1\n1,0,1\n1,1,1\n3,0,1\n3,1,1\n",
-            "forward: not evenly spaced",
-        ),
+        "# sensor\nforward,lateral,pressure\n# first row\n0,0,1\n0,1,2\n\n1,0,3\n1,1,4\n# end",
+        BOM + PLAIN.encode(),
+        BOM + b"# sensor\r\n" + PLAIN.replace("\n", "\r\n").encode(),
+        PLAIN.replace("\n", "\r"),
+        "\n \n" + PLAIN.replace("\n", "\n\n"),
+        PLAIN.replace("forward,lateral,pressure", '"forward","lateral", "pressure"'),
+        PLAIN.replace("forward,lateral,pressure", "Forward [mm],Lateral [mm],Pressure [MPa]"),
+        PLAIN.replace("forward,lateral,pressure", "forward[um], lateral [um] ,pressure [N/mm^2]"),
+        PLAIN.replace(",", ";"),
+        PLAIN.replace(",", "\t"),
+        PLAIN.replace(",", " ; "),
+        "pressure,lateral,forward\n1,0,0\n2,1,0\n3,0,1\n4,1,1\n",
+        "forward,lateral,pressure\n1,1,4\n0,1,2\n1,0,3\n0,0,1\n",
+        "forward [mm],lateral [um],pressure\n0,0,1\n0,1000,2\n1,0,3\n1,1000,4\n",
+        "forward,lateral,pressure\n0,0,1\n0,.1e1,+2.\n1.0000000000001,0,3\n1,1,4E0",
     ],
 )
-def test_what_a_file_must_not_hold_is_told_in_one_line(tmp_path, capsys, text, problem):
-    (tmp_path / "p.csv").write_text(text)
-    point = ["point", "transverse", "--velocity", "0.1", "--amplitude", "0.5"]
-    assert main([*point, "--pressure", f"file:{tmp_path / 'p.csv'}"]) == 2
+def test_what_csv_may_look_like(tmp_path, content):
+    loads = pressure_named(text(tmp_path / "p.csv", content)).cell_loads(2)
+    assert loads == pytest.approx(np.array([[0.1, 0.2], [0.3, 0.4]]), abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("content", "problem"),
+    [
+        ("", "line 1: the heading is ''; allowed: forward,lateral,pressure"),
+        ("x,y,p\n0,0,1\n", "line 1: the heading is 'x,y,p'; allowed: forward,lateral,pressure"),
+        ("# x\n0,0,1\n", "line 2: the heading is '0,0,1'"),
+        ("forward,lateral\n0,0\n", "line 1: the heading is 'forward,lateral'"),
+        ("forward,lateral,pressure,pressure\n", "line 1: the heading"),
+        (HEAD, "no points"),
+        (HEAD + "0,0,a\n", "line 2: pressure is 'a'; allowed: a number"),
+        (HEAD + "0,0,1_0\n", "line 2: pressure is '1_0'; allowed: a number"),
+        (HEAD + "0,0,\n", "line 2: pressure is ''; allowed: a number"),
+        (HEAD + "0,0\n", "line 2: 2 values; allowed: 3"),
+        (HEAD + "0,5,0,1\n", "line 2: 4 values; allowed: 3"),
+        ("forward;lateral;pressure\n0;0;1\n0,5;0;1\n", "line 3: '0,5' has a decimal comma"),
+        ("forward\tlateral\tpressure\n0\t0\t1,5\n", "line 2: '1,5' has a decimal comma"),
+        (HEAD + "0,0,1\n0,1,1\n1,0,1\n", "3 points do not fill a grid of 2 x 2, there is none at "),
+        (HEAD + "0,0,1\n0,1,1\n1,0,1\n1,1", "line 5: 2 values; allowed: 3"),
+        (HEAD + "0,0,1\n0,1,1\n1,0,1\n1,1,-1\n", "line 5: pressure is -1; allowed: a finite"),
+        (HEAD + "0,0,0\n0,1,0\n1,0,0\n1,1,0\n", "it is 0 everywhere"),
+        (HEAD + "0,0,1\n# x\n0,1,nan\n", "line 4: pressure is nan; allowed: a finite number"),
+        (HEAD + "0,0,1\n0,NaN,1\n", "line 3: lateral is nan; allowed: a finite number"),
+        (HEAD + "0,0,1\n0,1,inf\n", "line 3: pressure is inf"),
+        (HEAD + "0,0,1\n0,1,1e999\n", "line 3: pressure is 1e999"),
+        (
+            HEAD + "0,0,1\n0,1,1\n1,0,1\n1,1,1\n3,0,1\n3,1,1\n",
+            "line 6: forward 3 after 1: not even",
+        ),
+        (HEAD + "0,0,1\n0,1,1\n", "line 2: forward 0: not evenly spaced; allowed: two coordinates"),
+        (HEAD + "0,0,1\n0,1,1\n1,0,1\n0,1,1\n", "line 5: the same point as in line 3"),
+        ("forward [mm],lateral,pressure\n0,0,1\n", "forward alone has a unit"),
+        (
+            "forward [mm],lateral [foo],pressure\n0,0,1\n",
+            "lateral [foo] is no known unit of length",
+        ),
+        ("forward [mm],lateral [s],pressure\n0,0,1\n", "lateral [s] is no known unit of length"),
+        ("forward [mm],lateral [1],pressure\n0,0,1\n", "are not the same kind"),
+        ("forward,lateral,pressure [N]\n0,0,1\n", "pressure [N] is no known unit of pressure"),
+        (HEAD.encode() + b"0,0,1\n0,1,\xb5\n", "line 3: byte 0xb5 is not UTF-8"),
+        (PLAIN.encode("utf-16"), "line 1: UTF-16; allowed: UTF-8"),
+        (HEAD + "0,0,1\n\0", "line 3: not text"),
+        (b"\x1f\x8b\x08\x00", "packed (gzip); allowed: CSV or netCDF as it is"),
+        (b"PK\x03\x04abc", "packed (zip, as spreadsheets are)"),
+    ],
+)
+def test_what_csv_must_not_hold_is_told_in_one_line(tmp_path, capsys, content, problem):
+    name = text(tmp_path / "p.csv", content)
+    assert main([*POINT, "--pressure", name]) == 2
     said = capsys.readouterr().err
     assert said.count("\n") == 1
     assert problem in said
     assert "p.csv" in said
 
 
-def test_a_relative_path_may_count_from_a_folder_of_the_environment(tmp_path, monkeypatch):
-    csv(tmp_path / "p.csv")
-    with pytest.raises(ValueError, match="cannot be read"):
-        pressure_named("file:p.csv")
-    monkeypatch.setenv("MICROSLIP_FILES", str(tmp_path))
-    found = pressure_named("file:p.csv")
-    assert found.name.startswith("file:p.csv,sha256=")
-    monkeypatch.delenv("MICROSLIP_FILES")
+def test_huge_files_folders_and_pipes_are_refused_unread(tmp_path, monkeypatch):
+    assert "a folder" in refusal(f"file:{tmp_path}")
+    monkeypatch.setattr(named_files, "MOST_BYTES", 20)
+    assert "larger than" in refusal(text(tmp_path / "p.csv", PLAIN))
+    monkeypatch.undo()
+    monkeypatch.setattr("microslip.pressures.grid_csv.MOST_POINTS", 3)
+    assert "line 5: more than 3 points" in refusal(text(tmp_path / "p.csv", PLAIN))
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(tmp_path / "pipe")
+        assert "not a regular file" in refusal(f"file:{tmp_path / 'pipe'}")
+
+
+def test_netcdf_is_read_with_its_units_whatever_its_name(tmp_path):
+    values, axis = np.array([[1.0, 2.0], [3.0, 4.0]]), np.array([0.0, 1.0])
+    units = {"forward": "mm", "lateral": "um", "pressure": "MPa"}
+    netcdf(tmp_path / "p.nc", axis[::-1], 1e3 * axis, values[::-1], units)
+    (tmp_path / "p.nc").rename(tmp_path / "p.dat")
+    loads = pressure_named(f"file:{tmp_path / 'p.dat'}").cell_loads(2)
+    assert loads == pytest.approx(values / 10.0, abs=1e-12)
+    data = xr.load_dataset(tmp_path / "p.dat")
+    data.transpose("lateral", "forward").to_netcdf(tmp_path / "q.nc", format="NETCDF3_CLASSIC")
+    loads = pressure_named(f"file:{tmp_path / 'q.nc'}").cell_loads(2)
+    assert loads == pytest.approx(values / 10.0, abs=1e-12)
+
+
+def test_what_netcdf_must_not_hold_is_told_in_one_line(tmp_path):
+    axis, one = [0.0, 1.0], np.ones((2, 2))
+
+    def said(variables, **coordinates):
+        xr.Dataset(variables, coordinates).to_netcdf(tmp_path / "p.nc")
+        return refusal(f"file:{tmp_path / 'p.nc'}")
+
+    dims = ("forward", "lateral")
+    both = {"forward": axis, "lateral": axis}
+    holed = np.array([[1.0, np.nan], [1.0, 1.0]])
+    assert "pressure is nan at forward 0, lateral 1" in said({"pressure": (dims, holed)}, **both)
+    assert "pressure is -1 at forward 0" in said({"pressure": (dims, -one)}, **both)
+    assert "no variable lateral" in said({"pressure": (dims, one)}, forward=axis)
+    assert "no variable pressure" in said({"load": (dims, one)}, **both)
+    assert "pressure has the dimensions time, forward, lateral" in said(
+        {"pressure": (("time", *dims), one[None])}, **both
+    )
+    assert "forward is nan" in said({"pressure": (dims, one)}, forward=[0.0, np.nan], lateral=axis)
+    assert "not evenly spaced" in said({"pressure": (dims, one)}, forward=[1.0, 1.0], lateral=axis)
+    assert "pressure holds" in said({"pressure": (dims, np.full((2, 2), "a"))}, **both)
+    assert "lateral alone has a unit" in said(
+        {"pressure": (dims, one)}, forward=axis, lateral=("lateral", axis, {"units": "mm"})
+    )
+    assert "not a netCDF file" in refusal(text(tmp_path / "q.nc", b"\x89HDF\r\n\x1a\n no netCDF"))
+
+
+# Names and places
+
+
+def test_a_file_is_found_without_any_other_import(tmp_path):
+    """By the module that solves alone, in a fresh process."""
+    name = csv(tmp_path / "p.csv", *2 * [np.array([0.0, 1.0])], np.ones((2, 2)))
+    script = (
+        "from microslip.point import checked_point\n"
+        f"kind = checked_point('transverse', 0.5, 0.5, 0.0, {name!r})[0]\n"
+        "print(kind.pressure.name)"
+    )
+    found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert found.returncode == 0, found.stderr
+    assert found.stdout.startswith("file:sha256=")
+
+
+def test_one_file_by_many_paths_is_one_pressure(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    assert pressure_named("file:p.csv").name == found.name  # wherever it was found
+    name = csv(tmp_path / "p.csv", *2 * [np.array([0.0, 1.0])], np.ones((2, 2)))
+    (tmp_path / "link.csv").symlink_to(tmp_path / "p.csv")
+    (tmp_path / "copy, of=it.csv").write_bytes((tmp_path / "p.csv").read_bytes())
+    paths = ("file:p.csv", "file:./p.csv", "file:link.csv", "file:copy, of=it.csv", name)
+    records = [pressure_named(path) for path in paths]
+    records += [pressure_named(f"{name},grid=cells"), pressure_named(records[0].name)]
+    assert all(record is records[0] for record in records)
+    assert str(tmp_path) not in records[0].name
+    assert pressure_named("file:p.csv,grid=samples").name == f"{records[0].name},grid=samples"
 
 
-def test_files_that_are_not_there_or_not_netcdf_are_refused(tmp_path):
-    with pytest.raises(ValueError, match="cannot be read: No such file"):
-        pressure_named(f"file:{tmp_path / 'none.csv'}")
-    with pytest.raises(ValueError, match="allowed is a file, as in file:measured.csv"):
-        pressure_named("file:")
-    (tmp_path / "p.nc").write_bytes(b"no netCDF")
-    with pytest.raises(ValueError, match="not a netCDF file"):
-        pressure_named(f"file:{tmp_path / 'p.nc'}")
-    xr.Dataset({"pressure": ("forward", [1.0, 2.0])}).to_netcdf(tmp_path / "q.nc")
-    with pytest.raises(ValueError, match="allowed is a variable pressure with the dimensions"):
-        pressure_named(f"file:{tmp_path / 'q.nc'}")
+def test_a_stored_point_is_found_by_any_path_and_says_none(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    name = csv(tmp_path / "p.csv", *2 * [np.array([0.0, 1.0])], np.ones((2, 2)))
+    (tmp_path / "link.csv").symlink_to(tmp_path / "p.csv")
+    for pressure in (name, "file:link.csv"):
+        microslip.solve_stored("transverse", 2.0, 0.5, pressure=pressure, tolerance=0.1)
+    (record,) = (tmp_path / "results" / "points").rglob("*.json")
+    assert "p.csv" not in record.read_text()
+    assert "file:sha256=" in record.read_text()
+
+
+def test_a_file_that_changes_is_another_pressure(tmp_path):
+    name = csv(tmp_path / "p.csv")
+    found = pressure_named(name)
+    digest = found.name.partition(":")[2]
+    assert pressure_named(f"{name},{digest}") is found
+    csv(tmp_path / "p.csv", values=2.0 * HERTZIAN + HERTZIAN**2)
+    for past in (f"{name},{digest}", found.name):
+        assert "has changed: its sha256 begins with" in refusal(past)
+    assert pressure_named(name).name != found.name
+
+
+def test_names_that_name_no_file_are_refused(tmp_path):
+    assert "cannot be read: No such file; looked for" in refusal(f"file:{tmp_path / 'none.csv'}")
+    assert "allowed is a file, as in file:measured.csv" in refusal("file:")
+    assert "allowed for grid is one of cells, samples" in refusal(
+        text(tmp_path / "p.csv", PLAIN) + ",grid=points"
+    )
+    assert "grid occurs twice" in refusal("file:p.csv,grid=cells,grid=cells")
+    assert "grid=cells or grid=samples" in refusal("file:p.csv,gird=cells")
+    assert "no file with this content is known here" in refusal("file:sha256=0000000000000000")

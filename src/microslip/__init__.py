@@ -26,6 +26,5 @@ __version__ = "0.1.0"
 
 def __getattr__(name):
     if name in _WHERE:
-        _import_module("microslip.pressure_files")  # pressures from files: see SOURCES there
         return getattr(_import_module(_WHERE[name]), name)
     raise AttributeError(f"module 'microslip' has no attribute {name!r}")

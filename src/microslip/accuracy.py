@@ -13,6 +13,9 @@ one the base itself is refined.
 - angles: the error falls fast but irregularly, so the spread of the last three runs is the error.
 - steps: the error scatters about its trend, since a ring starts to slip somewhere within a step; so
   the spread of the last three runs is the error here, too, and nothing is extrapolated.
+- readings: where the pressure is known on a grid alone, the finest run along the cells is done
+  again for every other pressure that the same numbers may stand for; how far these are apart is an
+  error that no refinement removes.
 """
 
 from __future__ import annotations
@@ -27,6 +30,11 @@ RESOLVED = 0.125
 """Share of the tolerance below which no axis claims its error to be: nothing was run to see it."""
 SCATTER = 0.5
 """Share of the correction in time that its scatter may do to the differences of other chains."""
+READING_CAUTION = 2.5
+"""Error over the sum of what the readings of a pressure change: a peak or an edge that falls
+between the points of a grid shows in none of them in full."""
+LARGEST_OPEN = 0.5
+"""Share of the tolerance that the readings may take for runs to be refined for what is left."""
 MOST_REBASED = 6
 SOURCES = {"cells": "space", "angles": "space", "steps": "time"}
 
@@ -63,9 +71,9 @@ class Axis:
 class Certified:
     """A number and what is wrong with it at most; forces over mu F_z.
 
-    mu, torque: corrected means; errors: of mu by source (space, time, periodicity, solver);
-    torque_error: of the torque in space; finest: largest resolution used along each axis; the rest
-    sums up the effort of all runs.
+    mu, torque: corrected means; errors: of mu by source (space, time, periodicity, solver; model,
+    where there are readings); torque_error: of the torque in space, and over the readings; finest:
+    largest resolution used along each axis; the rest sums up the effort of all runs.
     """
 
     mu: float
@@ -108,6 +116,26 @@ class _Runs:
             guess = self.done.get(self.resolution())
             self.done[resolution] = self.run(resolution, guess)
         return self.done[resolution]
+
+
+class _Readings:
+    """The finest run along the cells, under other pressures that the same numbers may stand for."""
+
+    def __init__(self, runs, readings):
+        self.runs, self.readings, self.done = runs, readings, {}
+
+    def open(self, chains, name):
+        """How far they leave a value open."""
+        first = _refines_cells(chains)
+        finest = {} if first is None else {first: chains[first].indices[-1]}
+        resolution, value = self.runs.resolution(**finest), getattr(self.runs(**finest), name)
+        for number, run in enumerate(self.readings):
+            if (number, resolution) not in self.done:
+                self.done[number, resolution] = run(resolution, None)
+        return READING_CAUTION * sum(
+            abs(getattr(self.done[number, resolution], name) - value)
+            for number in range(len(self.readings))
+        )
 
 
 class _Chain:
@@ -185,18 +213,20 @@ def _mixed(runs, chains, name):
     return both - one - other + base
 
 
-def certify(run, coarsest, axes, tolerance, most_work=math.inf):
+def certify(run, coarsest, axes, tolerance, most_work=math.inf, readings=()):
     """Refine until the estimated error is within ``tolerance``.
 
     run(resolution, guess) -> simulate.Run (guess: the run at the base, or None); coarsest:
     motion.Resolution, for what is not refined; axes: the Axis to be refined; most_work: of all
-    runs together (see simulate.Run), beyond which nothing is refined any more.
+    runs together (see simulate.Run), beyond which nothing is refined any more; readings: functions
+    like ``run`` for other pressures that the same numbers may stand for.
     Returns a Certified; converged is False, with the reason, where a run did not converge or the
     estimate over a free axis stays too large.
     """
     runs = _Runs(run, coarsest, axes)
     chains = {axis.name: _Chain(runs, axis) for axis in axes}
-    rebased = 0
+    others = _Readings(runs, readings)
+    rebased, goal = 0, tolerance
     while True:
         runs()  # the base first: its state is a guess for others
         left = {name: c.error("mu") for name, c in chains.items() if not c.axis.imposed}
@@ -205,8 +235,15 @@ def certify(run, coarsest, axes, tolerance, most_work=math.inf):
             hidden["steps"] = SCATTER * abs(chains["steps"].correction("mu"))
         errors = _errors(runs, chains, hidden, tolerance)
         reason = next((r.reason for r in runs.done.values() if not r.converged), "")
-        if reason or sum(errors.values()) <= tolerance:
+        if reason:
             break
+        if sum(errors.values()) <= goal:
+            left_open = others.open(chains, "mu") if goal == tolerance else math.inf
+            within = sum(errors.values()) + left_open <= tolerance
+            if within or left_open > LARGEST_OPEN * tolerance:
+                break
+            goal = tolerance - left_open  # runs that are finer still can make room for it
+            continue
         if sum(r.work for r in runs.done.values()) > most_work:
             reason = f"the budget of work is spent, the error still {sum(errors.values()):.1e}"
             break
@@ -218,13 +255,13 @@ def certify(run, coarsest, axes, tolerance, most_work=math.inf):
             rebased += 1
             for chain in chains.values():
                 chain.rebase()
-        elif worst is None or sum(left.values()) + sum(hidden.values()) < 0.5 * tolerance:
+        elif worst is None or sum(left.values()) + sum(hidden.values()) < 0.5 * goal:
             break  # finer runs would not help
         elif not chains[worst].refine():
             reason = f"the error over {worst} is still {left[worst]:.1e}"
             reason += f" at {chains[worst].levels[-1]}"
             break
-    return _summary(runs, chains, errors, reason)
+    return _summary(runs, chains, errors, others, reason)
 
 
 def _can_rebase(chains, cause, rebased):
@@ -261,14 +298,20 @@ def _corrected(runs, chains, name):
     return getattr(runs(), name) + corrections + _mixed(runs, chains, name)
 
 
-def _summary(runs, chains, errors, reason):
+def _summary(runs, chains, errors, others, reason):
     """The Certified of chains that are fine enough, or as fine as they get."""
-    done = list(runs.done.values())
+    torque_error = sum(chain.error("torque") for chain in chains.values())
+    if others.readings:
+        errors = errors | {"model": others.open(chains, "mu")}
+        torque_error += others.open(chains, "torque")
+    done = [*runs.done.values(), *others.done.values()]
+    if not reason:
+        reason = next((r.reason for r in done if not r.converged), "")
     return Certified(
         mu=_corrected(runs, chains, "mu"),
         torque=_corrected(runs, chains, "torque"),
         errors=errors,
-        torque_error=sum(chain.error("torque") for chain in chains.values()),
+        torque_error=torque_error,
         finest=runs.resolution(**{name: chain.indices[-1] for name, chain in chains.items()}),
         periods=max(r.periods for r in done),
         iterations=sum(r.iterations for r in done),

@@ -6,6 +6,8 @@ of every key. What it cannot say is checked here: duplicates, and settings that 
 Imports nothing heavy, since the workflow reads it whenever it is parsed.
 """
 
+from pathlib import Path
+
 import yaml
 
 from . import extended, grids, methods, schemas
@@ -29,8 +31,11 @@ STATIC_AMPLITUDES = {"transverse": 1.0, "bore": 5.0}
 
 
 def load(path):
-    """Read and check the YAML file `path`; return a Configuration or raise ConfigError."""
-    return from_mapping(read_yaml(path), source=str(path))
+    """Read and check the YAML file `path`; return a Configuration or raise ConfigError.
+
+    Files that it names are looked for beside it, then in the working directory.
+    """
+    return from_mapping(read_yaml(path), source=str(path), folders=[Path(path).parent])
 
 
 def read_yaml(path):
@@ -58,12 +63,25 @@ def read_yaml(path):
     return mapping
 
 
-def from_mapping(mapping, source="configuration", ask_solver=True):
+def with_files_found(mapping, source="configuration", folders=(), strict=True):
+    """A parsed configuration, its defaults filled in, that says where the files lie that it names.
+
+    A job that is handed it finds them wherever it runs.  Arguments as for `from_mapping`; strict:
+    whether a file that is not there is refused.  Raises ConfigError.
+    """
+    filled = schemas.filled(mapping)
+    where = f"{source}: extended"
+    found = extended.with_files_found(filled["extended"], where, folders, strict)
+    return filled | {"extended": found}
+
+
+def from_mapping(mapping, source="configuration", ask_solver=True, folders=()):
     """Check a parsed configuration and return it as a Configuration.
 
     source: how messages name the origin, usually the file. ask_solver: whether the solver, which
-    takes some half a second to import, is to say if it knows what `extended` names; nothing else
-    in what is returned depends on it. Raises ConfigError.
+    takes some half a second to import, is to say if it knows what `extended` names, and whether
+    files have to be there; nothing else in what is returned depends on it. folders: where files
+    that it names are looked for, before the working directory. Raises ConfigError.
     """
     try:
         problem = schemas.problem(mapping)
@@ -71,7 +89,7 @@ def from_mapping(mapping, source="configuration", ask_solver=True):
         problem = "not valid YAML: a key that holds itself"
     if problem is not None:
         raise ConfigError(f"{source}: {_one_line(problem)}")
-    filled = schemas.filled(mapping)
+    filled = with_files_found(mapping, source, folders, strict=ask_solver)
     sweeps = {
         name: grids.of_paper(name, filled["sweeps"][name], f"{source}: sweeps.{name}")
         for name in SCENE_OF_SWEEP

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 import microslip
+from microslip import named_files
 
 from . import columns, limits, theory
 from .cache import writing_beside
@@ -45,6 +46,8 @@ def write_sweep(path, sweep, points, histories, settings):
     scene, pressure = solver_names(sweep)
     title = sweep.title or f"Friction of a vibrated Hertz contact, scene {scene}"
     about = {"scene": scene, "pressure": pressure, "tolerance": sweep.tolerance}
+    if named_files.base_name(pressure):
+        about["pressure_file"] = named_files.base_name(pressure)
     if sweep.group is not None:
         about["group"] = sweep.group
     versions = {canonical_json(record["versions"]) for record in histories}

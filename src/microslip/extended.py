@@ -5,6 +5,9 @@ What the solver calls a motion or a pressure is a name with numbers, such as
 functions that ask it, and by nothing else: the workflow reads this whenever it is parsed.
 """
 
+from microslip import named_files
+from microslip.errors import InputError
+
 from . import grids
 from .settings import TAKEN, ConfigError
 
@@ -12,6 +15,48 @@ MOST_PANELS = 12
 """Sweeps on a figure of maps."""
 MOST_LINES = 8
 """Sweeps on a figure of lines, each with a colour and a marker of its own."""
+
+
+def with_files_found(given, where, folders, strict=True):
+    """Settings by the names of their sweeps, with the places and digests of files in them.
+
+    Whoever reads them again, such as a job, finds the same files without knowing where the
+    configuration lies.
+
+    Parameters
+    ----------
+    given : dict
+        Settings by name, as in the configuration.
+    where : str
+        How messages begin, file and key.
+    folders : iterable of paths
+        Where files are looked for, before the working directory.
+    strict : bool
+        Whether a file that is not there is refused; else its name stays as it is.
+
+    Raises
+    ------
+    ConfigError
+        For a file that is not there or cannot be read.
+    """
+    found = dict(given)
+    for name, settings in given.items():
+        pressure = settings.get("pressure")
+        if not named_files.speaks_of_file(pressure):
+            continue
+        try:
+            file = named_files.parsed(pressure)
+            if file.digest and file.path:  # found before
+                named_files.remember([pressure])
+                continue
+            file, _ = named_files.found(pressure, folders)
+        except InputError as error:
+            if strict:
+                said = f"{error.value!r}: {error.allowed}"
+                raise ConfigError(f"{where}.{name}.{error.argument}: {said}") from None
+        else:
+            found[name] = settings | {"pressure": file.placed}
+    return found
 
 
 def sweeps(given, where):
@@ -24,11 +69,19 @@ def sweeps(given, where):
     for name, settings in given.items():
         if name in TAKEN:
             raise ConfigError(f"{where}.{name}: another result has this name; allowed: a new one")
-        more = {key: settings[key] for key in ("pressure", "group")}
-        more["title"] = settings["title"] or name
+        more = {"group": settings["group"], "title": settings["title"] or name}
+        more["pressure"] = _by_content(settings["pressure"])
         found[name] = grids.grid_of(name, settings["scene"], settings, f"{where}.{name}", **more)
         grids.refuse_static_model(found[name], f"{where}.{name}")
     return found
+
+
+def _by_content(pressure):
+    """The name of a pressure, without the place of a file whose content is known."""
+    if not named_files.speaks_of_file(pressure):
+        return pressure
+    file = named_files.parsed(pressure)
+    return file.name if file.digest else pressure
 
 
 def refuse_mixtures(given, where):
@@ -99,6 +152,4 @@ def _scene_of(sweep):
     """The Scene of a Sweep; raises ValueError where the solver knows no such motion or pressure."""
     from .scenes import scene_named
 
-    if sweep.pressure.startswith("file:"):
-        from . import pressure_files  # noqa: F401  tells the solver how to read them
     return scene_named(sweep.scene, sweep.pressure)

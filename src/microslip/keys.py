@@ -127,7 +127,7 @@ def further_files(kind, method="", scene="", pressure="hertz", package=None):
     package = Path(package or PACKAGE)
     names = {BESIDE_SOLVER[kind]} if kind in BESIDE_SOLVER else set()
     motions = [scene] if scene else [file.stem for file in (package / "motions").glob("[!_]*.py")]
-    of_file = "measured" if pressure.startswith("file:") else pressure
+    of_file = "from_file" if pressure.startswith("file:") else pressure
     for folder, named in (("methods", [method]), ("motions", motions), ("pressures", [of_file])):
         waiting = [name.partition(":")[0].replace("-", "_") for name in named]
         while waiting:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import asdict, dataclass
+from functools import partial
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from microslip.accuracy import certify
 from microslip.approach import run_safely
 from microslip.choice import choose_model, closed_form, method_refusal, no_vibration, plan
 from microslip.methods import SHIPPED, method_named, missing
-from microslip.scenes import scene_named
+from microslip.scenes import read_otherwise, scene_named
 from microslip.simulate import simulate
 from microslip.static_run import simulate_static
 
@@ -30,7 +31,8 @@ class Result:
     """Friction at one point, and how far to trust it.  All numbers dimensionless.
 
     mu_macro: mean forward force over mu F_z; mu_macro_error: sum of the five errors that follow it
-    (error_model: of a closed form, else 0); mu_torque, mu_torque_error: torque over its value at
+    (error_model: of a closed form, and what the resolution of a pressure from a file leaves open;
+    else 0); mu_torque, mu_torque_error: torque over its value at
     zero forward velocity (steady scenes only, else None); cells, angles, steps_per_period: finest
     resolution used (angles: points on half the disc, 1 where rings or squares suffice); periods:
     half periods marched in the longest run; iterations, work, effort: step-solver
@@ -132,7 +134,7 @@ def solve(
     imposed, names = any(axis.imposed for axis in axes), [axis.name for axis in axes]
     share = PERIODICITY_SHARE * tolerance
 
-    def run(resolution, guess):
+    def run(resolution, guess, kind=kind):
         if progress is not None:
             progress(resolution)
         if velocity == 0.0 and kind.periodic:
@@ -146,19 +148,25 @@ def solve(
             return run_at(velocity, guess)
         return run_safely(run_at, velocity, guess)
 
-    certified = certify(run, coarsest, axes, tolerance, most_work)
+    readings = [partial(run, kind=other) for other in read_otherwise(kind)]
+    certified = certify(run, coarsest, axes, tolerance, most_work, readings)
     steady = not kind.periodic
     within = certified.error <= tolerance or imposed
     reason = certified.reason
     if certified.converged and not within:
         reason = f"estimated error {certified.error:.1e} above the tolerance"
+        left_open = certified.errors.get("model", 0.0)
+        if left_open > 0.5 * certified.error:
+            reason += f": the file's own resolution leaves {left_open:.1e} open"
     return Result(
         **point,
         model=name,
         mu_macro=_within(kind, certified.mu),
         mu_macro_error=certified.error,
-        **{f"error_{source}": error for source, error in certified.errors.items()},
-        error_model=0.0,
+        **{
+            f"error_{source}": error
+            for source, error in ({"model": 0.0} | certified.errors).items()
+        },
         mu_torque=certified.torque if steady else None,
         mu_torque_error=certified.torque_error + certified.errors["periodicity"]
         if steady

@@ -53,6 +53,11 @@ def scene_named(name, pressure=HERTZ.name):
     return scene if pressure == HERTZ.name else _under(scene, pressure_named(pressure))
 
 
+def read_otherwise(scene):
+    """The scene under each of the other pressures that its own may stand for, see Pressure."""
+    return [replace(scene, pressure=other) for other in scene.pressure.readings]
+
+
 @lru_cache(maxsize=64)
 def _under(scene, pressure):
     if pressure.mirrored or not scene.half_period_mirror:

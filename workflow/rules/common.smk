@@ -11,14 +11,20 @@ from microslip.watch import Watch
 FILES = [os.path.relpath(file) for file in workflow.configfiles] if MAIN else []
 OVERRIDDEN = ["--config"] if MAIN and workflow.config_settings.config else []
 OF_MODULE = "" if MAIN else f" of {workflow.modifier.namespace}"
+# Where files are looked for that the configuration names, before the working directory.
+FOLDERS = [os.path.dirname(os.path.abspath(file)) for file in workflow.configfiles]
 ORIGIN = ", ".join([*FILES, *OVERRIDDEN]) or f"configuration{OF_MODULE}"
 
 with refused_in_one_line(ORIGIN):
     for file in FILES:
         microslip_config.read_yaml(file)  # refuses a key that occurs twice
     # Jobs parse this again, and need not pay for asking the solver what it knows.
-    CONFIGURATION = microslip_config.from_mapping(config, ORIGIN, workflow.is_main_process)
-    config = schemas.filled(config)  # captions name the defaults too
+    places = {"source": ORIGIN, "folders": FOLDERS}
+    CONFIGURATION = microslip_config.from_mapping(
+        config, ask_solver=workflow.is_main_process, **places
+    )
+    # Captions name the defaults too, and jobs find the files that were found here.
+    config = microslip_config.with_files_found(config, strict=workflow.is_main_process, **places)
     RESULTS = os.path.normpath(CONFIGURATION.results)
     # RESULTS with the prefix that a module may have; Snakemake adds it to the paths of rules itself.
     PLACE = str(workflow.modifier.modify_path(RESULTS))

@@ -12,10 +12,6 @@ if SOURCE.is_dir():
     search = [str(SOURCE), *filter(None, [os.environ.get("PYTHONPATH")])]
     os.environ.update(PYTHONPATH=os.pathsep.join(search))
 
-# Files that the default configuration names lie beside it, wherever the workflow runs.
-BESIDE = Path(str(workflow.current_basedir), "../..").resolve()
-os.environ.setdefault("MICROSLIP_FILES", str(BESIDE))
-
 # Jobs inherit this. Parallel work is many points at a time, one thread each.
 os.environ.update(
     dict.fromkeys(

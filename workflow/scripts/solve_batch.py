@@ -8,13 +8,15 @@ memory (byte) of trials and scaling.
 
 import json
 
-from microslip import sweep
+from microslip import named_files, sweep
 from microslip.cache import Store, write_atomically
 from microslip.jobs import job_log
 from microslip.keys import canonical_json
 from microslip.watch import counted
 
 with job_log(snakemake.log[0]) as log:
+    # Requests name files by what these hold.
+    named_files.remember(given["pressure"] for given in snakemake.config["extended"].values())
     index, done = sweep.run_batch(
         json.loads(snakemake.params.requests),
         Store(snakemake.params.store),

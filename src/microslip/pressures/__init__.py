@@ -3,7 +3,8 @@
 A pressure is one ``Pressure`` record (see record.py for it and for the working units), in a file
 of its name, as PRESSURE.  A family gives one for numbers that follow its name: its file holds
 DEFAULTS, the numbers and their values if they are not given, and pressure(name, **numbers), which
-raises ValueError for numbers out of range.
+raises ValueError for numbers out of range.  A source gives one for a text of its own that follows
+a word and a colon: its file holds SOURCE, the word, and pressure(name).
 """
 
 from __future__ import annotations
@@ -23,8 +24,7 @@ PRESSURES = {HERTZ.name: HERTZ}
 FAMILIES = {}
 """Name -> module with DEFAULTS, numbers and their values if not given, and pressure(name, ...)."""
 SOURCES = {}
-"""Name -> function that makes a Pressure of what follows the name and a colon; modules that know
-files put themselves here, since this package knows none."""
+"""Word -> module with pressure(name), for names that begin with the word and a colon."""
 
 
 def find(folder):
@@ -37,6 +37,8 @@ def find(folder):
             PRESSURES[file.name] = module.PRESSURE
         elif hasattr(module, "DEFAULTS"):
             FAMILIES[file.name.replace("_", "-")] = module
+        elif hasattr(module, "SOURCE"):
+            SOURCES[module.SOURCE] = module
 
 
 for _folder in list(__path__):
@@ -52,9 +54,9 @@ def pressure_named(name):
     known = [*PRESSURES, *FAMILIES, *SOURCES]
     if not isinstance(name, str):
         raise ValueError(f"pressure = {name!r}: allowed is one of {', '.join(known)}")
-    family, _, rest = name.partition(":")
-    if family in SOURCES:
-        return SOURCES[family](rest)
+    word, colon, _ = name.partition(":")
+    if colon and word in SOURCES:
+        return SOURCES[word].pressure(name)
     family, numbers = parameters.split(name, "pressure", known)
     module = FAMILIES.get(family)
     problem = parameters.unknown(name, "pressure", numbers, list(module.DEFAULTS if module else ()))

@@ -1,74 +1,227 @@
-"""A pressure given point by point: what a sensor measured, or another program computed."""
+"""A pressure given on a regular grid: what a sensor measured, or another program computed."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 
+from microslip.errors import InputError
 from microslip.pressures.record import Pressure
 from microslip.pressures.squares import of_loads
 
 AXES = ("forward", "lateral")
+READINGS = ("cells", "samples")
+"""What the values on a grid may be: means over cells of its own step, centred on the points, or
+values at the points, with bilinear ones between them.  Outside of either the pressure is 0."""
 FINE = 256
-"""Squares along a side at which the largest displacement under full slip is found."""
+"""Parts along a side at which the largest displacement under full slip and the torque are found."""
+FINEST = 1024
+"""The most of them, which grids of more points than FINE are given."""
 REGULAR = 1e-3
-"""Distances between neighbours may differ by this share."""
+"""Coordinates may be off the regular grid by this share of its step."""
 
 
-def of_grid(name, forward, lateral, values):
-    """The Pressure of values on a regular grid; forward, lateral: increasing, (n,) and (m,), in one
-    unit of length; values: (n, m), 0 outside the contact, in any unit.  Between the points the
-    pressure is bilinear, and it ends one point beyond the last above 0.
+def of_grid(
+    name: str, forward: np.ndarray, lateral: np.ndarray, values: np.ndarray, reading: str = "cells"
+) -> Pressure:
+    """The Pressure of values on a regular grid.
 
     a is half the longer side of the rectangle that holds all pressure, and its centre is the one
-    that rotations turn about.  Raises ValueError for a grid that is not regular, values below 0 or
-    not finite, and a load that is 0.
+    that rotations turn about.  What such numbers leave open shows in the ``readings`` of the
+    record: the same numbers read in the other way, and at half of the resolution.
+
+    Parameters
+    ----------
+    name : str
+        Name of the record.
+    forward, lateral : array, shapes (n,) and (m,)
+        Coordinates, increasing, in one unit of length.
+    values : array, shape (n, m)
+        Pressure, in any unit, 0 outside the contact.
+    reading : str
+        One of READINGS.
+
+    Raises
+    ------
+    InputError
+        For coordinates that are not regular, values below 0 or not finite, a load that is 0.
     """
-    widths = [_width(label, axis) for label, axis in zip(AXES, (forward, lateral), strict=True)]
-    if not np.isfinite(values).all() or values.min() < 0.0:
-        bad = values[~(np.isfinite(values) & (values >= 0.0))][0]
-        raise ValueError(f"pressure {bad:g} is not allowed; allowed: finite numbers, 0 or above")
-    loaded = values > 0.0
-    if not loaded.any():
-        raise ValueError("pressure is 0 everywhere; allowed: a load above 0")
-    centres, halves = [], []
-    for axis, width, other in ((forward, widths[0], 1), (lateral, widths[1], 0)):
-        used = axis[loaded.any(axis=other)]
-        centres.append(0.5 * (used[0] + used[-1]))
-        halves.append(0.5 * (used[-1] - used[0]) + width)
-    axes = [
-        (axis - centre) / max(halves)
-        for axis, centre in zip((forward, lateral), centres, strict=True)
+    values = np.asarray(values, float)
+    _refuse(values)
+    points = [
+        _even(label, np.asarray(axis, float))
+        for label, axis in zip(AXES, (forward, lateral), strict=True)
     ]
-    shares = values / values.sum()
+    values = values / values.max()
+    grid, other = (_grid(points, values, kind) for kind in sorted(READINGS, key=reading.__ne__))
+    readings = (
+        _pressure(f"{name} (read as {other.reading})", other),
+        _pressure(f"{name} (at half its resolution)", _coarsened(grid)),
+    )
+    return replace(_pressure(name, grid), readings=readings)
+
+
+def _refuse(values):
+    allowed = np.isfinite(values) & (values >= 0.0)
+    if not allowed.all():
+        bad = float(values[~allowed][0])
+        raise InputError("pressure", bad, "not allowed; allowed: finite numbers, 0 or above")
+    if not values.any():
+        raise InputError("pressure", 0.0, "it is 0 everywhere; allowed: a load above 0")
+
+
+def irregular_at(axis: np.ndarray) -> int | None:
+    """Index of the first coordinate, of increasing ones, that no even grid has there; None: they
+    are even but for rounding."""
+    if len(axis) < 2 or not axis[-1] > axis[0]:
+        return 0
+    even = np.linspace(axis[0], axis[-1], len(axis))
+    if np.abs(axis - even).max() <= REGULAR * (even[1] - even[0]):
+        return None
+    steps = np.diff(axis)
+    usual = np.sort(steps)[(len(steps) - 1) // 2]
+    return 1 + int(np.abs(steps - usual).argmax())
+
+
+def _even(label, axis):
+    """The evenly spaced coordinates that those of an axis are, but for rounding."""
+    index = 0 if not np.isfinite(axis).all() else irregular_at(axis)
+    if index is not None:
+        raise InputError(
+            label,
+            ", ".join(f"{place:g}" for place in axis[max(index - 1, 0) : index + 1]),
+            "not evenly spaced; allowed: two coordinates or more, at equal distances",
+        )
+    return np.linspace(axis[0], axis[-1], len(axis))
+
+
+@dataclass(frozen=True, eq=False)
+class _Axis:
+    """Points along one side of the smallest rectangle that holds all of the pressure.
+
+    points: even coordinates, (n,); low, high: ends of the rectangle; step: between points.
+    """
+
+    points: np.ndarray
+    low: float
+    high: float
+    step: float
+    reading: str
+
+    def integrals(self, edges):
+        """Integral of what each point stands for over each interval, (intervals, n)."""
+        t = (edges[:, None] - self.points) / self.step
+        if self.reading == "cells":
+            return self.step * np.diff(np.clip(t, -0.5, 0.5), axis=0)
+        rise, fall = np.full(len(self.points), -1.0), np.full(len(self.points), 1.0)
+        rise[0] = fall[-1] = 0.0  # beyond the outermost points there is nothing
+        t = np.clip(t, rise, fall)
+        return self.step * np.diff(t - 0.5 * t * np.abs(t), axis=0)
+
+    @property
+    def steps(self):
+        """How many of them the side is long."""
+        return len(self.points) - (self.reading == "samples")
+
+    def edges(self, parts):
+        """Coordinates that cut each step into that many parts."""
+        return np.linspace(self.low, self.high, self.steps * parts + 1)
+
+    def coarsened(self):
+        """The same side with half as many steps, and the matrix of means that fills it."""
+        steps = -(-self.steps // 2)
+        points = edges = np.linspace(self.low, self.high, steps + 1)
+        middles = 0.5 * (edges[1:] + edges[:-1])
+        if self.reading == "cells":
+            points = middles
+        else:  # what lies nearest to each point
+            edges = np.array([self.low, *middles, self.high])
+        coarse = replace(self, points=points, step=(self.high - self.low) / steps)
+        return coarse, self.integrals(edges) / np.diff(edges)[:, None]
+
+
+@dataclass(frozen=True, eq=False)
+class _Grid:
+    """forward, lateral: _Axis; values: (n, m)."""
+
+    forward: _Axis
+    lateral: _Axis
+    values: np.ndarray
+
+    @property
+    def reading(self):
+        return self.forward.reading
+
+    def loads(self, along, across):
+        """Load of each rectangle between edges along and across, (n,) and (m,)."""
+        return self.forward.integrals(along) @ self.values @ self.lateral.integrals(across).T
+
+
+def _grid(points, values, reading):
+    axes = []
+    for number, places in enumerate(points):
+        loaded = np.flatnonzero(values.any(axis=1 - number))
+        first, last = loaded[0], loaded[-1]
+        step = places[1] - places[0]
+        if reading == "cells":
+            low, high = places[first] - 0.5 * step, places[last] + 0.5 * step
+        else:  # towards the point beside it, if there is one, the pressure falls to 0
+            first, last = max(first - 1, 0), min(last + 1, len(places) - 1)
+            low, high = places[first], places[last]
+        axes.append(_Axis(places[first : last + 1], low, high, step, reading))
+        values = values.take(range(first, last + 1), axis=number)
+    return _Grid(*axes, values)
+
+
+def _coarsened(grid):
+    forward, along = grid.forward.coarsened()
+    lateral, across = grid.lateral.coarsened()
+    return _Grid(forward, lateral, along @ grid.values @ across.T)
+
+
+def _pressure(name, grid):
+    """The record of a grid, without readings."""
+    sides = (grid.forward, grid.lateral)
+    middles = [0.5 * (side.low + side.high) for side in sides]
+    half = 0.5 * max(side.high - side.low for side in sides)  # the unit of length, a
 
     def cell_loads(cells):
-        edges = np.arange(cells + 1) * 2.0 / cells - 1.0
-        along, across = (_hat_integrals(axis, edges) for axis in axes)
-        return of_loads(along @ shares @ across.T)
+        edges = half * (np.arange(cells + 1) * 2.0 / cells - 1.0)
+        return of_loads(grid.loads(middles[0] + edges, middles[1] + edges))
 
+    fine = min(max(FINE, *grid.values.shape), FINEST)
     return Pressure(
         name=name,
         summary="a pressure from a file",
-        G_star=_largest_displacement(cell_loads(FINE)),
-        torque=float(np.sum(shares * np.hypot(axes[0][:, None], axes[1][None, :]))),
+        G_star=_largest_displacement(cell_loads(fine)),
+        torque=_mean_distance(grid, middles, half),
         cell_loads=cell_loads,
         mirrored=False,  # what is measured never is
     )
 
 
-def _hat_integrals(axis, edges):
-    """Share of the hat function of each point of an axis that lies in each cell, (cells, n)."""
-    t = np.clip((edges[:, None] - axis) / (axis[1] - axis[0]), -1.0, 1.0)
-    return np.diff(0.5 + t - 0.5 * t * np.abs(t), axis=0)
+def _mean_distance(grid, middles, half):
+    """Mean distance from the centre under the load, over a.
+
+    It is exact for cells, since the parts that distances are averaged over do not cut them.
+    """
+    edges = [side.edges(-(-FINE // side.steps)) for side in (grid.forward, grid.lateral)]
+    loads = grid.loads(*edges)
+    x, y = ((axis - middle) / half for axis, middle in zip(edges, middles, strict=True))
+    areas = np.diff(x)[:, None] * np.diff(y)
+    return float(np.sum(loads * _distances(x, y) / areas) / loads.sum())
 
 
-def _width(label, axis):
-    steps = np.diff(axis)
-    if len(axis) < 2 or not np.isfinite(axis).all() or np.ptp(steps) > REGULAR * steps.mean():
-        raise ValueError(
-            f"{label}: not evenly spaced; allowed: two coordinates or more, at equal distances"
-        )
-    return float(steps.mean())
+def _distances(x, y):
+    """Integral of the distance from the origin over each rectangle between edges x and y."""
+    x, y = x[:, None], y[None, :]
+    r = np.hypot(x, y)
+    tiny = 1e-99  # both logarithms are multiplied by 0 where it counts
+    corner = 2.0 * x * y * r
+    corner = corner + x**3 * np.arcsinh(y / np.maximum(np.abs(x), tiny))
+    corner = corner + y**3 * np.arcsinh(x / np.maximum(np.abs(y), tiny))
+    return np.diff(np.diff(corner / 6.0, axis=0), axis=1)
 
 
 def _largest_displacement(loads):

@@ -41,6 +41,9 @@ class Pressure:
     loading(u): tangential force over mu F_z after a displacement u_lim >= 0 in one direction from
     rest, nu = 0, of any shape; also of elliptic Hertz contacts (hertzian), whose stick zones are
     ellipses of the same shape (Vermeulen and Johnson), so that they share it with the sphere.
+
+    readings: of a pressure that is known on a grid alone, other Pressures that the same numbers may
+    stand for; how far friction differs under them is what the grid leaves open.
     """
 
     name: str
@@ -58,6 +61,7 @@ class Pressure:
     load: Callable | None = None
     loading: Callable | None = None
     hertzian: bool = False
+    readings: tuple[Pressure, ...] = ()
 
     @property
     def is_round(self):

@@ -1,0 +1,62 @@
+"""Pressures from files, "file:measured.csv": a grid of them, see measured.
+
+CSV: a line that names the columns forward, lateral and pressure, then one line a point; netCDF: a
+variable ``pressure`` with the coordinates ``forward`` and ``lateral``.  The points fill a regular
+grid.  ",grid=samples" after the path says that the values hold at the points, with bilinear ones
+between them; without it they are means over cells of the grid's own step around the points, which
+is what sensors give, and what makes the load the sum of values times areas whatever the grid.
+"""
+
+from __future__ import annotations
+
+from microslip import named_files
+from microslip.errors import InputError
+from microslip.pressures import grid_csv, grid_netcdf
+from microslip.pressures.measured import READINGS, of_grid
+from microslip.pressures.record import Pressure
+
+SOURCE = "file"
+"""What names begin with, before a colon and a text of their own."""
+PACKED = {
+    b"\x1f\x8b": "gzip",
+    b"PK\x03\x04": "zip, as spreadsheets are",
+    b"BZh": "bzip2",
+    b"\xfd7zXZ": "xz",
+}
+MOST_KNOWN = 8
+
+_KNOWN: dict[str, Pressure] = {}
+"""One record for a name: what is prepared for a pressure is found again by it."""
+
+
+def pressure(name: str) -> Pressure:
+    """The Pressure in the file that a name speaks of; see named_files.
+
+    The name of the record has the digest of the content and not the path, so that results belong to
+    what the file holds.
+
+    Raises
+    ------
+    InputError
+        For a file that is not there, is not as described above, or is not the one that the digest
+        is of.
+    """
+    file, content = named_files.found(name)
+    if file.grid not in READINGS:
+        raise InputError("pressure", name, f"allowed for grid is one of {', '.join(READINGS)}")
+    if file.name not in _KNOWN:
+        try:
+            _KNOWN[file.name] = _of_content(file, content)
+        except ValueError as error:
+            raise InputError("pressure", name, f"{file.path}: {error}") from None
+        if len(_KNOWN) > MOST_KNOWN:
+            del _KNOWN[next(iter(_KNOWN))]
+    return _KNOWN[file.name]
+
+
+def _of_content(file, content):
+    for begins, kind in PACKED.items():
+        if content.startswith(begins):
+            raise ValueError(f"packed ({kind}); allowed: CSV or netCDF as it is")
+    reader = grid_netcdf if content.startswith(grid_netcdf.BEGINNINGS) else grid_csv
+    return of_grid(file.name, *reader.grid(content), file.grid)

@@ -1,0 +1,150 @@
+"""A grid of pressures as CSV: one point a line, under a heading that names the columns."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from microslip.pressures import grid_units
+from microslip.pressures.grid_units import COLUMNS, MOST_POINTS
+
+SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
+HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\])?")
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I | re.A)
+SAME = 1e-9
+"""Coordinates that differ by less than this share of their range are the same one."""
+ALLOWED = "forward,lateral,pressure in any order, with units such as forward [mm] if at all"
+
+
+def grid(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Coordinates and pressures of a CSV file, shapes (n,), (m,) and (n, m).
+
+    Columns are parted by commas, semicolons or tabs.  Lines that are empty or begin with # do not
+    count.
+
+    Raises
+    ------
+    ValueError
+        For anything else; the message begins with the line.
+    """
+    lines = _lines(content)
+    where, heading = next(lines, (1, ""))
+    separator, order, units = _columns(where, heading)
+    rows, places = [], []
+    for where, line in lines:
+        rows.append(_numbers(where, line, separator, order))
+        places.append(where)
+        if len(rows) > MOST_POINTS:
+            raise ValueError(f"line {where}: more than {MOST_POINTS} points; allowed: at most that")
+    table = np.array(rows, float).reshape(-1, 3)
+    table *= grid_units.factors(units)
+    return _filled(table, places)
+
+
+def _lines(content):
+    """Number and text of each line that counts."""
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise ValueError("line 1: UTF-16; allowed: UTF-8")
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise ValueError(f"line {line}: byte 0x{content[error.start]:02x} is not UTF-8") from None
+    if "\0" in text:
+        line = text.count("\n", 0, text.index("\0")) + 1
+        raise ValueError(f"line {line}: not text; allowed: CSV or netCDF")
+    text = text.replace("\r\n", "\n").replace("\r", "\n")
+    for number, line in enumerate(text.split("\n"), 1):
+        if line.strip() and not line.lstrip().startswith("#"):
+            yield number, line.rstrip()
+
+
+def _words(line, separator):
+    return [word.strip().strip("\"'").strip() for word in line.split(separator)]
+
+
+def _columns(where, heading):
+    """Separator, place of each of COLUMNS, and their units (None: none given)."""
+    for separator in SEPARATORS:
+        found = [HEADING.fullmatch(word) for word in _words(heading, separator)]
+        names = [match and match[1].lower() for match in found]
+        if set(names) == set(COLUMNS) and len(names) == len(COLUMNS):
+            order = [names.index(name) for name in COLUMNS]
+            return separator, order, [found[i][2] for i in order]
+    raise ValueError(f"line {where}: the heading is {heading[:80]!r}; allowed: {ALLOWED}")
+
+
+def _numbers(where, line, separator, order):
+    words = _words(line, separator)
+    if separator != "," and "," in line:
+        word = next(word for word in words if "," in word)
+        raise ValueError(f"line {where}: {word!r} has a decimal comma; allowed: a decimal point")
+    if len(words) != len(order):
+        hint = "; decimal commas are not allowed" if len(words) > len(order) else ""
+        raise ValueError(
+            f"line {where}: {len(words)} values; allowed: {len(order)}, parted by a "
+            f"{SEPARATORS[separator]} as in the heading{hint}"
+        )
+    return [_number(where, name, words[i]) for name, i in zip(COLUMNS, order, strict=True)]
+
+
+def _number(where, name, word):
+    if not NUMBER.fullmatch(word):
+        raise ValueError(f"line {where}: {name} is {word[:40]!r}; allowed: a number")
+    value = float(word)
+    if not np.isfinite(value) or (name == "pressure" and value < 0.0):
+        allowed = "a finite number" + (", 0 or above" if name == "pressure" else "")
+        raise ValueError(f"line {where}: {name} is {word.lower()}; allowed: {allowed}")
+    return value
+
+
+def _filled(table, places):
+    """The grid that the points fill, each once; places: their lines."""
+    if len(table) == 0:
+        raise ValueError("no points; allowed: a line with three numbers for each point of a grid")
+    (forward, i), (lateral, j) = (_distinct(column) for column in table.T[:2])
+    values, given = np.zeros((2, len(forward), len(lateral)))
+    np.add.at(given, (i, j), 1.0)
+    values[i, j] = table[:, 2]
+    if given.max() > 1.0:
+        twice = np.flatnonzero(given[i, j] > 1.0)
+        first, again = _first_pair(i[twice], j[twice])
+        raise ValueError(
+            f"line {places[twice[again]]}: the same point as in line {places[twice[first]]}; "
+            "allowed: every point of a regular grid once"
+        )
+    for name, axis, at in (("forward", forward, i), ("lateral", lateral, j)):
+        _refuse_uneven(name, axis, at, places)
+    if given.min() < 1.0:
+        a, b = np.argwhere(given == 0.0)[0]
+        raise ValueError(
+            f"line {places[-1]} is the last: {len(table)} points do not fill a grid of "
+            f"{len(forward)} x {len(lateral)}, there is none at forward {forward[a]:g}, lateral "
+            f"{lateral[b]:g}; allowed: every point of a regular grid once"
+        )
+    return forward, lateral, values
+
+
+def _distinct(column):
+    """Coordinates in order, (n,), and which of them each point has."""
+    values, which = np.unique(column, return_inverse=True)
+    group = np.concatenate([[0], np.cumsum(np.diff(values) > SAME * np.ptp(values))])
+    return values[np.unique(group, return_index=True)[1]], group[which.reshape(-1)]
+
+
+def _first_pair(i, j):
+    """The first two of these points that are the same one."""
+    seen = {}
+    for number, point in enumerate(zip(i, j, strict=True)):
+        if point in seen:
+            return seen[point], number
+        seen[point] = number
+    raise AssertionError("no two points are the same")
+
+
+def _refuse_uneven(name, axis, at, places):
+    uneven = grid_units.first_uneven(axis)
+    if uneven is not None:
+        where = places[int(np.flatnonzero(at == uneven)[0])]
+        raise ValueError(f"line {where}: {grid_units.uneven(name, axis, uneven)}")

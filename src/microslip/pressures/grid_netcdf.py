@@ -1,0 +1,67 @@
+"""A grid of pressures as netCDF: a variable ``pressure`` over ``forward`` and ``lateral``."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.pressures import grid_units
+from microslip.pressures.grid_units import COLUMNS, MOST_POINTS
+
+BEGINNINGS = (b"\x89HDF", b"CDF\x01", b"CDF\x02", b"CDF\x05")
+ALLOWED = "allowed: a variable pressure with the dimensions and coordinates forward and lateral"
+
+
+def grid(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Coordinates and pressures of a netCDF file, shapes (n,), (m,) and (n, m).
+
+    Raises
+    ------
+    ValueError
+        For what is not described above, in one line.
+    """
+    import netCDF4  # only here: these take a while to load
+    import xarray as xr
+
+    try:
+        store = xr.backends.NetCDF4DataStore(netCDF4.Dataset("pressure", memory=content))
+        with xr.open_dataset(store, decode_times=False) as data:  # which closes what it opened
+            return _grid(data)
+    except (OSError, RuntimeError) as error:
+        raise ValueError(f"not a netCDF file: {str(error)[:120]}") from None
+
+
+def _grid(data):
+    missing = [name for name in COLUMNS if name not in data.variables]
+    if missing:
+        raise ValueError(f"there is no variable {missing[0]}; {ALLOWED}")
+    for name, dims in zip(COLUMNS, ({"forward"}, {"lateral"}, {"forward", "lateral"}), strict=True):
+        if set(data[name].dims) != dims:
+            said = ", ".join(map(str, data[name].dims)) or "none"
+            raise ValueError(f"{name} has the dimensions {said}; {ALLOWED}")
+        if data[name].dtype.kind not in "iuf":
+            raise ValueError(f"{name} holds {data[name].dtype}; allowed: numbers")
+    if data["pressure"].size > MOST_POINTS:
+        raise ValueError(f"{data['pressure'].size} points; allowed: at most {MOST_POINTS}")
+    factors = grid_units.factors([data[name].attrs.get("units") for name in COLUMNS])
+    forward, lateral, values = (
+        np.array(data[name].transpose(*(d for d in COLUMNS if d in data[name].dims)), float)
+        * factor
+        for name, factor in zip(COLUMNS, factors, strict=True)
+    )
+    along, across = np.argsort(forward), np.argsort(lateral)
+    forward, lateral = forward[along], lateral[across]
+    values = values[np.ix_(along, across)]
+    for name, axis in (("forward", forward), ("lateral", lateral)):
+        if not np.isfinite(axis).all():
+            raise ValueError(f"{name} is {axis[~np.isfinite(axis)][0]:g}; allowed: finite numbers")
+        uneven = grid_units.first_uneven(axis)
+        if uneven is not None:
+            raise ValueError(grid_units.uneven(name, axis, uneven))
+    bad = np.argwhere(~(np.isfinite(values) & (values >= 0.0)))
+    if len(bad):
+        i, j = bad[0]
+        raise ValueError(
+            f"pressure is {values[i, j]:g} at forward {forward[i]:g}, lateral {lateral[j]:g}; "
+            "allowed: finite numbers, 0 or above"
+        )
+    return forward, lateral, values
