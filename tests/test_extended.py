@@ -12,6 +12,7 @@ from sweep_stub import Solver
 import microslip
 from microslip import config, dataset, extended, limits, masing, settings, studies, sweep, theory
 from microslip.cache import Store
+from microslip.pressures import pressure_named
 from microslip.scenes import SCENES, scene_named
 
 PAPER = {"bore": {"velocity": [1], "amplitude": [1]}}
@@ -148,6 +149,82 @@ def test_a_pressure_from_a_file_is_named_by_its_content(tmp_path):
     assert requests_of(pressure=f"file:{file}")[0]["pressure"] != first
     with pytest.raises(config.ConfigError, match="circle.pressure: 'file:gone.csv': .* No such"):
         requests_of(pressure="file:gone.csv")
+
+
+EVEN = "forward,lateral,pressure\n0,0,1\n0,1,1\n1,0,1\n1,1,1\n"
+
+
+def with_pressure(folder, pressure):
+    """A configuration in a file of a folder, with one sweep under that pressure."""
+    path = folder / "mine.yaml"
+    sweep = CIRCLE | {"scene": "transverse", "pressure": pressure}
+    path.write_text(json.dumps({"sweeps": PAPER, "extended": {"pad": sweep}}))
+    return path
+
+
+def test_files_of_a_configuration_are_looked_for_beside_it_then_here(tmp_path, monkeypatch):
+    beside, here = tmp_path / "beside", tmp_path / "here"
+    for folder, pressure in ((beside, 1), (here, 2)):
+        folder.mkdir()
+        (folder / "pad.csv").write_text(f"# {pressure}\n{EVEN}")
+    monkeypatch.chdir(here)
+    path = with_pressure(beside, "file:pad.csv")
+
+    def digest(found):
+        return found.extended["pad"].pressure
+
+    first = digest(config.load(path))
+    assert first == pressure_named(f"file:{beside / 'pad.csv'}").name
+    (beside / "pad.csv").unlink()
+    assert digest(config.load(path)) == pressure_named("file:pad.csv").name != first
+    (here / "pad.csv").unlink()
+    with pytest.raises(config.ConfigError) as refused:
+        config.load(path)
+    said = str(refused.value)
+    assert said.startswith(f"{path}: extended.pad.pressure: 'file:pad.csv': pad.csv cannot be read")
+    assert f"No such file; looked for {beside / 'pad.csv'}, {here / 'pad.csv'}" in said
+    # A job for other sweeps does without it.
+    mapping = config.read_yaml(path)
+    assert config.from_mapping(mapping, ask_solver=False).extended["pad"].name == "pad"
+
+
+def test_a_request_names_a_file_by_its_content_and_jobs_find_it(tmp_path, monkeypatch):
+    """By relative and absolute paths, by a link, read again elsewhere: one request."""
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "pad.csv").write_text(EVEN)
+    (tmp_path / "sub" / "link.csv").symlink_to(tmp_path / "pad.csv")
+    asked = []
+    for folder, name in (
+        (tmp_path, "file:pad.csv"),
+        (tmp_path, "file:./sub/../pad.csv"),
+        (tmp_path / "sub", "file:link.csv"),
+        (tmp_path / "sub", f"file:{tmp_path / 'pad.csv'},grid=cells"),
+    ):
+        found = config.load(with_pressure(folder, name))
+        asked.append([*sweep.PointRequests(found.extended["pad"])])
+        assert str(tmp_path) not in json.dumps(found.of_sweep("pad"))
+    assert all(requests == asked[0] for requests in asked)
+    assert asked[0][0]["pressure"].startswith("file:sha256=")
+    # What is handed to a job, in another folder and process.
+    mapping = config.read_yaml(with_pressure(tmp_path, "file:pad.csv"))
+    handed = config.with_files_found(mapping, folders=[tmp_path])
+    monkeypatch.setattr("microslip.named_files._PLACES", {})
+    monkeypatch.chdir(tmp_path / "sub")
+    found = config.from_mapping(handed, ask_solver=False)
+    assert [*sweep.PointRequests(found.extended["pad"])] == asked[0]
+    assert config.with_files_found(handed) == handed
+
+
+def test_a_dataset_says_what_its_file_is_called(monkeypatch, tmp_path):
+    Solver(monkeypatch)
+    (tmp_path / "pad.csv").write_text(EVEN)
+    grid = config.load(with_pressure(tmp_path, "file:pad.csv")).extended["pad"]
+    store, path = Store(tmp_path / "results"), tmp_path / "pad.nc"
+    records = [sweep.answer(request, store)[0] for request in sweep.PointRequests(grid)]
+    dataset.write_sweep(path, grid, records, [], {})
+    with xr.open_dataset(path) as data:
+        assert data.attrs["pressure"] == grid.pressure
+        assert data.attrs["pressure_file"] == "pad.csv"
 
 
 def test_python_finds_the_points_of_a_sweep(monkeypatch, tmp_path):

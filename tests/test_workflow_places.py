@@ -11,6 +11,7 @@ import sys
 import zipfile
 
 import pytest
+import xarray as xr
 import yaml
 from test_workflow import AXES, ROOT, RUN, TINY, Project
 
@@ -67,6 +68,27 @@ def test_the_default_configuration_is_found_from_another_folder_unless_that_has_
     (place.folder / "config").mkdir()
     (place.folder / "config" / "config.yaml").write_text(yaml.safe_dump(TINY))
     assert re.search(r"collect +3\n", place.snakemake(*plan).stdout)
+
+
+def test_files_that_a_configuration_names_lie_beside_it(ordinary):
+    """Wherever the run is; one that is not there is told with the places it was looked for in."""
+    place, far = beside(ordinary, "pads"), ordinary.folder.parent / "far"
+    far.mkdir()
+    pad = {"scene": "transverse", "pressure": "file:pad.csv", "group": "pads", "tolerance": 0.1}
+    pad |= {"velocity": [20, 30], "amplitude": [0.1]}
+    (far / "mine.yaml").write_text(yaml.safe_dump(CONFIGURATION | {"extended": {"pad": pad}}))
+    there = ("-s", "../microslip/Snakefile", "--configfile", "../far/mine.yaml")
+    refused = place.snakemake("results/pad.nc", *there, "-j1")
+    assert refused.returncode == 1
+    assert "'file:pad.csv': pad.csv cannot be read: No such file; looked for" in refused.stderr
+    assert f"{far / 'pad.csv'}, {place.folder / 'pad.csv'}" in refused.stderr
+    assert "Traceback" not in refused.stderr
+    (far / "pad.csv").write_text("forward,lateral,pressure\n0,0,1\n0,1,1\n1,0,1\n1,1,1\n")
+    done = place.snakemake("results/pad.nc", *there, "-j1")
+    assert done.returncode == 0, done.stderr
+    with xr.open_dataset(place.folder / "results" / "pad.nc") as data:
+        assert data.attrs["pressure"].startswith("file:sha256=")
+        assert bool(data.converged.all())
 
 
 # Modules

@@ -127,7 +127,8 @@ def _add_options(parser):
         metavar="NAME",
         help="hertz (a sphere), power:exponent=1 (a cone; any power), punch:flat=0.8 (rounded "
         "edge), ring:inner=0.5, ellipse:ratio=0.5 (across=1: long axis across), or file:FILE, a "
-        "grid of forward,lateral,pressure (hertz)",
+        "grid of forward,lateral,pressure, CSV or netCDF, means over cells unless "
+        "file:FILE,grid=samples says values at points (hertz)",
     )
     parser.add_argument(
         "--poisson", type=_real, default=0.0, metavar="NU", help="Poisson's ratio, 0 to 0.5 (0)"

@@ -17,7 +17,10 @@ POINT_VARIABLES = {
     "error_time": (float, "part of mu_macro_error from the time steps"),
     "error_periodicity": (float, "part of mu_macro_error from the distance to the periodic state"),
     "error_solver": (float, "part of mu_macro_error from the iteration in each step"),
-    "error_model": (float, "part of mu_macro_error from a closed form used in place of a run"),
+    "error_model": (
+        float,
+        "part of mu_macro_error from a closed form in place of a run, or a file's resolution",
+    ),
     "converged": (bool, "mu_macro_error is within the tolerance"),
     "cells": (np.int32, "rings, or squares across the contact"),
     "angles": (np.int32, "angular points on half a ring"),
