@@ -100,7 +100,7 @@ def blocks(page):
 
 def file_of(block):
     """The file that a block is the content of, if its first line says so."""
-    named = re.match(r"# ([\w./-]+\.(?:py|yaml|smk))\n", block.text)
+    named = re.match(r"# ([\w./-]+\.(?:py|yaml|smk|csv))\n", block.text)
     return named and named[1]
 
 
