@@ -149,7 +149,7 @@ def test_the_amplitude_that_halves_friction_does(scene, motion):
 
 
 def test_a_reduction_that_no_amplitude_gives_is_refused():
-    with pytest.raises(ValueError, match="reduction = 100 %"):
+    with pytest.raises(ValueError, match=r"^reduction = 1\.0: no amplitude"):
         microslip.predict("transverse", reduction=1.0, material="steel", frequency="20 kHz", **BALL)
 
 
@@ -159,7 +159,7 @@ MILD = EXAMPLE | {"counterbody": "210 GPa, 0.3", "amplitude": "0.3 um"}
 WARNED = {
     "yields": {"hardness": "1.5 GPa"},
     "contact yields": {"hardness": "7 GPa", "counter_hardness": "1.5 GPa"},
-    "half-spaces": {"young": "1 MPa", "nu": 0.5},
+    "half-spaces": {"young": "5 MPa", "nu": 0.5},
     "amplitude": {"amplitude": "20 um"},
     "shear wave crosses": {"density": "7850 kg/m^3", "frequency": "20 MHz"},
     "slip speed": {"density": "7850 kg/m^3", "speed": "400 m/s"},
@@ -260,7 +260,7 @@ def test_the_command_line_answers_in_json(capsys):
     said = json.loads(capsys.readouterr().out)
     expected = "contact_radius_m indentation_m u_lim_m velocity amplitude mu_macro mu_macro_error"
     assert said.keys() >= {*expected.split(), "mu_apparent", "warnings"}
-    assert said == microslip.predict("transverse", **EXAMPLE).to_dict()
+    assert said == microslip.predict("transverse", **asked).to_dict()
 
 
 def test_the_command_line_answers_in_words(capsys):
