@@ -225,8 +225,6 @@ def test_the_options_have_the_names_that_point_gives_them(capsys):
     assert json.loads(capsys.readouterr().out)["poisson"] == 0.3
     bad = options(**given | {"poisson": 0.7})
     assert "--poisson = '0.7': " in refusal_of_the_command_line(["transverse", *bad], capsys)
-    strange = options(**EXAMPLE, velocity=1)
-    assert "did you mean --speed?" in refusal_of_the_command_line(["transverse", *strange], capsys)
 
 
 @pytest.mark.parametrize(

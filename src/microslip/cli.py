@@ -33,12 +33,7 @@ class _OneLineParser(argparse.ArgumentParser):
                 self._refuse_option(name, [n for n in known if n.startswith("--")])
 
     def _refuse_option(self, name, known):
-        name_here = getattr(self, "meant", {}).get(name)  # another command's name of the same
-        near = (
-            [name_here]
-            if name_here
-            else difflib.get_close_matches(f"--{name.lstrip('-')}", known, n=1)
-        )
+        near = difflib.get_close_matches(f"--{name.lstrip('-')}", known, n=1)
         hint = f"did you mean {near[0]}? " if near else ""
         first = [action.metavar for action in self._actions if action.nargs == argparse.PARSER]
         allowed = ", ".join([*known, *(f"{command} before other options" for command in first)])

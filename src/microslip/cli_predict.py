@@ -37,8 +37,6 @@ OPTIONS = {
 }
 NEEDED = ("radius", "load", "mu", "speed")
 OTHER_NAMES = {"nu": ("--poisson",)}
-MEANT = {"--velocity": "--speed"}
-"""What other commands call an option, and its name here."""
 UNDERSTOOD = {
     "scene": "scene",
     "body": "body",
@@ -76,7 +74,6 @@ def add_parser(commands):
         "ratio, the friction with vibration over that without; mu_apparent is the coefficient of "
         "friction that is felt.",
     )
-    parser.meant = MEANT
     scenes = "; ".join(f"{name}: it {what}" for name, what in SCENES.items())
     parser.add_argument("scene", metavar="SCENE", help=f"what the sphere does. {scenes}")
     for name, (metavar, text) in OPTIONS.items():
