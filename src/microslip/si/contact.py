@@ -5,19 +5,36 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..hertz import checked
-from .materials import Material
+from microslip.errors import InputError
+from microslip.hertz import checked
+from microslip.si.materials import Material
 
 
 @dataclass(frozen=True)
 class TwoBodies:
     """A sphere pressed on a flat or on a second sphere, both elastic or one rigid.
 
-    first, second: Material; radius: of relative curvature, m, 1/R = 1/R1 + 1/R2; load: N; mu:
-    coefficient of friction.  The tangential problem of two half-spaces is that of one whose
-    compliance is the sum of both: its G and Poisson's ratio follow from the sums of 1/G and nu/G.
-    Normal and tangential problem are taken as uncoupled.  Raises ValueError for a value that is not
-    finite or not positive, and for two rigid bodies.
+    The tangential problem of two half-spaces is that of one whose compliance is the sum of both:
+    its G and Poisson's ratio follow from the sums of 1/G and nu/G.  Normal and tangential problem
+    are taken as uncoupled.
+
+    Attributes
+    ----------
+    first, second : Material
+        The bodies.
+    radius : float
+        Radius of relative curvature, m: 1/R = 1/R1 + 1/R2.
+    load : float
+        Normal force, N.
+    mu : float
+        Coefficient of friction without vibration, dimensionless.
+    radii : tuple of float
+        R1 and R2, m, negative if hollow, infinite if flat; empty: R1 is ``radius``, R2 is flat.
+
+    Raises
+    ------
+    ValueError
+        For a value that is not finite or not positive, and for two rigid bodies.
     """
 
     first: Material
@@ -25,12 +42,14 @@ class TwoBodies:
     radius: float
     load: float
     mu: float
+    radii: tuple = ()
 
     def __post_init__(self):
         for name in ("radius", "load", "mu"):
             checked(name, getattr(self, name), low_open=True)
         if self.first.rigid and self.second.rigid:
-            raise ValueError("counterbody = 'rigid': allowed is an elastic one for a rigid body")
+            allowed = "allowed is an elastic one for a rigid body"
+            raise InputError("counterbody", "rigid", allowed)
 
     @property
     def bodies(self):
@@ -62,6 +81,11 @@ class TwoBodies:
     def contact_radius(self):
         """a = (3 F R / (4 E*))^(1/3), m (Hertz)."""
         return (0.75 * self.load * self.radius / self.E_star) ** (1.0 / 3.0)
+
+    @property
+    def smallest_radius(self):
+        """The smaller |radius| of either body, m."""
+        return min(map(abs, self.radii), default=self.radius)
 
     @property
     def indentation(self):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from .groups import largest_slip_speed
+from microslip.si.groups import largest_slip_speed
 
 YIELDS_AT = 0.57
 """Largest Hertz pressure over hardness at which plastic flow sets in below the surface: 1.6 of the
@@ -12,7 +12,13 @@ yield stress, with a hardness of 2.8 times that (K. L. Johnson, Contact Mechanic
 SMALL = 0.1
 """A ratio that the theory takes to vanish."""
 STEEP = 0.2
-"""Contact radius over radius of curvature beyond which half-spaces are a poor picture."""
+"""Contact radius over the smaller radius of either body, or over that of relative curvature, beyond
+which half-spaces are a poor picture: Hertz's theory is for a << R1, R2 and a << R (K. L. Johnson,
+Contact Mechanics, 4.2)."""
+SENSELESS = 0.5
+"""Contact radius over the smaller radius of either body from which on there is no answer: the
+surface is tilted by 30 degrees at the edge, and a sphere is 7 % deeper there than the parabola that
+Hertz takes for it."""
 
 
 def doubts(contact, motion):
@@ -41,9 +47,16 @@ def _plastic(contact, motion):
 
 
 def _steep(contact, motion):
-    ratio = contact.contact_radius / abs(contact.radius)
-    if ratio > STEEP:
-        return f"the contact radius is {ratio:.2g} of the radius: the bodies are no half-spaces"
+    a = contact.contact_radius
+    for radius, whose in (
+        (contact.smallest_radius, "smaller radius of the bodies"),
+        (contact.radius, "radius of relative curvature"),
+    ):
+        if a > STEEP * radius:
+            return (
+                f"the contact radius is {a / radius:.2g} of the {whose}: the bodies are no "
+                "half-spaces"
+            )
     return ""
 
 

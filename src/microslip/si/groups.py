@@ -5,11 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from .. import hertz
-
-UNIT_OF_AMPLITUDE = {"transverse": "m", "longitudinal": "m", "zigzag": "m", "bore": "rad"}
-"""Scenes that oscillate, and the SI unit of what they oscillate in."""
-SCENES = (*UNIT_OF_AMPLITUDE, "continuous-bore")
+from microslip import hertz
 
 
 @dataclass(frozen=True)
@@ -31,14 +27,21 @@ def groups(motion, contact):
     """
     a, u_lim = contact.contact_radius, contact.u_lim
     if motion.scene == "continuous-bore":
-        return motion.speed / (motion.rotation * a), None
+        return _over(motion.speed, motion.rotation * a), None
     omega = 2.0 * math.pi * motion.frequency
     if motion.scene == "bore":
         if motion.amplitude == 0.0:
             return 0.0, 0.0
         amplitude = float(hertz.bore_amplitude(motion.amplitude * a / u_lim, contact.poisson))
-        return motion.speed / (omega * motion.amplitude * a), amplitude
-    return motion.speed / (omega * u_lim), motion.amplitude / u_lim
+        return _over(motion.speed, omega * motion.amplitude * a), amplitude
+    return _over(motion.speed, omega * u_lim), motion.amplitude / u_lim
+
+
+def _over(speed, unit):
+    """A speed over another one that may have been rounded to nothing."""
+    if speed == 0.0:
+        return 0.0
+    return speed / unit if unit > 0.0 else math.inf
 
 
 def largest_slip_speed(motion, contact):

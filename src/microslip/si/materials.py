@@ -5,13 +5,33 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from microslip.errors import InputError
+from microslip.si.quantities import si_value
+
 
 @dataclass(frozen=True)
 class Material:
     """An isotropic elastic body.
 
-    young: Pa, infinite for a rigid one; poisson: 0..0.5; density: kg/m^3; hardness: Pa, the mean
-    pressure that it yields under at large; None: not known; source: of the numbers.
+    Texts with units and pint quantities are taken, too, and kept as numbers in SI units.
+
+    Attributes
+    ----------
+    young : float
+        Young's modulus, Pa; infinite for a rigid body.
+    poisson : float
+        Poisson's ratio, 0 to 0.5, dimensionless.
+    density : float or None
+        kg/m^3; None: not known.
+    hardness : float or None
+        Mean pressure that it yields under at large, Pa; None: not known.
+    source : str
+        Where the numbers are from.
+
+    Raises
+    ------
+    InputError
+        For a value that is out of range or no number; it is a ValueError.
     """
 
     young: float
@@ -19,6 +39,19 @@ class Material:
     density: float | None = None
     hardness: float | None = None
     source: str = "given"
+
+    def __post_init__(self):
+        if not (isinstance(self.young, float) and self.young == math.inf):
+            self._keep("young", si_value("young", self.young, "Pa"))
+        self._keep("poisson", si_value("poisson", self.poisson, "", low_open=False, high=0.5))
+        for name, unit in (("density", "kg/m^3"), ("hardness", "Pa")):
+            if getattr(self, name) is not None:
+                self._keep(name, si_value(name, getattr(self, name), unit))
+        if not isinstance(self.source, str):
+            raise InputError("source", self.source, "allowed is a text")
+
+    def _keep(self, name, value):
+        object.__setattr__(self, name, value)  # the record is frozen for everybody else
 
     @property
     def rigid(self):
@@ -41,7 +74,7 @@ MATERIALS = {
 
 
 def material_named(name):
-    """The Material of this name; raises ValueError, with those there are, if none."""
-    if name not in MATERIALS:
-        raise ValueError(f"material = {name!r}: allowed is one of {', '.join(MATERIALS)}")
+    """The Material of this name; raises InputError, with those there are, if none."""
+    if not isinstance(name, str) or name not in MATERIALS:
+        raise InputError("material", name, f"allowed is one of {', '.join(MATERIALS)}")
     return MATERIALS[name]

@@ -3,29 +3,71 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field
 
-from ..point import LARGEST, Result, solve
-from .contact import TwoBodies
-from .doubts import doubts, unchecked
-from .groups import SCENES, UNIT_OF_AMPLITUDE, RealMotion, groups
-from .materials import RIGID, Material, material_named
-from .quantities import si_value
+from microslip.errors import InputError
+from microslip.point import LARGEST, SMALLEST_TOLERANCE, Result, solve
+from microslip.si.doubts import doubts, unchecked
+from microslip.si.groups import groups
+from microslip.si.inputs import read_body, read_contact, read_counterbody, read_motion
+from microslip.si.quantities import read
+from microslip.si.reduction import friction_of, motion_for
 
-LARGEST_AMPLITUDE = 1e4
-"""Dimensionless amplitude beyond which no smaller friction is looked for."""
+LARGEST_TOLERANCE = 0.1
+"""Of mu_macro; what is larger is no answer."""
 
 
 @dataclass(frozen=True)
 class Prediction:
     """Friction of a vibrated contact in SI units.
 
-    velocity, amplitude: dimensionless groups; mu_macro, mu_macro_error: mean forward force over
-    mu F_z; mu_apparent: coefficient of friction that is felt, mu mu_macro; friction_force_N and
-    friction_force_still_N: with and without vibration; force_reduction: 1 - mu_macro; mu_static:
-    mu_macro in the limit of vanishing speed, None for steady motions; speed_m_s, amplitude_si (m or
-    rad), frequency_Hz, rotation_rad_s: the motion; warnings: where an assumption breaks;
-    not_checked: what was not looked at, and why; converged, reason: as microslip.solve says.
+    Attributes
+    ----------
+    understood : dict of str
+        What was asked, each by the name of its argument and as it was given, with the value in the
+        SI behind it where that is another kind of measure ("1200 rpm = 20 Hz"); what was not given
+        and counts is said ("rigid, as none was given").  Not compared by ==.
+    scene : str
+        The motion.
+    counterbody : str
+        The body opposite, as in ``understood``.  Not compared by ==.
+    contact_radius_m, indentation_m, largest_pressure_Pa : float
+        Hertz's contact.
+    u_lim_m : float
+        Displacement at which the whole contact slides, m.
+    poisson : float
+        Poisson's ratio of the one half-space that stands for both bodies, dimensionless.
+    speed_m_s : float
+        Forward speed, m/s.
+    amplitude_si : float or None
+        Half stroke of the oscillation, m, or rad for a bore; None for steady motions.
+    frequency_Hz : float or None
+        Cyclic frequency of the oscillation, Hz; None for steady motions.
+    rotation_rad_s : float or None
+        Angular speed of a continuous bore, rad/s; None for motions that oscillate.
+    velocity, amplitude : float or None
+        The dimensionless groups of the motion; amplitude: None for steady motions; velocity: None
+        for a bore of amplitude 0, which it is measured by.
+    mu_macro, mu_macro_error : float
+        A ratio, dimensionless: mean forward force with vibration over that without, mu F_z.
+    mu_apparent, mu_apparent_error : float
+        A coefficient of friction, dimensionless: the one that is felt, mu mu_macro.
+    friction_force_N, friction_force_still_N : float
+        Mean forward force with and without vibration, N.
+    force_reduction : float
+        1 - mu_macro, dimensionless.
+    mu_static, mu_static_error : float or None
+        A ratio: mu_macro in the limit of vanishing speed; None for steady motions.
+    mu_static_apparent : float or None
+        The coefficient of friction there, mu mu_static; None for steady motions.
+    model : str
+        Contact model that gave mu_macro, or "closed-form".
+    converged, reason : bool, str
+        Whether the error is within the tolerance, and why not; NaN has its reason there, too.
+    warnings : tuple of str
+        Where an assumption of the theory breaks.
+    not_checked : tuple of str
+        What was not looked at, and why.
     """
 
     scene: str
@@ -38,7 +80,7 @@ class Prediction:
     amplitude_si: float | None
     frequency_Hz: float | None
     rotation_rad_s: float | None
-    velocity: float
+    velocity: float | None
     amplitude: float | None
     mu_macro: float
     mu_macro_error: float
@@ -55,6 +97,8 @@ class Prediction:
     reason: str
     warnings: tuple
     not_checked: tuple
+    counterbody: str = field(compare=False)
+    understood: dict = field(compare=False)
 
     def to_dict(self):
         """Fields as a plain dict."""
@@ -74,7 +118,7 @@ def predict(
     young=None,
     nu=None,
     material=None,
-    counterbody="rigid",
+    counterbody=None,
     counter_radius=None,
     amplitude=None,
     frequency=None,
@@ -88,37 +132,107 @@ def predict(
 ):
     """Friction of a sphere on a flat (or on a second sphere) under vibration.
 
-    Quantities are texts with units ("5 mm"), pint quantities, or numbers in SI units.
-    scene: "transverse", "longitudinal", "zigzag", "bore" or "continuous-bore"; young, nu: of the
-    body, or material: a name in materials.MATERIALS; counterbody: "rigid", such a name, or "E, nu"
-    as in "70 GPa, 0.22"; radius: of the sphere; counter_radius: of the counterbody, negative if
-    hollow, None if flat; load, mu: normal force and coefficient of friction; speed: of sliding;
-    amplitude: half stroke of the oscillation, a length or an angle; frequency: its frequency, not
-    angular; rotation: angular speed of a continuous bore; reduction: instead of the amplitude, the
-    share of friction to be taken away, in 0..1: the amplitude that does it is looked for; hardness,
-    density, counter_hardness, counter_density: of the body and the counterbody, for the warnings
-    alone; tolerance: on mu_macro.
-    Returns a Prediction.  Raises ValueError, naming the argument, for what is missing or out of
-    range, and where no amplitude takes that much friction away.
+    A quantity is a text of one number and one unit ("5 mm"), a pint quantity, or a number in the
+    unit of the SI.  Texts are read strictly: what is not understood to its last character is
+    refused.
+
+    Parameters
+    ----------
+    scene : str
+        "transverse", "longitudinal", "zigzag", "bore" (the sphere spins to and fro about the
+        contact normal) or "continuous-bore" (it spins steadily).
+    radius, load, mu : quantity
+        Radius of the sphere, m; normal force, N; coefficient of friction without vibration.
+    speed : quantity
+        Forward speed of sliding, m/s.
+    young, nu : quantity
+        Young's modulus, Pa, and Poisson's ratio of the body.
+    material : str or Material
+        The same in one: a name in materials.MATERIALS, or a materials.Material.
+    counterbody : str or Material, optional
+        "rigid", a material, or E and nu as in "70 GPa, 0.22"; rigid if not given.
+    counter_radius : quantity, optional
+        Radius of the counterbody, m, negative if hollow; flat if not given.
+    amplitude : quantity
+        Half stroke of the oscillation: a length, or for a bore an angle.
+    frequency : quantity
+        Frequency of the oscillation: cyclic (Hz, cps), or angular (rad/s, deg/s, rpm, turn/s),
+        which is converted, 2 pi rad/s being 1 Hz.  A number is in Hz.
+    rotation : quantity
+        Angular speed of a continuous bore, in the same units.  A number is in rad/s.
+    reduction : quantity, optional
+        Instead of the amplitude, the share of friction to be taken away, 0 to 1 or in per cent: the
+        least amplitude that does it is looked for.
+    hardness, density, counter_hardness, counter_density : quantity, optional
+        Of the body and the counterbody, Pa and kg/m^3, for the warnings alone.
+    tolerance : quantity
+        Largest accepted error of the ratio mu_macro, absolute.
+
+    Returns
+    -------
+    Prediction
+        With what was understood, what was found, and where the theory breaks.
+
+    Raises
+    ------
+    InputError
+        A ValueError that names the argument, its value as it was given, and what is allowed: for
+        what is missing, ambiguous or out of range, for bodies that fit so closely that the contact
+        is half as wide as one of them, and where no amplitude takes that much friction away.
     """
-    contact = _contact(
-        _body(young, nu, material, hardness, density),
-        _counterbody(counterbody, counter_hardness, counter_density),
-        *(radius, counter_radius, load, mu),
+    motion, asked = read_motion(
+        scene,
+        speed=speed,
+        amplitude=amplitude,
+        frequency=frequency,
+        rotation=rotation,
+        reduction=reduction,
     )
-    motion = _motion(scene, speed, amplitude, frequency, rotation, reduction)
+    accepted = read(
+        "tolerance", tolerance, "", low=SMALLEST_TOLERANCE, low_open=False, high=LARGEST_TOLERANCE
+    )
+    contact, understood = read_contact(
+        read_body(young, nu, material).completed("", hardness, density),
+        read_counterbody(counterbody).completed("counter_", counter_hardness, counter_density),
+        radius=radius,
+        counter_radius=counter_radius,
+        load=load,
+        mu=mu,
+    )
+    about = understood | asked
     if reduction is not None:
-        motion = _motion_for(contact, motion, reduction, tolerance)
-    velocity, size = groups(motion, contact)
-    fast = min(velocity, LARGEST["velocity"])  # beyond, the vibration does nothing
-    answer = solve(scene, fast, size, poisson=contact.poisson, tolerance=tolerance)
+        share = read("reduction", reduction, "", high=1.0)
+        about["reduction"] = share.text
+        settings = {"share": share.si, "tolerance": accepted.si, "given": reduction}
+        motion = motion_for(contact, motion, **settings)
+    velocity, size = _checked_groups(contact, motion, speed, amplitude)
+    answer = friction_of(contact, motion, accepted.si)
     limit = None
     if size is not None:
-        limit = solve(scene, 0.0, size, poisson=contact.poisson, tolerance=tolerance)
-    return _prediction(contact, motion, velocity, answer, limit)
+        limit = solve(scene, 0.0, size, poisson=contact.poisson, tolerance=accepted.si)
+    return _prediction(contact, motion, velocity, answer, limit, about)
 
 
-def _prediction(contact, motion, velocity, answer: Result, limit: Result | None):
+def _checked_groups(contact, motion, speed, amplitude):
+    """velocity and amplitude as groups gives them; raises InputError for what the solver cannot
+    take, in terms of the speed and the amplitude as they were given."""
+    velocity, size = groups(motion, contact)
+    if not math.isfinite(velocity):
+        problem = "over that of the vibration, it is beyond the range of floating-point numbers"
+        raise InputError("speed", speed, f"{problem}; allowed is what a laboratory can have")
+    if size is not None and not size <= LARGEST["amplitude"]:
+        unit = "the angle that leaves half of the contact sticking"
+        if motion.scene != "bore":
+            unit = f"the {contact.u_lim:.3g} m that let the whole contact slide"
+        raise InputError(
+            "amplitude",
+            amplitude,
+            f"{size:.3g} times {unit}; allowed is at most {LARGEST['amplitude']:g} times",
+        )
+    return velocity, size
+
+
+def _prediction(contact, motion, velocity, answer: Result, limit: Result | None, understood):
     still = contact.mu * contact.load
     return Prediction(
         scene=motion.scene,
@@ -131,7 +245,7 @@ def _prediction(contact, motion, velocity, answer: Result, limit: Result | None)
         amplitude_si=motion.amplitude,
         frequency_Hz=motion.frequency,
         rotation_rad_s=motion.rotation,
-        velocity=velocity,
+        velocity=None if motion.scene == "bore" and not motion.amplitude else velocity,
         amplitude=answer.amplitude,
         mu_macro=answer.mu_macro,
         mu_macro_error=answer.mu_macro_error,
@@ -148,131 +262,6 @@ def _prediction(contact, motion, velocity, answer: Result, limit: Result | None)
         reason=answer.reason or ("" if limit is None else limit.reason),
         warnings=tuple(doubts(contact, motion)),
         not_checked=tuple(unchecked(contact)),
+        counterbody=understood["counterbody"],
+        understood=understood,
     )
-
-
-# Input
-
-
-def _body(young, nu, material, hardness, density):
-    if material is not None:
-        if young is not None or nu is not None:
-            raise ValueError(f"material = {material!r}: allowed without young and nu")
-        body = material_named(material)
-    elif young is None or nu is None:
-        missing = "young" if young is None else "nu"
-        raise ValueError(f"{missing} = None: needed, or a material by name")
-    else:
-        body = _elastic("young", young, "nu", nu)
-    return _completed(body, "", hardness, density)
-
-
-def _completed(body, side, hardness, density):
-    """The body with what is given of hardness and density; side: of the names of the arguments."""
-    for name, given, unit in (("hardness", hardness, "Pa"), ("density", density, "kg/m^3")):
-        if given is not None and body.rigid:
-            raise ValueError(
-                f"{side}{name} = {given!r}: allowed for an elastic body, not a rigid one"
-            )
-        if given is not None:
-            body = replace(body, **{name: si_value(f"{side}{name}", given, unit)})
-    return body
-
-
-def _elastic(young_name, young, nu_name, nu):
-    return Material(
-        si_value(young_name, young, "Pa"), si_value(nu_name, nu, "", low_open=False, high=0.5)
-    )
-
-
-def _counterbody(given, hardness, density):
-    return _completed(_body_opposite(given), "counter_", hardness, density)
-
-
-def _body_opposite(given):
-    if isinstance(given, Material):
-        return given
-    if not isinstance(given, str):
-        raise ValueError(f"counterbody = {given!r}: allowed is a text such as '70 GPa, 0.22'")
-    if given == "rigid":
-        return RIGID
-    young, comma, nu = given.partition(",")
-    if not comma:
-        try:
-            return material_named(given)
-        except ValueError as error:
-            named = str(error).replace("material =", "counterbody =")
-            raise ValueError(f"{named}, or E and nu as in '70 GPa, 0.22'") from None
-    return _elastic("counterbody", young, "counterbody", nu)
-
-
-def _contact(body, other, radius, counter_radius, load, mu):
-    curvature = 1.0 / si_value("radius", radius, "m")
-    if counter_radius is not None:
-        other_radius = si_value("counter_radius", counter_radius, "m", low=-math.inf)
-        curvature = curvature + 1.0 / other_radius if other_radius else 0.0
-    if not curvature > 0.0:
-        raise ValueError(
-            f"counter_radius = {counter_radius}: allowed is a hollow wider than the sphere"
-        )
-    return TwoBodies(body, other, 1.0 / curvature, si_value("load", load, "N"), _friction(mu))
-
-
-def _friction(mu):
-    return si_value("mu", mu, "", high=10.0)
-
-
-def _motion(scene, speed, amplitude, frequency, rotation, reduction):
-    if scene not in SCENES:
-        raise ValueError(f"scene = {scene!r}: allowed is one of {', '.join(SCENES)}")
-    given = {"amplitude": amplitude, "frequency": frequency, "rotation": rotation}
-    needed = ("rotation",) if scene == "continuous-bore" else ("amplitude", "frequency")
-    for name, value in given.items():
-        if name not in needed and value is not None:
-            raise ValueError(f"{name} = {value!r}: {scene} has none")
-    if reduction is not None and scene == "continuous-bore":
-        raise ValueError(f"reduction = {reduction!r}: {scene} has no amplitude to look for")
-    if reduction is not None and amplitude is not None:
-        raise ValueError(f"reduction = {reduction!r}: allowed without an amplitude")
-    for name in needed:
-        if given[name] is None and not (name == "amplitude" and reduction is not None):
-            raise ValueError(f"{name} = None: {scene} needs it")
-    speed = si_value("speed", speed, "m/s", low_open=False)
-    if scene == "continuous-bore":
-        return RealMotion(scene, speed, rotation=si_value("rotation", rotation, "rad/s"))
-    if reduction is None:
-        amplitude = si_value("amplitude", amplitude, UNIT_OF_AMPLITUDE[scene], low_open=False)
-    return RealMotion(scene, speed, amplitude, si_value("frequency", frequency, "Hz"))
-
-
-# The other way round
-
-
-def _motion_for(contact, motion, reduction, tolerance):
-    """The motion with the least amplitude that takes a share of friction away."""
-    from scipy.optimize import brentq
-
-    wanted = si_value("reduction", reduction, "", high=1.0)
-
-    def missing(log_amplitude):
-        velocity, size = groups(replace(motion, amplitude=math.exp(log_amplitude)), contact)
-        settings = {"poisson": contact.poisson, "tolerance": tolerance}
-        return solve(motion.scene, velocity, size, **settings).mu_macro - (1.0 - wanted)
-
-    unit = contact.u_lim / (contact.contact_radius if motion.scene == "bore" else 1.0)
-    low, high = math.log(1e-6 * unit), math.log(unit)
-    if missing(low) < 0.0:
-        return replace(motion, amplitude=math.exp(low))
-    while missing(high) > 0.0:
-        high += math.log(2.0)
-        if high > math.log(LARGEST_AMPLITUDE * unit):
-            raise ValueError(
-                f"reduction = {_as_percent(wanted)}: no amplitude up to "
-                f"{LARGEST_AMPLITUDE:g} times the one that lets the contact slide takes that much "
-                "friction away"
-            )
-    return replace(motion, amplitude=math.exp(brentq(missing, low, high, xtol=0.1 * tolerance)))
-
-
-def _as_percent(share):
-    return f"{100.0 * share:g} %"

@@ -1,9 +1,32 @@
-"""Numbers with units: texts such as "210 GPa" to SI values, checked by the library pint."""
+"""Numbers with units: texts such as "210 GPa" to SI values, by a strict grammar.
+
+A text is one number and one unit.  The number is what Python's float takes, without underscores and
+with the Unicode minus as a minus; the unit is what ``units`` reads.  Nothing else passes: of a text
+that is not understood from its first to its last character, no part counts.
+"""
 
 from __future__ import annotations
 
 import math
-from functools import cache
+import re
+import sys
+from dataclasses import dataclass
+from decimal import Decimal
+from numbers import Real
+
+import numpy as np
+
+from microslip.errors import InputError
+from microslip.si.units import (
+    TURN_RATE,
+    Unit,
+    UnitError,
+    exact,
+    full_turn,
+    read_unit,
+    si_unit,
+)
+from microslip.si.units import registry as registry  # whoever builds quantities for this module
 
 EXAMPLES = {
     "Pa": "210 GPa",
@@ -17,51 +40,245 @@ EXAMPLES = {
     "": "0.3",
 }
 """What a value in each unit may look like."""
+RATES = ("Hz", "rad/s")
+"""Units of what may be given by periods or by angles."""
+
+_NUMBER = re.compile(r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?")
+_NOT_FINITE = re.compile(r"[+\-−]?(?:infinity|inf|nan)(?![^\W\d_])", re.IGNORECASE)
 
 
-@cache
-def registry():
-    """The pint.UnitRegistry in use; loading it takes most of a second."""
-    import pint
+@dataclass(frozen=True)
+class Given:
+    """A quantity that has been read.
 
-    return pint.UnitRegistry()
+    Attributes
+    ----------
+    si : float
+        Its value, in the unit of the SI that was asked for.
+    text : str
+        As it was given, with the value in the SI behind it where that is another kind of measure:
+        turns for angles, revolutions a minute for hertz.
+    """
+
+    si: float
+    text: str
 
 
 def si_value(name, value, unit, *, low=0.0, low_open=True, high=math.inf):
     """Value of a quantity in its SI unit, as a float.
 
-    name: for messages; value: text with a unit ("5 mm"), a pint quantity, or a plain number, which
-    is taken to be in SI units already.  unit: a key of EXAMPLES.  Allowed are finite numbers with
-    low < value (low <= value unless low_open) and value <= high.  Raises ValueError, naming the
-    argument and what is allowed.
+    Arguments and errors are those of ``read``.
     """
-    number = _in_unit(name, value, unit)
-    beyond = number <= low if low_open else number < low
-    if not math.isfinite(number) or beyond or number > high:
-        allowed = f"{'above' if low_open else 'at least'} {low:g}"
-        if high < math.inf:
-            allowed += f" and at most {high:g}"
-        raise ValueError(f"{name} = {_shown(value)}: allowed is a finite value {allowed} {unit}")
+    return read(name, value, unit, low=low, low_open=low_open, high=high).si
+
+
+def read(
+    name: str,
+    value: object,
+    unit: str,
+    *,
+    low: float = 0.0,
+    low_open: bool = True,
+    high: float = math.inf,
+) -> Given:
+    """A quantity, read and checked.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument, for messages.
+    value : object
+        Text of one number and one unit ("5 mm"), pint quantity, or a plain number, which is taken
+        to be in the SI unit already.
+    unit : str
+        The SI unit, a key of EXAMPLES.  Hz and rad/s take both cyclic frequencies (Hz, cps) and
+        angular ones (rad/s, deg/s, rpm, turn/s): one turn is 2 pi, exactly.
+    low, high : float
+        Allowed are finite values with low < value <= high.
+    low_open : bool
+        Whether ``low`` itself is not allowed.
+
+    Raises
+    ------
+    InputError
+        What is wrong, and what is allowed.
+    """
+    try:
+        given = _from_text(value, unit) if isinstance(value, str) else _from_object(value, unit)
+    except UnitError as error:
+        allowed = _described(unit)
+        if unit == "":
+            allowed += f" {_bounds(low, low_open, high)}"
+        raise InputError(name, value, f"{error.reason}; allowed is {allowed}") from None
+    beyond = given.si <= low if low_open else given.si < low
+    if not math.isfinite(given.si) or beyond or given.si > high:
+        allowed = f"allowed is a finite value {_bounds(low, low_open, high)} {unit}"
+        raise InputError(name, value, allowed.strip())
+    return given
+
+
+def _bounds(low, low_open, high):
+    below = f"{'above' if low_open else 'at least'} {low:g}"
+    return below if high == math.inf else f"{below} and at most {high:g}"
+
+
+def _described(unit):
+    example = EXAMPLES[unit]
+    if unit == "":
+        return "a number, or per cent of one,"
+    if unit in RATES:
+        return f"one number in units of Hz, rad/s or rpm, such as {example!r}"
+    return f"one number in units of {unit}, such as {example!r}"
+
+
+# Texts
+
+
+def _from_text(text, unit):
+    digits, rest = _split(text)
+    number = float(digits)
+    if math.isinf(number):
+        raise UnitError(f"read {digits}, which is beyond the range of floating-point numbers")
+    if unit == "":
+        if rest not in ("", "%", "percent"):
+            raise UnitError(_stopped(digits, rest))
+        value = exact(Decimal(digits), Decimal(1), Decimal(100 if rest else 1))
+        shown = ""
+    else:
+        value, shown = _with_unit(digits, rest, unit)
+    if value == 0.0 and Decimal(digits) != 0:
+        raise UnitError(f"read {digits}, which is below the range of floating-point numbers")
+    return Given(value, f"{' '.join(text.split())}{shown}")
+
+
+def _split(text):
+    """The number at the start of a text, as digits that float takes, and what follows it."""
+    text = text.strip()
+    number = _NUMBER.match(text)
+    if _NOT_FINITE.match(text):
+        raise UnitError("it is not finite")
+    if not text:
+        raise UnitError("the text is empty")
+    if number is None:
+        raise UnitError(f"stopped at {text!r}, where a number was expected")
+    return number[0].replace("−", "-"), text[number.end() :].lstrip()
+
+
+def _stopped(read_so_far, rest):
+    hint = ", since decimals follow a point and nothing parts thousands" if "," in rest else ""
+    return f"read {read_so_far} and stopped at {rest!r}{hint}"
+
+
+def _with_unit(digits, rest, unit):
+    """Value of a number with the text of its unit, and what there is to say of it."""
+    if not rest:
+        raise UnitError(f"{digits} is a number without a unit")
+    if not (rest[0].isalpha() or rest[0] == "°"):
+        raise UnitError(_stopped(digits, rest))
+    try:
+        found = read_unit(rest)
+    except UnitError as error:
+        raise UnitError(f"read {digits}, then {error.reason}") from None
+    above, below = _ratio(found, unit)
+    value = exact(Decimal(digits), above, below)
+    return value, _si_beside(found, unit, value)
+
+
+def _ratio(found: Unit, unit):
+    """The unit that was found over the SI one, as two decimals: numerator and denominator."""
+    wanted, turn = si_unit(unit), Decimal(1)
+    if unit in RATES:
+        found_turns = _turns(found)
+        if found_turns and unit == "Hz":
+            return found.factor, full_turn()
+        if not found_turns and unit == "rad/s":
+            turn = full_turn()
+        return found.factor * turn, Decimal(1)
+    _refuse_periods(found)
+    if found.root != wanted.root:
+        raise UnitError(f"the unit is {_named(found)}")
+    return found.factor, wanted.factor
+
+
+def _turns(found: Unit):
+    """Whether a rate is one of angles rather than of periods; raises UnitError if it is neither."""
+    if found.root == TURN_RATE:
+        _refuse_periods(found)
+        return True
+    if found.counts_periods:
+        return False
+    _refuse_periods(found)
+    if found.root == {"second": -1}:
+        raise UnitError(f"{_named(found)} may mean Hz or rad/s, which differ by 2 pi: say which")
+    raise UnitError(f"the unit is {_named(found)}")
+
+
+def _refuse_periods(found):
+    if found.mixes_periods:
+        raise UnitError(f"{_named(found)} leaves open whether 2 pi belongs to the hertz")
+
+
+def _named(found):
+    if not found.names:
+        return "that of a pure number"
+    return "*".join(name if n == 1 else f"{name}^{n:g}" for name, n in found.names.items())
+
+
+def _si_beside(found, unit, value):
+    """ " = 62.83 rad/s" where a rate or an angle was given by another kind of measure."""
+    (first, *others) = found.names
+    same = {
+        "Hz": found.counts_periods,
+        "rad/s": first.endswith("radian") and others == ["second"],
+        "rad": first.endswith("radian") and not others,
+    }
+    return "" if same.get(unit, True) else f" = {value:.6g} {unit}"
+
+
+# Objects
+
+
+def _from_object(value, unit):
+    pint = sys.modules.get("pint")  # whoever hands in a quantity of it has imported it
+    if pint is not None and isinstance(value, pint.Quantity):
+        return _from_pint(value, unit)
+    number = _plain_number(value)
+    return Given(number, f"{number:.12g} {unit}".strip())
+
+
+def _plain_number(value):
+    """A real number as a float; raises UnitError for everything else, by its type."""
+    if type(value) is np.ndarray and value.ndim == 0:  # its subclasses may carry units
+        value = value[()]
+    if isinstance(value, np.generic) and value.dtype.kind not in "iuf":
+        raise UnitError(f"it is of type {type(value).__name__}")
+    if type(value) is np.ndarray:
+        raise UnitError(f"it is an array of shape {value.shape}")
+    if isinstance(value, bool) or not isinstance(value, Real | Decimal):
+        raise UnitError(f"it is of type {type(value).__name__}")
+    try:
+        number = float(value)
+    except (OverflowError, ValueError):
+        number = math.inf
+    if math.isnan(number) or math.isinf(number):
+        raise UnitError("it is not finite")
+    if number == 0.0 and value != 0:
+        raise UnitError("it is below the range of floating-point numbers")
     return number
 
 
-def _in_unit(name, value, unit):
-    example = EXAMPLES[unit]
-    if isinstance(value, bool):
-        raise ValueError(f"{name} = {value!r}: allowed is a value such as {example!r}")
-    try:
-        given = registry().Quantity(value) if isinstance(value, str) else value
-        if not hasattr(given, "to"):
-            return float(given)
-        if unit and given.unitless:
-            raise ValueError("a number without a unit")
-        return float(given.to(unit).magnitude)
-    except Exception as error:  # pint has many kinds, and its parser those of Python
-        kind = "a number" if unit == "" else f"a value in units of {unit}"
-        raise ValueError(
-            f"{name} = {_shown(value)}: allowed is {kind}, such as {example!r}"
-        ) from error
-
-
-def _shown(value):
-    return repr(value) if isinstance(value, str) else str(value)
+def _from_pint(value, unit):
+    """A pint quantity of any registry: its own factors, the rules of this module."""
+    number = Decimal(repr(_plain_number(value.magnitude)))
+    zero, one = (type(value)(size, value.units).to_root_units() for size in (0, 1))
+    if zero.magnitude != 0:
+        raise UnitError(f"{value.units} is a scale with an offset or a logarithm, not a factor")
+    factor = Decimal(repr(float(one.magnitude)))  # decimals as short as those of the definition
+    found = Unit(dict(value.unit_items()), dict(one.unit_items()), factor)
+    if unit == "":
+        if found.root:
+            raise UnitError(f"the unit is {_named(found)}")
+        return Given(exact(number, factor), f"{value.magnitude} {value.units:~}".strip())
+    above, below = _ratio(found, unit)
+    si = exact(number, above, below)
+    return Given(si, f"{value.magnitude} {value.units:~}{_si_beside(found, unit, si)}")

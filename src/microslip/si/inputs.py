@@ -1,0 +1,203 @@
+"""What a prediction is asked: bodies, contact and motion, with what was understood of each."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+from microslip.errors import InputError
+from microslip.si.contact import TwoBodies
+from microslip.si.doubts import SENSELESS
+from microslip.si.groups import RealMotion
+from microslip.si.materials import RIGID, Material, material_named
+from microslip.si.quantities import read
+from microslip.si.scenes import SCENES, UNIT_OF_AMPLITUDE
+
+LARGEST_MU = 10.0
+"""No pair of bodies in elastic contact has more; what is larger is a slip of the pen."""
+OUT_OF_RANGE = (
+    "no contact that floating-point numbers can describe; allowed are sizes of real bodies"
+)
+EXAMPLE = "E and nu as in '70 GPa, 0.22', with a point before decimals"
+
+
+@dataclass(frozen=True)
+class Body:
+    """A body and what was understood of it.
+
+    Attributes
+    ----------
+    material : Material
+        Its properties, in SI units.
+    text : str
+        The same as it was given.
+    """
+
+    material: Material
+    text: str
+
+    def completed(self, side: str, hardness: object, density: object) -> Body:
+        """With what is given of hardness and density; side: "counter_" or nothing, for messages."""
+        body = self
+        for name, value, unit in (("hardness", hardness, "Pa"), ("density", density, "kg/m^3")):
+            if value is None:
+                continue
+            if self.material.rigid:
+                allowed = "allowed for an elastic body, not a rigid one"
+                raise InputError(f"{side}{name}", value, allowed)
+            given = read(f"{side}{name}", value, unit)
+            material = replace(body.material, **{name: given.si})
+            body = Body(material, f"{body.text}, {name} {given.text}")
+        return body
+
+
+def read_body(young: object, nu: object, material: object) -> Body:
+    """The body by numbers or by a material; raises InputError."""
+    if material is None:
+        for name, value in (("young", young), ("nu", nu)):
+            if value is None:
+                raise InputError(name, None, "needed, or a material by name")
+        return _elastic(read("young", young, "Pa"), _read_poisson("nu", nu))
+    if young is not None or nu is not None:
+        raise InputError("material", material, "allowed without young and nu")
+    if isinstance(material, Material):
+        return Body(material, _numbers(material))
+    name = material.strip() if isinstance(material, str) else material
+    try:
+        return _named(name)
+    except InputError as error:
+        raise InputError("material", material, f"{error.allowed}, or a Material") from None
+
+
+def read_counterbody(given: object) -> Body:
+    """The body opposite: a Material, a name, "E, nu", or None, which is rigid; raises
+    InputError."""
+    if given is None:
+        return Body(RIGID, "rigid, as none was given")
+    if isinstance(given, Material):
+        return Body(given, _numbers(given))
+    if not isinstance(given, str):
+        raise InputError("counterbody", given, f"allowed is a text, {EXAMPLE}, or a Material")
+    parts = [part.strip() for part in given.split(",")]
+    if len(parts) == 1:
+        try:
+            return _named(parts[0])
+        except InputError as error:
+            raise InputError("counterbody", given, f"{error.allowed}, or {EXAMPLE}") from None
+    if len(parts) != 2:
+        raise InputError("counterbody", given, f"{len(parts) - 1} commas in it; allowed: {EXAMPLE}")
+    try:
+        young = read("Young's modulus", parts[0], "Pa")
+        return _elastic(young, _read_poisson("Poisson's ratio", parts[1]))
+    except InputError as error:
+        problem = f"its {error.argument} {error.value!r}: {error.allowed}, as in '70 GPa, 0.22'"
+        raise InputError("counterbody", given, problem) from None
+
+
+def _read_poisson(name, value):
+    return read(name, value, "", low_open=False, high=0.5)
+
+
+def _elastic(young, nu):
+    return Body(Material(young.si, nu.si), f"E = {young.text}, nu = {nu.text}")
+
+
+def _named(name):
+    body = material_named(name)
+    return Body(body, name if body.rigid else f"{name} ({_numbers(body)})")
+
+
+def _numbers(body):
+    """A Material in one line."""
+    if body.rigid:
+        return "rigid"
+    parts = [f"E = {body.young / 1e9:.6g} GPa", f"nu = {body.poisson:g}"]
+    if body.hardness is not None:
+        parts.append(f"hardness {body.hardness / 1e9:.6g} GPa")
+    if body.density is not None:
+        parts.append(f"density {body.density:.6g} kg/m^3")
+    return ", ".join(parts)
+
+
+def read_contact(body: Body, other: Body, *, radius, counter_radius, load, mu):
+    """The contact, and a dict of texts of what was understood; raises InputError."""
+    first = read("radius", radius, "m")
+    given = {"radius": first, "load": read("load", load, "N")}
+    given["mu"] = read("mu", mu, "", high=LARGEST_MU)
+    radii, texts = (first.si, math.inf), {"counter_radius": "flat, as none was given"}
+    if counter_radius is not None:
+        second = read("counter_radius", counter_radius, "m", low=-math.inf)
+        if second.si == 0.0:
+            raise InputError("counter_radius", counter_radius, "allowed is a radius other than 0")
+        radii = (first.si, second.si)
+        texts["counter_radius"] = f"{second.text}, hollow" if second.si < 0.0 else second.text
+    curvature = sum(1.0 / r for r in radii)
+    if math.isinf(curvature):
+        first = math.isinf(1.0 / radii[0])
+        which = ("radius", radius) if first else ("counter_radius", counter_radius)
+        raise InputError(*which, OUT_OF_RANGE)
+    if not curvature > 0.0:
+        allowed = "allowed is a hollow wider than the sphere"
+        raise InputError("counter_radius", counter_radius, allowed)
+    if body.material.rigid and other.material.rigid:
+        allowed = "allowed is an elastic body where the counterbody is rigid"
+        raise InputError("material", "rigid", allowed)
+    contact = TwoBodies(
+        body.material, other.material, 1.0 / curvature, given["load"].si, given["mu"].si, radii
+    )
+    _refuse_senseless(contact, radius, counter_radius, load)
+    bodies = {"body": body.text, "counterbody": other.text}
+    return contact, bodies | texts | {name: one.text for name, one in given.items()}
+
+
+def _refuse_senseless(contact, radius, counter_radius, load):
+    """Raise InputError where Hertz's theory is no description of these bodies."""
+    try:
+        a, smallest = contact.contact_radius, contact.smallest_radius
+        if a >= SENSELESS * smallest:
+            first = smallest == abs(contact.radii[0])
+            raise InputError(
+                *(("radius", radius) if first else ("counter_radius", counter_radius)),
+                f"by Hertz's theory, which is for contacts much smaller than either body, the "
+                f"contact radius would be {a:.3g} m, {a / smallest:.2g} of it; allowed is less "
+                f"than {SENSELESS:g}",
+            )
+        sizes = (a, contact.indentation, contact.u_lim, contact.largest_pressure)
+        good = all(0.0 < size < math.inf for size in sizes)
+    except ArithmeticError:
+        good = False
+    if not good:
+        raise InputError("load", load, f"with these bodies and radii, {OUT_OF_RANGE}")
+
+
+def read_motion(scene, *, speed, amplitude, frequency, rotation, reduction):
+    """The motion, and a dict of texts of what was understood; raises InputError.
+
+    The amplitude of the motion is None where a reduction is given in its place.
+    """
+    if not isinstance(scene, str) or scene not in SCENES:
+        raise InputError("scene", scene, f"allowed is one of {', '.join(SCENES)}")
+    steady = scene not in UNIT_OF_AMPLITUDE
+    given = {"amplitude": amplitude, "frequency": frequency, "rotation": rotation}
+    needed = ("rotation",) if steady else ("amplitude", "frequency")
+    for name, value in given.items():
+        if name not in needed and value is not None:
+            raise InputError(name, value, f"{scene} has none")
+    if reduction is not None and steady:
+        raise InputError("reduction", reduction, f"{scene} has no amplitude to look for")
+    if reduction is not None and amplitude is not None:
+        raise InputError("reduction", reduction, "allowed without an amplitude")
+    for name in needed:
+        if given[name] is None and not (name == "amplitude" and reduction is not None):
+            raise InputError(name, None, f"{scene} needs it")
+    found = {"speed": read("speed", speed, "m/s", low_open=False)}
+    if steady:
+        found["rotation"] = read("rotation", rotation, "rad/s")
+    else:
+        if amplitude is not None:
+            unit = UNIT_OF_AMPLITUDE[scene]
+            found["amplitude"] = read("amplitude", amplitude, unit, low_open=False)
+        found["frequency"] = read("frequency", frequency, "Hz")
+    motion = RealMotion(scene, **{name: one.si for name, one in found.items()})
+    texts = {"scene": f"{scene}: the sphere {SCENES[scene]}"}
+    return motion, texts | {name: one.text for name, one in found.items()}

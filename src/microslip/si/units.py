@@ -1,0 +1,177 @@
+"""Units of texts: a strict grammar, a list of the names that count, and pint for their values."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from decimal import Context, Decimal, localcontext
+from functools import cache
+
+METRIC = frozenset(
+    {
+        *("meter", "gram", "second", "newton", "pascal", "bar", "liter"),
+        *("hertz", "counts_per_second", "revolutions_per_minute", "revolutions_per_second"),
+        *("radian", "degree", "arcsecond", "turn"),
+    }
+)
+"""Units that take prefixes, by pint's names for them."""
+OTHER = frozenset(
+    {
+        *("inch", "foot", "yard", "mile", "thou", "micron", "angstrom"),
+        *("minute", "hour", "day", "arcminute", "grade", "cubic_centimeter"),
+        *("metric_ton", "pound", "ounce", "slug"),
+        *("dyne", "force_gram", "force_kilogram", "force_pound", "force_ounce", "kip"),
+        *("pound_force_per_square_inch", "kip_per_square_inch", "standard_atmosphere"),
+        *("knot", "mile_per_hour", "kilometer_per_hour", "meter_per_second", "foot_per_second"),
+    }
+)
+"""Units that take none.  What is in neither list is refused: pint knows a thousand names more, with
+constants of nature (c, k, pi), scales that are no factors (degC, dB) and others that are something
+else than they look (Nm is a number of yarns, mil an angle, da a tenth of a year) among them."""
+PREFIXES = frozenset(
+    {
+        *("", "deca", "hecto", "kilo", "mega", "giga", "tera"),
+        *("deci", "centi", "milli", "micro", "nano", "pico"),
+    }
+)
+CYCLIC = ("hertz", "counts_per_second")
+"""How names of units end that count periods: 1 Hz is one turn a second."""
+TURN_RATE = {"radian": 1, "second": -1}
+"""Root units of what turns; pint itself takes radians for pure numbers."""
+
+_NAME = re.compile(r"[^\W\d⁻¹²³]+|°")
+_POWER = re.compile(r"\s*(?:\^|\*\*)\s*(-?[1-9])(?!\d)|(⁻?[¹²³])(?!\w)")
+_SIGN = re.compile(r"\s*(?:([*·⋅])(?!\*)|(/))\s*")
+_RAISED = str.maketrans("⁻¹²³", "-123")
+_EXACT = Context(prec=40)
+
+
+class UnitError(Exception):
+    """A text that is no unit.
+
+    Attributes
+    ----------
+    reason : str
+        Why not, as the middle of a sentence.
+    """
+
+    def __init__(self, reason: str):
+        self.reason = reason
+        super().__init__(reason)
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit that has been read.
+
+    Attributes
+    ----------
+    names : dict
+        pint's names of the units it is made of, and their exponents.
+    root : dict
+        Names of its root units, and their exponents; radians are one of them.
+    factor : decimal.Decimal
+        The unit over the product of its root units, dimensionless.
+    """
+
+    names: dict
+    root: dict
+    factor: Decimal
+
+    @property
+    def counts_periods(self):
+        """Whether it is a cyclic frequency: hertz or cycles a second, by name."""
+        return len(self.names) == 1 and self.root.get("second") == -1 and self._has_cyclic
+
+    @property
+    def _has_cyclic(self):
+        return any(name.endswith(CYCLIC) for name in self.names)
+
+    @property
+    def mixes_periods(self):
+        """Whether hertz is a part of it: nobody can say whether 2 pi is meant there."""
+        return self._has_cyclic and not self.counts_periods
+
+
+@cache
+def registry():
+    """The pint.UnitRegistry in use; loading it takes most of a second.
+
+    It computes in decimals, so that "1 um", "1e-3 mm" and "0.000001 m" are one number, to the last
+    bit.
+    """
+    import pint
+
+    units = pint.UnitRegistry(non_int_type=Decimal)
+    units.define("@alias turn = rev")
+    return units
+
+
+def factors(text: str):
+    """The units that a text multiplies: their names and exponents, in the order of the text.
+
+    Names with whole exponents after ^ or **, or superscripts, and one of * / and the dot between
+    them; division goes from left to right.  Raises UnitError at the first character that does not
+    fit.
+    """
+    found, place, sign = [], 0, 1
+    while True:
+        name = _NAME.match(text, place)
+        if name is None:
+            where = f"at {text[place:]!r}" if text[place:] else f"at the end of {text!r}"
+            raise UnitError(f"stopped {where}, where a unit was expected")
+        power = _POWER.match(text, name.end())
+        exponent = int((power[1] or power[2]).translate(_RAISED)) if power else 1
+        found.append((name[0], sign * exponent))
+        place = (power or name).end()
+        if place == len(text):
+            return found
+        between = _SIGN.match(text, place)
+        if between is None:
+            raise UnitError(f"read {text[:place]!r} and stopped at {text[place:].strip()!r}")
+        place, sign = between.end(), -1 if between[2] else 1
+
+
+def read_unit(text: str) -> Unit:
+    """The unit that a text such as "kg/m^3" names; raises UnitError."""
+    with localcontext(_EXACT):
+        names = [("degree" if name == "°" else name, power) for name, power in factors(text)]
+        for name, _ in names:
+            _refuse_strange(name)
+        parsed = registry().parse_units("*".join(f"{name}**({power})" for name, power in names))
+        factor, root = registry().get_root_units(parsed)
+    return Unit(_exponents(parsed), _exponents(root), Decimal(factor))
+
+
+def _refuse_strange(name):
+    """Raise UnitError unless a name is one of those in the lists above, with a prefix or not."""
+    readings = registry().parse_unit_name(name)
+    prefix, base = readings[0][:2] if readings else ("", "")
+    if base in METRIC and prefix in PREFIXES or base in OTHER and not prefix:
+        return
+    hint = " (the mil of workshops is thou)" if name in ("mil", "mils") else ""
+    raise UnitError(
+        f"{name!r} is none of the units that are known here{hint}; capitals count, as in MPa and Hz"
+    )
+
+
+def _exponents(unit):
+    """Names and exponents of a pint.Unit."""
+    return dict((1 * unit).unit_items())
+
+
+@cache
+def si_unit(text: str) -> Unit:
+    """A unit of the SI, by such a text as "kg/m^3"; the empty one is that of pure numbers."""
+    return read_unit(text) if text else Unit({}, {}, Decimal(1))
+
+
+def full_turn() -> Decimal:
+    """2 pi, with pint's digits of it."""
+    return read_unit("turn").factor
+
+
+def exact(number: Decimal, ratio: Decimal, over: Decimal = Decimal(1)) -> float:
+    """number * ratio / over as a float, rounded once."""
+    with localcontext(_EXACT):
+        return float(number * ratio / over)

@@ -1,0 +1,255 @@
+"""What predict understands and says: a motion in any unit, what it repeats, its command line."""
+
+import io
+import json
+import math
+import sys
+from dataclasses import replace
+
+import pint
+import pytest
+
+import microslip
+from microslip import cli
+from microslip.si.materials import Material
+from microslip.si.scenes import SCENES
+
+BALL = {"radius": "5 mm", "load": "10 N", "mu": 0.3, "speed": "1 mm/s"}
+EXAMPLE = BALL | {"young": "210 GPa", "nu": 0.3, "amplitude": "1 um", "frequency": "20 kHz"}
+
+
+# One motion in many units
+
+Q = pint.UnitRegistry().Quantity
+TURN = 2.0 * math.pi
+SPIN = BALL | {"material": "steel", "mu": 0.3}
+
+
+def assert_same(one, other):
+    """All that two predictions say, what was asked apart, to the rounding of a float."""
+    one, other = one.to_dict(), other.to_dict()
+    assert one.pop("understood").keys() == other.pop("understood").keys()
+    assert one.keys() == other.keys()
+    for name, value in one.items():
+        near = isinstance(value, float) and not isinstance(value, bool)
+        # errors are estimates from differences of numbers that agree to many digits
+        expected = pytest.approx(other[name], rel=1e-9, abs=1e-9) if near else other[name]
+        assert value == expected, name
+
+
+@pytest.mark.parametrize(
+    "frequency",
+    [
+        *(20e3, "20000 Hz", "20 kcps", "20000 cycles/s", "1.2e6 rpm", "7.2e6 deg/s", "2e4 rps"),
+        *(f"{TURN * 20e3!r} rad/s", f"{TURN * 20!r} rad/ms", Q(20, "kHz"), Q(TURN * 20e3, "rad/s")),
+        *(Q(1.2e6, "rpm"), Q(7.2e6, "deg/s")),
+    ],
+    ids=str,
+)
+def test_a_vibration_is_the_same_in_any_unit(frequency):
+    assert_same(
+        microslip.predict("transverse", **EXAMPLE | {"frequency": frequency}),
+        microslip.predict("transverse", **EXAMPLE),
+    )
+
+
+@pytest.mark.parametrize(
+    "rotation",
+    [
+        *("10 Hz", "10 cps", "10 turn/s", "600 rpm", "3600 deg/s", TURN * 10.0),
+        *(f"{TURN * 10!r} rad/s", Q(10, "Hz"), Q(600, "rpm"), Q(TURN * 10, "rad/s")),
+    ],
+    ids=str,
+)
+def test_a_spin_is_the_same_in_any_unit(rotation):
+    found = microslip.predict("continuous-bore", rotation=rotation, **SPIN)
+    assert found.rotation_rad_s == pytest.approx(TURN * 10.0, rel=1e-15)
+    # v0 / (omega a) by hand, with Hertz's a of this ball on a rigid flat
+    radius = (0.75 * 10.0 * 0.005 * (1.0 - 0.09) / 210e9) ** (1.0 / 3.0)
+    assert found.velocity == pytest.approx(1e-3 / (TURN * 10.0 * radius), rel=1e-12)
+    assert_same(found, microslip.predict("continuous-bore", rotation="600 rpm", **SPIN))
+
+
+@pytest.mark.parametrize(
+    "amplitude",
+    [
+        *("0.5\u00b0", "30 arcmin", "1800 arcsec", f"{0.5 / 360!r} turn", math.radians(0.5)),
+        *(f"{math.radians(0.5)!r} rad", f"{1e3 * math.radians(0.5)!r} mrad", Q(0.5, "deg")),
+    ],
+    ids=str,
+)
+def test_an_angle_is_the_same_in_any_unit(amplitude):
+    settings = SPIN | {"frequency": "20 Hz"}
+    assert_same(
+        microslip.predict("bore", amplitude=amplitude, **settings),
+        microslip.predict("bore", amplitude="0.5 deg", **settings),
+    )
+
+
+# What was understood
+
+
+def test_a_prediction_repeats_what_it_was_asked_in_the_units_that_were_given():
+    asked = EXAMPLE | {"counterbody": "70 GPa, 0.22", "radius": 0.005, "frequency": "1.2e6 rpm"}
+    asked |= {"counter_radius": "-20 mm", "load": Q(10, "N"), "hardness": "7 GPa"}
+    found = microslip.predict("transverse", **asked)
+    assert found.counterbody == "E = 70 GPa, nu = 0.22"
+    assert found.understood == {
+        "scene": "transverse: the sphere slides forward and oscillates sideways",
+        "body": "E = 210 GPa, nu = 0.3, hardness 7 GPa",
+        "counterbody": "E = 70 GPa, nu = 0.22",
+        "radius": "0.005 m",
+        "counter_radius": "-20 mm, hollow",
+        "load": "10 N",
+        "mu": "0.3",
+        "speed": "1 mm/s",
+        "amplitude": "1 um",
+        "frequency": "1.2e6 rpm = 20000 Hz",
+    }
+
+
+def test_the_counterbody_is_rigid_unless_told_otherwise_and_so_it_is_said():
+    asked = BALL | {"material": "steel", "rotation": "10 Hz"}
+    for given, said in (
+        ({}, "rigid, as none was given"),
+        ({"counterbody": "rigid"}, "rigid"),
+        ({"counterbody": "glass"}, "glass (E = 70 GPa, nu = 0.2, hardness 6 GPa"),
+        ({"counterbody": Material(70e9, 0.22)}, "E = 70 GPa, nu = 0.22"),
+    ):
+        found = microslip.predict("continuous-bore", **asked | given)
+        assert found.counterbody.startswith(said)
+        assert found.understood["counterbody"] == found.counterbody
+    assert found.understood["rotation"] == "10 Hz = 62.8319 rad/s"
+    assert found.understood["counter_radius"] == "flat, as none was given"
+
+
+# Command line
+
+
+def options(**given):
+    words = [(f"--{name.replace('_', '-')}", str(value)) for name, value in given.items()]
+    return [word for pair in words for word in pair]
+
+
+def test_the_command_line_answers_in_json(capsys):
+    asked = EXAMPLE | {"counterbody": "rigid"}
+    assert cli.main(["predict", "transverse", *options(**asked), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    expected = "contact_radius_m indentation_m u_lim_m velocity amplitude mu_macro mu_macro_error"
+    assert said.keys() >= {*expected.split(), "mu_apparent", "warnings"}
+    assert said == microslip.predict("transverse", **asked).to_dict()
+
+
+def test_the_command_line_answers_in_words(capsys):
+    """What was understood, as it was given, comes before what was found."""
+    for scene, motion, said_first in (
+        ("transverse", {"amplitude": "1 um", "frequency": "20 kHz"}, ["20 kHz\n", "1 um\n"]),
+        ("bore", {"amplitude": "0.5 deg", "frequency": "50 Hz"}, ["0.5 deg = 0.00872665 rad\n"]),
+        ("continuous-bore", {"rotation": "60 rpm"}, ["60 rpm = 6.28319 rad/s\n"]),
+    ):
+        assert cli.main(["predict", scene, *options(material="steel", **BALL, **motion)]) == 0
+        said = capsys.readouterr().out
+        understood, _, found = said.partition("contact radius")
+        assert "54.57 um" in found
+        assert "warning: " in found
+        for text in (
+            f"{scene}: the sphere {SCENES[scene]}",
+            "rigid, as none was given",
+            *said_first,
+        ):
+            assert text in understood
+        for line in ("5 mm", "10 N", "0.3", "1 mm/s", "steel (E = 210 GPa, nu = 0.3"):
+            assert f"  {line}" in understood
+        numbers = {line.split()[0]: line for line in found.splitlines()}
+        assert "ratio of friction" in numbers["mu_macro"]
+        assert "coefficient of friction" in numbers["mu_apparent"]
+        assert "coefficient of friction" in numbers.get("static", "coefficient of friction")
+
+
+def test_an_answer_that_is_no_number_says_why(monkeypatch, capsys):
+    """In the amplitude that is asked for, and in the search for one."""
+    from microslip.si import predict, reduction
+
+    def lost(*given, **settings):
+        found = microslip.solve(*given, **settings)
+        return replace(found, mu_macro=math.nan, converged=False, reason="lost on the way")
+
+    monkeypatch.setattr(predict, "solve", lost)
+    monkeypatch.setattr(reduction, "solve", lost)
+    for motion in ({"amplitude": "1 um"}, {"reduction": "50 %"}):
+        words = options(**BALL, **motion, material="steel", frequency="20 kHz")
+        assert cli.main(["predict", "transverse", *words, "--json"]) == 1
+        said = json.loads(capsys.readouterr().out)
+        assert (said["mu_macro"], said["reason"]) == (None, "lost on the way")
+        assert cli.main(["predict", "transverse", *words]) == 1
+        assert "NOT CONVERGED: lost on the way" in capsys.readouterr().out
+
+
+def test_an_answer_can_be_written_in_any_alphabet(monkeypatch):
+    words = options(material="steel", rotation="3600 \u00b0/s", **BALL | {"radius": "5000 \u03bcm"})
+    said = io.BytesIO()
+    monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(said, encoding="latin-1"))
+    assert cli.main(["predict", "continuous-bore", *words]) == 0
+    sys.stdout.flush()
+    assert b"5000 \\u03bcm" in said.getvalue() and b"3600 \xb0/s = 62.8319" in said.getvalue()
+
+
+def test_the_help_of_predict_lists_the_scenes_and_explains_the_terms(capsys):
+    with pytest.raises(SystemExit):
+        cli.main(["predict", "--help"])
+    said = " ".join(capsys.readouterr().out.split())
+    for name, what in SCENES.items():
+        assert f"{name}: it {what}" in said
+    for term in (
+        "rotation about the contact normal",
+        "mu_macro is a ratio",
+        "--nu NU, --poisson NU",
+    ):
+        assert term in said
+
+
+def refusal_of_the_command_line(words, capsys):
+    try:
+        assert cli.main(["predict", *words]) == 2
+    except SystemExit as error:
+        assert error.code == 2
+    said = capsys.readouterr()
+    assert (said.out, said.err.count("\n")) == ("", 1)
+    return said.err
+
+
+def test_the_options_have_the_names_that_point_gives_them(capsys):
+    asked = EXAMPLE | {"nu": None} | {"poisson": 0.3}
+    given = {name: value for name, value in asked.items() if value is not None}
+    assert cli.main(["predict", "transverse", *options(**given), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["poisson"] == 0.3
+    bad = options(**given | {"poisson": 0.7})
+    assert "--poisson = '0.7': " in refusal_of_the_command_line(["transverse", *bad], capsys)
+
+
+@pytest.mark.parametrize(
+    ("changed", "named"),
+    [
+        ({"radius": "5"}, "--radius = '5': "),
+        ({"counter_radius": "-1 mm"}, "--counter-radius = '-1 mm': "),
+        ({"amplitude": "1 m"}, "--amplitude = '1 m': "),
+        ({"amplitude": "0,5 um"}, "--amplitude = '0,5 um': "),
+        ({"mu": "0,3"}, "--mu = '0,3': "),
+        ({"tolerance": "abc"}, "--tolerance = 'abc': "),
+        ({"tolerance": "0"}, "--tolerance = '0': "),
+        ({"counterbody": "70 GPa, 0,3"}, "--counterbody = '70 GPa, 0,3': "),
+        ({"load": "1\n2 N"}, r"--load = '1\n2 N': "),
+        ({"reduction": "50 %"}, "--reduction = '50 %': allowed without an amplitude"),
+    ],
+)
+def test_the_command_line_names_the_option_at_fault(changed, named, capsys):
+    words = ["transverse", *options(**EXAMPLE | changed)]
+    assert named in refusal_of_the_command_line(words, capsys)
+
+
+def test_the_command_line_names_what_is_missing(capsys):
+    words = options(**BALL, material="steel", frequency="20 kHz")
+    assert "--amplitude: transverse needs it" in refusal_of_the_command_line(
+        ["transverse", *words], capsys
+    )
+    assert "SCENE = 'sideways': " in refusal_of_the_command_line(["sideways", *words], capsys)
