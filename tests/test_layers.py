@@ -11,6 +11,7 @@ PACKAGE = Path(microslip.__file__).parent
 
 # From the ground up; modules on one line do not know each other.
 LAYERS = [
+    {"errors"},
     {"hertz", "parameters"},
     {"pressures"},
     {"theory", "masing", "bounds", "halfspace", "friction", "path", "indenter_limits", "depth"},
@@ -41,10 +42,12 @@ LAYERS = [
     {"stored", "si"},
     {"query"},
     {"studies"},
-    {"plot", "launch"},
+    {"plot", "terminal"},
+    {"launch", "command_line"},
     {"explorer"},
     {"cli_predict"},
     {"cli"},
+    {"__main__"},
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 PHYSICS = {name for names in LAYERS[: LEVEL["keys"]] for name in names}

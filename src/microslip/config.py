@@ -9,6 +9,7 @@ Imports nothing heavy, since the workflow reads it whenever it is parsed.
 import yaml
 
 from . import extended, grids, methods, schemas
+from .errors import InputError
 from .grids import axis_of, refuse_crowd
 from .keys import number
 from .settings import (
@@ -177,9 +178,10 @@ def _methods(given, where):
     if given is None:
         return methods.names()
     for i, text in enumerate(_once(given, f"{where}.methods")):
-        problem = methods.refusal(text)
-        if problem:
-            raise ConfigError(f"{where}.methods[{i}]: {problem}")
+        try:
+            methods.check(text)
+        except InputError as error:
+            raise ConfigError(f"{where}.methods[{i}]: {error.value!r}: {error.allowed}") from None
     return tuple(given)
 
 
