@@ -44,6 +44,7 @@ LAYERS = [
     {"studies"},
     {"plot", "terminal"},
     {"launch", "command_line"},
+    {"sweep_process"},
     {"explorer"},
     {"cli_predict"},
     {"cli"},

@@ -33,7 +33,7 @@ NOT_SOLVER |= {
 }
 NOT_SOLVER |= {"studies", "plot", "explorer", "si", "query"}
 # The command that starts the workflow, and the copy of the workflow in an installed package.
-NOT_SOLVER |= {"launch", "bundle"}
+NOT_SOLVER |= {"launch", "sweep_process", "bundle"}
 # These count for the requests that name them, see further_files.
 NOT_SOLVER |= {"trial", "patches", "periods", "methods"}
 NAMED = ("motions", "pressures")

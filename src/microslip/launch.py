@@ -11,27 +11,44 @@ import subprocess
 import sys
 from pathlib import Path
 
+from microslip.terminal import complain
+
 PACKAGE = Path(__file__).parent
 
 # Arguments that say how many jobs run at once, by themselves or through a profile.
 SETS_CORES = re.compile(r"-[cje]|--(cores|jobs|executor|profile|workflow-profile)(=|$)")
 
-HELP = """\
+TARGETS = {
+    "all": "the datasets and figures of the configuration's sweeps (unless said otherwise)",
+    "extended": "the same of other motions and pressures, its key extended",
+    "accuracy": "what accuracy costs, for all models and methods",
+    "stability": "where methods fail",
+    "claims": "what the paper says, judged",
+    "explorer": "one page that shows what is behind every point of the maps",
+}
+"""What can be made by name: the rules of the workflow without wildcards that people ask for."""
+RULES = ("warm_up",)
+"""Others that Snakemake makes by name."""
+
+_LISTED = "\n".join(f"    {name:<12}{text}" for name, text in TARGETS.items())
+HELP = f"""\
 usage: microslip sweep [TARGET ...] [--configfile FILE] [options of Snakemake]
 
 Run the workflow in the current folder: maps of friction over velocity and amplitude, as datasets in
-results/ and figures in results/figures/. What is there already is not computed again.
+results/ and figures in results/figures/. What is there already is not computed again. The sweeps
+of the paper are transverse, bore (spin: rotation about the contact normal) and continuous_bore.
 
-  TARGET             what to make: all (unless said otherwise), accuracy, stability, or a file
+  TARGET             what to make, by name or a file such as results/bore.nc:
+{_LISTED}
   --configfile FILE  what to compute; without it config/config.yaml, or where there is no such file
                      the sweeps of the paper. It takes all names that follow: targets come before it
-  --cores N          jobs at the same time; all cores unless said otherwise
+  --cores N          jobs at the same time, 1 or more; all cores unless said otherwise
   --dry-run          say what there is to do, and do nothing
   --report FILE      after a run: one page (.html or .zip) of figures, captions, what made them
   -h, --help         show this
 
-All else is handed to Snakemake as it is, see snakemake --help, and its exit code comes back. The
-defaults are those of profiles/default, here or in the package.
+All else is handed to Snakemake as it is, see snakemake --help, and its exit code comes back;
+of bad input it is 2. The defaults are those of profiles/default, here or in the package.
 
   microslip sweep --cores 2
   microslip sweep --cores 2 --configfile mine.yaml --config points_per_job=10
@@ -44,14 +61,18 @@ def main(arguments):
         print(HELP, end="")
         return 0
     try:
-        command = [sys.executable, "-m", "snakemake", "--snakefile", str(snakefile())]
+        command = [sys.executable, "-m", "microslip.sweep_process"]
+        command += ["--snakefile", str(snakefile())]
     except FileNotFoundError as error:
-        print(f"microslip sweep: {error}", file=sys.stderr)
+        complain(f"microslip sweep: {error}")
         return 2
     if "SNAKEMAKE_PROFILE" not in os.environ and not any(map(SETS_CORES.match, arguments)):
         command += ["--cores", "all"]
     with subprocess.Popen([*command, *arguments]) as running:
-        signal.signal(signal.SIGTERM, lambda *_: running.terminate())
+        for name in ("SIGTERM", "SIGHUP"):  # the second one where a terminal is closed
+            number = getattr(signal, name, None)
+            if number and signal.getsignal(number) != signal.SIG_IGN:  # as nohup asks for
+                signal.signal(number, lambda *_: running.terminate())
         while True:
             try:
                 code = running.wait()
