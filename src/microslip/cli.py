@@ -10,6 +10,7 @@ from microslip.errors import InputError
 
 RATIO = "a ratio: mean forward force over mu F_z; the coefficient felt is mu_apparent = mu mu_macro"
 """What is said beside a number."""
+BORE = "Bore means spin: rotation about the contact normal."
 
 
 def build_parser(asked=None):
@@ -20,7 +21,7 @@ def build_parser(asked=None):
         description="How far friction falls when a frictional contact is vibrated: an elastic "
         "sphere on a flat (Hertz contact, Coulomb friction at every point) slides forward while "
         "it also oscillates or rotates.  point and sweep take dimensionless quantities, predict "
-        "takes units.  Bore means spin: rotation about the contact normal.",
+        f"takes units.  {BORE}",
         epilog="Exit codes: 0 done, 1 not converged, 2 bad input, 74 the answer could not be "
         "written, 130 interrupted, 141 nobody reads the answer; those of sweep are Snakemake's.",
     )
@@ -32,8 +33,8 @@ def build_parser(asked=None):
         help="macroscopic friction at one (velocity, amplitude)",
         description="Mean forward friction force over mu F_z at one point, with an error estimate. "
         "The answer mu_macro is a ratio: 1 means that the vibration does nothing, 0 that it takes "
-        "all friction away; the coefficient of friction felt is mu_apparent = mu mu_macro.  Bore "
-        "means spin: rotation about the contact normal.",
+        "all friction away; the coefficient of friction felt is mu_apparent = mu mu_macro.  "
+        f"{BORE}",
     )
     commands.add_parser("sweep", help="the workflow: maps, datasets and figures, by Snakemake")
     if asked == "point":
@@ -57,7 +58,7 @@ def _add_motions(parser):
             help=summary,
             description=f"The indenter is {summary}. u_lim: the tangential displacement at which "
             "the whole contact slides; a: contact radius; phi_lk(a/2): the angle that leaves half "
-            "of it sticking.",
+            f"of it sticking.{f'  {BORE}' if 'bore' in name else ''}",
             allow_abbrev=False,
         )
         record = SCENES.get(name) or FAMILIES[name].scene(name, **FAMILIES[name].DEFAULTS)

@@ -61,6 +61,11 @@ def main(arguments):
         print(HELP, end="")
         return 0
     try:
+        os.getcwd()
+    except OSError as error:
+        complain(f"microslip sweep: the current folder: {error.strerror}")
+        return 2
+    try:
         command = [sys.executable, "-m", "microslip.sweep_process"]
         command += ["--snakefile", str(snakefile())]
     except FileNotFoundError as error:
@@ -69,16 +74,27 @@ def main(arguments):
     if "SNAKEMAKE_PROFILE" not in os.environ and not any(map(SETS_CORES.match, arguments)):
         command += ["--cores", "all"]
     with subprocess.Popen([*command, *arguments]) as running:
-        for name in ("SIGTERM", "SIGHUP"):  # the second one where a terminal is closed
-            number = getattr(signal, name, None)
-            if number and signal.getsignal(number) != signal.SIG_IGN:  # as nohup asks for
-                signal.signal(number, lambda *_: running.terminate())
+        signal.signal(signal.SIGTERM, lambda *_: running.terminate())
+        if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) != signal.SIG_IGN:
+            signal.signal(signal.SIGHUP, lambda *_: _hang_up(running))  # unless nohup asks not to
         while True:
             try:
                 code = running.wait()
                 return code if code >= 0 else 128 - code  # as shells say it: 128 + signal
             except KeyboardInterrupt:
                 pass  # Snakemake got it too: it tidies up and ends
+
+
+def _hang_up(running):
+    """End Snakemake and its jobs, the terminal of which was closed.
+
+    Of a terminal's processes only the first one is told, and a shell tells the whole group; where
+    this process is the first one, or started by the shell, the group is its own.
+    """
+    signal.signal(signal.SIGHUP, signal.SIG_IGN)  # its own is to come
+    if os.getpgrp() == os.getpid():
+        os.killpg(0, signal.SIGHUP)  # jobs end at once, Snakemake when they have
+    running.terminate()
 
 
 def snakefile():

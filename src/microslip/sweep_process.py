@@ -46,6 +46,8 @@ def _check(arguments):
     options = _parsed(arguments)
     if options is None:
         return
+    if options.directory is None and not os.access(".", os.W_OK):
+        raise InputError("--directory", os.getcwd(), "allowed is a folder that can be written to")
     for name in ("cores", "jobs"):
         count = getattr(options, name)
         if isinstance(count, int) and count < 1:
