@@ -8,14 +8,16 @@ import pytest
 from point_contract import CONTRACT
 
 import microslip
-from microslip import cli
+from microslip import cli, launch
+from microslip.scenes import FAMILIES, SCENES
 
 TRANSVERSE = ("point", "transverse", "--velocity", "0.5", "--amplitude", "0.5")
+SPIN = "spin: rotation about the contact normal"
 
 
 def run(*arguments):
     return subprocess.run(
-        [sys.executable, "-m", "microslip.cli", *map(str, arguments)],
+        [sys.executable, "-m", "microslip", *map(str, arguments)],
         capture_output=True,
         text=True,
         timeout=300,
@@ -67,6 +69,7 @@ def test_text_says_what_was_found():
     result = microslip.solve("continuous-bore", 0.5, tolerance=1e-2)
     assert f"mu_macro = {result.mu_macro:.6g} +- " in done.stdout
     assert f"mu_torque = {result.mu_torque:.6g} +- " in done.stdout
+    assert done.stdout.count("ratio") == done.stdout.count("mu_apparent = mu mu_macro") == 1
     assert "closed-form" in done.stdout and "NOT CONVERGED" not in done.stdout
 
 
@@ -122,14 +125,18 @@ def test_model_that_does_not_apply_says_to_which_scene():
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ((), ["point", "friction", "vibrated", "Coulomb", "dimensionless"]),
-        (("point",), ["transverse", "bore", "continuous-bore", "mu F_z"]),
+        (
+            (),
+            ["point", "friction", "vibrated", "dimensionless", "sweep", "predict", SPIN],
+        ),
+        (("point",), [*SCENES, *FAMILIES, "mu F_z", "ratio", "mu_apparent", SPIN]),
+        (("sweep",), [*launch.TARGETS, "--cores", "--report", SPIN]),
         (
             ("point", "transverse"),
             ["--velocity", "v0 / (omega u_lim)", "--amplitude", "y0 / u_lim", "Poisson"],
         ),
-        (("point", "bore"), ["v0 / (Omega phi0 a)", "phi0 / phi_lk(a/2)", "--tolerance"]),
-        (("point", "continuous-bore"), ["v0 / (omega a)", "--cells", "--steps", "--json"]),
+        (("point", "bore"), ["v0 / (Omega phi0 a)", "phi0 / phi_lk(a/2)", "--nu", SPIN]),
+        (("point", "continuous-bore"), ["v0 / (omega a)", "--cells", "--json", SPIN]),
     ],
 )
 def test_help_explains_the_terms(arguments, words):
@@ -162,9 +169,48 @@ def test_help_and_bad_options_do_not_load_the_solver():
 def test_a_negative_number_with_an_exponent_is_a_number(capsys):
     """argparse by itself takes it for an option."""
     assert cli.main(["point", "transverse", "--velocity", "-1e-3", "--amplitude", "1"]) == 2
-    assert "velocity = -0.001" in capsys.readouterr().err
+    assert "velocity = '-1e-3'" in capsys.readouterr().err
 
 
 def test_a_steady_scene_has_no_amplitude(capsys):
     assert cli.main(["point", "continuous-bore", "--velocity", "2", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["amplitude"] is None
+
+
+@pytest.mark.parametrize("name", ["--poisson", "--nu"])
+@pytest.mark.parametrize("given", ["0.3", " 0.3 ", "+.3", "3e-1", "0.30"])
+def test_poissons_ratio_goes_by_two_names_and_is_what_was_written(name, given, capsys):
+    command = ["point", "transverse", "--velocity", "0", "--amplitude", "0", name, given, "--json"]
+    assert cli.main(command) == 0
+    assert json.loads(capsys.readouterr().out)["poisson"] == 0.3
+
+
+def test_an_error_without_an_option_is_one_line(monkeypatch, capsys):
+    def failing(**_):
+        raise ValueError("pressure: the file\nis odd")
+
+    monkeypatch.setattr(microslip, "solve", failing, raising=False)
+    assert cli.main([*TRANSVERSE]) == 2
+    assert capsys.readouterr().err == "microslip point transverse: pressure: the file is odd\n"
+
+
+def test_public_names_are_listed_before_they_are_used():
+    """In a new process, since each becomes an attribute once it has been asked for."""
+    code = (
+        "import sys, microslip\n"
+        "names = dir(microslip)\n"
+        "assert set(microslip.__all__) <= set(names), names\n"
+        "assert names == sorted(names) and '__version__' in names\n"
+        "sys.exit('numpy' in sys.modules)\n"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_names_are_completed_as_a_shell_of_python_does_it():
+    code = (
+        "import rlcompleter, microslip\n"
+        "found = rlcompleter.Completer({'microslip': microslip}).attr_matches('microslip.so')\n"
+        "print(*sorted(name.rstrip('(') for name in found))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "microslip.solve microslip.solve_stored\n"

@@ -34,6 +34,37 @@ def test_defaults_are_filled_in(tmp_path):
     assert found.sweeps["continuous_bore"].scene == "continuous-bore"
 
 
+def test_a_byte_order_mark_and_line_ends_of_windows_do_no_harm(tmp_path):
+    plain = load(saved(tmp_path, GOOD))
+    path = tmp_path / "windows.yaml"
+    path.write_bytes(b"\xef\xbb\xbf" + GOOD.replace("\n", "\r\n").encode())
+    assert load(path) == plain
+
+
+MERGED = """
+sweeps:
+  transverse: &slow
+    velocity: [0.1, 1]
+    amplitude: [0, 1]
+    poisson: 0.3
+  bore: &faster
+    <<: *slow
+    velocity: [2]
+  continuous_bore: {velocity: [1]}
+extended:
+  again: {<<: *faster, velocity: [3], scene: bore, group: loops}
+"""
+
+
+def test_mappings_are_merged_as_yaml_says(tmp_path):
+    """Keys beside << replace what is merged, in a mapping that is merged again, too."""
+    found = load(saved(tmp_path, MERGED))
+    assert found.sweeps["bore"].velocity == (2.0,)
+    assert found.sweeps["bore"].amplitude == (0.0, 1.0)
+    assert found.extended["again"].velocity == (3.0,)
+    assert found.extended["again"].poisson == found.sweeps["transverse"].poisson == (0.3,)
+
+
 def test_a_sweep_may_have_its_own_number_of_points_in_a_job(tmp_path):
     text = GOOD.replace("  bore:", "    points_per_job: 7\n  bore:") + "points_per_job: 3\n"
     found = load(saved(tmp_path, text))

@@ -43,11 +43,14 @@ LAYERS = [
     {"stored", "si"},
     {"query"},
     {"studies"},
-    {"plot", "launch"},
+    {"plot", "terminal"},
+    {"launch", "command_line"},
+    {"sweep_process"},
     {"explorer"},
     {"plan"},
     {"cli_predict", "leftovers"},
     {"cli"},
+    {"__main__"},
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 BELOW_ALL = {"source_digest", "compiled", "named_files"}

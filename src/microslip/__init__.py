@@ -26,6 +26,11 @@ __all__ = sorted(_WHERE)
 __version__ = "0.1.0"
 
 
+def __dir__():
+    """Names for completion: those that are imported when they are first asked for, too."""
+    return sorted({*globals(), *_WHERE})
+
+
 def __getattr__(name):
     if name in _WHERE:
         return getattr(_import_module(_WHERE[name]), name)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from microslip import bounds, hertz, theory
 from microslip.accuracy import Axis
+from microslip.errors import InputError
 from microslip.method import SHIPPED
 from microslip.models import MODELS
 from microslip.motion import Resolution
@@ -64,7 +65,7 @@ def choose_model(scene, poisson, model="auto"):
     Rings where the traction depends on the radius alone (translation at nu = 0), angular modes
     where half of the contact tells the other half: squares are never cheaper then.  The slider
     and the rigid contact are never chosen: what they leave out can only be bounded by running the
-    rings, which then are the answer.  Raises ValueError for an unknown model or one that does not
+    rings, which then are the answer.  Raises InputError for an unknown model or one that does not
     apply.
     """
     if model == "auto":
@@ -76,17 +77,17 @@ def choose_model(scene, poisson, model="auto"):
         if refusal:
             why = f"only {name} could resolve it, and {refusal}"
             if scene.pressure is HERTZ and poisson == 0.0:
-                raise ValueError(f"scene = {scene.name!r}: {why}")
-            given = f"poisson = {poisson:g}"
+                raise InputError("scene", scene.name, why)
+            given = ("poisson", poisson)
             if scene.pressure is not HERTZ:
-                given = f"pressure = {scene.pressure.name!r}"
-            raise ValueError(f"{given}: does not go with {scene.name}: {why}")
+                given = ("pressure", scene.pressure.name)
+            raise InputError(*given, f"does not go with {scene.name}: {why}")
         return name
     if not isinstance(model, str) or model not in MODELS:
-        raise ValueError(f"model = {model!r}: allowed is one of auto, {', '.join(MODELS)}")
+        raise InputError("model", model, f"allowed is one of auto, {', '.join(MODELS)}")
     refusal = MODELS[model].refuses(scene, poisson)
     if refusal:
-        raise ValueError(f"model = {model!r}: does not apply to {scene.name}: {refusal}")
+        raise InputError("model", model, f"does not apply to {scene.name}: {refusal}")
     return model
 
 

@@ -2,72 +2,28 @@
 
 from __future__ import annotations
 
-import argparse
-import difflib
 import json
 import sys
 
-from microslip import __version__, cli_predict, launch
+from microslip import __version__, cli_predict, command_line, launch, parameters, terminal
+from microslip.errors import InputError
 
-
-class _OneLineParser(argparse.ArgumentParser):
-    """Bad input gets one line on standard error and exit code 2."""
-
-    def error(self, message):
-        _complain(f"{self.prog}: {message} (see {self.prog} --help)")
-        raise SystemExit(2)
-
-    def parse_known_args(self, args=None, namespace=None):
-        self._refuse_unknown_options(args)
-        return super().parse_known_args(args, namespace)
-
-    def _refuse_unknown_options(self, words):
-        """Before argparse does, which would rather say that the right one is missing."""
-        known = self._option_string_actions
-        for word in words:
-            if self._subparsers and not word.startswith("-"):
-                return  # what follows belongs to a command
-            name = word.partition("=")[0]
-            strange = word.startswith("-") and name.strip("-") and name not in known
-            if strange and not _is_number(word):
-                self._refuse_option(name, [n for n in known if n.startswith("--")])
-
-    def _refuse_option(self, name, known):
-        near = difflib.get_close_matches(f"--{name.lstrip('-')}", known, n=1)
-        hint = f"did you mean {near[0]}? " if near else ""
-        first = [action.metavar for action in self._actions if action.nargs == argparse.PARSER]
-        allowed = ", ".join([*known, *(f"{command} before other options" for command in first)])
-        self.error(f"unknown option {name}; {hint}allowed: {allowed}")
-
-
-def _complain(message):
-    print(" ".join(message.split()), file=sys.stderr)
-
-
-def _real(text):
-    try:
-        return float(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not allowed; allowed: a number") from None
-
-
-def _whole(text):
-    try:
-        return int(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(
-            f"{text!r} is not allowed; allowed: an even whole number"
-        ) from None
+RATIO = "a ratio: mean forward force over mu F_z; the coefficient felt is mu_apparent = mu mu_macro"
+"""What is said beside a number."""
+BORE = "Bore means spin: rotation about the contact normal."
 
 
 def build_parser(asked=None):
     """Parser of the command line, with all that follows the command ``asked``."""
-    parser = _OneLineParser(
+    parser = command_line.OneLineParser(
         allow_abbrev=False,
         prog="microslip",
         description="How far friction falls when a frictional contact is vibrated: an elastic "
         "sphere on a flat (Hertz contact, Coulomb friction at every point) slides forward while "
-        "it also oscillates or rotates.  All quantities are dimensionless.",
+        "it also oscillates or rotates.  point and sweep take dimensionless quantities, predict "
+        f"takes units.  {BORE}",
+        epilog="Exit codes: 0 done, 1 not converged, 2 bad input, 74 the answer could not be "
+        "written, 130 interrupted, 141 nobody reads the answer; those of sweep are Snakemake's.",
     )
     parser.add_argument("--version", action="version", version=f"microslip {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -76,9 +32,12 @@ def build_parser(asked=None):
         allow_abbrev=False,
         help="macroscopic friction at one (velocity, amplitude)",
         description="Mean forward friction force over mu F_z at one point, with an error estimate. "
-        "1 means that the vibration does nothing, 0 that it takes all friction away.",
+        "The answer mu_macro is a ratio: 1 means that the vibration does nothing, 0 that it takes "
+        "all friction away; the coefficient of friction felt is mu_apparent = mu mu_macro.  "
+        f"{BORE}",
     )
     commands.add_parser("sweep", help="the workflow: maps, datasets and figures, by Snakemake")
+    commands.add_parser("gc", help="what no configuration asks for in a folder of results")
     if asked == "point":
         _add_motions(point)
     else:
@@ -100,20 +59,19 @@ def _add_motions(parser):
             help=summary,
             description=f"The indenter is {summary}. u_lim: the tangential displacement at which "
             "the whole contact slides; a: contact radius; phi_lk(a/2): the angle that leaves half "
-            "of it sticking.",
+            f"of it sticking.{f'  {BORE}' if 'bore' in name else ''}",
             allow_abbrev=False,
         )
         record = SCENES.get(name) or FAMILIES[name].scene(name, **FAMILIES[name].DEFAULTS)
         scene.add_argument(
             "--velocity",
-            type=_real,
             required=True,
             metavar="V",
             help=f"{record.velocity_label}; 0: v -> 0",
         )
         if periodic:
             scene.add_argument(
-                "--amplitude", type=_real, required=True, metavar="A", help=record.amplitude_label
+                "--amplitude", required=True, metavar="A", help=record.amplitude_label
             )
         if path:
             scene.add_argument("--path", metavar="NUMBERS", help=path)
@@ -131,7 +89,12 @@ def _add_options(parser):
         "file:FILE,grid=samples says values at points (hertz)",
     )
     parser.add_argument(
-        "--poisson", type=_real, default=0.0, metavar="NU", help="Poisson's ratio, 0 to 0.5 (0)"
+        "--poisson",
+        "--nu",
+        action=command_line.Said,
+        default="0",
+        metavar="NU",
+        help="Poisson's ratio, 0 to 0.5 (0)",
     )
     parser.add_argument(
         "--model",
@@ -142,18 +105,16 @@ def _add_options(parser):
     )
     parser.add_argument(
         "--tolerance",
-        type=_real,
-        default=1e-3,
+        default="1e-3",
         metavar="T",
         help="largest accepted error of mu_macro, absolute (1e-3)",
     )
     parser.add_argument(
         "--cells",
-        type=_whole,
         metavar="N",
         help="impose N rings, or N x N squares (even, from 4 on)",
     )
-    parser.add_argument("--steps", type=_whole, metavar="N", help="impose N steps a period (even)")
+    parser.add_argument("--steps", metavar="N", help="impose N steps a period (even)")
     parser.add_argument(
         "--method",
         default="shipped",
@@ -171,23 +132,46 @@ def _add_options(parser):
 
 
 def main(arguments=None):
-    """Entry point.  Exit codes: 0 converged, 1 not converged, 2 bad input; sweep: Snakemake's."""
-    arguments = sys.argv[1:] if arguments is None else arguments
+    """Entry point.
+
+    Parameters
+    ----------
+    arguments : list of str, optional
+        Words after the name of the program.  Without them this process is the command: those that
+        it was started with count, and signals end it, see microslip.terminal.
+
+    Returns
+    -------
+    int
+        0 converged, 1 not converged, 2 bad input; of ``sweep`` Snakemake's.
+    """
+    if arguments is None:
+        words = sys.argv[1:]
+        return terminal.run(lambda: main(words), stoppable=words[:1] != ["sweep"])
+    if arguments[:1] == ["gc"]:
+        from microslip import leftovers
+
+        return leftovers.main(arguments[1:])
     if arguments[:1] == ["sweep"]:  # not for argparse: what follows is Snakemake's
         return launch.main(arguments[1:])
-    options = build_parser(next(iter(arguments), None)).parse_args(_joined(arguments))
+    options = build_parser(next(iter(arguments), None)).parse_args(command_line.joined(arguments))
     if options.command == "predict":
         return cli_predict.run(options)
     from microslip.answers import plain  # only now: --help and bad options need no solver
     from microslip.cache import CacheError
 
-    progress = _Progress(enabled=sys.stderr.isatty())
+    progress, named = _Progress(enabled=sys.stderr.isatty()), f"microslip point {options.scene}"
     try:
         result = _answer(options, progress)
-    except (ValueError, CacheError) as error:
-        named = "--" if isinstance(error, ValueError) else "--results: "
-        problem = str(error).replace("scene = ", "path = ", 1)  # the scene itself is known
-        _complain(f"microslip point {options.scene}: {named}{problem}")
+    except InputError as error:
+        problem = error.renamed(*_as_given(options, error.argument))
+        terminal.complain(f"{named}: {problem}")
+        return 2
+    except CacheError as error:
+        terminal.complain(f"{named}: --results: {error}")
+        return 2
+    except ValueError as error:
+        terminal.complain(f"{named}: {error}")
         return 2
     finally:
         progress.close()
@@ -198,43 +182,33 @@ def main(arguments=None):
     return 0 if result.converged else 1
 
 
+def _as_given(options, argument):
+    """Name of the option for an argument of ``solve``, and its value on the command line."""
+    if argument == "scene":
+        path = getattr(options, "path", None)
+        return ("SCENE", options.scene) if path is None else ("--path", path)
+    option = getattr(options, "said", {}).get(argument, f"--{argument.replace('_', '-')}")
+    return option, getattr(options, argument, None)
+
+
 def _answer(options, progress):
-    """What the options ask for; raises ValueError and CacheError as microslip.solve_stored."""
+    """What the options ask for; raises InputError and CacheError as microslip.solve_stored."""
+    reals = [name for name in ("velocity", "amplitude", "poisson", "tolerance") if name in options]
+    numbers = {name: parameters.read(name, getattr(options, name)) for name in reals}
+    for name in ("cells", "steps"):
+        text = getattr(options, name)
+        numbers[name] = None if text is None else parameters.read(name, text, whole=True)
+    if options.results is not None and options.method != "shipped":
+        allowed = "allowed is shipped with --results, which keeps points of sweeps"
+        raise InputError("method", options.method, allowed)
     from microslip import solve, solve_stored
 
     path = getattr(options, "path", None)
-    scene = f"{options.scene}:{path}" if path else options.scene
-    place = (scene, options.velocity, getattr(options, "amplitude", None))
-    names = ("pressure", "poisson", "model", "tolerance", "cells", "steps")
-    settings = {name: getattr(options, name) for name in names}
+    settings = {"pressure": options.pressure, "model": options.model, **numbers}
+    settings["scene"] = f"{options.scene}:{path}" if path else options.scene
     if options.results is None:
-        return solve(*place, **settings, method=options.method, progress=progress)
-    if options.method != "shipped":
-        raise ValueError(
-            f"method = {options.method!r}: not with --results, which keeps points of sweeps"
-        )
-    return solve_stored(*place, **settings, results=options.results)
-
-
-def _joined(arguments):
-    """Options and negative numbers, with a unit or not, as one word: argparse takes -1e-3 for an
-    option."""
-    out = []
-    for word in arguments:
-        number = word.partition(" ")[0]
-        if word.startswith("-") and out and out[-1].startswith("--") and _is_number(number):
-            out[-1] += f"={word}"
-        else:
-            out.append(word)
-    return out
-
-
-def _is_number(word):
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True
+        return solve(**settings, method=options.method, progress=progress)
+    return solve_stored(**settings, results=options.results)
 
 
 class _Progress:
@@ -261,7 +235,7 @@ class _Progress:
 
 
 def _as_text(result):
-    lines = [f"mu_macro = {result.mu_macro:.6g} +- {result.mu_macro_error:.1g}"]
+    lines = [f"mu_macro = {result.mu_macro:.6g} +- {result.mu_macro_error:.1g}", RATIO]
     if result.mu_torque is not None:
         lines.append(f"mu_torque = {result.mu_torque:.6g} +- {result.mu_torque_error:.1g}")
     resolved = f"{result.cells} cells"

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import sys
 
+from microslip.command_line import Said
 from microslip.si.scenes import SCENES
+from microslip.terminal import complain
 
 OPTIONS = {
     "young": ("E", "Young's modulus of the body, such as '210 GPa'"),
@@ -55,14 +56,6 @@ UNDERSTOOD = {
 WIDTH = 18
 
 
-class _AsTyped(argparse.Action):
-    """Keeps the name that an option was given by, for messages."""
-
-    def __call__(self, parser, namespace, values, option_string=None):
-        setattr(namespace, self.dest, values)
-        namespace.typed = getattr(namespace, "typed", {}) | {self.dest: option_string}
-
-
 def add_parser(commands):
     """Add the parser of ``predict`` to those of the other commands."""
     parser = commands.add_parser(
@@ -80,7 +73,7 @@ def add_parser(commands):
         parser.add_argument(
             *(f"--{name}", *OTHER_NAMES.get(name, ())),
             dest=name.replace("-", "_"),
-            action=_AsTyped,
+            action=Said,
             metavar=metavar,
             help=text,
             required=name in NEEDED,
@@ -96,11 +89,11 @@ def run(options):
     from microslip.answers import plain
     from microslip.errors import InputError
 
-    typed = getattr(options, "typed", {})
+    typed = getattr(options, "said", {})
     try:
         found = predict(options.scene, **{name: getattr(options, name) for name in typed})
     except InputError as error:
-        print(f"microslip predict: {_complaint(error, typed)}", file=sys.stderr)
+        complain(f"microslip predict: {_complaint(error, typed)}")
         return 2
     text = json.dumps(plain(found.to_dict())) if options.json else _as_text(found)
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"  # units may be no letters of it

@@ -6,11 +6,14 @@ of every key. What it cannot say is checked here: duplicates, and settings that 
 Imports nothing heavy, since the workflow reads it whenever it is parsed.
 """
 
+import codecs
+import io
 from pathlib import Path
 
 import yaml
 
 from . import extended, grids, methods, schemas
+from .errors import InputError
 from .grids import axis_of, refuse_crowd
 from .keys import number
 from .settings import (
@@ -39,19 +42,26 @@ def load(path):
 
 
 def read_yaml(path):
-    """Parse a YAML file into a dict, refusing keys that occur twice. Raises ConfigError."""
+    """Parse a YAML file into a dict, refusing keys that occur twice.
+
+    Raises ConfigError, one line with the file, and the line in it that is at fault.
+    """
     try:
-        with open(path, encoding="utf-8") as file:
-            mapping = yaml.load(file, _UniqueKeyLoader)
+        with open(path, "rb") as file:
+            content = file.read()
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        byte = error.object[error.start]
-        raise ConfigError(f"{path}: not text: byte 0x{byte:02x}; allowed: UTF-8") from None
+    try:
+        mapping = yaml.load(_as_text(content, path), _UniqueKeyLoader)
     except RecursionError:
         raise ConfigError(f"{path}: not valid YAML: too many levels") from None
-    except (yaml.YAMLError, ValueError) as error:
-        # Such as a date with month 13, which is no YAMLError.
+    except yaml.reader.ReaderError as error:
+        line = content.decode(errors="replace")[: error.position].count("\n") + 1
+        raise ConfigError(
+            f"{path}: not valid YAML: line {line}: the character {chr(error.character)!a} is not "
+            "allowed; allowed: text"
+        ) from None
+    except yaml.YAMLError as error:
         hint = "; allowed: spaces, no tabs" if "'\\t'" in str(error) else ""
         raise ConfigError(f"{path}: not valid YAML: {_one_line(error)}{hint}") from None
     if mapping is None:
@@ -73,6 +83,22 @@ def with_files_found(mapping, source="configuration", folders=(), strict=True):
     where = f"{source}: extended"
     found = extended.with_files_found(filled["extended"], where, folders, strict)
     return filled | {"extended": found}
+
+
+def _as_text(content, path):
+    """Bytes as a stream that knows its name; raises ConfigError for what is not UTF-8."""
+    try:
+        text = io.StringIO(content.decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        utf_16 = content[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+        hint = ", and this seems to be UTF-16" if utf_16 else ""
+        byte = content[error.start]
+        raise ConfigError(
+            f"{path}: line {line}: not text: byte 0x{byte:02x}; allowed: UTF-8{hint}"
+        ) from None
+    text.name = str(path)  # what the parser calls it
+    return text
 
 
 def from_mapping(mapping, source="configuration", ask_solver=True, folders=()):
@@ -195,9 +221,10 @@ def _methods(given, where):
     if given is None:
         return methods.names()
     for i, text in enumerate(_once(given, f"{where}.methods")):
-        problem = methods.refusal(text)
-        if problem:
-            raise ConfigError(f"{where}.methods[{i}]: {problem}")
+        try:
+            methods.check(text)
+        except InputError as error:
+            raise ConfigError(f"{where}.methods[{i}]: {error.value!r}: {error.allowed}") from None
     return tuple(given)
 
 
@@ -213,15 +240,39 @@ def _one_line(text):
 
 
 class _UniqueKeyLoader(yaml.SafeLoader):
-    """YAML silently keeps the last of two equal keys; here that is an error."""
+    """YAML silently keeps the last of two equal keys; here that is an error.
 
-    def construct_mapping(self, node, deep=False):
+    A key beside a merged mapping (<<) may replace one of it: that is what merging is for.
+    """
+
+    def __init__(self, stream):
+        super().__init__(stream)
+        self._checked = []
+
+    def flatten_mapping(self, node):
+        if not any(node is other for other in self._checked):  # afterwards it has what is merged
+            self._checked.append(node)
+            self._refuse_twice(node)
+        super().flatten_mapping(node)
+
+    def _refuse_twice(self, node):
         seen = set()
         for key_node, _ in node.value:
-            key = self.construct_object(key_node, deep=True)
-            if key_node.tag != "tag:yaml.org,2002:merge" and str(key) in seen:
+            if key_node.tag == "tag:yaml.org,2002:merge":
+                continue
+            key = str(self.construct_object(key_node, deep=True))
+            if key in seen:
                 raise yaml.constructor.ConstructorError(
                     None, None, f"the key {key} occurs twice", key_node.start_mark
                 )
-            seen.add(str(key))
-        return super().construct_mapping(node, deep)
+            seen.add(key)
+
+    def construct_object(self, node, deep=False):
+        try:
+            return super().construct_object(node, deep)
+        except (yaml.YAMLError, RecursionError):
+            raise
+        except Exception as error:  # such as a date with month 13, or !!bool before a name
+            raise yaml.constructor.ConstructorError(
+                None, None, f"{node.tag.rpartition(':')[2]}: {error}", node.start_mark
+            ) from None

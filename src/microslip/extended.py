@@ -110,21 +110,27 @@ def refuse_unsolvable(given, where):
     """Raise ConfigError where the solver refuses one of the Sweeps; where: as above."""
     for sweep in given:
         try:
-            _ask_solver(sweep)
-        except ValueError as error:
-            # It begins with the name of an argument, which is that of the key, and its value.
-            key, _, rest = str(error).partition(" = ")
-            raise ConfigError(f"{where}.{sweep.name}.{key}: {rest}") from None
+            _ask_solver(sweep, f"{where}.{sweep.name}")
+        except InputError as error:  # its arguments have the names of the keys
+            line = f"{where}.{sweep.name}.{error.argument}: {error.value!r}: {error.allowed}"
+            raise ConfigError(" ".join(line.split())) from None
+        except ConfigError:
+            raise
+        except ValueError as error:  # what reads a file may say it in its own words
+            line = f"{where}.{sweep.name}: {error}"
+            raise ConfigError(" ".join(line.split())) from None
 
 
-def _ask_solver(sweep):
-    """Raise ValueError, in the solver's words, for what it does not know or do."""
+def _ask_solver(sweep, where):
+    """Raise InputError, in the solver's words, for what it does not know or do; ConfigError for an
+    amplitude that is missing, or too much."""
     scene = _scene_of(sweep)
     if scene.periodic and sweep.amplitude is None:
-        raise ValueError(f"amplitude = missing; required for {scene.name}")
+        raise ConfigError(f"{where}.amplitude: missing; required for {scene.name}")
     if sweep.amplitude is not None and not scene.periodic:
-        raise ValueError(
-            f"amplitude = {list(sweep.amplitude)} is not allowed; {scene.name} has no amplitude"
+        raise ConfigError(
+            f"{where}.amplitude: {list(sweep.amplitude)} is not allowed; {scene.name} has no "
+            "amplitude"
         )
     if sweep.model != "auto":
         from .choice import choose_model

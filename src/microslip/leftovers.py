@@ -8,15 +8,15 @@ somebody's own.
 
 from __future__ import annotations
 
-import argparse
 import re
-import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from . import cache, config, sweep
-from .plan import Plan
-from .settings import ConfigError, Configuration
+from microslip import cache, config, sweep
+from microslip.command_line import OneLineParser
+from microslip.plan import Plan
+from microslip.settings import ConfigError, Configuration
+from microslip.terminal import complain
 
 RECORD = re.compile(r"[0-9a-f]{64}\.json")
 BATCH = re.compile(r"[0-9a-f]{16}\.json")
@@ -92,7 +92,7 @@ def main(arguments: list[str]) -> int:
         if options.delete:
             remove(path for paths in found.values() for path in paths)
     except (ConfigError, cache.CacheError) as error:
-        print(f"microslip gc: {error}", file=sys.stderr)
+        complain(f"microslip gc: {error}")
         return 2
     return 0
 
@@ -116,7 +116,7 @@ def _say(found, folder, deletes, lists):
 
 
 def _parser():
-    parser = argparse.ArgumentParser(
+    parser = OneLineParser(
         prog="microslip gc",
         description="List points, batches, datasets and figures in a folder of results that none "
         "of the configurations asks for, with this version of the solver. Points that only the "

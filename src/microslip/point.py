@@ -12,7 +12,8 @@ import numpy as np
 from microslip.accuracy import certify
 from microslip.approach import run_safely
 from microslip.choice import choose_model, closed_form, method_refusal, no_vibration, plan
-from microslip.methods import SHIPPED, method_named, missing
+from microslip.errors import InputError
+from microslip.methods import SHIPPED, method_named, refuse_missing
 from microslip.scenes import read_otherwise, scene_named
 from microslip.simulate import simulate
 from microslip.static_run import simulate_static
@@ -102,14 +103,14 @@ def solve(
     runs, beyond which a point is given up; progress: called with the Resolution of every run before
     it starts.
     Returns a Result; ``converged`` is False, with the reason, where the tolerance was not met.
-    Raises ValueError, naming the argument, for input out of range or a model that does not apply.
+    Raises InputError, naming the argument, for input out of range or a model that does not apply.
     """
     kind, velocity, amplitude, poisson = checked_point(
         scene, velocity, amplitude, poisson, pressure
     )
     tolerance, cells, steps = checked_accuracy(tolerance, cells, steps)
     if not most_work > 0.0:
-        raise ValueError(f"most_work = {most_work!r}: allowed is a number above 0")
+        raise InputError("most_work", most_work, "allowed is a number above 0")
     name, how = choose_model(kind, poisson, model), method_named(method)
     _refuse_method(kind, name, method, how)
     started = time.perf_counter()
@@ -192,48 +193,48 @@ def _within(kind, mu):
 
 
 def checked_point(scene, velocity, amplitude, poisson, pressure="hertz"):
-    """Scene record and numbers of a point; raises ValueError naming the argument at fault."""
+    """Scene record and numbers of a point; raises InputError naming the argument at fault."""
     kind = scene_named(scene, pressure)
     velocity = _number("velocity", velocity, 0.0, LARGEST["velocity"])
     poisson = _number("poisson", poisson, 0.0, 0.5)
     if kind.periodic:
         if amplitude is None:
-            raise ValueError(f"amplitude = None: {kind.name} needs an amplitude >= 0")
+            raise InputError("amplitude", None, f"{kind.name} needs an amplitude >= 0")
         amplitude = _number("amplitude", amplitude, 0.0, LARGEST["amplitude"])
     elif amplitude is not None:
-        raise ValueError(f"amplitude = {amplitude}: {kind.name} has no amplitude")
+        raise InputError("amplitude", amplitude, f"{kind.name} has no amplitude")
     return kind, velocity, amplitude, poisson
 
 
 def checked_accuracy(tolerance, cells, steps):
-    """Tolerance and imposed resolution; raises ValueError naming the argument at fault."""
+    """Tolerance and imposed resolution; raises InputError naming the argument at fault."""
     tolerance = _number("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
     return tolerance, _count("cells", cells, 4), _count("steps", steps, 8)
 
 
 def _refuse_method(kind, model, method, how):
-    """Raise ValueError where a method, by name and as a method.Method, has no part in a solve."""
-    if missing(method):
-        raise ValueError(missing(method))
+    """Raise InputError where a method, by name and as a method.Method, has no part in a solve."""
+    refuse_missing(method)
     refusal = method_refusal(kind, model, how)
     if not refusal and how.run is not None:
         refusal = "it is one run, which cannot be refined"
     if refusal:
-        raise ValueError(
-            f"method = {method!r}: does not apply to {kind.name}, model {model}: {refusal}"
+        raise InputError(
+            "method", method, f"does not apply to {kind.name}, model {model}: {refusal}"
         )
 
 
 def _number(name, value, low, high=math.inf):
     if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
-        raise ValueError(f"{name} = {value!r}: allowed is a number")
-    value = float(value)
-    if not (math.isfinite(value) and low <= value <= high):
+        raise InputError(name, value, "allowed is a number")
+    try:
+        real = float(value)
+    except OverflowError:  # a whole number of more than 308 digits
+        real = math.inf
+    if not (math.isfinite(real) and low <= real <= high):
         upper = f" and at most {high:g}" if high < math.inf else ""
-        raise ValueError(
-            f"{name} = {value!r}: allowed is a finite number of at least {low:g}{upper}"
-        )
-    return value
+        raise InputError(name, value, f"allowed is a finite number of at least {low:g}{upper}")
+    return real
 
 
 def _count(name, value, low):
@@ -241,12 +242,12 @@ def _count(name, value, low):
         return None
     whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
     if not whole or not low <= value <= LARGEST[name]:
-        raise ValueError(
-            f"{name} = {value!r}: allowed is a whole number of at least {low} and at most "
-            f"{LARGEST[name]:g}"
+        most = f"{LARGEST[name]:g}"
+        raise InputError(
+            name, value, f"allowed is an even whole number of at least {low} and at most {most}"
         )
     if value % 2:
-        raise ValueError(f"{name} = {value!r}: allowed is an even number (half of it is run, too)")
+        raise InputError(name, value, "allowed is an even number (half of it is run, too)")
     return int(value)
 
 

@@ -15,6 +15,7 @@ from pkgutil import iter_modules
 import numpy as np
 
 from microslip import motions, parameters
+from microslip.errors import InputError
 from microslip.motions.bore import SCENE as BORE
 from microslip.motions.continuous_bore import SCENE as CONTINUOUS_BORE
 from microslip.motions.longitudinal import SCENE as LONGITUDINAL
@@ -50,7 +51,7 @@ for _folder in list(motions.__path__):
 def scene_named(name, pressure=HERTZ.name):
     """The scene of this name, or of a family for the numbers that follow its name, such as
     "elliptic:forward=0.5,phase=90", under the pressure of this name (see pressures.pressure_named).
-    Raises ValueError saying what is allowed."""
+    Raises InputError saying what is allowed."""
     scene = _motion_named(name)
     return scene if pressure == HERTZ.name else _under(scene, pressure_named(pressure))
 
@@ -77,7 +78,8 @@ def _motion_named(name):
     if isinstance(name, str) and name in SCENES:
         return SCENES[name]
     if not isinstance(name, str):
-        raise ValueError(f"scene = {name!r}: allowed is one of {', '.join([*SCENES, *FAMILIES])}")
+        known = ", ".join([*SCENES, *FAMILIES])
+        raise InputError("scene", name, f"allowed is one of {known}")
     return _of_family(name)
 
 
@@ -87,9 +89,7 @@ def _of_family(name):
     family, numbers = parameters.split(name, "scene", [*SCENES, *FAMILIES])
     module = FAMILIES.get(family)
     defaults = module.DEFAULTS if module else {}
-    problem = parameters.unknown(name, "scene", numbers, list(defaults))
-    if problem:
-        raise ValueError(problem)
+    parameters.refuse_unknown(name, "scene", numbers, list(defaults))
     given = {key: value for key, value in sorted(numbers.items()) if value != defaults[key]}
     words = ",".join(f"{key}={value:.12g}" for key, value in given.items())
     return module.scene(f"{family}:{words}" if words else family, **(defaults | numbers))

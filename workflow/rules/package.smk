@@ -1,6 +1,7 @@
 # The package, before anything else needs it, and how bad input ends a run.
 
 import os
+import signal
 import sys
 from contextlib import contextmanager
 from pathlib import Path
@@ -32,3 +33,17 @@ def refused_in_one_line(origin):
         sys.exit(f"Error in {error}")
     except cache.CacheError as error:
         sys.exit(f"Error in {origin}: results: {error}")
+
+
+# Snakemake waits for ever with no cores, and begins jobs with less than none.
+for option in ("cores", "nodes"):
+    count = getattr(workflow.resource_settings, option)
+    if workflow.is_main_process and count is not None and count < 1:
+        name = {"nodes": "jobs"}.get(option, option)
+        sys.exit(f"Error in --{name}: {count} is not allowed; allowed: a whole number >= 1, or all")
+
+# A terminal that is closed ends Snakemake as SIGTERM does: no new jobs, and no lock stays behind.
+# Jobs do not inherit this, and end at once.
+if workflow.is_main_process and hasattr(signal, "SIGHUP"):
+    if signal.getsignal(signal.SIGHUP) == signal.SIG_DFL:  # not so under nohup
+        signal.signal(signal.SIGHUP, lambda *_: signal.raise_signal(signal.SIGTERM))

@@ -18,6 +18,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from microslip import parameters
+from microslip.errors import InputError
 
 SHIPPED = "shipped"
 
@@ -31,36 +32,48 @@ def names():
 
 
 def split(text):
-    """Name and numbers (dict) of a method; raises ValueError if the text cannot be read."""
+    """Name and numbers (dict) of a method; raises InputError if the text cannot be read."""
     return parameters.split(text, "method", names())
 
 
 def refusal(text):
     """Why a text names no method, as one line; "" if it does.  Imports no solver."""
     try:
-        name, numbers = split(text)
-    except ValueError as error:
+        check(text)
+    except InputError as error:
         return str(error)
-    return parameters.unknown(text, "method", numbers, _parameters(name))
+    return ""
+
+
+def check(text):
+    """Raise InputError where a text names no method.  Imports no solver."""
+    name, numbers = split(text)
+    parameters.refuse_unknown(text, "method", numbers, _parameters(name))
 
 
 def missing(text):
     """Why a method cannot run here, as one line: the package that it requires is not installed.
 
-    "" if it can.  Imports neither the solver nor the package.  Raises ValueError as ``split``.
+    "" if it can.  Imports neither the solver nor the package.  Raises InputError as ``split``.
     """
+    try:
+        refuse_missing(text)
+    except InputError as error:
+        return str(error)
+    return ""
+
+
+def refuse_missing(text):
+    """Raise InputError where the package that a method requires is not installed, see above."""
     name, _ = split(text)
     package = declared(name, "requires")
-    if not package or find_spec(package) is not None:
-        return ""
-    return f"method = {text!r}: needs the package {package}, which is not installed"
+    if package and find_spec(package) is None:
+        raise InputError("method", text, f"needs the package {package}, which is not installed")
 
 
 def method_named(text):
-    """The method.Method that a text names; raises ValueError, with what is allowed, if none."""
-    problem = refusal(text)
-    if problem:
-        raise ValueError(problem)
+    """The method.Method that a text names; raises InputError, with what is allowed, if none."""
+    check(text)
     from dataclasses import replace
 
     name, numbers = split(text)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from microslip import parameters
+from microslip.errors import InputError
 from microslip.path import HALF_PERIOD
 from microslip.scene import Scene, stick_focus
 
@@ -32,11 +33,11 @@ _LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
 
 
 def scene(name, forward, lateral, phase, forward_cycles, lateral_cycles):
-    """The Scene of these numbers; raises ValueError for shares below 0, none at all, and cycles
+    """The Scene of these numbers; raises InputError for shares below 0, none at all, and cycles
     that are no whole numbers."""
     parameters.refuse_shares(name, "scene", {"forward": forward, "lateral": lateral})
     if max(forward, lateral) == 0.0:
-        raise ValueError(f"scene = {name!r}: allowed is forward or lateral above 0")
+        raise InputError("scene", name, "allowed is forward or lateral above 0")
     cycles = {"forward_cycles": forward_cycles, "lateral_cycles": lateral_cycles}
     parameters.refuse_counts(name, "scene", cycles, MOST_CYCLES)
     lead = np.deg2rad(phase % 360.0)

@@ -15,6 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from microslip import hertz, parameters, pulsating
+from microslip.errors import InputError
 from microslip.motions.elliptic import MOST_CYCLES
 from microslip.scene import Scene, within_rings
 
@@ -51,7 +52,7 @@ def scene(
     forward_cycles,
     angle_cycles,
 ):
-    """The Scene of these numbers; raises ValueError for shares out of 0..1, where neither or both
+    """The Scene of these numbers; raises InputError for shares out of 0..1, where neither or both
     of load and indentation oscillate, and for cycles that are no whole numbers."""
     cycles = {
         "normal_cycles": normal_cycles,
@@ -135,9 +136,9 @@ def scene(
 def _check(name, shares, cycles):
     parameters.refuse_shares(name, "scene", shares)
     if shares["load"] == shares["indentation"] == 0.0:
-        raise ValueError(f"scene = {name!r}: allowed is load or indentation above 0")
+        raise InputError("scene", name, "allowed is load or indentation above 0")
     if shares["indentation"] > 0.0 and shares["load"] != DEFAULTS["load"]:
-        raise ValueError(
-            f"scene = {name!r}: load = {shares['load']:g}: allowed is no load beside an indentation"
+        raise InputError(
+            "scene", name, f"load = {shares['load']:g}: allowed is no load beside an indentation"
         )
     parameters.refuse_counts(name, "scene", cycles, MOST_CYCLES)

@@ -3,7 +3,7 @@
 A pressure is one ``Pressure`` record (see record.py for it and for the working units), in a file
 of its name, as PRESSURE.  A family gives one for numbers that follow its name: its file holds
 DEFAULTS, the numbers and their values if they are not given, and pressure(name, **numbers), which
-raises ValueError for numbers out of range.  A source gives one for a text of its own that follows
+raises InputError for numbers out of range.  A source gives one for a text of its own that follows
 a word and a colon: its file holds SOURCE, the word, and pressure(name).
 """
 
@@ -14,6 +14,7 @@ from importlib import import_module
 from pkgutil import iter_modules
 
 from microslip import parameters
+from microslip.errors import InputError
 from microslip.pressures.hertz import PRESSURE as HERTZ
 from microslip.pressures.record import Pressure
 
@@ -49,21 +50,19 @@ for _folder in list(__path__):
 
 def pressure_named(name):
     """The Pressure of this name, of a family for the numbers that follow its name, such as
-    "power:exponent=1", or from a source, as in "file:measured.csv".  Raises ValueError saying what
+    "power:exponent=1", or from a source, as in "file:measured.csv".  Raises InputError saying what
     is allowed."""
     if isinstance(name, str) and name in PRESSURES:
         return PRESSURES[name]
     known = [*PRESSURES, *FAMILIES, *SOURCES]
     if not isinstance(name, str):
-        raise ValueError(f"pressure = {name!r}: allowed is one of {', '.join(known)}")
+        raise InputError("pressure", name, f"allowed is one of {', '.join(known)}")
     word, colon, _ = name.partition(":")
     if colon and word in SOURCES:
         return SOURCES[word].pressure(name)
     family, numbers = parameters.split(name, "pressure", known)
     module = FAMILIES.get(family)
-    problem = parameters.unknown(name, "pressure", numbers, list(module.DEFAULTS if module else ()))
-    if problem:
-        raise ValueError(problem)
+    parameters.refuse_unknown(name, "pressure", numbers, list(module.DEFAULTS if module else ()))
     return _of_family(family, tuple(sorted(numbers.items())))
 
 

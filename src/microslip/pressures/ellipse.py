@@ -6,6 +6,7 @@ import numpy as np
 from scipy.special import ellipk
 
 from microslip import hertz
+from microslip.errors import InputError
 from microslip.pressures.record import Pressure
 from microslip.pressures.squares import of_corner_loads
 
@@ -18,15 +19,15 @@ def pressure(name, ratio, across):
 
     across: 0 if the long axis is the forward one, 1 if it is the lateral one.  u_lim is the
     displacement under full slip at the centre, so that G* = 3 K / (2 pi), K the complete elliptic
-    integral of the eccentricity: 3/4 for a circle.  Raises ValueError for a ratio outside 0.05..1
+    integral of the eccentricity: 3/4 for a circle.  Raises InputError for a ratio outside 0.05..1
     and another ``across``.
     """
     if not SMALLEST_RATIO <= ratio <= 1.0:
-        raise ValueError(
-            f"pressure = {name!r}: ratio = {ratio:g}: allowed is a number in {SMALLEST_RATIO:g}..1"
+        raise InputError(
+            "pressure", name, f"ratio = {ratio:g}: allowed is a number in {SMALLEST_RATIO:g}..1"
         )
     if across not in (0.0, 1.0):
-        raise ValueError(f"pressure = {name!r}: across = {across:g}: allowed is 0 or 1")
+        raise InputError("pressure", name, f"across = {across:g}: allowed is 0 or 1")
     axes = (ratio, 1.0) if across else (1.0, ratio)
     return Pressure(
         name=name,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from microslip.errors import InputError
 from microslip.pressures.indenters import indenter
 
 DEFAULTS = {"exponent": 2.0}
@@ -11,11 +12,12 @@ SMALLEST, LARGEST = 1.0, 100.0
 
 
 def pressure(name, exponent):
-    """The Pressure of an indenter r^exponent; raises ValueError for one below 1 or above 100."""
+    """The Pressure of an indenter r^exponent; raises InputError for one below 1 or above 100."""
     if not SMALLEST <= exponent <= LARGEST:
-        raise ValueError(
-            f"pressure = {name!r}: exponent = {exponent:g}: allowed is a number in "
-            f"{SMALLEST:g}..{LARGEST:g}"
+        raise InputError(
+            "pressure",
+            name,
+            f"exponent = {exponent:g}: allowed is a number in {SMALLEST:g}..{LARGEST:g}",
         )
     return indenter(
         name,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from microslip.errors import InputError
 from microslip.pressures.indenters import indenter
 
 DEFAULTS = {"flat": 0.8}
@@ -15,12 +16,13 @@ def pressure(name, flat):
     """The Pressure of a punch whose flat end reaches up to ``flat`` contact radii.
 
     Equivalent plane profile (Ciavarella 1999): D(c) ~ c (sqrt(c^2 - b^2) - b arccos(b/c)) for c
-    above b.  Raises ValueError for a flat end outside 0..0.99.
+    above b.  Raises InputError for a flat end outside 0..0.99.
     """
     if not 0.0 <= flat <= LARGEST_FLAT:
-        raise ValueError(
-            f"pressure = {name!r}: flat = {flat:g}: allowed is a share of the contact radius in "
-            f"0..{LARGEST_FLAT:g}"
+        raise InputError(
+            "pressure",
+            name,
+            f"flat = {flat:g}: allowed is a share of the contact radius in 0..{LARGEST_FLAT:g}",
         )
 
     def rises(c):

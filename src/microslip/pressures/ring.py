@@ -9,6 +9,7 @@ from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 from scipy.special import ellipkm1
 
+from microslip.errors import InputError
 from microslip.pressures.record import Pressure, of_radii
 from microslip.pressures.squares import round_loads
 
@@ -21,12 +22,14 @@ def pressure(name, inner):
     """The Pressure sqrt((r - b)(1 - r)) on the ring from b = ``inner`` to 1.
 
     That is Hertz's pressure of a line contact laid around a circle, which a slender torus comes
-    close to; of a wide ring it is an assumption.  Raises ValueError for b outside 0.05..0.95.
+    close to; of a wide ring it is an assumption.  Raises InputError for b outside 0.05..0.95.
     """
     if not SMALLEST <= inner <= LARGEST:
-        raise ValueError(
-            f"pressure = {name!r}: inner = {inner:g}: allowed is a share of the outer radius in "
-            f"{SMALLEST:g}..{LARGEST:g}"
+        raise InputError(
+            "pressure",
+            name,
+            f"inner = {inner:g}: allowed is a share of the outer radius in "
+            f"{SMALLEST:g}..{LARGEST:g}",
         )
     half, middle = 0.5 * (1.0 - inner), 0.5 * (1.0 + inner)
     # Integral of sqrt((r - b)(1 - r)) 2 pi r dr, r = middle - half cos(t)

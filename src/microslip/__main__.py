@@ -1,0 +1,31 @@
+"""The command ``microslip``, also as ``python -m microslip``.
+
+Takes care of Ctrl-C before anything else is imported, so that as little as can be is left to
+Python's own way, a traceback.
+"""
+
+import signal
+import sys
+
+
+def main():
+    """Run this process as the command; returns the exit code, see microslip.cli.main."""
+    stoppable = sys.argv[1:2] != ["sweep"]  # whose signals are for Snakemake
+    asked = signal.getsignal(signal.SIGINT)
+    if asked != signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)  # until there is something better
+    from microslip import terminal
+
+    if not stoppable:
+        signal.signal(signal.SIGINT, asked)
+    return terminal.run(_command, stoppable=stoppable)
+
+
+def _command():
+    from microslip import cli
+
+    return cli.main(sys.argv[1:])
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,234 @@
+"""How a command ends: Ctrl-C, closed pipes, full devices, streams that it is started without."""
+
+import contextlib
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import microslip
+from microslip.friction import JIT
+from microslip.models.sectors import FUSED
+
+PACKAGE = Path(microslip.__file__).parent
+COMMAND = [sys.executable, "-m", "microslip"]
+STEADY = ["point", "continuous-bore", "--velocity", "1"]
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(PACKAGE.parent)}
+INTERRUPTED = (130, "", "microslip: interrupted\n")
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals and devices of POSIX")
+
+
+def shell(line, **changes):
+    """Run a line of bash, in which $M stands for the command; returns what subprocess returns."""
+    return subprocess.run(
+        ["bash", "-c", line],
+        env={**ENVIRONMENT, "M": " ".join(COMMAND), **changes},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+
+
+# Ctrl-C
+
+
+def stopped(command, ready, number=signal.SIGINT):
+    """Exit code, output and errors of a process that gets a signal once it is ready.
+
+    ready: function of the process that says so.  What goes on for a minute afterwards is killed.
+    """
+    options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, env=ENVIRONMENT, **options) as process:
+        try:
+            while process.poll() is None and not ready(process):
+                time.sleep(0.02)
+            process.send_signal(number)
+            out, errors = process.communicate(timeout=60)
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                process.kill()
+    return process.returncode, out, errors
+
+
+def loaded(part):
+    """Whether a library is loaded, as Linux shows it: the process has come so far."""
+
+    def ready(process):
+        with contextlib.suppress(OSError):
+            return part in Path(f"/proc/{process.pid}/maps").read_text()
+        return True
+
+    return ready
+
+
+HARD = {
+    "point": "bore --velocity 1e-3 --amplitude 0.5 --tolerance 1e-5",
+    "point on squares": "transverse --velocity 0.01 --amplitude 0.9 --poisson 0.3 "
+    "--model cartesian --tolerance 1e-6",
+    "predict": "bore --material steel --radius 5mm --load 10N --mu 0.3 --speed 0.01mm/s "
+    "--amplitude 0.2deg --frequency 100Hz --tolerance 1e-5",
+}
+
+
+@pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="needs Linux")
+@pytest.mark.parametrize("moment", ["_multiarray_umath", "llvmlite", "special_ufuncs"])
+@pytest.mark.parametrize("case", HARD)
+def test_an_interrupt_is_one_line_also_while_the_solver_is_loaded(case, moment):
+    command = [*COMMAND, case.partition(" ")[0], *HARD[case].split()]
+    assert stopped(command, loaded(moment)) == INTERRUPTED
+
+
+# Compiled code that holds no lock and lets no handler of Python run, as a long kernel.
+KERNEL = """
+import hashlib
+from microslip import terminal
+
+def command():
+    open({ready!r}, "w").close()
+    hashlib.pbkdf2_hmac("sha256", b"", b"", 2**31 - 1)
+    return 0
+
+terminal.run(command)
+"""
+
+
+@pytest.mark.parametrize(
+    ("number", "code", "word"),
+    [
+        (signal.SIGINT, 130, "interrupted"),
+        (signal.SIGTERM, 143, "terminated"),
+        (signal.SIGHUP, 129, "terminal closed"),
+    ],
+)
+def test_a_signal_ends_a_command_in_the_middle_of_a_kernel(number, code, word, tmp_path):
+    ready = tmp_path / "ready"
+    command = [sys.executable, "-c", KERNEL.format(ready=str(ready))]
+    found = stopped(command, lambda _: ready.exists(), number)
+    assert found == (code, "", f"microslip: {word}\n")
+
+
+def test_kernels_hold_no_lock_that_would_keep_an_interrupt_waiting():
+    assert JIT["nogil"] is FUSED["nogil"] is True
+    found = [
+        line
+        for path in PACKAGE.rglob("*.py")
+        for line in re.findall(r"^ *@(?:numba\.)?n?jit\b.*", path.read_text(), re.MULTILINE)
+    ]
+    assert found and [line for line in found if not re.search(r"\*\*(JIT|FUSED)\)", line)] == []
+
+
+WRITING = """
+import sys, time
+from microslip import cache, terminal
+
+def command():
+    with cache.writing_beside(sys.argv[1]) as beside:
+        beside.write_text("half")
+        time.sleep(1000)
+
+terminal.run(command)
+"""
+
+
+def test_an_interrupt_leaves_no_file_half_written(tmp_path):
+    command = [sys.executable, "-c", WRITING, str(tmp_path / "point.json")]
+    assert stopped(command, lambda _: list(tmp_path.iterdir())) == INTERRUPTED
+    assert list(tmp_path.iterdir()) == []
+
+
+SWALLOWING = """
+import time
+from microslip import terminal
+
+class Deaf:
+    def __del__(self):
+        open({ready!r}, "w").close()
+        time.sleep(1000)
+
+def command():
+    try:
+        Deaf()
+        time.sleep(1000)
+    except BaseException:
+        raise RuntimeError("something else")
+
+terminal.run(command)
+"""
+
+
+def test_an_interrupt_that_a_library_swallows_is_one(tmp_path):
+    """Python cannot raise it while it tidies up, and says so in three lines."""
+    ready = tmp_path / "ready"
+    command = [sys.executable, "-c", SWALLOWING.format(ready=str(ready))]
+    assert stopped(command, lambda _: ready.exists()) == INTERRUPTED
+
+
+# Pipes, devices and streams
+
+FULL = "microslip: cannot write to standard output: No space left on device\n"
+CLOSED = "microslip: cannot write to standard output: it is closed\n"
+BAD = "microslip point continuous-bore: --nu = "
+ANSWER = "$M point continuous-bore --velocity 1"
+
+# A line of bash, its exit code, what is on standard error; the first of a pipe counts.
+ENDINGS = [
+    (f"{ANSWER} | true", 141, ""),
+    (f"{ANSWER} --json | true", 141, ""),
+    ("sleep 0.1 | $M --help | true", 141, ""),
+    ("$M sweep --help | true", 141, ""),
+    (f"PYTHONUNBUFFERED=1 {ANSWER} | true", 141, ""),
+    (f"{ANSWER} > /dev/full", 74, FULL),
+    (f"{ANSWER} --json > /dev/full", 74, FULL),
+    (f"PYTHONUNBUFFERED=1 {ANSWER} > /dev/full", 74, FULL),
+    ("$M --help > /dev/full", 74, FULL),
+    ("PYTHONUNBUFFERED=1 $M point bore --help > /dev/full", 74, FULL),
+    ("$M --version > /dev/full", 74, FULL),
+    ("$M sweep --help > /dev/full", 74, FULL),
+    (f"{ANSWER} >&-", 74, CLOSED),
+    (f"{ANSWER} <&- >&-", 74, CLOSED),
+    (f"{ANSWER} --nu 7 >&-", 2, f"{BAD}'7': allowed is a finite number of at least 0"),
+    (f"{ANSWER} <&- >&- 2>&-", 74, ""),
+    (f"{ANSWER} --nu 7 2>&-", 2, ""),
+    (f"{ANSWER} --nu 7 2> /dev/full", 2, ""),
+    (f"LC_ALL=C {ANSWER} --nu \N{MINUS SIGN}1", 2, BAD),
+    (f"PYTHONIOENCODING=ascii {ANSWER} --nu \N{ARABIC-INDIC DIGIT THREE}", 2, rf"{BAD}'\u0663'"),
+    (f"{ANSWER} --nu $'\\xff'", 2, rf"{BAD}'\udcff': allowed is a number"),
+    (f"{ANSWER} --nu $'1\\e[31m'", 2, rf"{BAD}'1\x1b[31m': allowed is a number"),
+]
+
+
+@pytest.mark.parametrize(("line", "code", "said"), ENDINGS)
+def test_a_stream_that_is_closed_or_full_is_one_line_at_most(line, code, said):
+    done = shell(f"{line}; exit ${{PIPESTATUS[{int(line.startswith('sleep'))}]}}")
+    assert (done.returncode, done.stdout) == (code, "")
+    assert done.stderr.startswith(said) and done.stderr.count("\n") == bool(said)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        f"{ANSWER} <&-",
+        f"{ANSWER} 2>&-",
+        f"env -u HOME {ANSWER}",
+        f"TERM= COLUMNS=wide {ANSWER}",
+        f"LC_ALL=C PYTHONIOENCODING=ascii {ANSWER}",
+        f"cd $FOLDER && rmdir ../gone && {ANSWER}",
+    ],
+)
+def test_an_answer_needs_no_more_than_its_output(line, tmp_path):
+    (tmp_path / "gone").mkdir()
+    done = shell(line, FOLDER=str(tmp_path / "gone"))
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("mu_macro = 0.883573 +- ")  # Eq 21 at 1: 0.88357
+
+
+@pytest.mark.parametrize("columns", ["1", "10", "-5", "x", "100000"])
+@pytest.mark.parametrize("words", ["", "point", "point bore", "predict", "sweep"])
+def test_help_fits_into_any_width(words, columns):
+    done = shell(f"$M {words} --help", COLUMNS=columns)
+    assert (done.returncode, done.stderr) == (0, "") and "usage:" in done.stdout
