@@ -132,7 +132,7 @@ def test_verdict_is_that_of_the_plain_map(name):
     enough = find_periodic_state(Cycle(contact, path), start, TOLERANCE, STEP_TOLERANCE)
     assert enough.converged and enough.residual <= enough.distance <= TOLERANCE
     few = find_periodic_state(
-        Cycle(contact, path), start, TOLERANCE, STEP_TOLERANCE, max_periods=enough.periods - 1
+        Cycle(contact, path), start, TOLERANCE, STEP_TOLERANCE, most_laps=enough.laps - 1
     )
     assert not few.converged
     assert few.periods < enough.periods
@@ -147,7 +147,7 @@ def test_verdict_is_that_of_the_plain_map(name):
 
 
 def test_run_reports_what_was_not_reached(monkeypatch):
-    monkeypatch.setattr(microslip.simulate, "MAX_PERIODS", 2)
+    monkeypatch.setattr(microslip.simulate, "MOST_LAPS", 2)
     for scene, model, angles in ((BORE, "polar", 4), (TRANSVERSE, "radial", 1)):
         run = simulate(scene, 0.1, 1.0, 0.0, model, Resolution(6, angles, 8), TOLERANCE)
         assert not run.converged

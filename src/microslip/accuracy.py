@@ -17,8 +17,11 @@ one the base itself is refined.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
+
+import numpy as np
+
+from microslip.budget import Spent
 
 EXTRAPOLATION_SHARE = 0.6
 CHANGE_SHARE = 0.5
@@ -64,8 +67,10 @@ class Certified:
     """A number and what is wrong with it at most; forces over mu F_z.
 
     mu, torque: corrected means; errors: of mu by source (space, time, periodicity, solver);
-    torque_error: of the torque in space; finest: largest resolution used along each axis; the rest
-    sums up the effort of all runs.
+    torque_error: of the torque in space; finest: largest resolution used along each axis; periods:
+    of the longest run; iterations, work, effort, retried: of all runs; converged: whether every run
+    found its periodic state and nothing kept the refinement from going on, else reason says what;
+    periodic: the first of these alone.
     """
 
     mu: float
@@ -73,13 +78,14 @@ class Certified:
     errors: dict
     torque_error: float
     finest: object
-    periods: int
+    periods: float
     iterations: int
     work: int
     effort: int
     retried: int
     converged: bool
     reason: str
+    periodic: bool
 
     @property
     def error(self):
@@ -185,16 +191,30 @@ def _mixed(runs, chains, name):
     return both - one - other + base
 
 
-def certify(run, coarsest, axes, tolerance, most_work=math.inf):
+def certify(run, coarsest, axes, tolerance):
     """Refine until the estimated error is within ``tolerance``.
 
     run(resolution, guess) -> simulate.Run (guess: the run at the base, or None); coarsest:
-    motion.Resolution, for what is not refined; axes: the Axis to be refined; most_work: of all
-    runs together (see simulate.Run), beyond which nothing is refined any more.
-    Returns a Certified; converged is False, with the reason, where a run did not converge or the
-    estimate over a free axis stays too large.
+    motion.Resolution, for what is not refined; axes: the Axis to be refined.
+    Returns a Certified; converged is False, with the reason, where a run did not converge, the
+    estimate over a free axis stays too large, or a run raised budget.Spent: then it is what was
+    known before that run, NaN if that was nothing yet.
     """
     runs = _Runs(run, coarsest, axes)
+    known = None
+    try:
+        for known in _refined(runs, axes, tolerance):
+            pass
+    except Spent as spent:
+        still = "no error is known yet"
+        if known is not None:
+            still = f"the error is still {known.error:.1e}"
+        return replace(known or _nothing(coarsest), converged=False, reason=f"{spent}: {still}")
+    return known
+
+
+def _refined(runs, axes, tolerance):
+    """Yield a Certified whenever something is known, the last one when no more is to be done."""
     chains = {axis.name: _Chain(runs, axis) for axis in axes}
     rebased = 0
     while True:
@@ -207,9 +227,7 @@ def certify(run, coarsest, axes, tolerance, most_work=math.inf):
         reason = next((r.reason for r in runs.done.values() if not r.converged), "")
         if reason or sum(errors.values()) <= tolerance:
             break
-        if sum(r.work for r in runs.done.values()) > most_work:
-            reason = f"the budget of work is spent, the error still {sum(errors.values()):.1e}"
-            break
+        yield _summary(runs, chains, errors, "not refined any further")
         worst = max(left, key=left.get, default=None)
         cause = max(hidden, key=hidden.get)
         if hidden[cause] > left.get(worst, 0.0) and _can_rebase(chains, cause, rebased):
@@ -224,7 +242,14 @@ def certify(run, coarsest, axes, tolerance, most_work=math.inf):
             reason = f"the error over {worst} is still {left[worst]:.1e}"
             reason += f" at {chains[worst].levels[-1]}"
             break
-    return _summary(runs, chains, errors, reason)
+    yield _summary(runs, chains, errors, reason)
+
+
+def _nothing(coarsest):
+    """The Certified of a point of which no error is known yet."""
+    errors = dict.fromkeys((*SOURCES.values(), "periodicity", "solver"), np.inf)
+    none = replace(coarsest, cells=0, angles=0, steps=0)
+    return Certified(np.nan, np.nan, errors, np.inf, none, 0.0, 0, 0, 0, 0, False, "", False)
 
 
 def _can_rebase(chains, cause, rebased):
@@ -277,4 +302,5 @@ def _summary(runs, chains, errors, reason):
         retried=sum(r.retried for r in done),
         converged=not reason,
         reason=reason,
+        periodic=all(r.converged for r in done),
     )

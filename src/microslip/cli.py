@@ -51,6 +51,10 @@ def _real(text):
         raise argparse.ArgumentTypeError(f"{text!r} is not allowed; allowed: a number") from None
 
 
+def _real_or_none(text):
+    return None if text == "none" else _real(text)
+
+
 def _whole(text):
     try:
         return int(text)
@@ -141,10 +145,11 @@ def _add_options(parser):
     )
     parser.add_argument(
         "--tolerance",
-        type=_real,
+        type=_real_or_none,
         default=1e-3,
         metavar="T",
-        help="largest accepted error of mu_macro, absolute (1e-3)",
+        help="largest accepted error of mu_macro, absolute (1e-3); none, where cells and steps are "
+        "imposed: whatever their error is",
     )
     parser.add_argument(
         "--cells",
@@ -153,6 +158,12 @@ def _add_options(parser):
         help="impose N rings, or N x N squares (even, from 4 on)",
     )
     parser.add_argument("--steps", type=_whole, metavar="N", help="impose N steps a period (even)")
+    parser.add_argument(
+        "--time-limit",
+        type=_real,
+        metavar="SECONDS",
+        help="give up after so long, looked at between two marches; the answer is not kept then",
+    )
     parser.add_argument(
         "--method",
         default="shipped",
@@ -204,7 +215,7 @@ def _answer(options, progress):
     path = getattr(options, "path", None)
     scene = f"{options.scene}:{path}" if path else options.scene
     place = (scene, options.velocity, getattr(options, "amplitude", None))
-    names = ("pressure", "poisson", "model", "tolerance", "cells", "steps")
+    names = ("pressure", "poisson", "model", "tolerance", "cells", "steps", "time_limit")
     settings = {name: getattr(options, name) for name in names}
     if options.results is None:
         return solve(*place, **settings, method=options.method, progress=progress)

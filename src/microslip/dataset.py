@@ -44,7 +44,8 @@ def write_sweep(path, sweep, points, histories, settings):
     frame, axes = _frame(sweep, histories), _axes(sweep)
     scene, pressure = solver_names(sweep)
     title = sweep.title or f"Friction of a vibrated Hertz contact, scene {scene}"
-    about = {"scene": scene, "pressure": pressure, "tolerance": sweep.tolerance}
+    tolerance = np.nan if sweep.tolerance is None else sweep.tolerance
+    about = {"scene": scene, "pressure": pressure, "tolerance": tolerance}
     if sweep.group is not None:
         about["group"] = sweep.group
     versions = {canonical_json(record["versions"]) for record in histories}
