@@ -27,7 +27,6 @@ def sweeps(given, where):
         more = {key: settings[key] for key in ("pressure", "group")}
         more["title"] = settings["title"] or name
         found[name] = grids.grid_of(name, settings["scene"], settings, f"{where}.{name}", **more)
-        grids.refuse_static_model(found[name], f"{where}.{name}")
     return found
 
 

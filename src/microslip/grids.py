@@ -115,13 +115,3 @@ def _refuse_mismatch(sweep, where):
         raise ConfigError(
             f"{where}.poisson: {sweep.poisson[-1]:g} does not go with model radial; allowed: 0"
         )
-    refuse_static_model(sweep, where)
-
-
-def refuse_static_model(sweep, where):
-    """Raise ConfigError where a static limit is asked of a model by name."""
-    if sweep.velocity[0] == 0 and sweep.model != "auto":
-        raise ConfigError(
-            f"{where}.velocity: 0, the static limit, does not go with model {sweep.model}; "
-            "allowed: numbers > 0, or model auto"
-        )
