@@ -11,10 +11,11 @@ PACKAGE = Path(microslip.__file__).parent
 
 # From the ground up; modules on one line do not know each other.
 LAYERS = [
+    {"errors"},
     {"hertz", "parameters"},
     {"pressures"},
     {"theory", "masing", "bounds", "halfspace", "friction", "path", "indenter_limits", "depth"},
-    {"rings", "scene", "any_pressure", "frames", "pulsating"},
+    {"rings", "scene", "any_pressure", "frames", "pulsating", "budget", "result"},
     {"motions"},
     {"scenes"},
     {"models"},

@@ -9,7 +9,8 @@ import numpy as np
 
 from .keys import canonical_json
 
-# Variables over the sweep: name -> (type, long_name). 0 stands where a count does not apply.
+# Variables over the sweep: name -> (type, long_name). 0 stands where a count does not apply, NaN for
+# periods where nothing came out.
 POINT_VARIABLES = {
     "mu_macro": (float, "mean forward friction force over mu F_z"),
     "mu_macro_error": (float, "estimated error of mu_macro"),
@@ -18,13 +19,14 @@ POINT_VARIABLES = {
     "error_periodicity": (float, "part of mu_macro_error from the distance to the periodic state"),
     "error_solver": (float, "part of mu_macro_error from the iteration in each step"),
     "error_model": (float, "part of mu_macro_error from a closed form used in place of a run"),
-    "converged": (bool, "mu_macro_error is within the tolerance"),
+    "converged": (bool, "mu_macro_error is within the tolerance, if one is meant"),
     "cells": (np.int32, "rings, or squares across the contact"),
     "angles": (np.int32, "angular points on half a ring"),
     "steps_per_period": (np.int32, "time steps in a period"),
-    "periods": (np.int32, "half periods marched in the longest run"),
+    "periods": (float, "full periods marched in the longest run"),
     "iterations": (np.int32, "iterations of the step solver in all runs"),
     "work": (np.int64, "step solves times unknowns, summed over all runs"),
+    "effort": (np.int64, "iterations of the step solver times unknowns, summed over all runs"),
     "retried": (np.int32, "runs done again by safer steps, since they had not converged"),
     "model": (str, "contact model that was used"),
     "reason": (str, "why the point did not converge, empty if it did"),

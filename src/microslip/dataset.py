@@ -138,8 +138,8 @@ def _describe_axes(dataset, sweep):
 
 
 def _single_runs(sweep, records):
-    if not records:
-        return {}
+    if not records or any(record["result"].get("crashed") for record in records):
+        return {}  # see `report`
     if sweep.scene == "transverse":
         return _force_history(records[0])
     fields = [record for record in records if record["request"]["kind"] == "field"]

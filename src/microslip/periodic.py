@@ -12,9 +12,7 @@ from microslip import anderson, newton
 MOST_LAPS = 200
 
 
-def find_periodic_state(
-    cycle, start, tolerance, step_tolerance, most_laps=MOST_LAPS, inverse=None
-):
+def find_periodic_state(cycle, start, tolerance, step_tolerance, most_laps=MOST_LAPS, inverse=None):
     """March half periods until the state is periodic to ``tolerance`` (a force over mu F_z).
 
     cycle: cycle.Cycle, the map over half a period; start: state, shape of the contact; inverse:
