@@ -1,4 +1,4 @@
-"""What a point may take: work, which is the same everywhere, time, and the patience of who waits."""
+"""What a point may take: work, the same everywhere, time, and the patience of who waits."""
 
 import os
 import signal
@@ -10,7 +10,7 @@ import pytest
 import microslip
 from microslip import point
 from microslip.budget import Budget, Spent
-from microslip.models import interrupts
+from microslip.models import MODELS, interrupts
 from microslip.models.contact import forward_slip
 from microslip.motion import Motion, Resolution, build_contact
 from microslip.scenes import scene_named
@@ -41,9 +41,7 @@ def test_what_is_known_by_then_is_told():
     assert f"{part.mu_macro_error:.1e}" in part.reason
 
 
-@pytest.mark.parametrize(
-    "model", ["radial", "polar", "cartesian", "mdr", "dahl", "slider", "rigid"]
-)
+@pytest.mark.parametrize("model", MODELS)
 def test_every_point_has_a_bound(monkeypatch, model):
     """A finite one, far above what is needed here."""
     seen = []

@@ -203,8 +203,8 @@ def certify(run, coarsest, axes, tolerance):
     runs = _Runs(run, coarsest, axes)
     known = None
     try:
-        for known in _refined(runs, axes, tolerance):
-            pass
+        for found in _refined(runs, axes, tolerance):
+            known = found
     except Spent as spent:
         still = "no error is known yet"
         if known is not None:

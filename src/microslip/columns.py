@@ -9,8 +9,7 @@ import numpy as np
 
 from .keys import canonical_json
 
-# Variables over the sweep: name -> (type, long_name). 0 stands where a count does not apply, NaN for
-# periods where nothing came out.
+# Variables over the sweep: name -> (type, long_name). 0 stands where a count does not apply.
 POINT_VARIABLES = {
     "mu_macro": (float, "mean forward friction force over mu F_z"),
     "mu_macro_error": (float, "estimated error of mu_macro"),

@@ -16,6 +16,7 @@ import numpy as np
 from numba import njit
 
 from microslip.friction import JIT, extended, shrink
+from microslip.models.interrupts import BETWEEN_LOOKS, interrupted
 from microslip.models.ring_factors import (
     ON_BOUND,
     combine,
@@ -25,7 +26,6 @@ from microslip.models.ring_factors import (
     subtract,
     turning,
 )
-from microslip.models.interrupts import BETWEEN_LOOKS, interrupted
 from microslip.models.ring_kernels import solve_step, weighted_slip
 
 LONGEST_STRETCH = 3.0
@@ -216,8 +216,8 @@ def march(stiffness, whole, bounds, weight, path, state, known, tolerance, tange
     stages, n), or (1, n) where they do not change; path: (positions, stages, carry, end), see
     path.Path; state: (2, n); known: tractions of another march, at its start and after every stage,
     (1 + steps stages, 2, n), or empty.  Returns (end state, the tractions of this march, forces
-    (steps + 1, 3), residual sum, iterations, derivative of the end state (2 n, 2 n) or empty, whether
-    it was interrupted, which makes the rest worthless).
+    (steps + 1, 3), residual sum, iterations, derivative of the end state (2 n, 2 n) or empty,
+    whether it was interrupted, which makes the rest worthless).
     """
     positions, rigid, carry, end = path
     n, steps, stages = len(weight), rigid.shape[0], rigid.shape[1]
