@@ -168,3 +168,25 @@ def test_a_negative_number_with_an_exponent_is_a_number(capsys):
 def test_a_steady_scene_has_no_amplitude(capsys):
     assert cli.main(["point", "continuous-bore", "--velocity", "2", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["amplitude"] is None
+
+
+def test_exit_0_means_within_the_tolerance_at_an_imposed_resolution_too(capsys):
+    place = ["point", "transverse", "--velocity", "0.1", "--amplitude", "1", "--json"]
+    coarse = [*place, "--cells", "16", "--steps", "8"]
+    assert cli.main(coarse) == 1
+    said = json.loads(capsys.readouterr().out)
+    assert said["converged"] is False and said["mu_macro_error"] > said["tolerance"]
+    assert said["reason"].startswith("at the imposed resolution the error is ")
+    assert cli.main([*coarse, "--tolerance", "none"]) == 0
+    free = json.loads(capsys.readouterr().out)
+    assert free["converged"] is True and free["tolerance"] is None
+    assert free["mu_macro_error"] == said["mu_macro_error"]
+    assert cli.main([*place, "--tolerance", "none"]) == 2
+    assert "tolerance" in capsys.readouterr().err
+
+
+def test_a_time_limit_ends_a_point_as_not_converged(capsys):
+    slow = ["point", "transverse", "--velocity", "1e-9", "--amplitude", "0.5", "--json"]
+    assert cli.main([*slow, "--tolerance", "1e-6", "--time-limit", "1e-9"]) == 1
+    said = json.loads(capsys.readouterr().out)
+    assert said["exhausted"] == "time" and "time limit" in said["reason"]

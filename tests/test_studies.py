@@ -420,3 +420,48 @@ def test_an_exponent_is_that_of_large_sizes():
     assert fronts.exponent(sizes, values) == pytest.approx(2.0)
     assert math.isnan(fronts.exponent([1.0, 2.0], [1.0, 0.0]))
     assert math.isnan(fronts.exponent([], []))
+
+
+# Under a pressure
+
+CONE = "power:exponent=1"
+
+
+def test_a_trial_and_patches_take_the_pressure_that_is_asked_for(monkeypatch):
+    """A cone presses its middle harder than a sphere: another part of it sticks, other friction."""
+    place = {"scene": "transverse", "velocity": "0.1", "amplitude": "0.8", "poisson": "0"}
+    how = {"model": "radial", "method": "shipped", "cells": 8, "angles": 4, "steps": 16}
+    trial_of = place | how | {"kind": "run", "tolerance": "1e-4"}
+    sphere, cone = answers.computed(trial_of), answers.computed(trial_of | {"pressure": CONE})
+    assert sphere["converged"] and cone["converged"]
+    given = {"cells": 8, "steps": 16, "tolerance": None, "pressure": CONE}
+    certified = microslip.solve("transverse", 0.1, 0.8, **given)
+    assert cone["mu_macro"] == pytest.approx(certified.mu_macro, abs=1e-4)
+    assert abs(cone["mu_macro"] - sphere["mu_macro"]) > 1e-3
+    timed = answers.computed(trial_of | {"pressure": CONE, "kind": "trial", "repeats": 1})
+    assert timed["mu_macro"] == cone["mu_macro"]
+    sizes = {"kind": "patches", "cells": 8, "angles": 4, "steps": 16}
+    sphere, cone = (answers.computed(place | sizes | more) for more in ({}, {"pressure": CONE}))
+    assert cone["converged"] and cone["moment_share"] != sphere["moment_share"]
+
+
+def test_the_papers_run_is_under_the_pressure_that_is_asked_for(monkeypatch):
+    """What it presses the squares with are the loads of that pressure."""
+    from microslip.methods import paper
+    from microslip.pressures import pressure_named
+
+    class Seen(Exception):
+        pass
+
+    def march(contact, path, state, tolerance):
+        raise Seen(contact.bound * contact.size**2)
+
+    monkeypatch.setattr("microslip.models.cartesian.CartesianContact.march", march)
+    for name in ("hertz", CONE):
+        with pytest.raises(Seen) as caught:
+            trial.run_trial(
+                "transverse", 0.1, 0.8, poisson=0.0, model="cartesian", method="paper",
+                cells=32, angles=1, steps=100, tolerance=1e-3, pressure=name,
+            )  # fmt: skip
+        loads = pressure_named(name).cell_loads(paper.CELLS)
+        assert np.array_equal(caught.value.args[0], loads)

@@ -48,6 +48,10 @@ def write_sweep(path, sweep, points, histories, settings):
     about = {"scene": scene, "pressure": pressure, "tolerance": tolerance}
     if sweep.group is not None:
         about["group"] = sweep.group
+    failed = [record for record in histories if record["result"].get("crashed")]
+    if failed:
+        reasons = (f"{r['request']['kind']}: {r['result']['reason']}" for r in failed)
+        about["single_runs_failed"] = "; ".join(reasons)
     versions = {canonical_json(record["versions"]) for record in histories}
     with writing_beside(path, sealed=True) as beside:
         _to_netcdf(frame, beside)
@@ -113,6 +117,8 @@ def report(dataset, name=None):
         point = dataset.isel(dict(zip(converged.dims, index, strict=True)))
         where = ", ".join(f"{dim} {float(point[dim]):g}" for dim in converged.dims)
         yield f"  not converged: {where}: {point['reason'].item()}"
+    if "single_runs_failed" in dataset.attrs:
+        yield f"  single runs left out: {dataset.single_runs_failed}"
 
 
 def _axes(sweep):
