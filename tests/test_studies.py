@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from studies_stub import ACCURACY, asked, configured
 from sweep_stub import Solver
 
+import microslip
 from microslip import answers, config, keys, schemas, studies, sweep, trial
 from microslip.cache import Store
 from microslip.choice import choose_model
@@ -447,7 +448,6 @@ def test_a_trial_and_patches_take_the_pressure_that_is_asked_for(monkeypatch):
 
 def test_the_papers_run_is_under_the_pressure_that_is_asked_for(monkeypatch):
     """What it presses the squares with are the loads of that pressure."""
-    from microslip.methods import paper
     from microslip.pressures import pressure_named
 
     class Seen(Exception):
