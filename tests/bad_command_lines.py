@@ -52,6 +52,9 @@ NUMBERS = [
     (f"{TRANSVERSE} --steps 9", "--steps = 9", "an even number"),
     (f"{TRANSVERSE} --steps 6", "--steps = 6", "at least 8"),
     (f"{TRANSVERSE} --steps 2000000", "--steps = 2000000", "at most 1e+06"),
+    (f"{TRANSVERSE} --time-limit 0", "--time-limit: '0'", "a number above 0"),
+    (f"{TRANSVERSE} --time-limit nan", "--time-limit: 'nan'", "a number above 0"),
+    (f"{TRANSVERSE} --tolerance none", "--tolerance = None", "where cells and steps are imposed"),
     (f"{TRANSVERSE} --steps many", "--steps: 'many'", "an even whole number"),
 ]
 

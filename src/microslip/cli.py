@@ -55,6 +55,12 @@ def _real_or_none(text):
     return None if text == "none" else _real(text)
 
 
+def _seconds(text):
+    if not _real(text) > 0.0:
+        raise argparse.ArgumentTypeError(f"{text!r} is not allowed; allowed: a number above 0")
+    return _real(text)
+
+
 def _whole(text):
     try:
         return int(text)
@@ -160,7 +166,7 @@ def _add_options(parser):
     parser.add_argument("--steps", type=_whole, metavar="N", help="impose N steps a period (even)")
     parser.add_argument(
         "--time-limit",
-        type=_real,
+        type=_seconds,
         metavar="SECONDS",
         help="give up after so long, looked at between two marches; the answer is not kept then",
     )
