@@ -53,6 +53,10 @@ NUMBERS = [
     (f"{TRANSVERSE} --steps 6", "--steps = '6'", "at least 8"),
     (f"{TRANSVERSE} --steps 2000000", "--steps = '2000000'", "at most 1e+06"),
     (f"{TRANSVERSE} --steps many", "--steps = 'many'", "a whole number"),
+    (f"{TRANSVERSE} --time-limit 0", "--time-limit = '0'", "a number above 0"),
+    (f"{TRANSVERSE} --time-limit nan", "--time-limit = 'nan'", "a number above 0"),
+    (f"{TRANSVERSE} --time-limit 5s", "--time-limit = '5s'", "a number"),
+    (f"{TRANSVERSE} --tolerance none", "--tolerance = 'none'", "where cells and steps are imposed"),
 ]
 
 MINUS, ARABIC_THREE, WIDE_ONE = "\N{MINUS SIGN}", "\N{ARABIC-INDIC DIGIT THREE}", "\uff11"

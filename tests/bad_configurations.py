@@ -237,13 +237,10 @@ RATIOS = str([0.04 * i for i in range(11)])
 
 # Settings that are fine one by one, the key that is named, parts.
 TOGETHER = [
-    ({f"{T}.velocity": "[0]", f"{T}.model": "polar"}, f"{T}.velocity", "0, the static", "auto"),
-    ({f"{T}.velocity": "[0]", f"{T}.poisson": "0.3"}, f"{T}.velocity", "0, the static", "> 0"),
     ({f"{T}.model": "radial", f"{T}.poisson": "[0, 0.2]"}, f"{T}.poisson", "0.2", "allowed: 0"),
     ({f"{B}.velocity.linear": SPACED % 2}, f"{B}.velocity", '{"log": {', "linear or log"),
     ({f"{POINT}.scene": "continuous-bore"}, f"{POINT}.amplitude", "1", "has no amplitude"),
     ({f"{E}.model": "radial", f"{E}.poisson": "0.3"}, f"{E}.model", "'radial'", "nu > 0"),
-    ({f"{E}.velocity": "[0, 1]", f"{E}.model": "polar"}, f"{E}.velocity", "0, the static", "auto"),
     ({f"{E}.scene": "bore", f"{E}.model": "slider"}, f"{E}.model", "'slider'", "bore"),
     ({f"{E}.scene": "continuous-bore"}, f"{E}.amplitude", "[0.5, 1.0]", "has no amplitude"),
     (

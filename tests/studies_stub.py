@@ -33,7 +33,14 @@ def asked(study, configuration):
     return [keys.canonical_json(request) for piece in long + short for request in piece]
 
 
-GOOD = {"applies": True, "converged": True, "mu_macro": 0.5, "mu_macro_error": 1e-3, "reason": ""}
+GOOD = {
+    "applies": True,
+    "converged": True,
+    "periodic": True,
+    "mu_macro": 0.5,
+    "mu_macro_error": 1e-3,
+    "reason": "",
+}
 
 
 def answered(results):
@@ -97,5 +104,5 @@ def stability_result(request):
     if request["kind"] == "point":
         return {"mu_macro": 0.5, "mu_macro_error": 1e-5, "converged": True}
     if request["method"] == "euler":
-        return GOOD | {"converged": False, "reason": "gave up", "work": 7}
+        return GOOD | {"converged": False, "periodic": False, "reason": "gave up", "work": 7}
     return GOOD | {"mu_macro": 0.5005, "work": 12}

@@ -8,9 +8,10 @@ EFFORT = {
     "cells": 16,
     "angles": 1,
     "steps_per_period": 64,
-    "periods": 3,
+    "periods": 2.5,
     "iterations": 9,
     "work": 8,
+    "effort": 72,
 }
 
 

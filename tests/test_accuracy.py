@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from microslip.accuracy import EXTRAPOLATION_SHARE, MOST_REBASED, RESOLVED, Axis, certify
+from microslip.budget import Spent
 from microslip.motion import Resolution
 from microslip.simulate import Run
 
@@ -302,3 +303,36 @@ def test_rebasing_ends():
     assert not found.converged and "error over" in found.reason
     guessed_from = {id(guess) for guess in fake.guesses if guess is not None}
     assert MOST_REBASED <= len(guessed_from) <= 1 + MOST_REBASED
+
+
+# Budgets
+
+
+class Limited(FakeRun):
+    """... that may be asked so many times only."""
+
+    def __init__(self, most, *terms):
+        super().__init__(*terms)
+        self.most = most
+
+    def __call__(self, resolution, guess):
+        if len(self.asked) == self.most:
+            raise Spent("all is spent")
+        return super().__call__(resolution, guess)
+
+
+def test_what_was_known_before_the_budget_was_spent_is_the_answer():
+    term = (1.0, {"steps": 2})
+    axes = (axis("steps", base=2),)
+    enough = certify(FakeRun(term), COARSEST, axes, 0.02)
+    found = certify(Limited(4, term), COARSEST, axes, 1e-6)
+    assert not found.converged
+    assert found.reason == f"all is spent: the error is still {found.error:.1e}"
+    assert abs(found.mu - EXACT) <= found.error
+    assert found.finest.steps >= enough.finest.steps
+
+
+def test_of_a_budget_that_is_spent_at_once_nothing_is_known():
+    found = certify(Limited(1, (1.0, {"steps": 2})), COARSEST, (axis("steps"),), 1e-3)
+    assert not found.converged and np.isnan(found.mu) and found.error == np.inf
+    assert found.reason == "all is spent: no error is known yet"

@@ -42,7 +42,7 @@ def refused(*arguments):
         ("continuous-bore", {"velocity": 0.5}),
         ("transverse", {"velocity": 0, "amplitude": 0.5}),
         ("transverse", {"velocity": 0.5, "amplitude": 0.5, "model": "slider", "steps": 32}),
-        ("bore", {"velocity": 2, "amplitude": 1, "model": "polar", "cells": 6, "steps": 8}),
+        ("bore", {"velocity": 2, "amplitude": 1, "cells": 6, "steps": 8, "tolerance": 0.1}),
     ],
 )
 def test_json_is_the_answer_of_solve_and_nothing_else(scene, arguments):
@@ -214,3 +214,25 @@ def test_names_are_completed_as_a_shell_of_python_does_it():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "microslip.solve microslip.solve_stored\n"
+
+
+def test_exit_0_means_within_the_tolerance_at_an_imposed_resolution_too(capsys):
+    place = ["point", "transverse", "--velocity", "0.1", "--amplitude", "1", "--json"]
+    coarse = [*place, "--cells", "16", "--steps", "8"]
+    assert cli.main(coarse) == 1
+    said = json.loads(capsys.readouterr().out)
+    assert said["converged"] is False and said["mu_macro_error"] > said["tolerance"]
+    assert said["reason"].startswith("at the imposed resolution the error is ")
+    assert cli.main([*coarse, "--tolerance", "none"]) == 0
+    free = json.loads(capsys.readouterr().out)
+    assert free["converged"] is True and free["tolerance"] is None
+    assert free["mu_macro_error"] == said["mu_macro_error"]
+    assert cli.main([*place, "--tolerance", "none"]) == 2
+    assert "tolerance" in capsys.readouterr().err
+
+
+def test_a_time_limit_ends_a_point_as_not_converged(capsys):
+    slow = ["point", "transverse", "--velocity", "1e-9", "--amplitude", "0.5", "--json"]
+    assert cli.main([*slow, "--tolerance", "1e-6", "--time-limit", "1e-9"]) == 1
+    said = json.loads(capsys.readouterr().out)
+    assert said["exhausted"] == "time" and "time limit" in said["reason"]

@@ -183,3 +183,34 @@ def test_settings_of_a_sweep_are_plain_json(tmp_path):
     found = load(saved(tmp_path, GOOD)).of_sweep("continuous_bore")
     assert set(found["histories"]) == {"field", "transients"}
     assert json.loads(json.dumps(found))["sweep"]["velocity"] == [1.0]
+
+
+@pytest.mark.parametrize("model", ["auto", "polar", "cartesian", "rigid"])
+@pytest.mark.parametrize("poisson", [0, 0.3])
+def test_the_static_limit_goes_with_all_that_the_solver_takes_it_with(model, poisson):
+    """The solver refuses none of these, so neither does a configuration, under either key."""
+    axes = {"velocity": [0, 1], "amplitude": [0.5], "poisson": poisson, "model": model}
+    loaded = config.from_mapping(
+        {
+            "sweeps": {"transverse": axes, "bore": axes},
+            "extended": {"line": {**axes, "scene": "longitudinal", "group": "g"}},
+        }
+    )
+    assert [grid.velocity[0] for grid in loaded.grids.values()] == [0, 0, 0]
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "missing"),
+    [
+        ("transverse", {"amplitude": [1]}, "cells and steps"),
+        ("transverse", {"amplitude": [1], "cells": 8}, "steps"),
+        ("continuous_bore", {}, "cells"),
+    ],
+)
+def test_no_tolerance_goes_with_an_imposed_resolution_alone(name, given, missing):
+    axes = {"velocity": [1], "tolerance": None, **given}
+    with pytest.raises(ConfigError, match=f"{name}.tolerance: null .* {missing} imposed"):
+        config.from_mapping({"sweeps": {name: axes}})
+    imposed = {"cells": 8} | ({"steps": 16} if name == "transverse" else {})
+    grid = config.from_mapping({"sweeps": {name: axes | imposed}}).sweeps[name]
+    assert grid.tolerance is None

@@ -95,7 +95,7 @@ def test_errors_convergence_and_effort_are_there(tmp_path, monkeypatch):
         assert set(data.reason.sel(amplitude=2).values) == {"no periodic state"}
         assert set(data.model.values.flat) == {"polar"}
         for name, value in EFFORT.items():
-            assert data[name].dtype.kind == "i"
+            assert data[name].dtype.kind == ("f" if name == "periods" else "i")
             assert (data[name] == value).all()
         assert (data.mu_macro_error == 4e-5).all()
         assert list(dataset.report(data)) == [
@@ -233,3 +233,44 @@ def test_large_datasets_are_chunked_and_open_with_dask(tmp_path, monkeypatch, so
     with xr.open_dataset(tmp_path / "transverse.nc", chunks={}) as data:
         assert data.mu_macro.chunks == ((1, 1), (1, 1), (3,))
         assert float(data.mu_macro.mean()) == pytest.approx(float(data.mu_macro.load().mean()))
+
+
+def test_a_single_run_that_fails_is_left_out_and_listed(tmp_path, monkeypatch, solver):
+    def fail(*_, **__):
+        raise ValueError("a root finder found none")
+
+    monkeypatch.setattr("microslip.history", fail, raising=False)
+    data = built("transverse", tmp_path)
+    assert not [name for name in data.variables if name.startswith("history_")]
+    assert data.converged.all()
+    *_, last = dataset.report(data)
+    assert last == "  single runs left out: history: ValueError: a root finder found none"
+    with on_disk("continuous_bore", tmp_path) as data:
+        assert "transient_torque" not in data and "field_bound" not in data
+
+
+def test_a_sweep_at_an_imposed_resolution_counts_what_misses_its_tolerance(tmp_path):
+    """Not so without a tolerance: then its attribute is not a number."""
+    axes = {"velocity": [0.1, 0.3], "amplitude": [1], "cells": 8, "steps": 16}
+    for tolerance, count in ((1e-3, "2"), (None, "none")):
+        grids = {"transverse": {**axes, "tolerance": tolerance}}
+        with on_disk("transverse", tmp_path / str(tolerance), grids) as data:
+            summed = next(dataset.report(data))
+            assert summed == f"transverse: 2 points, {count} not converged"
+            assert (data.mu_macro_error > 1e-3).all()
+            assert np.isnan(data.tolerance) == (tolerance is None)
+            if tolerance:
+                assert all("at the imposed resolution" in str(r) for r in data.reason.values.flat)
+
+
+def test_the_static_limit_at_any_poissons_ratio_is_a_point_of_a_sweep(tmp_path, solver):
+    axes = {"velocity": [0, 0.1], "amplitude": [0.5, 1], "poisson": [0, 0.3], "model": "polar"}
+    with on_disk("transverse", tmp_path, {"transverse": axes}) as data:
+        assert data.mu_macro.dims == ("poisson", "amplitude", "velocity")
+        assert float(data.velocity[0]) == 0.0
+
+
+def test_periods_are_halves_of_full_ones_in_the_file(tmp_path, solver):
+    with on_disk("transverse", tmp_path) as data:
+        assert data.periods.dtype == float and set(data.periods.values.flat) == {2.5}
+        assert "full periods" in data.periods.long_name

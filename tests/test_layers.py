@@ -16,7 +16,7 @@ LAYERS = [
     {"hertz", "parameters", "named_files"},
     {"pressures"},
     {"theory", "masing", "bounds", "halfspace", "friction", "path", "indenter_limits", "depth"},
-    {"rings", "scene", "any_pressure", "frames", "pulsating"},
+    {"rings", "scene", "any_pressure", "frames", "pulsating", "budget", "result"},
     {"motions"},
     {"scenes"},
     {"models"},

@@ -8,6 +8,7 @@ import pytest
 import microslip
 from microslip import answers, periods, source_digest, sweep
 from microslip.cache import Store
+from microslip.inside import NoPeriodicState
 
 POINTS = [("transverse", "0.1", "0.6", "0"), ("transverse", "0.1", "0.6", "0.3")]
 POINTS += [("bore", "0.05", "0.7", "0.3"), ("zigzag", "0.2", "1", "0")]
@@ -45,7 +46,7 @@ def test_a_stored_period_takes_few_bytes():
 
 def test_where_there_is_no_state_a_result_says_so(monkeypatch):
     def none(**settings):
-        raise ValueError("velocity = 0.1: no periodic state")
+        raise NoPeriodicState("velocity = 0.1: no periodic state")
 
     monkeypatch.setattr("microslip.period", none, raising=False)
     result = answers.computed(asked(POINTS[0]))

@@ -64,8 +64,10 @@ def fake_trials(points: int = 11, methods: tuple[str, ...] = METHODS) -> dict:
     random = np.random.default_rng(5)
     rows = []
 
-    def add(point, model, method, level, error, seconds, work, converged=True, tolerance=np.nan):
-        rows.append((f"p{point}", model, method, level, error, seconds, work, converged, tolerance))
+    def add(point, model, method, level, error, seconds, effort, converged=True, tolerance=np.nan):
+        rows.append(
+            (f"p{point}", model, method, level, error, seconds, effort, converged, tolerance)
+        )
 
     for point, (scene, _, _, poisson, _) in enumerate(SCENES[:points]):
         for model in MODELS:
@@ -92,7 +94,7 @@ def fake_trials(points: int = 11, methods: tuple[str, ...] = METHODS) -> dict:
         for k, tolerance in enumerate((1e-2, 1e-3, 1e-4)):
             error = tolerance * 0.2 if point else 0.0
             add(point, "auto", "shipped", k, error, 2e-3 * 10**k, 3e3 * 8**k, True, tolerance)
-    names = ("point", "model", "method", "level", "error", "seconds", "work", "converged")
+    names = ("point", "model", "method", "level", "error", "seconds", "effort", "converged")
     names += ("tolerance",)
     return dict(zip(names, map(np.array, zip(*rows, strict=True)), strict=True))
 
@@ -113,8 +115,8 @@ def fake_accuracy(points: int = 11, methods: tuple[str, ...] = METHODS) -> xr.Da
     scenes, velocity, amplitude, poisson, titles = zip(*SCENES[:points], strict=True)
     trials = {f"trial_{n}": ("trial", table[n]) for n in ("point", "model", "method", "level")}
     trials["trial_tolerance"] = ("trial", table["tolerance"])
-    trials |= {n: ("trial", table[n]) for n in ("error", "seconds", "work", "converged")}
-    for cost in ("seconds", "work"):
+    trials |= {n: ("trial", table[n]) for n in ("error", "seconds", "effort", "converged")}
+    for cost in ("seconds", "effort"):
         front = on_front(table[cost], table["error"], table["point"])
         trials[f"front_{cost}"] = ("trial", front)
     of_points = {
@@ -225,7 +227,7 @@ def fake_stability(axes: int = 13, cases: int = 7, methods: tuple[str, ...] = ST
     )
 
 
-FIGURES = ("accuracy_vs_cost", "accuracy_vs_work", "model_map", "scaling", "stability_atlas")
+FIGURES = ("accuracy_vs_cost", "accuracy_vs_effort", "model_map", "scaling", "stability_atlas")
 ALL = (*FIGURES, "claims_static", "claims_patches")
 
 
@@ -354,7 +356,7 @@ def test_a_small_dataset_is_drawn_without_complaint(name, small):
     ("name", "variable"),
     [
         *(("accuracy_vs_cost", n) for n in ("seconds", "front_seconds", "error", "trial_level")),
-        *(("accuracy_vs_work", n) for n in ("work", "front_work", "reference_error")),
+        *(("accuracy_vs_effort", n) for n in ("effort", "front_effort", "reference_error")),
         *(("model_map", n) for n in ("bore_cheapest", "map_tolerance", "transverse_velocity")),
         *(("scaling", n) for n in ("scaling_memory", "scaling_exponent_seconds")),
         *(("stability_atlas", n) for n in ("outcome", "case_axis", "axis_note", "method")),
@@ -368,10 +370,10 @@ def test_a_missing_variable_is_named(name, variable, small):
         plot.draw(name, {key: small[key].drop_vars(variable)})
 
 
-# Accuracy against cost and work
+# Accuracy against cost and effort
 
 
-@pytest.mark.parametrize(("name", "cost"), [(FIGURES[0], "seconds"), (FIGURES[1], "work")])
+@pytest.mark.parametrize(("name", "cost"), [(FIGURES[0], "seconds"), (FIGURES[1], "effort")])
 def test_curves_hold_every_trial(name, cost, datasets, figures):
     dataset = datasets["accuracy_cost"]
     for axes, trials in one_panel_each(figures[name], dataset):
@@ -409,7 +411,7 @@ def test_panels_share_their_axes_and_show_all_that_is_drawn(figures, datasets):
                 assert np.all((axes.get_ylim()[0] <= y) & (y <= axes.get_ylim()[1]))
 
 
-@pytest.mark.parametrize(("name", "cost"), [(FIGURES[0], "seconds"), (FIGURES[1], "work")])
+@pytest.mark.parametrize(("name", "cost"), [(FIGURES[0], "seconds"), (FIGURES[1], "effort")])
 def test_the_front_is_the_datasets(name, cost, datasets, figures):
     dataset = datasets["accuracy_cost"]
     for axes, trials in one_panel_each(figures[name], dataset):
@@ -448,14 +450,16 @@ def test_trials_that_failed_are_marked_and_not_hidden(datasets, figures):
 
 def test_errors_too_small_and_costs_of_zero_get_an_arrow_at_the_edge(datasets, figures):
     dataset = datasets["accuracy_cost"]
-    (first, trials), (second, _), *_ = one_panel_each(figures["accuracy_vs_work"], dataset)
+    (first, trials), (second, _), *_ = one_panel_each(figures["accuracy_vs_effort"], dataset)
     zero = trials["error"].values == 0
     (arrows,) = artists(first, "low")
-    assert sorted(arrows.get_xdata()) == sorted(trials["work"].values[zero])
+    assert sorted(arrows.get_xdata()) == sorted(trials["effort"].values[zero])
     assert set(arrows.get_ydata()) == {first.get_ylim()[0]}
     assert not artists(second, "low")
     (free,) = artists(first, "left")
-    assert free.get_ydata().tolist() == trials["error"].values[trials["work"].values == 0].tolist()
+    assert (
+        free.get_ydata().tolist() == trials["error"].values[trials["effort"].values == 0].tolist()
+    )
     assert free.get_xdata()[0] == first.get_xlim()[0]
     assert not artists(figures["accuracy_vs_cost"].axes[0], "left")
 
@@ -552,7 +556,7 @@ def test_every_panel_is_headed_by_its_point(datasets, figures):
 @pytest.mark.parametrize("points", [1, 2, 3, 4])
 def test_any_number_of_points_finds_room_for_panels_and_legends(points):
     dataset = fake_accuracy(points, (*METHODS, "admm:penalty=0.1,relaxation=1.5"))
-    figure = plot.draw("accuracy_vs_work", {"accuracy_cost": dataset})
+    figure = plot.draw("accuracy_vs_effort", {"accuracy_cost": dataset})
     assert sum(axes.axison for axes in figure.axes) == points
     panels = [axes.get_window_extent() for axes in figure.axes if axes.axison]
     legends = [legend.get_window_extent() for legend in figure.findobj(Legend)]

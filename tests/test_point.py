@@ -11,7 +11,7 @@ from point_contract import CONTRACT
 import microslip
 from microslip import theory
 from microslip.motion import Resolution
-from microslip.scenes import SCENES
+from microslip.scenes import SCENES, scene_named
 from microslip.simulate import simulate
 
 # Certificates
@@ -267,7 +267,7 @@ def test_imposed_resolution_is_what_runs(scene, model, nu, cells, steps):
     result = microslip.solve(
         scene, 0.3, 1.2, poisson=nu, model=model, cells=cells, steps=steps, tolerance=1e-2
     )
-    assert result.converged and (result.cells, result.steps_per_period) == (cells, steps)
+    assert result.periodic and (result.cells, result.steps_per_period) == (cells, steps)
     if model != "polar":  # whose angles are still chosen, and corrected for
         kind, share = SCENES[scene], 1e-5
 
@@ -286,7 +286,7 @@ def test_imposed_resolution_is_what_runs(scene, model, nu, cells, steps):
 
 def test_imposing_one_axis_leaves_the_other_to_the_tolerance():
     result = microslip.solve("transverse", 0.3, 1.2, cells=32)
-    assert result.converged and result.cells == 32
+    assert result.periodic and result.cells == 32
     assert result.error_time <= 1e-3
     coarse = microslip.solve("transverse", 0.3, 1.2, cells=4)
     assert coarse.cells == 4 and coarse.error_space > 10 * result.error_space
@@ -360,3 +360,133 @@ def test_unmet_tolerance_is_said():
 def test_warm_up_leaves_a_working_solver():
     microslip.warm_up()
     assert microslip.solve("transverse", 0.5, 0.5, tolerance=1e-2).converged
+
+
+# Converged: within the tolerance, always
+
+
+@pytest.mark.parametrize(
+    ("scene", "given"),
+    [
+        ("transverse", {"cells": 16, "steps": 8}),
+        ("bore", {"cells": 4}),
+        ("transverse", {"steps": 8}),
+    ],
+)
+def test_converged_means_within_the_tolerance_at_an_imposed_resolution_too(scene, given):
+    result = microslip.solve(scene, 0.1, 1.0, **given)
+    assert result.mu_macro_error > result.tolerance == 1e-3
+    assert not result.converged
+    error = f"{result.mu_macro_error:.1e}"
+    assert result.reason == (
+        f"at the imposed resolution the error is {error}, above the tolerance of 0.001"
+    )
+    loose = microslip.solve(scene, 0.1, 1.0, tolerance=0.1, **given)
+    assert loose.converged == (loose.mu_macro_error <= 0.1)
+    assert result.periodic
+
+
+@settings(max_examples=20, deadline=None)
+@given(
+    st.sampled_from(["transverse", "longitudinal"]),
+    st.floats(0.0, 3.0),
+    st.floats(0.0, 3.0),
+    st.sampled_from([None, 4, 16]),
+    st.sampled_from([None, 8, 64]),
+    st.sampled_from([0.1, 1e-2, 1e-3]),
+)
+def test_no_answer_is_converged_beyond_its_tolerance(scene, v, amplitude, cells, steps, tolerance):
+    result = microslip.solve(scene, v, amplitude, cells=cells, steps=steps, tolerance=tolerance)
+    assert not result.converged or result.mu_macro_error <= tolerance
+    assert result.converged == (result.reason == "")
+
+
+def test_no_tolerance_is_asked_for_by_name():
+    """The same run, whose error is told; whether that is enough was not asked."""
+    given = {"cells": 16, "steps": 8}
+    free = microslip.solve("transverse", 0.1, 1.0, tolerance=None, **given)
+    judged = microslip.solve("transverse", 0.1, 1.0, **given)
+    assert free.converged and free.reason == "" and free.tolerance is None
+    assert free.to_dict()["tolerance"] is None
+    assert (free.mu_macro, free.mu_macro_error) == (judged.mu_macro, judged.mu_macro_error)
+
+
+@pytest.mark.parametrize(
+    ("scene", "amplitude", "given", "missing"),
+    [
+        ("transverse", 1.0, {}, "cells and steps"),
+        ("transverse", 1.0, {"cells": 16}, "steps"),
+        ("bore", 1.0, {"steps": 16}, "cells"),
+        ("normal", 1.0, {}, "steps and cells"),
+        ("transverse", 1.0, {"model": "dahl"}, "steps"),
+    ],
+)
+def test_without_a_tolerance_the_resolution_has_to_be_imposed(scene, amplitude, given, missing):
+    with pytest.raises(ValueError, match="tolerance = None: allowed is a number") as caught:
+        microslip.solve(scene, 0.3, amplitude, tolerance=None, **given)
+    assert f"where {missing} are imposed" in str(caught.value)
+
+
+def test_closed_forms_and_models_without_cells_need_no_more():
+    static = microslip.solve("transverse", 0.0, 0.5, tolerance=None)
+    assert static.converged and static.model == "closed-form"
+    assert microslip.solve("continuous-bore", 0.5, tolerance=None).converged
+    assert microslip.solve("transverse", 0.3, 1.0, model="dahl", steps=64, tolerance=None).converged
+
+
+# Periods are full ones
+
+
+def test_periods_are_full_ones_whatever_a_lap_is(monkeypatch):
+    """Counted by hand: a lap of a motion whose second half mirrors the first is half a period."""
+    from microslip import cycle
+
+    laps = []
+    march = cycle.Cycle.__call__
+
+    def counted(self, *arguments, **settings):
+        laps.append(self.path.phase[-1] - self.path.phase[0])
+        return march(self, *arguments, **settings)
+
+    monkeypatch.setattr(cycle.Cycle, "__call__", counted)
+    for scene, lap in (("transverse", np.pi), ("elliptic:forward=0.5,phase=30", 2 * np.pi)):
+        laps.clear()
+        run = simulate(scene_named(scene), 0.3, 1.0, 0.0, "radial", Resolution(8, 1, 16), 1e-5)
+        assert laps and np.allclose(laps, lap)
+        assert run.periods == pytest.approx(sum(laps) / (2 * np.pi))
+    half = microslip.solve("transverse", 0.3, 1.0)
+    assert isinstance(half.periods, float) and (2 * half.periods).is_integer()
+
+
+def test_what_has_no_periods_counts_none():
+    for found in (
+        microslip.solve("continuous-bore", 0.5, model="polar", tolerance=1e-2),
+        microslip.solve("transverse", 0.0, 0.5),
+        microslip.solve("transverse", 0.0, 0.5, model="radial", tolerance=1e-2),
+        microslip.solve("transverse", 0.5, 0.0),
+    ):
+        assert found.periods == 0 and found.steps_per_period == 0
+
+
+# Forces over the mean load
+
+
+def test_an_extrapolated_run_scales_its_tolerance_once(monkeypatch):
+    """Under a load that changes both of its runs are asked for the same."""
+    from dataclasses import replace
+
+    from microslip import simulate as module
+    from microslip.method import SHIPPED
+
+    seen, run = [], module._run
+
+    def noted(motion, model, resolution, tolerance, *rest):
+        seen.append((resolution.steps, tolerance / motion.mean_load))
+        return run(motion, model, resolution, tolerance, *rest)
+
+    monkeypatch.setattr(module, "_run", noted)
+    method = replace(SHIPPED, extrapolated=True)
+    scene = scene_named("normal")
+    simulate(scene, 0.3, 0.9, 0.0, "radial", Resolution(8, 1, 16), 1e-4, None, method)
+    assert [steps for steps, _ in seen] == [16, 8]
+    assert [tolerance for _, tolerance in seen] == pytest.approx([1e-4, 1e-4])

@@ -90,3 +90,13 @@ def test_a_folder_that_is_none_is_refused(tmp_path, capsys):
     options = ["--velocity", "1", "--amplitude", "1", "--results", str(tmp_path / "file")]
     assert cli.main(["point", "transverse", *options]) == 2
     assert "--results" in capsys.readouterr().err
+
+
+def test_no_tolerance_is_kept_and_found_again(tmp_path, monkeypatch):
+    calls = counting(monkeypatch)
+    given = {"cells": 8, "steps": 16, "tolerance": None, "results": tmp_path}
+    first, again = (microslip.solve_stored("transverse", 0.3, 1.0, **given) for _ in range(2))
+    assert len(calls) == 1 and without_time(first) == without_time(again)
+    assert first.converged and first.tolerance is None
+    with pytest.raises(ValueError, match="tolerance = None"):
+        microslip.solve_stored("transverse", 0.3, 1.0, tolerance=None, results=tmp_path)

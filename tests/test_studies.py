@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from studies_stub import ACCURACY, asked, configured
 from sweep_stub import Solver
 
+import microslip
 from microslip import answers, config, keys, schemas, studies, sweep, trial
 from microslip.cache import Store
 from microslip.choice import choose_model
@@ -261,7 +262,7 @@ class Trials(Solver):
         for name in ("applies", "run_trial", "measure_steps"):
             monkeypatch.setattr(f"microslip.trial.{name}", getattr(self, name))
 
-    def applies(self, scene, poisson, model, method):
+    def applies(self, scene, poisson, model, method, pressure="hertz"):
         return "not here" if method == "march" else ""
 
     def run_trial(self, scene, velocity, amplitude, **settings):
@@ -316,7 +317,13 @@ def test_what_does_not_apply_is_not_run(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "error", [FloatingPointError("overflow"), RuntimeError("no"), np.linalg.LinAlgError("singular")]
+    "error",
+    [
+        FloatingPointError("overflow"),
+        RuntimeError("no"),
+        np.linalg.LinAlgError("singular"),
+        ValueError("f(a) and f(b) must have different signs"),
+    ],
 )
 def test_a_method_that_fails_is_data(monkeypatch, error):
     Trials(monkeypatch)
@@ -333,17 +340,6 @@ def test_a_method_that_fails_is_data(monkeypatch, error):
         result = answers.computed(request)
         assert result["converged"] is False
         assert result["reason"] == f"{type(error).__name__}: {error}"
-
-
-def test_a_mistake_in_a_trial_is_not(monkeypatch):
-    Trials(monkeypatch)
-
-    def refuse(*_, **__):
-        raise ValueError("velocity")
-
-    monkeypatch.setattr("microslip.trial.run_trial", refuse)
-    with pytest.raises(ValueError, match="velocity"):
-        answers.computed(trial_request())
 
 
 def test_probes_hand_on_the_method_and_the_resolution(monkeypatch):
@@ -425,3 +421,47 @@ def test_an_exponent_is_that_of_large_sizes():
     assert fronts.exponent(sizes, values) == pytest.approx(2.0)
     assert math.isnan(fronts.exponent([1.0, 2.0], [1.0, 0.0]))
     assert math.isnan(fronts.exponent([], []))
+
+
+# Under a pressure
+
+CONE = "power:exponent=1"
+
+
+def test_a_trial_and_patches_take_the_pressure_that_is_asked_for(monkeypatch):
+    """A cone presses its middle harder than a sphere: another part of it sticks, other friction."""
+    place = {"scene": "transverse", "velocity": "0.1", "amplitude": "0.8", "poisson": "0"}
+    how = {"model": "radial", "method": "shipped", "cells": 8, "angles": 4, "steps": 16}
+    trial_of = place | how | {"kind": "run", "tolerance": "1e-4"}
+    sphere, cone = answers.computed(trial_of), answers.computed(trial_of | {"pressure": CONE})
+    assert sphere["converged"] and cone["converged"]
+    given = {"cells": 8, "steps": 16, "tolerance": None, "pressure": CONE}
+    certified = microslip.solve("transverse", 0.1, 0.8, **given)
+    assert cone["mu_macro"] == pytest.approx(certified.mu_macro, abs=1e-4)
+    assert abs(cone["mu_macro"] - sphere["mu_macro"]) > 1e-3
+    timed = answers.computed(trial_of | {"pressure": CONE, "kind": "trial", "repeats": 1})
+    assert timed["mu_macro"] == cone["mu_macro"]
+    sizes = {"kind": "patches", "cells": 8, "angles": 4, "steps": 16}
+    sphere, cone = (answers.computed(place | sizes | more) for more in ({}, {"pressure": CONE}))
+    assert cone["converged"] and cone["moment_share"] != sphere["moment_share"]
+
+
+def test_the_papers_run_is_under_the_pressure_that_is_asked_for(monkeypatch):
+    """What it presses the squares with are the loads of that pressure."""
+    from microslip.pressures import pressure_named
+
+    class Seen(Exception):
+        pass
+
+    def march(contact, path, state, tolerance):
+        raise Seen(contact.bound * contact.size**2)
+
+    monkeypatch.setattr("microslip.models.cartesian.CartesianContact.march", march)
+    for name in ("hertz", CONE):
+        with pytest.raises(Seen) as caught:
+            trial.run_trial(
+                "transverse", 0.1, 0.8, poisson=0.0, model="cartesian", method="paper",
+                cells=32, angles=1, steps=100, tolerance=1e-3, pressure=name,
+            )  # fmt: skip
+        loads = pressure_named(name).cell_loads(paper.CELLS)
+        assert np.array_equal(caught.value.args[0], loads)

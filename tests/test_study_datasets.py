@@ -65,7 +65,7 @@ def test_the_choice_that_follows_a_tolerance_claims_an_error(accuracy):
     assert auto.claimed_error.values == pytest.approx([6e-3, 6e-4, 6e-5])
     assert auto.error.values == pytest.approx([3e-3, 3e-4, 3e-5])
     assert (auto.trial_steps.values == 64).all()
-    assert (auto.work.values == 900).all()
+    assert (auto.effort.values == 900).all()
 
 
 def test_what_does_not_apply_has_no_row_and_what_fails_has_no_number(accuracy):
@@ -75,7 +75,7 @@ def test_what_does_not_apply_has_no_row_and_what_fails_has_no_number(accuracy):
     assert np.isnan(euler.mu_macro).all()
     assert not euler.converged.any()
     assert set(euler.reason.values) == {"gave up"}
-    assert not (euler.front_seconds | euler.front_work).any()
+    assert not (euler.front_seconds | euler.front_effort).any()
 
 
 def test_references_say_where_they_come_from(accuracy):
@@ -112,7 +112,7 @@ def test_fronts_count_errors_below_the_reference_as_equal(accuracy):
     mid = rows_of(accuracy, point="mid")
     floor = float(accuracy.reference_error[0])
     errors = np.maximum(mid.error.values, floor)
-    for name in ("seconds", "work"):
+    for name in ("seconds", "effort"):
         cost = mid[name].values
         for i in range(mid.sizes["trial"]):
             better = [
@@ -192,10 +192,20 @@ STUCK = "a step was left unsolved after 2000 iterations: residual 4.5e-06"
         (GOOD | {"converged": False, "mu_macro": None}, "diverged"),
         (GOOD | {"converged": False, "mu_macro": None, "reason": STUCK}, "slow"),
         ({"applies": True, "converged": False, "reason": "LinAlgError: singular"}, "diverged"),
+        (GOOD | {"converged": False, "mu_macro": None, "exhausted": "work"}, "slow"),
     ],
 )
 def test_outcomes(result, expected):
     assert OUTCOMES[outcome(result, 0.5, 1e-3)] == expected
+
+
+def test_a_method_is_not_to_blame_for_a_resolution_that_was_imposed():
+    """The error of so few cells is above the tolerance, whatever the method."""
+    coarse = GOOD | {"converged": False, "mu_macro_error": 0.03, "mu_macro": 0.52}
+    assert OUTCOMES[outcome(coarse, 0.5, 1e-3, imposed=True)] == "converged"
+    assert OUTCOMES[outcome(coarse | {"mu_macro": 0.6}, 0.5, 1e-3, imposed=True)] == "wrong"
+    assert OUTCOMES[outcome(coarse | {"periodic": False}, 0.5, 1e-3, imposed=True)] == "slow"
+    assert OUTCOMES[outcome(coarse, 0.5, 1e-3)] == "slow"
 
 
 @pytest.fixture

@@ -1,13 +1,15 @@
 """Sweeps: requests, batches of them, and answers from the store or the solver."""
 
+import errno
 import json
 import math
 
 import pytest
-from sweep_stub import Solver
+from sweep_stub import EFFORT, Solver
 
-from microslip import cache, config, source_digest, sweep
-from microslip.cache import Store
+from microslip import answers, cache, config, source_digest, sweep
+from microslip.cache import CacheError, Store
+from microslip.errors import InputError
 
 
 def configured(**transverse):
@@ -85,6 +87,18 @@ def test_what_a_batch_holds_is_what_the_solver_said(monkeypatch, store, tmp_path
         list(sweep.records_for(requests, paths[:1]))
 
 
+def test_a_batch_with_a_point_that_failed_is_whole_and_made_again(monkeypatch, store, tmp_path):
+    def fail(*_, **__):
+        raise MemoryError
+
+    monkeypatch.setattr("microslip.solve", fail, raising=False)
+    records, done = sweep.run_batch(requests_of(), store)
+    path = tmp_path / "batch.json"
+    cache.write_batch(path, records, done["final"])
+    assert cache.read_batch(path) == records
+    assert cache.why_not_whole(path) == "it has points that failed"
+
+
 BATCH_DAMAGE = {
     "a bit": lambda text: text.replace(b'"0.5"', b'"0.6"', 1),
     "the end": lambda text: text[:-1],
@@ -101,11 +115,11 @@ def test_a_damaged_batch_is_noticed(kind, monkeypatch, store, tmp_path):
     Solver(monkeypatch)
     path = tmp_path / "batch.json"
     cache.write_batch(path, sweep.run_batch(requests_of(velocity=[0.5]), store)[0])
-    assert cache.is_whole_batch(path)
+    assert cache.why_not_whole(path) == ""
     whole = path.read_bytes()
     path.write_bytes(BATCH_DAMAGE[kind](whole))
     assert path.read_bytes() != whole
-    assert not cache.is_whole_batch(path)
+    assert cache.why_not_whole(path) == "it is damaged"
     assert cache.read_batch(path) is None
     with pytest.raises(cache.CacheError, match="is damaged; run again"):
         list(sweep.records_in([path]))
@@ -152,7 +166,19 @@ def test_points_that_do_not_converge_are_data(monkeypatch, store):
     assert record["result"]["reason"] == "no periodic state"
 
 
-@pytest.mark.parametrize("error", [ZeroDivisionError("division"), RuntimeError("stalled")])
+ERRORS = [
+    ZeroDivisionError("division"),
+    RuntimeError("stalled"),
+    ValueError("f(a) and f(b) must have different signs"),
+    AssertionError("not so"),
+    KeyError("q"),
+    RecursionError("too deep"),
+    MemoryError("no room"),
+    InputError("velocity", -1, "allowed is a number of at least 0"),
+]
+
+
+@pytest.mark.parametrize("error", ERRORS, ids=lambda error: type(error).__name__)
 def test_a_point_at_which_the_solver_fails_is_data_too(monkeypatch, store, error):
     def fail(*_, **__):
         raise error
@@ -162,13 +188,54 @@ def test_a_point_at_which_the_solver_fails_is_data_too(monkeypatch, store, error
     assert not any(record["result"]["converged"] for record in records)
     record, _ = sweep.answer(requests_of()[0], store)
     assert record["result"]["reason"] == f"{type(error).__name__}: {error}"
+    assert not list(store.folder.rglob("*.json"))  # whoever asks next has it computed again
 
 
-def test_a_mistake_in_the_request_is_not(monkeypatch, store):
-    def refuse(*_, **__):
-        raise ValueError("velocity")
+@pytest.mark.parametrize("kind", sorted(sweep.FOLDERS))
+def test_whatever_is_raised_is_a_gap_for_every_kind_of_request(monkeypatch, kind):
+    def fail(request):
+        raise ValueError("a root finder\nfound none")
 
-    monkeypatch.setattr("microslip.solve", refuse, raising=False)
-    with pytest.raises(ValueError, match="velocity"):
+    monkeypatch.setitem(answers._KINDS, kind, fail)
+    result = answers.computed({"kind": kind})
+    assert result["converged"] is False
+    assert result["reason"] == "ValueError: a root finder found none"
+    assert not answers.is_final(result)
+
+
+def test_a_point_that_failed_is_computed_again_and_kept_then(monkeypatch, store):
+    def fail(*_, **__):
+        raise MemoryError
+
+    monkeypatch.setattr("microslip.solve", fail, raising=False)
+    request = requests_of()[0]
+    assert sweep.answer(request, store)[0]["result"]["reason"] == "MemoryError:"
+    solver = Solver(monkeypatch)
+    assert sweep.answer(request, store)[0]["result"]["converged"]
+    assert sweep.answer(request, store)[0]["result"]["converged"]
+    assert solver.calls == 1
+
+
+@pytest.mark.parametrize(
+    "error", [KeyboardInterrupt(), SystemExit(1), CacheError("no room"), OSError(errno.ENOSPC, "")]
+)
+def test_what_is_not_the_points_is_no_gap(monkeypatch, store, error):
+    def fail(*_, **__):
+        raise error
+
+    monkeypatch.setattr("microslip.solve", fail, raising=False)
+    with pytest.raises(type(error)):
         sweep.run_batch(requests_of(), store)
-    assert not list(store.folder.rglob("*.json"))
+
+
+def test_what_ran_out_of_time_is_not_kept(monkeypatch, store):
+    solver = Solver(monkeypatch)
+    monkeypatch.setitem(EFFORT, "exhausted", "time")
+    request = requests_of()[0]
+    for _ in range(2):
+        sweep.answer(request, store)
+    assert solver.calls == 2
+    monkeypatch.setitem(EFFORT, "exhausted", "work")  # which is the same everywhere
+    for _ in range(2):
+        sweep.answer(request, store)
+    assert solver.calls == 3

@@ -20,8 +20,11 @@ one the base itself is refined.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
+
+import numpy as np
+
+from microslip.budget import Spent
 
 EXTRAPOLATION_SHARE = 0.6
 CHANGE_SHARE = 0.5
@@ -73,7 +76,9 @@ class Certified:
 
     mu, torque: corrected means; errors: of mu by source (space, time, periodicity, solver; model,
     where there are readings); torque_error: of the torque in space, and over the readings; finest:
-    largest resolution used along each axis; the rest sums up the effort of all runs.
+    largest resolution used along each axis; periods: of the longest run; iterations, work, effort,
+    retried: of all runs; converged: whether every run found its periodic state and nothing kept the
+    refinement from going on, else reason says what; periodic: the first of these alone.
     """
 
     mu: float
@@ -81,13 +86,14 @@ class Certified:
     errors: dict
     torque_error: float
     finest: object
-    periods: int
+    periods: float
     iterations: int
     work: int
     effort: int
     retried: int
     converged: bool
     reason: str
+    periodic: bool
 
     @property
     def error(self):
@@ -213,19 +219,33 @@ def _mixed(runs, chains, name):
     return both - one - other + base
 
 
-def certify(run, coarsest, axes, tolerance, most_work=math.inf, readings=()):
+def certify(run, coarsest, axes, tolerance, readings=()):
     """Refine until the estimated error is within ``tolerance``.
 
     run(resolution, guess) -> simulate.Run (guess: the run at the base, or None); coarsest:
-    motion.Resolution, for what is not refined; axes: the Axis to be refined; most_work: of all
-    runs together (see simulate.Run), beyond which nothing is refined any more; readings: functions
+    motion.Resolution, for what is not refined; axes: the Axis to be refined; readings: functions
     like ``run`` for other pressures that the same numbers may stand for.
-    Returns a Certified; converged is False, with the reason, where a run did not converge or the
-    estimate over a free axis stays too large.
+    Returns a Certified; converged is False, with the reason, where a run did not converge, the
+    estimate over a free axis stays too large, or a run raised budget.Spent: then it is what was
+    known before that run, NaN if that was nothing yet.
     """
     runs = _Runs(run, coarsest, axes)
+    known = None
+    try:
+        for found in _refined(runs, axes, tolerance, readings):
+            known = found
+    except Spent as spent:
+        still = "no error is known yet"
+        if known is not None:
+            still = f"the error is still {known.error:.1e}"
+        return replace(known or _nothing(coarsest), converged=False, reason=f"{spent}: {still}")
+    return known
+
+
+def _refined(runs, axes, tolerance, readings):
+    """Yield a Certified whenever something is known, the last one when no more is to be done."""
     chains = {axis.name: _Chain(runs, axis) for axis in axes}
-    others = _Readings(runs, readings)
+    others, none = _Readings(runs, readings), _Readings(runs, ())
     rebased, goal = 0, tolerance
     while True:
         runs()  # the base first: its state is a guess for others
@@ -238,15 +258,13 @@ def certify(run, coarsest, axes, tolerance, most_work=math.inf, readings=()):
         if reason:
             break
         if sum(errors.values()) <= goal:
-            left_open = others.open(chains, "mu") if goal == tolerance else math.inf
+            left_open = others.open(chains, "mu") if goal == tolerance else np.inf
             within = sum(errors.values()) + left_open <= tolerance
             if within or left_open > LARGEST_OPEN * tolerance:
                 break
             goal = tolerance - left_open  # runs that are finer still can make room for it
             continue
-        if sum(r.work for r in runs.done.values()) > most_work:
-            reason = f"the budget of work is spent, the error still {sum(errors.values()):.1e}"
-            break
+        yield _summary(runs, chains, errors, none, "not refined any further")
         worst = max(left, key=left.get, default=None)
         cause = max(hidden, key=hidden.get)
         if hidden[cause] > left.get(worst, 0.0) and _can_rebase(chains, cause, rebased):
@@ -261,7 +279,14 @@ def certify(run, coarsest, axes, tolerance, most_work=math.inf, readings=()):
             reason = f"the error over {worst} is still {left[worst]:.1e}"
             reason += f" at {chains[worst].levels[-1]}"
             break
-    return _summary(runs, chains, errors, others, reason)
+    yield _summary(runs, chains, errors, others, reason)
+
+
+def _nothing(coarsest):
+    """The Certified of a point of which no error is known yet."""
+    errors = dict.fromkeys((*SOURCES.values(), "periodicity", "solver"), np.inf)
+    none = replace(coarsest, cells=0, angles=0, steps=0)
+    return Certified(np.nan, np.nan, errors, np.inf, none, 0.0, 0, 0, 0, 0, False, "", False)
 
 
 def _can_rebase(chains, cause, rebased):
@@ -320,4 +345,5 @@ def _summary(runs, chains, errors, others, reason):
         retried=sum(r.retried for r in done),
         converged=not reason,
         reason=reason,
+        periodic=all(r.converged for r in done),
     )

@@ -22,7 +22,7 @@ FORGETFUL = 0.2
 """Contraction of the plain map from the start on below which it is left alone."""
 
 
-def search(cycle, start, tolerance, step_tolerance, max_periods):
+def search(cycle, start, tolerance, step_tolerance, most_laps):
     """Find the fixed point of a cycle.Cycle to ``tolerance`` (a force over mu F_z).
 
     Returns a cycle.PeriodicState: the best state seen, if none is good enough.
@@ -31,7 +31,7 @@ def search(cycle, start, tolerance, step_tolerance, max_periods):
     state, best = start, None
     inner = max(step_tolerance, LOOSEST)
     forgets, last_residual = True, np.inf
-    while cycle.periods < max_periods:
+    while cycle.laps < most_laps:
         lap = cycle(state, inner)
         solved = inner <= step_tolerance
         noisy = not solved and lap.march.residual > NOISE * lap.residual

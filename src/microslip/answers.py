@@ -3,11 +3,16 @@
 See microslip.sweep for what a request is. The solver is imported only when it is asked.
 """
 
+import logging
 import math
 import time
 from statistics import median
 
 import microslip
+
+from .cache import NO_WRITING, CacheError
+
+log = logging.getLogger(__name__)
 
 SHORTEST = 0.02
 """CPU seconds that are worth a reading of the clock; shorter runs are read together."""
@@ -17,9 +22,34 @@ FIRST_COUNTS = 8.0
 """CPU seconds of a first call from which on it is the only one; loading kernels takes some 0.1."""
 
 
-def computed(request):
-    """Ask the solver; the result as a dict of values that JSON can hold."""
-    return plain(_KINDS[request["kind"]](request))
+def computed(request, time_limit=None):
+    """Ask the solver; the result as a dict of values that JSON can hold.
+
+    time_limit: of a point, as for microslip.solve. Whatever is raised is an answer, too: a result
+    that is not converged, with the exception as its reason in one line, and `crashed`. One point
+    that fails is a gap in the map, not the end of the sweep. But a full disk is nothing of the
+    point's: CacheError and the OSError of one go on.
+    """
+    try:
+        limits = {} if time_limit is None else {"time_limit": time_limit}
+        return plain(_KINDS[request["kind"]](request, **limits))
+    except CacheError:
+        raise
+    except Exception as error:
+        if isinstance(error, OSError) and error.errno in NO_WRITING:
+            raise
+        log.debug("%s", request, exc_info=True)
+        reason = " ".join(f"{type(error).__name__}: {error}".split())
+        return {"converged": False, "crashed": True, "reason": reason}
+
+
+def is_final(result):
+    """Whether equal requests have this result for ever.
+
+    Not so what ran out of time or of memory, or fell over what the next version of a library or of
+    the machine may do: that is asked again.
+    """
+    return not result.get("crashed") and result.get("exhausted") != "time"
 
 
 def timed(run, repeats):
@@ -51,8 +81,8 @@ def timed(run, repeats):
 # Kinds of requests
 
 
-def _point(request):
-    return _survived(lambda: _solved(request, model=request["model"]))
+def _point(request, time_limit=None):
+    return _solved(request, model=request["model"], time_limit=time_limit)
 
 
 def _history(request):
@@ -69,7 +99,7 @@ def _period(request):
     """A period of the periodic state in few bytes, see microslip.periods."""
     from .periods import packed
 
-    return _if_found(lambda **sizes: packed(microslip.period(**sizes), request["angles"]), request)
+    return _found(lambda: packed(microslip.period(**_at(request)), request["angles"]))
 
 
 def _trial(request):
@@ -78,7 +108,8 @@ def _trial(request):
 
     place = _place(request)
     settings = {"model": request["model"], "method": request["method"]}
-    reason = trial.applies(place["scene"], place["poisson"], **settings)
+    motion = {name: place[name] for name in ("scene", "poisson", "pressure") if name in place}
+    reason = trial.applies(**motion, **settings)
     if reason:
         return {"applies": False, "converged": False, "reason": reason}
     settings |= {"cells": request["cells"], "angles": request["angles"]}
@@ -88,12 +119,12 @@ def _trial(request):
     def run():
         return trial.run_trial(**place, **settings)
 
-    return {"applies": True} | _timed_if_survived(run, request["repeats"])
+    return {"applies": True} | _timed(run, request["repeats"])
 
 
 def _choice(request):
     """What `solve` does when only a tolerance is given."""
-    return _timed_if_survived(lambda: _solved(request), request["repeats"])
+    return _timed(lambda: _solved(request), request["repeats"])
 
 
 def _probe(request):
@@ -103,12 +134,14 @@ def _probe(request):
     from .scenes import scene_named
 
     place = _place(request)
-    model = choose_model(scene_named(place["scene"]), place["poisson"], request["model"])
-    reason = trial.applies(place["scene"], place["poisson"], model, request["method"])
+    scene = scene_named(place["scene"], place.get("pressure", "hertz"))
+    model = choose_model(scene, place["poisson"], request["model"])
+    how = {"model": model, "method": request["method"], "pressure": scene.pressure.name}
+    reason = trial.applies(place["scene"], place["poisson"], **how)
     if reason:
         return {"applies": False, "converged": False, "reason": reason}
     settings = {"model": request["model"], "method": request["method"]}
-    return {"applies": True} | _survived(lambda: _solved(request, **settings))
+    return {"applies": True} | _solved(request, **settings)
 
 
 def _scaling(request):
@@ -125,14 +158,14 @@ def _run(request):
     names = ("model", "method", "cells", "angles", "steps")
     settings = {name: request[name] for name in names}
     tolerance = float(request["tolerance"])
-    return _survived(lambda: trial.run_trial(**_place(request), **settings, tolerance=tolerance))
+    return trial.run_trial(**_place(request), **settings, tolerance=tolerance)
 
 
 def _patches(request):
     """Where the contact sticks over a period."""
     from .patches import patches
 
-    return _if_found(patches, request)
+    return _found(lambda: patches(**_at(request)))
 
 
 _KINDS = {
@@ -174,11 +207,12 @@ def _solved(request, **settings):
     place = _place(request)
     names = ("cells", "steps", "most_work")
     settings |= {name: request[name] for name in names if name in request}
+    tolerance = request["tolerance"]
     result = microslip.solve(
         place.pop("scene"),
         place.pop("velocity"),
         place.pop("amplitude"),
-        tolerance=float(request["tolerance"]),
+        tolerance=None if tolerance is None else float(tolerance),
         **place,
         **settings,
     ).to_dict()
@@ -186,36 +220,23 @@ def _solved(request, **settings):
     return result
 
 
-def _survived(run):
-    """The result of `run()`, or the error that it ended with, as a result."""
-    try:
-        return run()
-    except (ArithmeticError, RuntimeError, MemoryError, _linear_algebra_error()) as error:
-        # One point that fails is a gap in the map, not the end of the sweep.
-        return {"converged": False, "reason": f"{type(error).__name__}: {error}"}
+def _at(request):
+    return _place(request) | {name: request[name] for name in ("cells", "angles", "steps")}
 
 
-def _if_found(look, request):
-    """What `look` sees in a period, or why there is none: the request itself is sound."""
-    sizes = {name: request[name] for name in ("cells", "angles", "steps")}
+def _found(look):
+    """What `look` sees in a period, or why there is none."""
+    from .inside import NoPeriodicState
+
     try:
-        return _survived(lambda: look(**_place(request), **sizes))
-    except ValueError as error:
+        return look()
+    except NoPeriodicState as error:
         return {"converged": False, "reason": str(error)}
 
 
-def _timed_if_survived(run, repeats):
-    def both():
-        result, seconds = timed(run, repeats)
-        return dict(result) | {"seconds": seconds}
-
-    return _survived(both)
-
-
-def _linear_algebra_error():
-    from numpy.linalg import LinAlgError
-
-    return LinAlgError
+def _timed(run, repeats):
+    result, seconds = timed(run, repeats)
+    return dict(result) | {"seconds": seconds}
 
 
 def plain(value):

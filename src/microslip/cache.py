@@ -282,14 +282,15 @@ def is_damaged(path):
 # Batches: the records of a job in one file, one a line
 
 
-def write_batch(path, records):
+def write_batch(path, records, final=True):
     """Write records to the file of a batch, all of them or nothing.
 
     Each line is as in the file of a single result; the last one is the checksum of all before it.
+    final: whether equal requests have these results for ever; the next run makes it again if not.
     Raises CacheError as `writing_beside` does.
     """
     content = b"".join(_text(record) for record in records)
-    write_atomically(path, content + _last_line(content))
+    write_atomically(path, content + _last_line(content, final))
 
 
 def read_batch(path):
@@ -297,28 +298,37 @@ def read_batch(path):
 
     Raises CacheError if there is no such file or reading is not allowed.
     """
-    content = _batch_content(path)
+    content, _ = _batch_content(path)
     records = content and [_parse(line) for line in content.splitlines(keepends=True)]
     return records if records and None not in records else None
 
 
-def is_whole_batch(path):
-    """Whether the file of a batch is as it was written. Raises CacheError as `read_batch`."""
-    return bool(_batch_content(path))
+def why_not_whole(path):
+    """Why the file of a batch has to be made again, in a few words; "" if it has not.
+
+    Raises CacheError as `read_batch` does.
+    """
+    content, final = _batch_content(path)
+    if not content:
+        return "it is damaged"
+    return "" if final else "it has points that failed"
 
 
 def _batch_content(path):
-    """What a batch holds above its last line; empty if that does not fit."""
+    """What a batch holds above its last line, empty if that does not fit; whether it is final."""
     try:
         text = Path(path).read_bytes()
     except OSError as error:
         raise CacheError(advice("read", path, error)) from error
     end = text.rfind(b"\n", 0, -1) + 1
-    return text[:end] if text[end:] == _last_line(text[:end]) else b""
+    for final in (True, False):
+        if text[end:] == _last_line(text[:end], final):
+            return text[:end], final
+    return b"", False
 
 
-def _last_line(content):
-    return f"{hashlib.sha256(content).hexdigest()}\n".encode()
+def _last_line(content, final):
+    return f"{hashlib.sha256(content).hexdigest()}{'' if final else ' not final'}\n".encode()
 
 
 def _text(record):

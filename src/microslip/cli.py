@@ -107,7 +107,8 @@ def _add_options(parser):
         "--tolerance",
         default="1e-3",
         metavar="T",
-        help="largest accepted error of mu_macro, absolute (1e-3)",
+        help="largest accepted error of mu_macro, absolute (1e-3); none, where cells and steps are "
+        "imposed: whatever their error is",
     )
     parser.add_argument(
         "--cells",
@@ -115,6 +116,11 @@ def _add_options(parser):
         help="impose N rings, or N x N squares (even, from 4 on)",
     )
     parser.add_argument("--steps", metavar="N", help="impose N steps a period (even)")
+    parser.add_argument(
+        "--time-limit",
+        metavar="SECONDS",
+        help="give up after so long, looked at between two marches; the answer is not kept then",
+    )
     parser.add_argument(
         "--method",
         default="shipped",
@@ -194,7 +200,11 @@ def _as_given(options, argument):
 def _answer(options, progress):
     """What the options ask for; raises InputError and CacheError as microslip.solve_stored."""
     reals = [name for name in ("velocity", "amplitude", "poisson", "tolerance") if name in options]
-    numbers = {name: parameters.read(name, getattr(options, name)) for name in reals}
+    given = {name: getattr(options, name) for name in reals}
+    numbers = {name: parameters.read(name, text) for name, text in given.items() if text != "none"}
+    numbers.setdefault("tolerance", None)
+    if options.time_limit is not None:
+        numbers["time_limit"] = parameters.read("time_limit", options.time_limit)
     for name in ("cells", "steps"):
         text = getattr(options, name)
         numbers[name] = None if text is None else parameters.read(name, text, whole=True)

@@ -22,7 +22,7 @@ class PeriodicState:
     forces: (steps + 1, 3) over the last (half) period marched; start: tractions at its beginning;
     residual: what the plain map still changed, distance: estimated distance from the fixed point
     (both bounds on a force over mu F_z); solver_residual: sum over the stages of the last period;
-    periods: maps marched; iterations, solves: of the step solver, over all of them; inverse: what
+    laps: maps marched; iterations, solves: of the step solver, over all of them; inverse: what
     turned residuals into corrections, (start.size, start.size), if anything did.
     """
 
@@ -31,7 +31,7 @@ class PeriodicState:
     residual: float
     distance: float
     solver_residual: float
-    periods: int
+    laps: int
     iterations: int
     solves: int
     converged: bool
@@ -80,7 +80,7 @@ class Cycle:
 
     def __init__(self, contact, path, pace=None, mirror=True):
         self.contact, self.path, self.pace, self.mirror = contact, path, pace, mirror
-        self.periods = self.iterations = self.solves = 0
+        self.laps = self.iterations = self.solves = 0
         self._march = None
         self._share = np.diff(path.phase) / (path.phase[-1] - path.phase[0])  # of each step
 
@@ -92,7 +92,7 @@ class Cycle:
         self._march = march = self.contact.march(
             self.path, state, step_tolerance, sensitivity=sensitivity, previous=self._march
         )
-        self.periods += 1
+        self.laps += 1
         self.iterations += march.iterations
         self.solves += march.solves
         image = self.image(march.state)
@@ -126,7 +126,7 @@ class Cycle:
             residual=lap.residual,
             distance=float(distance),
             solver_residual=lap.march.residual,
-            periods=self.periods,
+            laps=self.laps,
             iterations=self.iterations,
             solves=self.solves,
             converged=bool(converged),

@@ -45,11 +45,16 @@ def write_sweep(path, sweep, points, histories, settings):
     frame, axes = _frame(sweep, histories), _axes(sweep)
     scene, pressure = solver_names(sweep)
     title = sweep.title or f"Friction of a vibrated Hertz contact, scene {scene}"
-    about = {"scene": scene, "pressure": pressure, "tolerance": sweep.tolerance}
+    tolerance = np.nan if sweep.tolerance is None else sweep.tolerance
+    about = {"scene": scene, "pressure": pressure, "tolerance": tolerance}
     if named_files.base_name(pressure):
         about["pressure_file"] = named_files.base_name(pressure)
     if sweep.group is not None:
         about["group"] = sweep.group
+    failed = [record for record in histories if record["result"].get("crashed")]
+    if failed:
+        reasons = (f"{r['request']['kind']}: {r['result']['reason']}" for r in failed)
+        about["single_runs_failed"] = "; ".join(reasons)
     versions = {canonical_json(record["versions"]) for record in histories}
     with writing_beside(path, sealed=True) as beside:
         _to_netcdf(frame, beside)
@@ -115,6 +120,8 @@ def report(dataset, name=None):
         point = dataset.isel(dict(zip(converged.dims, index, strict=True)))
         where = ", ".join(f"{dim} {float(point[dim]):g}" for dim in converged.dims)
         yield f"  not converged: {where}: {point['reason'].item()}"
+    if "single_runs_failed" in dataset.attrs:
+        yield f"  single runs left out: {dataset.single_runs_failed}"
 
 
 def _axes(sweep):
@@ -140,8 +147,8 @@ def _describe_axes(dataset, sweep):
 
 
 def _single_runs(sweep, records):
-    if not records:
-        return {}
+    if not records or any(record["result"].get("crashed") for record in records):
+        return {}  # see `report`
     if sweep.scene == "transverse":
         return _force_history(records[0])
     fields = [record for record in records if record["request"]["kind"] == "field"]

@@ -72,7 +72,6 @@ def sweeps(given, where):
         more = {"group": settings["group"], "title": settings["title"] or name}
         more["pressure"] = _by_content(settings["pressure"])
         found[name] = grids.grid_of(name, settings["scene"], settings, f"{where}.{name}", **more)
-        grids.refuse_static_model(found[name], f"{where}.{name}")
     return found
 
 

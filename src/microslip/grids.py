@@ -38,14 +38,30 @@ def grid_of(name, scene, given, where, **more):
         poisson=axis_of(poisson if isinstance(poisson, list) else [poisson], f"{where}.poisson"),
         poisson_is_axis=isinstance(poisson, list),
         model=given["model"],
-        tolerance=float(number(given["tolerance"])),
+        tolerance=None if given["tolerance"] is None else float(number(given["tolerance"])),
         cells=given["cells"],
         steps=given["steps"],
         **more,
     )
+    _refuse_no_tolerance(sweep, where)
     points = len(sweep.velocity) * len(sweep.amplitude or (None,)) * len(sweep.poisson)
     refuse_crowd(points, where, MOST_POINTS)
     return sweep
+
+
+def _refuse_no_tolerance(sweep, where):
+    """Raise ConfigError where no tolerance is meant but the resolution is not imposed, either.
+
+    What has neither cells nor steps is left to the solver, which then has nothing to choose.
+    """
+    free = [name for name in ("cells", "steps") if getattr(sweep, name) is None]
+    if sweep.amplitude is None:  # a steady motion takes no steps
+        free = [name for name in free if name == "cells"]
+    if sweep.tolerance is None and free:
+        raise ConfigError(
+            f"{where}.tolerance: null is not allowed; allowed: a number, or {' and '.join(free)} "
+            "imposed"
+        )
 
 
 def refuse_crowd(points, where, most):
@@ -98,19 +114,4 @@ def _refuse_mismatch(sweep, where):
     if sweep.model == "radial" and sweep.poisson[-1] > 0:
         raise ConfigError(
             f"{where}.poisson: {sweep.poisson[-1]:g} does not go with model radial; allowed: 0"
-        )
-    refuse_static_model(sweep, where)
-    if sweep.velocity[0] == 0 and sweep.scene == "transverse" and sweep.poisson[-1] > 0:
-        raise ConfigError(
-            f"{where}.velocity: 0, the static limit, is known for poisson 0 only; "
-            "allowed: numbers > 0"
-        )
-
-
-def refuse_static_model(sweep, where):
-    """Raise ConfigError where a static limit is asked of a model by name."""
-    if sweep.velocity[0] == 0 and sweep.model != "auto":
-        raise ConfigError(
-            f"{where}.velocity: 0, the static limit, does not go with model {sweep.model}; "
-            "allowed: numbers > 0, or model auto"
         )

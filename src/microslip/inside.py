@@ -28,6 +28,10 @@ MIRRORED_FORCES = np.array([1.0, -1.0, -1.0])
 """Signs of the forces half a period later."""
 
 
+class NoPeriodicState(ValueError):
+    """There are no tractions to show: the march broke off, as the message says."""
+
+
 @dataclass(frozen=True, eq=False)
 class History:
     """Forces along a path, arrays of shape (steps + 1,), dimensionless.
@@ -196,7 +200,7 @@ def period(
     resolution = Resolution(cells, angles, steps // 2)
     run = simulate(kind, velocity, amplitude, poisson, "polar", resolution, PERIOD_TOLERANCE)
     if run.state is None:
-        raise ValueError(f"velocity = {velocity!r}: {run.reason}")
+        raise NoPeriodicState(f"velocity = {velocity!r}: {run.reason}")
     contact = build_contact(motion, "polar", resolution)
     path = motion.path(contact, steps // 2)
     tractions, forces = frames(contact, path, run.state, STEP_TOLERANCE)

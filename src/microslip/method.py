@@ -20,7 +20,7 @@ class Method:
     summary: in a line, for tables and figures; integrator: path.Integrator; dress(contact,
     **parameters) -> a contact that solves its steps in another way, None: as it is;
     parameters: numbers that ``dress`` takes, with their defaults; search(cycle, start, tolerance,
-    step_tolerance, max_periods, inverse) -> cycle.PeriodicState; prepared: start near the static
+    step_tolerance, most_laps, inverse) -> cycle.PeriodicState; prepared: start near the static
     limit and with coarse steps, else once from full slip; extrapolated: add the difference to the
     run with half the steps; run: replaces the whole simulation, see methods.paper; model: the only
     one that ``run`` stands for; resolution: (cells, angles, steps a period) that ``run`` keeps to

@@ -22,7 +22,7 @@ SKEWED = 1e-3
 """Broyden updates that divide by less than this share of a move's square are left out."""
 
 
-def search(cycle, start, tolerance, step_tolerance, max_periods, inverse=None):
+def search(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
     """Find the fixed point of a cycle.Cycle to ``tolerance`` (a force over mu F_z).
 
     inverse: known inverse of 1 - F' near the start, (start.size, start.size); without it the first
@@ -31,7 +31,7 @@ def search(cycle, start, tolerance, step_tolerance, max_periods, inverse=None):
     corrector = Corrector(cycle, start, inverse)
     state, derivative = start, inverse is None
     best, found, last_step, rejected = None, None, np.inf, 0
-    while cycle.periods < max_periods:
+    while cycle.laps < most_laps:
         lap = cycle(state, step_tolerance, derivative)
         if best is not None and not lap.residual <= best.residual:
             rejected += 1

@@ -5,9 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from microslip.inside import period
+from microslip.pressures import HERTZ
 
 
-def patches(scene, velocity, amplitude, *, poisson=0.0, cells=16, angles=16, steps=64):
+def patches(
+    scene, velocity, amplitude, *, pressure=HERTZ.name, poisson=0.0, cells=16, angles=16, steps=64
+):
     """Stick and slip over a period of the periodic state, reduced to what figures and checks need.
 
     Arguments and errors as for ``microslip.period``; a scene whose second half of a period mirrors
@@ -19,9 +22,8 @@ def patches(scene, velocity, amplitude, *, poisson=0.0, cells=16, angles=16, ste
     the traction over the bound there, 1 where a point slips.  The moments are: when least of the
     contact sticks in a stroke, the middle of the stroke, and the same of the stroke back.
     """
-    found = period(
-        scene, velocity, amplitude, poisson=poisson, cells=cells, angles=angles, steps=steps
-    )
+    sizes = {"cells": cells, "angles": angles, "steps": steps}
+    found = period(scene, velocity, amplitude, pressure=pressure, poisson=poisson, **sizes)
     sticking = np.where(found.slips, 0.0, found.area / np.pi)
     right = found.lateral_position > 0.0
     # the first row repeats the last one: a stroke is rows 1 to half

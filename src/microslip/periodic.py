@@ -9,12 +9,10 @@ from __future__ import annotations
 
 from microslip import anderson, newton
 
-MAX_PERIODS = 200
+MOST_LAPS = 200
 
 
-def find_periodic_state(
-    cycle, start, tolerance, step_tolerance, max_periods=MAX_PERIODS, inverse=None
-):
+def find_periodic_state(cycle, start, tolerance, step_tolerance, most_laps=MOST_LAPS, inverse=None):
     """March half periods until the state is periodic to ``tolerance`` (a force over mu F_z).
 
     cycle: cycle.Cycle, the map over half a period; start: state, shape of the contact; inverse:
@@ -23,5 +21,5 @@ def find_periodic_state(
     for want of convergence: see ``converged``.
     """
     if cycle.contact.has_sensitivity:
-        return newton.search(cycle, start, tolerance, step_tolerance, max_periods, inverse)
-    return anderson.search(cycle, start, tolerance, step_tolerance, max_periods)
+        return newton.search(cycle, start, tolerance, step_tolerance, most_laps, inverse)
+    return anderson.search(cycle, start, tolerance, step_tolerance, most_laps)

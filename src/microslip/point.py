@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from microslip.accuracy import certify
 from microslip.approach import run_safely
+from microslip.budget import Budget
 from microslip.choice import choose_model, closed_form, method_refusal, no_vibration, plan
 from microslip.errors import InputError
 from microslip.methods import SHIPPED, method_named, refuse_missing
+from microslip.result import Result
 from microslip.scenes import read_otherwise, scene_named
 from microslip.simulate import simulate
 from microslip.static_run import simulate_static
@@ -25,55 +27,13 @@ LARGEST = {"velocity": 1e6, "amplitude": 1e6, "cells": 1000, "steps": 1_000_000}
 """What is larger is a slip, and would run out of memory or of the range of floating-point numbers;
 a test keeps them as in the schema of configurations."""
 CLOSED_FORM = "closed-form"
-
-
-@dataclass(frozen=True)
-class Result:
-    """Friction at one point, and how far to trust it.  All numbers dimensionless.
-
-    mu_macro: mean forward force over mu F_z; mu_macro_error: sum of the five errors that follow it
-    (error_model: of a closed form, and what the resolution of a pressure from a file leaves open;
-    else 0); mu_torque, mu_torque_error: torque over its value at
-    zero forward velocity (steady scenes only, else None); cells, angles, steps_per_period: finest
-    resolution used (angles: points on half the disc, 1 where rings or squares suffice); periods:
-    half periods marched in the longest run; iterations, work, effort: step-solver
-    iterations, step solves x unknowns, and iterations x unknowns, over all runs; retried: runs that
-    found no periodic state at first, and were done again by safer steps.
-    """
-
-    scene: str
-    pressure: str
-    velocity: float
-    amplitude: float | None
-    poisson: float
-    model: str
-    tolerance: float
-    method: str
-    mu_macro: float
-    mu_macro_error: float
-    error_space: float
-    error_time: float
-    error_periodicity: float
-    error_solver: float
-    error_model: float
-    mu_torque: float | None
-    mu_torque_error: float | None
-    converged: bool
-    reason: str
-    cells: int
-    angles: int
-    steps_per_period: int
-    periods: int
-    iterations: int
-    work: int
-    effort: int
-    retried: int
-    solve_time_s: float
-
-    def to_dict(self):
-        """Fields as a plain dict, without those that the scene does not have."""
-        fields = asdict(self)
-        return {k: v for k, v in fields.items() if v is not None}
+TOLERANCE = 1e-3
+"""Unless told otherwise; and how strict the search for a periodic state is where none is meant."""
+MOST_WORK = {"polar": 2e9, "cartesian": 2e9}
+MOST_WORK_OF_OTHERS = 2e8
+"""Work, by model, beyond which a point is given up unless told otherwise: more than ten times what
+the slowest points of the paper's range take at the tolerance 1e-4.  Rings have few unknowns, and
+each of them takes longer."""
 
 
 def solve(
@@ -84,11 +44,12 @@ def solve(
     pressure="hertz",
     poisson=0.0,
     model="auto",
-    tolerance=1e-3,
+    tolerance=TOLERANCE,
     cells=None,
     steps=None,
     method=SHIPPED,
-    most_work=math.inf,
+    most_work=None,
+    time_limit=None,
     progress=None,
 ):
     """Macroscopic friction of a vibrated contact at one point.
@@ -97,20 +58,24 @@ def solve(
     groups (amplitude: None for continuous-bore; velocity 0: the limit v -> 0), in units of the
     pressure's own u_lim; pressure: "hertz", "power:exponent=1", "file:measured.csv", see
     microslip.pressures; poisson: nu;
-    model: "auto" or a name in models.MODELS; tolerance: absolute, on mu_macro; cells, steps (in a
-    full period): impose a resolution instead of letting the tolerance choose; method: one of
-    methods.names(), to be compared with what ships; most_work: step solves x unknowns, over all
-    runs, beyond which a point is given up; progress: called with the Resolution of every run before
+    model: "auto" or a name in models.MODELS; tolerance: absolute, on mu_macro, None where cells and
+    steps are imposed and the error is only to be told; cells, steps (in a full period): impose a
+    resolution instead of letting the tolerance choose; method: one of methods.names(), to be
+    compared with what ships; most_work: step solves x unknowns, over all runs, beyond which a point
+    is given up, None: MOST_WORK; time_limit: seconds by the wall clock after which it is given up,
+    looked at between marches, None: never; progress: called with the Resolution of every run before
     it starts.
-    Returns a Result; ``converged`` is False, with the reason, where the tolerance was not met.
+    Returns a Result; ``converged`` is False, with the reason, where the tolerance was not met, be
+    it that of an imposed resolution.  Without a tolerance it says that every run found its periodic
+    state, searched for as strictly as at the tolerance 1e-3.
     Raises InputError, naming the argument, for input out of range or a model that does not apply.
     """
     kind, velocity, amplitude, poisson = checked_point(
         scene, velocity, amplitude, poisson, pressure
     )
-    tolerance, cells, steps = checked_accuracy(tolerance, cells, steps)
-    if not most_work > 0.0:
-        raise InputError("most_work", most_work, "allowed is a number above 0")
+    asked, cells, steps = checked_request(tolerance, cells, steps)
+    refuse_bounds(most_work=most_work, time_limit=time_limit)
+    tolerance = TOLERANCE if asked is None else asked
     name, how = choose_model(kind, poisson, model), method_named(method)
     _refuse_method(kind, name, method, how)
     started = time.perf_counter()
@@ -120,42 +85,49 @@ def solve(
         "velocity": velocity,
         "amplitude": amplitude,
         "poisson": poisson,
-        "tolerance": tolerance,
+        "tolerance": asked,
         "method": method,
     }
+    place = (velocity, amplitude, poisson)
     exact = no_vibration(kind, amplitude)
-    # an imposed resolution is to be run, unless there is nothing to march
-    free = velocity == 0.0 or (cells is None and steps is None)
-    if exact is None and model == "auto" and method == SHIPPED and free:
-        exact = closed_form(kind, velocity, amplitude, poisson, tolerance)
+    if exact is None and model == "auto" and method == SHIPPED:
+        exact = _exact(kind, *place, asked, cells, steps)
     if exact is not None:
         used = CLOSED_FORM if model == "auto" else name
         return _exact_result(point | {"model": used}, exact, time.perf_counter() - started)
-    coarsest, axes = plan(kind, name, velocity, amplitude, poisson, tolerance, cells, steps)
+    coarsest, axes = plan(kind, name, *place, tolerance, cells, steps)
     imposed, names = any(axis.imposed for axis in axes), [axis.name for axis in axes]
+    if asked is None:
+        _refuse_free(axes)
     share = PERIODICITY_SHARE * tolerance
+    if most_work is None:
+        most_work = MOST_WORK.get(name, MOST_WORK_OF_OTHERS)
+    budget = Budget(most_work, math.inf if time_limit is None else time_limit)
 
     def run(resolution, guess, kind=kind):
         if progress is not None:
             progress(resolution)
         if velocity == 0.0 and kind.periodic:
-            return simulate_static(kind, amplitude, poisson, name, resolution, share, how)
+            return simulate_static(kind, amplitude, poisson, name, resolution, share, how, budget)
 
         def run_at(velocity, guess, careful=False):
             where = (kind, velocity, amplitude, poisson, name, resolution, share)
-            return simulate(*where, guess, how, careful)
+            return simulate(*where, guess, how, careful, budget)
 
         if method != SHIPPED or not kind.periodic:
             return run_at(velocity, guess)
         return run_safely(run_at, velocity, guess)
 
     readings = [partial(run, kind=other) for other in read_otherwise(kind)]
-    certified = certify(run, coarsest, axes, tolerance, most_work, readings)
+    certified = certify(run, coarsest, axes, tolerance, readings)
+    if budget.exhausted:
+        certified = replace(certified, **budget.counts())
     steady = not kind.periodic
-    within = certified.error <= tolerance or imposed
+    within = asked is None or certified.error <= asked
     reason = certified.reason
     if certified.converged and not within:
-        reason = f"estimated error {certified.error:.1e} above the tolerance"
+        where = "at the imposed resolution the error" if imposed else "the estimated error"
+        reason = f"{where} is {certified.error:.1e}, above the tolerance of {asked:g}"
         left_open = certified.errors.get("model", 0.0)
         if left_open > 0.5 * certified.error:
             reason += f": the file's own resolution leaves {left_open:.1e} open"
@@ -173,6 +145,7 @@ def solve(
         if steady
         else None,
         converged=bool(certified.converged and within),
+        periodic=certified.periodic,
         reason=reason,
         cells=certified.finest.cells,
         angles=certified.finest.angles,
@@ -182,6 +155,7 @@ def solve(
         work=certified.work,
         effort=certified.effort,
         retried=certified.retried,
+        exhausted=budget.exhausted,
         solve_time_s=time.perf_counter() - started,
     )
 
@@ -210,6 +184,51 @@ def checked_accuracy(tolerance, cells, steps):
     """Tolerance and imposed resolution; raises InputError naming the argument at fault."""
     tolerance = _number("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
     return tolerance, _count("cells", cells, 4), _count("steps", steps, 8)
+
+
+def checked_request(tolerance, cells, steps):
+    """As ``checked_accuracy``, but that no tolerance, None, may be asked for."""
+    _, cells, steps = checked_accuracy(TOLERANCE, cells, steps)
+    if tolerance is not None:
+        tolerance, _, _ = checked_accuracy(tolerance, None, None)
+    return tolerance, cells, steps
+
+
+def refuse_choice(kind, model, place, cells, steps):
+    """Raise InputError where a resolution would have to be chosen, and there is no tolerance to do
+    that; place: velocity, amplitude, poisson, and all as checked."""
+    exact = no_vibration(kind, place[1])
+    if exact is None and model == "auto":
+        exact = _exact(kind, *place, None, cells, steps)
+    if exact is None:
+        name = choose_model(kind, place[2], model)
+        _refuse_free(plan(kind, name, *place, TOLERANCE, cells, steps)[1])
+
+
+def _exact(kind, velocity, amplitude, poisson, asked, cells, steps):
+    """choice.closed_form, but that an imposed resolution is to be run, if anything is marched."""
+    if velocity > 0.0 and not (cells is None and steps is None):
+        return None
+    return closed_form(kind, velocity, amplitude, poisson, asked or 0.0)
+
+
+def _refuse_free(axes):
+    """Raise InputError where a tolerance would have to choose the cells or the steps."""
+    free = [name for axis in axes if not axis.imposed for name in axis.refines if name != "angles"]
+    if free:
+        what = " and ".join(free)
+        allowed = f"allowed is a number, or none where {what} are imposed"
+        raise InputError("tolerance", None, allowed)
+
+
+def refuse_bounds(**given):
+    """Raise InputError for a bound, None or a number, that is not above 0."""
+    for name, value in given.items():
+        if value is None:
+            continue
+        number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+        if not (number and value > 0.0):
+            raise InputError(name, value, "allowed is a number above 0")
 
 
 def _refuse_method(kind, model, method, how):
@@ -252,7 +271,8 @@ def _count(name, value, low):
 
 
 def _exact_result(point, values, seconds):
-    mu, torque, error = values
+    (mu, torque, error), asked = values, point["tolerance"]
+    within = asked is None or error <= asked
     return Result(
         **point,
         mu_macro=mu,
@@ -264,16 +284,18 @@ def _exact_result(point, values, seconds):
         error_model=error,
         mu_torque=torque,
         mu_torque_error=None if torque is None else error,
-        converged=True,
-        reason="",
+        converged=within,
+        periodic=True,
+        reason="" if within else f"the error is {error:.1e}, above the tolerance of {asked:g}",
         cells=0,
         angles=0,
         steps_per_period=0,
-        periods=0,
+        periods=0.0,
         iterations=0,
         work=0,
         effort=0,
         retried=0,
+        exhausted="",
         solve_time_s=seconds,
     )
 

@@ -45,7 +45,7 @@ class Sweep:
     poisson: tuple
     poisson_is_axis: bool  # a list was given, so the dataset gets a dimension of this name
     model: str
-    tolerance: float
+    tolerance: float | None  # None: the resolution is imposed, and its error only told
     cells: int | None
     steps: int | None
     pressure: str = "hertz"  # as for scene

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from microslip.budget import Budget
 from microslip.cycle import Cycle, Pace
 from microslip.friction import project
 from microslip.method import SHIPPED
@@ -16,7 +17,7 @@ from microslip.models.contact import (
     forward_slip,
 )
 from microslip.motion import Motion, build_contact
-from microslip.periodic import MAX_PERIODS
+from microslip.periodic import MOST_LAPS
 from microslip.static import static_state
 from microslip.steady import steady_state
 
@@ -46,7 +47,8 @@ class Run:
     Where the normal load changes, forces are over mu times its mean.
 
     distance: estimated distance from the periodic (steady) state; solver_residual: summed over the
-    last period; both forces over mu F_z.  periods, iterations, solves: of all searches together;
+    last period; both forces over mu F_z.  periods: full ones that were marched in search of a state
+    that repeats itself, 0 for a steady motion; iterations, solves: of all searches together;
     work: step solves x unknowns; effort: iterations x unknowns; retried: 1 if the run is a second
     attempt, see approach.run_safely.  For other runs of the point:
     state, the periodic tractions; inverse: see cycle.PeriodicState; static_force: mean forward
@@ -57,7 +59,7 @@ class Run:
     torque: float
     distance: float
     solver_residual: float
-    periods: int
+    periods: float
     iterations: int
     solves: int
     work: int
@@ -81,38 +83,41 @@ def simulate(
     guess=None,
     method=SHIPPED,
     careful=False,
+    budget=None,
 ):
     """Run ``model`` on a scene at one resolution to its periodic (or steady) state.
 
     scene: scenes.Scene; velocity > 0, amplitude > 0 (None for steady scenes), poisson in 0..0.5:
     checked by the caller; tolerance: of the periodic state, a force over mu F_z, steps are solved
     a hundred times tighter; guess: a Run of the same point, of use if cells and angles are the
-    same, too; method: method.Method; careful: solve the steps of slow motions tighter.  Returns a
-    Run; never raises for want of convergence.
+    same, too; method: method.Method; careful: solve the steps of slow motions tighter; budget: a
+    budget.Budget, None: without bounds.  Returns a Run; never raises for want of convergence, but
+    budget.Spent where the budget is.
     """
     motion = Motion(scene, velocity, amplitude, poisson)
-    tolerance = tolerance * motion.mean_load  # so far forces are over mu F_z
+    left = tolerance * motion.mean_load  # inside of a run forces are over mu F_z
     if method.run is not None:
-        return method.run(motion, model, resolution, tolerance)
+        return method.run(motion, model, resolution, left)
+    budget = Budget() if budget is None else budget
     try:
-        run = _run(motion, model, resolution, tolerance, guess, method, careful)
+        run = _run(motion, model, resolution, left, guess, method, careful, budget)
     except (StepFailure, ArithmeticError, np.linalg.LinAlgError) as failure:
         return failed_run(str(failure))
     if method.extrapolated and run.converged:
         half = replace(resolution, steps=max(resolution.steps // 2, 1))
         other = replace(method, extrapolated=False)
         point = (scene, velocity, amplitude, poisson, model, half, tolerance, run, other)
-        return _extrapolated(run, simulate(*point))
+        return _extrapolated(run, simulate(*point, budget=budget))
     return run
 
 
 def failed_run(reason):
     """The Run of a march that could not go on: no number, and why."""
-    return Run(np.nan, np.nan, np.inf, np.inf, 0, 0, 0, 0, 0, False, reason)
+    return Run(np.nan, np.nan, np.inf, np.inf, 0.0, 0, 0, 0, 0, False, reason)
 
 
-def _run(motion, model, resolution, tolerance, guess, method, careful):
-    contact = method.dressed(build_contact(motion, model, resolution))
+def _run(motion, model, resolution, tolerance, guess, method, careful, budget):
+    contact = budget.metered(method.dressed(build_contact(motion, model, resolution)))
     step_tolerance = STEP_SHARE * tolerance
     if not motion.scene.periodic:
         return _steady_run(contact, motion, tolerance, step_tolerance)
@@ -209,7 +214,7 @@ class _Search:
         looser = (tolerance or self.tolerance) / self.tolerance
         cycle = Cycle(self.contact, path, self.pace, self.motion.scene.half_period_mirror)
         tolerances = looser * self.tolerance, looser * self.step_tolerance
-        self.done.append(self.method.search(cycle, start, *tolerances, MAX_PERIODS, inverse))
+        self.done.append(self.method.search(cycle, start, *tolerances, MOST_LAPS, inverse))
         return self.done[-1]
 
     def _summary(self, found):
@@ -217,11 +222,10 @@ class _Search:
         forward, _, torque = mean_forces(self.contact, self.motion, self.path, found.forces)
         solves = sum(one.solves for one in self.done)
         solved = found.solver_residual <= _solved_sum(self.path, self.step_tolerance)
-        halves = 1 if self.motion.scene.half_period_mirror else 2
-        periods = halves * sum(one.periods for one in self.done)
+        periods = periods_of(sum(one.laps for one in self.done), self.motion.scene)
         reason = ""
         if not found.converged:
-            reason = f"no periodic state within {periods} half periods: {found.distance:.1e} left"
+            reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
         elif not solved:
             reason = f"a step was left unsolved: residual {found.solver_residual:.1e}"
         return Run(
@@ -240,6 +244,12 @@ class _Search:
             inverse=found.inverse,
             static_force=self.pace.static_force,
         )
+
+
+def periods_of(laps, scene):
+    """Full periods in so many laps of a scene.Scene, a float: a lap is half of one where its
+    second half is the mirror image of the first."""
+    return 0.5 * laps if scene.half_period_mirror else float(laps)
 
 
 def mean_forces(contact, motion, path, forces):
@@ -265,7 +275,7 @@ def _steady_run(contact, motion, tolerance, step_tolerance):
         torque=float(found.forces[2]) / motion.scene.pressure.torque,
         distance=found.distance,
         solver_residual=found.solver_residual,
-        periods=found.stretches,
+        periods=0.0,
         iterations=found.iterations,
         solves=found.solves,
         work=found.solves * found.state.size,

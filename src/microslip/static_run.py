@@ -7,13 +7,14 @@ from dataclasses import replace
 import numpy as np
 
 from microslip import anderson
+from microslip.budget import Budget
 from microslip.cycle import Cycle
 from microslip.frames import bounds_at_phases, frames
 from microslip.method import SHIPPED
 from microslip.models.contact import FORWARD, StepFailure, forces
 from microslip.motion import STRONGEST_FOCUS, Motion, build_contact
 from microslip.rings import Focus
-from microslip.simulate import STEP_SHARE, Run, failed_run, mean_forces
+from microslip.simulate import STEP_SHARE, Run, failed_run, mean_forces, periods_of
 from microslip.static import STEPS, at_turning_points, static_state
 from microslip.static_loop import largest_shift
 
@@ -29,17 +30,20 @@ NOTHING_LEFT = 1e-2
 """Share of the largest bound that a ring outside of the stick radius may seem to have left."""
 
 
-def simulate_static(scene, amplitude, poisson, model, resolution, tolerance, method=SHIPPED):
+def simulate_static(
+    scene, amplitude, poisson, model, resolution, tolerance, method=SHIPPED, budget=None
+):
     """The limit of vanishing velocity at one resolution: arguments and Run as simulate.simulate.
 
     The rigid contact keeps no residual traction: 0 where the oscillation is on a line.
     """
     motion = Motion(scene, 0.0, amplitude, poisson)
+    budget = Budget() if budget is None else budget
     try:
         if at_turning_points(scene):
-            contact = method.dressed(build_contact(motion, model, resolution))
+            contact = budget.metered(method.dressed(build_contact(motion, model, resolution)))
             return _on_a_line(contact, motion, tolerance)
-        return _on_a_loop(motion, model, resolution, tolerance, method)
+        return _on_a_loop(motion, model, resolution, tolerance, method, budget)
     except (StepFailure, ArithmeticError, np.linalg.LinAlgError) as failure:
         return failed_run(str(failure))
 
@@ -54,7 +58,7 @@ def _on_a_line(contact, motion, tolerance):
         torque=0.0,
         distance=0.0,
         solver_residual=STEP_SHARE * tolerance * solves,
-        periods=1,
+        periods=0.0,  # a quarter of one tells the limit, and nothing is searched for
         iterations=0,
         solves=solves,
         work=solves * 2 * contact.forward_position.size,
@@ -64,11 +68,12 @@ def _on_a_line(contact, motion, tolerance):
     )
 
 
-def _on_a_loop(motion, model, resolution, tolerance, method):
+def _on_a_loop(motion, model, resolution, tolerance, method, budget):
     """Rings are gathered at the edge of what never slips, which no formula tells, in passes."""
     done, focus = [], None
     while len(done) < MOST_PASSES:
-        contact = method.dressed(build_contact(motion, model, resolution, focus))
+        contact = build_contact(motion, model, resolution, focus)
+        contact = budget.metered(method.dressed(contact))
         run, left = _on_these_points(contact, motion, resolution.steps, tolerance, method)
         done.append(run)
         radius = _stick_radius(contact, left)
@@ -97,7 +102,7 @@ def _on_these_points(contact, motion, steps, tolerance, method):
     cycle = Cycle(contact, path, mirror=mirror)
     start, inner = np.zeros((2, *shape)), STEP_SHARE * distance
     for _ in range(MOST_ROUNDS):  # not Newton's method: what never slips keeps what it began with
-        found = anderson.search(cycle, start, distance, inner, cycle.periods + LAPS)
+        found = anderson.search(cycle, start, distance, inner, cycle.laps + LAPS)
         start = found.start
         if found.converged:
             break
@@ -112,15 +117,15 @@ def _on_these_points(contact, motion, steps, tolerance, method):
         force += float(np.sum(contact.weight * shift))
         left = shift > NOTHING_LEFT * bounds.max()
     near = found.converged or found.distance <= ENOUGH * tolerance**2  # and its error is told
-    reason = ""
+    periods, reason = periods_of(found.laps, motion.scene), ""
     if not near:
-        reason = f"no periodic state within {cycle.periods} laps: {found.distance:.1e} left"
+        reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
     run = Run(
         mu=float(force) / motion.mean_load,
         torque=0.0,
         distance=float(np.sqrt(found.distance)) / motion.mean_load,
         solver_residual=found.solver_residual / motion.mean_load,
-        periods=found.periods,
+        periods=periods,
         iterations=found.iterations,
         solves=found.solves,
         work=found.solves * found.start.size,

@@ -8,7 +8,8 @@ from dataclasses import fields
 from . import sweep
 from .cache import Store
 from .choice import choose_model
-from .point import Result, checked_accuracy, checked_point
+from .point import TOLERANCE, checked_point, checked_request, refuse_bounds, refuse_choice
+from .result import Result
 from .settings import Sweep
 
 
@@ -21,24 +22,29 @@ def solve_stored(
     pressure="hertz",
     poisson=0.0,
     model="auto",
-    tolerance=1e-3,
+    tolerance=TOLERANCE,
     cells=None,
     steps=None,
+    time_limit=None,
 ):
     """Friction at one point, from a folder of results if it is there, else computed and kept there.
 
     results: folder, that of a sweep or a new one; the rest as for ``microslip.solve``.  A result is
     named by the physics, the tolerance and the sources of the solver, so that a sweep, the command
     line and this function find what any of them has computed.  Numbers are rounded to 12 digits
-    first, as those of sweeps are.  Returns a Result, whose solve_time_s is that of this call.
+    first, as those of sweeps are.  What ran into the time limit, or raised, is not kept.
+    Returns a Result, whose solve_time_s is that of this call.
     Raises ValueError as ``solve`` does, cache.CacheError if the folder cannot be used.
     """
     started = time.perf_counter()
     kind, velocity, amplitude, poisson = checked_point(
         scene, velocity, amplitude, poisson, pressure
     )
-    tolerance, cells, steps = checked_accuracy(tolerance, cells, steps)
+    tolerance, cells, steps = checked_request(tolerance, cells, steps)
+    refuse_bounds(time_limit=time_limit)
     choose_model(kind, poisson, model)
+    if tolerance is None:
+        refuse_choice(kind, model, (velocity, amplitude, poisson), cells, steps)
     grid = Sweep(
         name=kind.name,
         scene=kind.name,
@@ -54,24 +60,26 @@ def solve_stored(
     )
     (request,) = sweep.PointRequests(grid)
     try:
-        record, _ = sweep.answer(request, Store(results))
+        record, _ = sweep.answer(request, Store(results), time_limit)
     except sweep.SourcesEdited as edited:
         if edited.record is None:
             raise
         warnings.warn(str(edited), stacklevel=2)
         record = edited.record
     given = {"pressure": kind.pressure.name} | request | record["result"]
-    given |= {k: float(given[k]) for k in ("velocity", "poisson", "tolerance")}
-    if amplitude is not None:
-        given["amplitude"] = float(given["amplitude"])
+    numbers = ("velocity", "amplitude", "poisson", "tolerance")
+    given |= {k: float(given[k]) for k in numbers if given[k] is not None}
     return _result(given | {"solve_time_s": time.perf_counter() - started})
 
 
 def _result(given):
     """The Result with these fields; what a failed solver or JSON left out is NaN, 0 or empty."""
     left_out = {"float": math.nan, "int": 0, "str": "", "bool": False}
-    values = {}
+    values = {"periods": 0.0}
     for field in fields(Result):
         value = given.get(field.name)
-        values[field.name] = left_out.get(field.type) if value is None else value
+        if value is not None:
+            values[field.name] = value
+        else:
+            values.setdefault(field.name, left_out.get(field.type))
     return Result(**values)

@@ -52,7 +52,7 @@ class PointRequests(Sequence):
             "kind": "point",
             "scene": scene,
             "model": sweep.model,
-            "tolerance": number(sweep.tolerance),
+            "tolerance": None if sweep.tolerance is None else number(sweep.tolerance),
             "cells": sweep.cells,
             "steps": sweep.steps,
         }
@@ -119,11 +119,13 @@ def group(request):
     return "/".join([FOLDERS[request["kind"]], scene.partition(":")[0]])  # numbers apart
 
 
-def answer(request, store):
+def answer(request, store, time_limit=None):
     """Return the record that answers `request` and the CPU seconds that the solver took for it.
 
     It comes from the store if that has it (0 seconds), else it is computed and stored. The record
-    is a dict: key, request, result, versions. Raises CacheError if it cannot be stored.
+    is a dict: key, request, result, versions. What need not come out so again is not stored, see
+    answers.is_final: whoever asks next has it computed again. time_limit: of a point, as for
+    microslip.solve. Raises CacheError if it cannot be stored.
     """
     key = key_of(request)
     record = store.read(group(request), key)
@@ -131,7 +133,7 @@ def answer(request, store):
         return record, 0.0
     store.try_writing()
     started = time.process_time()
-    result = answers.computed(request)
+    result = answers.computed(request, time_limit)
     seconds = time.process_time() - started
     # How long it took is left out: equal requests have equal records, bit for bit, but for those
     # that ask for a time.
@@ -139,7 +141,8 @@ def answer(request, store):
     edited = source_digest.LOADED.edited(source_digest.files_of_request(request))
     if edited:
         raise SourcesEdited(edited[0], record)
-    store.write(group(request), key, record)
+    if answers.is_final(result):
+        store.write(group(request), key, record)
     return record, seconds
 
 
@@ -179,7 +182,9 @@ def run_batch(requests, store, progress=iter, name=None):
         seconds += took
         if not record["result"].get("converged", True):
             log.info("not converged: %s: %s", label(request), record["result"]["reason"])
+    final = all(answers.is_final(record["result"]) for record in records)
     statistics = {"points": len(records), "computed": computed, "solver_seconds": seconds}
+    statistics["final"] = final
     return records, statistics
 
 

@@ -16,34 +16,47 @@ from microslip.models import MODELS
 from microslip.models.contact import forward_slip
 from microslip.motion import Motion, Resolution, build_contact
 from microslip.path import EULER, half_period_phases, make_path
+from microslip.pressures import HERTZ
 from microslip.scenes import BORE, TRANSVERSE, scene_named
 from microslip.simulate import simulate
 
 STEP_TOLERANCE = 1e-6
 
 
-def applies(scene, poisson, model, method):
+def applies(scene, poisson, model, method, pressure=HERTZ.name):
     """Why a model or a method, by name, cannot be tried on a scene, as one line; "" if it can."""
-    kind = scene_named(scene)
+    kind = scene_named(scene, pressure)
     refusal = MODELS[model].refuses(kind, poisson) or missing(method)
     return refusal or method_refusal(kind, model, method_named(method))
 
 
 def run_trial(
-    scene, velocity, amplitude, *, poisson, model, method, cells, angles, steps, tolerance
+    scene,
+    velocity,
+    amplitude,
+    *,
+    poisson,
+    model,
+    method,
+    cells,
+    angles,
+    steps,
+    tolerance,
+    pressure=HERTZ.name,
 ):
-    """One run: a dict of mu_macro (nan if there is none), converged, reason, periods (half ones),
-    iterations, solves, unknowns and effort = iterations x unknowns; nothing in it depends on the
-    machine.
+    """One run: a dict of mu_macro (nan if there is none), converged, reason, periods (full ones, of
+    all searches together), iterations, solves, unknowns, work = solves x unknowns and effort =
+    iterations x unknowns; nothing in it depends on the machine.
 
     Arguments as for ``microslip.solve``, steps in a full period, tolerance on the periodic state (a
     force over mu F_z); angles: on half the disc.  Raises ValueError where ``applies`` says why.
     """
-    refusal = applies(scene, poisson, model, method)
+    refusal = applies(scene, poisson, model, method, pressure)
     if refusal:
         raise ValueError(f"model = {model!r}, method = {method!r}: {refusal}")
     resolution = Resolution(cells, angles, max(steps // 2, 1))
-    point = (scene_named(scene), velocity, amplitude, poisson, model, resolution, tolerance)
+    kind = scene_named(scene, pressure)
+    point = (kind, velocity, amplitude, poisson, model, resolution, tolerance)
     run = simulate(*point, method=method_named(method))
     unknowns = run.work // run.solves if run.solves else 0
     return {
@@ -54,6 +67,7 @@ def run_trial(
         "iterations": run.iterations,
         "solves": run.solves,
         "unknowns": unknowns,
+        "work": run.work,
         "effort": run.effort,
     }
 

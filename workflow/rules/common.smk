@@ -76,11 +76,13 @@ def look_after(*files):
 
 
 def whole_batches(*groups):
-    """Files of all batches of these groups; those that are damaged are made again."""
+    """Files of all batches of these groups; those that are damaged, or have points that failed for
+    a reason that need not last, are made again."""
     files = PLAN.batch_files(*groups)
     for there in map(placed, files) if ASKING else ():
-        if os.path.lexists(there) and not cache.is_whole_batch(there):
-            make_again(there, "it is damaged")
+        why = os.path.lexists(there) and cache.why_not_whole(there)
+        if why:
+            make_again(there, why)
     return in_results(files)
 
 

@@ -21,5 +21,5 @@ with job_log(snakemake.log[0]) as log:
         lambda requests: counted(requests, snakemake.params.counter),
         name=snakemake.wildcards.batch,
     )
-    cache.write_batch(snakemake.output[0], records)
+    cache.write_batch(snakemake.output[0], records, done["final"])
     log.info("%(points)d points, %(computed)d computed in %(solver_seconds).2f s of CPU time", done)

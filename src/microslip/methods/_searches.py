@@ -12,21 +12,21 @@ SLOWEST = 1.0 - 1e-6
 """Largest ratio of two changes that is believed: rounding alone makes it 1."""
 
 
-def accelerated(cycle, start, tolerance, step_tolerance, max_periods, inverse=None):
+def accelerated(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
     """Anderson acceleration, whether or not marches give a derivative.
 
     Newton's method has nothing to invert where the map keeps what rings in it for ever.
     """
-    return anderson.search(cycle, start, tolerance, step_tolerance, max_periods)
+    return anderson.search(cycle, start, tolerance, step_tolerance, most_laps)
 
 
-def march(cycle, start, tolerance, step_tolerance, max_periods, inverse=None):
+def march(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
     """March on until the plain map stands still, as strictly as the shipped search judges it.
 
     What is left is the geometric tail of the changes, in the ratio of the last two.
     """
     state, last, distance = start, None, float("inf")
-    for _ in range(max_periods):
+    for _ in range(most_laps):
         lap = cycle(state, step_tolerance)
         if last is not None:
             ratio = min(lap.residual / last, SLOWEST) if last > 0.0 else 0.0
@@ -37,10 +37,10 @@ def march(cycle, start, tolerance, step_tolerance, max_periods, inverse=None):
     return cycle.result(lap, distance, distance <= tolerance)
 
 
-def equal_means(cycle, start, tolerance, step_tolerance, max_periods, inverse=None):
+def equal_means(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
     """March on until the mean force of two half periods is the same to the tolerance."""
     state, last = start, float("inf")
-    for _ in range(max_periods):
+    for _ in range(most_laps):
         lap = cycle(state, step_tolerance)
         mean = cycle.path.mean(lap.march.forces)[0]
         change = abs(mean - last)
@@ -50,10 +50,10 @@ def equal_means(cycle, start, tolerance, step_tolerance, max_periods, inverse=No
     return cycle.result(lap, change, change <= tolerance)
 
 
-def residual_alone(cycle, start, tolerance, step_tolerance, max_periods, inverse=None):
+def residual_alone(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
     """Anderson acceleration, believed as soon as the plain map changes less than the tolerance."""
     accelerate, state = Anderson(cycle.contact, DEPTH), start
-    for _ in range(max_periods):
+    for _ in range(most_laps):
         lap = cycle(state, step_tolerance)
         if lap.residual <= tolerance:
             break

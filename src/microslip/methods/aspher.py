@@ -107,13 +107,13 @@ def _run(motion, model, resolution, tolerance):
         torque=0.0,
         distance=change,
         solver_residual=sum(residuals[-2:]),
-        periods=len(means),
+        periods=0.5 * len(means),
         iterations=solver.iterations,
         solves=solver.solves,
         work=solver.solves * solver.unknowns,
         effort=solver.iterations * solver.unknowns,
         converged=solver.failed == 0 and change <= tolerance,
-        reason=_reason(solver, len(means), change, tolerance),
+        reason=_reason(solver, 0.5 * len(means), change, tolerance),
     )
 
 
@@ -123,7 +123,7 @@ def _reason(solver, periods, change, tolerance):
         reasons.append(f"{solver.failed} of {solver.solves} steps failed")
     if not change <= tolerance:
         reasons.append(
-            f"not periodic within {periods} half periods: the mean still changed by {change:.1e}"
+            f"not periodic within {periods:g} periods: the mean still changed by {change:.1e}"
         )
     return "; ".join(reasons)
 

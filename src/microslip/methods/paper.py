@@ -34,7 +34,7 @@ def last_means(march):
 
 
 def _run(motion, model, resolution, tolerance):
-    contact = CartesianContact(CELLS, motion.poisson)
+    contact = CartesianContact(CELLS, motion.poisson, motion.scene.pressure)
     march = contact.march(path_of(motion), forward_slip(contact), STRESS_TOLERANCE)
     mean, before = last_means(march)
     return Run(
@@ -42,7 +42,7 @@ def _run(motion, model, resolution, tolerance):
         torque=0.0,
         distance=abs(mean - before),
         solver_residual=march.residual,
-        periods=2 * STEPS // STEPS_PER_PERIOD,
+        periods=STEPS / STEPS_PER_PERIOD,
         iterations=march.iterations,
         solves=march.solves,
         work=march.solves * march.state.size,

@@ -15,6 +15,7 @@ from microslip.compiled import kernel
 from microslip.friction import extended, shrink
 from microslip.models import contact
 from microslip.models.convolution import convolve, square_convolution, workspace
+from microslip.models.interrupts import BETWEEN_LOOKS, interrupted, unbroken
 from microslip.models.points import rigid_displacement, sum_forces
 from microslip.pressures import HERTZ
 
@@ -69,7 +70,8 @@ class CartesianContact:
         remembers = steps * n_stages * state.size <= MAX_REMEMBERED
         tractions = np.zeros((steps if remembers else 1, n_stages, *state.shape))
         forces = np.empty((steps + 1, 3))
-        state, residual, iterations = _march(
+        state, residual, iterations = unbroken(
+            _march,
             self.operator,
             workspace(self.operator),
             (self.scale, self.largest),
@@ -106,7 +108,7 @@ def _march(
     tractions,
     forces,
 ):
-    """March along a path; returns (state, residual sum, iterations).
+    """March along a path; returns (state, residual sum, iterations, whether it was interrupted).
 
     scales: see ``solve_step``; weight: area of a cell, (n,); positions: (forward, lateral), (n, n)
     each; path: (positions, stages, carry, end), see path.Path; elastic: displacement under
@@ -125,7 +127,7 @@ def _march(
     rigid_displacement(way[0], positions, rigid)
     z[:] = elastic - rigid
     sum_forces(q, weight, positions, forces[0])
-    total, iterations = 0.0, 0
+    total, iterations, spent = 0.0, 0, 0.0
     for k in range(stages.shape[0]):
         for s in range(n_stages):
             rigid_displacement(stages[k, s], positions, rigid)
@@ -140,6 +142,11 @@ def _march(
             count, residual, step = solve_step(
                 operator, scratch, scales, bound, weight[0], b, q, slips[s], step, tolerance
             )
+            spent += count * 100.0 * q.size
+            if count < 0 or (spent > BETWEEN_LOOKS and interrupted()):
+                return held, total, iterations, True
+            if spent > BETWEEN_LOOKS:
+                spent = 0.0
             iterations += count
             total += residual
             before[1, s] = before[0, s]
@@ -152,7 +159,7 @@ def _march(
                     z[c, i, j] = extended(z[c, i, j], b[c, i, j], end)
                     held[c, i, j] = extended(held[c, i, j], q[c, i, j], end)
         sum_forces(held, weight, positions, forces[k + 1])
-    return held, total, iterations
+    return held, total, iterations, False
 
 
 @kernel
@@ -161,9 +168,11 @@ def solve_step(operator, scratch, scales, bound, weight, b, q, slip, step, toler
 
     scales: self-influence, and a bound on the eigenvalues of the operator; weight: area of a cell;
     b: imposed displacement (2, n, n); q: start and result, within the bound; slip: receives
-    b - A q; step: first length to try.  Returns (iterations, residual, last length).
+    b - A q; step: first length to try.  Returns (iterations, residual, last length); -1 iterations:
+    interrupted.
     """
     new, moved = q.copy(), np.empty_like(q)
+    between = int(BETWEEN_LOOKS / (100.0 * q.size)) + 1
     room = np.empty((3, q.shape[2]))
     best, best_at = np.inf, 0
     for iteration in range(MAX_ITERATIONS):
@@ -182,6 +191,8 @@ def solve_step(operator, scratch, scales, bound, weight, b, q, slip, step, toler
             return iteration, residual, step
         if residual < 0.5 * best:
             best, best_at = residual, iteration
+        if iteration % between == between - 1 and interrupted():
+            return -1, residual, step
     return MAX_ITERATIONS, residual, step
 
 

@@ -19,6 +19,7 @@ from functools import lru_cache
 import numpy as np
 
 from microslip.models import contact, polar_march
+from microslip.models.interrupts import unbroken
 from microslip.models.radial import RadialContact
 from microslip.models.sectors import (
     apply_sectors,
@@ -114,7 +115,8 @@ class PolarContact:
             stages = np.empty((2, *path.stages.shape[:2], *state.shape))
         else:
             stages = previous.stages.copy()
-        state, residual, iterations = polar_march.march(
+        state, residual, iterations = unbroken(
+            polar_march.march,
             self.influence,
             self.inverse,
             self.penalty,

@@ -10,6 +10,7 @@ import numpy as np
 
 from microslip.compiled import kernel
 from microslip.friction import coulomb_residual, extended, shrink
+from microslip.models.interrupts import BETWEEN_LOOKS, interrupted
 from microslip.models.points import rigid_displacement, sum_forces
 from microslip.models.sectors import apply_sectors, fold, unfold
 
@@ -70,13 +71,13 @@ def solve_step(influence, inverse, penalty, bound, weight, b, q, dual, slip, roo
     influence: sectors.Sectors of A; inverse: of (A + penalty)^-1; penalty: (N,), also the scale of
     the residual; b: the imposed displacement (2, M, N); q: start and result, within the bound;
     dual: slip over penalty, kept from step to step; slip: receives b - A q; room: two folded
-    arrays and a full one.  Returns (iterations, residual).
+    arrays and a full one.  Returns (iterations, residual); -1 iterations: interrupted.
     """
     folded, image, free = room
     angles, n = q.shape[1], q.shape[2]
     _slip(influence, b, q, folded, image, slip)
     residual = coulomb_residual(q, slip, bound, weight, penalty)
-    iterations, between = 0, FEWEST_BETWEEN
+    iterations, between, spent = 0, FEWEST_BETWEEN, 0.0
     while residual > tolerance and iterations < MAX_ITERATIONS:
         for _ in range(between):
             for c in range(2):
@@ -89,6 +90,11 @@ def solve_step(influence, inverse, penalty, bound, weight, b, q, dual, slip, roo
             unfold(image, free)
             _project(free, bound, q, dual)
         iterations += between
+        spent += between * 8.0 * angles * n * n
+        if spent > BETWEEN_LOOKS:
+            spent = 0.0
+            if interrupted():
+                return -1, residual
         _slip(influence, b, q, folded, image, slip)
         before, residual = residual, coulomb_residual(q, slip, bound, weight, penalty)
         # the residual falls geometrically: the next look is due where it should be small enough
@@ -124,7 +130,7 @@ def march(
     duals,
     forces,
 ):
-    """March along a path; returns (state, residual sum, iterations).
+    """March along a path; returns (state, residual sum, iterations, whether it was interrupted).
 
     path: (positions, stages, carry, end), see path.Path; bounds: at the start and at every stage,
     (1 + steps stages, N), or one that stays, (1, N); added, duals: (steps, stages, 2, M, N), what
@@ -144,7 +150,7 @@ def march(
     _slip(influence, rigid, q, folded, room[1], z)
     _add(z, -2.0, z)
     sum_forces(q, weight, positions, forces[0])
-    total, iterations = 0.0, 0
+    total, iterations, spent = 0.0, 0, 0.0
     b = np.empty_like(q)
     for k in range(stages.shape[0]):
         for s in range(n_stages):
@@ -174,6 +180,11 @@ def march(
                 room,
                 tolerance,
             )
+            spent += count * 8.0 * angles * n * n
+            if count < 0 or (spent > BETWEEN_LOOKS and interrupted()):
+                return held, total, iterations, True
+            if spent > BETWEEN_LOOKS:
+                spent = 0.0
             _copy(added[k, s], q)
             _add(added[k, s], -1.0, before)
             _copy(duals[k, s], dual)
@@ -187,4 +198,4 @@ def march(
                     z[c, j, i] = extended(z[c, j, i], now, end)
                     held[c, j, i] = extended(held[c, j, i], q[c, j, i], end)
         sum_forces(held, weight, positions, forces[k + 1])
-    return held, total, iterations
+    return held, total, iterations, False

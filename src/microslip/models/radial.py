@@ -14,6 +14,7 @@ from scipy.linalg import solve_triangular
 from microslip.depth import Growth, load_on_rings
 from microslip.halfspace import ring_influence
 from microslip.models import contact, ring_march
+from microslip.models.interrupts import unbroken
 from microslip.models.ring_factors import cholesky
 from microslip.pressures import HERTZ
 from microslip.rings import make_rings
@@ -141,7 +142,8 @@ class RadialContact:
         known = None if previous is None else previous.stages
         if known is None or known.shape != (1 + stages, 2, len(self.bound)):
             known = np.empty((0, 2, 0))
-        end, tractions, forces, residual, iterations, derivative = ring_march.march(
+        end, tractions, forces, residual, iterations, derivative = unbroken(
+            ring_march.march,
             self._stiffness,
             self._factor,
             self.bound[None] if path.depth is None else self.bounds_along(path),

@@ -16,6 +16,7 @@ import numpy as np
 
 from microslip.compiled import kernel
 from microslip.friction import extended, shrink
+from microslip.models.interrupts import BETWEEN_LOOKS, interrupted
 from microslip.models.ring_factors import (
     ON_BOUND,
     combine,
@@ -215,7 +216,8 @@ def march(stiffness, whole, bounds, weight, path, state, known, tolerance, tange
     stages, n), or (1, n) where they do not change; path: (positions, stages, carry, end), see
     path.Path; state: (2, n); known: tractions of another march, at its start and after every stage,
     (1 + steps stages, 2, n), or empty.  Returns (end state, the tractions of this march, forces
-    (steps + 1, 3), residual sum, iterations, derivative of the end state (2 n, 2 n) or empty).
+    (steps + 1, 3), residual sum, iterations, derivative of the end state (2 n, 2 n) or empty,
+    whether it was interrupted, which makes the rest worthless).
     """
     positions, rigid, carry, end = path
     n, steps, stages = len(weight), rigid.shape[0], rigid.shape[1]
@@ -246,6 +248,7 @@ def march(stiffness, whole, bounds, weight, path, state, known, tolerance, tange
             forces[0, c] += weight[i] * q[c, i]
     copy(tractions[0], q)
     total, iterations, at = 0.0, 0, 0
+    spent, broken = 0.0, False
     for k in range(steps):
         for s in range(stages):
             at += 1
@@ -268,6 +271,12 @@ def march(stiffness, whole, bounds, weight, path, state, known, tolerance, tange
             copy(tractions[at], q)
             iterations += count
             total += residual
+            spent += count * 4.0 * n * n + (4.0 * n * n * n if tangent else 0.0)
+            if spent > BETWEEN_LOOKS:
+                spent = 0.0
+                broken = interrupted()
+                if broken:
+                    break
             if tangent:
                 for j in range(s):  # dz holds the derivative of b, from stage to stage
                     share = carry[s, j] - (carry[s - 1, j] if j < s - 1 else 0.0)
@@ -281,6 +290,8 @@ def march(stiffness, whole, bounds, weight, path, state, known, tolerance, tange
                     _slip_tangent(
                         factors, stick, transfer, slips[s], bound, dz, touched, dslips[s], work
                     )
+        if broken:
+            break
         for c in range(2):
             for i in range(n):
                 now = b[c, i] - slips[stages - 1, c, i] - weight[i] * way[at, c]
@@ -289,5 +300,8 @@ def march(stiffness, whole, bounds, weight, path, state, known, tolerance, tange
                 forces[k + 1, c] += weight[i] * held[c, i]
         if tangent:
             _carry_derivative(dz, touched, 1.0 / end, dslips[stages - 1], slid[stages - 1])
-    derivative = _start_derivative(stiffness, whole, dz) if tangent else np.empty((0, 0))
-    return held, tractions, forces, total, iterations, derivative
+    if tangent and not broken:
+        derivative = _start_derivative(stiffness, whole, dz)
+    else:
+        derivative = np.empty((0, 0))
+    return held, tractions, forces, total, iterations, derivative, broken

@@ -76,6 +76,8 @@ def _change(axes: Axes, shown: xr.Dataset, letter: str) -> None:
     last = shown.isel(poisson=-1)
     values = np.ma.masked_invalid(last["mu_macro_change"].values)
     step = 2.0 * float(shown.attrs["tolerance"])
+    if not step > 0.0:  # no tolerance was meant: what the points claim at most
+        step = 2.0 * max(float(shown["mu_macro_error"].max()), 1e-3)
     count = max(2, int(np.ceil(np.abs(values).max() / step)))
     levels = step * np.array([k for k in range(-count, count + 1) if k])
     filled = axes.contourf(

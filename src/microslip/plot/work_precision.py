@@ -1,4 +1,4 @@
-"""Accuracy against cost: the error of every trial over its time, or over its work.
+"""Accuracy against cost: the error of every trial over its time, or over its effort.
 
 One panel a point. All panels share their axes, so further down and to the left is better in every
 one. What has no place on the axes is drawn in strips along them, never left out: errors too small
@@ -25,7 +25,7 @@ from microslip.plot.panels import COLUMNS, PANEL, TITLE, Scale, grid, label_besi
 #: What each figure has along x: the variable, the front in it, the label.
 COSTS = {
     "accuracy_vs_cost": ("seconds", "front_seconds", "CPU time of a run (s)"),
-    "accuracy_vs_work": ("work", "front_work", r"work: iterations $\times$ unknowns"),
+    "accuracy_vs_effort": ("effort", "front_effort", r"effort: iterations $\times$ unknowns"),
 }
 POINT = ("point", "point_title", "point_scene", "point_velocity", "point_amplitude")
 POINT += ("point_poisson", "reference_error")
@@ -58,7 +58,7 @@ MARKERS = ("o", "s", "^", "D", "v", "+", "<", "1", ">", "d", "|", "2")
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw the figure `name`: errors over seconds, or over work."""
+    """Draw the figure `name`: errors over seconds, or over effort."""
     cost, front, label = COSTS[name]
     require(name, "accuracy_cost", dataset, (*POINT, *TRIAL, cost, front))
     points = [dataset.isel(point=index) for index in range(dataset.sizes["point"])]

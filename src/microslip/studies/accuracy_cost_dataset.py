@@ -29,12 +29,12 @@ TRIAL_VARIABLES = {
     "mu_macro": (float, "1", "mean forward friction force over mu F_z"),
     "error": (float, "1", "distance of mu_macro from the reference"),
     "seconds": (float, "s", "median CPU time of a run, compiled"),
-    "work": (float, "1", "iterations of the step solver times unknowns"),
+    "effort": (float, "1", "iterations of the step solver times unknowns"),
     "converged": (bool, "", "the run says that it converged"),
     "reason": (str, "", "why the run did not converge, empty if it did"),
     "claimed_error": (float, "1", "error that the result claims for itself, where it claims one"),
     "front_seconds": (bool, "", "no trial of the point is faster and as accurate"),
-    "front_work": (bool, "", "no trial of the point takes less work and is as accurate"),
+    "front_effort": (bool, "", "no trial of the point takes less effort and is as accurate"),
 }
 
 
@@ -120,7 +120,7 @@ def _reference(point, answers):
 
 def _columns(settings, points, answers, of_points):
     """Columns of TRIAL_VARIABLES, as lists."""
-    rows, fronts = [], {"front_seconds": [], "front_work": []}
+    rows, fronts = [], {"front_seconds": [], "front_effort": []}
     for i, point in enumerate(points):
         reference, floor = (of_points[name][1][i] for name in ("reference", "reference_error"))
         found = []
@@ -154,7 +154,7 @@ def _row(point, level, request, result, reference):
         "mu_macro": mu,
         "error": abs(mu - reference),
         "seconds": value_of(result, "seconds"),
-        "work": value_of(result, "effort"),
+        "effort": value_of(result, "effort"),
         "converged": value_of(result, "converged", bool),
         "reason": value_of(result, "reason", str),
         "claimed_error": value_of(result, "mu_macro_error") if chosen else np.nan,

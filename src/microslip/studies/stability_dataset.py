@@ -21,10 +21,12 @@ UNSOLVED = "a step was left unsolved"
 """How the reason of a run starts that ran out of iterations near the solution of a step."""
 
 
-def outcome(result, reference, reference_error):
+def outcome(result, reference, reference_error, imposed=False):
     """One of OUTCOMES, as an index.
 
-    result: of a probe, None or `applies` False where the method was not asked. Converged: it says
+    result: of a probe, None or `applies` False where the method was not asked; imposed: whether its
+    resolution was, which then may be too coarse for the tolerance: that is not the method's.
+    Converged: it says
     so, and comes as near to the reference as both claim; wrong: it says so and does not; slow: it
     gave up within its budget, and says so, be it in the middle of a step; diverged: it says so, or
     there is no number for another reason.
@@ -35,9 +37,11 @@ def outcome(result, reference, reference_error):
     reason = value_of(result, "reason", str)
     if reason.startswith("diverged"):
         return DIVERGED
+    if value_of(result, "exhausted", str):
+        return SLOW
     if not np.isfinite(mu) and not reason.startswith(UNSOLVED):
         return DIVERGED
-    if not value_of(result, "converged", bool):
+    if not value_of(result, "periodic" if imposed else "converged", bool):
         return SLOW
     return CONVERGED if abs(mu - reference) <= claimed + reference_error else WRONG
 
@@ -57,8 +61,9 @@ def build(settings, answer):
         for method in settings.methods
     ]
     both = ("method", "case")
+    imposed = [bool({"cells", "steps"} & overrides.keys()) for _, _, overrides in cases]
     outcomes = [
-        [outcome(*three) for three in zip(row, reference, reference_error, strict=True)]
+        [outcome(*four) for four in zip(row, reference, reference_error, imposed, strict=True)]
         for row in results
     ]
     variables = {"outcome": _flags(both, outcomes)}

@@ -1,0 +1,76 @@
+"""What a point may take: a bound on its work, the same on every machine, and one on its time.
+
+Both are looked at after every march, wherever it belongs to, so that no search, however long, goes
+on beyond them.  What the work allows follows from the request alone; what the time allows depends
+on the machine, and no such answer may be kept as that of the request.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+
+
+class Spent(RuntimeError):
+    """A point has taken what it may.  The message says of what, for the reason of its result."""
+
+
+class Budget:
+    """Counts what the marches of a point take.
+
+    Parameters
+    ----------
+    most_work : float
+        Step solves times unknowns, of all marches together.
+    time_limit : float
+        Seconds by the wall clock, from now on.
+
+    Attributes
+    ----------
+    iterations, work, effort : int
+        Step-solver iterations, step solves times unknowns, iterations times unknowns so far.
+    exhausted : str
+        The bound that was crossed: "work" or "time", empty as long as none is.
+    """
+
+    def __init__(self, most_work: float = math.inf, time_limit: float = math.inf):
+        self.most_work, self.time_limit = most_work, time_limit
+        self.iterations = self.work = self.effort = 0
+        self.exhausted = ""
+        self._began = time.monotonic()
+
+    def metered(self, contact):
+        """The contact, whose marches count from now on."""
+        return _Metered(contact, self)
+
+    def take(self, march):
+        """Count a models.contact.March; raises Spent where that was too much."""
+        unknowns = march.state.size
+        self.iterations += march.iterations
+        self.work += march.solves * unknowns
+        self.effort += march.iterations * unknowns
+        if self.work > self.most_work:
+            self.exhausted = "work"
+            raise Spent(f"the work that the point may take, {self.most_work:.3g}, is spent")
+        if time.monotonic() - self._began > self.time_limit:
+            self.exhausted = "time"
+            raise Spent(f"the time limit of {self.time_limit:g} s is over")
+
+    def counts(self):
+        """What was taken, by the names of simulate.Run, a dict."""
+        return {name: getattr(self, name) for name in ("iterations", "work", "effort")}
+
+
+class _Metered:
+    """A contact (see models.contact.Contact) that counts its marches."""
+
+    def __init__(self, contact, budget):
+        self._contact, self._budget = contact, budget
+
+    def __getattr__(self, name):
+        return getattr(self._contact, name)
+
+    def march(self, *path, **settings):
+        found = self._contact.march(*path, **settings)
+        self._budget.take(found)
+        return found

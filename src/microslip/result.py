@@ -1,0 +1,110 @@
+"""The answer for one point: friction, its error by source, and what it took."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+
+@dataclass(frozen=True)
+class Result:
+    """Friction at one point, and how far to trust it.
+
+    All numbers are dimensionless but the time.  A count is 0 where it does not apply: in a closed
+    form nothing is marched, in a steady motion there are no periods.
+
+    Attributes
+    ----------
+    scene : str
+        What moves, with the numbers that its name takes.
+    pressure : str
+        How the load is spread over the contact, likewise.
+    velocity, amplitude : float
+        The dimensionless groups of the scene; amplitude: None where the motion is steady.
+    poisson : float
+        Poisson's ratio.
+    model : str
+        Contact model that was used, or "closed-form".
+    tolerance : float or None
+        Largest accepted error of mu_macro; None: none was meant.
+    method : str
+        How it was computed: "shipped", or another to be compared with that.
+    mu_macro : float
+        Mean forward friction force over mu F_z, a ratio: 1 means that the vibration does nothing.
+    mu_macro_error : float
+        Largest error that mu_macro may have, by estimate: the sum of the next five.
+    error_space, error_time : float
+        Parts of it from the rings or squares and the angles, and from the time steps.
+    error_periodicity, error_solver : float
+        ... from the distance to the periodic state, and from what the steps left unsolved.
+    error_model : float
+        ... from a closed form in place of a run, else 0.
+    mu_torque, mu_torque_error : float or None
+        Torque over its value at zero forward velocity, and its error; None where the motion
+        oscillates.
+    converged : bool
+        mu_macro_error is within the tolerance, and every run found its state; without a tolerance
+        the second alone.
+    periodic : bool
+        Every run found the state that repeats itself, so that what is wrong with mu_macro is that
+        of the resolution.
+    reason : str
+        Why it is not converged, in a line; else empty.
+    cells : int
+        Rings, or squares across the contact, of the finest run.
+    angles : int
+        Angular points on half the disc, of the finest run; 1 where rings or squares suffice.
+    steps_per_period : int
+        Time steps in a full period, of the finest run.
+    periods : float
+        Full periods marched in search of the periodic state in the longest run: 2.5 are five half
+        ones.
+    iterations : int
+        Iterations of the step solver, over all runs.
+    work : int
+        Step solves times unknowns, over all runs.
+    effort : int
+        Iterations of the step solver times unknowns, over all runs.
+    retried : int
+        Runs that found no periodic state at first, and were done again by safer steps.
+    exhausted : str
+        What ran out before it was done: "work", or "time", with which another machine may get
+        further; else empty.
+    solve_time_s : float
+        Seconds by the wall clock.
+    """
+
+    scene: str
+    pressure: str
+    velocity: float
+    amplitude: float | None
+    poisson: float
+    model: str
+    tolerance: float | None
+    method: str
+    mu_macro: float
+    mu_macro_error: float
+    error_space: float
+    error_time: float
+    error_periodicity: float
+    error_solver: float
+    error_model: float
+    mu_torque: float | None
+    mu_torque_error: float | None
+    converged: bool
+    periodic: bool
+    reason: str
+    cells: int
+    angles: int
+    steps_per_period: int
+    periods: float
+    iterations: int
+    work: int
+    effort: int
+    retried: int
+    exhausted: str
+    solve_time_s: float
+
+    def to_dict(self):
+        """Fields as a plain dict, without those that the scene does not have."""
+        fields = asdict(self)
+        return {k: v for k, v in fields.items() if v is not None or k == "tolerance"}

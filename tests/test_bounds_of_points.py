@@ -1,0 +1,132 @@
+"""What a point may take: work, the same everywhere, time, and the patience of who waits."""
+
+import os
+import signal
+import threading
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip import point
+from microslip.budget import Budget, Spent
+from microslip.models import MODELS, interrupts
+from microslip.models.contact import forward_slip
+from microslip.motion import Motion, Resolution, build_contact
+from microslip.scenes import scene_named
+from microslip.simulate import simulate
+from microslip.static_run import simulate_static
+
+SLOW = ("transverse", 1e-9, 0.5)
+
+
+def test_a_point_that_would_take_hours_ends_as_not_converged():
+    """The bound is looked at inside a run: the first one alone would take ten times as much."""
+    found = microslip.solve(*SLOW, tolerance=1e-6, most_work=5e5)
+    assert not found.converged and found.exhausted == "work"
+    assert found.reason.startswith("the work that the point may take, 5e+05, is spent")
+    assert 5e5 < found.work < 6e5  # one march beyond
+    again = microslip.solve(*SLOW, tolerance=1e-6, most_work=5e5)
+    assert again.work == found.work and again.iterations == found.iterations
+    assert np.array_equal(again.mu_macro, found.mu_macro, equal_nan=True)
+
+
+def test_what_is_known_by_then_is_told():
+    """With an error that holds, by the certified answer of a point that needs more."""
+    whole = microslip.solve("transverse", 0.01, 0.5, tolerance=1e-4)
+    part = microslip.solve("transverse", 0.01, 0.5, tolerance=1e-4, most_work=0.5 * whole.work)
+    assert whole.converged and not part.converged
+    assert whole.mu_macro_error < part.mu_macro_error < 0.1
+    assert abs(part.mu_macro - whole.mu_macro) <= part.mu_macro_error + whole.mu_macro_error
+    assert f"{part.mu_macro_error:.1e}" in part.reason
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_every_point_has_a_bound(monkeypatch, model):
+    """A finite one, far above what is needed here."""
+    seen = []
+
+    def noted(most_work, time_limit):
+        seen.append((most_work, time_limit))
+        return Budget(most_work, time_limit)
+
+    monkeypatch.setattr(point, "Budget", noted)
+    found = microslip.solve("transverse", 0.3, 1.0, model=model, tolerance=0.1)
+    ((most_work, time_limit),) = seen
+    assert found.work < 1e-2 * most_work < np.inf
+    assert time_limit == np.inf
+
+
+def test_every_march_counts():
+    """Those of searches, and those of the static limit."""
+    scene, resolution = scene_named("transverse"), Resolution(8, 1, 16)
+    budget = Budget()
+    run = simulate(scene, 0.01, 0.5, 0.0, "radial", resolution, 1e-6, budget=budget)
+    assert budget.work >= run.work > 0 and budget.effort >= run.effort
+    loop = scene_named("elliptic")
+    for spent_at in (0, 100):
+        with pytest.raises(Spent):
+            simulate_static(loop, 0.5, 0.0, "radial", resolution, 1e-3, budget=Budget(spent_at))
+    with pytest.raises(Spent):
+        where = (scene_named("continuous-bore"), 0.5, None, 0.0, "polar", Resolution(4, 4, 1))
+        simulate(*where, 1e-3, budget=Budget(10))
+
+
+def test_the_time_limit_ends_a_point_and_says_so():
+    found = microslip.solve(*SLOW, tolerance=1e-6, time_limit=1e-9)
+    assert not found.converged and found.exhausted == "time"
+    assert found.reason.startswith("the time limit of 1e-09 s is over")
+    assert microslip.solve("transverse", 0.3, 1.0, time_limit=1e9).converged
+
+
+@pytest.mark.parametrize("name", ["most_work", "time_limit"])
+@pytest.mark.parametrize("value", [0, -1.0, float("nan"), True, "1"])
+def test_bad_bounds_are_refused(name, value):
+    with pytest.raises(microslip.errors.InputError, match=f"^{name} = "):
+        microslip.solve("transverse", 0.3, 1.0, **{name: value})
+
+
+def test_an_answer_that_ran_out_of_time_is_not_kept(tmp_path):
+    found = microslip.solve_stored(*SLOW, tolerance=1e-4, results=tmp_path, time_limit=1e-9)
+    assert found.exhausted == "time" and not list(tmp_path.rglob("*.json"))
+
+
+# Ctrl-C
+
+
+MARCHES = {
+    "radial": ("transverse", "radial", Resolution(256, 1, 768)),
+    "polar": ("bore", "polar", Resolution(128, 64, 768)),
+    "cartesian": ("transverse-bore", "cartesian", Resolution(96, 1, 768)),
+}
+
+
+@pytest.mark.parametrize("name", MARCHES)
+def test_ctrl_c_ends_a_march_that_would_take_minutes(name):
+    """One call of a compiled function; the test would hang for its whole length without that."""
+    scene, model, resolution = MARCHES[name]
+    motion = Motion(scene_named(scene), 0.01, 0.5, 0.0)
+    contact = build_contact(motion, model, Resolution(4, 4, 2))
+    contact.march(motion.path(contact, 2), forward_slip(contact), 1e-3)  # compiles
+    contact = build_contact(motion, model, resolution)
+    path, returned = motion.path(contact, resolution.steps), threading.Event()
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            contact.march(path, forward_slip(contact), 1e-10)
+            returned.set()
+    finally:
+        timer.join()
+    assert not returned.is_set()
+
+
+def test_a_march_is_done_again_where_the_program_goes_on_after_ctrl_c(monkeypatch):
+    """A handler of its own that does not raise: the answer is what it would have been."""
+    heard, answers = [], [(0.0, True), (1.5, False)]
+    before = signal.signal(signal.SIGINT, lambda *_: heard.append(True))
+    try:
+        assert interrupts.unbroken(lambda given: answers.pop(0), "anything") == [1.5]
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert heard == [True]
