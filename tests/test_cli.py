@@ -209,7 +209,7 @@ def test_public_names_are_listed_before_they_are_used():
 def test_names_are_completed_as_a_shell_of_python_does_it():
     code = (
         "import rlcompleter, microslip\n"
-        "found = rlcompleter.Completer({'microslip': microslip}).attr_matches('microslip.so')\n"
+        "found = rlcompleter.Completer({'microslip': microslip}).attr_matches('microslip.sol')\n"
         "print(*sorted(name.rstrip('(') for name in found))\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
