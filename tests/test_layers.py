@@ -34,7 +34,7 @@ LAYERS = [
     {"keys", "schemas", "settings"},
     {"grids", "pressure_files"},
     {"extended"},
-    {"cache", "config", "periods"},
+    {"cache", "config", "periods", "netcdf"},
     {"limits_of_pressures"},
     {"answers", "jobs", "watch", "limits", "columns", "summary"},
     {"sweep", "dataset"},

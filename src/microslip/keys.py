@@ -28,6 +28,7 @@ NOT_SOLVER |= {
     "limits_of_pressures",
     "columns",
     "dataset",
+    "netcdf",
     "summary",
 }
 NOT_SOLVER |= {"studies", "plot", "explorer", "si", "query"}

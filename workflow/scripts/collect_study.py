@@ -1,10 +1,9 @@
 """Assemble the dataset of one study from the store.
 
 Output: netCDF-4, CF conventions, all quantities dimensionless but for seconds and bytes.
-  accuracy_cost.nc  dims trial, point, scaling_model, scaling_size, map_tolerance, and the axes of
-                    the maps
-  stability.nc      dims (method, case), axis
-  claims.nc         dims claim, part, check, run, and axes of curves and patches
+  accuracy_cost.nc  dim trial; groups points, scaling, transverse_map, bore_map
+  stability.nc      dims (method, case); group axes
+  claims.nc         dim claim; groups parts, checks, runs, and those of the static limit and patches
 and an HTML page that sums it up.
 """
 
@@ -18,7 +17,7 @@ with job_log(snakemake.log[0]) as log:
     configuration = config.from_mapping(snakemake.config, ask_solver=False)
     store = Store(snakemake.params.store)
     data = studies.build(study, configuration, lambda request: sweep.answer(request, store)[0])
-    dataset.write(data, snakemake.output[0])
+    dataset.write(data, snakemake.output[0], studies.groups(study))
     lines = list(studies.report(study, data))
     for line in lines:
         log.info(line)
