@@ -126,8 +126,9 @@ def _create(file, name, kind, long_name, dims, box):
     if kind is str:
         width = WIDTHS[name]
         file.createDimension(characters_of(name), width)
-        chunks = (*(chunks or (len(file.dimensions[dim]) for dim in dims)), width)
-        dims, more = (*dims, characters_of(name)), {"compression": "zlib", "complevel": 1}
+        dims = (*dims, characters_of(name))
+        if chunks is not None:  # that is, where the size of the file matters
+            chunks, more = (*chunks, width), {"compression": "zlib", "complevel": 1}
     variable = file.createVariable(name, stored, dims, chunksizes=chunks, fill_value=False, **more)
     flags = "not_converged converged" if name == "converged" else "no yes"
     variable.setncatts(attributes(kind, long_name, flags=flags))
