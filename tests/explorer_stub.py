@@ -1,10 +1,9 @@
 """Small maps with periods behind their points, computed or made up, for tests of the explorer."""
 
 import numpy as np
-import xarray as xr
 from sweep_stub import EFFORT
 
-from microslip import config, dataset, explorer, sweep
+from microslip import config, dataset, explorer, netcdf, sweep
 
 AXES = {"velocity": [0, 0.02, 0.1, 1], "amplitude": [0, 0.6, 1.2], "tolerance": 1e-2}
 BAD_POINT = ("transverse", 1, 3)  # a map and a place on it that is made not to have converged
@@ -38,8 +37,7 @@ def computed(folder, store):
                 record["result"] = kept | {"converged": False, "reason": "none to be found"}
         path = folder / f"{name}.nc"
         dataset.write_sweep(path, grid, points, [], configuration.of_sweep(name))
-        with xr.open_dataset(path) as data:
-            datasets[name] = data.load()
+        datasets[name] = netcdf.whole(path)
     return datasets, periods
 
 
@@ -57,8 +55,7 @@ def made_up(folder, configuration):
         points = [{"result": result, "versions": {}}] * len(sweep.PointRequests(grid))
         path = folder / f"{name}.nc"
         dataset.write_sweep(path, grid, points, [], configuration.of_sweep(name))
-        with xr.open_dataset(path) as data:
-            datasets[name] = data.load()
+        datasets[name] = netcdf.whole(path)
         asked = explorer.period_requests(configuration, name)
         one = sweep.answers.computed(asked[len(asked) // 2])
         periods[name] = [{"request": request, "result": one} for request in asked]

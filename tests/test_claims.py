@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 from claims_stub import answered, configured, friction, result
 
-from microslip import dataset, keys, studies, theory
+from microslip import dataset, keys, netcdf, studies, theory
 from microslip.studies import claims as asked
 from microslip.studies import claims_checks, claims_checks_static, verdicts
 from microslip.studies.claims_statements import PARTS, STATEMENTS
@@ -31,9 +31,8 @@ def words(data):
 def claims(tmp_path_factory):
     """The dataset of made-up results, read back from disk."""
     path = tmp_path_factory.mktemp("claims") / "claims.nc"
-    dataset.write(judged(), path)
-    with xr.open_dataset(path) as found:
-        yield found
+    dataset.write(judged(), path, studies.groups("claims"))
+    return netcdf.whole(path)
 
 
 # What is asked
@@ -267,15 +266,24 @@ def test_conventions_and_provenance(claims, tmp_path):
     assert claims.Conventions == "CF-1.11"
     assert json.loads(claims.configuration)["tolerance"] == 0.001
     assert len(claims.results_digest) == 64
-    dataset.write(judged(), tmp_path / "claims.nc")
+    dataset.write(judged(), tmp_path / "claims.nc", studies.groups("claims"))
     with netCDF4.Dataset(tmp_path / "claims.nc") as raw:
         assert raw["verdict"].flag_meanings == "not_decided holds holds_in_part does_not_hold"
-        assert raw["check_outcome"].dtype == np.int8
+        assert raw["checks/check_outcome"].dtype == np.int8
+
+
+def test_every_part_of_the_file_is_a_table_of_its_own(tmp_path):
+    path = tmp_path / "claims.nc"
+    dataset.write(judged(), path, studies.groups("claims"))
+    assert {"checks", "runs", "patches", "bore_curves"} <= set(netcdf.group_names(path))
+    for group in (None, *netcdf.group_names(path)):
+        with xr.open_dataset(path, group=group) as part:
+            assert len(part.to_dataframe()) == max(v.size for v in part.values()), group
 
 
 def test_the_same_results_give_the_same_bytes(tmp_path):
     for name in ("one.nc", "two.nc"):
-        dataset.write(judged(), tmp_path / name)
+        dataset.write(judged(), tmp_path / name, studies.groups("claims"))
     assert (tmp_path / "one.nc").read_bytes() == (tmp_path / "two.nc").read_bytes()
 
 

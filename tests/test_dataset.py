@@ -1,7 +1,10 @@
 """Datasets: coordinates, contents, conventions, and bytes that depend on the results alone."""
 
 import json
+import subprocess
+import sys
 import time
+from types import SimpleNamespace
 
 import netCDF4
 import numpy as np
@@ -10,8 +13,9 @@ import xarray as xr
 from sweep_stub import EFFORT, Solver
 
 import microslip
-from microslip import cache, columns, config, dataset, sweep, theory
+from microslip import cache, columns, config, dataset, netcdf, sweep, theory
 from microslip.cache import CacheError, Store
+from microslip.errors import InputError
 
 GRIDS = {
     "transverse": {"velocity": [0.1, 1, 10], "amplitude": [0, 2]},
@@ -46,8 +50,9 @@ def on_disk(name, folder, grids=GRIDS):
 
 
 def built(name, folder):
-    with on_disk(name, folder) as data:
-        return data.load()
+    """All of a dataset, with its groups."""
+    write(name, folder, folder / f"{name}.nc")
+    return netcdf.whole(folder / f"{name}.nc")
 
 
 @pytest.mark.parametrize("name", ["transverse", "bore"])
@@ -166,9 +171,12 @@ def test_single_runs_for_the_figures_are_in_the_dataset(tmp_path, solver):
 
 @pytest.mark.parametrize("name", GRIDS)
 def test_conventions_and_provenance(name, tmp_path, solver):
+    for variable in built(name, tmp_path).variables.values():
+        assert 0 < len(variable.attrs["long_name"]) <= 40  # they are labels of plots
+        if name == "continuous_bore" and "description" in variable.attrs:
+            assert variable.attrs["description"] != variable.attrs["long_name"]
     with on_disk(name, tmp_path) as data:
         for variable in data.variables.values():
-            assert variable.attrs["long_name"]
             if variable.dtype.kind in "if":
                 assert variable.attrs["units"] in ("1", "rad")
                 assert not np.isin("_FillValue", list(variable.encoding)) or variable.ndim == 0
@@ -274,3 +282,130 @@ def test_periods_are_halves_of_full_ones_in_the_file(tmp_path, solver):
     with on_disk("transverse", tmp_path) as data:
         assert data.periods.dtype == float and set(data.periods.values.flat) == {2.5}
         assert "full periods" in data.periods.long_name
+
+
+# Tables, plots and joins of a stranger's, in plain xarray
+
+
+@pytest.mark.parametrize("name", GRIDS)
+def test_every_part_of_a_file_is_a_table_of_its_own(name, tmp_path, solver):
+    """A row for each point, a column for each variable: no combinations of unrelated axes."""
+    path = tmp_path / f"{name}.nc"
+    write(name, tmp_path, path)
+    with xr.open_dataset(path) as data:
+        assert len(data.to_dataframe()) == data.mu_macro.size
+        assert set(data.dims) == set(data.mu_macro.dims)
+    groups = netcdf.group_names(path)
+    curves = {"velocity_curves"} | ({"amplitude_curves"} if name != "continuous_bore" else set())
+    assert curves <= set(groups)
+    for group in groups:
+        with xr.open_dataset(path, group=group) as part:
+            assert len(part.to_dataframe()) == max(v.size for v in part.values())
+            assert part.scene == data.scene
+
+
+def test_groups_are_opened_by_name(tmp_path, solver):
+    write("transverse", tmp_path, tmp_path / "transverse.nc")
+    history = microslip.open_map("transverse", tmp_path, group="history")
+    assert history.history_force_forward.dims == ("history_step",)
+    assert history.source_digest == microslip.open_map("transverse", tmp_path).source_digest
+    assert "Figure 1" in history.title
+    known = "velocity_curves, amplitude_curves, history"
+    with pytest.raises(InputError, match=f"group = 'field': allowed is one of {known}"):
+        microslip.open_map("transverse", tmp_path, group="field")
+
+
+def test_a_tree_of_all_groups_opens(tmp_path, solver):
+    write("continuous_bore", tmp_path, tmp_path / "continuous_bore.nc")
+    with xr.open_datatree(tmp_path / "continuous_bore.nc", engine="netcdf4") as tree:
+        assert set(tree.children) == {"velocity_curves", "field", "transients"}
+        assert tree["transients/transient_torque"].dims == ("start", "transient_step")
+
+
+def test_files_of_parts_of_an_axis_are_one_dataset(tmp_path, solver):
+    axes = {"amplitude": [0, 2]}
+    for name, velocity in (("slow", [0.1, 1]), ("fast", [10, 100])):
+        (tmp_path / name).mkdir()
+        write(
+            "bore",
+            tmp_path / name,
+            tmp_path / f"{name}.nc",
+            {"bore": axes | {"velocity": velocity}},
+        )
+    paths = [tmp_path / "fast.nc", tmp_path / "slow.nc"]
+    with xr.open_mfdataset(paths, data_vars="minimal", compat="no_conflicts") as both:
+        assert both.velocity.values.tolist() == [0.1, 1, 10, 100]
+        assert both.mu_static.dims == ("amplitude",)
+        assert both.converged.dtype == bool
+        assert float(both.mu_macro.sel(velocity=100, amplitude=2)) == pytest.approx(100 / 103)
+        assert both.scene == "bore"
+
+
+def test_files_of_several_poissons_ratios_are_one_dataset(tmp_path, solver):
+    paths = []
+    for nu in (0.3, 0):
+        (tmp_path / str(nu)).mkdir()
+        paths.append(tmp_path / f"{nu}.nc")
+        write("bore", tmp_path / str(nu), paths[-1], {"bore": {**GRIDS["bore"], "poisson": nu}})
+    joined = xr.concat([xr.open_dataset(path) for path in paths], "poisson", data_vars="minimal")
+    assert joined.mu_macro.dims == ("poisson", "amplitude", "velocity")
+    assert joined.poisson.values.tolist() == [0.3, 0]
+    with xr.open_mfdataset(
+        paths, combine="nested", concat_dim="poisson", data_vars="minimal"
+    ) as lazy:
+        xr.testing.assert_allclose(lazy.mu_macro.compute(), joined.mu_macro)
+
+
+def test_a_file_may_be_open_many_times_at_once(tmp_path, solver):
+    """Texts of variable length end Python here: HDF5 loses their type when one of two is closed."""
+    write("transverse", tmp_path, tmp_path / "transverse.nc")
+    code = (
+        "import microslip, sys\n"
+        "for _ in range(30):\n"
+        "    data = microslip.open_map(sys.argv[1])\n"
+        "    microslip.open_map(sys.argv[1]).load()\n"
+        "    microslip.open_map(sys.argv[1], group='history').load()\n"
+        "    data.load()\n"
+    )
+    command = [sys.executable, "-c", code, str(tmp_path / "transverse.nc")]
+    assert subprocess.run(command, check=False, capture_output=True).returncode == 0
+
+
+def test_texts_come_back_whole_and_long_ones_are_cut(tmp_path, monkeypatch, solver):
+    said = ["no \u03bd " + "\u03b1" * 300, "short", ""]
+    answer = solver.solve
+
+    def solve(scene, velocity, *rest, **more):
+        found = answer(scene, velocity, *rest, **more).to_dict()
+        found["reason"] = said[[0.1, 1.0, 10.0].index(velocity)]
+        return SimpleNamespace(to_dict=lambda: found)
+
+    monkeypatch.setattr("microslip.solve", solve)
+    reason = built("continuous_bore", tmp_path).reason.values.tolist()
+    assert reason[1:] == said[1:]
+    assert said[0].startswith(reason[0].removesuffix("...")) and reason[0].endswith("\u03b1...")
+    assert len(reason[0].encode()) <= columns.WIDTHS["reason"]
+
+
+def test_a_part_is_saved_and_read_again_and_plots_have_labels(tmp_path, solver):
+    write("transverse", tmp_path, tmp_path / "transverse.nc")
+    data = microslip.open_map("transverse", tmp_path)
+    part = data.isel(velocity=[0, 2])
+    part.to_netcdf(tmp_path / "part.nc")
+    with xr.open_dataset(tmp_path / "part.nc") as again:
+        xr.testing.assert_identical(again.load(), part.load())
+    shown = data.mu_macro.plot()
+    said = (shown.axes.get_xlabel(), shown.axes.get_ylabel(), shown.colorbar.ax.get_ylabel())
+    assert [" ".join(text.split()) for text in said] == [
+        "forward velocity, v0 / (omega u_lim) [1]",
+        "amplitude, y0 / u_lim [1]",
+        "mean forward friction force over mu F_z [1]",
+    ]
+
+
+def test_netcdf4_reads_it_without_xarray(tmp_path, solver):
+    write("transverse", tmp_path, tmp_path / "transverse.nc")
+    with netCDF4.Dataset(tmp_path / "transverse.nc") as file:
+        assert file["mu_macro"].dimensions == ("amplitude", "velocity")
+        assert file["model"][0].tolist() == ["polar"] * 3
+        assert file["history/history_phase"][:].tolist() == [0, 0.25, 0.5, 0.75, 1]

@@ -36,7 +36,7 @@ LAYERS = [
     {"keys", "schemas", "settings"},
     {"grids"},
     {"extended"},
-    {"cache", "config", "periods"},
+    {"cache", "config", "periods", "netcdf"},
     {"limits_of_pressures"},
     {"answers", "jobs", "watch", "limits", "columns", "summary"},
     {"sweep", "dataset"},

@@ -1,14 +1,17 @@
 """Answers from finished maps: within their bounds, wherever they come from."""
 
+import errno
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
 import microslip
-from microslip import theory
+from microslip import cache, theory
 from microslip.cache import CacheError
+from microslip.errors import InputError
 from microslip.query import SOURCES, beyond, open_map
 from microslip.query.interpolation import Axis, Table
 
@@ -133,18 +136,155 @@ def test_a_point_that_did_not_converge_is_not_interpolated_over():
     assert np.isfinite(far.mu_macro)
 
 
-def test_poisson_must_be_one_of_the_datasets():
-    half = made_up().assign_coords(poisson=0.5)
-    both = xr.concat([made_up(), half * 0.5], "poisson", combine_attrs="override")
-    both["converged"] = both.converged > 0
-    both.attrs["scene"] = "transverse"
-    assert float(both.friction.at(0.1, 1, poisson=0.5).mu_macro) == pytest.approx(
-        0.5 * float(made_up().friction.at(0.1, 1).mu_macro)
+def over_poisson(poissons):
+    """Maps in which Poisson's ratio takes a share nu^2 of the drop away, joined by xarray."""
+    maps = [made_up().assign_coords(poisson=nu) for nu in poissons]
+    for part, nu in zip(maps, poissons, strict=True):
+        part["mu_macro"] = 1 - (1 - part.mu_macro) * (1 - nu**2)
+    return xr.concat(maps, "poisson")
+
+
+@pytest.mark.parametrize("poissons", [(0.0, 0.5), (0.5, 0.0, 0.25), (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)])
+def test_between_poissons_ratios_the_error_covers_what_is_missed(poissons):
+    rng = np.random.default_rng(7)
+    v = xr.DataArray(10 ** rng.uniform(-3, 1, 300), dims="n")
+    a = xr.DataArray(rng.uniform(0, 3, 300), dims="n")
+    both = over_poisson(poissons)
+    for nu in (0.05, 0.2, 0.33, 0.5):
+        answer = both.friction.at(v, a, poisson=nu)
+        truth = theory.large_amplitude_transverse(v.values, a.values**1.5)
+        truth = 1 - (1 - truth) * (1 - nu**2)
+        miss = np.abs(answer.mu_macro.values - truth)
+        assert (miss <= answer.mu_macro_error.values + 1e-12).mean() >= 0.99
+        assert float(answer.poisson) == nu
+
+
+def test_more_poissons_ratios_leave_less_error():
+    few, many = (
+        over_poisson(p).friction.at(1.0, 1.5, poisson=0.15) for p in ((0, 0.5), (0, 0.1, 0.2, 0.5))
     )
-    with pytest.raises(ValueError, match=r"poisson = None: allowed is one of \[0.0, 0.5\]"):
-        both.friction.at(0.1, 1)
+    node = made_up().friction.at(1.0, 1.5)
+    assert float(few.mu_macro_error) > float(many.mu_macro_error) > float(node.mu_macro_error)
+
+
+def test_one_of_the_poissons_ratios_is_its_own_map_alone():
+    both = over_poisson((0.0, 0.5))
+    both["converged"][0, 6, 6] = False
+    v, a = float(VELOCITY[6]), float(AMPLITUDE[6])
+    alone = both.sel(poisson=0.5).friction.at(v * 1.1, a * 1.05)
+    xr.testing.assert_identical(both.friction.at(v * 1.1, a * 1.05, poisson=0.5), alone)
+    assert np.isfinite(alone.mu_macro)
+    for nu in (0.0, 0.2):
+        near = both.friction.at(v * 1.1, a * 1.05, poisson=nu)
+        assert np.isnan(near.mu_macro) and np.isinf(near.mu_macro_error)
+
+
+@pytest.mark.parametrize(
+    ("poisson", "message"),
+    [
+        (None, "poisson = None: allowed is 0 to 0.5: the dataset has 2 of them"),
+        (0.6, "poisson = 0.6: allowed is 0 to 0.5; microslip.solve"),
+        (-0.1, "poisson = -0.1: allowed is 0 to 0.5"),
+        (np.nan, "poisson = nan: allowed is 0 to 0.5"),
+        ([0, 0.5], r"poisson = \[0, 0.5\]: allowed is 0 to 0.5, one number"),
+    ],
+)
+def test_beyond_the_poissons_ratios_nothing_is_said(poisson, message):
+    with pytest.raises(InputError, match=message):
+        over_poisson((0.0, 0.5)).friction.at(0.1, 1, poisson=poisson)
+    with pytest.raises(InputError, match="poisson = 0.2: allowed is 0, the dataset's only one"):
+        made_up().friction.at(0.1, 1, poisson=0.2)
+
+
+def test_below_the_map_the_static_limit_is_proved_at_poissons_ratio_0():
     with pytest.raises(ValueError, match="velocity = 0.0001: allowed for nu = 0.5"):
-        both.friction.at(1e-4, 1, poisson=0.5)
+        over_poisson((0.0, 0.5)).friction.at(1e-4, 1, poisson=0.5)
+
+
+# Parts of a dataset, as they come out of xarray
+
+
+PARTS = {
+    "two variables": lambda data: data[["mu_macro", "mu_macro_error"]],
+    "without converged": lambda data: data.drop_vars("converged"),
+    "a slice": lambda data: data.sel(velocity=slice(0.01, 6), amplitude=slice(0.4, 2.6)),
+    "by numbers": lambda data: data.isel(velocity=slice(3, None), amplitude=slice(1, 12)),
+    "in memory": lambda data: data.compute(),
+    "a copy": lambda data: data.copy(deep=True),
+    "lazy": lambda data: data.chunk({"velocity": 4, "amplitude": 5}),
+    "turned round": lambda data: data.isel(velocity=slice(None, None, -1)).transpose(),
+    "shuffled": lambda data: data.isel(amplitude=np.random.default_rng(1).permutation(13)),
+    "with twins": lambda data: data.isel(velocity=[0, 0, *range(13), 12]),
+    "as one ratio": lambda data: data.expand_dims("poisson"),
+}
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_a_part_of_a_dataset_answers_as_the_whole(part):
+    whole = made_up(error=1e-4, tolerance=1e-3)
+    known, answer = (data.friction.at(0.15, 1.3) for data in (whole, PARTS[part](whole)))
+    assert float(answer.mu_macro) == pytest.approx(float(known.mu_macro), abs=1e-12)
+    # the largest miss around a cell is the same, unless nodes beside it were cut away
+    assert float(answer.mu_macro_error) == pytest.approx(float(known.mu_macro_error), rel=1e-9)
+
+
+def test_a_part_that_was_saved_answers_as_the_whole(tmp_path):
+    whole = made_up(error=1e-4, tolerance=1e-3)
+    whole.isel(velocity=slice(2, None)).to_netcdf(tmp_path / "part.nc")
+    with xr.open_dataset(tmp_path / "part.nc") as part:
+        xr.testing.assert_allclose(part.friction.at(0.15, 1.3), whole.friction.at(0.15, 1.3))
+
+
+def test_one_column_of_a_map_knows_its_own_velocity():
+    whole = made_up(error=1e-4)
+    answer = whole.isel(velocity=6).friction.at(float(VELOCITY[6]), 1.3)
+    known = whole.friction.at(float(VELOCITY[6]), 1.3)
+    assert float(answer.mu_macro) == pytest.approx(float(known.mu_macro), abs=1e-12)
+    assert SOURCES[int(whole.isel(velocity=6).friction.at(1.0, 1.3).source)] != "map"
+
+
+@pytest.mark.parametrize(
+    ("broken", "message"),
+    [
+        (lambda data: data[["mu_macro"]], "mu_macro_error = None: friction.at needs it"),
+        (lambda data: data[["mu_macro_error"]], "mu_macro = None: friction.at needs it"),
+        (lambda data: data.drop_vars("converged"), "converged = None: friction.at needs it"),
+        (lambda data: data.drop_vars("poisson"), "poisson = None: friction.at needs it"),
+        (lambda data: data.isel(amplitude=3, drop=True), "amplitude = None: friction.at needs it"),
+        (lambda data: data.isel(velocity=[]), "velocity = 'no entry': friction.at needs one"),
+        (
+            lambda data: xr.concat([data, data], "made"),
+            "made = '2 entries': friction.at needs one of them: select it",
+        ),
+    ],
+)
+def test_what_a_dataset_has_lost_is_named(broken, message):
+    with pytest.raises(InputError, match=message):
+        broken(made_up()).friction.at(0.1, 1)
+
+
+def test_without_converged_the_tolerance_says_what_is_known():
+    dataset = made_up(error=1e-4, tolerance=1e-3)
+    dataset["mu_macro_error"][6, 6] = 2e-3
+    near = float(VELOCITY[6]) * 1.1, float(AMPLITUDE[6]) * 1.05
+    answer = dataset.drop_vars("converged").friction.at(*near)
+    assert np.isnan(answer.mu_macro) and np.isinf(answer.mu_macro_error)
+
+
+def test_what_is_changed_in_place_counts():
+    dataset = made_up()
+    v, a = float(VELOCITY[6]), float(AMPLITUDE[6])
+    before = dataset.friction.at(v, a)
+    dataset["converged"][6, 6] = False
+    assert np.isfinite(before.mu_macro) and np.isnan(dataset.friction.at(v, a).mu_macro)
+
+
+def test_nodes_that_a_join_has_filled_in_are_not_known():
+    wide = made_up(amplitude=np.linspace(0, 6, 25)).assign_coords(poisson=0.5)
+    both = xr.concat([made_up(), wide], "poisson", join="outer")
+    answer = both.friction.at(0.1, 5.0, poisson=0.25)
+    assert np.isnan(answer.mu_macro) and np.isinf(answer.mu_macro_error)
+    assert np.isfinite(both.friction.at(0.1, 5.0, poisson=0.5).mu_macro)
 
 
 @pytest.mark.parametrize(
@@ -273,6 +413,24 @@ def test_a_tolerance_asks_the_solver_and_keeps_its_answer(results):
     assert float(exact.mu_macro) == truth.mu_macro
     (stored,) = results.glob("points/transverse/**/*.json")
     assert json.loads(stored.read_text())["record"]["request"]["velocity"] == "0.0123"
+
+
+def test_where_nothing_can_be_written_the_solver_still_answers(results, monkeypatch):
+    found = open_map("transverse", results)
+    refused = cache.check_room
+
+    def read_only(folder, *rest):
+        if Path(folder).is_relative_to(results):
+            raise OSError(errno.EROFS, "Read-only file system", str(folder))
+        refused(folder, *rest)
+
+    monkeypatch.setattr(cache, "check_room", read_only)
+    before = sorted(results.rglob("*"))
+    assert np.isfinite(found.friction.at(0.0123, 0.777).mu_macro)
+    with pytest.warns(UserWarning, match="answers are not kept: .*Read-only file system"):
+        exact = found.friction.at(0.0123, 0.777, tolerance=1e-3)
+    assert float(exact.mu_macro) == microslip.solve("transverse", 0.0123, 0.777).mu_macro
+    assert sorted(results.rglob("*")) == before
 
 
 def test_what_cannot_be_opened_is_one_line(results, tmp_path):

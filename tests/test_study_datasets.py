@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 from studies_stub import GOOD, accuracy_result, answered, asked, configured, stability_result
 
-from microslip import dataset, studies
+from microslip import dataset, netcdf, studies
 from microslip.studies.stability_dataset import OUTCOMES, outcome
 
 
@@ -17,9 +17,8 @@ def accuracy(tmp_path):
     """The dataset of made-up answers, read back from disk."""
     answer, _ = answered(accuracy_result)
     data = studies.build("accuracy", configured(), answer)
-    dataset.write(data, tmp_path / "accuracy_cost.nc")
-    with xr.open_dataset(tmp_path / "accuracy_cost.nc") as found:
-        yield found
+    dataset.write(data, tmp_path / "accuracy_cost.nc", studies.groups("accuracy"))
+    return netcdf.whole(tmp_path / "accuracy_cost.nc")
 
 
 @pytest.mark.parametrize(
@@ -212,9 +211,8 @@ def test_a_method_is_not_to_blame_for_a_resolution_that_was_imposed():
 def atlas(tmp_path):
     """The dataset of made-up probes, read back from disk."""
     data = studies.build("stability", configured(), answered(stability_result)[0])
-    dataset.write(data, tmp_path / "stability.nc")
-    with xr.open_dataset(tmp_path / "stability.nc") as found:
-        yield found
+    dataset.write(data, tmp_path / "stability.nc", studies.groups("stability"))
+    return netcdf.whole(tmp_path / "stability.nc")
 
 
 def test_the_atlas_holds_what_became_of_every_method(atlas, tmp_path):
@@ -278,3 +276,14 @@ def test_the_digest_of_results_follows_what_was_asked():
 
     assert digest() == digest()
     assert digest() != digest(methods=["shipped", "admm"])
+
+
+@pytest.mark.parametrize(
+    ("name", "study"), [("accuracy_cost", "accuracy"), ("stability", "stability")]
+)
+def test_every_part_of_a_file_is_a_table_of_its_own(name, study, tmp_path, request):
+    request.getfixturevalue({"accuracy": "accuracy", "stability": "atlas"}[study])
+    path = tmp_path / f"{name}.nc"
+    for group in (None, *netcdf.group_names(path)):
+        with xr.open_dataset(path, group=group) as part:
+            assert len(part.to_dataframe()) == max(v.size for v in part.values())

@@ -24,6 +24,7 @@ def test_one_run_makes_the_datasets_and_the_figures(finished):
     with xr.open_dataset(results / "transverse.nc") as data:
         assert data.converged.all()
         assert (data.mu_macro.sel(amplitude=0) == 1).all()
+    with xr.open_dataset(results / "transverse.nc", group="history") as data:
         assert data.history_force_forward.size == 17
     assert len(finished.points()) == 10
     assert "bore: 4 points, none not converged" in finished.said

@@ -1,10 +1,9 @@
 """The claims, run by Snakemake in a copy of the project."""
 
 import pytest
-import xarray as xr
 from workflow_project import Project
 
-from microslip import cache
+from microslip import cache, netcdf
 
 pytestmark = pytest.mark.slow
 
@@ -31,7 +30,7 @@ def finished(tmp_path_factory):
 
 def test_one_command_makes_the_dataset_the_page_and_the_figures(finished):
     results = finished.folder / "results"
-    with xr.open_dataset(results / "claims.nc") as data:
+    with netcdf.whole(results / "claims.nc") as data:
         assert data["claim"].values.tolist() == list(range(1, 10))
         assert {3, 4} <= set(data["claim"].values[data["verdict"].values == 1])
         stored = {path.stem for path in results.rglob("*/*/??/*.json")}

@@ -4,11 +4,10 @@ import re
 import shutil
 
 import pytest
-import xarray as xr
 from matplotlib.text import Text
 from workflow_project import RUN, Project
 
-from microslip import plot
+from microslip import netcdf, plot
 
 pytestmark = pytest.mark.slow
 
@@ -81,14 +80,14 @@ def project(finished, tmp_path):
 
 def texts(name, path):
     """All that is written in a figure drawn from the dataset at `path`."""
-    with xr.open_dataset(path) as data:
+    with netcdf.whole(path) as data:
         figure = plot.draw(name, {plot.FIGURES[name][0]: data})
         return " ".join(text.get_text() for text in figure.findobj(Text))
 
 
 def test_a_method_in_one_new_file_is_in_the_dataset_and_in_the_figures(finished):
     path = finished.folder / "results" / "accuracy_cost.nc"
-    with xr.open_dataset(path) as data:
+    with netcdf.whole(path) as data:
         own = data.isel(trial=data.trial_method.values == "my-method")
         assert own.trial_model.values.tolist() == ["radial", "radial"]
         assert own.converged.values.all()
@@ -107,7 +106,7 @@ def test_a_method_in_one_new_file_is_in_the_dataset_and_in_the_figures(finished)
 
 def test_the_same_method_is_in_the_atlas(finished):
     path = finished.folder / "results" / "stability.nc"
-    with xr.open_dataset(path) as data:
+    with netcdf.whole(path) as data:
         assert data.method.values.tolist() == ["shipped", "my-method"]
         assert data.method_summary.values[1] == "my own way"
         assert (data.outcome.values > 0).all()
@@ -140,7 +139,7 @@ def test_a_second_method_computes_its_own_trials_only(project):
     assert {name: after[name] for name in before} == before
     assert len(after) == len(before) + 2
     assert project.computed() == computed + 2
-    with xr.open_dataset(project.folder / "results" / "accuracy_cost.nc") as data:
+    with netcdf.whole(project.folder / "results" / "accuracy_cost.nc") as data:
         numbers = {
             method: data.mu_macro.values[data.trial_method.values == method].tolist()
             for method in methods

@@ -1,8 +1,9 @@
 """Results of a sweep as an xarray Dataset, and onto disk.
 
 Every dataset follows the CF conventions, holds the paper's limits as variables of their own and
-says what made it. All quantities are dimensionless. The same results give the same bytes: nothing
-in a file depends on when, where or in how many jobs it was made.
+says what made it. The root of a file is the map alone; finer curves and single runs are in groups
+(see `netcdf`). All quantities are dimensionless. The same results give the same bytes: nothing in a
+file depends on when, where or in how many jobs it was made.
 """
 
 import netCDF4
@@ -12,7 +13,7 @@ import xarray as xr
 import microslip
 from microslip import named_files
 
-from . import columns, limits, source_digest, theory
+from . import columns, limits, netcdf, source_digest, theory
 from .cache import writing_beside
 from .extended import solver_names
 from .keys import canonical_json
@@ -38,11 +39,12 @@ def write_sweep(path, sweep, points, histories, settings):
     sweep: settings.Sweep. points: records in the order of sweep.PointRequests, any iterable; it is
     read a block at a time, so that memory does not grow with their number. histories: records
     in the order of sweep.history_requests. settings: dict of the configuration that led here, kept
-    as provenance. The dataset has dims (amplitude, velocity), those of them that the scene has, and
-    poisson before them if that is an axis. The same results give the same bytes. Raises ValueError
-    if there are not as many points as the grid has, CacheError as `write` does.
+    as provenance. The root has dims (amplitude, velocity), those of them that the scene has, and
+    poisson before them if that is an axis; what has other axes is in GROUPS. The same results give
+    the same bytes. Raises ValueError if there are not as many points as the grid has, CacheError as
+    `write` does.
     """
-    frame, axes = _frame(sweep, histories), _axes(sweep)
+    axes = _axes(sweep)
     scene, pressure = solver_names(sweep)
     title = sweep.title or f"Friction of a vibrated Hertz contact, scene {scene}"
     tolerance = np.nan if sweep.tolerance is None else sweep.tolerance
@@ -57,24 +59,41 @@ def write_sweep(path, sweep, points, histories, settings):
         about["single_runs_failed"] = "; ".join(reasons)
     versions = {canonical_json(record["versions"]) for record in histories}
     with writing_beside(path, sealed=True) as beside:
-        _to_netcdf(frame, beside)
+        netcdf.write(beside, _root(sweep), _parts(sweep, histories))
         with netCDF4.Dataset(beside, "a") as file:
             versions |= columns.append(file, sweep, axes, points)
             file.setncatts(provenance(title, settings, versions, **about))
 
 
-def _frame(sweep, histories):
-    """Dataset of all but the points: axes, limits and single runs."""
+GROUPS = {
+    "velocity_curves": "Limits from theory on a fine axis of velocities",
+    "amplitude_curves": "Limits from theory on a fine axis of amplitudes",
+    "history": "Forces over time, the data of Figure 1",
+    "field": "Tractions all over the contact, the data of Figure 3",
+    "transients": "Forces on the way to steady motion, the data of Figure 5",
+}
+"""Groups in the file of a sweep, as far as its scene has them, and their titles."""
+
+
+def _root(sweep):
+    """Dataset of the axes and the limits on them, without the points."""
     coords = {name: (name, np.array(values)) for name, values in _axes(sweep).items()}
     if not sweep.poisson_is_axis:
         coords["poisson"] = ((), sweep.poisson[0])
-    dataset = xr.Dataset(limits.variables(sweep) | _single_runs(sweep, histories), coords)
-    if "transient_step" in dataset.dims:
-        starts = [r["request"]["start"] for r in histories if r["request"]["kind"] == "history"]
-        dataset = dataset.assign_coords(start=("start", starts))
-        dataset["start"].attrs["long_name"] = "initial state of the transient"
+    dataset = xr.Dataset(limits.variables(sweep), coords)
     _describe_axes(dataset, sweep)
     return dataset
+
+
+def _parts(sweep, histories):
+    """Datasets of GROUPS by name, those that have anything."""
+    found = limits.curves(sweep) | _single_runs(sweep, histories)
+    about = {"scene": solver_names(sweep)[0]}
+    return {
+        name: xr.Dataset(found[name], attrs={"title": title} | about)
+        for name, title in GROUPS.items()
+        if name in found
+    }
 
 
 def provenance(title, settings, versions, **more):
@@ -91,21 +110,15 @@ def provenance(title, settings, versions, **more):
     } | more
 
 
-def write(dataset, path):
+def write(dataset, path, groups=None):
     """Write a Dataset to the netCDF-4 file `path`, all of it or nothing.
 
-    The same dataset gives the same bytes. Raises CacheError, one line that says what to do, on a
-    full disk, a read-only folder and the like.
+    groups: those of its dims that are to be in groups of the file, as for `netcdf.divided`.  The
+    same dataset gives the same bytes. Raises CacheError, one line that says what to do, on a full
+    disk, a read-only folder and the like.
     """
     with writing_beside(path, sealed=True) as beside:
-        _to_netcdf(dataset, beside)
-
-
-def _to_netcdf(dataset, path):
-    encoding = {
-        name: {"_FillValue": None} for name, v in dataset.variables.items() if v.dtype.kind == "f"
-    }
-    dataset.to_netcdf(path, engine="netcdf4", format="NETCDF4", encoding=encoding)
+        netcdf.write(beside, *netcdf.divided(dataset, groups or {}))
 
 
 def report(dataset, name=None):
@@ -138,8 +151,10 @@ def _describe_axes(dataset, sweep):
     if sweep.amplitude is not None:
         names["amplitude"] = (AMPLITUDE, "amplitude", scene.amplitude_label)
     for name, (of_paper, quantity, formula) in names.items():
-        long_name = of_paper.get(scene.name, f"{quantity}, {formula}")
-        dataset[name].attrs = {"long_name": long_name, "units": "1", "formula": formula}
+        said = {"long_name": f"{quantity}, {formula}", "units": "1", "formula": formula}
+        if scene.name in of_paper:
+            said["description"] = of_paper[scene.name]
+        dataset[name].attrs = said
     dataset["poisson"].attrs = {"long_name": "Poisson's ratio", "units": "1"}
 
 
@@ -147,12 +162,14 @@ def _describe_axes(dataset, sweep):
 
 
 def _single_runs(sweep, records):
+    """Variables of the groups of single runs, a dict of dicts."""
     if not records or any(record["result"].get("crashed") for record in records):
         return {}  # see `report`
     if sweep.scene == "transverse":
-        return _force_history(records[0])
+        return {"history": _force_history(records[0])}
     fields = [record for record in records if record["request"]["kind"] == "field"]
-    return _traction_field(fields[0]) | _transients([r for r in records if r not in fields])
+    transients = [record for record in records if record not in fields]
+    return {"field": _traction_field(fields[0]), "transients": _transients(transients)}
 
 
 def _force_history(record):
@@ -178,7 +195,7 @@ FIELD = {
 
 def _traction_field(record):
     result, velocity = record["result"], record["request"]["velocity"]
-    centre = "lateral position of the centre of rotation over a"
+    centre = "centre of rotation, lateral, over a"
     variables = {f"field_{name}": _variable("cell", result[name], FIELD[name]) for name in FIELD}
     return variables | {
         "field_velocity": _variable((), velocity, "forward velocity of the traction field"),
@@ -188,28 +205,37 @@ def _traction_field(record):
 
 def _transients(records):
     velocity = float(records[0]["request"]["velocity"])
+    starts = [record["request"]["start"] for record in records]
     dims = ("start", "transient_step")
     rows = {
         name: np.array([record["result"][name] for record in records], float)
         for name in ("displacement_forward", "force_forward", "torque")
     }
-    force = "forward friction force over mu F_z"
-    torque = "torque about the normal over its value at zero forward velocity"
+    force, torque = "forward friction force over mu F_z", columns.TORQUE
     return {
+        "start": ("start", starts, {"long_name": "initial state of the transient"}),
         "transient_displacement": _variable(
             dims, rows["displacement_forward"], "forward travel over u_lim"
         ),
         "transient_force_forward": _variable(dims, rows["force_forward"], force),
-        "transient_torque": _variable(dims, rows["torque"], torque),
+        "transient_torque": _variable(
+            dims, rows["torque"], torque, description=columns.DESCRIPTIONS["mu_torque"]
+        ),
         "transient_velocity": _variable((), velocity, "forward velocity of the transients"),
         "transient_force_theory": _variable(
-            (), theory.bore_forward(velocity), f"steady {force} (Eq 21)"
+            (),
+            theory.bore_forward(velocity),
+            "steady forward force (Eq 21)",
+            description=f"steady {force} (Eq 21)",
         ),
         "transient_torque_theory": _variable(
-            (), theory.bore_torque(velocity), f"steady {torque} (Eq 22)"
+            (),
+            theory.bore_torque(velocity),
+            "steady torque (Eq 22)",
+            description=f"steady {columns.DESCRIPTIONS['mu_torque']} (Eq 22)",
         ),
     }
 
 
-def _variable(dims, values, long_name, units="1"):
-    return dims, np.array(values, float), {"long_name": long_name, "units": units}
+def _variable(dims, values, long_name, units="1", **more):
+    return dims, np.array(values, float), {"long_name": long_name, "units": units} | more

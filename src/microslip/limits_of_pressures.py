@@ -11,7 +11,10 @@ import numpy as np
 from . import any_pressure, hertz, indenter_limits, masing, theory
 from .pressures import pressure_named
 
-_ZONE = "static friction of the whole stick zone (Eq 9)"
+_ZONE = (
+    "whole stick zone, velocity to 0 (Eq 9)",
+    "static friction of the whole stick zone (Eq 9)",
+)
 ANY_PRESSURE = ("mu_large_amplitude", "mu_static_slider")
 """Limits of a transverse oscillation that hold whatever the pressure (Eqs 6 and 7)."""
 
@@ -27,15 +30,15 @@ def formulas_under(scene, name, of_sphere):
         return _along(pressure.loading, of_sphere)
     if "mu_static" not in of_sphere:
         return found
-    dims, exact, said = of_sphere["mu_static"]
+    dims, exact, *said = of_sphere["mu_static"]
     if pressure.is_indenter:
         zone, exact = _of_indenter(scene, pressure)
     elif pressure.hertzian and scene != "bore":
         zone = theory.static_transverse  # an ellipse of the same shape carries as much
     else:
         return found
-    found["mu_static_stick_zone"] = (dims, _each(zone), _ZONE)
-    return found | {"mu_static": (dims, _each(exact), said)}
+    found["mu_static_stick_zone"] = (dims, _each(zone), *_ZONE)
+    return found | {"mu_static": (dims, _each(exact), *said)}
 
 
 def _of_indenter(scene, pressure):
@@ -52,14 +55,15 @@ def _of_indenter(scene, pressure):
 
 
 def _along(curve, of_sphere):
-    dims, _, said = of_sphere["mu_static"]
+    dims, _, *said = of_sphere["mu_static"]
     return {
         "mu_closed_form": (
             ("velocity", "amplitude"),
             lambda velocity, amplitude: masing.longitudinal(velocity, amplitude, curve),
+            "mu_macro in closed form",
             "mu_macro in closed form at Poisson's ratio 0 (first loading with Masing's memory)",
         ),
-        "mu_static": (dims, lambda a: 1.0 - curve(a), said),
+        "mu_static": (dims, lambda a: 1.0 - curve(a), *said),
     }
 
 
@@ -83,6 +87,16 @@ def _steady(pressure):
         return any_pressure.bore_of(pressure.bound, velocity)[1]
 
     return {
-        "mu_forward_theory": (("velocity",), forward, "steady mu_macro (Eq 17)"),
-        "mu_torque_theory": (("velocity",), torque, "steady mu_torque (Eq 18)"),
+        "mu_forward_theory": (
+            ("velocity",),
+            forward,
+            "steady mu_macro (Eq 17)",
+            "steady mu_macro as an integral over the pressure (Eq 17)",
+        ),
+        "mu_torque_theory": (
+            ("velocity",),
+            torque,
+            "steady mu_torque (Eq 18)",
+            "steady mu_torque as an integral over the pressure (Eq 18)",
+        ),
     }

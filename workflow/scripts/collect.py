@@ -1,10 +1,11 @@
 """Assemble the dataset of one sweep from its batches.
 
 Output: netCDF-4, CF conventions, all quantities dimensionless (units 1, phases in rad).
-  transverse.nc       dims (amplitude, velocity), history_step
+  transverse.nc       dims (amplitude, velocity)
   bore.nc             dims (amplitude, velocity)
-  continuous_bore.nc  dims (velocity), cell, (start, transient_step)
+  continuous_bore.nc  dims (velocity)
   any of `extended`   dims (amplitude, velocity), or (velocity) if its motion is steady
+What has other axes is in groups of the file, see dataset.GROUPS: limits on fine axes, single runs.
 A sweep with a list of Poisson's ratios has the dim poisson before these. Beside it an HTML
 page that sums it up.
 """

@@ -1,10 +1,9 @@
 """Assemble the dataset of one study from its batches.
 
 Output: netCDF-4, CF conventions, all quantities dimensionless but for seconds and bytes.
-  accuracy_cost.nc  dims trial, point, scaling_model, scaling_size, map_tolerance, and the axes of
-                    the maps
-  stability.nc      dims (method, case), axis
-  claims.nc         dims claim, part, check, run, and axes of curves and patches
+  accuracy_cost.nc  dim trial; groups points, scaling, transverse_map, bore_map
+  stability.nc      dims (method, case); group axes
+  claims.nc         dim claim; groups parts, checks, runs, and those of the static limit and patches
 and an HTML page that sums it up.
 """
 
@@ -19,7 +18,7 @@ with job_log(snakemake.log[0]) as log:
     Plan(configuration).refuse_edited(f"{snakemake.wildcards.dataset}.nc", snakemake.params.code)
     answer = sweep.lookup(sweep.records_in(snakemake.input.batches))
     data = studies.build(study, configuration, answer)
-    dataset.write(data, snakemake.output[0])
+    dataset.write(data, snakemake.output[0], studies.groups(study))
     lines = list(studies.report(study, data))
     for line in lines:
         log.info(line)

@@ -4,7 +4,7 @@ The figures draw what the datasets hold and compute nothing: every curve, theory
 variable of a dataset. One module draws one kind of figure; `style` holds the look, `data` the
 checks on what a dataset holds.
 
-    figure = draw("fig2_transverse_map", {"transverse": xr.open_dataset("results/transverse.nc")})
+    figure = draw("fig2_transverse_map", {"transverse": data.loaded("results/transverse.nc")})
     save(figure, "results/figures/fig2_transverse_map.pdf")
 
 Importing this package is cheap: matplotlib is loaded by the first `draw` or `save`.

@@ -9,15 +9,18 @@ import numpy as np
 import xarray as xr
 
 from microslip.cache import CacheError
+from microslip.netcdf import whole
 
 Curve = tuple[np.ndarray, np.ndarray]
 
 
 def loaded(path: str | os.PathLike[str]) -> xr.Dataset:
-    """A dataset from its file. Raises CacheError, one line, where the file is none or damaged."""
+    """A dataset from its file, with what is in groups of the file, as `draw` takes it.
+
+    Raises CacheError, one line, where the file is none or damaged.
+    """
     try:
-        with xr.open_dataset(path, engine="netcdf4") as dataset:
-            return dataset.load()
+        return whole(path)
     except (OSError, RuntimeError, ValueError) as error:
         why = " ".join(str(getattr(error, "strerror", None) or error).split())
         raise CacheError(

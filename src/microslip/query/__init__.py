@@ -3,6 +3,7 @@
     friction = microslip.open_map("transverse")
     friction.mu_macro.sel(velocity=0.1, method="nearest")     # plain xarray
     friction.friction.at(velocity=0.05, amplitude=0.8)        # a value and a bound of its error
+    microslip.open_map("transverse", group="history")         # what has axes of its own
 
 `interpolation` holds the rule and its error, `beyond` what is known where a map ends, `accessor`
 asks both.
@@ -16,6 +17,8 @@ from pathlib import Path
 import xarray as xr
 
 from microslip.cache import CacheError, is_damaged
+from microslip.errors import InputError
+from microslip.netcdf import group_names
 from microslip.settings import SCENE_OF_SWEEP
 
 from .accessor import SOURCES, Friction
@@ -24,28 +27,67 @@ __all__ = ["SOURCES", "Friction", "open_map"]
 
 
 def open_map(
-    name: str | os.PathLike[str], results: str | os.PathLike[str] = "results", chunks=None
-):
+    name: str | os.PathLike[str],
+    results: str | os.PathLike[str] = "results",
+    chunks=None,
+    *,
+    group: str | None = None,
+) -> xr.Dataset:
     """Open the dataset of a sweep, with the accessor ``friction`` for certified answers.
 
-    name: transverse, bore, continuous_bore or another sweep of the configuration, or the path of
-    such a dataset; results: folder that the workflow wrote to; chunks: as for xarray.open_dataset,
-    {} for dask.  Returns an xarray.Dataset.  Raises ValueError for another name, CacheError, one
-    line, for a file that is missing, damaged, or not from a sweep.
+    Parameters
+    ----------
+    name : str or path
+        transverse, bore, continuous_bore or another sweep of the configuration, or the path of such
+        a dataset.
+    results : str or path
+        Folder that the workflow wrote to.
+    chunks : as for xarray.open_dataset
+        {} for dask.
+    group : str, optional
+        Part of the file with axes of its own, instead of the map: velocity_curves and
+        amplitude_curves (limits from theory on fine axes), history (Figure 1), field (Figure 3),
+        transients (Figure 5), as far as the sweep has them.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensionless; a group has the attributes of the map besides its own title.
+
+    Raises
+    ------
+    InputError
+        For another name or group.
+    CacheError
+        One line, for a file that is missing, damaged, or not from a sweep.
     """
     path = Path(name)
     if path.suffix != ".nc":
         path = Path(results, f"{name}.nc")
         if str(name) not in SCENE_OF_SWEEP and not path.is_file():
-            raise ValueError(
-                f"name = {name!r}: allowed is {', '.join(SCENE_OF_SWEEP)}, another sweep of which "
-                f"{results} has the dataset, or a path"
+            raise InputError(
+                "name",
+                name,
+                f"allowed is {', '.join(SCENE_OF_SWEEP)}, another sweep of which {results} has the "
+                "dataset, or a path",
             )
     if not path.is_file():
         raise CacheError(f"{path} is not there: run the workflow first, or name its results folder")
     if is_damaged(path):
         raise CacheError(f"{path} is damaged: run the workflow again, which makes it anew")
-    dataset = xr.open_dataset(path, engine="netcdf4", chunks=chunks)
+    dataset = _opened(path, chunks=chunks)
     if "scene" not in dataset.attrs or "mu_macro" not in dataset:
         raise CacheError(f"{path} is not the dataset of a sweep")
+    if group is None:
+        return dataset
+    if group not in (known := group_names(path)):
+        raise InputError("group", group, f"allowed is one of {', '.join(known) or 'none'}")
+    part = _opened(path, chunks=chunks, group=group)
+    return part.assign_attrs(dataset.attrs | part.attrs)
+
+
+def _opened(path, **how):
+    dataset = xr.open_dataset(path, engine="netcdf4", **how)
+    for variable in dataset.variables.values():
+        variable.encoding.pop("original_shape", None)  # else xarray warns when a part is saved
     return dataset

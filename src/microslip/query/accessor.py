@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import warnings
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import xarray as xr
 
 from microslip import hertz, theory
+from microslip.cache import CacheError
+from microslip.errors import InputError
 from microslip.scenes import scene_named
 from microslip.stored import solve_stored
 
 from . import beyond
-from .interpolation import Axis, Table
+from .nodes import SAME, nodes_of
 from .within import refuse_beyond, within
 
 SOURCES = (
@@ -47,51 +52,67 @@ class Friction:
         self._dataset = dataset
         self._scene = self._motion.name
         self._pressure = dataset.attrs.get("pressure", "hertz")
-        self._tables = {}  # by Poisson's ratio, each made when it is first asked
+        self._tables = {}  # by what they are made of: a dataset may be changed in place
 
     def at(self, velocity, amplitude=None, *, poisson=None, tolerance=None):
         """Friction and a bound of its error, whatever the point.
 
-        velocity >= 0, amplitude >= 0 (none for continuous-bore): numbers; sequences, each of which
-        becomes a dimension of the answer; or DataArrays, which broadcast by their dimensions.
-        poisson: one of the dataset's (its only one unless told).  tolerance: where the bound is
-        larger, the solver is asked (results are kept beside the dataset if it came from
-        `open_map`).  Returns a Dataset of mu_macro, mu_macro_error and source, an index into
-        SOURCES with its meanings in flag_meanings.  Between the nodes of a map the error holds what
-        interpolation leaves (see `interpolation`) and what the nodes themselves may be off; beyond
-        the map see `beyond`.  Next to a point that did not converge mu_macro is NaN and its error
-        infinite.  Raises ValueError, naming the argument, for what is no such number, and for what
-        no limit is proved for: of other motions and pressures than the paper's, all beyond the map,
-        unless there is a tolerance.
+        Between the nodes of a map the error holds what interpolation leaves (see `interpolation`,
+        between Poisson's ratios `nodes`) and what the nodes themselves may be off; beyond the map
+        see `beyond`.  Next to a point that did not converge mu_macro is NaN, or its error infinite.
+
+        The dataset may be a part of one, chosen or joined by xarray, lazy or not, as long as it has
+        mu_macro, mu_macro_error, their coordinates and its attributes.  Without `converged`, nodes
+        with an error above the attribute `tolerance` count as not converged.
+
+        Parameters
+        ----------
+        velocity, amplitude : number, sequence or DataArray
+            >= 0, no amplitude for continuous-bore.  A sequence becomes a dimension of the answer;
+            DataArrays broadcast by their dimensions.
+        poisson : number, optional
+            Within the range of the dataset's; its only one unless told.
+        tolerance : number, optional
+            Where the bound is larger, the solver is asked.  Results are kept beside the dataset if
+            it came from `open_map`; where nothing can be written, for as long as Python runs.
+
+        Returns
+        -------
+        xarray.Dataset
+            mu_macro, mu_macro_error and source, an index into SOURCES with its meanings in
+            flag_meanings.
+
+        Raises
+        ------
+        InputError
+            Naming the argument, for what is no such number, for what the dataset has lost, and for
+            what no limit is proved for: of other motions and pressures than the paper's, all beyond
+            the map, unless there is a tolerance.
         """
-        nu = self._one_poisson(poisson)
+        nodes = nodes_of(self._dataset, periodic=self._motion.periodic, poisson=poisson)
+        nu = _poisson_within(nodes.poisson, poisson)
         velocity, amplitude = self._points(velocity, amplitude)
         flat_velocity = velocity.values.ravel().astype(float)
         flat_amplitude = np.full(len(flat_velocity), np.nan)
         if amplitude is not None:
             flat_amplitude = amplitude.values.ravel().astype(float)
         if not beyond.is_known(self._scene, self._pressure):
-            answer = self._map_alone(flat_velocity, flat_amplitude, nu, tolerance)
+            answer = self._map_alone(nodes, flat_velocity, flat_amplitude, nu, tolerance)
+        elif self._table(nodes, nu) is None:
+            raise InputError("velocity", 0.0, "friction.at needs nodes above 0 in the dataset")
         elif amplitude is None:
-            answer = self._steady(flat_velocity, nu)
+            answer = self._steady(nodes, flat_velocity, nu)
         else:
-            answer = self._oscillating(flat_velocity, flat_amplitude, nu)
+            answer = self._oscillating(nodes, flat_velocity, flat_amplitude, nu)
         value, error, source = answer
+        error[np.isnan(value) | np.isnan(error)] = np.inf
         if tolerance is not None:
             hertz.checked("tolerance", tolerance, low_open=True)
             point = flat_velocity, flat_amplitude
             self._solve((value, error, source), point, nu, tolerance)
-        return self._answer(velocity, value, error, source)
+        return self._answer(velocity, value, error, source, nu)
 
     # The question
-
-    def _one_poisson(self, poisson):
-        known = np.atleast_1d(self._dataset["poisson"].values)
-        if poisson is None and len(known) == 1:
-            return float(known[0])
-        if poisson is None or not np.isclose(known, poisson, rtol=0.0, atol=1e-12).any():
-            raise ValueError(f"poisson = {poisson}: allowed is one of {known.tolist()}")
-        return float(known[np.argmin(np.abs(known - poisson))])
 
     def _points(self, velocity, amplitude):
         if (amplitude is None) == self._motion.periodic:
@@ -104,37 +125,18 @@ class Friction:
         amplitude, velocity = xr.broadcast(_labelled("amplitude", amplitude), velocity)
         return velocity, amplitude
 
-    def _table(self, nu, still=False):
-        """The map for one Poisson's ratio, above velocity 0 or of that alone (None: there is none).
-
-        Nodes that did not converge are not known.
-        """
-        if (nu, still) not in self._tables:
-            chosen = self._dataset[["mu_macro", "mu_macro_error", "converged"]]
-            if "poisson" in chosen.dims:
-                chosen = chosen.sel(poisson=nu, method="nearest")
-            is_still = chosen["velocity"].values == 0
-            chosen = chosen.isel(velocity=is_still if still else ~is_still).compute()
-            if not chosen.sizes["velocity"]:
-                return None
-            dims = [dim for dim in ("amplitude", "velocity") if dim in chosen.dims]
-            chosen = chosen.transpose(*dims).sortby(dims)
-            good = chosen["converged"] == 1
-            values, errors = (
-                np.atleast_2d(chosen[name].where(good).values)
-                for name in ("mu_macro", "mu_macro_error")
-            )
-            rows = chosen["amplitude"].values if "amplitude" in dims else np.zeros(1)
-            self._tables[nu, still] = Table(
-                Axis(rows), Axis(chosen["velocity"].values), values, errors
-            )
-        return self._tables[nu, still]
+    def _table(self, nodes, nu, still=False):
+        """The map for one Poisson's ratio, see Nodes.table."""
+        key = nodes.fingerprint, nu, still
+        if key not in self._tables:
+            self._tables[key] = nodes.table(nu, still=still)
+        return self._tables[key]
 
     # What no limit is known of
 
-    def _map_alone(self, velocity, amplitude, nu, tolerance):
+    def _map_alone(self, nodes, velocity, amplitude, nu, tolerance):
         rows = np.nan_to_num(amplitude)
-        tables = self._table(nu), self._table(nu, still=True)
+        tables = self._table(nodes, nu), self._table(nodes, nu, still=True)
         if tolerance is None:
             what = self._scene if self._pressure == "hertz" else f"pressure {self._pressure}"
             refuse_beyond(*tables, velocity, rows, what)
@@ -143,8 +145,8 @@ class Friction:
 
     # Steady motion
 
-    def _steady(self, velocity, nu):
-        table = self._table(nu)
+    def _steady(self, nodes, velocity, nu):
+        table = self._table(nodes, nu)
         inside = table.columns.holds(velocity)
         value, error = theory.bore_forward(velocity), np.full(velocity.shape, beyond.ROUNDING)
         value = np.array(value, float)
@@ -153,8 +155,8 @@ class Friction:
 
     # Oscillation
 
-    def _oscillating(self, velocity, amplitude, nu):
-        table, limits = self._table(nu), beyond.LIMITS[self._scene]
+    def _oscillating(self, nodes, velocity, amplitude, nu):
+        table, limits = self._table(nodes, nu), beyond.LIMITS[self._scene]
         slowest, fastest = table.columns.values[[0, -1]]
         narrowest, widest = table.rows.values[[0, -1]]
         if limits.static_needs_nu_0 and nu > 0.0 and (velocity < slowest).any():
@@ -199,11 +201,11 @@ class Friction:
         value, error, source = answer
         path = self._dataset.encoding.get("source")
         settings = {"poisson": nu, "tolerance": tolerance, "pressure": self._pressure}
-        settings["results"] = str(Path(path).parent) if path else "results"
+        folder = str(Path(path).parent) if path else "results"
         for k in np.flatnonzero(~(error <= tolerance)):
             velocity, amplitude = (float(part[k]) for part in point)
             size = None if np.isnan(amplitude) else amplitude
-            found = solve_stored(self._scene, velocity, size, **settings)
+            found = _solved(folder, self._scene, velocity, size, **settings)
             source[k] = SOLVER
             value[k], error[k] = np.nan, np.inf
             if found.converged:
@@ -211,12 +213,12 @@ class Friction:
 
     # The answer
 
-    def _answer(self, shape, value, error, source):
+    def _answer(self, shape, value, error, source, nu):
         def variable(values, long_name, **more):
             attributes = {"long_name": long_name} | more
             return shape.dims, values.reshape(shape.shape), attributes
 
-        return xr.Dataset(
+        answer = xr.Dataset(
             {
                 "mu_macro": variable(value, "mean forward friction force over mu F_z", units="1"),
                 "mu_macro_error": variable(error, "bound of its error", units="1"),
@@ -230,6 +232,42 @@ class Friction:
             coords=shape.coords,
             attrs={"scene": self._scene},
         )
+        if "poisson" in answer.dims:
+            return answer
+        about = {"long_name": "Poisson's ratio", "units": "1"}
+        return answer.assign_coords(poisson=((), nu, about))
+
+
+def _poisson_within(known, poisson):
+    """The Poisson's ratio that is asked for, a float within the range of those known, ascending."""
+    low, high = float(known[0]), float(known[-1])
+    allowed = f"allowed is {low:g}" + (
+        f" to {high:g}" if high > low else ", the dataset's only one"
+    )
+    if poisson is None and high > low:
+        raise InputError("poisson", None, f"{allowed}: the dataset has {len(known)} of them")
+    try:
+        nu = low if poisson is None else float(poisson)
+    except (TypeError, ValueError):
+        raise InputError("poisson", poisson, f"{allowed}, one number") from None
+    if not low - SAME <= nu <= high + SAME:
+        raise InputError("poisson", poisson, f"{allowed}; microslip.solve computes any")
+    return nu
+
+
+def _solved(folder, *point, **settings):
+    """What solve_stored says, kept in the folder, or for now where that takes nothing."""
+    try:
+        return solve_stored(*point, results=folder, **settings)
+    except CacheError as error:
+        warnings.warn(f"answers are not kept: {error}", stacklevel=4)
+        return solve_stored(*point, results=_spare_folder().name, **settings)
+
+
+@cache
+def _spare_folder():
+    """A folder that is gone when Python ends."""
+    return TemporaryDirectory(prefix="microslip-")
 
 
 def _labelled(name, given):

@@ -107,7 +107,7 @@ class Table:
         """What leaving nodes out misses along each axis: the largest at a node and around it."""
         along_rows = self.rows.misses(self.values)
         along_columns = self.columns.misses(self.values.T).T
-        return _largest_around(along_rows), _largest_around(along_columns)
+        return largest_around(along_rows), largest_around(along_columns)
 
     def at(self, row, column):
         """Values and bounds of their errors at points inside, shape (n,) each; NaN and infinity
@@ -123,7 +123,8 @@ class Table:
         return value, np.where(np.isnan(value) | np.isnan(error), np.inf, error)
 
 
-def _largest_around(values):
+def largest_around(values):
+    """The largest of every entry of a table and those beside it, across corners too."""
     padded = np.pad(values, 1, mode="edge")
     n, m = values.shape
     shifts = [(a, b) for a in range(3) for b in range(3)]

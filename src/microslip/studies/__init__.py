@@ -36,6 +36,12 @@ def build(study, configuration, answer):
     return _dataset_of(study).build(getattr(configuration, study), answer)
 
 
+def groups(study):
+    """What of the dataset of a study goes to groups of its file, as for netcdf.divided: dims by
+    the name of a group, each with its title."""
+    return _dataset_of(study).GROUPS
+
+
 def report(study, dataset):
     """Lines of text that sum up the dataset of a study."""
     return _dataset_of(study).report(dataset)

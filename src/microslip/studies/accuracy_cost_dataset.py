@@ -16,6 +16,18 @@ MEASURED = (
     "else is reproducible."
 )
 
+GROUPS = {
+    "points": ("Points that trials are run at, and their references", ("point",)),
+    "scaling": ("What a step costs on finer grids", ("scaling_model", "scaling_size")),
+} | {
+    f"{scene}_map": (
+        f"The cheapest model that is good enough, scene {scene}",
+        ("map_tolerance", f"{scene}_amplitude", f"{scene}_velocity"),
+    )
+    for scene in study.MAP_SCENES
+}
+"""What is not a column of the table of trials."""
+
 # Columns of the table of trials: name -> (type, units, long_name). 0: a count does not apply.
 TRIAL_VARIABLES = {
     "trial_point": (str, "", "point that the trial was run at"),

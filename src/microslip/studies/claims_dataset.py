@@ -15,6 +15,27 @@ ABOUT = (
     "A check decides if its margin is larger than its error. A part holds if nothing decides "
     "against it; a statement, if all of its parts that count do."
 )
+GROUPS = {
+    "parts": ("What of a statement is asked by itself", ("part",)),
+    "checks": ("Comparisons that decide", ("check",)),
+    "runs": ("Results behind the checks", ("run",)),
+    "patch_period": ("Share that sticks over a period of the oscillating bore", ("patch_step",)),
+    "patches": ("What sticks where, at moments of that period", ("patch_moment", "patch_point")),
+    "patch_edges": ("Theory's edges of what sticks", ("patch_moment", "patch_edge")),
+}
+for _scene in claims_static.LIMITS:
+    GROUPS |= {
+        f"{_scene}_static": (f"Static limit, scene {_scene}", (f"{_scene}_amplitude",)),
+        f"{_scene}_curves": (
+            f"Static limit on a fine axis, scene {_scene}",
+            (f"{_scene}_curve_amplitude",),
+        ),
+        f"{_scene}_shares": (
+            f"Shares of the friction bound, scene {_scene}",
+            (f"{_scene}_share_amplitude", "share_radius"),
+        ),
+    }
+"""What is not over statements: titles and dims by the name of a group."""
 BOUNDARY = 181
 """Angles at which the edge of the alternating patches is given."""
 

@@ -11,6 +11,9 @@ from .tables import Answers, finished, value_of, variable
 OUTCOMES = ("not_applicable", "converged", "slow", "wrong", "diverged")
 NOT_APPLICABLE, CONVERGED, SLOW, WRONG, DIVERGED = range(len(OUTCOMES))
 
+GROUPS = {"axes": ("What is varied in the blocks of cases", ("axis",))}
+"""What is not over methods and cases."""
+
 NUMBERS = {
     "mu_macro": ("mu_macro", "mean forward friction force over mu F_z"),
     "claimed_error": ("mu_macro_error", "error of mu_macro that the method claims"),
