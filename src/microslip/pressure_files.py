@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .errors import InputError
 from .pressures import SOURCES
 from .pressures.measured import of_grid
 
@@ -27,23 +28,23 @@ def pressure(text):
     """The Pressure in a file; text: its path, and perhaps ",sha256=...", the first digits of its
     digest.  The name of the record has the digest, so that results belong to the content.
 
-    Raises ValueError for a file that cannot be read, is not as described above, or is not the one
+    Raises InputError for a file that cannot be read, is not as described above, or is not the one
     that the digest is of.
     """
     path, _, digest = text.partition(",sha256=")
-    said = f"pressure = {'file:' + text!r}"
+    said = f"{NAME}:{text}"
     if not path:
-        raise ValueError(f"{said}: allowed is a file, as in file:measured.csv")
+        raise InputError("pressure", said, "allowed is a file, as in file:measured.csv")
     there = Path(path)
     if not there.exists():
         there = Path(os.environ.get("MICROSLIP_FILES", ""), path)
     try:
         content = there.read_bytes()
     except OSError as error:
-        raise ValueError(f"{said}: {path} cannot be read: {error.strerror}") from None
+        raise InputError("pressure", said, f"{path} cannot be read: {error.strerror}") from None
     found = hashlib.sha256(content).hexdigest()[:DIGITS]
     if digest not in ("", found):
-        raise ValueError(f"{said}: {path} has changed: its sha256 begins with {found}")
+        raise InputError("pressure", said, f"{path} has changed: its sha256 begins with {found}")
     return _of_content(path, str(there), found)
 
 
@@ -54,7 +55,7 @@ def _of_content(path, there, digest):
         table = _netcdf(there) if path.endswith((".nc", ".nc4", ".cdf")) else _csv(there)
         return of_grid(name, *table)
     except ValueError as error:
-        raise ValueError(f"pressure = {NAME + ':' + path!r}: {error}") from None
+        raise InputError("pressure", f"{NAME}:{path}", str(error)) from None
 
 
 def _csv(path):
