@@ -63,7 +63,7 @@ CASES = {
         "given.yaml, --config: result: unknown key; did you mean results?",
     ),
     "a default with tabs": (default("tabs"), [], "config/config.yaml: not valid YAML: "),
-    "a default that is no text": (default("not UTF-8"), [], "config/config.yaml: not text: byte"),
+    "a default that is no text": (default("not UTF-8"), [], "config/config.yaml: line 1: not text"),
     "no default": (
         lambda folder: (folder / "config" / "config.yaml").unlink(),
         [],

@@ -102,7 +102,7 @@ def test_the_command_line_takes_a_path(capsys):
     assert found["scene"] == "elliptic:forward=0.5,phase=30"
     words[3] = "width=3"
     assert cli.main(words) == 2
-    assert capsys.readouterr().err.startswith("microslip point elliptic: --path = 'elliptic:width")
+    assert capsys.readouterr().err.startswith("microslip point elliptic: --path = 'width=3': ")
 
 
 def test_every_point_of_a_circle_slips_as_far_as_the_sphere():
