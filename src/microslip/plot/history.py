@@ -32,7 +32,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     upper.plot(periods, forward, color=look.BLUE, gid="forward")
     last = periods >= periods[-1] - 1.0 - 1e-9
     mean = np.trapezoid(forward[last], periods[last]) / np.ptp(periods[last])
-    (level,) = upper.plot(
+    upper.plot(
         [periods[0], periods[-1]],
         [mean, mean],
         color=look.VERMILLION,
@@ -49,10 +49,9 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     for axes in (upper, lower):
         axes.grid(axis="x", color=look.PALE, linewidth=0.5)
         axes.set_axisbelow(True)
-    upper.legend(handles=[level], loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1)
     conditions = rf"$\tilde{{v}}_0 = {look.number(velocity)}$, "
     conditions += rf"$\tilde{{y}}_0 = {look.number(amplitude)}$"
-    look.letter(upper, "a", conditions)
+    look.legend_above(upper, "a", conditions)
     look.letter(lower, "b")
     return figure
 
