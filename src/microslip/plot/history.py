@@ -42,8 +42,14 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     )
     lower.plot(periods, lateral, color=look.GREY, linewidth=1.0, gid="lateral")
 
-    upper.set(ylabel=f"forward force\n{look.FORCE_FORWARD}", ylim=(min(0.0, 1.05 * forward.min()), 1.05))
-    lower.set(ylabel=f"lateral force\n{look.FORCE_LATERAL}", ylim=(-1.1, 1.1), xlim=(periods[0], periods[-1]))
+    upper.set(
+        ylabel=f"forward force\n{look.FORCE_FORWARD}", ylim=(min(0.0, 1.05 * forward.min()), 1.05)
+    )
+    lower.set(
+        ylabel=f"lateral force\n{look.FORCE_LATERAL}",
+        ylim=(-1.1, 1.1),
+        xlim=(periods[0], periods[-1]),
+    )
     lower.set_xlabel(r"phase in periods  $\omega t/(2\pi)$")
     lower.xaxis.set_major_locator(MultipleLocator(max(1, round(np.ptp(periods) / 8))))
     for axes in (upper, lower):

@@ -64,9 +64,7 @@ def fill(
     axes.set(xlim=(velocity[0], velocity[-1]), ylim=(amplitude[0], amplitude[-1]))
     axes.xaxis.set_major_locator(LogLocator(numticks=12))
     axes.tick_params(which="both", direction="out", top=False, right=False)
-    look.after_layout(
-        axes.figure, lambda: contour_labels.label(axes, contours, labelled, size)
-    )
+    look.after_layout(axes.figure, lambda: contour_labels.label(axes, contours, labelled, size))
     return filled, _hatch(axes, velocity, amplitude, shown["converged"].values != 0)
 
 

@@ -158,9 +158,7 @@ def _map(axes: Axes, dataset: xr.Dataset, plan: Map, letter: str, note: str) -> 
         )
 
 
-def _static_cut(
-    axes: Axes, shown: list[tuple[xr.Dataset, float]], plan: Map, letter: str
-) -> None:
+def _static_cut(axes: Axes, shown: list[tuple[xr.Dataset, float]], plan: Map, letter: str) -> None:
     """mu_macro against amplitude at the smallest velocity, with the static limits."""
     velocity = float(shown[0][0]["velocity"][0])
     for overlay in plan.static:
@@ -180,9 +178,7 @@ def _where_not_zero(axes: Axes) -> tuple[float, float]:
     return x.min(), min(max(1.5 * last, following), x.max())
 
 
-def _large_cut(
-    axes: Axes, shown: list[tuple[xr.Dataset, float]], plan: Map, letter: str
-) -> None:
+def _large_cut(axes: Axes, shown: list[tuple[xr.Dataset, float]], plan: Map, letter: str) -> None:
     """mu_macro against velocity at the largest amplitude, with the limit for large amplitudes."""
     amplitude = float(shown[0][0]["amplitude"][-1])
     _overlay(axes, shown[0][0], plan.large, amplitude=amplitude)

@@ -66,9 +66,7 @@ def ratios(points, names, costs, tolerance, errors, levels, models):
     least = np.full((len(of_name), len(of_point)), np.inf)
     runs = list(zip(points, names, models, levels, costs, errors, strict=True))
     for point, name, model, level, cost, error in runs:
-        finer = [
-            run[5] for run in runs if run[:3] == (point, name, model) and run[3] >= level
-        ]
+        finer = [run[5] for run in runs if run[:3] == (point, name, model) and run[3] >= level]
         known = [other for other in finer if np.isfinite(other)]
         if np.isfinite(error) and np.isfinite(cost) and max(known) <= tolerance:
             place = of_name.index(name), of_point.index(point)
