@@ -2,8 +2,8 @@
 
     python docs/make_images.py results [NAME ...]
 
-NAME: of figures, without .png; without any, all that the pages show and the folder has. Figures are
-written in 300 dpi and all colours, which is more than a page needs: a picture takes a third of that.
+NAME: of figures, without .png; without any, all that the pages show and the folder has. Figures
+are written in 300 dpi and all colours, which is more than a page needs.
 """
 
 import sys

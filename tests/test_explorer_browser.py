@@ -328,5 +328,5 @@ def test_buttons_of_the_charts_cover_no_data(page, width):
         (bar,) = page.evaluate(BOXES, f"#{chart} .modebar-group")
         (area,) = page.evaluate(BOXES, f"#{chart} .bglayer .bg, #{chart} .nsewdrag")[:1]
         assert bar[3] <= area[2], chart  # it ends above the area of the data
-        for left, right, top, bottom in page.evaluate(BOXES, f"#{chart} .legendtext"):
+        for _left, right, top, bottom in page.evaluate(BOXES, f"#{chart} .legendtext"):
             assert right <= bar[0] or bottom <= bar[2] or top >= bar[3], chart

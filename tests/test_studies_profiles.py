@@ -30,9 +30,7 @@ def ratio(columns, tolerances=(1e-3,), points=("p", "q")):
     made = profiles.variables(columns, list(points), tolerances)
     contests, names = (made[n][1] for n in ("competitor_contest", "competitor"))
     values = np.asarray(made["profile_ratio"][1], float)
-    return {
-        key: value for key, value in zip(zip(contests, names, strict=True), values, strict=True)
-    }
+    return dict(zip(zip(contests, names, strict=True), values, strict=True))
 
 
 def test_a_ratio_is_the_least_time_within_the_tolerance_over_the_best():

@@ -89,8 +89,8 @@ RC = {
     "figure.constrained_layout.w_pad": 0.05,
 }
 
-# Labels of quantities (mathtext). Every axis has words, then a symbol with its unit: a ratio shows by
-# itself that it has none, and of anything else it is said.
+# Labels of quantities (mathtext). Every axis has words, then a symbol with its unit: a ratio shows
+# by itself that it has none, and of anything else it is said.
 MU_MACRO = r"$\tilde{\mu}_\mathrm{macro}$"
 FRICTION = rf"friction ratio  {MU_MACRO}  (dimensionless)"
 FORCE_FORWARD = r"$F_\mathrm{forward}/(\mu F_z)$"

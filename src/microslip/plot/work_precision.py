@@ -1,9 +1,10 @@
 """Accuracy against cost: the error of every trial over its time, or over its work.
 
 One panel a point. All panels share their axes, so further down and to the left is better in every
-one. Models with the method that ships have a look each; runs by other methods are small grey marks of
-one kind, which `profile` tells apart. What has no place on the axes is drawn in strips along them, never left out: errors too small
-to judge at the bottom, trials without a result at the top, costs of zero at the left.
+one. Models with the method that ships have a look each; runs by other methods are small grey marks
+of one kind, which `profile` tells apart. What has no place on the axes is drawn in strips along
+them, never left out: errors too small to judge at the bottom, trials without a result at the top,
+costs of zero at the left.
 """
 
 from __future__ import annotations

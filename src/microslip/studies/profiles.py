@@ -42,8 +42,8 @@ def contest_of(method):
 def ratios(points, names, costs, tolerance, errors, levels, models):
     """Least cost of every competitor at every point over the least of all.
 
-    A run counts if it and all finer ones of its model and competitor are within the tolerance, since
-    a coarse one may be right by chance.
+    A run counts if it and all finer ones of its model and competitor are within the tolerance,
+    since a coarse one may be right by chance.
 
     Parameters
     ----------
