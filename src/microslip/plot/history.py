@@ -50,6 +50,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         ylim=(-1.1, 1.1),
         xlim=(periods[0], periods[-1]),
     )
+    upper.yaxis.set_major_locator(MultipleLocator(0.2))
     lower.set_xlabel(r"phase in periods  $\omega t/(2\pi)$")
     lower.xaxis.set_major_locator(MultipleLocator(max(1, round(np.ptp(periods) / 8))))
     for axes in (upper, lower):

@@ -217,8 +217,9 @@ def legend_above(axes: Axes, which: str, note: str, ncols: int = 2) -> None:
         loc="lower left",
         bbox_to_anchor=(0.0, 1.0),
         ncols=ncols,
-        handlelength=2.3,
-        columnspacing=1.0,
+        handlelength=2.2,
+        handletextpad=0.6,
+        columnspacing=0.8,
         borderaxespad=0.0,
         borderpad=0.0,
     )
