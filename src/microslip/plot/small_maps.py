@@ -60,7 +60,7 @@ def draw(name: str, datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Fi
     _label(figure, used, datasets, columns, height / rows)
     ticks = fills[np.isclose(np.round(5 * fills), 5 * fills)]
     bar = figure.colorbar(filled, ax=used, pad=0.02, aspect=20 * rows, ticks=ticks)
-    bar.set_label(look.FRICTION)
+    bar.set_label(look.FRICTION if rows > 1 or columns < 3 else look.FRICTION.replace("  (", "\n("))
     bar.ax.tick_params(direction="out")
     if hatched:
         figure.legend(handles=[unconverged("not converged")], loc="outside lower right")
