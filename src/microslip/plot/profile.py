@@ -57,6 +57,7 @@ def _panel(axes: Axes, contest: xr.Dataset, of_models: bool) -> None:
         linestyle = LOOKS[(place + place // len(LOOKS)) % len(LOOKS)][2]
         if of_models and names[index] in look.MODELS:
             color, *_ = look.model(names[index])
+            linestyle = look.DOTTED if color == look.BLACK else linestyle  # solid is what is chosen
         if names[index] == "auto":
             color, linestyle = look.BLACK, look.SOLID
         axes.plot(
