@@ -579,7 +579,7 @@ def test_a_profile_shows_the_share_of_points_within_a_ratio_of_the_best(datasets
                 if ratio <= axes.get_xlim()[1]:
                     within = y[np.flatnonzero(x <= ratio)[-1]]
                     assert within == pytest.approx(np.mean(ratios <= ratio))
-            looks.add((line.get_color(), str(line.get_linestyle())))
+            looks.add((line.get_color(), str(line._unscaled_dash_pattern)))
         assert len(looks) == mine.sizes["competitor"]
         names = [text.get_text() for text in axes.get_legend().get_texts()]
         assert len(names) == mine.sizes["competitor"]
