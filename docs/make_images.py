@@ -3,7 +3,7 @@
     python docs/make_images.py results [NAME ...]
 
 NAME: of figures, without .png; without any, all that the pages show and the folder has. Figures
-are written in 300 dpi and all colours, which is more than a page needs.
+are written in 300 dpi, which is more than a page needs. Colours stay what they are.
 """
 
 import sys
@@ -13,15 +13,13 @@ from PIL import Image
 
 IMAGES = Path(__file__).parent / "images"
 SHARE = 200 / 300
-COLOURS = 256
 
 
 def shrunk(path):
     """The picture of a figure."""
     with Image.open(path) as image:
         size = [round(SHARE * side) for side in image.size]
-        small = image.convert("RGB").resize(size, Image.Resampling.LANCZOS)
-    return small.quantize(COLOURS, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+        return image.convert("RGB").resize(size, Image.Resampling.LANCZOS)
 
 
 def main(results, *names):
