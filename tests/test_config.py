@@ -131,6 +131,63 @@ def test_points_of_a_study_have_numbers_and_titles():
     }
 
 
+@pytest.mark.parametrize(
+    "title",
+    [
+        "costs $5",
+        r"$\frac{",
+        r"\frac{1}{2}",
+        "{} % # _ ^ &",
+        "\N{GREEK SMALL LETTER NU} > 0",
+        "$",
+        "x" * 100,
+    ],
+)
+def test_titles_may_hold_what_is_markup_elsewhere(title):
+    """They are drawn as they stand, see test_plot_groups."""
+    sweep = {
+        "scene": "longitudinal",
+        "group": "g",
+        "velocity": [1],
+        "amplitude": [1],
+        "title": title,
+    }
+    point = {"scene": "bore", "velocity": 1, "amplitude": 1}
+    given = {
+        "sweeps": {"bore": {"velocity": [1], "amplitude": [1]}},
+        "extended": {"a": sweep},
+        "accuracy": {"points": {"named": point | {"title": title}, title: point}},
+    }
+    found = config.from_mapping(given, ask_solver=False)
+    assert found.extended["a"].title == title
+    assert [point.title for point in found.accuracy.points.values()] == [title, title]
+
+
+@pytest.mark.parametrize(
+    "title", ["", "  ", "x" * 101, "two\nlines", "a\tb", "\x00", "\ud800", "\u2028"]
+)
+def test_titles_that_cannot_be_drawn_or_written_are_refused_before_anything_is_computed(title):
+    sweep = {
+        "scene": "longitudinal",
+        "group": "g",
+        "velocity": [1],
+        "amplitude": [1],
+        "title": title,
+    }
+    point = {"scene": "bore", "velocity": 1, "amplitude": 1}
+    for more, where in (
+        ({"extended": {"a": sweep}}, "extended.a.title"),
+        ({"accuracy": {"points": {"p": point | {"title": title}}}}, "accuracy.points.p.title"),
+        ({"accuracy": {"points": {title: point}}}, "accuracy.points"),
+    ):
+        given = {"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}} | more
+        with pytest.raises(
+            ConfigError, match=rf"^configuration: {where}: .*allowed: text on"
+        ) as found:
+            config.from_mapping(given, ask_solver=False)
+        assert "\n" not in str(found.value)
+
+
 def test_default_sweeps_are_those_of_the_paper():
     sweeps = load(ROOT / "config" / "config.yaml").sweeps
     for name, top in (("transverse", 3.0), ("bore", 5.0)):

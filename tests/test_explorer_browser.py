@@ -250,3 +250,83 @@ def test_it_tells_what_made_it_and_fits_the_screen(made, page):
         "[document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
     )
     assert (width, height) == (1280, 800)
+
+
+# On a phone
+
+
+@pytest.fixture
+def phone(made, browser):
+    """The page on a small screen."""
+    page = browser.new_page()
+    page.set_viewport_size({"width": 400, "height": 800})
+    page.goto(made[0].as_uri())
+    page.locator("body[data-ready]").wait_for()
+    yield page
+    page.close()
+
+
+CHARTS = ("map", "along-velocity", "along-amplitude", "disc", "history", "loop")
+BOXES = """(selector) => [...document.querySelectorAll(selector)].map((found) => {
+  const { left, right, top, bottom } = found.getBoundingClientRect();
+  return [left, right, top, bottom];
+})"""
+
+
+def test_a_phone_shows_one_column_and_scrolls_in_one_direction(phone):
+    width = "document.documentElement.scrollWidth"
+    assert phone.evaluate(width) <= 400
+    phone.get_by_text("What made this page").click()
+    assert phone.evaluate(width) <= 400
+    boxes = phone.evaluate(BOXES, ".plot")
+    assert len(boxes) == len(CHARTS)
+    for left, right, *_ in boxes:
+        assert 0 <= left < 20 and 380 < right <= 400
+    bottoms = [bottom for *_, bottom in boxes[:-1]]
+    tops = [top for _, _, top, _ in boxes[1:]]
+    assert all(bottom <= top for bottom, top in zip(bottoms, tops, strict=True))
+    # labels of axes are on the screen, too
+    for left, right, *_ in phone.evaluate(BOXES, ".plot .infolayer text"):
+        assert left >= -0.5 and right <= 400.5
+
+
+def test_a_finger_finds_every_control_of_the_phone(phone):
+    selectors = ("button", "input[type=range]", "#limits label", "summary")
+    for selector in selectors:
+        boxes = [box for box in phone.evaluate(BOXES, selector) if box[1] > box[0]]
+        assert boxes
+        for left, right, top, bottom in boxes:
+            assert bottom - top >= 44 and right - left >= 44, selector
+    size = "(id) => parseFloat(getComputedStyle(document.querySelector(id)).fontSize)"
+    assert all(phone.evaluate(size, id) >= 16 for id in ("button", "#value", "#limits label"))
+
+
+def test_a_finger_scrolls_the_phone_and_zooms_no_chart(phone):
+    for chart in CHARTS:
+        axes = "(id) => { const l = element(id)._fullLayout; return [l.xaxis, l.yaxis, l.dragmode]"
+        fixed = phone.evaluate(axes + ".map((a) => a && a.fixedrange)}", chart)
+        assert fixed[:2] == [True, True]
+        assert phone.evaluate("(id) => element(id)._fullLayout.dragmode", chart) is False
+    assert not phone.locator(".modebar-btn").count()
+    click_on_map(phone, 0.1, 1.2)  # a tap still chooses a point
+    assert "velocity 0.1, amplitude 1.2" in phone.inner_text("#certificate")
+
+
+def test_turning_the_phone_lays_it_out_again(phone):
+    phone.set_viewport_size({"width": 1000, "height": 600})
+    phone.wait_for_timeout(300)
+    assert phone.evaluate("document.documentElement.scrollWidth") <= 1000
+    assert phone.evaluate("element('along-velocity')._fullLayout.dragmode") == "zoom"
+
+
+@pytest.mark.parametrize("width", [800, 1280])
+def test_buttons_of_the_charts_cover_no_data(page, width):
+    page.set_viewport_size({"width": width, "height": 800})
+    page.wait_for_timeout(300)
+    for chart in CHARTS:
+        page.locator(f"#{chart}").hover()
+        (bar,) = page.evaluate(BOXES, f"#{chart} .modebar-group")
+        (area,) = page.evaluate(BOXES, f"#{chart} .bglayer .bg, #{chart} .nsewdrag")[:1]
+        assert bar[3] <= area[2], chart  # it ends above the area of the data
+        for _left, right, top, bottom in page.evaluate(BOXES, f"#{chart} .legendtext"):
+            assert right <= bar[0] or bottom <= bar[2] or top >= bar[3], chart

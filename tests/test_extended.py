@@ -72,6 +72,11 @@ def test_a_figure_has_room_for_so_many():
     lines = CIRCLE | {"velocity": [0.1]}
     with pytest.raises(config.ConfigError, match="allowed: up to 8"):
         configured(**{f"a{i}": lines for i in range(9)})
+    # every one of Poisson's ratios is drawn
+    ratios = CIRCLE | {"poisson": [0, 0.3, 0.5]}
+    configured(**{f"a{i}": ratios for i in range(4)})
+    with pytest.raises(config.ConfigError, match=r"loops has 15 sweeps at their Poisson's .* 12"):
+        configured(**{f"a{i}": ratios for i in range(5)})
 
 
 def test_jobs_do_not_ask_the_solver(monkeypatch):

@@ -274,14 +274,34 @@ def test_the_static_limit_is_called_exact_only_where_it_is(datasets, scene, name
         assert line.get_label() == expected
 
 
-def test_the_poisson_ratio_nearest_zero_is_drawn(datasets):
-    first, other = datasets["bore"], datasets["bore"].copy(deep=True)
-    other["mu_macro"] += 0.1
-    both = xr.concat([other, first], xr.Variable("poisson", [0.3, 0.0]), data_vars="all")
-    figure = plot.draw("fig6_bore_map", {"bore": both})
-    np.testing.assert_array_equal(
-        artists(figure, "computed")[0].get_ydata(), first["mu_macro"][:, 0]
-    )
+@pytest.mark.parametrize(
+    ("key", "name"), [("transverse", "fig2_transverse_map"), ("bore", "fig6_bore_map")]
+)
+def test_all_of_poissons_ratios_in_a_sweep_are_drawn(datasets, key, name):
+    given = at_ratios(datasets[key], 0.0, 0.5).isel(poisson=[1, 0])
+    figure = plot.draw(name, {key: given})
+    check_nothing_cut_off(figure)
+    assert len(artists(figure, "contours")) == 2
+    headed = [axes.get_title(loc="left") for axes in figure.findobj(Axes)]
+    assert [any(rf"$\nu = {nu}$" in head for head in headed) for nu in ("0", "0.5")] == [True] * 2
+    points = artists(figure, "computed")
+    assert len(points) == 4
+    ways = ({"velocity": 0}, {"amplitude": -1})
+    expected = [given.mu_macro.sel(poisson=nu).isel(at) for at in ways for nu in (0, 0.5)]
+    for line, values in zip(points, expected, strict=True):
+        np.testing.assert_array_equal(line.get_ydata(), values)
+    assert len({line.get_marker() for line in points}) == 2
+    said = [text.get_text() for legend in figure.findobj(Legend) for text in legend.get_texts()]
+    assert said.count(r"computed, $\nu = 0.5$") == 2
+
+
+def test_of_many_of_poissons_ratios_it_is_said_how_many_are_drawn(datasets):
+    given = at_ratios(datasets["bore"], *np.linspace(0, 0.5, 11))
+    figure = plot.draw("fig6_bore_map", {"bore": given})
+    assert len(artists(figure, "contours")) == 6
+    said = " ".join(text.get_text() for text in figure.findobj(Text))
+    assert "6 of the 11 of Poisson's ratios" in said
+    assert r"$\nu = 0$" in said and r"$\nu = 0.5$" in said
 
 
 def at_ratios(dataset, *ratios):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -156,11 +158,74 @@ def test_what_did_not_converge_is_hatched_and_said_once():
     assert words(figure).count("not converged") == 1
 
 
-def test_the_poissons_ratio_nearest_zero_is_drawn():
-    first = spanning("a")
-    other = first.assign_coords(poisson=0.3)
-    both = xr.concat([other, first], "poisson", data_vars="all", combine_attrs="override")
-    assert len(panels(plot.draw("extended_motions", {"a": both}))) == 1
+def at_two_ratios(first):
+    other = first.assign(mu_macro=first.mu_macro - 0.01).assign_coords(poisson=0.3)
+    return xr.concat([first, other], "poisson", data_vars="all", combine_attrs="override")
+
+
+def test_all_of_poissons_ratios_are_drawn_whatever_else_is_in_the_group():
+    figure = plot.draw("extended_motions", {"a": at_two_ratios(spanning("a")), "b": spanning("b")})
+    heads = [axes.get_title(loc="left") for axes in panels(figure)]
+    assert len(heads) == 3
+    assert [r"$\nu = 0.3$" in head for head in heads] == [False, True, False]
+    given = {"a": at_two_ratios(static("a")), "b": static("b")}
+    (legend,) = plot.draw("extended_static", given).findobj(Legend)
+    said = [text.get_text() for text in legend.get_texts()]
+    assert said == [r"a, $\nu = 0$", r"a, $\nu = 0.3$", "b"]
+    # what they change has a figure for three maps, and more have a map of each
+    changed = at_two_ratios(spanning()).assign_attrs(tolerance=1e-3, group="motions")
+    changed["mu_macro_change"] = changed.mu_macro - changed.mu_macro.isel(poisson=0)
+    given = {f"m{k}": changed.assign_attrs(title=f"m{k}") for k in range(4)}
+    assert len(panels(plot.draw("extended_motions", given))) == 8
+
+
+# Texts from outside
+
+TITLES = ["costs $5", r"$\frac{", r"\frac{1}{2} $x$", "a_b^c {} % # & ~", "_first", "$$"]
+TITLES += [
+    "it ends in \\",
+    r"\$ and $",
+    "\N{GREEK SMALL LETTER MU}\N{LATIN SMALL LETTER E WITH ACUTE}",
+]
+
+
+def drawn_words(figure):
+    """All texts as they stand on the page: without escapes and formulas, on one line."""
+    texts = [text.get_text() for text in figure.findobj(Text)]
+    plain = [re.sub(r"(?<!\\)\$(?:\\\$|[^$])*(?<!\\)\$", "", text) for text in texts]
+    return [" ".join(text.replace(r"\$", "$").split()) for text in plain]
+
+
+def test_titles_are_drawn_as_they_stand(tmp_path):
+    given = {f"m{k}": spanning(title) for k, title in enumerate(TITLES)}
+    figure = plot.draw("extended_motions", given)
+    assert set(TITLES) <= set(drawn_words(figure))
+    for kind in ("png", "pdf"):
+        plot.save(figure, tmp_path / f"maps.{kind}")
+    given = {f"s{k}": static(title) for k, title in enumerate(TITLES[:8])}
+    figure = plot.draw("extended_static", given)
+    (legend,) = figure.findobj(Legend)
+    shown = [text.get_text() for text in legend.get_texts()]
+    assert len(shown) == 8  # one that begins with an underscore, too
+    assert r"$\_$first" in shown
+    for kind in ("png", "pdf"):
+        plot.save(figure, tmp_path / f"lines.{kind}")
+
+
+@pytest.mark.filterwarnings("ignore:Glyph")
+def test_a_sign_that_the_font_lacks_and_a_word_without_end_do_no_harm(tmp_path):
+    given = {"a": spanning("\u4e2d\u6587"), "b": spanning("x" * 100), "c": spanning("c")}
+    figure = plot.draw("extended_motions", given)
+    for kind in ("png", "pdf"):
+        plot.save(figure, tmp_path / f"maps.{kind}")
+    heads = [axes.title for axes in panels(figure)] + [axes._left_title for axes in panels(figure)]
+    right = max(head.get_window_extent().x1 for head in heads)
+    assert right <= figure.bbox.x1
+    boxes = [axes._left_title.get_window_extent() for axes in panels(figure)]
+    assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
+    lines = plot.draw("extended_static", {"a": static("\u4e2d \U0001f600"), "b": static("y" * 100)})
+    for kind in ("png", "pdf"):
+        plot.save(lines, tmp_path / f"lines.{kind}")
 
 
 # Lines

@@ -128,7 +128,22 @@ def fake_accuracy(points: int = 11, methods: tuple[str, ...] = METHODS) -> xr.Da
         "reference_error": ("point", known[:points]),
     }
     coords = {"point": [f"p{i}" for i in range(points)]}
-    return xr.Dataset(trials | of_points, coords).merge(fake_scaling()).merge(fake_maps())
+    dataset = xr.Dataset(trials | of_points, coords).merge(fake_profile(points, methods))
+    return dataset.merge(fake_scaling()).merge(fake_maps())
+
+
+def fake_profile(points: int, methods: tuple[str, ...]) -> xr.Dataset:
+    """Ratios to the best in two contests; the slider never does."""
+    random = np.random.default_rng(9)
+    names = [*MODELS, "auto", *(name for name in methods if name != "paper")]
+    contests = ["models"] * (len(MODELS) + 1) + ["searches"] * (len(names) - len(MODELS) - 1)
+    ratio = random.lognormal(1, 1, (len(names), 2, points)).clip(1)
+    ratio[random.random(ratio.shape) < 0.2] = np.inf
+    ratio[names.index("slider")] = np.inf
+    return xr.Dataset(
+        {"profile_ratio": (("competitor", "map_tolerance", "point"), ratio)},
+        {"competitor": names, "competitor_contest": ("competitor", contests)},
+    )
 
 
 def fake_scaling() -> xr.Dataset:
@@ -227,8 +242,8 @@ def fake_stability(axes: int = 13, cases: int = 7, methods: tuple[str, ...] = ST
     )
 
 
-FIGURES = ("accuracy_vs_cost", "accuracy_vs_effort", "model_map", "scaling", "stability_atlas")
-ALL = (*FIGURES, "claims_static", "claims_patches")
+FIGURES = ("accuracy_vs_cost", "accuracy_vs_work", "model_map", "scaling", "stability_atlas")
+ALL = (*FIGURES, "accuracy_profile", "claims_static", "claims_patches")
 
 
 @pytest.fixture(scope="module")
@@ -356,8 +371,9 @@ def test_a_small_dataset_is_drawn_without_complaint(name, small):
     ("name", "variable"),
     [
         *(("accuracy_vs_cost", n) for n in ("seconds", "front_seconds", "error", "trial_level")),
-        *(("accuracy_vs_effort", n) for n in ("effort", "front_effort", "reference_error")),
+        *(("accuracy_vs_work", n) for n in ("effort", "front_effort", "reference_error")),
         *(("model_map", n) for n in ("bore_cheapest", "map_tolerance", "transverse_velocity")),
+        *(("accuracy_profile", n) for n in ("profile_ratio", "competitor_contest")),
         *(("scaling", n) for n in ("scaling_memory", "scaling_exponent_seconds")),
         *(("stability_atlas", n) for n in ("outcome", "case_axis", "axis_note", "method")),
         *(("claims_static", n) for n in ("bore_curve_limit", "transverse_paper", "share_radius")),
@@ -386,6 +402,7 @@ def test_curves_hold_every_trial(name, cost, datasets, figures):
                 & (trials["trial_method"].values == method)
             ).sortby("trial_level")
             (line,) = artists(axes, f"{model} {method}")
+            assert (line.get_linestyle() == "None") == (method != "shipped")
             rows = rows.isel(trial=np.isfinite(rows["error"].values))
             found += line.get_xdata().size
             above_zero = rows[cost].values > 0
@@ -443,14 +460,15 @@ def test_trials_that_failed_are_marked_and_not_hidden(datasets, figures):
         assert len(set(crosses.get_ydata()[in_row])) == 1
         assert crosses.get_ydata()[in_row][0] in axes.get_yticks()
         hollow = artists(axes, "hollow")
-        assert sum(line.get_xdata().size for line in hollow) == failed.sum()
+        own = np.isin(trials["trial_method"].values, ["shipped", "paper"])
+        assert sum(line.get_xdata().size for line in hollow) == (failed & own).sum()
         assert {line.get_markerfacecolor() for line in hollow} == {"white"}
     assert "none" in [label.get_text() for label in figure.axes[0].get_yticklabels()]
 
 
 def test_errors_too_small_and_costs_of_zero_get_an_arrow_at_the_edge(datasets, figures):
     dataset = datasets["accuracy_cost"]
-    (first, trials), (second, _), *_ = one_panel_each(figures["accuracy_vs_effort"], dataset)
+    (first, trials), (second, _), *_ = one_panel_each(figures["accuracy_vs_work"], dataset)
     zero = trials["error"].values == 0
     (arrows,) = artists(first, "low")
     assert sorted(arrows.get_xdata()) == sorted(trials["effort"].values[zero])
@@ -521,18 +539,13 @@ def test_names_of_tolerances_hide_no_trial(figures):
                 assert hidden == 0 or label.get_text() == "paper's run"
 
 
-def test_the_legends_name_every_model_method_and_mark(datasets, figures):
-    dataset = datasets["accuracy_cost"]
+def test_the_legends_name_every_model_and_mark_and_no_method_alone(datasets, figures):
     for name in FIGURES[:2]:
-        models, methods, marks = figures[name].findobj(Legend)
+        models, marks = figures[name].findobj(Legend)
         assert [text.get_text() for text in models.get_texts()] == list(MODELS)
-        shown = [text.get_text().replace("\n  ", "") for text in methods.get_texts()]
-        others = set(dataset["trial_method"].values) - {"shipped", "paper"}
-        assert sorted(shown) == sorted(others)
-        looks = [(h.get_marker(), str(h.get_linestyle())) for h in methods.legend_handles]
-        assert len(set(looks)) == len(others)
         names = [text.get_text() for text in marks.get_texts()]
         assert {"Pareto front", "paper's run", "not converged, or none"} <= set(names)
+        assert "any other method" in names  # the profile tells them apart
         for handle, model in zip(models.legend_handles, MODELS, strict=True):
             (line, *_) = artists(figures[name], f"{model} shipped")
             assert (handle.get_color(), handle.get_marker()) == (
@@ -540,6 +553,41 @@ def test_the_legends_name_every_model_method_and_mark(datasets, figures):
                 line.get_marker(),
             )
         assert len({handle.get_marker() for handle in models.legend_handles}) == len(MODELS)
+
+
+def test_work_is_called_what_the_dataset_calls_it(small):
+    for words in ("step solves times unknowns", "iterations times unknowns"):
+        dataset = small["accuracy_cost"].copy()
+        dataset["work"].attrs["long_name"] = words
+        axes = plot.draw("accuracy_vs_work", {"accuracy_cost": dataset}).axes[0]
+        shown = axes.get_xlabel().replace("\n", " ").replace(r"$\times$", "times")
+        assert shown == f"work: {words} (dimensionless)"
+
+
+# Profiles
+
+
+def test_a_profile_shows_the_share_of_points_within_a_ratio_of_the_best(datasets, figures):
+    dataset, figure = datasets["accuracy_cost"], figures["accuracy_profile"]
+    tightest = dataset.isel(map_tolerance=int(np.argmin(dataset["map_tolerance"].values)))
+    for axes, contest in zip(figure.axes, ("models", "searches"), strict=True):
+        mine = tightest.isel(competitor=tightest["competitor_contest"].values == contest)
+        looks = set()
+        for name, ratios in zip(
+            mine["competitor"].values, mine["profile_ratio"].values, strict=True
+        ):
+            (line,) = artists(axes, f"profile {name}")
+            x, y = line.get_xdata(), line.get_ydata()
+            assert line.get_drawstyle() == "steps-post"
+            for ratio in (1.0, 2.0, 10.0, 100.0):
+                if ratio <= axes.get_xlim()[1]:
+                    within = y[np.flatnonzero(x <= ratio)[-1]]
+                    assert within == pytest.approx(np.mean(ratios <= ratio))
+            looks.add((line.get_color(), str(line._unscaled_dash_pattern)))
+        assert len(looks) == mine.sizes["competitor"]
+        names = [text.get_text() for text in axes.get_legend().get_texts()]
+        assert len(names) == mine.sizes["competitor"]
+    assert "slider: never" in [t.get_text() for t in figure.axes[0].get_legend().get_texts()]
 
 
 def test_every_panel_is_headed_by_its_point(datasets, figures):
@@ -556,7 +604,7 @@ def test_every_panel_is_headed_by_its_point(datasets, figures):
 @pytest.mark.parametrize("points", [1, 2, 3, 4])
 def test_any_number_of_points_finds_room_for_panels_and_legends(points):
     dataset = fake_accuracy(points, (*METHODS, "admm:penalty=0.1,relaxation=1.5"))
-    figure = plot.draw("accuracy_vs_effort", {"accuracy_cost": dataset})
+    figure = plot.draw("accuracy_vs_work", {"accuracy_cost": dataset})
     assert sum(axes.axison for axes in figure.axes) == points
     panels = [axes.get_window_extent() for axes in figure.axes if axes.axison]
     legends = [legend.get_window_extent() for legend in figure.findobj(Legend)]

@@ -95,7 +95,7 @@ def test_a_method_in_one_new_file_is_in_the_dataset_and_in_the_figures(finished)
         assert (own.seconds.values > 0).all()
         assert set(data.trial_model.values) >= {"rigid", "radial", "cartesian", "auto"}
         assert (data.transverse_cheapest.values != "").all()
-    for name in ("accuracy_vs_cost", "accuracy_vs_effort"):
+    for name in ("accuracy_vs_cost", "accuracy_vs_work"):
         assert "my-method" in texts(name, path)
     figures = {name for name, data in plot.FIGURES.items() if data == ("accuracy_cost",)}
     for name in figures:

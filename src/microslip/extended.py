@@ -12,7 +12,7 @@ from . import grids
 from .settings import TAKEN, ConfigError
 
 MOST_PANELS = 12
-"""Sweeps on a figure of maps."""
+"""Sweeps on a figure of maps, each as often as it has Poisson's ratios."""
 MOST_LINES = 8
 """Sweeps on a figure of lines, each with a colour and a marker of its own."""
 
@@ -98,9 +98,11 @@ def _refuse_mixture(together, where):
                 f"{first.name} asks, and this over {sweep.drawn_over}; allowed: another group"
             )
     most = MOST_PANELS if first.spans_a_map else MOST_LINES
-    if len(together) > most:
+    drawn = sum(len(sweep.poisson) for sweep in together)
+    if drawn > most:
+        ratios = " at their Poisson's ratios" if drawn > len(together) else ""
         raise ConfigError(
-            f"{where}.{last.name}.group: {first.group} has {len(together)} sweeps; allowed: up to "
+            f"{where}.{last.name}.group: {first.group} has {drawn} sweeps{ratios}; allowed: up to "
             f"{most}, or another group"
         )
 

@@ -4,11 +4,18 @@ const INK = "#000000", BLUE = "#0072B2", VERMILLION = "#D55E00", GREY = "#6E6E6E
 const FONT = { family: "DejaVu Sans, Verdana, Arial, sans-serif", size: 11, color: INK };
 const MU = "<i>μ̃</i><sub>macro</sub>";
 const FORWARD = "forward force / (<i>μF<sub>z</sub></i>)";
-const CONFIG = {
-  responsive: true,
-  displaylogo: false,
-  modeBarButtons: [["toImage", "resetScale2d"]],
-};
+const PHONE = matchMedia("(max-width: 700px)"); // as in style.css
+const BAR = 32; // height of the margin above a chart, where the bar of buttons hides no data
+
+// On a phone a finger scrolls the page, so nothing zooms, and no button undoes it.
+function config() {
+  return {
+    responsive: true,
+    displaylogo: false,
+    displayModeBar: PHONE.matches ? false : "hover",
+    modeBarButtons: [["toImage", "resetScale2d"]],
+  };
+}
 
 function axis(title, more) {
   return {
@@ -19,6 +26,7 @@ function axis(title, more) {
     ticklen: 3,
     zeroline: false,
     gridcolor: "#ececec",
+    fixedrange: PHONE.matches,
     ...more,
   };
 }
@@ -26,8 +34,9 @@ function axis(title, more) {
 function layout(more) {
   return {
     font: FONT,
-    margin: { l: 52, r: 10, t: 8, b: 42 },
+    margin: { l: 52, r: 10, t: BAR, b: 42 },
     hovermode: "closest",
+    dragmode: PHONE.matches ? false : "zoom",
     paper_bgcolor: "#fff",
     plot_bgcolor: "#fff",
     ...more,
@@ -114,9 +123,9 @@ function drawMap(element, map, row, column) {
     yaxis: axis(map.labels[1], { range: ends(bounds.y), showgrid: false }),
     dragmode: false,
     shapes: cross(map, row, column),
-    margin: { l: 52, r: 10, t: bad.length ? 24 : 8, b: 42 },
-    legend: { orientation: "h", x: 1, xanchor: "right", y: 1.01, yanchor: "bottom" },
-  }), CONFIG);
+    margin: { l: 52, r: 10, t: BAR, b: 42 },
+    legend: { orientation: "h", x: 0, xanchor: "left", y: 1.01, yanchor: "bottom" },
+  }), config());
 }
 
 // The cross on the map: the cell of the selected point, and the two cuts through it.
@@ -201,8 +210,8 @@ function drawCut(element, map, along, fixed, selected, hidden) {
     xaxis: axis(map.labels[inVelocity ? 0 : 1], shown),
     yaxis: axis(MU, { range: [-0.04, 1.06], dtick: 0.2 }),
     showlegend: false,
-    margin: { l: 46, r: 8, t: 8, b: 42 },
-  }), CONFIG);
+    margin: { l: 46, r: 8, t: BAR, b: 42 },
+  }), config());
 }
 
 function inDegrees(phase) {
@@ -236,8 +245,8 @@ function drawForces(history, loop, period, mu, error, frame) {
     xaxis: axis("phase  <i>ωt</i> (degrees)", { range: [first, last], dtick: 90 }),
     yaxis: y,
     legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom", font: { size: 10 }, entrywidth: 55 },
-    margin: { l: 46, r: 14, t: 24, b: 40 },
-  }), CONFIG);
+    margin: { l: 46, r: 14, t: BAR, b: 40 },
+  }), config());
   Plotly.react(loop, [
     { ...here, x: [period.other[frame]] },
     { ...force, x: period.other, y: period.forward, showlegend: false,
@@ -245,8 +254,8 @@ function drawForces(history, loop, period, mu, error, frame) {
   ], layout({
     xaxis: axis(period.map.labels[2], { range: [-1.06, 1.06], dtick: 0.5 }),
     yaxis: y,
-    margin: { l: 46, r: 14, t: 8, b: 40 },
-  }), CONFIG);
+    margin: { l: 46, r: 14, t: BAR, b: 40 },
+  }), config());
 }
 
 function markForces(history, loop, period, frame) {

@@ -81,9 +81,9 @@ function drawDisc(element, disc, frame) {
     yaxis: axis("forward position / <i>a</i>", { range: [-1.06, 1.06], dtick: 0.5, showgrid: false,
       scaleanchor: "x", constrain: "domain" }),
     legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom", font: { size: 10 } },
-    margin: { l: 46, r: 8, t: 40, b: 40 },
+    margin: { l: 46, r: 8, t: BAR + 22, b: 40 },
     dragmode: false,
-  }), CONFIG);
+  }), config());
 }
 
 // The same at another phase: three lines change, the rest stays.

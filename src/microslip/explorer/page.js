@@ -88,8 +88,9 @@ function tell() {
   const { map, row, column, period } = STATE;
   const at = (name) => map.points[name][row][column];
   paragraph("value", muText(map, row, column));
+  const others = map.other_poissons.map((ratio) => digits(ratio)).join(", ");
   const place = `velocity ${digits(map.velocity[column])}, amplitude ${digits(map.amplitude[row])}, ` +
-    `Poisson's ratio ${digits(map.poisson)}`;
+    `Poisson's ratio ${digits(map.poisson)}` + (others && ` (the dataset holds ${others} as well)`);
   paragraph("certificate", at("converged") ? `At ${place}; converged. Its error by source:`
     : `At ${place}; not converged: ${at("reason")}`, !at("converged"));
   table("sources", Object.entries(NUMBERS.errors).map(([name, source]) => [source, digits(at(name), 2)]));
@@ -232,4 +233,9 @@ tellWhatMade();
 connect();
 selectMap(NUMBERS.maps[0]);
 connectCharts();
+PHONE.addEventListener("change", () => {
+  const { row, column } = STATE;
+  drawMap(element("map"), STATE.map, row, column);
+  select(row, column);
+});
 document.body.dataset.ready = "yes";

@@ -45,7 +45,7 @@ LABELS = {
         "Oscillating bore",
         "forward velocity  <i>v</i><sub>0</sub>/(<i>Ω φ</i><sub>0</sub><i>a</i>)",
         "amplitude  <i>φ</i><sub>0</sub>/<i>φ</i><sub>lk</sub>(<i>a</i>/2)",
-        "torque / full-slip torque",
+        "torque  <i>M<sub>z</sub></i>/<i>M</i><sub><i>z</i>,0</sub>",
         "torque",
     ),
 }
@@ -88,6 +88,9 @@ def _map(name, dataset, records):
         "title": labels.title,
         "labels": [labels.velocity, labels.amplitude, labels.other],
         "poisson": poisson,
+        "other_poissons": [
+            float(ratio) for ratio in np.atleast_1d(dataset["poisson"]) if ratio != poisson
+        ],
         "velocity": plain(shown["velocity"].values),
         "amplitude": plain(shown["amplitude"].values),
         "points": {key: plain(shown[key].values) for key in POINTS},

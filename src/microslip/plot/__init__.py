@@ -36,8 +36,9 @@ FIGURES: dict[str, tuple[str, ...]] = {
     "fig5_transients": ("continuous_bore",),
     "fig6_bore_map": ("bore",),
     "poisson": ("transverse", "bore"),
+    "accuracy_profile": ("accuracy_cost",),
     "accuracy_vs_cost": ("accuracy_cost",),
-    "accuracy_vs_effort": ("accuracy_cost",),
+    "accuracy_vs_work": ("accuracy_cost",),
     "model_map": ("accuracy_cost",),
     "scaling": ("accuracy_cost",),
     "stability_atlas": ("stability",),
@@ -65,8 +66,9 @@ _MODULES = {
     "fig5_transients": "transients",
     "fig6_bore_map": "maps",
     "poisson": "poisson",
+    "accuracy_profile": "profile",
     "accuracy_vs_cost": "work_precision",
-    "accuracy_vs_effort": "work_precision",
+    "accuracy_vs_work": "work_precision",
     "model_map": "model_map",
     "scaling": "scaling",
     "stability_atlas": "atlas",
@@ -112,6 +114,8 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
         for _ in range(2):  # the layout settles, and is then fixed: every save gives the same
             figure.draw_without_rendering()
         figure.set_layout_engine("none")
+        for finish in getattr(figure, "finishing", ()):
+            finish()
     figure.made_from = made_from(datasets[key] for key in keys)
     return figure
 
@@ -137,7 +141,7 @@ def made_from(datasets: Iterable[xr.Dataset]) -> str:
 
 
 def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
-    """Write a figure as `.png` (200 dpi) or `.pdf`, whole or not at all, and return its path.
+    """Write a figure as `.png` (300 dpi) or `.pdf`, whole or not at all, and return its path.
 
     Its metadata say what made it, see `made_from`. The same figure gives the same bytes: no date is
     written. The folder is made if it is not there. Raises CacheError, one line that says what to

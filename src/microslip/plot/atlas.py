@@ -45,9 +45,8 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
             axes = page.axes(x, top, plan.column * len(block.labels), plan.row * len(names))
             _squares(axes, block.outcome[band.rows])
             _labels(axes, block, names, first=block is band.blocks[0])
-            page.text(x, start, block.title)
-            note = start + LINE * (block.title.count("\n") + 1)
-            page.text(x, note, block.note, color=look.GREY)
+            page.text(x, start, block.title, fontsize=look.HEADING)
+            page.text(x, start + block.title_height, block.note, color=look.GREY)
             x += block.width + GAP
         top += plan.row * len(names) + GAP
     corner = (x + GAP, start) if plan.beside else (MARGIN, top)

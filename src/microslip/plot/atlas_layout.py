@@ -12,10 +12,11 @@ MM = 1 / 25.4
 WIDTH, HEIGHT = 180.0, 248.0
 MARGIN, GAP = 2.0, 4.0
 SQUARE = (3.5, 5.5)  # narrowest and widest column
-ROW = (2.8, 4.2)  # lowest and highest row
+ROW = (2.65, 4.2)  # lowest and highest row
 MOST_BESIDE = 6
 SIZE = look.SMALLEST
 LINE = 1.25 * SIZE * 25.4 / 72  # from one line of text to the next
+HEAD = 1.25 * look.HEADING * 25.4 / 72  # ... in the heading of a block
 NARROWEST = 25.0  # width that a heading needs
 ROOM_FOR_LEGEND = 50.0
 SWATCH = 4.5
@@ -42,8 +43,12 @@ class Block:
 
     @property
     def heading_height(self) -> float:
-        lines = self.title.count("\n") + 1 + (self.note.count("\n") + 1 if self.note else 0)
-        return LINE * lines + self.label_height + 2.0
+        note = LINE * (self.note.count("\n") + 1) if self.note else 0.0
+        return self.title_height + note + self.label_height + 2.0
+
+    @property
+    def title_height(self) -> float:
+        return HEAD * (self.title.count("\n") + 1)
 
 
 @dataclass(frozen=True)
@@ -121,7 +126,7 @@ def layout(methods: list[str], blocks: list[Block], legend: list[str]) -> Layout
 def _filled(blocks: list[Block], left: float, column: float, texts: list[str]) -> Layout:
     """The layout for one width of the squares."""
     width = WIDTH - MARGIN - left
-    letters = (chr(ord("a") + index % 26) for index in range(len(blocks)))
+    letters = look.letters(len(blocks))
     pairs = zip(blocks, letters, strict=True)
     bands = _bands([_measured(block, column, letter) for block, letter in pairs], width)
     room = width - bands[-1].width - 2 * GAP
@@ -141,7 +146,7 @@ def _measured(block: Block, column: float, letter: str) -> Block:
     width = max(column * len(block.labels), NARROWEST)
     return replace(
         block,
-        title=look.wrapped(rf"$\bf{{{letter}}}$  {block.title}", width * MM, SIZE),
+        title=look.wrapped(look.heading(letter, block.title), width * MM, look.HEADING),
         note=look.wrapped(block.note, width * MM, SIZE),
         label_height=LINE if longest < column - 0.8 else longest + 0.8,
         width=width,

@@ -46,9 +46,9 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     for axes, which, (moment, note) in zip(panels, "abc", MOMENTS, strict=True):
         shade = _contact(axes, dataset.isel(patch_moment=moment))
         look.letter(axes, which, note)
-    panels[0].set_ylabel(r"forward position  $y/a$")
+    panels[0].set_ylabel(look.FORWARD)
     bar = figure.colorbar(shade, ax=panels, shrink=0.8, pad=0.015, aspect=24)
-    bar.set_label("traction over bound\nwhere it sticks")
+    bar.set_label("traction over bound  $|q|/(\\mu p)$\nwhere it sticks")
     _areas(figure.add_subplot(grid[1, :]), dataset)
     return figure
 
@@ -77,7 +77,7 @@ def _contact(axes: Axes, at: xr.Dataset) -> object:
     phase = float(at["patch_moment_phase"]) / np.pi
     text = rf"{look.number(phase)}\,\pi" if abs(phase) > 1e-9 else "0"
     axes.text(0.5, 0.04, rf"$\Omega t = {text}$", transform=axes.transAxes, ha="center")
-    axes.set(xlim=(-1.08, 1.08), ylim=(-1.32, 1.08), xlabel=r"lateral position  $x/a$")
+    axes.set(xlim=(-1.08, 1.08), ylim=(-1.32, 1.08), xlabel=look.LATERAL)
     axes.set(xticks=(-1, 0, 1), yticks=(-1, 0, 1))
     return shade
 
@@ -96,5 +96,5 @@ def _areas(axes: Axes, dataset: xr.Dataset) -> None:
     )
     look.legend_above(axes, "d", f"area that sticks, {place}", ncols=3)
     axes.set(xlim=(phase[0], phase[-1]), xlabel=r"phase  $\Omega t/\pi$")
-    axes.set(ylabel="share of the contact")
+    axes.set(ylabel="share of the contact  (dimensionless)")
     look.unit_range(axes)

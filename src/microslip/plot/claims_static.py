@@ -90,7 +90,7 @@ def _friction(axes: Axes, dataset: xr.Dataset, scene: str, _: str, label: str, c
         zorder=6,
         clip_on=False,
     )
-    axes.set(xlim=(0.0, amplitude[-1]), xlabel=label, ylabel=look.MU_MACRO)
+    axes.set(xlim=(0.0, amplitude[-1]), xlabel=label, ylabel=look.FRICTION)
     look.unit_range(axes)
 
 
@@ -108,5 +108,5 @@ def _shares(axes: Axes, dataset: xr.Dataset, scene: str) -> None:
         axes.plot(radius, left, color=color, linestyle=look.DASHED, gid="left")
     for linestyle, text in ((look.SOLID, "used"), (look.DASHED, "left, forward")):
         axes.plot([], [], color=look.BLACK, linestyle=linestyle, label=text)
-    axes.set(xlim=(0.0, 1.0), xlabel=r"radius  $r/a$", ylabel="share of the bound")
+    axes.set(xlim=(0.0, 1.0), xlabel=r"radius  $r/a$", ylabel="share of the bound  (dimensionless)")
     look.unit_range(axes)

@@ -26,14 +26,20 @@ def computed(
     errors = finite_or_nan(errors)
     if np.nanmax(errors, initial=0.0) >= VISIBLE_ERROR:
         band = {"color": PALE, "linewidth": 0, "zorder": 1, "gid": "error-band"}
-        axes.fill_between(x, values - errors, values + errors, label="error estimate", **band)
+        label_band = _once(axes, "error estimate")
+        axes.fill_between(x, values - errors, values + errors, label=label_band, **band)
     done = np.asarray(converged) != 0
     axes.plot(x[done], values[done], label=label, gid="computed", **look)
     if not done.all():
         axes.plot(
             x[~done],
             values[~done],
-            label="not converged",
+            label=_once(axes, "not converged"),
             gid="unconverged",
             **{**look, "markerfacecolor": "white"},
         )
+
+
+def _once(axes: Axes, label: str) -> str:
+    """A label that the legend has once, however often it is drawn."""
+    return "_" + label if label in axes.get_legend_handles_labels()[1] else label

@@ -48,6 +48,14 @@ def at_one_poisson(dataset: xr.Dataset) -> tuple[xr.Dataset, float]:
     return dataset, float(dataset["poisson"])
 
 
+def at_each_poisson(dataset: xr.Dataset) -> list[xr.Dataset]:
+    """The parts of a dataset at each of its Poisson's ratios, from the smallest on."""
+    if "poisson" not in dataset.dims:
+        return [dataset]
+    ordered = dataset.sortby("poisson")
+    return [ordered.isel(poisson=index) for index in range(ordered.sizes["poisson"])]
+
+
 def sweep(dataset: xr.Dataset, dims: tuple[str, ...]) -> tuple[xr.Dataset, float]:
     """A dataset whose `mu_macro` has exactly these dims, in rising order, and its Poisson ratio.
 

@@ -74,7 +74,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         label="instantaneous centre",
     )
     axes.set(xlim=(min(-1.1, centre - 0.15), 1.1), ylim=(-1.1, 1.1))
-    axes.set(xlabel=r"lateral position  $x/a$", ylabel=r"forward position  $y/a$")
+    axes.set(xlabel=look.LATERAL, ylabel=look.FORWARD)
     axes.set(xticks=_ticks(axes.get_xlim()), yticks=_ticks(axes.get_ylim()))
     velocity = look.number(float(dataset["field_velocity"]))
     axes.text(0.035, 0.97, rf"$\tilde{{v}} = {velocity}$", transform=axes.transAxes, va="top")

@@ -27,12 +27,12 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     forward, lateral = (dataset[f"history_force_{way}"].values for way in ("forward", "lateral"))
     velocity, amplitude = (float(dataset[f"history_{n}"]) for n in ("velocity", "amplitude"))
 
-    figure = look.new_figure(look.SINGLE, 2.9)
+    figure = look.new_figure(look.SINGLE, 3.2)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.7, 1.0))
     upper.plot(periods, forward, color=look.BLUE, gid="forward")
     last = periods >= periods[-1] - 1.0 - 1e-9
     mean = np.trapezoid(forward[last], periods[last]) / np.ptp(periods[last])
-    (level,) = upper.plot(
+    upper.plot(
         [periods[0], periods[-1]],
         [mean, mean],
         color=look.VERMILLION,
@@ -42,17 +42,24 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     )
     lower.plot(periods, lateral, color=look.GREY, linewidth=1.0, gid="lateral")
 
-    upper.set(ylabel=look.FORCE_FORWARD, ylim=(min(0.0, 1.05 * forward.min()), 1.05))
-    lower.set(ylabel=look.FORCE_LATERAL, ylim=(-1.1, 1.1), xlim=(periods[0], periods[-1]))
+    upper.set(
+        ylabel=f"forward force\n{look.FORCE_FORWARD}", ylim=(min(0.0, 1.05 * forward.min()), 1.05)
+    )
+    lower.set(
+        ylabel=f"lateral force\n{look.FORCE_LATERAL}",
+        ylim=(-1.1, 1.1),
+        xlim=(periods[0], periods[-1]),
+    )
+    upper.yaxis.set_major_locator(MultipleLocator(0.2))
     lower.set_xlabel(r"phase in periods  $\omega t/(2\pi)$")
     lower.xaxis.set_major_locator(MultipleLocator(max(1, round(np.ptp(periods) / 8))))
     for axes in (upper, lower):
         axes.grid(axis="x", color=look.PALE, linewidth=0.5)
         axes.set_axisbelow(True)
-    upper.legend(handles=[level], loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1)
     conditions = rf"$\tilde{{v}}_0 = {look.number(velocity)}$, "
     conditions += rf"$\tilde{{y}}_0 = {look.number(amplitude)}$"
-    upper.set_title(conditions, loc="left", pad=5)
+    look.legend_above(upper, "a", conditions)
+    look.letter(lower, "b")
     return figure
 
 

@@ -34,8 +34,11 @@ JOINING = 0.5
 WIDTH, HEIGHT = 5.2, 3.3
 
 
-def draw(name: str, datasets: Sequence[xr.Dataset]) -> Figure:
-    """Draw every dataset with a colour, a marker and a line style of its own."""
+def draw(name: str, datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
+    """Draw every dataset with a colour, a marker and a line style of its own.
+
+    titles: of the datasets, which may hold mathtext.
+    """
     if len(datasets) > len(LOOKS):
         raise ValueError(f"figure {name}: {len(datasets)} sweeps; allowed: up to {len(LOOKS)}")
     (dim,) = {_abscissa(dataset) for dataset in datasets} or {""}
@@ -52,14 +55,16 @@ def draw(name: str, datasets: Sequence[xr.Dataset]) -> Figure:
             velocities.update(np.atleast_1d(points["velocity"].values).tolist())
         low = min(low, float(dataset["mu_macro"].min()))
     look.unit_range(axes, low=np.floor(5 * low) / 5 if low < -0.01 else 0.0)
-    axes.set_ylabel(look.MU_MACRO)
+    axes.set_ylabel(look.FRICTION)
     axes.set_xlabel(_axis_label(dim, (d[dim].attrs.get("formula", "") for d in datasets)))
     if dim == "velocity":
         axes.set_xscale("log")
         axes.xaxis.set_major_locator(LogLocator(numticks=12))
     axes.margins(x=0.02)
-    titles = [look.wrapped(dataset.attrs.get("title", ""), 1.35, 8.0) for dataset in datasets]
-    figure.legend(handles, titles, loc="outside right upper", handlelength=3.0)
+    # A legend leaves out what begins with an underscore.
+    shown = [look.wrapped(title, 1.35, 8.0) for title in titles]
+    shown = [rf"$\_${text[1:]}" if text.startswith("_") else text for text in shown]
+    figure.legend(handles, shown, loc="outside right upper", handlelength=3.0)
     if dim == "amplitude" and velocities:
         at = [look.number(velocity) for velocity in sorted(velocities)]
         marks = rf"marks: velocity ${at[0]}$" + (rf" to ${at[-1]}$" if len(at) > 1 else "")

@@ -7,20 +7,27 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
-from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from microslip.plot import style as look
 from microslip.plot.cuts import computed
-from microslip.plot.data import curve, limit, require, sweep
+from microslip.plot.data import at_each_poisson, curve, limit, require, sweep
+from microslip.plot.map_panel import fill, unconverged
 
-FILL_LEVELS = np.linspace(0.0, 1.0, 21)
 #: A cut's panel ends where all of its curves have fallen below this.
 NOTHING = 0.02
-LINE_LEVELS = np.linspace(0.1, 0.9, 9)
+#: Colour and marker of the points at each of Poisson's ratios, from the first one on.
+POISSONS = (
+    (look.BLACK, "o"),
+    (look.PURPLE, "s"),
+    (look.GREY, "^"),
+    (look.SKY, "D"),
+    (look.VERMILLION, "v"),
+    (look.ORANGE, "P"),
+)
+#: Columns of maps, and height in inches of a row of them, where there are several.
+COLUMNS, ROW = 3, {2: 2.9, 3: 2.4}
 
 
 @dataclass(frozen=True)
@@ -84,125 +91,82 @@ MAPS = {
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw the map `name`: the map at the left, the static and the large-amplitude cut beside."""
+    """Draw the map `name` with the static and the large-amplitude cut.
+
+    At several of Poisson's ratios there is a map for each, and the cuts show all of them; of more
+    than `POISSONS` has looks for, so many from the smallest to the largest, which is said.
+    """
     plan = MAPS[name]
     overlays = [overlay.variable for overlay in (*plan.static, plan.large)]
     needed = ["amplitude", "velocity", "mu_macro", "mu_macro_error", "converged", *overlays]
     require(name, plan.key, dataset, needed)
-    dataset, poisson = sweep(dataset, ("amplitude", "velocity"))
-    if poisson > 0 and plan.key == "transverse":
+    every = at_each_poisson(dataset)
+    chosen = np.unique(np.linspace(0, len(every) - 1, len(POISSONS)).round().astype(int))
+    shown = [sweep(every[k], ("amplitude", "velocity")) for k in chosen]
+    if plan.key == "transverse" and any(poisson > 0 for _, poisson in shown):
         static = (EXACT_AT_0 if overlay is EXACT else overlay for overlay in plan.static)
         plan = replace(plan, static=tuple(static))
-
-    figure = look.new_figure(look.DOUBLE, 4.2)
-    left, right = figure.subfigures(1, 2, width_ratios=(1.3, 1.0))
-    upper, lower = right.subplots(2, 1)
-    note = "" if poisson == 0 else rf"$\nu = {look.number(poisson)}$"
-    _map(left.subplots(), dataset, plan, note)
-    _static_cut(upper, dataset, plan)
-    _large_cut(lower, dataset, plan)
+    figure, panels, cuts = _page(len(shown))
+    if len(shown) < len(every):
+        some = f"{len(shown)} of the {len(every)} of Poisson's ratios in the dataset"
+        figure.suptitle(some, x=0.01, ha="left", fontsize=look.HEADING)
+    letters = look.letters(len(shown) + 2)
+    for axes, letter, (part, poisson) in zip(panels, letters, shown, strict=False):
+        note = rf"$\nu = {look.number(poisson)}$" if len(every) > 1 or poisson else ""
+        _map(axes, part, plan, letter, note)
+    _static_cut(cuts[0], shown, plan, letters[-2])
+    _large_cut(cuts[1], shown, plan, letters[-1])
     return figure
 
 
-def _map(axes: Axes, dataset: xr.Dataset, plan: Map, note: str) -> None:
-    """The map with its colours, its letter, and its hatching explained under it."""
+def _page(count: int) -> tuple[Figure, list[Axes], list[Axes]]:
+    """A figure, panels for so many maps, and panels for the two cuts."""
+    if count == 1:
+        figure = look.new_figure(look.DOUBLE, 4.2)
+        left, right = figure.subfigures(1, 2, width_ratios=(1.3, 1.0))
+        return figure, [left.subplots()], list(right.subplots(2, 1))
+    columns = min(count, COLUMNS)
+    rows = -(-count // columns)
+    heights = rows * ROW[columns], 2.7
+    figure = look.new_figure(look.DOUBLE, sum(heights))
+    upper, lower = figure.subfigures(2, 1, height_ratios=heights)
+    panels = list(upper.subplots(rows, columns, squeeze=False).ravel())
+    for axes in panels[count:]:
+        axes.remove()
+    return figure, panels[:count], list(lower.subplots(1, 2))
+
+
+def _map(axes: Axes, dataset: xr.Dataset, plan: Map, letter: str, note: str) -> None:
+    """A map with its colours, its letter, and its hatching explained above it."""
     filled, hatched = fill(axes, dataset)
-    axes.set(xlabel=plan.velocity_label, ylabel=plan.amplitude_label)
+    grid = axes.get_subplotspec().get_gridspec()
+    alone = grid.ncols == 1
+    axes.set(xlabel=plan.velocity_label if alone else f"forward velocity  ${plan.velocity_symbol}$")
+    axes.set(ylabel=plan.amplitude_label if alone else f"amplitude  ${plan.amplitude_symbol}$")
+    last = axes.get_subplotspec().is_last_col()
     bar = axes.figure.colorbar(filled, ax=axes, pad=0.02, aspect=32, ticks=np.linspace(0, 1, 6))
-    bar.set_label(look.MU_MACRO)
+    bar.set_label(look.FRICTION if alone or last else "")
     bar.ax.tick_params(direction="out")
-    look.letter(axes, "a", note)
+    look.letter(axes, letter, note)
     if hatched:
+        text = f"not converged ({hatched} of {dataset['mu_macro'].size})"
         axes.legend(
-            handles=[unconverged(f"not converged ({hatched} of {dataset['mu_macro'].size})")],
+            handles=[unconverged(text)],
             loc="lower right",
             bbox_to_anchor=(1.0, 1.0),
             borderaxespad=0.2,
         )
 
 
-def fill(
-    axes: Axes,
-    dataset: xr.Dataset,
-    fills: np.ndarray = FILL_LEVELS,
-    lines: np.ndarray = LINE_LEVELS,
-    labelled: np.ndarray = LINE_LEVELS,
-    size: float = 7.5,
-) -> tuple[ContourSet, int]:
-    """Fill a panel with `mu_macro` over velocity and amplitude: bands, contours, and hatched cells
-    where a point is not converged.
-
-    fills, lines, labelled: levels of bands, of contours and of those that have a number, ascending;
-    size: of the numbers. Returns the bands, for a colour bar, and the number of hatched cells.
-    """
-    shown = dataset.isel(velocity=dataset["velocity"].values > 0)
-    if min(shown.sizes["amplitude"], shown.sizes["velocity"]) < 2:
-        raise ValueError("a map needs two amplitudes and two positive velocities at least")
-    shown = shown.transpose("amplitude", "velocity", ...)
-    velocity, amplitude = shown["velocity"].values, shown["amplitude"].values
-    values = np.ma.masked_invalid(shown["mu_macro"].values)
-
-    filled = axes.contourf(
-        velocity,
-        amplitude,
-        np.clip(values, fills[0], fills[-1]),  # rounding beyond the ends must leave no white holes
-        levels=fills,
-        cmap=look.COLOURMAP,
-    )
-    filled.set_edgecolor("face")  # no hairlines between the bands in a PDF
-    filled.set_linewidth(0.3)
-    dark = fills[0] + 0.55 * (fills[-1] - fills[0])
-    ink = ["white" if level < dark else "black" for level in lines]
-    contours = axes.contour(velocity, amplitude, values, levels=lines, colors=ink, linewidths=0.7)
-    axes.set_xscale("log")
-    axes.set(xlim=(velocity[0], velocity[-1]), ylim=(amplitude[0], amplitude[-1]))
-    axes.xaxis.set_major_locator(LogLocator(numticks=12))
-    axes.tick_params(which="both", direction="out", top=False, right=False)
-    axes.clabel(contours, labelled, fmt="%.1f", fontsize=size, inline_spacing=3)
-    return filled, _hatch(axes, velocity, amplitude, shown["converged"].values != 0)
-
-
-_HATCHED = {
-    "facecolor": (1.0, 1.0, 1.0, 0.45),
-    "edgecolor": look.BLACK,
-    "linewidth": 0.0,
-    "hatch": "//////",
-}
-
-
-def unconverged(label: str) -> Patch:
-    """What a legend shows for hatched cells."""
-    return Patch(label=label, **_HATCHED)
-
-
-def _hatch(axes: Axes, velocity: np.ndarray, amplitude: np.ndarray, done: np.ndarray) -> int:
-    """Hatch the cell around every point that is not converged, and count them."""
-    x = np.exp(_cell_edges(np.log(velocity)))
-    y = _cell_edges(amplitude)
-    cells = [
-        [(x[j], y[i]), (x[j + 1], y[i]), (x[j + 1], y[i + 1]), (x[j], y[i + 1])]
-        for i, j in np.argwhere(~done)
-    ]
-    if cells:
-        hatched = PolyCollection(cells, gid="unconverged", zorder=4, **_HATCHED)
-        axes.add_collection(hatched, autolim=False)
-    return len(cells)
-
-
-def _cell_edges(points: np.ndarray) -> np.ndarray:
-    """Edges half-way between the points; the outer ones at the outermost points."""
-    return np.concatenate(([points[0]], (points[1:] + points[:-1]) / 2, [points[-1]]))
-
-
-def _static_cut(axes: Axes, dataset: xr.Dataset, plan: Map) -> None:
+def _static_cut(axes: Axes, shown: list[tuple[xr.Dataset, float]], plan: Map, letter: str) -> None:
     """mu_macro against amplitude at the smallest velocity, with the static limits."""
-    velocity = float(dataset["velocity"][0])
+    velocity = float(shown[0][0]["velocity"][0])
     for overlay in plan.static:
-        _overlay(axes, dataset, overlay, velocity=velocity)
-    _points(axes, dataset.sel(velocity=velocity), "amplitude")
+        _overlay(axes, shown[0][0], overlay, velocity=velocity)
+    _points(axes, [(part.sel(velocity=velocity), nu) for part, nu in shown], "amplitude")
     symbol = plan.velocity_symbol
     where = "left edge" if velocity > 0 else "static limit"
-    look.legend_above(axes, "b", rf"{where}, ${symbol} = {look.number(velocity)}$")
+    look.legend_above(axes, letter, rf"{where}, ${symbol} = {look.number(velocity)}$")
     axes.set(xlabel=plan.amplitude_label, xlim=_where_not_zero(axes))
 
 
@@ -214,14 +178,14 @@ def _where_not_zero(axes: Axes) -> tuple[float, float]:
     return x.min(), min(max(1.5 * last, following), x.max())
 
 
-def _large_cut(axes: Axes, dataset: xr.Dataset, plan: Map) -> None:
+def _large_cut(axes: Axes, shown: list[tuple[xr.Dataset, float]], plan: Map, letter: str) -> None:
     """mu_macro against velocity at the largest amplitude, with the limit for large amplitudes."""
-    amplitude = float(dataset["amplitude"][-1])
-    _overlay(axes, dataset, plan.large, amplitude=amplitude)
-    _points(axes, dataset.sel(amplitude=amplitude), "velocity")
+    amplitude = float(shown[0][0]["amplitude"][-1])
+    _overlay(axes, shown[0][0], plan.large, amplitude=amplitude)
+    _points(axes, [(part.sel(amplitude=amplitude), nu) for part, nu in shown], "velocity")
     symbol = plan.amplitude_symbol
-    look.legend_above(axes, "c", rf"top edge, ${symbol} = {look.number(amplitude)}$")
-    velocity = dataset["velocity"].values
+    look.legend_above(axes, letter, rf"top edge, ${symbol} = {look.number(amplitude)}$")
+    velocity = shown[0][0]["velocity"].values
     axes.set_xscale("log")
     axes.set(xlabel=plan.velocity_label, xlim=(velocity[velocity > 0][0], velocity[-1]))
     axes.xaxis.set_major_locator(LogLocator(numticks=12))
@@ -242,9 +206,13 @@ def _overlay(axes: Axes, dataset: xr.Dataset, overlay: Overlay, **at: float) -> 
     )
 
 
-def _points(axes: Axes, line: xr.Dataset, dim: str) -> None:
+def _points(axes: Axes, lines: list[tuple[xr.Dataset, float]], dim: str) -> None:
     """Draw the computed points of a cut and give its panel the common vertical axis."""
     columns = ("mu_macro", "mu_macro_error", "converged")
-    computed(axes, line[dim].values, *(line[name].values for name in columns), "computed")
+    for (line, poisson), (color, marker) in zip(lines, POISSONS, strict=False):
+        ratio = rf", $\nu = {look.number(poisson)}$" if len(lines) > 1 else ""
+        values = (line[name].values for name in columns)
+        ink = {"color": color, "marker": marker}
+        computed(axes, line[dim].values, *values, f"computed{ratio}", **ink)
     look.unit_range(axes)
-    axes.set_ylabel(look.MU_MACRO)
+    axes.set_ylabel(look.FRICTION.replace("  (", "\n("))

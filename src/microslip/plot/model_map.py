@@ -32,7 +32,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
 
     figure = look.new_figure(look.DOUBLE, 5.9)
     grid = figure.subplots(len(SCENES), tolerances.size, squeeze=False, sharex="row", sharey="row")
-    letters = iter("abcdefghijklmnopqrstuvwxyz")
+    letters = iter(look.letters(grid.size))
     for row, (scene, plan) in zip(grid, SCENES.items(), strict=True):
         for index, (axes, tolerance) in enumerate(zip(row, tolerances, strict=True)):
             _panel(axes, dataset.isel(map_tolerance=index), scene, models)

@@ -15,8 +15,8 @@ from microslip.plot import style as look
 
 COLUMNS = 3
 # The page, in inches: a panel, what is left of, between, above (by line) and under the panels.
-PANEL, LEFT, BETWEEN, HEAD, FOOT = (2.04, 1.64), 0.63, 0.13, 0.135, 0.45
-TITLE = look.SMALLEST + 0.5
+PANEL, LEFT, BETWEEN, HEAD, FOOT = (2.0, 1.5), 0.76, 0.12, 0.145, 0.62
+TITLE = look.HEADING
 #: Width of a strip as a share of the decades on its axis.
 STRIP = 0.1
 #: Share of the axis between a zero and the next label.

@@ -13,7 +13,7 @@ from microslip.plot.data import require
 
 #: Each panel: the quantity in the names of the variables, and its label.
 PANELS = (
-    ("iterations", "iterations a step"),
+    ("iterations", "iterations a step  (dimensionless)"),
     ("seconds", "time a step (s)"),
     ("memory", "memory (bytes)"),
 )
@@ -34,7 +34,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     panels = figure.subplots(1, len(PANELS), sharex=True)
     for which, axes, (what, label) in zip("abc", panels, PANELS, strict=True):
         _panel(axes, dataset, what)
-        axes.set(xlabel="unknowns  $N$", ylabel=label)
+        axes.set(xlabel="unknowns  $N$  (dimensionless)", ylabel=label)
         look.legend_above(axes, which, "fitted growth", ncols=1)
     return figure
 

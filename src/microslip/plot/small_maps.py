@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from microslip.plot import style as look
 from microslip.plot.formulas import mathtext
-from microslip.plot.maps import fill, unconverged
+from microslip.plot.map_panel import fill, unconverged
 
 #: Columns of panels by their number; more than these have three.
 COLUMNS = {1: 1, 2: 2, 4: 2}
@@ -22,7 +22,8 @@ CONTOURS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 LABELLED = np.array([0.1, 0.5, 0.9])
 #: What lies this far outside of 0 to 1 is more than the errors of points.
 BEYOND = 0.01
-LETTERS = "abcdefghijkl"
+#: Maps that a figure has room for, as `extended.MOST_PANELS`.
+MOST = 12
 
 
 def spans_a_map(dataset: xr.Dataset) -> bool:
@@ -31,10 +32,10 @@ def spans_a_map(dataset: xr.Dataset) -> bool:
     return dataset.sizes.get("amplitude", 0) > 1 and positive > 1
 
 
-def draw(name: str, datasets: Sequence[xr.Dataset]) -> Figure:
-    """Draw a panel for each dataset, headed by its title."""
-    if len(datasets) > len(LETTERS):
-        raise ValueError(f"figure {name}: {len(datasets)} maps; allowed: up to {len(LETTERS)}")
+def draw(name: str, datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
+    """Draw a panel for each dataset, headed by its title, which may hold mathtext."""
+    if len(datasets) > MOST:
+        raise ValueError(f"figure {name}: {len(datasets)} maps; allowed: up to {MOST}")
     columns = COLUMNS.get(len(datasets), 3)
     rows = -(-len(datasets) // columns)
     width = look.DOUBLE if columns > 1 else 0.65 * look.DOUBLE
@@ -43,22 +44,23 @@ def draw(name: str, datasets: Sequence[xr.Dataset]) -> Figure:
     fills, contours, labelled = levels_of(datasets)
     panels = figure.subplots(rows, columns, squeeze=False).ravel()
     hatched = 0
-    for axes, letter, dataset in zip(panels, LETTERS, datasets, strict=False):
+    letters = look.letters(len(datasets))
+    for axes, letter, dataset, title in zip(panels, letters, datasets, titles, strict=False):
         # Where the contact drives itself, the contour of 0 is next to that of 0.1, and worth more.
         spare = 0.1 if float(dataset["mu_macro"].min()) < -BEYOND else None
         numbered = labelled[labelled != spare]
         filled, unsure = fill(axes, dataset, fills, contours, numbered, look.SMALLEST)
         hatched += unsure
         axes.set_gid("map")
-        title = look.wrapped(dataset.attrs.get("title", ""), 0.8 * width / columns - 0.4, 8.0)
-        axes.set_title(rf"$\bf{{{letter}}}$   {title}", loc="left", pad=4, fontsize=8.0)
+        room = 0.8 * width / columns - 0.1
+        look.letter(axes, letter, title, room)
     for axes in panels[len(datasets) :]:
         axes.remove()
     used = list(panels[: len(datasets)])
     _label(figure, used, datasets, columns, height / rows)
     ticks = fills[np.isclose(np.round(5 * fills), 5 * fills)]
     bar = figure.colorbar(filled, ax=used, pad=0.02, aspect=20 * rows, ticks=ticks)
-    bar.set_label(look.MU_MACRO)
+    bar.set_label(look.FRICTION if rows > 1 or columns < 3 else look.FRICTION.replace("  (", "\n("))
     bar.ax.tick_params(direction="out")
     if hatched:
         figure.legend(handles=[unconverged("not converged")], loc="outside lower right")

@@ -46,7 +46,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set_xlim(velocity[0], velocity[-1])
     axes.set_xlabel(r"forward velocity  $\tilde{v} = v_0/(\omega\,a)$")
-    axes.set_ylabel(r"$\tilde{\mu}_y$ (force),  $\tilde{\mu}_M$ (torque)")
+    axes.set_ylabel(f"force  {look.FORCE_FORWARD}\ntorque  {look.TORQUE}")
     look.unit_range(axes)
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, columnspacing=1.5)
     return figure

@@ -19,7 +19,8 @@ BLACK, BLUE, VERMILLION = "#000000", "#0072B2", "#D55E00"
 GREEN, ORANGE, PURPLE = "#009E73", "#E69F00", "#CC79A7"
 GREY, PALE, SKY = "#6E6E6E", "#D4D4D4", "#56B4E9"
 
-#: Perceptually even and readable in grey and by colour-blind readers.
+#: Perceptually even and readable in grey and by colour-blind readers. For shares from 0 to 1; where
+#: friction may be negative as well, `plot.signed` continues it below 0.
 COLOURMAP = "cividis"
 
 # Line styles, so that curves differ without colour as well.
@@ -51,16 +52,20 @@ MODELS = {
 
 #: Characters that are smaller than this in print are hard to read.
 SMALLEST = 7.0
+#: Letters of panels and what follows them, in every figure.
+HEADING = 8.0
+#: Characters of a text from outside that are drawn at most; the rest is an ellipsis.
+LONGEST = 100
 
 RC = {
-    "figure.dpi": 200,  # the layout is solved for the PNG that is written
-    "savefig.dpi": 200,
+    "figure.dpi": 300,  # the layout is solved for the PNG that is written
+    "savefig.dpi": 300,
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],  # ships with matplotlib: the same on every machine
     "mathtext.fontset": "dejavusans",
     "font.size": 8,
     "axes.labelsize": 8.5,
-    "axes.titlesize": 8.5,
+    "axes.titlesize": HEADING,
     "xtick.labelsize": 8,
     "ytick.labelsize": 8,
     "legend.fontsize": 8,
@@ -84,10 +89,15 @@ RC = {
     "figure.constrained_layout.w_pad": 0.05,
 }
 
-# Labels of quantities (mathtext).
+# Labels of quantities (mathtext). Every axis has words, then a symbol with its unit: a ratio shows
+# by itself that it has none, and of anything else it is said.
 MU_MACRO = r"$\tilde{\mu}_\mathrm{macro}$"
+FRICTION = rf"friction ratio  {MU_MACRO}  (dimensionless)"
 FORCE_FORWARD = r"$F_\mathrm{forward}/(\mu F_z)$"
 FORCE_LATERAL = r"$F_\mathrm{lateral}/(\mu F_z)$"
+TORQUE = r"$M_z/M_{z,0}$"
+LATERAL = r"lateral position  $r_\mathrm{lateral}/a$"
+FORWARD = r"forward position  $r_\mathrm{forward}/a$"
 
 
 def style() -> AbstractContextManager[None]:
@@ -120,19 +130,44 @@ def in_order(names: set[str]) -> list[str]:
     return [name for name in MODELS if name in names] + sorted(names - MODELS.keys())
 
 
-def wrapped(text: str, width: float, size: float, weight: str = "normal") -> str:
-    """The text with line breaks such that no line is wider than `width` inches, if words allow.
+def literal(text: str) -> str:
+    """A text from outside, such as a title of the configuration, that is drawn as it stands.
 
-    Breaks are made at spaces outside mathtext.
+    A dollar begins no formula, line breaks and the like are spaces, and a text of more than
+    `LONGEST` characters ends in an ellipsis. A sign that the font lacks is drawn as an empty box.
+    """
+    plain = "".join(sign if sign.isprintable() else " " for sign in str(text))
+    plain = " ".join(plain.split())
+    if len(plain) > LONGEST:
+        plain = plain[: LONGEST - 1] + "\N{HORIZONTAL ELLIPSIS}"
+    return plain.replace("$", r"\$")
+
+
+def wrapped(text: str, width: float, size: float, weight: str = "normal") -> str:
+    """The text with line breaks such that no line is wider than `width` inches.
+
+    Breaks are made at spaces outside mathtext, and within a word that is wider than a line.
     """
     measure = measurer(size, weight)
     lines: list[str] = []
-    for word in re.findall(r"(?:\$[^$]*\$|\S)+", text):
+    for word in re.findall(r"(?:\\\$|\$(?:\\\$|[^$])*\$|[^\s$])+|\$", text):
         if lines and measure(f"{lines[-1]} {word}") <= width:
             lines[-1] += f" {word}"
         else:
-            lines.append(word)
+            lines += _broken(word, width, measure)
     return "\n".join(lines)
+
+
+def _broken(word: str, width: float, measure: Callable[[str], float]) -> list[str]:
+    """A word, in pieces if it is wider than a line and no formula."""
+    if measure(word) <= width or re.search(r"(?<!\\)\$", word):
+        return [word]
+    pieces = [""]
+    for sign in re.findall(r"\\\$|.", word):
+        if pieces[-1] and measure(pieces[-1] + sign) > width:
+            pieces.append("")
+        pieces[-1] += sign
+    return pieces
 
 
 def measurer(size: float, weight: str = "normal") -> Callable[[str], float]:
@@ -154,29 +189,47 @@ def power_of_ten(value: float) -> str:
     return f"10^{{{power:.0f}}}" if np.isclose(power, np.round(power)) else number(value)
 
 
-def letter(axes: Axes, which: str, note: str = "") -> None:
-    """Head a panel with its letter and an optional note, above its left corner."""
-    axes.set_title(_heading(which, note), loc="left", pad=5)
+def letters(count: int) -> list[str]:
+    """Letters of so many panels: a, b, ..., z, aa, ab, ..."""
+    alphabet = "abcdefghijklmnopqrstuvwxyz"
+    return [(alphabet[i // 26 - 1] if i >= 26 else "") + alphabet[i % 26] for i in range(count)]
+
+
+def heading(which: str, note: str = "") -> str:
+    """The letter of a panel, bold and in brackets, and an optional note."""
+    return rf"$\bf{{({which})}}$" + (rf"$\;$ {note}" if note else "")
+
+
+def letter(axes: Axes, which: str, note: str = "", width: float = np.inf) -> None:
+    """Head a panel with its letter and an optional note, above its left corner.
+
+    width: in inches, beyond which the note goes on in another line.
+    """
+    text = wrapped(heading(which, note), width, HEADING) if note else heading(which)
+    axes.set_title(text, loc="left", pad=5, fontsize=HEADING)
 
 
 def legend_above(axes: Axes, which: str, note: str, ncols: int = 2) -> None:
     """Head a panel with its letter, a note and its legend, where it can hide nothing."""
     legend = axes.legend(
-        title=_heading(which, note),
+        title=heading(which, note),
         alignment="left",
         loc="lower left",
         bbox_to_anchor=(0.0, 1.0),
         ncols=ncols,
-        handlelength=2.3,
-        columnspacing=1.0,
+        handlelength=2.2,
+        handletextpad=0.6,
+        columnspacing=0.8,
         borderaxespad=0.0,
-        borderpad=0.2,
+        borderpad=0.0,
     )
-    legend.get_title().set_fontsize(RC["axes.titlesize"])
+    legend.get_title().set_fontsize(HEADING)
 
 
-def _heading(which: str, note: str) -> str:
-    return rf"$\bf{{{which}}}$" + (f"   {note}" if note else "")
+def after_layout(figure: Figure, finish: Callable[[], None]) -> None:
+    """Ask for something that needs the panels where they stay; it must not move them."""
+    figure = figure.figure or figure  # of a subfigure, the one that it is in
+    figure.finishing = [*getattr(figure, "finishing", ()), finish]
 
 
 def unit_range(axes: Axes, low: float = 0.0, high: float = 1.0, margin: float = 0.04) -> None:

@@ -24,7 +24,7 @@ VARIABLES = (
 STARTS = {
     "stress-free": "full stick, no stress",
     "full-rotation": "full rotational slip",
-    "full-slip": "full lateral slip",
+    "full-slip": "full forward slip",
 }
 
 
@@ -35,10 +35,11 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     starts = [str(label) for label in dataset["start"].values]
     figure = look.new_figure(look.DOUBLE, 2.45)
     panels = figure.subplots(1, len(starts), sharex=True, sharey=True, squeeze=False)[0]
-    for index, (axes, start) in enumerate(zip(panels, starts, strict=True)):
+    letters = look.letters(len(starts))
+    for index, (axes, letter, start) in enumerate(zip(panels, letters, starts, strict=True)):
         _panel(axes, dataset, index)
-        look.letter(axes, chr(ord("A") + index), STARTS.get(start, start))
-    panels[0].set_ylabel("force $F_y/(\\mu F_z)$\ntorque $M_z/M_{z,0}$")
+        look.letter(axes, letter, STARTS.get(start, look.literal(start)))
+    panels[0].set_ylabel(f"force  {look.FORCE_FORWARD}\ntorque  {look.TORQUE}")
     panels[len(starts) // 2].set_xlabel(r"forward travel  $v_0 t/u_\mathrm{lim}$")
     look.unit_range(panels[0])
     handles, labels = panels[0].get_legend_handles_labels()

@@ -1,8 +1,10 @@
 """Accuracy against cost: the error of every trial over its time, or over its effort.
 
 One panel a point. All panels share their axes, so further down and to the left is better in every
-one. What has no place on the axes is drawn in strips along them, never left out: errors too small
-to judge at the bottom, trials without a result at the top, costs of zero at the left.
+one. Models with the method that ships have a look each; runs by other methods are small grey marks
+of one kind, which `profile` tells apart. What has no place on the axes is drawn in strips along
+them, never left out: errors too small to judge at the bottom, trials without a result at the top,
+costs of zero at the left.
 """
 
 from __future__ import annotations
@@ -22,10 +24,11 @@ from microslip.plot.data import require
 from microslip.plot.maps import MAPS
 from microslip.plot.panels import COLUMNS, PANEL, TITLE, Scale, grid, label_beside, share_axes
 
-#: What each figure has along x: the variable, the front in it, the label.
+#: What each figure has along x: the variable, the front in it, the label; an empty one is what the
+#: dataset calls the variable.
 COSTS = {
-    "accuracy_vs_cost": ("seconds", "front_seconds", "CPU time of a run (s)"),
-    "accuracy_vs_effort": ("effort", "front_effort", r"effort: iterations $\times$ unknowns"),
+    "accuracy_vs_cost": ("seconds", "front_seconds", "CPU time of a run  $t$ (s)"),
+    "accuracy_vs_work": ("effort", "front_effort", ""),
 }
 POINT = ("point", "point_title", "point_scene", "point_velocity", "point_amplitude")
 POINT += ("point_poisson", "reference_error")
@@ -45,16 +48,14 @@ SYMBOLS = {
 FRONT = {"color": "#EBD9A0", "linewidth": 5.0, "solid_capstyle": "round", "zorder": 1}
 UNKNOWN = {"facecolor": "none", "edgecolor": "#A8A8A8", "linewidth": 0.0, "hatch": "/////"}
 SHIPPED = {"linewidth": 1.1, "markersize": 4.2, "markeredgewidth": 0.8, "zorder": 5}
-OTHER = {"color": "#9A9A9A", "linewidth": 0.5, "markersize": 3.0, "zorder": 3}
-OTHER |= {"markerfacecolor": "white", "markeredgewidth": 0.6}
+OTHER = {"color": "#8C8C8C", "marker": "o", "linestyle": "none", "markersize": 2.0, "zorder": 3}
+OTHER |= {"markeredgewidth": 0.0}
 AUTO = {"color": look.BLACK, "marker": "D", "linewidth": 0.8, "markersize": 4.2, "zorder": 7}
 PAPER = {"color": look.BLACK, "marker": "*", "linestyle": "none", "markersize": 9.0, "zorder": 8}
 CROSS = {"color": look.BLACK, "marker": "x", "linestyle": "none", "markersize": 5.0}
 CROSS |= {"markeredgewidth": 0.7, "zorder": 9}
 ARROW = {"color": look.BLACK, "linestyle": "none", "markersize": 3.6, "zorder": 9}
-MARKS = 6  # lines in the legend of marks
-#: Open markers of the methods that do not ship, in the order in which the methods appear.
-MARKERS = ("o", "s", "^", "D", "v", "+", "<", "1", ">", "d", "|", "2")
+MARKS = 7  # lines in the legend of marks
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
@@ -66,26 +67,25 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         raise ValueError(f"figure {name}: the dataset holds no points or no trials")
     of_point = dataset["trial_point"].values.astype(str)
     scales = _scale_of_costs(dataset[cost].values), _scale_of_errors(dataset)
-    methods = _other_methods(dataset)
-
-    letters = [chr(ord("a") + index % 26) for index in range(len(points))]
+    label = label or _label_of(dataset[cost])
+    letters = look.letters(len(points))
     titles = [_title(which, point) for which, point in zip(letters, points, strict=True)]
     models = set(dataset["trial_model"].values.astype(str)) - {"auto"}
-    breaks = sum(_broken(method).count("\n") for method in methods)
-    lines = [-(-len(methods) // columns) + breaks for columns in (1, _columns(models, methods))]
-    figure, panels, below = grid(titles, *(max(len(models), n, MARKS) for n in lines))
+    others = bool(set(dataset["trial_method"].values.astype(str)) - {"shipped", "paper"})
+    # Beside a panel the lists stand one above the other.
+    figure, panels, below = grid(titles, len(models) + MARKS + 2, max(len(models), MARKS))
     for index, (axes, point) in enumerate(zip(panels, points, strict=True)):
         rows = dataset.isel(trial=of_point == str(point["point"].item()))
         table = Table(rows, cost, *scales)
         share_axes(axes, *scales)
         _behind(axes, float(point["reference_error"]), table, rows[front].values != 0)
-        _trials(axes, table, methods)
+        _trials(axes, table)
         _labels(axes, table)
         lowest = index + COLUMNS >= len(points)
         axes.tick_params(labelleft=index % COLUMNS == 0, labelbottom=lowest)
         axes.set_xlabel(label if lowest else "")
-        axes.set_ylabel("" if index % COLUMNS else f"error of {look.MU_MACRO}")
-    _legends(below, models, methods)
+        axes.set_ylabel("" if index % COLUMNS else f"error of {look.MU_MACRO}\n(dimensionless)")
+    _legends(below, models, others)
     return figure
 
 
@@ -107,14 +107,11 @@ class Table:
         self.auto, self.paper = self.model == "auto", self.method == "paper"
 
 
-def _other_methods(dataset: xr.Dataset) -> dict[str, tuple[str, object]]:
-    """The methods that do not ship, each with its marker and line style."""
-    names = dict.fromkeys(dataset["trial_method"].values.astype(str))
-    styles = (look.SOLID, look.DASHED, look.DOTTED)
-    return {
-        name: (MARKERS[index % len(MARKERS)], styles[index // len(MARKERS) % len(styles)])
-        for index, name in enumerate(n for n in names if n not in ("shipped", "paper"))
-    }
+def _label_of(work: xr.DataArray) -> str:
+    """What work is, in the words of the dataset."""
+    what = work.attrs.get("long_name", "").replace(" times ", r" $\times$ ")
+    label = f"work: {what} (dimensionless)" if what else "work (dimensionless)"
+    return look.wrapped(label, PANEL[0], look.RC["axes.labelsize"])
 
 
 def _scale_of_costs(costs: np.ndarray) -> Scale:
@@ -152,7 +149,7 @@ def _title(which: str, point: xr.Dataset) -> str:
         for symbol, value in zip(symbols, values, strict=True)
         if symbol and np.isfinite(value)
     ]
-    title = rf"$\bf{{{which}}}$  {point['point_title'].item()}"
+    title = look.heading(which, look.literal(point["point_title"].item()))
     return look.wrapped(title, PANEL[0], TITLE) + "\n" + ",  ".join(numbers)
 
 
@@ -167,8 +164,8 @@ def _behind(axes: Axes, known: float, table: Table, front: np.ndarray) -> None:
     axes.plot(x[along], y[along], drawstyle="steps-post", gid="front", **FRONT)
 
 
-def _trials(axes: Axes, table: Table, methods: dict[str, tuple[str, object]]) -> None:
-    """Draw every trial of a point: curves over the levels, one a model and method."""
+def _trials(axes: Axes, table: Table) -> None:
+    """Draw every trial of a point: curves over the levels, one a model, and marks of others."""
     for model, method in dict.fromkeys(zip(table.model, table.method, strict=True)):
         mine = (table.model == model) & (table.method == method)
         color, marker, _ = look.model(model)
@@ -179,10 +176,11 @@ def _trials(axes: Axes, table: Table, methods: dict[str, tuple[str, object]]) ->
         elif method == "shipped":
             ink = SHIPPED | {"color": color, "marker": marker}
         else:
-            marker, line = methods[method]
-            ink = OTHER | {"marker": marker, "linestyle": line, "markeredgecolor": color}
+            ink = OTHER
         joined, failed = mine & table.finite, mine & ~(table.finite & table.converged)
         axes.plot(table.x[joined], table.y[joined], gid=f"{model} {method}", **ink)
+        if ink is OTHER:
+            failed = failed & False  # the cross tells enough
         ink = ink | {"linestyle": "none", "markerfacecolor": "white"}
         axes.plot(table.x[failed], table.y[failed], gid="hollow", **ink)
     failed = ~(table.finite & table.converged)
@@ -206,71 +204,39 @@ def _labels(axes: Axes, table: Table) -> None:
         label_beside(axes, text, points, index, taken)
 
 
-def _broken(name: str) -> str:
-    """The name of a method, on lines of their own the numbers that it holds, if it is long."""
-    return name.replace(":", ":\n  ").replace(",", ",\n  ") if len(name) > 20 else name
-
-
-def _columns(models: set[str], methods: dict[str, tuple[str, object]]) -> int:
-    """So many columns of methods, on the full width, as make them no longer than the rest."""
-    return max(1, -(-len(methods) // max(len(models), MARKS)))
-
-
-def _legends(below: Axes, models: set[str], methods: dict[str, tuple[str, object]]) -> None:
-    """Three lists: the models, the other methods, and the marks."""
+def _legends(below: Axes, models: set[str], others: bool) -> None:
+    """Two lists: the models, and the marks; side by side where there is room."""
     shipped = [
         Line2D([], [], label=name, color=look.model(name)[0], marker=look.model(name)[1], **SHIPPED)
         for name in look.in_order(models)
-    ]
-    others = [
-        Line2D(
-            [],
-            [],
-            label=_broken(name),
-            marker=marker,
-            linestyle=line,
-            markeredgecolor=look.GREY,
-            **OTHER,
-        )
-        for name, (marker, line) in methods.items()
     ]
     marks = [
         Line2D([], [], label="Pareto front", **FRONT),
         Line2D([], [], label="chosen by tolerance", **AUTO),
         Line2D([], [], label="paper's run", **PAPER),
+        *([Line2D([], [], label="any other method", **OTHER)] if others else []),
         Line2D([], [], label="not converged, or none", **CROSS),
         Line2D([], [], label="too small for the axis", marker=CARETDOWN, **ARROW),
         Patch(label="within the reference's error", **UNKNOWN),
     ]
-    lists = (
-        ("shipped method", shipped),
-        ("methods (outline: model)", others),
-        ("marks", marks),
-    )
     wide = below.get_position().width > 0.8
-    columns = _columns(models, methods) if wide else 1
-    legends = [
-        Legend(
+    top = 1.0
+    for index, (title, handles) in enumerate((("shipped method", shipped), ("marks", marks))):
+        if not handles:
+            continue
+        legend = Legend(
             below,
             handles,
             [handle.get_label() for handle in handles],
             title=title,
             loc="upper left",
+            bbox_to_anchor=(0.4 * index, 1.0) if wide else (0.0, top),
             fontsize=look.SMALLEST,
             title_fontsize=TITLE,
             alignment="left",
             borderaxespad=0.0,
             borderpad=0.0,
             handlelength=2.2,
-            columnspacing=1.2,
-            ncols=columns if handles is others else 1,
         )
-        for title, handles in lists
-        if handles
-    ]
-    for legend in legends:
         below.add_artist(legend)
-    widths = [legend.get_window_extent().width / below.bbox.width for legend in legends]
-    gap = min((1.0 - sum(widths)) / max(len(widths) - 1, 1), 0.1)
-    for index, legend in enumerate(legends):
-        legend.set_bbox_to_anchor((sum(widths[:index]) + gap * index, 1.0), below.transAxes)
+        top -= legend.get_window_extent().height / below.bbox.height + 0.05

@@ -93,8 +93,8 @@ def _explain(error):
         path = _dotted((*error.absolute_path, missing))
         return f"{path}: missing; required: {', '.join(error.validator_value)}"
     where = _key(error)
-    wants_number = {"number", "integer"} & set(_types(rule))
-    if isinstance(value, str) and wants_number:
+    kinds = set(_types(rule))
+    if isinstance(value, str) and {"number", "integer"} & kinds and "string" not in kinds:
         return f"{where}: {shown(value)} is text; {_as_number(value)}"
     hint = near_miss(value, rule.get("enum", ()))
     return f"{where}: {shown(value)} is not allowed; {hint}allowed: {_allowed(rule)}"

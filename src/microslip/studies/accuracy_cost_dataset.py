@@ -6,6 +6,7 @@ import numpy as np
 
 from .. import theory
 from . import accuracy_cost as study
+from . import profiles
 from .fronts import cheapest, confirmed, exponent, on_front
 from .ladders import exact_model
 from .tables import Answers, finished, value_of, variable
@@ -64,6 +65,8 @@ def build(settings, answer):
         name: variable("trial", columns[name], long_name, kind, units)
         for name, (kind, units, long_name) in TRIAL_VARIABLES.items()
     }
+    names = [point.name for point in points]
+    variables |= profiles.variables(columns, names, settings.map_tolerance)
     variables |= _scaling(settings, answers)
     for scene in study.MAP_SCENES:
         variables |= _map(settings, scene, answers)

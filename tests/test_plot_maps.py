@@ -1,0 +1,250 @@
+"""Maps: their colours, the surface between the points, the numbers on contours, and letters and
+labels that are alike in every figure."""
+
+from __future__ import annotations
+
+import re
+
+import matplotlib
+import numpy as np
+import pytest
+import test_plot
+import test_plot_groups as groups
+import test_plot_studies as of_studies
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
+from matplotlib.text import Text
+
+from microslip import plot, query, theory
+from microslip.plot import map_panel, signed, small_maps
+from microslip.plot import style as look
+from microslip.plot.surface import refined
+
+# Colours
+
+# Machado, Oliveira, Fernandes, IEEE TVCG 15 (2009) 1291, severity 1: linear RGB as it is seen.
+SEEN = {
+    "protan": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216]]
+    + [[-0.003882, -0.048116, 1.051998]],
+    "deutan": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413]]
+    + [[-0.011820, 0.042940, 0.968881]],
+    "tritan": [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602]]
+    + [[0.004733, 0.691367, 0.303900]],
+    "normal": np.eye(3),
+}
+XYZ = np.array([[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750]])
+XYZ = np.vstack([XYZ, [0.0193339, 0.1191920, 0.9503041]])
+
+
+def lab(colours, seen="normal"):
+    """CIELAB of sRGB colours, shape (n, 3), as someone sees them; D65."""
+    c = np.asarray(colours, float)
+    linear = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
+    linear = np.clip(linear @ np.transpose(SEEN[seen]), 0, 1)
+    x = linear @ XYZ.T / XYZ.sum(axis=1)
+    f = np.where(x > (6 / 29) ** 3, np.cbrt(x), x / (3 * (6 / 29) ** 2) + 4 / 29)
+    return np.stack([116 * f[:, 1] - 16, 500 * (f[:, 0] - f[:, 1]), 200 * (f[:, 1] - f[:, 2])], -1)
+
+
+def shown(values, levels=(-1.0, 1.0)):
+    """The colours of values in a figure with these levels."""
+    colours, norm = signed.scale(levels)
+    return colours(norm(np.asarray(values, float)))[:, :3]
+
+
+def test_friction_has_the_colours_of_figure_2_wherever_it_may_be_negative():
+    values = np.linspace(0, 1, 21)
+    ours = matplotlib.colormaps[look.COLOURMAP](values)[:, :3]
+    for lowest in (0.0, -0.3, -1.0):
+        np.testing.assert_allclose(shown(values, (lowest, 1.0)), ours, atol=0.02)
+
+
+def test_negative_friction_is_even_and_another_hue_for_all_kinds_of_colour_vision():
+    below = shown(-np.linspace(0, 1, 21))
+    steps = np.linalg.norm(np.diff(lab(below), axis=0), axis=1)
+    assert steps.max() < 1.3 * steps.min()
+    assert np.all(np.diff(lab(below)[:, 0]) > 0)  # away from 0 it gets lighter, as above 0
+    above = shown(np.linspace(0.1, 1, 91))
+    for seen in SEEN:
+        clear = lab(shown([-0.1, -0.2, -0.3, -0.4, -0.5]), seen)
+        away = np.linalg.norm(clear[:, None] - lab(above, seen), axis=-1)
+        assert away.min() > 10, seen  # 2 or 3 can just be told apart
+
+
+def test_a_map_with_negative_friction_is_drawn_in_these_colours():
+    given = {"a": groups.spanning("a", shift=-0.234), "b": groups.spanning("b")}
+    figure = plot.draw("extended_motions", given)
+    (bands,) = [c for c in figure.axes[0].collections if len(getattr(c, "levels", ())) > 20]
+    middles = (bands.levels[1:] + bands.levels[:-1]) / 2
+    drawn = bands.get_facecolor()[:, :3]
+    np.testing.assert_allclose(drawn, shown(middles), atol=0.03)
+    (lines,) = test_plot.artists(figure.axes[0], "contours")
+    assert lines.get_linestyle()[0][1] is not None  # dashed below 0 ...
+    assert lines.get_linestyle()[-1][1] is None  # ... and not above
+
+
+# The surface between the points
+
+
+def mapped(velocities=9, amplitudes=7):
+    """A map that query can be asked about, far from any limit on its values."""
+    velocity, amplitude = np.geomspace(1e-2, 10, velocities), np.linspace(0.2, 3, amplitudes)
+    mu = theory.large_amplitude_transverse(velocity, amplitude[:, None])
+    return xr.Dataset(
+        test_plot.fake_map(mu),
+        coords={"amplitude": amplitude, "velocity": velocity, "poisson": 0.0},
+        attrs={"scene": "longitudinal"},
+    )
+
+
+def test_the_surface_is_that_of_friction_at():
+    dataset = mapped()
+    x, y, fine = refined(*(dataset[n].values for n in ("velocity", "amplitude", "mu_macro")))
+    assert min(fine.shape) > 150
+    said = query.Friction(dataset).at(x, np.clip(y, 0.2, 3))
+    away = np.abs(fine.filled(np.inf) - said["mu_macro"].values)
+    assert np.all(away <= said["mu_macro_error"].values)
+    assert np.median(away) < 1e-12  # it differs where a cubic would leave the points' values alone
+    nodes = np.searchsorted(y, dataset.amplitude.values), np.searchsorted(x, dataset.velocity)
+    np.testing.assert_allclose(fine[np.ix_(*nodes)], dataset.mu_macro, atol=1e-12)
+
+
+def test_no_island_is_drawn_that_nobody_computed():
+    steep = np.array([[1.0, 1, 1, 1], [0.9, 1, 1, 1], [0, 0, 1, 1], [0, 0, 0, 1]])
+    x, y = np.geomspace(0.01, 10, 4), np.arange(4.0)
+    _, _, fine = refined(x, y, steep)
+    assert fine.min() >= 0 and fine.max() <= 1
+    rising = np.diff(fine, axis=1)
+    assert rising.min() >= -1e-12  # as the points do
+
+
+def test_what_is_not_known_stays_open_and_its_neighbours_do_not():
+    values = np.add.outer(np.arange(6.0), np.arange(7.0))
+    values[2, 3] = np.nan
+    x, y = np.geomspace(1, 64, 7), np.arange(6.0)
+    fine_x, fine_y, fine = refined(x, y, values)
+    hole = np.ma.getmaskarray(fine)
+    inside = (fine_y > 1)[:, None] & (fine_y < 3)[:, None]
+    inside = inside & (fine_x > x[2]) & (fine_x < x[4])
+    assert np.array_equal(hole, inside)
+    plane = np.add.outer(fine_y, np.log2(fine_x))
+    np.testing.assert_allclose(fine[~hole], plane[~hole], atol=1e-9)
+
+
+# Numbers on contours
+
+
+@pytest.mark.parametrize(("velocities", "amplitudes"), [(3, 3), (4, 4), (13, 9)])
+def test_numbers_are_inside_the_frame_and_off_other_lines(velocities, amplitudes):
+    given = {f"m{k}": mapped(velocities, amplitudes) for k in range(6)}
+    for key, dataset in given.items():
+        dataset.attrs = {"title": key, "group": "motions"}
+    figure = plot.draw("extended_motions", given)
+    figure.draw_without_rendering()
+    found = 0
+    for axes in test_plot.artists(figure, "map"):
+        (lines,) = test_plot.artists(axes, "contours")
+        frame = axes.get_window_extent()
+        numbers = [text for text in axes.texts if re.fullmatch(r"-?\d\.\d", text.get_text())]
+        found += len(numbers)
+        for text in numbers:
+            box = text.get_window_extent()
+            assert frame.x0 <= box.x0 and box.x1 <= frame.x1
+            assert frame.y0 <= box.y0 and box.y1 <= frame.y1
+            for level, path in zip(lines.levels, lines.get_paths(), strict=True):
+                if f"{level:.1f}" == text.get_text():
+                    continue
+                pixels = axes.transData.transform(path.vertices)
+                turn = np.radians(text.get_rotation())
+                c, s = np.cos(turn), np.sin(turn)
+                middle = axes.transData.transform(text.get_position())
+                beside = (pixels - middle) @ np.array([[c, -s], [s, c]])
+                width = look.measurer(text.get_fontsize())(text.get_text()) * figure.dpi
+                height = text.get_fontsize() * figure.dpi / 72
+                over = (np.abs(beside) < [0.5 * width, 0.4 * height]).all(axis=1)
+                assert not over.any(), (level, text.get_text())
+    assert found >= 6  # one on each map at least
+
+
+# Letters and labels
+
+
+@pytest.fixture(scope="module")
+def figures():
+    """Every figure there is, small."""
+    scenes = {"transverse": test_plot.fake_transverse(5), "bore": test_plot.fake_bore(5)}
+    given = scenes | {"continuous_bore": test_plot.fake_continuous_bore()}
+    given |= {"accuracy_cost": of_studies.fake_accuracy(3), "claims": of_studies.claims()}
+    given["stability"] = of_studies.fake_stability(axes=3, cases=3)
+    drawn = {name: plot.draw(name, given) for name in plot.FIGURES if name != "poisson"}
+    two = {name: test_plot.at_ratios(dataset, 0.0, 0.5) for name, dataset in scenes.items()}
+    for dataset in two.values():
+        dataset["velocity"].attrs["formula"] = "v0 / (omega u_lim)"
+        dataset["amplitude"].attrs["formula"] = "y0 / u_lim"
+    drawn["poisson"] = plot.draw("poisson", two)
+    drawn |= {
+        f"two {name}": plot.draw(name, two) for name in ("fig2_transverse_map", "fig6_bore_map")
+    }
+    drawn["maps"] = plot.draw("extended_motions", groups.motions(3))
+    drawn["lines"] = plot.draw("extended_static", {"a": groups.static("a")})
+    return drawn
+
+
+LETTER = re.compile(r"^\$\\bf\{\((\w+)\)\}\$")
+
+
+def test_letters_of_panels_are_alike_in_every_figure(figures):
+    for name, figure in figures.items():
+        texts = [text for text in figure.findobj(Text) if text.get_visible()]
+        heads = [text for text in texts if r"\bf{(" in text.get_text()]
+        letters = [LETTER.match(text.get_text())[1] for text in heads]
+        assert sorted(letters) == look.letters(len(letters)), name
+        assert {text.get_fontsize() for text in heads} <= {look.HEADING}, name
+        panels = [a for a in figure.findobj(Axes) if a.axison and "<" not in str(a.get_label())]
+        assert len(letters) in (0, len(panels)), name
+        assert len(panels) == 1 or letters, name
+        for text in heads:  # its left edge is that of a panel
+            left = text.get_window_extent().x0
+            edges = [axes.get_window_extent().x0 for axes in panels]
+            assert min(abs(left - edge) for edge in edges) < 0.04 * figure.dpi, name
+
+
+def test_every_axis_has_a_quantity_and_its_unit(figures):
+    for name, figure in figures.items():
+        for axes in figure.findobj(Axes):
+            texts = [axes.get_xlabel(), axes.get_ylabel()]
+            for text in filter(None, texts):
+                words = re.sub(r"\$[^$]*\$", "", text)
+                assert re.search("[a-z]{3}", words) or name == "maps", (name, text)
+                has_unit = re.search(r"\((s|bytes|dimensionless|degrees)\)", text)
+                ratio = re.search(r"\$[^$]*/[^$]*\$", text) or "$t/t" in text
+                symbol = "two" in name and text.startswith(("forward velocity", "amplitude"))
+                less = "less that at" in text  # a difference of ratios
+                assert has_unit or ratio or symbol or less, (name, text)
+
+
+def test_figures_3_to_5_speak_of_forward_and_lateral(figures):
+    for name in ("fig3_traction_field", "fig4_continuous_bore", "fig5_transients"):
+        said = " ".join(text.get_text() for text in figures[name].findobj(Text))
+        assert "lateral slip" not in said
+        assert not re.search(r"\$x/a|\$y/a|F_y|\\mu\}_y", said), name
+        assert "forward" in said
+    starts = [axes.get_title(loc="left") for axes in figures["fig5_transients"].axes]
+    assert starts[2].endswith("full forward slip")
+
+
+def test_pictures_have_300_dots_an_inch(tmp_path, figures):
+    from PIL import Image
+
+    figure = figures["fig4_continuous_bore"]
+    with Image.open(plot.save(figure, tmp_path / "figure.png")) as image:
+        assert image.size[0] == pytest.approx(300 * figure.get_size_inches()[0], abs=1)
+
+
+def test_lines_stand_out_from_their_bands():
+    for levels in (map_panel.FILL_LEVELS, small_maps.levels_of([groups.spanning(shift=-0.9)])[0]):
+        lines = np.arange(levels[0] + 0.1, 0.95, 0.1)
+        for level, ink in zip(lines, signed.inks(lines, levels), strict=True):
+            behind, line = (lab([c])[0, 0] for c in (shown([level], levels)[0], to_rgb(ink)))
+            assert abs(behind - line) > 25, level

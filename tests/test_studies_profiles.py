@@ -1,0 +1,87 @@
+"""Performance profiles: who competes with whom, and what a ratio is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from microslip import methods
+from microslip.studies import profiles
+
+
+def test_every_method_has_a_contest_by_the_part_that_it_exchanges():
+    found = {
+        name: profiles.contest_of(name) for name in methods.names() if not methods.missing(name)
+    }
+    assert found["shipped"] == found["paper"] == "models"
+    assert found["euler"] == found["extrapolated"] == found["theta"] == "integrators"
+    assert found["admm"] == found["jacobi"] == "solvers of a step"
+    assert found["march"] == found["equal-means"] == "searches"
+
+
+def table(*rows):
+    """Columns of the table of trials, from (point, model, method, level, error, seconds)."""
+    names = ("trial_point", "trial_model", "trial_method", "trial_level", "error", "seconds")
+    columns = dict(zip(names, map(list, zip(*rows, strict=True)), strict=True))
+    return columns | {"converged": [True] * len(rows)}
+
+
+def ratio(columns, tolerances=(1e-3,), points=("p", "q")):
+    made = profiles.variables(columns, list(points), tolerances)
+    contests, names = (made[n][1] for n in ("competitor_contest", "competitor"))
+    values = np.asarray(made["profile_ratio"][1], float)
+    return dict(zip(zip(contests, names, strict=True), values, strict=True))
+
+
+def test_a_ratio_is_the_least_time_within_the_tolerance_over_the_best():
+    found = ratio(
+        table(
+            ("p", "polar", "shipped", 0, 5e-3, 1.0),
+            ("p", "polar", "shipped", 1, 5e-4, 4.0),
+            ("p", "polar", "shipped", 2, 5e-5, 9.0),
+            ("p", "radial", "shipped", 0, 1e-4, 2.0),
+            ("q", "polar", "shipped", 0, 1e-4, 3.0),
+            ("q", "radial", "shipped", 0, 1e-2, 1.0),
+        ),
+        tolerances=(1e-2, 1e-3),
+    )
+    # by hand: at 1e-2 the coarse polar run does in 1 s, at 1e-3 it takes the one of 4 s
+    assert found["models", "polar"].tolist() == [[1.0, 3.0], [2.0, 1.0]]
+    assert found["models", "radial"].tolist() == [[2.0, 1.0], [1.0, np.inf]]
+
+
+def test_a_coarse_run_that_is_right_by_chance_does_not_count():
+    found = ratio(
+        table(
+            ("p", "polar", "shipped", 0, 1e-6, 1.0),
+            ("p", "polar", "shipped", 1, 5e-2, 2.0),
+            ("p", "polar", "shipped", 2, 1e-4, 8.0),
+            ("q", "polar", "shipped", 0, np.nan, 1.0),
+        )
+    )
+    assert found["models", "polar"].tolist() == [[1.0, np.inf]]
+    columns = table(("p", "polar", "shipped", 0, 1e-6, 1.0), ("p", "dahl", "shipped", 0, 1e-4, 5.0))
+    assert ratio(columns, points=("p",))["models", "dahl"].tolist() == [[5.0]]
+    columns["converged"] = [False, True]
+    found = ratio(columns, points=("p",))
+    assert found["models", "polar"].tolist() == [[np.inf]]
+    assert found["models", "dahl"].tolist() == [[1.0]]
+
+
+def test_methods_are_compared_with_what_ships_where_both_were_run():
+    found = ratio(
+        table(
+            ("p", "polar", "shipped", 0, 1e-4, 2.0),
+            ("p", "mdr", "shipped", 0, 1e-4, 0.1),
+            ("p", "polar", "euler", 0, 1e-4, 6.0),
+            ("p", "polar", "march", 0, 1e-4, 1.0),
+            ("p", "cartesian", "paper", 0, 1e-4, 50.0),
+            ("p", "auto", "shipped", 0, 1e-4, 0.4),
+        ),
+        points=("p",),
+    )
+    assert found["integrators", "euler"].item() == pytest.approx(3.0)
+    assert found["integrators", "shipped"].item() == 1.0  # mdr took no part
+    assert found["searches", "shipped"].item() == pytest.approx(2.0)
+    assert found["models", "paper"].item() == pytest.approx(500.0)
+    assert found["models", "auto"].item() == pytest.approx(4.0)
