@@ -11,8 +11,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from microslip.accuracy import EXTRAPOLATION_SHARE, MOST_REBASED, RESOLVED, Axis, certify
+from microslip.accuracy import MOST_REBASED, RESOLVED, certify
 from microslip.budget import Spent
+from microslip.chains import EXTRAPOLATION_SHARE, Axis
 from microslip.motion import Resolution
 from microslip.simulate import Run
 

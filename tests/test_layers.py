@@ -11,7 +11,8 @@ PACKAGE = Path(microslip.__file__).parent
 
 # From the ground up; modules on one line do not know each other.
 LAYERS = [
-    {"errors", "source_digest"},
+    {"errors", "syntax_digest"},
+    {"source_digest"},
     {"compiled"},
     {"hertz", "parameters", "named_files"},
     {"pressures"},
@@ -28,6 +29,7 @@ LAYERS = [
     {"simulate"},
     {"static_run"},
     {"methods"},
+    {"chains"},
     {"accuracy", "approach"},
     {"choice"},
     {"point"},
@@ -38,7 +40,7 @@ LAYERS = [
     {"extended"},
     {"cache", "config", "periods", "netcdf"},
     {"limits_of_pressures"},
-    {"answers", "jobs", "watch", "limits", "columns", "summary"},
+    {"answers", "batch_files", "jobs", "watch", "limits", "columns", "summary"},
     {"sweep", "dataset"},
     {"stored", "si"},
     {"query"},
@@ -53,7 +55,7 @@ LAYERS = [
     {"__main__"},
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
-BELOW_ALL = {"source_digest", "compiled", "named_files"}
+BELOW_ALL = {"source_digest", "syntax_digest", "compiled", "named_files"}
 PHYSICS = {name for names in LAYERS[: LEVEL["keys"]] for name in names} - BELOW_ALL
 FROM_FILES = {"from_file", "grid_csv", "grid_netcdf", "grid_units"}
 """The one pressure that is read from a file, found by its name like every other one: what marches

@@ -6,7 +6,7 @@ import pytest
 import yaml
 from sweep_stub import Solver
 
-from microslip import cache, config, leftovers, sweep
+from microslip import batch_files, cache, config, leftovers, sweep
 from microslip.plan import Plan
 
 AXES = {"velocity": [0.5, 2], "amplitude": [0, 1], "tolerance": 1e-2}
@@ -29,7 +29,7 @@ def results(tmp_path, monkeypatch):
         plan = Plan(config.load(configured(tmp_path, name, **more)))
         for batch, requests in plan.batches_in("bore").items():
             records, _ = sweep.run_batch(requests, cache.Store(folder))
-            cache.write_batch(folder / "batches" / "bore" / f"{batch}.json", records)
+            batch_files.write_batch(folder / "batches" / "bore" / f"{batch}.json", records)
     for file in ("bore.nc", "summaries/bore.html", "figures/fig6_bore_map.png", "pendulum.nc"):
         with cache.writing_beside(folder / file, sealed=True) as beside:
             beside.write_bytes(b"content")

@@ -11,7 +11,8 @@ import pytest
 
 import microslip
 from microslip import keys, source_digest, sweep
-from microslip.source_digest import Sources, digest_of_source
+from microslip.source_digest import Sources
+from microslip.syntax_digest import digest_of_source
 
 PACKAGE = Path(microslip.__file__).parent
 MODULE = '''

@@ -7,7 +7,7 @@ import math
 import pytest
 from sweep_stub import EFFORT, Solver
 
-from microslip import answers, cache, config, source_digest, sweep
+from microslip import answers, batch_files, cache, config, source_digest, sweep
 from microslip.cache import CacheError, Store
 from microslip.errors import InputError
 
@@ -76,7 +76,7 @@ def test_what_a_batch_holds_is_what_the_solver_said(monkeypatch, store, tmp_path
     cut = list(sweep.batches(requests, 4).values())
     paths = [tmp_path / f"{i}.json" for i in range(len(cut))]
     for path, part in zip(paths, cut, strict=True):
-        cache.write_batch(path, sweep.run_batch(part, store)[0])
+        batch_files.write_batch(path, sweep.run_batch(part, store)[0])
     alone = [sweep.answer(request, store)[0] for request in requests]
     assert list(sweep.records_for(requests, paths)) == alone
     answer = sweep.lookup(sweep.records_in(paths))
@@ -94,9 +94,9 @@ def test_a_batch_with_a_point_that_failed_is_whole_and_made_again(monkeypatch, s
     monkeypatch.setattr("microslip.solve", fail, raising=False)
     records, done = sweep.run_batch(requests_of(), store)
     path = tmp_path / "batch.json"
-    cache.write_batch(path, records, done["final"])
-    assert cache.read_batch(path) == records
-    assert cache.why_not_whole(path) == "it has points that failed"
+    batch_files.write_batch(path, records, done["final"])
+    assert batch_files.read_batch(path) == records
+    assert batch_files.why_not_whole(path) == "it has points that failed"
 
 
 BATCH_DAMAGE = {
@@ -114,13 +114,13 @@ BATCH_DAMAGE = {
 def test_a_damaged_batch_is_noticed(kind, monkeypatch, store, tmp_path):
     Solver(monkeypatch)
     path = tmp_path / "batch.json"
-    cache.write_batch(path, sweep.run_batch(requests_of(velocity=[0.5]), store)[0])
-    assert cache.why_not_whole(path) == ""
+    batch_files.write_batch(path, sweep.run_batch(requests_of(velocity=[0.5]), store)[0])
+    assert batch_files.why_not_whole(path) == ""
     whole = path.read_bytes()
     path.write_bytes(BATCH_DAMAGE[kind](whole))
     assert path.read_bytes() != whole
-    assert cache.why_not_whole(path) == "it is damaged"
-    assert cache.read_batch(path) is None
+    assert batch_files.why_not_whole(path) == "it is damaged"
+    assert batch_files.read_batch(path) is None
     with pytest.raises(cache.CacheError, match="is damaged; run again"):
         list(sweep.records_in([path]))
 

@@ -25,49 +25,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from microslip.budget import Spent
+from microslip.chains import Chain, Readings, Runs, mixed_difference, refines_cells
 
-EXTRAPOLATION_SHARE = 0.6
-CHANGE_SHARE = 0.5
-"""Errors of cells over the last extrapolation, and over the change of the extrapolated value."""
 RESOLVED = 0.125
 """Share of the tolerance below which no axis claims its error to be: nothing was run to see it."""
 SCATTER = 0.5
 """Share of the correction in time that its scatter may do to the differences of other chains."""
-READING_CAUTION = 2.5
-"""Error over the sum of what the readings of a pressure change: a peak or an edge that falls
-between the points of a grid shows in none of them in full."""
 LARGEST_OPEN = 0.5
 """Share of the tolerance that the readings may take for runs to be refined for what is left."""
 MOST_REBASED = 6
 SOURCES = {"cells": "space", "angles": "space", "steps": "time"}
-
-
-@dataclass(frozen=True)
-class Axis:
-    """One axis of refinement.
-
-    levels: resolutions, increasing; base: index of the one that the chains of other axes are run
-    at; first: indices of the runs to start with, as many as the error is estimated from, at least
-    three.
-    regular: the error falls smoothly, with the second power of the levels, so that it can be
-    extrapolated; imposed: the last level is what was asked for, and its error, the spread of the
-    last three again, is only reported; caution: errors of irregular axes over their spread; tied:
-    name and levels of what is refined together with it, where neither converges without the other.
-    """
-
-    name: str
-    levels: tuple[int, ...]
-    base: int
-    first: tuple[int, ...]
-    regular: bool = False
-    imposed: bool = False
-    caution: float = 1.0
-    tied: tuple[str, tuple[int, ...]] | None = None
-
-    @property
-    def refines(self):
-        """Names of what it refines: itself, and what is tied to it."""
-        return (self.name,) if self.tied is None else (self.name, self.tied[0])
 
 
 @dataclass(frozen=True)
@@ -100,125 +67,6 @@ class Certified:
         return sum(self.errors.values())
 
 
-class _Runs:
-    """Runs at (cells, angles, steps), given as indices into the levels of the axes; each once."""
-
-    def __init__(self, run, coarsest, axes):
-        self.run, self.coarsest, self.axes = run, coarsest, {axis.name: axis for axis in axes}
-        self.base = {axis.name: axis.base for axis in axes}
-        self.done = {}
-
-    def resolution(self, **indices):
-        """The base with some indices replaced, as a motion.Resolution."""
-        at = self.base | indices
-        levels = {name: self.axes[name].levels[index] for name, index in at.items()}
-        tied = ((self.axes[name].tied, index) for name, index in at.items())
-        levels |= {pair[0]: pair[1][index] for pair, index in tied if pair is not None}
-        return replace(self.coarsest, **levels)
-
-    def __call__(self, **indices):
-        resolution = self.resolution(**indices)
-        if resolution not in self.done:
-            guess = self.done.get(self.resolution())
-            self.done[resolution] = self.run(resolution, guess)
-        return self.done[resolution]
-
-
-class _Readings:
-    """The finest run along the cells, under other pressures that the same numbers may stand for."""
-
-    def __init__(self, runs, readings):
-        self.runs, self.readings, self.done = runs, readings, {}
-
-    def open(self, chains, name):
-        """How far they leave a value open."""
-        first = _refines_cells(chains)
-        finest = {} if first is None else {first: chains[first].indices[-1]}
-        resolution, value = self.runs.resolution(**finest), getattr(self.runs(**finest), name)
-        for number, run in enumerate(self.readings):
-            if (number, resolution) not in self.done:
-                self.done[number, resolution] = run(resolution, None)
-        return READING_CAUTION * sum(
-            abs(getattr(self.done[number, resolution], name) - value)
-            for number in range(len(self.readings))
-        )
-
-
-class _Chain:
-    """Runs along one axis, the others at the base."""
-
-    def __init__(self, runs, axis):
-        self.runs, self.axis = runs, axis
-        self.indices = list(axis.first)
-
-    @property
-    def levels(self):
-        return [self.axis.levels[index] for index in self.indices]
-
-    def values(self, name):
-        return [getattr(self.runs(**{self.axis.name: index}), name) for index in self.indices]
-
-    def rebase(self):
-        """Go on from a new base: no more runs than the error needs, up to the base at least."""
-        last = max(self.indices[-1], self.runs.base[self.axis.name])
-        self.indices = list(range(max(last + 1 - len(self.axis.first), 0), last + 1))
-
-    def refine(self):
-        """One more run; False if there is no finer level."""
-        if self.indices[-1] + 1 == len(self.axis.levels):
-            return False
-        self.indices.append(self.indices[-1] + 1)
-        return True
-
-    def correction(self, name):
-        """What the chain adds to the value at the base."""
-        values = self.values(name)
-        added = values[-1] - getattr(self.runs(), name)
-        if self.axis.regular:
-            added += _extrapolation(values, self.levels)
-        return added
-
-    def error(self, name):
-        """Estimated error after the correction."""
-        values, levels = self.values(name), self.levels
-        if not self.axis.regular:
-            last = values[-len(self.axis.first) :]
-            return self.axis.caution * (max(last) - min(last))
-        beyond = _extrapolation(values, levels)
-        before = _extrapolation(values[:-1], levels[:-1])
-        change = values[-1] + beyond - values[-2] - before
-        return EXTRAPOLATION_SHARE * abs(beyond) + CHANGE_SHARE * abs(change)
-
-
-def _extrapolation(values, levels):
-    """What second-order convergence would still add to the last of the values."""
-    return (values[-1] - values[-2]) / ((levels[-1] / levels[-2]) ** 2 - 1.0)
-
-
-def _refines_cells(chains):
-    """Name of the axis that refines the cells, or None."""
-    return next((name for name, chain in chains.items() if "cells" in chain.axis.refines), None)
-
-
-def _mixed(runs, chains, name):
-    """How far the corrections along cells and angles fail to add up: their mixed difference.
-
-    It is taken next to the finest angles, since few of them may hide what cells are worth.
-    """
-    first = _refines_cells(chains)
-    if first is None or "angles" not in chains or chains[first].axis.imposed:
-        return 0.0
-    beside = {}
-    for axis in (first, "angles"):
-        base = runs.base[axis]
-        last = chains[axis].indices[-1]
-        step = max(last - base - 1, 1) if axis == "angles" else 1
-        beside[axis] = base + step if last > base else base - 1
-    one, other = ({axis: index} for axis, index in beside.items())
-    both, one, other, base = (getattr(runs(**at), name) for at in (beside, one, other, {}))
-    return both - one - other + base
-
-
 def certify(run, coarsest, axes, tolerance, readings=()):
     """Refine until the estimated error is within ``tolerance``.
 
@@ -229,7 +77,7 @@ def certify(run, coarsest, axes, tolerance, readings=()):
     estimate over a free axis stays too large, or a run raised budget.Spent: then it is what was
     known before that run, NaN if that was nothing yet.
     """
-    runs = _Runs(run, coarsest, axes)
+    runs = Runs(run, coarsest, axes)
     known = None
     try:
         for found in _refined(runs, axes, tolerance, readings):
@@ -244,13 +92,13 @@ def certify(run, coarsest, axes, tolerance, readings=()):
 
 def _refined(runs, axes, tolerance, readings):
     """Yield a Certified whenever something is known, the last one when no more is to be done."""
-    chains = {axis.name: _Chain(runs, axis) for axis in axes}
-    others, none = _Readings(runs, readings), _Readings(runs, ())
+    chains = {axis.name: Chain(runs, axis) for axis in axes}
+    others, none = Readings(runs, readings), Readings(runs, ())
     rebased, goal = 0, tolerance
     while True:
         runs()  # the base first: its state is a guess for others
         left = {name: c.error("mu") for name, c in chains.items() if not c.axis.imposed}
-        hidden = {"steps": 0.0, "angles": abs(_mixed(runs, chains, "mu"))}
+        hidden = {"steps": 0.0, "angles": abs(mixed_difference(runs, chains, "mu"))}
         if "steps" in chains and len(chains) > 1:
             hidden["steps"] = SCATTER * abs(chains["steps"].correction("mu"))
         errors = _errors(runs, chains, hidden, tolerance)
@@ -303,7 +151,7 @@ def _can_rebase(chains, cause, rebased):
 
 def _rebased_together(chains, cause):
     """Axes whose base is refined where corrections do not add up, by the cause."""
-    return ("steps",) if cause == "steps" else (_refines_cells(chains), "angles")
+    return ("steps",) if cause == "steps" else (refines_cells(chains), "angles")
 
 
 def _errors(runs, chains, hidden, tolerance):
@@ -320,7 +168,7 @@ def _errors(runs, chains, hidden, tolerance):
 
 def _corrected(runs, chains, name):
     corrections = sum(chain.correction(name) for chain in chains.values())
-    return getattr(runs(), name) + corrections + _mixed(runs, chains, name)
+    return getattr(runs(), name) + corrections + mixed_difference(runs, chains, name)
 
 
 def _summary(runs, chains, errors, others, reason):

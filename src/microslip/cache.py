@@ -62,7 +62,7 @@ class Store:
             return None
         except OSError as error:
             raise CacheError(advice("read", path, error)) from error
-        record = _parse(text)
+        record = record_in(text)
         if record is None or record.get("key") != key:
             log.warning("damaged result %s: computed again", path)
             return None
@@ -75,7 +75,7 @@ class Store:
         CacheError on a full disk, a read-only folder and the like; no partial file stays behind.
         """
         path = self.path(group, key)
-        write_atomically(path, _text({**record, "key": key}))
+        write_atomically(path, line_of({**record, "key": key}))
         return path
 
     def try_writing(self):
@@ -279,67 +279,17 @@ def is_damaged(path):
         raise CacheError(advice("read", path, error)) from error
 
 
-# Batches: the records of a job in one file, one a line
-
-
-def write_batch(path, records, final=True):
-    """Write records to the file of a batch, all of them or nothing.
-
-    Each line is as in the file of a single result; the last one is the checksum of all before it.
-    final: whether equal requests have these results for ever; the next run makes it again if not.
-    Raises CacheError as `writing_beside` does.
-    """
-    content = b"".join(_text(record) for record in records)
-    write_atomically(path, content + _last_line(content, final))
-
-
-def read_batch(path):
-    """The records in the file of a batch, in their order, a list; None if it is damaged.
-
-    Raises CacheError if there is no such file or reading is not allowed.
-    """
-    content, _ = _batch_content(path)
-    records = content and [_parse(line) for line in content.splitlines(keepends=True)]
-    return records if records and None not in records else None
-
-
-def why_not_whole(path):
-    """Why the file of a batch has to be made again, in a few words; "" if it has not.
-
-    Raises CacheError as `read_batch` does.
-    """
-    content, final = _batch_content(path)
-    if not content:
-        return "it is damaged"
-    return "" if final else "it has points that failed"
-
-
-def _batch_content(path):
-    """What a batch holds above its last line, empty if that does not fit; whether it is final."""
-    try:
-        text = Path(path).read_bytes()
-    except OSError as error:
-        raise CacheError(advice("read", path, error)) from error
-    end = text.rfind(b"\n", 0, -1) + 1
-    for final in (True, False):
-        if text[end:] == _last_line(text[:end], final):
-            return text[:end], final
-    return b"", False
-
-
-def _last_line(content, final):
-    return f"{hashlib.sha256(content).hexdigest()}{'' if final else ' not final'}\n".encode()
-
-
-def _text(record):
+def line_of(record):
+    """The line, bytes, that holds a record with its checksum."""
     checksum = sha256(canonical_json(record))
     return f"{canonical_json({'checksum': checksum, 'record': record})}\n".encode()
 
 
-def _parse(text):
+def record_in(text):
+    """The record in such a line; None if it is anything else than what its record writes."""
     try:
         record = json.loads(text)["record"]
-        return record if _text(record) == text else None
+        return record if line_of(record) == text else None
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return None
 

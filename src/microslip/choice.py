@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from microslip import bounds, hertz, theory
-from microslip.accuracy import Axis
+from microslip.chains import Axis
 from microslip.errors import InputError
 from microslip.method import SHIPPED
 from microslip.models import MODELS

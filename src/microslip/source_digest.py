@@ -208,49 +208,9 @@ def _may_import(node):
 
 
 def _digest_of(content):
+    from microslip.syntax_digest import digest_of_source
+
     return digest_of_source(content.decode("utf-8"))
-
-
-def digest_of_source(text: str) -> str:
-    """Digest of a module's syntax tree without comments, docstrings, layout and line numbers."""
-    import ast
-
-    out = []
-    _dump(ast.parse(text), out, ast)
-    return hashlib.sha256("".join(out).encode()).hexdigest()
-
-
-def _dump(node, out, ast):
-    # ast.dump changes its output between Python versions. This one skips empty fields, which is
-    # where they differ, so one results folder serves all of them.
-    if isinstance(node, ast.AST):
-        out.append(f"{type(node).__name__}(")
-        for field, value in ast.iter_fields(node):
-            if field == "body" and _has_docstring(node, ast):
-                value = value[1:]
-            if value is not None and value != []:
-                out.append(f"{field}=")
-                _dump(value, out, ast)
-        out.append(")")
-    elif isinstance(node, list):
-        out.append("[")
-        for item in node:
-            _dump(item, out, ast)
-        out.append("]")
-    else:
-        out.append(f"{node!r},")
-
-
-def _has_docstring(node, ast):
-    kinds = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
-    if not isinstance(node, kinds) or not node.body:
-        return False
-    first = node.body[0]
-    return (
-        isinstance(first, ast.Expr)
-        and isinstance(first.value, ast.Constant)
-        and isinstance(first.value.value, str)
-    )
 
 
 # Of the package that is running

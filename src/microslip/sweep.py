@@ -13,7 +13,7 @@ import platform
 import time
 from collections.abc import Sequence
 
-from . import answers, cache, source_digest
+from . import answers, batch_files, source_digest
 from .cache import CacheError
 from .extended import solver_names
 from .keys import batch_name, number, result_key
@@ -194,7 +194,7 @@ def records_in(paths):
     Raises CacheError, one line that says what to do, for a file that is damaged.
     """
     for path in paths:
-        records = cache.read_batch(path)
+        records = batch_files.read_batch(path)
         if records is None:
             raise CacheError(f"{path} is damaged; run again: it is made again from finished points")
         yield from records

@@ -4,7 +4,7 @@ from glob import glob
 
 from snakemake.logging import logger as snakemake_log
 
-from microslip import explorer, jobs, keys, plan, schemas, source_digest, studies, sweep
+from microslip import batch_files, explorer, jobs, keys, plan, schemas, source_digest, sweep
 from microslip.plan import Plan
 from microslip.watch import Watch
 
@@ -66,6 +66,9 @@ def look_after(*files):
     Snakemake compares dates, and what it noted of the last run in a folder that may be gone or of
     another run. A seal goes with its file.
     """
+    if STORED_ELSEWHERE and workflow.is_main_process:
+        # There is no seal here to look at. Collecting again from batches takes little.
+        workflow.dag.forcerules.update(map(workflow.get_rule, SEALING))
     for file in files:
         there = placed(file)
         if ASKING and os.path.lexists(there):
@@ -80,7 +83,7 @@ def whole_batches(*groups):
     a reason that need not last, are made again."""
     files = PLAN.batch_files(*groups)
     for there in map(placed, files) if ASKING else ():
-        why = os.path.lexists(there) and cache.why_not_whole(there)
+        why = os.path.lexists(there) and batch_files.why_not_whole(there)
         if why:
             make_again(there, why)
     return in_results(files)
@@ -119,6 +122,9 @@ def datasets_for(figure):
     return in_results(f"{name}.nc" for name in FIGURES[figure])
 
 
+# Rules that seal what they make.
+SEALING = ["collect", "collect_study", "draw_figure", "explorer"]
+STORED_ELSEWHERE = workflow.storage_settings.default_storage_provider is not None
 GROUPS = {"batches", "figures", "logs", "warm_up", *sweep.FOLDERS.values()}
 # Where another run may be writing, what looks damaged may be about to be whole.
 ASKING = workflow.is_main_process and not glob(".snakemake/locks/*")

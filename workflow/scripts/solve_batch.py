@@ -8,7 +8,7 @@ sweep.FOLDERS names.
 
 import json
 
-from microslip import cache, named_files, sweep
+from microslip import batch_files, cache, named_files, sweep
 from microslip.jobs import job_log
 from microslip.watch import counted
 
@@ -21,5 +21,5 @@ with job_log(snakemake.log[0]) as log:
         lambda requests: counted(requests, snakemake.params.counter),
         name=snakemake.wildcards.batch,
     )
-    cache.write_batch(snakemake.output[0], records, done["final"])
+    batch_files.write_batch(snakemake.output[0], records, done["final"])
     log.info("%(points)d points, %(computed)d computed in %(solver_seconds).2f s of CPU time", done)
