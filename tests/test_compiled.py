@@ -39,7 +39,7 @@ def of_kernels(package):
     """What names the folder of compiled code, of the sources in a package."""
     sources = Sources(package)
     kernels = {n for n, content in sources.contents.items() if b"microslip.compiled" in content}
-    return sources.raw_digest(sources.closure(kernels - {"source_digest.py"}))
+    return sources.raw_digest(sources.closure(kernels))
 
 
 def test_there_are_kernels_to_speak_of():

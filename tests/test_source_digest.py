@@ -201,7 +201,7 @@ answers.computed(request)
 print(json.dumps([m.__file__ for n, m in sys.modules.items() if n.startswith("microslip.")]))
 """
 NAMES = {"methods", "motions", "pressures"}
-BY_LISTING = {"masing.py", "pulsating.py", "named_files.py"}
+BY_LISTING = {"masing.py", "pulsating.py", "named_files.py", *source_digest.NAMES_ONLY}
 """Loaded with other motions and pressures, when these are listed."""
 
 

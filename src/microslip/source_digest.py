@@ -41,6 +41,9 @@ ASKS = "answers.py"
 NAMED_IN_REQUESTS = {"methods": "method", "motions": "scene", "pressures": "pressure"}
 """Folders of files that requests name, and the key that names them."""
 
+NAMES_ONLY = {"source_digest.py", "syntax_digest.py"}
+"""They say what results are called, and change no number in them."""
+
 FOUND_BY_NAME = "motions/"
 """Files here count where they are named: that another file imports them to list them is nothing."""
 
@@ -70,7 +73,7 @@ class Sources:
         names: paths inside the package.  deep: whether imports inside functions of the named
         modules count, too; those of the modules that they lead to always do.
         """
-        found = set(names)
+        found = set(names) - NAMES_ONLY
         waiting = [target for name in names for target in self._targets(name, deep)]
         while waiting:
             name = waiting.pop()
@@ -148,7 +151,8 @@ class Sources:
             path = "/".join(dotted)
             for target in (f"{path}.py", f"{path}/__init__.py"):
                 listed = target.startswith(FOUND_BY_NAME) and not name.startswith(FOUND_BY_NAME)
-                if target in self.contents and (not listed or target.endswith("__init__.py")):
+                counts = not listed or target.endswith("__init__.py")
+                if target in self.contents and counts and target not in NAMES_ONLY:
                     yield target
 
 
@@ -243,7 +247,7 @@ def of_solver() -> str:
 def of_kernels() -> str:
     """Digest of the modules with compiled functions, and of all that these import: quick."""
     with_kernels = {n for n, content in LOADED.contents.items() if b"microslip.compiled" in content}
-    return LOADED.raw_digest(LOADED.closure(with_kernels - {"source_digest.py"}))
+    return LOADED.raw_digest(LOADED.closure(with_kernels))
 
 
 def _named(request):
