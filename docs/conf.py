@@ -54,11 +54,13 @@ def setup(app):
 
 
 def _lexers():
-    """Snakefiles are Python with a few more words."""
+    """Snakefiles are Python with a few more words, and tables are plain text."""
     from pygments.lexers.python import PythonLexer
+    from pygments.lexers.special import TextLexer
     from sphinx.highlighting import lexers
 
     lexers["snakemake"] = PythonLexer()
+    lexers["csv"] = TextLexer()
 
 
 _lexers()

@@ -192,7 +192,7 @@ def check_yaml(block):
         given = given["friction"]
     whole = yaml.safe_load((ROOT / "config" / "config.yaml").read_text())
     try:
-        config.from_mapping(given)
+        config.from_mapping(given, folders=[ROOT / "config"])
     except config.ConfigError:
         for name, part in given.items():
             sweeps = name == "sweeps"
@@ -200,7 +200,7 @@ def check_yaml(block):
                 whole[name][key] = {**whole[name][key], **value} if sweeps else value
             if not isinstance(part, dict):
                 whole[name] = part
-        config.from_mapping(whole)
+        config.from_mapping(whole, folders=[ROOT / "config"])
 
 
 NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?")

@@ -27,6 +27,10 @@ GROUPS = {
     )
     for scene in study.MAP_SCENES
 }
+GROUPS["profile"] = (
+    "How much dearer than the best a model or a method is",
+    ("competitor", "map_tolerance", "point"),
+)
 """What is not a column of the table of trials."""
 
 # Columns of the table of trials: name -> (type, units, long_name). 0: a count does not apply.
