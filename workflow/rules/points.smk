@@ -4,7 +4,7 @@
 # Compiles the solver once, before jobs that would all do it at the same time.
 rule warm_up:
     output:
-        f"{RESULTS}/warm_up/{source_digest.of_kernels()[:16]}.txt",
+        f"{RESULTS}/warm_up/{source_digest.of_solver()[:16]}.txt",
     log:
         f"{RESULTS}/logs/warm_up.log",
     conda:
@@ -20,7 +20,7 @@ rule warm_up:
 
 rule solve_batch:
     input:
-        # It only has to be there: its name holds the digest of the compiled sources.
+        # It only has to be there: its name holds the digest of the solver, as those of the points.
         ancient(rules.warm_up.output),
     output:
         f"{RESULTS}/batches/{{group}}/{{batch}}.json",
