@@ -178,15 +178,10 @@ def installed(ordinary):
     return microslip
 
 
-def _take_over_compiled(source, target):
-    """Give a copy of the package the compiled kernels of the tree, which takes a minute to redo."""
-    for path in source.rglob("*"):
-        copy = target / path.relative_to(source)
-        if path.suffix in (".nbi", ".nbc"):
-            copy.parent.mkdir(exist_ok=True)
-            shutil.copy2(path, copy)
-        elif path.suffix == ".py":
-            shutil.copystat(path, copy)  # they are bound to the time of their source
+def _take_over_compiled(package, other):
+    """Let a copy of a package find what is compiled already: its sources are the same."""
+    for folder in (package / "__pycache__").glob("compiled-*"):
+        shutil.copytree(folder, other / "__pycache__" / folder.name)
 
 
 def test_an_installed_copy_gives_the_same_dataset_and_finds_what_a_tree_made(ordinary, installed):
