@@ -12,6 +12,7 @@ PACKAGE = Path(microslip.__file__).parent
 # From the ground up; modules on one line do not know each other.
 LAYERS = [
     {"errors", "source_digest"},
+    {"arguments"},
     {"compiled"},
     {"hertz", "parameters", "named_files"},
     {"pressures"},
