@@ -12,7 +12,7 @@ PACKAGE = Path(microslip.__file__).parent
 # From the ground up; modules on one line do not know each other.
 LAYERS = [
     {"errors", "syntax_digest"},
-    {"source_digest"},
+    {"arguments", "source_digest"},
     {"compiled"},
     {"hertz", "parameters", "named_files"},
     {"pressures"},

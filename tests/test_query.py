@@ -295,7 +295,7 @@ def test_nodes_that_a_join_has_filled_in_are_not_known():
         ((np.nan, 1), "velocity = nan"),
         (("fast", 1), "velocity = 'fast'"),
         ((1,), "amplitude = None"),
-        (([[1.0]], 1), "velocity: "),
+        (([[1.0]], 1), "velocity = "),
     ],
 )
 def test_bad_points_are_refused_by_name(friction, arguments, message):

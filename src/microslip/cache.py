@@ -15,6 +15,7 @@ import uuid
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from .errors import shown
 from .keys import canonical_json, sha256
 
 log = logging.getLogger(__name__)
@@ -41,8 +42,7 @@ class Store:
 
     def __init__(self, folder):
         """folder: str or Path. It is made when the first result is written."""
-        if not str(folder).strip():
-            raise CacheError(f"{str(folder)!r} is not allowed; allowed: the name of a folder")
+        refuse_no_folder(folder)
         self.folder = Path(folder)
         self._tried = False
 
@@ -88,6 +88,18 @@ class Store:
         except OSError as error:
             raise CacheError(advice("write to", self.folder, error)) from error
         self._tried = True
+
+
+def refuse_no_folder(folder):
+    """Raise CacheError for what is not the name of a folder: nothing, what is no text, and a ~ that
+    no shell has replaced, which would become a folder of that name."""
+    named = isinstance(folder, str | os.PathLike) and isinstance(os.fspath(folder), str)
+    name = os.fspath(folder) if named else ""
+    if not name.strip() or "\0" in name:
+        raise CacheError(f"{shown(folder)} is not allowed; allowed: the name of a folder")
+    if Path(name).parts[:1] == ("~",):
+        home = "allowed: the name of a folder, with that of the home folder in place of ~"
+        raise CacheError(f"{shown(name)} is not allowed; {home}")
 
 
 def refuse_unusable(folders, files):

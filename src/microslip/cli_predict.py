@@ -6,6 +6,7 @@ import json
 import sys
 
 from microslip.command_line import Said
+from microslip.errors import shown
 from microslip.si.scenes import SCENES
 from microslip.terminal import complain
 
@@ -105,7 +106,7 @@ def _complaint(error, typed):
     """The option, its value as it was given, and what is allowed, in one line."""
     name = f"--{error.argument.replace('_', '-')}"
     option = "SCENE" if error.argument == "scene" else typed.get(error.argument, name)
-    given = "" if error.value is None else f" = {error.value!r}"
+    given = "" if error.value is None else f" = {shown(error.value)}"
     return " ".join(f"{option}{given}: {error.allowed}".split())
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+LONGEST = 400
+"""Characters of a value that a message shows; of a longer one its beginning and its end."""
+
 
 class InputError(ValueError):
     """An argument that cannot be used.
@@ -24,8 +27,18 @@ class InputError(ValueError):
         super().__init__(argument, value, allowed)  # what copying and pickling hand on
 
     def __str__(self):
-        return " ".join(f"{self.argument} = {self.value!r}: {self.allowed}".split())
+        return " ".join(f"{self.argument} = {shown(self.value)}: {self.allowed}".split())
 
     def renamed(self, argument: str, value: object = None) -> InputError:
         """The same about another argument, and another value unless that is None."""
         return InputError(argument, self.value if value is None else value, self.allowed)
+
+
+def shown(value: object) -> str:
+    """A value as messages show it: its repr, shortened, or its type where Python writes none."""
+    try:
+        text = repr(value)
+    except Exception as error:  # of a whole number with thousands of digits, or anybody's own
+        text = f"<{type(value).__name__} that cannot be written: {type(error).__name__}>"
+    half = LONGEST // 2
+    return text if len(text) <= LONGEST else f"{text[:half]}...{text[-half:]}"

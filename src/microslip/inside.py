@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from microslip.arguments import LARGEST, count, real
 from microslip.choice import choose_model
+from microslip.errors import InputError
 from microslip.frames import bounds_at_phases, frames
 from microslip.models.contact import FORWARD, LATERAL, TORQUE, forward_slip, full_slip
 from microslip.motion import Motion, Resolution, build_contact
@@ -24,6 +26,15 @@ PERIOD_CELLS, PERIOD_STEPS = 16, 64
 PERIOD_TOLERANCE = 1e-4
 ON_BOUND = 1.0 - 1e-4
 """Share of the friction bound from which on a traction along the slip counts as slipping."""
+LONGEST_TRAVEL = 1e6
+"""u_lim of a steady motion; ten are enough to see it settle."""
+LONGEST_PHASE = 1e12
+"""Angle that a steady motion turns by, u_lim / a; floats tell its steps apart."""
+MOST_STEPS = 10 * LARGEST["steps"]
+"""Of a history, over all of its periods."""
+MOST_ANGLES = 1000
+MOST_VALUES = 1e8
+"""Of each field of a period: points times steps."""
 MIRRORED_FORCES = np.array([1.0, -1.0, -1.0])
 """Signs of the forces half a period later."""
 
@@ -67,28 +78,33 @@ def history(
     scene, velocity, amplitude, pressure, poisson, model: as for ``microslip.solve``; cells: rings
     or squares; steps: per period (steady scenes: over the whole travel); start: "stress-free" (full
     stick), "full-slip" (forward slip everywhere) or "full-rotation" (rotational slip everywhere).
-    Returns a History.  Raises ValueError naming the argument for bad input.
+    Returns a History.  Raises InputError naming the argument for bad input.
     """
     kind, velocity, amplitude, poisson = checked_point(
         scene, velocity, amplitude, poisson, pressure
     )
     if velocity <= 0.0:
-        raise ValueError(f"velocity = {velocity!r}: a history needs velocity > 0")
-    if start not in STARTS:
-        raise ValueError(f"start = {start!r}: allowed is one of {', '.join(STARTS)}")
+        raise InputError("velocity", velocity, "a history needs velocity > 0")
+    if not isinstance(start, str) or start not in STARTS:
+        raise InputError("start", start, f"allowed is one of {', '.join(STARTS)}")
     if start == "full-rotation" and not kind.rotates:
-        raise ValueError(f"start = {start!r}: the {kind.name} scene does not rotate")
-    for name, count in (("cells", cells), ("steps", steps), ("periods", periods)):
-        whole = isinstance(count, int | np.integer) and not isinstance(count, bool)
-        if count is not None and not (whole and count >= 1):
-            raise ValueError(f"{name} = {count!r}: allowed is a whole number of at least 1")
-    if not 0.0 < travel < np.inf:
-        raise ValueError(f"travel = {travel!r}: allowed is a finite number above 0")
+        raise InputError("start", start, f"the {kind.name} scene does not rotate")
+    if cells is not None:
+        count("cells", cells, 1, most=LARGEST["cells"])
+    if steps is not None:
+        count("steps", steps, 1, most=LARGEST["steps"])
+    steps = int(steps or STEPS)
+    periods = count("periods", periods, 1, most=MOST_STEPS // steps)
+    if real("travel", travel, 0.0, LONGEST_TRAVEL) == 0.0:
+        raise InputError("travel", travel, "allowed is a finite number above 0")
+    if not kind.periodic and travel / velocity > LONGEST_PHASE:
+        allowed = f"allowed is at least {LONGEST_PHASE:g} times less than the travel, {travel:g}"
+        raise InputError("velocity", velocity, allowed)
     motion = Motion(kind, velocity, amplitude, poisson)
     contact = _contact(motion, model, cells)
     end = 2 * np.pi * periods if kind.periodic else travel / velocity
-    count = (steps or STEPS) * (periods if kind.periodic else 1)
-    path = make_path(motion.displacement, np.linspace(0.0, end, count + 1), depth=motion.depth)
+    total = steps * (periods if kind.periodic else 1)
+    path = make_path(motion.displacement, np.linspace(0.0, end, total + 1), depth=motion.depth)
     march = contact.march(path, _start(contact, start), STEP_TOLERANCE)
     return History(
         phase=path.phase,
@@ -105,11 +121,15 @@ def traction_field(scene, velocity, amplitude=None, *, poisson=0.0, cells=None):
     Returns a dict of 1-D arrays over points (lateral_position, forward_position over a;
     traction_lateral, traction_forward, bound over mu F_z / a^2; the tractions are those on the
     indenter, which oppose its motion, as in Eq 15) and centre_lateral, where the instantaneous
-    centre of rotation lies (Eq 14).  Raises ValueError for bad input or another scene.
+    centre of rotation lies (Eq 14).  Raises InputError for bad input or another scene.
     """
     kind, velocity, _, poisson = checked_point(scene, velocity, amplitude, poisson)
-    if kind.periodic or velocity <= 0.0:
-        raise ValueError(f"scene = {scene!r}: allowed is continuous-bore at velocity > 0")
+    if kind.periodic:
+        raise InputError("scene", scene, "allowed is continuous-bore")
+    if velocity <= 0.0:
+        raise InputError("velocity", velocity, "a traction field needs velocity > 0")
+    if cells is not None:
+        count("cells", cells, 2, most=LARGEST["cells"])
     motion = Motion(kind, velocity, None, poisson)
     contact = _contact(motion, "polar", cells)
     found = steady_state(contact, motion.displacement, velocity, 1e-6, STEP_TOLERANCE)
@@ -180,21 +200,23 @@ def period(
 
     scene: one that oscillates; velocity > 0, amplitude > 0, pressure (one that depends on the
     radius alone), poisson: as for ``microslip.solve``; cells: rings; angles: points on half a ring;
-    steps: in a period; both even numbers.  Returns a Period.  Raises ValueError naming the argument
+    steps: in a period; both even numbers.  Returns a Period.  Raises InputError naming the argument
     for bad input.
     """
     kind, velocity, amplitude, poisson = checked_point(
         scene, velocity, amplitude, poisson, pressure
     )
     if not kind.periodic:
-        raise ValueError(f"scene = {scene!r}: allowed is one that oscillates")
+        raise InputError("scene", scene, "allowed is one that oscillates")
     for name, value in (("velocity", velocity), ("amplitude", amplitude)):
         if value <= 0.0:
-            raise ValueError(f"{name} = {value!r}: a period needs {name} > 0")
-    for name, count, least in (("cells", cells, 2), ("angles", angles, 2), ("steps", steps, 4)):
-        whole = isinstance(count, int | np.integer) and not isinstance(count, bool)
-        if not (whole and count >= least and count % 2 == 0):
-            raise ValueError(f"{name} = {count!r}: allowed is an even number of at least {least}")
+            raise InputError(name, value, f"a period needs {name} > 0")
+    cells = count("cells", cells, 2, most=LARGEST["cells"], even=True)
+    angles = count("angles", angles, 2, most=MOST_ANGLES, even=True)
+    steps = count("steps", steps, 4, most=LARGEST["steps"], even=True)
+    if cells * angles * steps > MOST_VALUES:
+        allowed = f"allowed is at most {MOST_VALUES:g} for cells x angles x steps"
+        raise InputError("steps", steps, allowed)
     choose_model(kind, poisson, "polar")
     motion = Motion(kind, velocity, amplitude, poisson)
     resolution = Resolution(cells, angles, steps // 2)

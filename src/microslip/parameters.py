@@ -51,7 +51,7 @@ def split(text, what, names):
     if name not in names:
         near = difflib.get_close_matches(name, names, n=1)
         hint = f"did you mean {near[0]}? " if near else ""
-        raise InputError(what, name, f"{hint}allowed is one of {', '.join(names)}")
+        raise InputError(what, text, f"{hint}allowed is one of {', '.join(names)}")
     numbers = {}
     for part in rest.split(",") if colon else ():
         key, equals, value = (word.strip() for word in part.partition("="))

@@ -7,10 +7,9 @@ import time
 from dataclasses import replace
 from functools import partial
 
-import numpy as np
-
 from microslip.accuracy import certify
 from microslip.approach import run_safely
+from microslip.arguments import LARGEST, count, is_real, real
 from microslip.budget import Budget
 from microslip.choice import choose_model, closed_form, method_refusal, no_vibration, plan
 from microslip.errors import InputError
@@ -23,9 +22,6 @@ from microslip.static_run import simulate_static
 PERIODICITY_SHARE = 0.07
 """Share of the tolerance that the distance from the periodic state may take."""
 SMALLEST_TOLERANCE = 1e-6
-LARGEST = {"velocity": 1e6, "amplitude": 1e6, "cells": 1000, "steps": 1_000_000}
-"""What is larger is a slip, and would run out of memory or of the range of floating-point numbers;
-a test keeps them as in the schema of configurations."""
 CLOSED_FORM = "closed-form"
 TOLERANCE = 1e-3
 """Unless told otherwise; and how strict the search for a periodic state is where none is meant."""
@@ -75,6 +71,8 @@ def solve(
     )
     asked, cells, steps = checked_request(tolerance, cells, steps)
     refuse_bounds(most_work=most_work, time_limit=time_limit)
+    if progress is not None and not callable(progress):
+        raise InputError("progress", progress, "allowed is a function of one argument")
     tolerance = TOLERANCE if asked is None else asked
     name, how = choose_model(kind, poisson, model), method_named(method)
     _refuse_method(kind, name, method, how)
@@ -169,12 +167,12 @@ def _within(kind, mu):
 def checked_point(scene, velocity, amplitude, poisson, pressure="hertz"):
     """Scene record and numbers of a point; raises InputError naming the argument at fault."""
     kind = scene_named(scene, pressure)
-    velocity = _number("velocity", velocity, 0.0, LARGEST["velocity"])
-    poisson = _number("poisson", poisson, 0.0, 0.5)
+    velocity = real("velocity", velocity, 0.0, LARGEST["velocity"])
+    poisson = real("poisson", poisson, 0.0, 0.5)
     if kind.periodic:
         if amplitude is None:
             raise InputError("amplitude", None, f"{kind.name} needs an amplitude >= 0")
-        amplitude = _number("amplitude", amplitude, 0.0, LARGEST["amplitude"])
+        amplitude = real("amplitude", amplitude, 0.0, LARGEST["amplitude"])
     elif amplitude is not None:
         raise InputError("amplitude", amplitude, f"{kind.name} has no amplitude")
     return kind, velocity, amplitude, poisson
@@ -182,7 +180,7 @@ def checked_point(scene, velocity, amplitude, poisson, pressure="hertz"):
 
 def checked_accuracy(tolerance, cells, steps):
     """Tolerance and imposed resolution; raises InputError naming the argument at fault."""
-    tolerance = _number("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
+    tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
     return tolerance, _count("cells", cells, 4), _count("steps", steps, 8)
 
 
@@ -226,8 +224,7 @@ def refuse_bounds(**given):
     for name, value in given.items():
         if value is None:
             continue
-        number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
-        if not (number and value > 0.0):
+        if not (is_real(value) and value > 0.0):
             raise InputError(name, value, "allowed is a number above 0")
 
 
@@ -243,31 +240,8 @@ def _refuse_method(kind, model, method, how):
         )
 
 
-def _number(name, value, low, high=math.inf):
-    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
-        raise InputError(name, value, "allowed is a number")
-    try:
-        real = float(value)
-    except OverflowError:  # a whole number of more than 308 digits
-        real = math.inf
-    if not (math.isfinite(real) and low <= real <= high):
-        upper = f" and at most {high:g}" if high < math.inf else ""
-        raise InputError(name, value, f"allowed is a finite number of at least {low:g}{upper}")
-    return real
-
-
 def _count(name, value, low):
-    if value is None:
-        return None
-    whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
-    if not whole or not low <= value <= LARGEST[name]:
-        most = f"{LARGEST[name]:g}"
-        raise InputError(
-            name, value, f"allowed is an even whole number of at least {low} and at most {most}"
-        )
-    if value % 2:
-        raise InputError(name, value, "allowed is an even number (half of it is run, too)")
-    return int(value)
+    return None if value is None else count(name, value, low, most=LARGEST[name], even=True)
 
 
 def _exact_result(point, values, seconds):

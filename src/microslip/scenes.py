@@ -92,4 +92,7 @@ def _of_family(name):
     parameters.refuse_unknown(name, "scene", numbers, list(defaults))
     given = {key: value for key, value in sorted(numbers.items()) if value != defaults[key]}
     words = ",".join(f"{key}={value:.12g}" for key, value in given.items())
-    return module.scene(f"{family}:{words}" if words else family, **(defaults | numbers))
+    try:
+        return module.scene(f"{family}:{words}" if words else family, **(defaults | numbers))
+    except InputError as error:  # about the name as it is kept
+        raise InputError("scene", name, error.allowed) from None

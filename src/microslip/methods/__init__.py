@@ -33,6 +33,8 @@ def names():
 
 def split(text):
     """Name and numbers (dict) of a method; raises InputError if the text cannot be read."""
+    if not isinstance(text, str):
+        raise InputError("method", text, f"allowed is one of {', '.join(names())}")
     return parameters.split(text, "method", names())
 
 

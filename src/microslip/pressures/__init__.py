@@ -63,7 +63,10 @@ def pressure_named(name):
     family, numbers = parameters.split(name, "pressure", known)
     module = FAMILIES.get(family)
     parameters.refuse_unknown(name, "pressure", numbers, list(module.DEFAULTS if module else ()))
-    return _of_family(family, tuple(sorted(numbers.items())))
+    try:
+        return _of_family(family, tuple(sorted(numbers.items())))
+    except InputError as error:  # about the name as it is kept
+        raise InputError("pressure", name, error.allowed) from None
 
 
 @lru_cache(maxsize=64)

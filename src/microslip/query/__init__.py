@@ -16,7 +16,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from microslip.cache import CacheError, is_damaged
+from microslip.cache import CacheError, is_damaged, refuse_no_folder
 from microslip.errors import InputError
 from microslip.netcdf import group_names
 from microslip.settings import SCENE_OF_SWEEP
@@ -61,6 +61,9 @@ def open_map(
     CacheError
         One line, for a file that is missing, damaged, or not from a sweep.
     """
+    if not (isinstance(name, str | os.PathLike) and isinstance(os.fspath(name), str)):
+        raise InputError("name", name, "allowed is the name of a sweep, or a path")
+    refuse_no_folder(results)
     path = Path(name)
     if path.suffix != ".nc":
         path = Path(results, f"{name}.nc")

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import warnings
+from decimal import Decimal
 from functools import cache
+from numbers import Real
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -11,6 +13,7 @@ import numpy as np
 import xarray as xr
 
 from microslip import hertz, theory
+from microslip.arguments import is_real, real
 from microslip.cache import CacheError
 from microslip.errors import InputError
 from microslip.scenes import scene_named
@@ -32,6 +35,7 @@ SOURCES = (
     "solver",
 )
 """Where an answer comes from, by its code in the variable `source`."""
+ALLOWED = "allowed is a finite number >= 0, or several"
 (MAP, STILL, STATIC, SLOWER, FASTER, WIDER, NARROWER, EXACT, SOLVER) = range(len(SOURCES))
 
 
@@ -107,7 +111,9 @@ class Friction:
         value, error, source = answer
         error[np.isnan(value) | np.isnan(error)] = np.inf
         if tolerance is not None:
-            hertz.checked("tolerance", tolerance, low_open=True)
+            tolerance = real("tolerance", tolerance, 0.0)
+            if tolerance == 0.0:
+                raise InputError("tolerance", tolerance, "allowed is a number above 0")
             point = flat_velocity, flat_amplitude
             self._solve((value, error, source), point, nu, tolerance)
         return self._answer(velocity, value, error, source, nu)
@@ -117,7 +123,7 @@ class Friction:
     def _points(self, velocity, amplitude):
         if (amplitude is None) == self._motion.periodic:
             need = "none" if amplitude is not None else "a number"
-            raise ValueError(f"amplitude = {amplitude}: allowed for {self._scene} is {need}")
+            raise InputError("amplitude", amplitude, f"allowed for {self._scene} is {need}")
         velocity = _labelled("velocity", velocity)
         if amplitude is None:
             return velocity, None
@@ -246,10 +252,12 @@ def _poisson_within(known, poisson):
     )
     if poisson is None and high > low:
         raise InputError("poisson", None, f"{allowed}: the dataset has {len(known)} of them")
+    if not (poisson is None or is_real(poisson)):
+        raise InputError("poisson", poisson, f"{allowed}, one number")
     try:
         nu = low if poisson is None else float(poisson)
-    except (TypeError, ValueError):
-        raise InputError("poisson", poisson, f"{allowed}, one number") from None
+    except OverflowError:  # a whole number of more than 308 digits
+        nu = np.inf
     if not low - SAME <= nu <= high + SAME:
         raise InputError("poisson", poisson, f"{allowed}; microslip.solve computes any")
     return nu
@@ -272,17 +280,40 @@ def _spare_folder():
 
 def _labelled(name, given):
     """A DataArray of numbers >= 0; sequences get a dimension of their name."""
+    array = given if isinstance(given, xr.DataArray) else _array(name, given)
+    if array.dtype.kind not in "iuf":
+        raise InputError(name, given, f"{ALLOWED}, not of type {array.dtype}")
     try:
-        array = given if isinstance(given, xr.DataArray) else np.asarray(given, float)
         hertz.checked(name, np.asarray(array, float))
-    except (TypeError, ValueError) as error:
-        if str(error).startswith(name):
-            raise
-        raise ValueError(f"{name} = {given!r}: allowed is a number >= 0") from None
+    except ValueError:
+        raise InputError(name, given, ALLOWED) from None
     if isinstance(array, xr.DataArray):
         return array
     if array.ndim > 1:
-        raise ValueError(f"{name}: allowed are {array.ndim} dimensions only with names (DataArray)")
+        allowed = f"allowed are {array.ndim} dimensions only with names (DataArray)"
+        raise InputError(name, given, allowed)
     return xr.DataArray(
         array, dims=(name,) * array.ndim, coords={name: array} if array.ndim else {}
     )
+
+
+def _array(name, given):
+    """What is given as an array: of floats, where it holds numbers.
+
+    NumPy makes floats of texts, times, masked places and quantities, too, without a word.
+    """
+    if hasattr(given, "units"):
+        raise InputError(name, given, f"{ALLOWED}, dimensionless, without a unit")
+    if np.ma.is_masked(given):
+        raise InputError(name, given, f"{ALLOWED}, none of them masked")
+    try:
+        array = np.asarray(given)
+        if array.dtype.kind in "iuf" or all(_is_plain(one) for one in array.flat):
+            return array.astype(float)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(name, given, ALLOWED) from None
+    return array
+
+
+def _is_plain(value):
+    return isinstance(value, Real | Decimal) and not isinstance(value, bool | np.generic)

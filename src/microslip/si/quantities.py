@@ -11,7 +11,7 @@ import math
 import re
 import sys
 from dataclasses import dataclass
-from decimal import Decimal
+from decimal import Decimal, InvalidOperation
 from numbers import Real
 
 import numpy as np
@@ -136,8 +136,13 @@ def _described(unit):
 
 def _from_text(text, unit):
     digits, rest = _split(text)
-    number = float(digits)
-    if math.isinf(number):
+    try:
+        zero = Decimal(digits) == 0
+    except InvalidOperation:  # an exponent of twenty digits, which float takes all the same
+        raise UnitError(
+            f"read {digits}, whose exponent is beyond the range of floating-point numbers"
+        ) from None
+    if math.isinf(float(digits)):
         raise UnitError(f"read {digits}, which is beyond the range of floating-point numbers")
     if unit == "":
         if rest not in ("", "%", "percent"):
@@ -146,7 +151,7 @@ def _from_text(text, unit):
         shown = ""
     else:
         value, shown = _with_unit(digits, rest, unit)
-    if value == 0.0 and Decimal(digits) != 0:
+    if value == 0.0 and not zero:
         raise UnitError(f"read {digits}, which is below the range of floating-point numbers")
     return Given(value, f"{' '.join(text.split())}{shown}")
 

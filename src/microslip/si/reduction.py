@@ -61,9 +61,12 @@ def motion_for(
     def missing(log_amplitude):
         nonlocal last
         last = replace(motion, amplitude=math.exp(log_amplitude))
-        found = friction_of(contact, last, tolerance).mu_macro
+        answer = friction_of(contact, last, tolerance)
+        found = answer.mu_macro
         if not math.isfinite(found):
             raise _NoAnswerError
+        if motion.speed == 0.0 and found <= answer.mu_macro_error:
+            found = 0.0  # of static friction nothing is left, which no run says to the last digit
         return found - (1.0 - share)
 
     unit = contact.u_lim / (contact.contact_radius if motion.scene == "bore" else 1.0)

@@ -34,6 +34,11 @@ PREFIXES = frozenset(
         *("deci", "centi", "milli", "micro", "nano", "pico"),
     }
 )
+MOST_FACTORS = 12
+"""Units that a text may multiply; pint reads long products by recursion."""
+PLURALS = frozenset({"lb", "oz"})
+"""Symbols that take a plural; behind all others an s would be a second left without its sign, as in
+Pas for Pa*s."""
 CYCLIC = ("hertz", "counts_per_second")
 """How names of units end that count periods: 1 Hz is one turn a second."""
 TURN_RATE = {"radian": 1, "second": -1}
@@ -123,6 +128,8 @@ def factors(text: str):
         power = _POWER.match(text, name.end())
         exponent = int((power[1] or power[2]).translate(_RAISED)) if power else 1
         found.append((name[0], sign * exponent))
+        if len(found) > MOST_FACTORS:
+            raise UnitError(f"found more than {MOST_FACTORS} units in a row")
         place = (power or name).end()
         if place == len(text):
             return found
@@ -147,12 +154,19 @@ def _refuse_strange(name):
     """Raise UnitError unless a name is one of those in the lists above, with a prefix or not."""
     readings = registry().parse_unit_name(name)
     prefix, base = readings[0][:2] if readings else ("", "")
-    if base in METRIC and prefix in PREFIXES or base in OTHER and not prefix:
+    known = base in METRIC and prefix in PREFIXES or base in OTHER and not prefix
+    if known and not _is_plural_symbol(name, base):
         return
     hint = " (the mil of workshops is thou)" if name in ("mil", "mils") else ""
     raise UnitError(
         f"{name!r} is none of the units that are known here{hint}; capitals count, as in MPa and Hz"
     )
+
+
+def _is_plural_symbol(name, base):
+    """Whether a name is the symbol of a unit, by pint's name for it, with an s behind it."""
+    symbol = registry().get_symbol(base)
+    return symbol not in {base, *PLURALS} and name.endswith(f"{symbol}s")
 
 
 def _exponents(unit):
