@@ -56,7 +56,6 @@ NUMBERS = [
     (f"{TRANSVERSE} --time-limit 0", "--time-limit = '0'", "a number above 0"),
     (f"{TRANSVERSE} --time-limit nan", "--time-limit = 'nan'", "a number above 0"),
     (f"{TRANSVERSE} --time-limit 5s", "--time-limit = '5s'", "a number"),
-    (f"{TRANSVERSE} --tolerance none", "--tolerance = 'none'", "where cells and steps are imposed"),
 ]
 
 MINUS, ARABIC_THREE, WIDE_ONE = "\N{MINUS SIGN}", "\N{ARABIC-INDIC DIGIT THREE}", "\uff11"
@@ -122,8 +121,8 @@ NAMES = [
 ]
 
 OPTIONS = [
-    ("", "COMMAND is missing", "allowed: point, sweep, predict"),
-    ("solve", "COMMAND = 'solve'", "point, sweep, predict"),
+    ("", "COMMAND is missing", "allowed: point, sweep, gc, predict"),
+    ("solve", "COMMAND = 'solve'", "point, sweep, gc, predict"),
     ("pont", "COMMAND = 'pont'", "did you mean point?"),
     ("--json", "--json", "COMMAND before other options"),
     ("point --poisson 0.3", "--poisson", "SCENE before other options"),

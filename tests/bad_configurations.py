@@ -183,7 +183,7 @@ EXTENDED = [
     (f"{E}.pressure", "hertzian", "'hertzian'", "allowed is ", "hertz"),
     (f"{E}.pressure", "0", "0 is not allowed", "text"),
     (f"{E}.group", "My figure", '"My figure" is not allowed', "small letters, digits and _"),
-    (f"{E}.title", "''", '"" is not allowed', "text or null"),
+    (f"{E}.title", "''", '"" is not allowed', "text on one line"),
     (f"{E}.velocity", None, "missing; required: scene, group, velocity"),
     (f"{E}.velocity[1]", "-1", "-1 is not allowed", ">= 0"),
     (f"{E}.amplitude", None, "missing; required for elliptic"),
