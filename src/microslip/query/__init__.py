@@ -61,6 +61,20 @@ def open_map(
     CacheError
         One line, for a file that is missing, damaged, or not from a sweep.
     """
+    for argument, given in (("name", name), ("results", results)):
+        if not isinstance(given, str | os.PathLike):
+            raise InputError(argument, given, "allowed is text or a path")
+    try:
+        return _found(name, results, chunks, group)
+    except OSError as error:  # damage inside a file, or a name that no file can have
+        why = " ".join((error.strerror or str(error)).split())[:120]
+        raise CacheError(
+            f"cannot read the dataset {name!s} of {results!s}: {why}; allowed: a netCDF file as the "
+            "workflow makes it: run it again"
+        ) from None
+
+
+def _found(name, results, chunks, group):
     path = Path(name)
     if path.suffix != ".nc":
         path = Path(results, f"{name}.nc")
@@ -77,6 +91,7 @@ def open_map(
         raise CacheError(f"{path} is damaged: run the workflow again, which makes it anew")
     dataset = _opened(path, chunks=chunks)
     if "scene" not in dataset.attrs or "mu_macro" not in dataset:
+        dataset.close()
         raise CacheError(f"{path} is not the dataset of a sweep")
     if group is None:
         return dataset

@@ -17,7 +17,7 @@ from microslip.scenes import scene_named
 from microslip.stored import solve_stored
 
 from . import beyond
-from .nodes import SAME, nodes_of
+from .nodes import SAME, nodes_of, refuse_negative
 from .within import refuse_beyond, within
 
 SOURCES = (
@@ -90,6 +90,8 @@ class Friction:
             the map, unless there is a tolerance.
         """
         nodes = nodes_of(self._dataset, periodic=self._motion.periodic, poisson=poisson)
+        if beyond.is_known(self._scene, self._pressure):
+            refuse_negative(nodes)
         nu = _poisson_within(nodes.poisson, poisson)
         velocity, amplitude = self._points(velocity, amplitude)
         flat_velocity = velocity.values.ravel().astype(float)
@@ -107,6 +109,8 @@ class Friction:
         value, error, source = answer
         error[np.isnan(value) | np.isnan(error)] = np.inf
         if tolerance is not None:
+            if isinstance(tolerance, bool | str) or np.ndim(tolerance):
+                raise InputError("tolerance", tolerance, "allowed is a finite number above 0")
             hertz.checked("tolerance", tolerance, low_open=True)
             point = flat_velocity, flat_amplitude
             self._solve((value, error, source), point, nu, tolerance)
@@ -273,12 +277,15 @@ def _spare_folder():
 def _labelled(name, given):
     """A DataArray of numbers >= 0; sequences get a dimension of their name."""
     try:
-        array = given if isinstance(given, xr.DataArray) else np.asarray(given, float)
+        array = given if isinstance(given, xr.DataArray) else np.asarray(given)
+        if array.dtype.kind not in "iuf" and array.size or np.ma.is_masked(given):
+            raise TypeError  # a truth value, a date, text: no number
+        array = array if isinstance(array, xr.DataArray) else array.astype(float)
         hertz.checked(name, np.asarray(array, float))
     except (TypeError, ValueError) as error:
         if str(error).startswith(name):
             raise
-        raise ValueError(f"{name} = {given!r}: allowed is a number >= 0") from None
+        raise InputError(name, given, "allowed is a number >= 0, or several") from None
     if isinstance(array, xr.DataArray):
         return array
     if array.ndim > 1:
