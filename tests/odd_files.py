@@ -116,8 +116,10 @@ CSV = [
     (HEAD + '0,0,"1,000"\n0,1,"2,000"\n', refused("line 2: 4 values", "decimal commas")),
     (SEMI + "0;0;900\n0;1;1.100\n1;0;800\n1;1;1.000\n", refused("line 3", "'1.100'", "thousands")),
     (SEMI + "0;0;900\n0;1;12.345.678\n", refused("line 3", "'12.345.678'")),
-    ("forward\tlateral\tpressure\n0\t0\t900\n0\t1\t1.100\n1\t0\t0\n1\t1\t5\n",
-     refused("line 3", "thousands")),
+    (
+        "forward\tlateral\tpressure\n0\t0\t900\n0\t1\t1.100\n1\t0\t0\n1\t1\t5\n",
+        refused("line 3", "thousands"),
+    ),
     (SEMI + "0;0;1.000\n0;1;2.000\n1;0;3.000\n1;1;4.000\n", PLAIN),
     (SEMI + "0;0;0\n0;1;2.000\n1;0;3.000\n1;1;5.000\n", [[0.0, 0.2], [0.3, 0.5]]),
     (SEMI + "0;0;1\n0;1;2.0\n1;0;3.000\n1;1;4\n", PLAIN),

@@ -112,7 +112,7 @@ def _number(where, name, word):
 class _Thousands:
     """Finds columns in which points may part thousands, beside numbers that have none.
 
-    Where commas are decimal, 900 and 1.100 may be 900 and 1100, and then are no decimal number each.
+    Where commas are decimal, 900 and 1.100 may be 900 and 1100, and then none is a decimal number.
     Commas as separators tell that they are not decimal.
     """
 

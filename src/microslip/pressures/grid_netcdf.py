@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
@@ -11,6 +13,9 @@ from microslip.pressures import grid_units
 from microslip.pressures.grid_units import COLUMNS, MOST_POINTS
 
 BEGINNINGS = (b"\x89HDF", b"CDF\x01", b"CDF\x02", b"CDF\x05")
+LONGEST = 30
+"""Seconds that a file may take to be opened; a good one takes some hundredths."""
+TRY = "import sys, netCDF4; netCDF4.Dataset(sys.argv[1]).close()"
 ALLOWED = "allowed: a variable pressure with the dimensions and coordinates forward and lateral"
 
 
@@ -24,16 +29,29 @@ def grid(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """
     import xarray as xr  # only here: it takes a while to load
 
-    # From a file: on damaged content in memory HDF5 may search without end.
     with tempfile.TemporaryDirectory(prefix="microslip-") as folder:
         path = Path(folder, "pressure.nc")
         path.write_bytes(content)
+        _refuse_endless(path)
         try:
             with xr.open_dataset(path, engine="netcdf4", decode_times=False) as data:
                 return _grid(data)
         except (OSError, RuntimeError, AttributeError, TypeError) as error:
             said = " ".join(str(error).replace(str(path), "the file").split())[:120]
             raise ValueError(f"not a netCDF file that can be read: {said}") from None
+
+
+def _refuse_endless(path):
+    """Raise ValueError for a file that HDF5 does not come to an end with.
+
+    In a damaged one it may search for ever, which nothing inside a process can stop.
+    """
+    try:
+        subprocess.run([sys.executable, "-c", TRY, path], timeout=LONGEST, capture_output=True)
+    except subprocess.TimeoutExpired:
+        raise ValueError(
+            f"not a netCDF file that can be read: not opened within {LONGEST} s"
+        ) from None
 
 
 def _grid(data):

@@ -69,8 +69,8 @@ def open_map(
     except OSError as error:  # damage inside a file, or a name that no file can have
         why = " ".join((error.strerror or str(error)).split())[:120]
         raise CacheError(
-            f"cannot read the dataset {name!s} of {results!s}: {why}; allowed: a netCDF file as the "
-            "workflow makes it: run it again"
+            f"cannot read the dataset {name!s} of {results!s}: {why}; allowed: a netCDF file as "
+            "the workflow makes it: run it again"
         ) from None
 
 

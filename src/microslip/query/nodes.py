@@ -101,7 +101,9 @@ def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = Non
     _refuse_no_numbers(dataset, ("mu_macro", "mu_macro_error", *axes))
     if dataset["poisson"].ndim and dataset["poisson"].dims != ("poisson",):
         raise InputError(
-            "poisson", f"over {dataset['poisson'].dims}", "friction.at needs one, or an axis of them"
+            "poisson",
+            f"over {dataset['poisson'].dims}",
+            "friction.at needs one, or an axis of them",
         )
     chosen = dataset[["mu_macro", "mu_macro_error"]].assign(known=_known(dataset))
     chosen = chosen.compute()
