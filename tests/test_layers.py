@@ -35,7 +35,7 @@ LAYERS = [
     {"point"},
     {"inside", "trial"},
     {"patches"},
-    {"keys", "schemas", "settings"},
+    {"keys", "schemas", "settings", "strict_yaml"},
     {"grids"},
     {"extended"},
     {"cache", "config", "periods", "netcdf"},

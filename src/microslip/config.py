@@ -25,6 +25,7 @@ from .settings import (
     Stability,
     StudyPoint,
 )
+from .strict_yaml import StrictLoader
 
 # The points of a study's map are computed by every model, at every tolerance.
 MOST_MAP_POINTS = 10_000
@@ -50,9 +51,11 @@ def read_yaml(path):
         with open(path, "rb") as file:
             content = file.read()
     except OSError as error:
-        raise ConfigError(f"{path}: cannot be read: {error.strerror}") from None
+        raise ConfigError(_one_line(f"{path}: cannot be read: {error.strerror}")) from None
+    except ValueError:  # of a name that no file can have
+        raise ConfigError(f"{str(path)!r}: cannot be read: no name of a file") from None
     try:
-        mapping = yaml.load(_as_text(content, path), _UniqueKeyLoader)
+        mapping = yaml.load(_as_text(content, path), StrictLoader)
     except RecursionError:
         raise ConfigError(f"{path}: not valid YAML: too many levels") from None
     except yaml.reader.ReaderError as error:
@@ -237,42 +240,3 @@ def _once(values, where):
 
 def _one_line(text):
     return " ".join(str(text).split())
-
-
-class _UniqueKeyLoader(yaml.SafeLoader):
-    """YAML silently keeps the last of two equal keys; here that is an error.
-
-    A key beside a merged mapping (<<) may replace one of it: that is what merging is for.
-    """
-
-    def __init__(self, stream):
-        super().__init__(stream)
-        self._checked = []
-
-    def flatten_mapping(self, node):
-        if not any(node is other for other in self._checked):  # afterwards it has what is merged
-            self._checked.append(node)
-            self._refuse_twice(node)
-        super().flatten_mapping(node)
-
-    def _refuse_twice(self, node):
-        seen = set()
-        for key_node, _ in node.value:
-            if key_node.tag == "tag:yaml.org,2002:merge":
-                continue
-            key = str(self.construct_object(key_node, deep=True))
-            if key in seen:
-                raise yaml.constructor.ConstructorError(
-                    None, None, f"the key {key} occurs twice", key_node.start_mark
-                )
-            seen.add(key)
-
-    def construct_object(self, node, deep=False):
-        try:
-            return super().construct_object(node, deep)
-        except (yaml.YAMLError, RecursionError):
-            raise
-        except Exception as error:  # such as a date with month 13, or !!bool before a name
-            raise yaml.constructor.ConstructorError(
-                None, None, f"{node.tag.rpartition(':')[2]}: {error}", node.start_mark
-            ) from None

@@ -53,7 +53,8 @@ def with_files_found(given, where, folders, strict=True):
         except InputError as error:
             if strict:
                 said = f"{error.value!r}: {error.allowed}"
-                raise ConfigError(f"{where}.{name}.{error.argument}: {said}") from None
+                line = f"{where}.{name}.{error.argument}: {said}"
+                raise ConfigError(" ".join(line.split())) from None
         else:
             found[name] = settings | {"pressure": file.placed}
     return found

@@ -8,6 +8,7 @@ somebody's own.
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -22,6 +23,7 @@ RECORD = re.compile(r"[0-9a-f]{64}\.json")
 BATCH = re.compile(r"[0-9a-f]{16}\.json")
 MADE = (".nc", ".html", ".png", ".pdf")
 FOLDERS_MADE = (".", "summaries", "figures")
+DEFAULT = "config/config.yaml"
 KINDS = ("points and single runs", "batches", "datasets, pages and figures")
 
 
@@ -42,7 +44,16 @@ def _path_of(request):
 
 
 def there(folder: Path) -> Iterator[tuple[str, Path]]:
-    """(kind of KINDS, path) of every file in a folder of results that a run has made."""
+    """(kind of KINDS, path) of every file in a folder of results that a run has made.
+
+    A folder or a link under the name of one is somebody's own.
+    """
+    for kind, path in _named(folder):
+        if path.is_file() and not path.is_symlink():
+            yield kind, path
+
+
+def _named(folder):
     for group in sorted(set(sweep.FOLDERS.values())):
         for path in sorted((folder / group).rglob("*.json")):
             if RECORD.fullmatch(path.name):
@@ -83,9 +94,10 @@ def main(arguments: list[str]) -> int:
     """Entry point of ``microslip gc``; returns the exit code: 0, or 2 for bad input."""
     options = _parser().parse_args(arguments)
     try:
-        configurations = [config.load(path) for path in options.configfile]
+        configurations = [config.load(path) for path in options.configfile or [DEFAULT]]
         folder = _folder(configurations)
-        if not folder.is_dir():
+        cache.refuse_unusable([folder], [])
+        if not os.path.isdir(folder):
             raise ConfigError(f"results: {folder} is not there; allowed: a folder of results")
         found = left_over(folder, [Plan(configuration) for configuration in configurations])
         _say(found, folder, options.delete, options.list)
@@ -98,11 +110,15 @@ def main(arguments: list[str]) -> int:
 
 
 def _folder(configurations: list[Configuration]) -> Path:
-    folders = {Path(configuration.results) for configuration in configurations}
+    """The one folder of results that they all have, however its path is written."""
+    folders = {
+        os.path.realpath(configuration.results): Path(configuration.results)
+        for configuration in configurations
+    }
     if len(folders) > 1:
-        names = ", ".join(sorted(map(str, folders)))
+        names = ", ".join(sorted(map(str, folders.values())))
         raise ConfigError(f"results: {names} are several folders; allowed: configurations of one")
-    return folders.pop()
+    return next(iter(folders.values()))
 
 
 def _say(found, folder, deletes, lists):
@@ -126,7 +142,7 @@ def _parser():
     parser.add_argument(
         "--configfile",
         nargs="+",
-        default=["config/config.yaml"],
+        action="extend",  # of an option given twice none may be forgotten: its results would go
         metavar="FILE",
         help="configurations whose results are to stay (config/config.yaml)",
     )

@@ -7,10 +7,13 @@ asked first.
 
 from __future__ import annotations
 
+import atexit
 import io
 import os
 import re
+import shutil
 import sys
+import tempfile
 from contextlib import redirect_stderr
 
 from microslip import config, schemas
@@ -32,6 +35,7 @@ def main(arguments: list[str]) -> int:
         except config.ConfigError as error:
             complain(f"microslip sweep: --configfile: {error}")
             return 2
+        _spare_cache()
         from snakemake.cli import main as snakemake
 
         snakemake(arguments)  # ends by SystemExit
@@ -39,6 +43,24 @@ def main(arguments: list[str]) -> int:
         complain("microslip sweep: interrupted")
         return 130
     return 0
+
+
+def _spare_cache():
+    """Have Snakemake keep its own files in a temporary folder where the home takes none.
+
+    It makes a folder there whenever it starts, and ends with a traceback where it cannot.
+    """
+    home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    try:
+        os.makedirs(os.path.join(home, "snakemake"), exist_ok=True)
+        if os.access(home, os.W_OK):
+            return
+    except OSError:
+        pass
+    spare = tempfile.mkdtemp(prefix="microslip-")
+    atexit.register(shutil.rmtree, spare, ignore_errors=True)
+    os.environ["XDG_CACHE_HOME"] = spare
+    complain(f"microslip sweep: {home} cannot be written to: Snakemake's own files are in {spare}")
 
 
 def _check(arguments):
@@ -60,6 +82,10 @@ def _check(arguments):
     for entry in options.config or ():
         if not KEY_AND_VALUE.match(entry):
             raise InputError("--config", entry, "allowed is KEY=VALUE")
+    if sum(word.partition("=")[0] == "--configfile" for word in arguments) > 1:
+        raise InputError(
+            "--configfile", "twice", "Snakemake would forget the first; allowed is --configfile A B"
+        )
     for file in options.configfile or ():
         config.read_yaml(os.path.relpath(file))
 

@@ -12,6 +12,11 @@ from microslip.pressures.grid_units import COLUMNS, MOST_POINTS
 SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
 HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\])?")
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I | re.A)
+SPREADSHEET_ERROR = re.compile(r"#(N/A|NV|[A-Z/0]+[!?])")
+"""What spreadsheets write into a cell without a value, such as #N/A and #DIV/0!."""
+GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+", re.A)
+"""A number with points between thousands, or with three decimals."""
+UNGROUPED = re.compile(r"[+-]?[1-9]\d{0,2}", re.A)
 SAME = 1e-9
 """Coordinates that differ by less than this share of their range are the same one."""
 ALLOWED = "forward,lateral,pressure in any order, with units such as forward [mm] if at all"
@@ -31,12 +36,15 @@ def grid(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     lines = _lines(content)
     where, heading = next(lines, (1, ""))
     separator, order, units = _columns(where, heading)
-    rows, places = [], []
+    rows, places, thousands = [], [], _Thousands(separator)
     for where, line in lines:
-        rows.append(_numbers(where, line, separator, order))
+        words = _row(where, line, separator, order)
+        rows.append([_number(where, *word) for word in zip(COLUMNS, words, strict=True)])
         places.append(where)
+        thousands.see(where, words)
         if len(rows) > MOST_POINTS:
             raise ValueError(f"line {where}: more than {MOST_POINTS} points; allowed: at most that")
+    thousands.refuse()
     table = np.array(rows, float).reshape(-1, 3)
     table *= grid_units.factors(units)
     return _filled(table, places)
@@ -56,7 +64,8 @@ def _lines(content):
         raise ValueError(f"line {line}: not text; allowed: CSV or netCDF")
     text = text.replace("\r\n", "\n").replace("\r", "\n")
     for number, line in enumerate(text.split("\n"), 1):
-        if line.strip() and not line.lstrip().startswith("#"):
+        text = line.strip()
+        if text and (not text.startswith("#") or SPREADSHEET_ERROR.match(text)):
             yield number, line.rstrip()
 
 
@@ -75,7 +84,8 @@ def _columns(where, heading):
     raise ValueError(f"line {where}: the heading is {heading[:80]!r}; allowed: {ALLOWED}")
 
 
-def _numbers(where, line, separator, order):
+def _row(where, line, separator, order):
+    """Words of a line, in the order of COLUMNS."""
     words = _words(line, separator)
     if separator != "," and "," in line:
         word = next(word for word in words if "," in word)
@@ -86,7 +96,7 @@ def _numbers(where, line, separator, order):
             f"line {where}: {len(words)} values; allowed: {len(order)}, parted by a "
             f"{SEPARATORS[separator]} as in the heading{hint}"
         )
-    return [_number(where, name, words[i]) for name, i in zip(COLUMNS, order, strict=True)]
+    return [words[i] for i in order]
 
 
 def _number(where, name, word):
@@ -97,6 +107,38 @@ def _number(where, name, word):
         allowed = "a finite number" + (", 0 or above" if name == "pressure" else "")
         raise ValueError(f"line {where}: {name} is {word.lower()}; allowed: {allowed}")
     return value
+
+
+class _Thousands:
+    """Finds columns in which points may part thousands, beside numbers that have none.
+
+    Where commas are decimal, 900 and 1.100 may be 900 and 1100, and then none is a decimal number.
+    Commas as separators tell that they are not decimal.
+    """
+
+    def __init__(self, separator):
+        self.possible = dict.fromkeys(COLUMNS if separator != "," else ())
+        self.plain = set()
+
+    def see(self, where, words):
+        for name, word in zip(COLUMNS, words, strict=True):
+            if name not in self.possible:
+                continue
+            if UNGROUPED.fullmatch(word):
+                self.plain.add(name)
+            elif GROUPED.fullmatch(word):
+                self.possible[name] = self.possible[name] or (where, word)
+            elif word not in ("0", "-0", "+0"):
+                del self.possible[name]
+
+    def refuse(self):
+        for name, first in self.possible.items():
+            if first and name in self.plain:
+                where, word = first
+                raise ValueError(
+                    f"line {where}: {name} is {word!r} beside whole numbers, so that its point may "
+                    "part thousands; allowed: no such points, and as many decimals in all lines"
+                )
 
 
 def _filled(table, places):

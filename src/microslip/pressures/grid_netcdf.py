@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
 import numpy as np
 
 from microslip.pressures import grid_units
 from microslip.pressures.grid_units import COLUMNS, MOST_POINTS
 
 BEGINNINGS = (b"\x89HDF", b"CDF\x01", b"CDF\x02", b"CDF\x05")
+LONGEST = 30
+"""Seconds that a file may take to be opened; a good one takes some hundredths."""
+TRY = "import sys, netCDF4; netCDF4.Dataset(sys.argv[1]).close()"
 ALLOWED = "allowed: a variable pressure with the dimensions and coordinates forward and lateral"
 
 
@@ -19,15 +27,31 @@ def grid(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     ValueError
         For what is not described above, in one line.
     """
-    import netCDF4  # only here: these take a while to load
-    import xarray as xr
+    import xarray as xr  # only here: it takes a while to load
 
+    with tempfile.TemporaryDirectory(prefix="microslip-") as folder:
+        path = Path(folder, "pressure.nc")
+        path.write_bytes(content)
+        _refuse_endless(path)
+        try:
+            with xr.open_dataset(path, engine="netcdf4", decode_times=False) as data:
+                return _grid(data)
+        except (OSError, RuntimeError, AttributeError, TypeError) as error:
+            said = " ".join(str(error).replace(str(path), "the file").split())[:120]
+            raise ValueError(f"not a netCDF file that can be read: {said}") from None
+
+
+def _refuse_endless(path):
+    """Raise ValueError for a file that HDF5 does not come to an end with.
+
+    In a damaged one it may search for ever, which nothing inside a process can stop.
+    """
     try:
-        store = xr.backends.NetCDF4DataStore(netCDF4.Dataset("pressure", memory=content))
-        with xr.open_dataset(store, decode_times=False) as data:  # which closes what it opened
-            return _grid(data)
-    except (OSError, RuntimeError) as error:
-        raise ValueError(f"not a netCDF file: {str(error)[:120]}") from None
+        subprocess.run([sys.executable, "-c", TRY, path], timeout=LONGEST, capture_output=True)
+    except subprocess.TimeoutExpired:
+        raise ValueError(
+            f"not a netCDF file that can be read: not opened within {LONGEST} s"
+        ) from None
 
 
 def _grid(data):
@@ -42,7 +66,9 @@ def _grid(data):
             raise ValueError(f"{name} holds {data[name].dtype}; allowed: numbers")
     if data["pressure"].size > MOST_POINTS:
         raise ValueError(f"{data['pressure'].size} points; allowed: at most {MOST_POINTS}")
-    factors = grid_units.factors([data[name].attrs.get("units") for name in COLUMNS])
+    if not data["pressure"].size:
+        raise ValueError("no points; allowed: two or more along each coordinate")
+    factors = grid_units.factors([_unit(name, data[name].attrs) for name in COLUMNS])
     forward, lateral, values = (
         np.array(data[name].transpose(*(d for d in COLUMNS if d in data[name].dims)), float)
         * factor
@@ -65,3 +91,12 @@ def _grid(data):
             "allowed: finite numbers, 0 or above"
         )
     return forward, lateral, values
+
+
+def _unit(name, attributes):
+    """The unit among the attributes of a variable, however the attribute is spelt."""
+    given = [value for key, value in attributes.items() if key.lower() in ("unit", "units")]
+    if len(given) > 1 or not all(isinstance(value, str) for value in given):
+        said = ", ".join(map(str, given))[:80]
+        raise ValueError(f"{name} has the units {said}; allowed: one attribute units, a text")
+    return given[0] if given else None

@@ -54,6 +54,7 @@ def of_grid(
         for label, axis in zip(AXES, (forward, lateral), strict=True)
     ]
     values = values / values.max()
+    points = _in_steps(points)
     grid, other = (_grid(points, values, kind) for kind in sorted(READINGS, key=reading.__ne__))
     readings = (
         _pressure(f"{name} (read as {other.reading})", other),
@@ -94,6 +95,24 @@ def _even(label, axis):
             "not evenly spaced; allowed: two coordinates or more, at equal distances",
         )
     return np.linspace(axis[0], axis[-1], len(axis))
+
+
+def _in_steps(points):
+    """Coordinates from 0 in units of the longer step: the unit of length does not matter, and
+    products of steps as small or large as numbers can be are no numbers.
+
+    Raises InputError for steps that are too different.
+    """
+    steps = [places[1] - places[0] for places in points]
+    longest = max(steps)
+    if not (np.isfinite(longest) and min(steps) > 1e-12 * longest):
+        raise InputError(
+            "forward and lateral", tuple(map(float, steps)), "steps of one unit are allowed"
+        )
+    return [
+        np.arange(len(places)) * (step / longest)
+        for places, step in zip(points, steps, strict=True)
+    ]
 
 
 @dataclass(frozen=True, eq=False)

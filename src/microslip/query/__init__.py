@@ -64,6 +64,17 @@ def open_map(
     if not (isinstance(name, str | os.PathLike) and isinstance(os.fspath(name), str)):
         raise InputError("name", name, "allowed is the name of a sweep, or a path")
     refuse_no_folder(results)
+    try:
+        return _found(name, results, chunks, group)
+    except OSError as error:  # damage inside a file, or a name that no file can have
+        why = " ".join((error.strerror or str(error)).split())[:120]
+        raise CacheError(
+            f"cannot read the dataset {name!s} of {results!s}: {why}; allowed: a netCDF file as "
+            "the workflow makes it: run it again"
+        ) from None
+
+
+def _found(name, results, chunks, group):
     path = Path(name)
     if path.suffix != ".nc":
         path = Path(results, f"{name}.nc")
@@ -80,6 +91,7 @@ def open_map(
         raise CacheError(f"{path} is damaged: run the workflow again, which makes it anew")
     dataset = _opened(path, chunks=chunks)
     if "scene" not in dataset.attrs or "mu_macro" not in dataset:
+        dataset.close()
         raise CacheError(f"{path} is not the dataset of a sweep")
     if group is None:
         return dataset

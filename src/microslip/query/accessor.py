@@ -20,7 +20,7 @@ from microslip.scenes import scene_named
 from microslip.stored import solve_stored
 
 from . import beyond
-from .nodes import SAME, nodes_of
+from .nodes import SAME, nodes_of, refuse_negative
 from .within import refuse_beyond, within
 
 SOURCES = (
@@ -94,6 +94,8 @@ class Friction:
             the map, unless there is a tolerance.
         """
         nodes = nodes_of(self._dataset, periodic=self._motion.periodic, poisson=poisson)
+        if beyond.is_known(self._scene, self._pressure):
+            refuse_negative(nodes)
         nu = _poisson_within(nodes.poisson, poisson)
         velocity, amplitude = self._points(velocity, amplitude)
         flat_velocity = velocity.values.ravel().astype(float)

@@ -98,6 +98,13 @@ def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = Non
             raise InputError(
                 name, None, "friction.at needs it, and the dataset has lost it: keep it"
             )
+    _refuse_no_numbers(dataset, ("mu_macro", "mu_macro_error", *axes))
+    if dataset["poisson"].ndim and dataset["poisson"].dims != ("poisson",):
+        raise InputError(
+            "poisson",
+            f"over {dataset['poisson'].dims}",
+            "friction.at needs one, or an axis of them",
+        )
     chosen = dataset[["mu_macro", "mu_macro_error"]].assign(known=_known(dataset))
     chosen = chosen.compute()
     for extra in set(chosen.dims) - set(axes):
@@ -111,6 +118,7 @@ def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = Non
             raise InputError(
                 dim, "no entry", "friction.at needs one at least, and none is selected"
             )
+    _refuse_contradictions(chosen, axes)
     chosen = chosen.drop_duplicates(list(axes)).sortby(list(axes)).transpose(*axes)
     values, errors = (
         chosen[name].where(chosen["known"]).values.astype(float)
@@ -120,7 +128,65 @@ def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = Non
         values, errors = values[:, None], errors[:, None]
     amplitude = chosen["amplitude"].values.astype(float) if periodic else np.zeros(1)
     poissons, velocity = (chosen[dim].values.astype(float) for dim in ("poisson", "velocity"))
-    return Nodes(poissons, amplitude, velocity, values, errors)
+    nodes = Nodes(poissons, amplitude, velocity, values, errors)
+    _refuse_impossible(nodes)
+    return nodes
+
+
+def _refuse_no_numbers(dataset, names):
+    for name in names:
+        kind = dataset[name].dtype
+        if kind.kind not in "iuf":
+            raise InputError(name, f"of type {kind}", "friction.at needs numbers there")
+
+
+def _refuse_contradictions(chosen, axes):
+    """Of nodes that are there twice, as after a join, one is taken: they have to be the same."""
+    for axis in axes:
+        values = chosen[axis].values
+        _, first = np.unique(values, return_index=True)
+        twice = np.setdiff1d(np.arange(len(values)), first)
+        for index in twice:
+            one = chosen.isel({axis: int(np.flatnonzero(values == values[index])[0])})
+            other = chosen.isel({axis: index})
+            both = one["known"] & other["known"]
+            apart = np.abs(one["mu_macro"] - other["mu_macro"]).where(both, 0.0)
+            allowed = one["mu_macro_error"] + other["mu_macro_error"]
+            if bool((apart > allowed).any()):
+                raise InputError(
+                    axis,
+                    float(values[index]),
+                    "is there twice with mu_macro that differ by more than their errors: keep one",
+                )
+
+
+def _refuse_impossible(nodes):
+    """Coordinates, or values by more than their errors, that no sweep can have."""
+    for name, top in (("poisson", 0.5 + SAME), ("amplitude", np.inf), ("velocity", np.inf)):
+        axis = getattr(nodes, name)
+        wrong = axis[~(np.isfinite(axis) & (axis >= 0.0) & (axis <= top))]
+        if wrong.size:
+            allowed = "0 to 0.5" if name == "poisson" else "a finite number >= 0"
+            raise InputError(name, float(wrong[0]), f"in the dataset; allowed is {allowed}")
+    if (nodes.errors < 0.0).any():
+        raise InputError(
+            "mu_macro_error", float(np.nanmin(nodes.errors)), "in the dataset; allowed is 0 or more"
+        )
+    _refuse_values(nodes, -1.0)
+
+
+def refuse_negative(nodes: Nodes) -> None:
+    """Raise InputError for mu_macro below 0, where the vibration cannot turn friction round."""
+    _refuse_values(nodes, 0.0)
+
+
+def _refuse_values(nodes, least):
+    """Raise InputError for mu_macro outside of least to 1: the force is at most mu F_z."""
+    off = np.fmax(nodes.values - 1.0, least - nodes.values) > nodes.errors + SAME
+    if off.any():
+        raise InputError(
+            "mu_macro", float(nodes.values[off][0]), f"in the dataset; allowed is {least:g} to 1"
+        )
 
 
 def _known(dataset):
@@ -131,4 +197,10 @@ def _known(dataset):
         raise InputError(
             "converged", None, "friction.at needs it, and the dataset has lost it: keep it"
         )
-    return dataset["mu_macro_error"] <= float(dataset.attrs["tolerance"])
+    tolerance = dataset.attrs["tolerance"]
+    try:
+        return dataset["mu_macro_error"] <= float(tolerance)
+    except (TypeError, ValueError):
+        raise InputError(
+            "tolerance", tolerance, "friction.at needs a number there, or the variable converged"
+        ) from None

@@ -7,6 +7,7 @@ workflow's folder of schemas links to it. It is closed: a key that it does not k
 import difflib
 import json
 import math
+import re
 from functools import cache
 from pathlib import Path
 
@@ -122,7 +123,9 @@ def _as_number(text):
         return "allowed: a finite number"
     mantissa, _, exponent = text.lower().partition("e")
     if not exponent:
-        return f"write the number without quotes: {text}"
+        # YAML takes +.5 for text, and 010 for another number.
+        plain = re.fullmatch(r"-?(0|[1-9][0-9]*)?(\.[0-9]*)?", text)
+        return f"write the number without quotes: {text if plain else f'{value:.17g}'}"
     # YAML 1.1 takes it for a number only with a point before and a sign after the e.
     mantissa = mantissa if "." in mantissa else f"{mantissa}.0"
     return f"write {mantissa}e{int(exponent):+d}"
@@ -147,6 +150,8 @@ def _allowed(rule):
     ranges = [f"{sign} {rule[key]:g}" for key, sign in limits.items() if key in rule]
     if rule.get("multipleOf") == 2:
         words["integer"] = "an even number"
+    if kinds[:1] == ["string"] and "number" in kinds:
+        words["number"] = "or a number"
     first, *others = [words[kind] for kind in kinds]
     return " ".join([first, " and ".join(ranges), *others]).replace("  ", " ").strip()
 
@@ -168,4 +173,5 @@ def _dotted(path):
 def shown(value):
     """Write a value as in JSON, cut to 60 characters."""
     text = json.dumps(value, default=str, ensure_ascii=False)
+    text = text.encode("utf-8", "backslashreplace").decode()  # halves of a character, too
     return text if len(text) <= 60 else f"{text[:57]}..."

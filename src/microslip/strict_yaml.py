@@ -1,0 +1,76 @@
+"""YAML that means what it shows: no key twice, and no number that people would read as another.
+
+YAML itself keeps the last of two equal keys, and takes 010 for 8, 1:30 for 90 and 1.0e-400 for 0,
+all without a word.  Imports nothing heavy, since the workflow reads it whenever it is parsed.
+"""
+
+import re
+
+import yaml
+
+
+class StrictLoader(yaml.SafeLoader):
+    """Loader of plain data, for yaml.load.
+
+    A key beside a merged mapping (<<) may replace one of it: that is what merging is for.  What is
+    refused raises yaml.constructor.ConstructorError.
+    """
+
+    def __init__(self, stream):
+        super().__init__(stream)
+        self._checked = []
+
+    def flatten_mapping(self, node):
+        if not any(node is other for other in self._checked):  # afterwards it has what is merged
+            self._checked.append(node)
+            self._refuse_twice(node)
+        super().flatten_mapping(node)
+
+    def _refuse_twice(self, node):
+        seen = []
+        for key_node, _ in node.value:
+            if key_node.tag == "tag:yaml.org,2002:merge":
+                continue
+            key = self.construct_object(key_node, deep=True)
+            if any(key == other or str(key) == str(other) for other in seen):  # 1 and 1.0 are one
+                raise yaml.constructor.ConstructorError(
+                    None, None, f"the key {key} occurs twice", key_node.start_mark
+                )
+            seen.append(key)
+
+    def construct_yaml_int(self, node):
+        """A whole number, unless YAML would read another one than the text shows to people."""
+        self._refuse_other_bases(node)
+        return super().construct_yaml_int(node)
+
+    def construct_yaml_float(self, node):
+        """A number, unless YAML would read another one than the text shows to people."""
+        self._refuse_other_bases(node)
+        value = super().construct_yaml_float(node)
+        if value == 0.0 and re.search("[1-9]", re.split("[eE]", node.value)[0]):
+            raise ValueError(f"{node.value} is not allowed: nearer 0 than numbers can be; write 0")
+        return value
+
+    def _refuse_other_bases(self, node):
+        """YAML 1.1 reads 010 as 8 and 1:30 as 90."""
+        text = self.construct_scalar(node).lstrip("+-")
+        if ":" in text:
+            raise ValueError(f"{node.value} is not allowed: to base 60 for YAML; write one number")
+        if re.fullmatch("0[0-9_]+", text):
+            raise ValueError(
+                f"{node.value} is not allowed: to base 8 for YAML; write it without the 0 in front"
+            )
+
+    def construct_object(self, node, deep=False):
+        try:
+            return super().construct_object(node, deep)
+        except (yaml.YAMLError, RecursionError):
+            raise
+        except Exception as error:  # such as a date with month 13, or !!bool before a name
+            raise yaml.constructor.ConstructorError(
+                None, None, f"{node.tag.rpartition(':')[2]}: {error}", node.start_mark
+            ) from None
+
+
+StrictLoader.add_constructor("tag:yaml.org,2002:int", StrictLoader.construct_yaml_int)
+StrictLoader.add_constructor("tag:yaml.org,2002:float", StrictLoader.construct_yaml_float)
