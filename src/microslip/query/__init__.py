@@ -64,7 +64,7 @@ def open_map(
     if not (isinstance(name, str | os.PathLike) and isinstance(os.fspath(name), str)):
         raise InputError("name", name, "allowed is the name of a sweep, or a path")
     if not isinstance(results, str | os.PathLike):
-        raise InputError("results", results, "allowed is the name of a folder")
+        raise InputError("results", results, "is not allowed; allowed: the name of a folder")
     refuse_no_folder(results)
     try:
         return _found(name, results, chunks, group)
