@@ -75,9 +75,12 @@ def test_the_line_for_a_point_asks_for_that_point(request_):
     options = cli.build_parser("point").parse_args(words)
     assert options.scene == request_["scene"]
     amplitude = getattr(options, "amplitude", None)
-    given = {n: number(getattr(options, n)) for n in ("velocity", "poisson", "tolerance")}
-    given["amplitude"] = None if amplitude is None else number(amplitude)
-    given |= {n: getattr(options, n) for n in ("model", "cells", "steps")}
+    given = {n: number(float(getattr(options, n))) for n in ("velocity", "poisson", "tolerance")}
+    given["amplitude"] = None if amplitude is None else number(float(amplitude))
+    given["model"] = options.model
+    for name in ("cells", "steps"):
+        text = getattr(options, name)
+        given[name] = None if text is None else int(text)
     assert given == {name: request_[name] for name in given}
 
 

@@ -555,13 +555,13 @@ def test_the_legends_name_every_model_and_mark_and_no_method_alone(datasets, fig
         assert len({handle.get_marker() for handle in models.legend_handles}) == len(MODELS)
 
 
-def test_work_is_called_what_the_dataset_calls_it(small):
+def test_effort_is_called_what_the_dataset_calls_it(small):
     for words in ("step solves times unknowns", "iterations times unknowns"):
         dataset = small["accuracy_cost"].copy()
-        dataset["work"].attrs["long_name"] = words
+        dataset["effort"].attrs["long_name"] = words
         axes = plot.draw("accuracy_vs_work", {"accuracy_cost": dataset}).axes[0]
         shown = axes.get_xlabel().replace("\n", " ").replace(r"$\times$", "times")
-        assert shown == f"work: {words} (dimensionless)"
+        assert shown == f"effort: {words} (dimensionless)"
 
 
 # Profiles

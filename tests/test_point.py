@@ -417,7 +417,7 @@ def test_no_tolerance_is_asked_for_by_name():
         ("transverse", 1.0, {}, "cells and steps"),
         ("transverse", 1.0, {"cells": 16}, "steps"),
         ("bore", 1.0, {"steps": 16}, "cells"),
-        ("normal", 1.0, {}, "steps and cells"),
+        ("normal:lateral=1", 0.5, {}, "steps and cells"),
         ("transverse", 1.0, {"model": "dahl"}, "steps"),
     ],
 )

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import microslip
-from microslip.friction import JIT
+from microslip.compiled import OPTIONS
 from microslip.models.sectors import FUSED
 
 PACKAGE = Path(microslip.__file__).parent
@@ -113,13 +113,12 @@ def test_a_signal_ends_a_command_in_the_middle_of_a_kernel(number, code, word, t
 
 
 def test_kernels_hold_no_lock_that_would_keep_an_interrupt_waiting():
-    assert JIT["nogil"] is FUSED["nogil"] is True
-    found = [
-        line
-        for path in PACKAGE.rglob("*.py")
-        for line in re.findall(r"^ *@(?:numba\.)?n?jit\b.*", path.read_text(), re.MULTILINE)
-    ]
-    assert found and [line for line in found if not re.search(r"\*\*(JIT|FUSED)\)", line)] == []
+    assert OPTIONS["nogil"] is True and "nogil" not in FUSED
+    sources = {path: path.read_text() for path in PACKAGE.rglob("*.py")}
+    assert sum("import kernel" in text for text in sources.values()) > 10
+    by_themselves = [p for p, text in sources.items() if re.search(r"\bn?jit\b", text)]
+    assert [path.name for path in by_themselves] == ["compiled.py"]
+    assert not [p for p, t in sources.items() if re.search(r"@kernel\(.*nogil", t)]
 
 
 WRITING = """
