@@ -68,7 +68,9 @@ def look_after(*files):
     """
     if STORED_ELSEWHERE and workflow.is_main_process:
         # There is no seal here to look at. Collecting again from batches takes little.
-        workflow.dag.forcerules.update(map(workflow.get_rule, SEALING))
+        # A module's rules have a prefix.
+        sealing = (rule for rule in workflow.rules if rule.name.endswith(SEALING))
+        workflow.dag.forcerules.update(sealing)
     for file in files:
         there = placed(file)
         if ASKING and os.path.lexists(there):
@@ -123,7 +125,7 @@ def datasets_for(figure):
 
 
 # Rules that seal what they make.
-SEALING = ["collect", "collect_study", "draw_figure", "explorer"]
+SEALING = ("collect", "collect_study", "draw_figure", "explorer")
 STORED_ELSEWHERE = workflow.storage_settings.default_storage_provider is not None
 GROUPS = {"batches", "figures", "logs", "warm_up", *sweep.FOLDERS.values()}
 # Where another run may be writing, what looks damaged may be about to be whole.

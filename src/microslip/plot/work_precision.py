@@ -110,7 +110,7 @@ class Table:
 def _label_of(work: xr.DataArray) -> str:
     """What work is, in the words of the dataset."""
     what = work.attrs.get("long_name", "").replace(" times ", r" $\times$ ")
-    label = f"effort: {what} (dimensionless)" if what else "work (dimensionless)"
+    label = f"effort: {what} (dimensionless)" if what else "effort (dimensionless)"
     return look.wrapped(label, PANEL[0], look.RC["axes.labelsize"])
 
 
