@@ -74,7 +74,7 @@ NOT_RUN = {
     ("docs/cluster.md", ".venv/bin/snakemake -j8"): FULL,
     ("docs/cluster.md", ".venv/bin/pip install -e '.[slurm]'"): CLUSTER,
     ("docs/cluster.md", "benchmarks/slurm_here.sh"): f"{CLUSTER} by a test: it installs one",
-    ("docs/cluster.md", ".venv/bin/pip install snakemake-storage-plugin-s3"): CLUSTER,
+    ("docs/cluster.md", ".venv/bin/pip install -e '.[s3]'"): CLUSTER,
     ("docs/cluster.md", ".venv/bin/pip install snakemake-executor-plugin-kubernetes"): CLUSTER,
 }
 
