@@ -11,6 +11,9 @@ from pathlib import Path
 
 from microslip.cache import CacheError, advice, line_of, record_in, write_atomically
 
+NOT_FINAL = b" not final\n"
+"""How the last line of a batch ends whose results need not last."""
+
 
 def write_batch(path, records, final=True):
     """Write records to the file of a batch, all of them or nothing.
@@ -51,11 +54,10 @@ def _batch_content(path):
     except OSError as error:
         raise CacheError(advice("read", path, error)) from error
     end = text.rfind(b"\n", 0, -1) + 1
-    for final in (True, False):
-        if text[end:] == _last_line(text[:end], final):
-            return text[:end], final
-    return b"", False
+    final = not text.endswith(NOT_FINAL)
+    return (text[:end], final) if text[end:] == _last_line(text[:end], final) else (b"", False)
 
 
 def _last_line(content, final):
-    return f"{hashlib.sha256(content).hexdigest()}{'' if final else ' not final'}\n".encode()
+    checksum = hashlib.sha256(content).hexdigest().encode()
+    return checksum + (b"\n" if final else NOT_FINAL)
