@@ -6,6 +6,11 @@ A file is one process's, since its tests share what is slow to make (--dist load
 import shutil
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("repeatable", derandomize=True, deadline=None)
+settings.load_profile("repeatable")
+"""Whoever runs the tests sees the same random inputs; campaigns look at others."""
 
 LONG = ("test_workflow", "test_docs", "test_explorer_browser", "test_studies", "test_claims")
 """Files with few tests that take long: they come first, so that no process ends alone with one."""

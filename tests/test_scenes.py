@@ -28,6 +28,12 @@ def test_half_a_period_later_a_motion_is_its_own_mirror_image(scene):
 
 
 @pytest.mark.parametrize("scene", PERIODIC, ids=lambda scene: scene.name)
+def test_a_creep_slower_than_the_rounding_of_the_oscillation_is_told_exactly(scene):
+    creep = scene.creep(1.0, 0.7, 0.2)
+    assert scene.creep(1e-99, 0.7, 0.2) == pytest.approx(1e-99 * creep, rel=1e-12, abs=0.0)
+
+
+@pytest.mark.parametrize("scene", PERIODIC, ids=lambda scene: scene.name)
 def test_the_oscillation_turns_at_both_ends_of_half_a_period(scene):
     ends = np.array([-0.5, 0.5]) * np.pi
     both = (scene.displacement(at, 0.0, 0.7, 0.0) for at in (PHASE, ends))

@@ -70,9 +70,14 @@ class Scene:
     whole: Callable | None = None
 
     def creep(self, velocity, amplitude, poisson):
-        """Mean forward displacement in one radian of phase, in u_lim."""
+        """Mean forward displacement in one radian of phase, in u_lim.
+
+        Taken of the motion without its oscillation: that returns to where it was, but for a
+        rounding that is more than a slow creep.
+        """
         ends = np.array([0.0, 2.0 * np.pi])
-        forward, _, _ = self.displacement(ends, velocity, amplitude, poisson)
+        still = None if amplitude is None else 0.0
+        forward, _, _ = self.displacement(ends, velocity, still, poisson)
         return float(forward[1] - forward[0]) / (2.0 * np.pi)
 
     def stroke(self, amplitude, poisson):
