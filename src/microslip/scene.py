@@ -72,13 +72,14 @@ class Scene:
     def creep(self, velocity, amplitude, poisson):
         """Mean forward displacement in one radian of phase, in u_lim.
 
-        Taken of the motion without its oscillation: that returns to where it was, but for a
-        rounding that is more than a slow creep.
+        It is proportional to the velocity, so that it is taken at one which the oscillation, whose
+        return is rounded, does not drown.
         """
         ends = np.array([0.0, 2.0 * np.pi])
-        still = None if amplitude is None else 0.0
-        forward, _, _ = self.displacement(ends, velocity, still, poisson)
-        return float(forward[1] - forward[0]) / (2.0 * np.pi)
+        fast, _, _ = self.displacement(ends, 1.0, amplitude, poisson)
+        still, _, _ = self.displacement(ends, 0.0, amplitude, poisson)
+        gained = (fast[1] - still[1]) - (fast[0] - still[0])
+        return float(gained) / (2.0 * np.pi) * velocity
 
     def stroke(self, amplitude, poisson):
         """Half the way that the edge of the contact oscillates, in u_lim; 0 for steady scenes."""
