@@ -33,11 +33,11 @@ from pathlib import Path
 import numpy as np
 
 import microslip
-from microslip.choice import choose_model
-from microslip.motion import Resolution
-from microslip.scenes import scene_named
-from microslip.simulate import simulate
-from microslip.static_run import simulate_static
+from microslip.adaptive.choice import choose_model
+from microslip.motions.registry import scene_named
+from microslip.solver.problem import Resolution
+from microslip.solver.simulate import simulate
+from microslip.solver.static_run import simulate_static
 
 TOLERANCES = (1e-2, 1e-3, 1e-4)
 POISSON = (0.0, 0.3, 0.5)

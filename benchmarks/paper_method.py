@@ -21,7 +21,10 @@ from pathlib import Path
 from statistics import median
 
 import microslip
-from microslip.methods.paper import (
+from microslip.models.contact import forward_slip
+from microslip.models.squares.contact import CartesianContact
+from microslip.motions.registry import SCENES
+from microslip.solver.methods.paper import (
     CELLS,
     STEPS,
     STEPS_PER_PERIOD,
@@ -29,10 +32,7 @@ from microslip.methods.paper import (
     last_means,
     path_of,
 )
-from microslip.models.cartesian import CartesianContact
-from microslip.models.contact import forward_slip
-from microslip.motion import Motion
-from microslip.scenes import SCENES
+from microslip.solver.problem import Motion
 
 POINTS = [("transverse", 0.5), ("bore", 1.0)]
 """Scene and amplitude."""

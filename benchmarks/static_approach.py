@@ -20,11 +20,11 @@ import sys
 from pathlib import Path
 
 import microslip
-from microslip import theory
+from microslip.theory import paper
 
 VELOCITIES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 AMPLITUDES = {"transverse": (0.25, 0.5, 0.75), "bore": (0.5, 1.0, 2.0)}
-LIMITS = {"transverse": theory.static_limit_transverse, "bore": theory.static_limit_bore}
+LIMITS = {"transverse": paper.static_limit_transverse, "bore": paper.static_limit_bore}
 CERTAIN = 5.0
 """Excess over certificate from which an exponent is worth printing."""
 

@@ -21,7 +21,7 @@ import tables
 from tqdm import tqdm
 
 import microslip
-from microslip import config
+from microslip.config import load
 
 
 def cost(sweep):
@@ -60,7 +60,7 @@ def main():
     parser.add_argument("--markdown", type=Path, help="file to write the table to")
     options = parser.parse_args()
     microslip.warm_up()
-    rows = [cost(sweep) for sweep in config.load(options.config).sweeps.values()]
+    rows = [cost(sweep) for sweep in load.load(options.config).sweeps.values()]
     table = tables.markdown(rows)
     print(table)
     if options.markdown:

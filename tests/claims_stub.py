@@ -3,7 +3,9 @@
 import numpy as np
 from studies_stub import SWEEPS
 
-from microslip import config, keys, theory
+from microslip.config import load
+from microslip.sweeps import keys
+from microslip.theory import paper
 
 CLAIMS = {
     "tolerance": 0.001,
@@ -16,23 +18,23 @@ CLAIMS = {
 
 def configured(**changes):
     """A configuration of the claims with some settings changed."""
-    return config.from_mapping({"sweeps": SWEEPS, "claims": CLAIMS | changes})
+    return load.from_mapping({"sweeps": SWEEPS, "claims": CLAIMS | changes})
 
 
-LIMITS = {"transverse": theory.static_limit_transverse, "bore": theory.static_limit_bore}
+LIMITS = {"transverse": paper.static_limit_transverse, "bore": paper.static_limit_bore}
 
 
 def friction(request):
     """Rises with velocity, from the exact limit to above Eq 6 or Eq 29."""
     scene, velocity = request["scene"], float(request["velocity"])
     if scene == "continuous-bore":
-        return float(theory.bore_forward(velocity))
+        return float(paper.bore_forward(velocity))
     amplitude = float(request["amplitude"])
     limit = float(LIMITS[scene](amplitude))
     if scene == "bore":
-        large = float(theory.large_amplitude_bore(velocity))
+        large = float(paper.large_amplitude_bore(velocity))
     else:
-        large = float(theory.large_amplitude_transverse(velocity, amplitude))
+        large = float(paper.large_amplitude_transverse(velocity, amplitude))
     return limit + (1 - limit) * large
 
 
@@ -40,7 +42,7 @@ def steady(request):
     """Tractions that slip everywhere along the rigid motion, as Eq 15 has them."""
     lateral, forward = np.array([-0.5, 0.1, 0.6, 0.2]), np.array([0.1, -0.4, 0.3, 0.7])
     velocity = float(request["velocity"])
-    one, other = theory.steady_bore_traction(lateral, forward, velocity)
+    one, other = paper.steady_bore_traction(lateral, forward, velocity)
     bound = np.hypot(one, other)
     names = ("lateral_position", "forward_position", "traction_lateral", "traction_forward")
     field = dict(zip(names, (lateral, forward, one, other), strict=True)) | {"bound": bound}
@@ -73,8 +75,8 @@ def result(request):
     """What an exact solver might say, with errors of 1e-4 and squares that are off by 0.002."""
     kind = request["kind"]
     if kind == "history":
-        force = [0.0, *[float(theory.bore_forward(0.8))] * 30]
-        return {"force_forward": force, "torque": [0.0, *[float(theory.bore_torque(0.8))] * 30]}
+        force = [0.0, *[float(paper.bore_forward(0.8))] * 30]
+        return {"force_forward": force, "torque": [0.0, *[float(paper.bore_torque(0.8))] * 30]}
     if kind == "field":
         return steady(request)
     if kind == "patches":

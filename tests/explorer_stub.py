@@ -3,7 +3,10 @@
 import numpy as np
 from sweep_stub import EFFORT
 
-from microslip import config, dataset, explorer, netcdf, sweep
+from microslip.config import load
+from microslip.datasets import netcdf, sweep_dataset
+from microslip.report.explorer import explorer
+from microslip.sweeps import batches
 
 AXES = {"velocity": [0, 0.02, 0.1, 1], "amplitude": [0, 0.6, 1.2], "tolerance": 1e-2}
 BAD_POINT = ("transverse", 1, 3)  # a map and a place on it that is made not to have converged
@@ -12,7 +15,7 @@ BAD_PERIOD = ("bore", 2, 1)
 
 
 def configured(**axes):
-    return config.from_mapping({"sweeps": dict.fromkeys(("transverse", "bore"), AXES | axes)})
+    return load.from_mapping({"sweeps": dict.fromkeys(("transverse", "bore"), AXES | axes)})
 
 
 def computed(folder, store):
@@ -23,9 +26,9 @@ def computed(folder, store):
     configuration = configured()
     datasets, periods = {}, {}
     for name, grid in configuration.sweeps.items():
-        points = [sweep.answer(request, store)[0] for request in sweep.PointRequests(grid)]
+        points = [batches.answer(request, store)[0] for request in batches.PointRequests(grid)]
         asked = explorer.period_requests(configuration, name)
-        periods[name] = [sweep.answer(request, store)[0] for request in asked]
+        periods[name] = [batches.answer(request, store)[0] for request in asked]
         if name == BAD_POINT[0]:
             at = BAD_POINT[1] * len(grid.velocity) + BAD_POINT[2]
             points[at]["result"] |= {"converged": False, "reason": "made up"}
@@ -36,7 +39,7 @@ def computed(folder, store):
                 kept = record["result"] if result is None else {}
                 record["result"] = kept | {"converged": False, "reason": "none to be found"}
         path = folder / f"{name}.nc"
-        dataset.write_sweep(path, grid, points, [], configuration.of_sweep(name))
+        sweep_dataset.write_sweep(path, grid, points, [], configuration.of_sweep(name))
         datasets[name] = netcdf.whole(path)
     return datasets, periods
 
@@ -52,12 +55,12 @@ def made_up(folder, configuration):
         grid = configuration.sweeps[name]
         result = EFFORT | {"mu_macro": 1 / 3, "mu_macro_error": 1e-4, "converged": True}
         result |= {f"error_{part}": 1 / 7 for part in ("space", "time", "periodicity", "solver")}
-        points = [{"result": result, "versions": {}}] * len(sweep.PointRequests(grid))
+        points = [{"result": result, "versions": {}}] * len(batches.PointRequests(grid))
         path = folder / f"{name}.nc"
-        dataset.write_sweep(path, grid, points, [], configuration.of_sweep(name))
+        sweep_dataset.write_sweep(path, grid, points, [], configuration.of_sweep(name))
         datasets[name] = netcdf.whole(path)
         asked = explorer.period_requests(configuration, name)
-        one = sweep.answers.computed(asked[len(asked) // 2])
+        one = batches.answers.computed(asked[len(asked) // 2])
         periods[name] = [{"request": request, "result": one} for request in asked]
     return datasets, periods
 

@@ -6,7 +6,7 @@ A row says what is given, and what comes out: a value, or the words that the one
 import numpy as np
 import xarray as xr
 
-from microslip import theory
+from microslip.theory import paper
 
 
 def refused(*words):
@@ -203,7 +203,7 @@ DIMS = ("amplitude", "velocity")
 
 def whole(**attributes):
     """A map of Eq 6 that answers at (0.15, 1.3)."""
-    mu = theory.large_amplitude_transverse(*np.meshgrid(VELOCITY, AMPLITUDE))
+    mu = paper.large_amplitude_transverse(*np.meshgrid(VELOCITY, AMPLITUDE))
     return xr.Dataset(
         {
             "mu_macro": (DIMS, mu),

@@ -1,6 +1,9 @@
 """Small configurations of the studies, and made-up answers to what they ask."""
 
-from microslip import config, keys, studies, theory
+from microslip.config import load
+from microslip.studies import registry
+from microslip.sweeps import keys
+from microslip.theory import paper
 
 SWEEPS = {"bore": {"velocity": [1], "amplitude": [1]}}
 ACCURACY = {
@@ -24,12 +27,12 @@ STABILITY = {"methods": ["shipped", "admm", "euler"], "axes": ["poisson", "penal
 def configured(accuracy=(), stability=()):
     """A configuration of both studies with some settings changed."""
     given = {"accuracy": ACCURACY | dict(accuracy), "stability": STABILITY | dict(stability)}
-    return config.from_mapping({"sweeps": SWEEPS} | given)
+    return load.from_mapping({"sweeps": SWEEPS} | given)
 
 
 def asked(study, configuration):
     """All requests of a study as canonical JSON, in a list."""
-    long, short = studies.pieces(study, configuration)
+    long, short = registry.pieces(study, configuration)
     return [keys.canonical_json(request) for piece in long + short for request in piece]
 
 
@@ -92,7 +95,7 @@ def accuracy_result(request):
     mu = (
         mu_of(request)
         if request["amplitude"]
-        else float(theory.bore_forward(float(request["velocity"])))
+        else float(paper.bore_forward(float(request["velocity"])))
     )
     return {"mu_macro": mu + error, "converged": True, "reason": "", "seconds": seconds} | {
         "effort": cells**2,

@@ -11,11 +11,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from microslip.accuracy import MOST_REBASED, RESOLVED, certify
-from microslip.budget import Spent
-from microslip.chains import EXTRAPOLATION_SHARE, Axis
-from microslip.motion import Resolution
-from microslip.simulate import Run
+from microslip.adaptive.chains import EXTRAPOLATION_SHARE, Axis
+from microslip.adaptive.refinement import MOST_REBASED, RESOLVED, certify
+from microslip.solver.budget import Spent
+from microslip.solver.problem import Resolution
+from microslip.solver.simulate import Run
 
 EXACT, EXACT_TORQUE = 0.4, 0.7
 COARSEST = Resolution(cells=3, angles=1, steps=5)

@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip import theory
-from microslip.motion import Resolution
-from microslip.scenes import SCENES
-from microslip.simulate import simulate
+from microslip.motions.registry import SCENES
+from microslip.solver.problem import Resolution
+from microslip.solver.simulate import simulate
+from microslip.theory import paper
 
-LIMITS = {"transverse": theory.static_limit_transverse, "bore": theory.static_limit_bore}
+LIMITS = {"transverse": paper.static_limit_transverse, "bore": paper.static_limit_bore}
 
 
 def ladder(scene, model, amplitude, velocities, resolution):
@@ -64,7 +64,7 @@ def exponents(velocities, excess):
 def test_transverse_marches_fall_to_the_closed_form(amplitude):
     velocities = 10.0 ** -np.array([3.0, 3.5, 4.0, 4.5, 5.0])
     mu, error = marched("transverse", amplitude, velocities)
-    exact = float(theory.static_limit_transverse(amplitude))
+    exact = float(paper.static_limit_transverse(amplitude))
     assert error.max() < 1.5e-4
     excess = mu - exact
     # the local exponent still creeps, which moves a limit that assumes a single one
@@ -74,20 +74,20 @@ def test_transverse_marches_fall_to_the_closed_form(amplitude):
     assert found.min() > 0.6 and found.max() < 0.75
     assert np.all(np.diff(found) > 0.0)
     # the paper's Eq 11 is not where they go
-    assert abs(free_limit(mu) - float(theory.static_transverse(amplitude))) > 100 * error.max()
+    assert abs(free_limit(mu) - float(paper.static_transverse(amplitude))) > 100 * error.max()
 
 
 def test_bore_marches_fall_to_the_closed_form():
     velocities = 10.0 ** -np.array([2.0, 2.5, 3.0, 3.5, 4.0])
     mu, error = marched("bore", 1.0, velocities)
-    exact = float(theory.static_limit_bore(1.0))
+    exact = float(paper.static_limit_bore(1.0))
     assert error.max() < 4e-4
     assert abs(free_limit(mu) - exact) <= error.max()
     excess = mu - exact
     assert np.all(excess > 5 * error) and np.all(np.diff(mu) < 0.0)
     found = exponents(velocities, excess)
     assert found.min() > 0.68 and found.max() < 0.8
-    assert abs(free_limit(mu) - float(theory.static_bore(1.0))) > 100 * error.max()
+    assert abs(free_limit(mu) - float(paper.static_bore(1.0))) > 100 * error.max()
 
 
 @pytest.mark.parametrize(

@@ -12,9 +12,11 @@ import pytest
 import xarray as xr
 
 import microslip
-from microslip import answers, cache, cli, jobs, plot, sweep
-from microslip.cache import CacheError, Store
-from microslip.plot.data import loaded
+from microslip.app import cli, job_log
+from microslip.report.figures import drawing
+from microslip.report.figures.data import loaded
+from microslip.sweeps import batches, cache, evaluate
+from microslip.sweeps.cache import CacheError, Store
 
 SOURCE = str(Path(microslip.__file__).parent.parent)
 POINT = ["point", "continuous-bore", "--velocity", "2"]
@@ -62,9 +64,9 @@ def test_a_folder_that_cannot_keep_results_is_refused_before_work(
     (tmp_path / "half" / "points").write_text("kept")
     if name == "new":
         monkeypatch.setattr(cache.os, "fsync", full)
-    monkeypatch.setattr(answers, "computed", lambda _: pytest.fail("work has started"))
+    monkeypatch.setattr(evaluate, "computed", lambda _: pytest.fail("work has started"))
     with pytest.raises(CacheError) as caught:
-        sweep.run_batch([REQUEST], Store(tmp_path / name))
+        batches.run_batch([REQUEST], Store(tmp_path / name))
     message = one_line(caught)
     assert str(tmp_path / name) in message and part in message and "another folder" in message
     assert cli.main([*POINT, "--results", str(tmp_path / name)]) == 2
@@ -127,7 +129,7 @@ def test_a_log_that_cannot_be_written_is_one_line(tmp_path):
         pytest.raises(
             SystemExit, match=r"^Error: cannot write [^\n]*logs/job.log: Not a dir[^\n]*$"
         ),
-        jobs.job_log(tmp_path / "logs" / "job.log"),
+        job_log.job_log(tmp_path / "logs" / "job.log"),
     ):
         pytest.fail("work has started")
 
@@ -261,7 +263,7 @@ def test_a_disk_that_fills_up_under_a_dataset_leaves_the_old_one(sealed):
 )
 def test_a_figure_of_other_data_is_one_line(figure, datasets, parts):
     with pytest.raises(ValueError) as caught:
-        plot.draw(figure, datasets)
+        drawing.draw(figure, datasets)
     message = one_line(caught)
     assert figure in message and [part for part in parts if part not in message] == []
 
@@ -269,6 +271,6 @@ def test_a_figure_of_other_data_is_one_line(figure, datasets, parts):
 @pytest.mark.parametrize("name", ["figure", "figure.jpg", "figure.svg"])
 def test_a_figure_of_another_format_is_one_line(name, tmp_path):
     with pytest.raises(ValueError, match=r"must end in .png or .pdf$") as caught:
-        plot.save(None, tmp_path / name)
+        drawing.save(None, tmp_path / name)
     assert repr(name) in one_line(caught)
     assert not list(tmp_path.iterdir())

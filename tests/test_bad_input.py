@@ -13,7 +13,9 @@ from bad_command_lines import COMMAND_LINES, NAMES, NUMBERS, RESULTS
 from bad_configurations import EXTENDED, FILES, KEYS, STUDIES, TOGETHER, changed
 
 import microslip
-from microslip import cli, config, point, schemas
+from microslip.adaptive import point
+from microslip.app import cli
+from microslip.config import load, schema
 
 SOURCE = str(Path(microslip.__file__).parent.parent)
 
@@ -26,7 +28,7 @@ def nothing_runs(monkeypatch):
         raise AssertionError("work has started")
 
     for name in ("certify", "simulate", "simulate_static", "no_vibration", "closed_form"):
-        monkeypatch.setattr(f"microslip.point.{name}", work)
+        monkeypatch.setattr(f"microslip.adaptive.point.{name}", work)
 
 
 @pytest.fixture
@@ -70,7 +72,7 @@ def test_every_option_is_given_a_bad_value():
 def test_the_same_lines_come_from_a_process(there):
     for arguments, *parts in (NUMBERS[0], NAMES[0], RESULTS[3]):
         done = subprocess.run(
-            [sys.executable, "-m", "microslip.cli", *shlex.split(arguments), "--json"],
+            [sys.executable, "-m", "microslip.app.cli", *shlex.split(arguments), "--json"],
             env={**os.environ, "PYTHONPATH": SOURCE},
             capture_output=True,
             text=True,
@@ -81,7 +83,7 @@ def test_the_same_lines_come_from_a_process(there):
 
 
 def test_the_command_line_has_the_limits_of_configurations():
-    rules = schemas.schema()["$defs"]
+    rules = schema.schema()["$defs"]
     limits = {name: rules[name]["maximum"] for name in ("cells", "steps", "non_negative")}
     limits |= dict.fromkeys(["velocity", "amplitude"], limits.pop("non_negative"))
     assert limits == point.LARGEST
@@ -91,8 +93,8 @@ def test_the_command_line_has_the_limits_of_configurations():
 
 
 def refusal(path):
-    with pytest.raises(config.ConfigError) as caught:
-        config.load(path)
+    with pytest.raises(load.ConfigError) as caught:
+        load.load(path)
     message = str(caught.value)
     assert "\n" not in message and message.isprintable()
     return message
@@ -100,7 +102,7 @@ def refusal(path):
 
 def test_what_is_changed_is_good_before():
     for key in ("results", "accuracy.levels"):
-        assert config.from_mapping(yaml.safe_load(changed({key: "1" if "." in key else "here"})))
+        assert load.from_mapping(yaml.safe_load(changed({key: "1" if "." in key else "here"})))
 
 
 @pytest.mark.parametrize(

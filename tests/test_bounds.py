@@ -10,8 +10,8 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import microslip
-from microslip import hertz, theory
-from microslip.bounds import largest_drop_bore, largest_drop_transverse
+from microslip.theory import hertz, paper
+from microslip.theory.bounds import largest_drop_bore, largest_drop_transverse
 
 ratios = st.floats(-6.0, 6.0).map(lambda x: 10**x)
 amplitudes = st.floats(-6.0, 3.0).map(lambda x: 10**x)
@@ -99,9 +99,9 @@ def test_brackets_close_as_the_velocity_grows(velocity, amplitude, factor):
 @settings(max_examples=300, deadline=None, derandomize=True)
 @given(ratios, amplitudes)
 def test_rigid_contacts_lie_within(ratio, amplitude):
-    rigid = float(theory.large_amplitude_transverse(ratio * amplitude, amplitude))
+    rigid = float(paper.large_amplitude_transverse(ratio * amplitude, amplitude))
     assert 1.0 - largest_drop_transverse(ratio * amplitude, amplitude) <= rigid + 1e-14
-    rigid = float(theory.large_amplitude_bore(ratio))
+    rigid = float(paper.large_amplitude_bore(ratio))
     assert 1.0 - largest_drop_bore(ratio, amplitude) <= rigid + 1e-14
 
 
@@ -135,6 +135,6 @@ def test_brackets_are_four_times_the_drop_of_the_rigid_contact(ratio):
     rigid_drop = np.mean(aside**2 / (np.hypot(1.0, aside) * (1.0 + np.hypot(1.0, aside))))
     assert rigid_drop == pytest.approx(0.25 / ratio**2, rel=2e-3)
     assert largest_drop_transverse(ratio, 1.0) == pytest.approx(4.0 * rigid_drop, rel=2e-3)
-    turning = 1.0 - float(theory.large_amplitude_bore(ratio))
+    turning = 1.0 - float(paper.large_amplitude_bore(ratio))
     away = (1.0 - 1.0 / ratio) ** 2
     assert largest_drop_bore(ratio, 1.0) * away == pytest.approx(4.0 * turning, rel=2e-3)

@@ -8,14 +8,15 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip import point
-from microslip.budget import Budget, Spent
-from microslip.models import MODELS, interrupts
+from microslip.adaptive import point
+from microslip.models import interrupts
 from microslip.models.contact import forward_slip
-from microslip.motion import Motion, Resolution, build_contact
-from microslip.scenes import scene_named
-from microslip.simulate import simulate
-from microslip.static_run import simulate_static
+from microslip.models.registry import MODELS
+from microslip.motions.registry import scene_named
+from microslip.solver.budget import Budget, Spent
+from microslip.solver.problem import Motion, Resolution, build_contact
+from microslip.solver.simulate import simulate
+from microslip.solver.static_run import simulate_static
 
 SLOW = ("transverse", 1e-9, 0.5)
 

@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 
 import microslip
-from microslip import cache
-from microslip.cache import CacheError, Store
+from microslip.sweeps import cache
+from microslip.sweeps.cache import CacheError, Store
 
 KEY = "ab" + "0" * 62
 RECORD = {
@@ -111,7 +111,7 @@ def test_killed_before_the_rename_nothing_is_lost(store, moment):
     path = store.write("a", KEY, RECORD)
     program = f"""
         import os, signal
-        from microslip.cache import Store
+        from microslip.sweeps.cache import Store
         os.{moment} = lambda *args: os.kill(os.getpid(), signal.SIGKILL)
         Store({str(store.folder)!r}).write("a", {KEY!r}, {{"other": 1}})
     """

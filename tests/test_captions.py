@@ -11,7 +11,7 @@ import jinja2
 import pytest
 from PIL import Image
 
-from microslip import plot
+from microslip.report.figures import drawing
 
 ROOT = Path(__file__).parent.parent
 TITLES = ["`x_ *b* |c|", r"$\frac{", "[1]_ :r:`z` <b>", "..", "plain"]
@@ -53,4 +53,4 @@ def test_pictures_of_the_pages_are_made_from_figures_and_are_smaller(tmp_path, m
     with pytest.raises(SystemExit, match="run the workflow first"):
         make["main"](tmp_path, "fig9")
     pictures = (ROOT / "docs" / "images").glob("*.png")
-    assert {*plot.FIGURES} <= {path.stem for path in pictures}
+    assert {*drawing.FIGURES} <= {path.stem for path in pictures}

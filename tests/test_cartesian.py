@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from scipy.integrate import dblquad
 
-from microslip.friction import coulomb_residual, project
-from microslip.models import cartesian
-from microslip.models.cartesian import CartesianContact, solve_step
 from microslip.models.contact import forward_slip
-from microslip.models.convolution import convolve, influence, square_convolution, workspace
-from microslip.path import EULER, SDIRK2, half_period_phases, make_path
-from microslip.scenes import BORE, TRANSVERSE
+from microslip.models.coulomb import coulomb_residual, project
+from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.models.squares import contact as cartesian
+from microslip.models.squares.contact import CartesianContact, solve_step
+from microslip.models.squares.convolution import convolve, influence, square_convolution, workspace
+from microslip.motions.registry import BORE, TRANSVERSE
 
 NUS = [0.0, 0.4]
 

@@ -8,13 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import microslip
-from microslip import theory
-from microslip.choice import choose_model, closed_form, plan
-from microslip.models import MODELS
-from microslip.motion import Resolution
-from microslip.scenes import BORE, CONTINUOUS_BORE, SCENES, TRANSVERSE
-from microslip.simulate import simulate
-from microslip.static_run import simulate_static
+from microslip.adaptive.choice import choose_model, closed_form, plan
+from microslip.models.registry import MODELS
+from microslip.motions.registry import BORE, CONTINUOUS_BORE, SCENES, TRANSVERSE
+from microslip.solver.problem import Resolution
+from microslip.solver.simulate import simulate
+from microslip.solver.static_run import simulate_static
+from microslip.theory import paper
 
 TURNING = {"rigid", "polar", "cartesian"}
 WITH_CELLS = {"mdr", "radial", "polar", "cartesian"}
@@ -95,14 +95,14 @@ def test_vanishing_velocity_is_computed_where_no_form_is_known():
     result = microslip.solve("transverse", 0.0, 0.5, poisson=0.3, tolerance=1e-2)
     assert result.model == "polar" and result.cells > 0
     # nu changes the tractions, but not what Mindlin's theory makes of them by much
-    assert result.mu_macro == pytest.approx(theory.static_limit_transverse(0.5), abs=2e-2)
+    assert result.mu_macro == pytest.approx(paper.static_limit_transverse(0.5), abs=2e-2)
 
 
 @pytest.mark.parametrize("velocity", [0.05, 0.5, 1.0, 3.0])
 def test_the_steady_bore_is_eqs_21_and_22_which_the_resolved_contact_confirms(velocity):
     exact = microslip.solve("continuous-bore", velocity, poisson=0.3)
     assert exact.model == "closed-form" and exact.mu_macro_error < 1e-9
-    assert exact.mu_macro == theory.bore_forward(velocity)
+    assert exact.mu_macro == paper.bore_forward(velocity)
     resolved = microslip.solve("continuous-bore", velocity, poisson=0.3, model="polar")
     assert abs(exact.mu_macro - resolved.mu_macro) <= resolved.mu_macro_error
     assert abs(exact.mu_torque - resolved.mu_torque) <= resolved.mu_torque_error
@@ -168,7 +168,7 @@ def test_a_model_asked_for_is_run_where_a_form_is_known():
     assert fast_one.model == slow_one.model == "radial"
     assert fast_one.cells > 0 and slow_one.cells > 0
     assert fast_one.mu_macro == pytest.approx(1.0, abs=2e-3)
-    assert slow_one.mu_macro == pytest.approx(theory.static_limit_transverse(0.5), abs=2e-3)
+    assert slow_one.mu_macro == pytest.approx(paper.static_limit_transverse(0.5), abs=2e-3)
 
 
 # Resolutions

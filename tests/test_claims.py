@@ -8,17 +8,21 @@ import pytest
 import xarray as xr
 from claims_stub import answered, configured, friction, result
 
-from microslip import dataset, keys, netcdf, studies, theory
-from microslip.studies import claims as asked
-from microslip.studies import claims_checks, claims_checks_static, verdicts
-from microslip.studies.claims_statements import PARTS, STATEMENTS
+from microslip.datasets import netcdf, sweep_dataset
+from microslip.studies import registry
+from microslip.studies.claims import checks as claims_checks
+from microslip.studies.claims import checks_static, verdicts
+from microslip.studies.claims import claims as asked
+from microslip.studies.claims.statements import PARTS, STATEMENTS
+from microslip.sweeps import keys
+from microslip.theory import paper
 
 NOT_DECIDED, HOLDS, PARTLY, NOT = verdicts.WORDS
 
 
 def judged(results=result, **changes):
     """The dataset of the claims with made-up results."""
-    return studies.build("claims", configured(**changes), answered(results)[0])
+    return registry.build("claims", configured(**changes), answered(results)[0])
 
 
 def words(data):
@@ -31,7 +35,7 @@ def words(data):
 def claims(tmp_path_factory):
     """The dataset of made-up results, read back from disk."""
     path = tmp_path_factory.mktemp("claims") / "claims.nc"
-    dataset.write(judged(), path, studies.groups("claims"))
+    sweep_dataset.write(judged(), path, registry.groups("claims"))
     return netcdf.whole(path)
 
 
@@ -40,8 +44,8 @@ def claims(tmp_path_factory):
 
 def test_the_dataset_asks_for_what_jobs_have_answered_and_for_all_of_it():
     answer, seen = answered()
-    studies.build("claims", configured(), answer)
-    long, short = studies.pieces("claims", configured())
+    registry.build("claims", configured(), answer)
+    long, short = registry.pieces("claims", configured())
     of_jobs = [keys.canonical_json(r) for piece in long + short for r in piece]
     assert {keys.canonical_json(r) for r in seen} == set(of_jobs)
     assert len(set(of_jobs)) == len(of_jobs)
@@ -58,7 +62,7 @@ def test_every_part_has_its_own_checks_and_every_statement_parts():
     names = [part.name for part in PARTS]
     assert len(set(names)) == len(names)
     for name in names:
-        assert hasattr(claims_checks, name) != hasattr(claims_checks_static, name)
+        assert hasattr(claims_checks, name) != hasattr(checks_static, name)
     assert list(STATEMENTS) == list(range(1, 10))
     assert {part.claim for part in PARTS if part.counts} == set(STATEMENTS)
 
@@ -111,11 +115,11 @@ def of_kind(kind, change):
 
 
 def eq6(velocity, amplitude):
-    return float(theory.large_amplitude_transverse(velocity, amplitude))
+    return float(paper.large_amplitude_transverse(velocity, amplitude))
 
 
 def eq33(velocity, amplitude):
-    return float(theory.static_bore(amplitude))
+    return float(paper.static_bore(amplitude))
 
 
 def below_eq33_below_two(velocity, amplitude):
@@ -236,7 +240,7 @@ def test_margins_are_of_the_numbers_beside_them(claims):
         claims[f"check_{n}"].values[own] for n in ("value", "against", "margin")
     )
     place = [claims[f"check_{n}"].values[own] for n in ("velocity", "amplitude")]
-    assert against == pytest.approx(theory.large_amplitude_transverse(*place))
+    assert against == pytest.approx(paper.large_amplitude_transverse(*place))
     requests = [
         {"scene": "transverse", "velocity": v, "amplitude": a} for v, a in zip(*place, strict=True)
     ]
@@ -266,7 +270,7 @@ def test_conventions_and_provenance(claims, tmp_path):
     assert claims.Conventions == "CF-1.11"
     assert json.loads(claims.configuration)["tolerance"] == 0.001
     assert len(claims.results_digest) == 64
-    dataset.write(judged(), tmp_path / "claims.nc", studies.groups("claims"))
+    sweep_dataset.write(judged(), tmp_path / "claims.nc", registry.groups("claims"))
     with netCDF4.Dataset(tmp_path / "claims.nc") as raw:
         assert raw["verdict"].flag_meanings == "not_decided holds holds_in_part does_not_hold"
         assert raw["checks/check_outcome"].dtype == np.int8
@@ -274,7 +278,7 @@ def test_conventions_and_provenance(claims, tmp_path):
 
 def test_every_part_of_the_file_is_a_table_of_its_own(tmp_path):
     path = tmp_path / "claims.nc"
-    dataset.write(judged(), path, studies.groups("claims"))
+    sweep_dataset.write(judged(), path, registry.groups("claims"))
     assert {"checks", "runs", "patches", "bore_curves"} <= set(netcdf.group_names(path))
     for group in (None, *netcdf.group_names(path)):
         with xr.open_dataset(path, group=group) as part:
@@ -283,16 +287,16 @@ def test_every_part_of_the_file_is_a_table_of_its_own(tmp_path):
 
 def test_the_same_results_give_the_same_bytes(tmp_path):
     for name in ("one.nc", "two.nc"):
-        dataset.write(judged(), tmp_path / name, studies.groups("claims"))
+        sweep_dataset.write(judged(), tmp_path / name, registry.groups("claims"))
     assert (tmp_path / "one.nc").read_bytes() == (tmp_path / "two.nc").read_bytes()
 
 
 def test_the_report_has_a_line_for_every_statement(claims):
-    lines = list(studies.report("claims", claims))
+    lines = list(registry.report("claims", claims))
     assert lines == [f"claim {number}: {text}" for number, text in words(claims).items()]
 
 
 def studies_page(data):
-    from microslip.studies import claims_page
+    from microslip.report import claims_page
 
     return claims_page.page(data, ["a line"])

@@ -10,15 +10,17 @@ from importlib import import_module
 import pytest
 from claims_stub import answered, configured
 
-from microslip import cache, cli, studies
-from microslip.keys import number
-from microslip.studies import claims_page
-from microslip.studies.claims_runs import command
+from microslip.app import cli
+from microslip.report import claims_page
+from microslip.studies import registry
+from microslip.studies.claims.runs import command
+from microslip.sweeps import cache
+from microslip.sweeps.keys import number
 
 
 @pytest.fixture(scope="module")
 def data():
-    return studies.build("claims", configured(), answered()[0])
+    return registry.build("claims", configured(), answered()[0])
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +30,7 @@ def page(data):
 
 def requests():
     """All requests of the study."""
-    long, short = studies.pieces("claims", configured())
+    long, short = registry.pieces("claims", configured())
     return [request for piece in long + short for request in piece]
 
 
@@ -116,12 +118,12 @@ def test_text_of_a_dataset_is_no_markup(data):
 
 def test_the_page_is_written_whole_and_sealed(data, tmp_path):
     path = tmp_path / "claims.html"
-    studies.write_page("claims", path, data, ["a line"])
+    registry.write_page("claims", path, data, ["a line"])
     assert path.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
     assert cache.seal_of(path).exists()
     assert not cache.is_damaged(path)
 
 
 def test_pages_of_other_studies_are_as_they_were(data, tmp_path):
-    studies.write_page("stability", tmp_path / "page.html", data, ["a line"])
+    registry.write_page("stability", tmp_path / "page.html", data, ["a line"])
     assert "<pre>" in (tmp_path / "page.html").read_text(encoding="utf-8")

@@ -8,10 +8,12 @@ from claims_stub import configured
 from scipy.integrate import quad
 
 import microslip
-from microslip import hertz, sweep, theory
-from microslip.cache import Store
-from microslip.patches import patches
-from microslip.studies import claims, claims_static
+from microslip.adaptive.stick_area import patches
+from microslip.studies.claims import claims, static_limits
+from microslip.sweeps import batches
+from microslip.sweeps.cache import Store
+from microslip.theory import hertz
+from microslip.theory import paper as theory
 
 
 def integral(share, stick_radius):
@@ -34,7 +36,7 @@ def test_what_is_left_of_the_bound_adds_up_to_the_limit_on_rings(scene, amplitud
     """The shares that the figure shows against a run that knows no closed form."""
     radius = {"transverse": theory.stick_radius_transverse, "bore": theory.bore_stick_radius}[scene]
     left = integral(
-        lambda r: float(claims_static.left_share(scene, r, amplitude)), float(radius(amplitude))
+        lambda r: float(static_limits.left_share(scene, r, amplitude)), float(radius(amplitude))
     )
     model = "radial" if scene == "transverse" else "polar"
     rings = microslip.solve(scene, 0.0, amplitude, model=model)
@@ -44,8 +46,8 @@ def test_what_is_left_of_the_bound_adds_up_to_the_limit_on_rings(scene, amplitud
 @pytest.mark.parametrize("scene", ["transverse", "bore"])
 def test_all_is_used_in_the_slip_ring_and_less_inside(scene):
     radius = np.linspace(0, 1, 101)
-    used = claims_static.used_share(scene, radius, 0.5)
-    left = claims_static.left_share(scene, radius, 0.5)
+    used = static_limits.used_share(scene, radius, 0.5)
+    left = static_limits.left_share(scene, radius, 0.5)
     stick = {"transverse": math.sqrt(0.5), "bore": float(theory.bore_stick_radius(0.5))}[scene]
     assert used[radius > stick] == pytest.approx(1.0)
     assert left[radius > stick] == pytest.approx(0.0, abs=1e-6)
@@ -59,23 +61,23 @@ def test_the_asymptote_is_what_the_limit_tends_to(amplitude):
     share = integral(lambda r: 2 / math.pi * math.acos(hertz.lubkin_share(r, radius)), radius)
     # what is left out is of the order of c^2 ln c
     allowed = 3 * radius**2 * abs(math.log(radius))
-    assert float(claims_static.asymptote(amplitude)) == pytest.approx(share, rel=allowed + 1e-6)
+    assert float(static_limits.asymptote(amplitude)) == pytest.approx(share, rel=allowed + 1e-6)
 
 
 def test_eq_33_tends_to_the_share_above_the_asymptote_that_the_dataset_says():
-    found = claims_static.variables(configured().claims, _no_runs)["static_asymptote_excess"][1]
-    ratio = float(theory.static_bore(9.0)) / float(claims_static.asymptote(9.0)) - 1
+    found = static_limits.variables(configured().claims, _no_runs)["static_asymptote_excess"][1]
+    ratio = float(theory.static_bore(9.0)) / float(static_limits.asymptote(9.0)) - 1
     assert float(found) == pytest.approx(ratio, rel=1e-4)
 
 
 def _no_runs(request):
-    from microslip.studies.claims_runs import Run
+    from microslip.studies.claims.runs import Run
 
     return Run("name", request, {"converged": False})
 
 
 def test_gaps_are_the_largest_on_the_curves():
-    data = claims_static.variables(configured().claims, _no_runs)
+    data = static_limits.variables(configured().claims, _no_runs)
     amplitude = np.linspace(0, 1, 5001)
     gap = theory.static_transverse(amplitude) - theory.static_limit_transverse(amplitude)
     assert float(data["transverse_gap_zone"][1]) == pytest.approx(gap.max(), abs=1e-5)
@@ -90,12 +92,12 @@ def test_a_single_run_is_what_the_command_line_has_and_is_timed_by_nobody(tmp_pa
     place = {"scene": "transverse", "velocity": "0.1", "amplitude": "0.5", "poisson": "0"}
     sizes = {"cells": 8, "angles": 1, "steps": 32, "tolerance": "0.0001"}
     request = {"kind": "run", "model": "radial", "method": "euler"} | place | sizes
-    record, _ = sweep.answer(request, Store(tmp_path))
+    record, _ = batches.answer(request, Store(tmp_path))
     answer = microslip.solve("transverse", 0.1, 0.5)
     assert record["result"]["converged"]
     assert record["result"]["mu_macro"] == pytest.approx(answer.mu_macro, abs=0.03)
     assert "seconds" not in record["result"]
-    again, seconds = sweep.answer(request, Store(tmp_path))
+    again, seconds = batches.answer(request, Store(tmp_path))
     assert (again, seconds) == (record, 0.0)
 
 
@@ -104,10 +106,10 @@ def test_a_period_that_is_not_found_is_a_gap(error, tmp_path, monkeypatch):
     def fails(*place, **sizes):
         raise error("no periodic state")
 
-    monkeypatch.setattr("microslip.patches.period", fails)
+    monkeypatch.setattr("microslip.adaptive.stick_area.period", fails)
     place = {"scene": "bore", "velocity": "0.1", "amplitude": "1", "poisson": "0"}
     request = {"kind": "patches", "cells": 8, "angles": 8, "steps": 16} | place
-    record, _ = sweep.answer(request, Store(tmp_path))
+    record, _ = batches.answer(request, Store(tmp_path))
     assert record["result"]["converged"] is False
     assert "no periodic state" in record["result"]["reason"]
 
@@ -146,7 +148,7 @@ def test_patches_of_the_slow_bore_lie_where_theory_has_them():
 
 
 def test_the_study_asks_for_the_papers_run_as_the_paper_made_it():
-    from microslip.methods import paper
+    from microslip.solver.methods import paper
 
     request = claims.paper_run("bore", 1.0)
     assert (request["cells"], request["steps"]) == (paper.CELLS, paper.STEPS_PER_PERIOD)

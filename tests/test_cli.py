@@ -8,8 +8,8 @@ import pytest
 from point_contract import CONTRACT
 
 import microslip
-from microslip import cli, launch
-from microslip.scenes import FAMILIES, SCENES
+from microslip.app import cli, sweep_command
+from microslip.motions.registry import FAMILIES, SCENES
 
 TRANSVERSE = ("point", "transverse", "--velocity", "0.5", "--amplitude", "0.5")
 SPIN = "spin: rotation about the contact normal"
@@ -130,7 +130,7 @@ def test_model_that_does_not_apply_says_to_which_scene():
             ["point", "friction", "vibrated", "dimensionless", "sweep", "predict", SPIN],
         ),
         (("point",), [*SCENES, *FAMILIES, "mu F_z", "ratio", "mu_apparent", SPIN]),
-        (("sweep",), [*launch.TARGETS, "--cores", "--report", SPIN]),
+        (("sweep",), [*sweep_command.TARGETS, "--cores", "--report", SPIN]),
         (
             ("point", "transverse"),
             ["--velocity", "v0 / (omega u_lim)", "--amplitude", "y0 / u_lim", "Poisson"],
@@ -157,7 +157,7 @@ def test_version_is_that_of_the_package():
 def test_help_and_bad_options_do_not_load_the_solver():
     """They must answer at once; the compiled kernels take their time to load."""
     code = (
-        "import sys, microslip.cli as cli\n"
+        "import sys, microslip.app.cli as cli\n"
         "try: cli.main(['point', 'bore', '--help'])\n"
         "except SystemExit: pass\n"
         "sys.exit('numba' in sys.modules)\n"

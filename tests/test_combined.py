@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip import hertz
-from microslip.motion import Motion
-from microslip.scenes import scene_named
+from microslip.motions.registry import scene_named
+from microslip.solver.problem import Motion
+from microslip.theory import hertz
 
 
 def test_without_a_rotation_it_is_the_transverse_scene():

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import microslip
-from microslip.source_digest import LOADED, Sources
+from microslip.foundation.source_digest import LOADED, Sources
 
 PACKAGE = Path(microslip.__file__).parent
 KERNELS = sorted(name for name, source in LOADED.contents.items() if b"import kernel" in source)
@@ -38,7 +38,9 @@ def run(program, package, **environment):
 def of_kernels(package):
     """What names the folder of compiled code, of the sources in a package."""
     sources = Sources(package)
-    kernels = {n for n, content in sources.contents.items() if b"microslip.compiled" in content}
+    kernels = {
+        n for n, content in sources.contents.items() if b"microslip.foundation.compiled" in content
+    }
     return sources.raw_digest(sources.closure(kernels))
 
 
@@ -66,7 +68,7 @@ def test_an_edit_of_what_a_kernel_takes_its_numbers_from_does_so_too(copy):
 def test_an_edited_law_of_friction_is_the_one_that_runs(copy):
     """Edited in one file, inlined into another: the code on disk of the other is as old as it."""
     (copy / "caller.py").write_text(
-        "from microslip.compiled import kernel\nfrom microslip.friction import shrink\n\n\n"
+        "from microslip.foundation.compiled import kernel\nfrom microslip.models.coulomb import shrink\n\n\n"
         "@kernel\ndef called(x):\n    return x * shrink(x, 0.0, 1.0)\n"
     )
     program = "from microslip.caller import called; print(called(4.0))"

@@ -13,9 +13,12 @@ import xarray as xr
 from sweep_stub import EFFORT, Solver
 
 import microslip
-from microslip import cache, columns, config, dataset, netcdf, sweep, theory
-from microslip.cache import CacheError, Store
-from microslip.errors import InputError
+from microslip.config import load
+from microslip.datasets import netcdf, point_variables, sweep_dataset
+from microslip.foundation.errors import InputError
+from microslip.sweeps import batches, cache
+from microslip.sweeps.cache import CacheError, Store
+from microslip.theory import paper
 
 GRIDS = {
     "transverse": {"velocity": [0.1, 1, 10], "amplitude": [0, 2]},
@@ -26,15 +29,15 @@ NU = {"transverse": {**GRIDS["transverse"], "poisson": [0, 0.3]}}
 
 
 def write(name, folder, path, grids=GRIDS):
-    configuration = config.from_mapping({"sweeps": grids})
+    configuration = load.from_mapping({"sweeps": grids})
     store = Store(folder)
     grid = configuration.sweeps[name]
-    requests = sweep.history_requests(configuration, name)
-    dataset.write_sweep(
+    requests = batches.history_requests(configuration, name)
+    sweep_dataset.write_sweep(
         path,
         grid,
-        (sweep.answer(request, store)[0] for request in sweep.PointRequests(grid)),
-        [sweep.answer(request, store)[0] for request in requests],
+        (batches.answer(request, store)[0] for request in batches.PointRequests(grid)),
+        [batches.answer(request, store)[0] for request in requests],
         configuration.of_sweep(name),
     )
 
@@ -103,7 +106,7 @@ def test_errors_convergence_and_effort_are_there(tmp_path, monkeypatch):
             assert data[name].dtype.kind == ("f" if name == "periods" else "i")
             assert (data[name] == value).all()
         assert (data.mu_macro_error == 4e-5).all()
-        assert list(dataset.report(data)) == [
+        assert list(sweep_dataset.report(data)) == [
             "transverse: 6 points, 3 not converged",
             *(
                 f"  not converged: amplitude 2, velocity {v}: no periodic state"
@@ -133,25 +136,25 @@ def test_limits_of_the_transverse_scene(tmp_path, solver):
     v, a = data.velocity.values, data.amplitude.values
     assert data.mu_large_amplitude.dims == ("amplitude", "velocity")
     assert float(data.mu_large_amplitude.sel(velocity=1, amplitude=2)) == pytest.approx(
-        float(theory.large_amplitude_transverse(1.0, 2.0))
+        float(paper.large_amplitude_transverse(1.0, 2.0))
     )
     assert (data.mu_large_amplitude.sel(amplitude=0) == 1).all()
-    assert data.mu_static_slider.values == pytest.approx(theory.static_slider(a))
-    assert data.mu_static_stick_zone.values == pytest.approx(theory.static_transverse(a))
-    assert data.mu_static.values == pytest.approx(theory.static_limit_transverse(a))
+    assert data.mu_static_slider.values == pytest.approx(paper.static_slider(a))
+    assert data.mu_static_stick_zone.values == pytest.approx(paper.static_transverse(a))
+    assert data.mu_static.values == pytest.approx(paper.static_limit_transverse(a))
     assert v.size == 3
 
 
 def test_limits_of_the_bore_scenes(tmp_path, solver):
     data = built("bore", tmp_path)
     v, a = data.velocity.values, data.amplitude.values
-    assert data.mu_large_amplitude.values == pytest.approx(theory.large_amplitude_bore(v))
-    assert data.mu_static_stick_zone.values == pytest.approx(theory.static_bore(a))
-    assert data.mu_static_stick_zone_printed.values == pytest.approx(theory.static_bore_printed(a))
-    assert data.mu_static.values == pytest.approx(theory.static_limit_bore(a))
+    assert data.mu_large_amplitude.values == pytest.approx(paper.large_amplitude_bore(v))
+    assert data.mu_static_stick_zone.values == pytest.approx(paper.static_bore(a))
+    assert data.mu_static_stick_zone_printed.values == pytest.approx(paper.static_bore_printed(a))
+    assert data.mu_static.values == pytest.approx(paper.static_limit_bore(a))
     data = built("continuous_bore", tmp_path)
-    assert data.mu_forward_theory.values == pytest.approx(theory.bore_forward(v))
-    assert data.mu_torque_theory.values == pytest.approx(theory.bore_torque(v))
+    assert data.mu_forward_theory.values == pytest.approx(paper.bore_forward(v))
+    assert data.mu_torque_theory.values == pytest.approx(paper.bore_torque(v))
 
 
 def test_single_runs_for_the_figures_are_in_the_dataset(tmp_path, solver):
@@ -160,11 +163,11 @@ def test_single_runs_for_the_figures_are_in_the_dataset(tmp_path, solver):
     assert data.history_phase.attrs["units"] == "rad"
     assert (float(data.history_velocity), float(data.history_amplitude)) == (0.1, 1.0)
     data = built("continuous_bore", tmp_path)
-    assert list(data.start.values) == list(sweep.STARTS)
+    assert list(data.start.values) == list(batches.STARTS)
     assert data.transient_torque.dims == ("start", "transient_step")
     assert data.transient_force_forward.sel(start="stress-free").values[-1] == 1
     assert data.transient_force_forward.sel(start="full-slip").values[-1] == 0
-    assert float(data.transient_force_theory) == pytest.approx(float(theory.bore_forward(0.8)))
+    assert float(data.transient_force_theory) == pytest.approx(float(paper.bore_forward(0.8)))
     assert data.field_traction_forward.dims == ("cell",)
     assert float(data.field_centre_lateral) == -0.5
 
@@ -198,12 +201,12 @@ def test_equal_results_give_equal_bytes(name, tmp_path, solver):
 
 
 def test_a_missing_or_additional_point_is_an_error(tmp_path, solver):
-    configuration = config.from_mapping({"sweeps": GRIDS})
+    configuration = load.from_mapping({"sweeps": GRIDS})
     grid, store = configuration.sweeps["bore"], Store(tmp_path)
-    records = [sweep.answer(request, store)[0] for request in sweep.PointRequests(grid)]
+    records = [batches.answer(request, store)[0] for request in batches.PointRequests(grid)]
     for wrong in (records[:-1], [*records, records[0]]):
         with pytest.raises(ValueError, match="results for 6 points"):
-            dataset.write_sweep(tmp_path / "bore.nc", grid, wrong, [], {})
+            sweep_dataset.write_sweep(tmp_path / "bore.nc", grid, wrong, [], {})
         assert not list(tmp_path.glob("*.nc*"))
 
 
@@ -226,17 +229,19 @@ def test_a_dataset_is_replaced_whole_or_not_at_all(tmp_path, monkeypatch, solver
 def test_blocks_of_any_size_give_the_same_dataset(block, tmp_path, monkeypatch, solver):
     with on_disk("transverse", tmp_path, NU) as whole:
         whole.load()
-    monkeypatch.setattr(columns, "BLOCK", block)
+    monkeypatch.setattr(point_variables, "BLOCK", block)
     held = []
-    seen = columns._column
-    monkeypatch.setattr(columns, "_column", lambda b, *rest: held.append(len(b)) or seen(b, *rest))
+    seen = point_variables._column
+    monkeypatch.setattr(
+        point_variables, "_column", lambda b, *rest: held.append(len(b)) or seen(b, *rest)
+    )
     with on_disk("transverse", tmp_path, NU) as cut:
         xr.testing.assert_identical(cut.load(), whole)
     assert max(held) <= block
 
 
 def test_large_datasets_are_chunked_and_open_with_dask(tmp_path, monkeypatch, solver):
-    monkeypatch.setattr(columns, "BLOCK", 3)
+    monkeypatch.setattr(point_variables, "BLOCK", 3)
     write("transverse", tmp_path, tmp_path / "transverse.nc", NU)
     with xr.open_dataset(tmp_path / "transverse.nc", chunks={}) as data:
         assert data.mu_macro.chunks == ((1, 1), (1, 1), (3,))
@@ -251,7 +256,7 @@ def test_a_single_run_that_fails_is_left_out_and_listed(tmp_path, monkeypatch, s
     data = built("transverse", tmp_path)
     assert not [name for name in data.variables if name.startswith("history_")]
     assert data.converged.all()
-    *_, last = dataset.report(data)
+    *_, last = sweep_dataset.report(data)
     assert last == "  single runs left out: history: ValueError: a root finder found none"
     with on_disk("continuous_bore", tmp_path) as data:
         assert "transient_torque" not in data and "field_bound" not in data
@@ -263,7 +268,7 @@ def test_a_sweep_at_an_imposed_resolution_counts_what_misses_its_tolerance(tmp_p
     for tolerance, count in ((1e-3, "2"), (None, "none")):
         grids = {"transverse": {**axes, "tolerance": tolerance}}
         with on_disk("transverse", tmp_path / str(tolerance), grids) as data:
-            summed = next(dataset.report(data))
+            summed = next(sweep_dataset.report(data))
             assert summed == f"transverse: 2 points, {count} not converged"
             assert (data.mu_macro_error > 1e-3).all()
             assert np.isnan(data.tolerance) == (tolerance is None)
@@ -384,7 +389,7 @@ def test_texts_come_back_whole_and_long_ones_are_cut(tmp_path, monkeypatch, solv
     reason = built("continuous_bore", tmp_path).reason.values.tolist()
     assert reason[1:] == said[1:]
     assert said[0].startswith(reason[0].removesuffix("...")) and reason[0].endswith("\u03b1...")
-    assert len(reason[0].encode()) <= columns.WIDTHS["reason"]
+    assert len(reason[0].encode()) <= point_variables.WIDTHS["reason"]
 
 
 def test_a_part_is_saved_and_read_again_and_plots_have_labels(tmp_path, solver):

@@ -25,9 +25,13 @@ import pytest
 import yaml
 
 import microslip
-from microslip import columns, config, dataset, methods, plot, sweep
-from microslip.cache import Store
-from microslip.models import MODELS
+from microslip.config import load
+from microslip.datasets import point_variables, sweep_dataset
+from microslip.models.registry import MODELS
+from microslip.report.figures import drawing
+from microslip.solver import method_names
+from microslip.sweeps import batches
+from microslip.sweeps.cache import Store
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted(
@@ -116,7 +120,7 @@ def reason_not_to_run(page, block):
 
 def tutorial_configuration():
     (block,) = (b for b in blocks("docs/tutorial.md") if file_of(b) == "tutorial.yaml")
-    return config.from_mapping(yaml.safe_load(block.text))
+    return load.from_mapping(yaml.safe_load(block.text))
 
 
 @pytest.fixture(scope="session")
@@ -130,9 +134,9 @@ def computed(tmp_path_factory):
     place = folder / Path(given.results).relative_to("results")
     store = Store(place)
     for name, grid in given.sweeps.items():
-        points = [sweep.answer(request, store)[0] for request in sweep.PointRequests(grid)]
+        points = [batches.answer(request, store)[0] for request in batches.PointRequests(grid)]
         settings = given.of_sweep(name)
-        dataset.write_sweep(place / f"{name}.nc", grid, points, [], settings)
+        sweep_dataset.write_sweep(place / f"{name}.nc", grid, points, [], settings)
         for file in (f"{name}.nc", f".{name}.nc.sha256"):
             shutil.copy(place / file, folder)
     return folder
@@ -192,15 +196,15 @@ def check_yaml(block):
         given = given["friction"]
     whole = yaml.safe_load((ROOT / "config" / "config.yaml").read_text())
     try:
-        config.from_mapping(given, folders=[ROOT / "config"])
-    except config.ConfigError:
+        load.from_mapping(given, folders=[ROOT / "config"])
+    except load.ConfigError:
         for name, part in given.items():
             sweeps = name == "sweeps"
             for key, value in part.items() if isinstance(part, dict) else ():
                 whole[name][key] = {**whole[name][key], **value} if sweeps else value
             if not isinstance(part, dict):
                 whole[name] = part
-        config.from_mapping(whole, folders=[ROOT / "config"])
+        load.from_mapping(whole, folders=[ROOT / "config"])
 
 
 NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?")
@@ -311,9 +315,9 @@ def table(page, first):
 
 
 def test_the_guide_to_the_workflow_lists_all_variables():
-    known = columns.POINT_VARIABLES | columns.TORQUE_VARIABLES
-    known |= {name: (float, long_name) for name, (*_, long_name) in columns.CHANGES.items()}
-    known |= {name: (known[name][0], text) for name, text in columns.DESCRIPTIONS.items()}
+    known = point_variables.POINT_VARIABLES | point_variables.TORQUE_VARIABLES
+    known |= {name: (float, long_name) for name, (*_, long_name) in point_variables.CHANGES.items()}
+    known |= {name: (known[name][0], text) for name, text in point_variables.DESCRIPTIONS.items()}
     assert table("docs/workflow.md", "variable") == [
         [name, text.replace("|", "\\|")] for name, (_, text) in known.items()
     ]
@@ -322,10 +326,10 @@ def test_the_guide_to_the_workflow_lists_all_variables():
 def test_every_model_every_figure_and_every_public_name_has_its_place():
     assert sorted(row[0] for row in table("docs/physics.md", "model")) == sorted(MODELS)
     gallery = (ROOT / "docs" / "gallery.md").read_text()
-    assert [f for f in plot.FIGURES if f"images/{f}.png" not in gallery] == []
+    assert [f for f in drawing.FIGURES if f"images/{f}.png" not in gallery] == []
     api = (ROOT / "docs" / "api.md").read_text()
     assert [n for n in microslip.__all__ if f":: microslip.{n}\n" not in api] == []
-    assert "my-method" not in methods.names()
+    assert "my-method" not in method_names.names()
 
 
 # The pages as a site

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip import cli
-from microslip.masing import longitudinal
-from microslip.scenes import scene_named
+from microslip.app import cli
+from microslip.motions.registry import scene_named
+from microslip.theory.masing import longitudinal
 
 CIRCLE = "elliptic"
 

@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 from workflow_project import AXES, ROOT, TINY, Project
 
-from microslip import config, explorer, limits, periods
-from microslip.cache import Store
-from microslip.explorer import page, payload, requests
+from microslip.config import load
+from microslip.datasets import theory_limits
+from microslip.report.explorer import explorer, page, payload, requests
+from microslip.sweeps import period_codec
+from microslip.sweeps.cache import Store
 
 
 @pytest.fixture(scope="module")
@@ -34,8 +36,8 @@ def test_points_and_limits_are_those_of_the_dataset(made, name):
         if dataset[key].dtype.kind == "f":
             values = np.array(values, float)
         assert np.array_equal(values, dataset[key].values), key
-    assert len(found["limits"]) == len(limits.LIMITS[name])
-    for given, key in zip(found["limits"], limits.LIMITS[name], strict=True):
+    assert len(found["limits"]) == len(theory_limits.LIMITS[name])
+    for given, key in zip(found["limits"], theory_limits.LIMITS[name], strict=True):
         assert np.array_equal(given["values"], dataset[key].values)
         assert given["long_name"] == dataset[key].long_name
         if len(given["dims"]) == 1:
@@ -51,15 +53,15 @@ def test_periods_come_back_within_the_steps_that_they_are_kept_in(made, name):
     assert count == len(kept)
 
     def values(key, kind, *shape):
-        return periods.values_of(packed[key], kind).reshape(count, *shape)
+        return period_codec.values_of(packed[key], kind).reshape(count, *shape)
 
-    shares = values("tractions", np.int8, shape[0], 2, *shape[1:]) / periods.SHARES
+    shares = values("tractions", np.int8, shape[0], 2, *shape[1:]) / period_codec.SHARES
     slips = np.unpackbits(values("slips", np.uint8, -1), axis=1, count=int(np.prod(shape)))
     forces = packed["force_step"] * values("forces", np.int16, 2, -1)
     phases = packed["start"] + values("phases", np.uint16, -1) * (2 * np.pi / 65535)
     other = {"transverse": "force_lateral", "bore": "torque"}[name]
     for k, result in enumerate(kept):
-        truth = periods.unpacked(result)
+        truth = period_codec.unpacked(result)
         half = truth["bound"].size // 2
         for c, way in enumerate(("forward", "lateral")):
             share = truth[f"traction_{way}"][: shape[0], :half] / truth["bound"][:half]
@@ -87,7 +89,7 @@ def test_every_point_that_moves_and_oscillates_has_a_period_or_a_reason(made):
 
 
 def test_the_default_configuration_has_a_period_for_every_point_and_stays_small(tmp_path):
-    default = config.load(ROOT / "config" / "config.yaml")
+    default = load.load(ROOT / "config" / "config.yaml")
     datasets, records = stub.made_up(tmp_path, default)
     for name in requests.MAPS:
         grid = default.sweeps[name]

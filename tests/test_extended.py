@@ -10,17 +10,22 @@ import xarray as xr
 from sweep_stub import Solver
 
 import microslip
-from microslip import config, dataset, extended, limits, masing, settings, studies, sweep, theory
-from microslip.cache import Store
-from microslip.pressures import pressure_named
-from microslip.scenes import SCENES, scene_named
+from microslip.config import extended, load
+from microslip.config import records as settings
+from microslip.datasets import sweep_dataset, theory_limits
+from microslip.motions.registry import SCENES, scene_named
+from microslip.pressures.registry import pressure_named
+from microslip.studies import registry
+from microslip.sweeps import batches as sweep
+from microslip.sweeps.cache import Store
+from microslip.theory import masing, paper
 
 PAPER = {"bore": {"velocity": [1], "amplitude": [1]}}
 CIRCLE = {"scene": "elliptic", "group": "loops", "velocity": [0.1, 1], "amplitude": [0, 1]}
 
 
 def configured(**sweeps):
-    return config.from_mapping({"sweeps": PAPER, "extended": sweeps})
+    return load.from_mapping({"sweeps": PAPER, "extended": sweeps})
 
 
 POWER = "power:exponent=1"
@@ -41,7 +46,7 @@ def test_defaults_are_those_of_other_sweeps():
 
 
 def test_there_need_be_none():
-    found = config.from_mapping({"sweeps": PAPER})
+    found = load.from_mapping({"sweeps": PAPER})
     assert found.extended == found.groups == {}
 
 
@@ -59,30 +64,30 @@ def test_a_steady_motion_has_no_amplitude():
 
 
 def test_names_of_other_results_are_taken():
-    assert {*studies.DATASETS, *studies.DATASETS.values()} <= set(settings.TAKEN)
+    assert {*registry.DATASETS, *registry.DATASETS.values()} <= set(settings.TAKEN)
     for name in ("transverse", "claims", "bore_histories"):
-        with pytest.raises(config.ConfigError, match=f"extended.{name}: another result has this"):
+        with pytest.raises(load.ConfigError, match=f"extended.{name}: another result has this"):
             configured(**{name: CIRCLE})
 
 
 def test_a_figure_has_room_for_so_many():
     configured(**{f"a{i}": CIRCLE for i in range(12)})
-    with pytest.raises(config.ConfigError, match=r"a12.group: loops has 13 .* allowed: up to 12"):
+    with pytest.raises(load.ConfigError, match=r"a12.group: loops has 13 .* allowed: up to 12"):
         configured(**{f"a{i}": CIRCLE for i in range(13)})
     lines = CIRCLE | {"velocity": [0.1]}
-    with pytest.raises(config.ConfigError, match="allowed: up to 8"):
+    with pytest.raises(load.ConfigError, match="allowed: up to 8"):
         configured(**{f"a{i}": lines for i in range(9)})
     # every one of Poisson's ratios is drawn
     ratios = CIRCLE | {"poisson": [0, 0.3, 0.5]}
     configured(**{f"a{i}": ratios for i in range(4)})
-    with pytest.raises(config.ConfigError, match=r"loops has 15 sweeps at their Poisson's .* 12"):
+    with pytest.raises(load.ConfigError, match=r"loops has 15 sweeps at their Poisson's .* 12"):
         configured(**{f"a{i}": ratios for i in range(5)})
 
 
 def test_jobs_do_not_ask_the_solver(monkeypatch):
     monkeypatch.setattr(extended, "_ask_solver", None)
     given = {"sweeps": PAPER, "extended": {"circle": CIRCLE | {"scene": "no such"}}}
-    found = config.from_mapping(given, ask_solver=False)
+    found = load.from_mapping(given, ask_solver=False)
     assert found.extended["circle"].scene == "no such"
 
 
@@ -115,7 +120,7 @@ def requests_of(**changes):
 
 
 def test_a_plain_point_is_asked_for_as_ever():
-    plain = config.from_mapping({"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}})
+    plain = load.from_mapping({"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}})
     (expected,) = sweep.PointRequests(plain.sweeps["bore"])
     assert "pressure" not in expected
     (found,) = requests_of(scene="bore", velocity=[1], amplitude=[1])
@@ -152,7 +157,7 @@ def test_a_pressure_from_a_file_is_named_by_its_content(tmp_path):
     assert first.startswith("file:sha256=")
     file.write_text(file.read_text().replace("0,0,1", "0,0,2"))
     assert requests_of(pressure=f"file:{file}")[0]["pressure"] != first
-    with pytest.raises(config.ConfigError, match="circle.pressure: 'file:gone.csv': .* No such"):
+    with pytest.raises(load.ConfigError, match="circle.pressure: 'file:gone.csv': .* No such"):
         requests_of(pressure="file:gone.csv")
 
 
@@ -178,19 +183,19 @@ def test_files_of_a_configuration_are_looked_for_beside_it_then_here(tmp_path, m
     def digest(found):
         return found.extended["pad"].pressure
 
-    first = digest(config.load(path))
+    first = digest(load.load(path))
     assert first == pressure_named(f"file:{beside / 'pad.csv'}").name
     (beside / "pad.csv").unlink()
-    assert digest(config.load(path)) == pressure_named("file:pad.csv").name != first
+    assert digest(load.load(path)) == pressure_named("file:pad.csv").name != first
     (here / "pad.csv").unlink()
-    with pytest.raises(config.ConfigError) as refused:
-        config.load(path)
+    with pytest.raises(load.ConfigError) as refused:
+        load.load(path)
     said = str(refused.value)
     assert said.startswith(f"{path}: extended.pad.pressure: 'file:pad.csv': pad.csv cannot be read")
     assert f"No such file; looked for {beside / 'pad.csv'}, {here / 'pad.csv'}" in said
     # A job for other sweeps does without it.
-    mapping = config.read_yaml(path)
-    assert config.from_mapping(mapping, ask_solver=False).extended["pad"].name == "pad"
+    mapping = load.read_yaml(path)
+    assert load.from_mapping(mapping, ask_solver=False).extended["pad"].name == "pad"
 
 
 def test_a_request_names_a_file_by_its_content_and_jobs_find_it(tmp_path, monkeypatch):
@@ -205,28 +210,28 @@ def test_a_request_names_a_file_by_its_content_and_jobs_find_it(tmp_path, monkey
         (tmp_path / "sub", "file:link.csv"),
         (tmp_path / "sub", f"file:{tmp_path / 'pad.csv'},grid=cells"),
     ):
-        found = config.load(with_pressure(folder, name))
+        found = load.load(with_pressure(folder, name))
         asked.append([*sweep.PointRequests(found.extended["pad"])])
         assert str(tmp_path) not in json.dumps(found.of_sweep("pad"))
     assert all(requests == asked[0] for requests in asked)
     assert asked[0][0]["pressure"].startswith("file:sha256=")
     # What is handed to a job, in another folder and process.
-    mapping = config.read_yaml(with_pressure(tmp_path, "file:pad.csv"))
-    handed = config.with_files_found(mapping, folders=[tmp_path])
-    monkeypatch.setattr("microslip.named_files._PLACES", {})
+    mapping = load.read_yaml(with_pressure(tmp_path, "file:pad.csv"))
+    handed = load.with_files_found(mapping, folders=[tmp_path])
+    monkeypatch.setattr("microslip.foundation.named_files._PLACES", {})
     monkeypatch.chdir(tmp_path / "sub")
-    found = config.from_mapping(handed, ask_solver=False)
+    found = load.from_mapping(handed, ask_solver=False)
     assert [*sweep.PointRequests(found.extended["pad"])] == asked[0]
-    assert config.with_files_found(handed) == handed
+    assert load.with_files_found(handed) == handed
 
 
 def test_a_dataset_says_what_its_file_is_called(monkeypatch, tmp_path):
     Solver(monkeypatch)
     (tmp_path / "pad.csv").write_text(EVEN)
-    grid = config.load(with_pressure(tmp_path, "file:pad.csv")).extended["pad"]
+    grid = load.load(with_pressure(tmp_path, "file:pad.csv")).extended["pad"]
     store, path = Store(tmp_path / "results"), tmp_path / "pad.nc"
     records = [sweep.answer(request, store)[0] for request in sweep.PointRequests(grid)]
-    dataset.write_sweep(path, grid, records, [], {})
+    sweep_dataset.write_sweep(path, grid, records, [], {})
     with xr.open_dataset(path) as data:
         assert data.attrs["pressure"] == grid.pressure
         assert data.attrs["pressure_file"] == "pad.csv"
@@ -248,7 +253,7 @@ def built(folder, name="circle", **changes):
     grid, store = configuration.grids[name], Store(folder)
     points = (sweep.answer(request, store)[0] for request in sweep.PointRequests(grid))
     path = folder / f"{name}.nc"
-    dataset.write_sweep(path, grid, points, [], configuration.of_sweep(name))
+    sweep_dataset.write_sweep(path, grid, points, [], configuration.of_sweep(name))
     with xr.open_dataset(path) as data:
         return data.load()
 
@@ -263,7 +268,7 @@ def test_a_dataset_says_what_it_is_of(monkeypatch, tmp_path):
     assert data.velocity.formula == scene.velocity_label
     assert data.amplitude.long_name == f"amplitude, {scene.amplitude_label}"
     assert not [name for name in data if "static" in name]
-    assert list(dataset.report(data, "circle")) == ["circle: 4 points, none not converged"]
+    assert list(sweep_dataset.report(data, "circle")) == ["circle: 4 points, none not converged"]
     for variable in data.variables.values():
         assert variable.attrs["long_name"]
 
@@ -272,17 +277,17 @@ def test_limits_stand_beside_the_points_of_motions_that_have_some(monkeypatch, t
     Solver(monkeypatch)
     data = built(tmp_path, "along", scene="longitudinal", amplitude=[0, 0.5, 1])
     a = data.amplitude.values
-    assert data.mu_static.values == pytest.approx(theory.static_limit_longitudinal(a))
+    assert data.mu_static.values == pytest.approx(paper.static_limit_longitudinal(a))
     assert float(data.mu_closed_form.sel(velocity=0.1, amplitude=0.5)) == pytest.approx(
         float(masing.longitudinal(0.1, 0.5))
     )
 
 
 def test_limits_are_those_of_the_paper_under_its_pressure_alone():
-    assert limits.LIMITS.keys() <= SCENES.keys()
-    assert "(Eq 9)" in limits.formulas("transverse", POWER)["mu_static_stick_zone"][2]
-    assert limits.formulas("elliptic") == {}
-    assert "mu_static" in limits.formulas("bore")
+    assert theory_limits.LIMITS.keys() <= SCENES.keys()
+    assert "(Eq 9)" in theory_limits.formulas("transverse", POWER)["mu_static_stick_zone"][2]
+    assert theory_limits.formulas("elliptic") == {}
+    assert "mu_static" in theory_limits.formulas("bore")
 
 
 # Questions

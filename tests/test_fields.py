@@ -10,9 +10,12 @@ import xarray as xr
 from sweep_stub import Solver
 
 import microslip
-from microslip import config, dataset, studies, sweep
-from microslip.cache import Store
+from microslip.config import load
+from microslip.datasets import sweep_dataset
 from microslip.si.predict import Prediction
+from microslip.studies import registry
+from microslip.sweeps import batches
+from microslip.sweeps.cache import Store
 
 PAGE = (Path(__file__).parents[1] / "docs" / "fields.md").read_text(encoding="utf-8")
 GRIDS = {
@@ -53,14 +56,14 @@ def all_names(data):
 
 
 def written(name, folder):
-    given = config.from_mapping({"sweeps": GRIDS})
+    given = load.from_mapping({"sweeps": GRIDS})
     store, grid = Store(folder), given.sweeps[name]
     answered = [
-        [sweep.answer(request, store)[0] for request in requests]
-        for requests in (sweep.PointRequests(grid), sweep.history_requests(given, name))
+        [batches.answer(request, store)[0] for request in requests]
+        for requests in (batches.PointRequests(grid), batches.history_requests(given, name))
     ]
     path = folder / f"{name}.nc"
-    dataset.write_sweep(path, grid, *answered, given.of_sweep(name))
+    sweep_dataset.write_sweep(path, grid, *answered, given.of_sweep(name))
     with xr.open_datatree(path) as data:
         return all_names(data)
 
@@ -82,13 +85,13 @@ STUDIES = {
 def test_every_variable_of_a_study_is_in_its_table_and_no_other(study):
     title, result = STUDIES[study]
     answer, _ = studies_stub.answered(result)
-    data = studies.build(study, studies_stub.configured(), answer)
+    data = registry.build(study, studies_stub.configured(), answer)
     assert set(section(title)) == set(map(str, data.variables))
 
 
 def test_every_variable_of_the_claims_is_in_their_table_and_no_other():
     answer, _ = claims_stub.answered()
-    data = studies.build("claims", claims_stub.configured(), answer)
+    data = registry.build("claims", claims_stub.configured(), answer)
     assert set(section("The claims")) == set(map(str, data.variables))
 
 

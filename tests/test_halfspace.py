@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from microslip import hertz
-from microslip.halfspace import coupling_kernels, ring_influence, toroidal_kernels
-from microslip.models.cartesian import CartesianContact
 from microslip.models.contact import forces
-from microslip.models.polar import PolarContact
-from microslip.models.radial import RadialContact
-from microslip.rings import make_rings
+from microslip.models.polar.contact import PolarContact
+from microslip.models.rings.contact import RadialContact
+from microslip.models.rings.influence import coupling_kernels, ring_influence, toroidal_kernels
+from microslip.models.rings.mesh import make_rings
+from microslip.models.squares.contact import CartesianContact
+from microslip.theory import hertz
 
 RADII = [(0.3, 0.9), (0.9, 0.3), (0.5, 0.52), (0.52, 0.5), (0.7, 0.7001), (0.999, 1e-3), (0.4, 0.5)]
 

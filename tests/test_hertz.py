@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.special import ellipe, ellipkm1
 
-from microslip import hertz
+from microslip.theory import hertz
 
 POISSON = st.floats(0.0, 0.5)
 

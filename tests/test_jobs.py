@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from microslip.cache import CacheError
-from microslip.jobs import job_log, plain_words
+from microslip.app.job_log import job_log, plain_words
+from microslip.sweeps.cache import CacheError
 
 FULL = Path("/dev/full")
 needs_full = pytest.mark.skipif(not FULL.exists(), reason="no device that is always full")
@@ -99,7 +99,7 @@ def test_what_else_snakemake_says_is_left_alone(message):
 
 def test_the_line_of_progress_ends_with_the_process(tmp_path):
     program = f"""
-        from microslip.watch import Watch
+        from microslip.app.progress import Watch
         Watch({str(tmp_path / "counter")!r}).start(3)
         raise SystemExit("no more")
     """

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import microslip
-from microslip import keys
+from microslip.sweeps import keys
 
 PACKAGE = Path(microslip.__file__).parent
 REQUEST = {"kind": "point", "scene": "bore", "velocity": "0.1", "amplitude": "1", "cells": None}

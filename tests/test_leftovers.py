@@ -6,8 +6,10 @@ import pytest
 import yaml
 from sweep_stub import Solver
 
-from microslip import batch_files, cache, config, leftovers, sweep
-from microslip.plan import Plan
+from microslip.app import leftovers
+from microslip.app.plan import Plan
+from microslip.config import load
+from microslip.sweeps import batch_files, batches, cache
 
 AXES = {"velocity": [0.5, 2], "amplitude": [0, 1], "tolerance": 1e-2}
 
@@ -26,9 +28,9 @@ def results(tmp_path, monkeypatch):
     Solver(monkeypatch)
     folder = tmp_path / "results"
     for name, more in (("first", {}), ("second", {"velocity": [0.5, 3]})):
-        plan = Plan(config.load(configured(tmp_path, name, **more)))
+        plan = Plan(load.load(configured(tmp_path, name, **more)))
         for batch, requests in plan.batches_in("bore").items():
-            records, _ = sweep.run_batch(requests, cache.Store(folder))
+            records, _ = batches.run_batch(requests, cache.Store(folder))
             batch_files.write_batch(folder / "batches" / "bore" / f"{batch}.json", records)
     for file in ("bore.nc", "summaries/bore.html", "figures/fig6_bore_map.png", "pendulum.nc"):
         with cache.writing_beside(folder / file, sealed=True) as beside:
@@ -66,10 +68,10 @@ def test_what_no_configuration_asks_for_is_removed(results, tmp_path):
         ".pendulum.nc.sha256",
     }
     assert len(gone) == 2 + 1 + 2
-    store, plan = cache.Store(results), Plan(config.load(tmp_path / "first.yaml"))
+    store, plan = cache.Store(results), Plan(load.load(tmp_path / "first.yaml"))
     for requests in plan.batches_in("bore").values():
         for request in requests:
-            assert store.read(sweep.group(request), sweep.key_of(request)) is not None
+            assert store.read(batches.group(request), batches.key_of(request)) is not None
 
 
 def test_what_any_of_several_asks_for_stays(results, tmp_path, capsys):

@@ -6,8 +6,8 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import microslip
-from microslip import theory
-from microslip.masing import longitudinal
+from microslip.theory import paper
+from microslip.theory.masing import longitudinal
 
 POINTS = [
     (0.1, 0.5),
@@ -80,7 +80,7 @@ def test_nu_changes_little_and_keeps_the_order():
 def test_limits():
     amplitude = np.array([0.0, 0.2, 0.5, 0.9, 1.0, 2.0])
     slow = longitudinal(1e-9, amplitude)
-    assert slow == pytest.approx(theory.static_limit_longitudinal(amplitude), abs=1e-6)
+    assert slow == pytest.approx(paper.static_limit_longitudinal(amplitude), abs=1e-6)
     assert longitudinal(0.0, amplitude) == pytest.approx(slow, abs=1e-6)
     assert longitudinal([1.0, 3.0], [1.0, 0.5]).tolist() == [1.0, 1.0]
     # Large amplitudes: a block that feels +1 or -1 only (Coulomb).

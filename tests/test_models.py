@@ -10,20 +10,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from microslip import hertz, theory
-from microslip.cycle import Cycle
-from microslip.friction import project
-from microslip.models import MODELS
-from microslip.models.cartesian import CartesianContact
 from microslip.models.contact import energy_norm, forces, forward_slip
-from microslip.models.polar import PolarContact
-from microslip.models.radial import RadialContact
-from microslip.models.slider import slider_contact
-from microslip.motion import Resolution
-from microslip.path import EULER, INTEGRATORS, SDIRK2, half_period_phases, make_path
-from microslip.periodic import find_periodic_state
-from microslip.scenes import BORE, TRANSVERSE
-from microslip.simulate import simulate
+from microslip.models.coulomb import project
+from microslip.models.path import EULER, INTEGRATORS, SDIRK2, half_period_phases, make_path
+from microslip.models.polar.contact import PolarContact
+from microslip.models.reduced.slider import slider_contact
+from microslip.models.registry import MODELS
+from microslip.models.rings.contact import RadialContact
+from microslip.models.squares.contact import CartesianContact
+from microslip.motions.registry import BORE, TRANSVERSE
+from microslip.solver.period_map import Cycle
+from microslip.solver.periodic import find_periodic_state
+from microslip.solver.problem import Resolution
+from microslip.solver.simulate import simulate
+from microslip.theory import hertz, paper
 
 
 def at_rest(contact):
@@ -170,7 +170,7 @@ def test_slider_has_the_static_friction_of_eq_7(amplitude):
     for velocity in (1e-4, 1e-5):
         run = simulate(TRANSVERSE, velocity, amplitude, 0.0, "slider", Resolution(1, 1, 192), 1e-7)
         assert run.converged
-        excess.append(run.mu - theory.static_slider(amplitude))
+        excess.append(run.mu - paper.static_slider(amplitude))
     assert abs(excess[1]) < 2e-4
     assert excess[0] / excess[1] == pytest.approx(10.0, rel=0.3)
 
@@ -190,7 +190,7 @@ def test_slider_is_the_closed_return_mapping():
 
 @pytest.mark.parametrize(("velocity", "amplitude"), [(1e-3, 1.0), (0.1, 0.5), (1.0, 3.0), (10, 2)])
 def test_rigid_translation_is_eq_6(velocity, amplitude):
-    expected = theory.large_amplitude_transverse(velocity, amplitude)
+    expected = paper.large_amplitude_transverse(velocity, amplitude)
     steps = [32, 64, 128]
     errors = [
         simulate(TRANSVERSE, velocity, amplitude, 0.0, "rigid", Resolution(1, 1, n), 1e-6).mu
@@ -206,7 +206,7 @@ def test_rigid_rotation_is_eq_29(velocity):
     resolution = Resolution(32, 32, 128)
     for amplitude in (0.3, 4.0):  # which does not matter
         run = simulate(BORE, velocity, amplitude, 0.3, "rigid", resolution, 1e-6)
-        assert run.mu == pytest.approx(theory.large_amplitude_bore(velocity), abs=5e-4)
+        assert run.mu == pytest.approx(paper.large_amplitude_bore(velocity), abs=5e-4)
 
 
 # One another

@@ -6,16 +6,18 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip import cli, depth, pulsating
-from microslip.models import MODELS
+from microslip.app import cli
+from microslip.models import varying_load
 from microslip.models.contact import energy_norm
-from microslip.models.mdr import mdr_contact
-from microslip.models.radial import RadialContact
-from microslip.motion import Motion, Resolution, build_contact
-from microslip.path import EULER, make_path
-from microslip.pressures import HERTZ
-from microslip.scenes import scene_named
-from microslip.simulate import simulate
+from microslip.models.path import EULER, make_path
+from microslip.models.reduced.mdr import mdr_contact
+from microslip.models.registry import MODELS
+from microslip.models.rings.contact import RadialContact
+from microslip.motions.registry import scene_named
+from microslip.pressures.registry import HERTZ
+from microslip.solver.problem import Motion, Resolution, build_contact
+from microslip.solver.simulate import simulate
+from microslip.theory import oscillating_load
 
 ALONE = [
     ("normal", 0.1, 0.5),
@@ -113,10 +115,10 @@ def test_the_mean_load_is_that_of_the_sum():
         height = np.maximum(1.0 + amplitude * np.sin(phase), 0.0)
         for by_load, load in ((True, height), (False, height**1.5)):
             mean = np.trapezoid(load, phase) / (2.0 * np.pi)
-            assert pulsating.mean_load(amplitude, by_load) == pytest.approx(mean, abs=1e-9)
+            assert oscillating_load.mean_load(amplitude, by_load) == pytest.approx(mean, abs=1e-9)
 
 
-@pytest.mark.parametrize("carried", [depth.load_on_rings, depth.load_on_springs])
+@pytest.mark.parametrize("carried", [varying_load.load_on_rings, varying_load.load_on_springs])
 def test_the_parts_of_a_contact_carry_its_load(carried):
     edges, depths = np.linspace(0.0, 1.3, 14), np.array([0.0, 0.3, 1.0, 1.69])
     load = carried(HERTZ, edges, depths)

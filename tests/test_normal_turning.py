@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip import hertz, theory
-from microslip.motion import Motion, Resolution, build_contact
-from microslip.path import make_path
-from microslip.pressures import HERTZ
-from microslip.scenes import scene_named
-from microslip.simulate import simulate
+from microslip.models.path import make_path
+from microslip.motions.registry import scene_named
+from microslip.pressures.registry import HERTZ
+from microslip.solver.problem import Motion, Resolution, build_contact
+from microslip.solver.simulate import simulate
+from microslip.theory import hertz, paper
 
 TURNING = "normal:angle=1"
 
@@ -62,7 +62,7 @@ def test_where_all_slides_every_moment_is_a_steady_bore(velocity):
     load = 1.0 + 0.5 * np.sin(phase)
     rate = np.abs(float(hertz.bore_angle(amplitude)) * np.sin(phase))
     radius = HERTZ.radius(HERTZ.of_load(load))
-    steady = theory.bore_forward(velocity / (rate * radius))
+    steady = paper.bore_forward(velocity / (rate * radius))
     assert found.converged
     # the contact is late by about u_lim, a little of this path
     assert found.mu_macro == pytest.approx(np.mean(load * steady), abs=0.015)

@@ -12,12 +12,13 @@ from odd_files import SWEEP
 from test_leftovers import configured, names, results  # noqa: F401 (a fixture)
 
 import microslip
-from microslip import cli, config
-from microslip.cache import CacheError
-from microslip.errors import InputError
-from microslip.pressures import pressure_named
-from microslip.query import open_map
-from microslip.settings import ConfigError
+from microslip.app import cli
+from microslip.config import load
+from microslip.config.records import ConfigError
+from microslip.datasets.query.open_map import open_map
+from microslip.foundation.errors import InputError
+from microslip.pressures.registry import pressure_named
+from microslip.sweeps.cache import CacheError
 
 SOURCE = str(Path(microslip.__file__).parent.parent)
 
@@ -34,10 +35,10 @@ def test_numbers_mean_what_they_show(text, expected, tmp_path):
     path = tmp_path / "given.yaml"
     path.write_text(SWEEP % text, encoding="utf-8")
     if isinstance(expected, tuple):
-        assert config.load(path).sweeps["bore"].velocity == expected
+        assert load.load(path).sweeps["bore"].velocity == expected
         return
     with pytest.raises(ConfigError) as caught:
-        config.load(path)
+        load.load(path)
     one_line(caught, [str(path), *expected["words"]])
 
 
@@ -47,11 +48,11 @@ def test_odd_settings(text, words, tmp_path):
     path.write_text(SWEEP % "[1]" + text + "\n", encoding="utf-8")
     if words is None:
         key, value = next(iter(yaml.safe_load(text).items()))
-        found = getattr(config.load(path), key)
+        found = getattr(load.load(path), key)
         assert found == value or set(found.values()) == {value}
         return
     with pytest.raises(ConfigError) as caught:
-        config.load(path)
+        load.load(path)
     one_line(caught, [str(path), *words]).encode()  # it can be printed
 
 
@@ -85,8 +86,8 @@ def test_odd_pressures_as_netcdf(data, expected, tmp_path):
 
 OPEN_DAMAGED = """
 import sys
-from microslip.errors import InputError
-from microslip.pressures import pressure_named
+from microslip.foundation.errors import InputError
+from microslip.pressures.registry import pressure_named
 try:
     pressure_named(sys.argv[1])
 except InputError as error:

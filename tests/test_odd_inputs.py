@@ -8,12 +8,13 @@ import xarray as xr
 from odd_inputs import AT, CALLS, NUMBERS, PREDICTIONS, QUANTITIES, SAME
 
 import microslip
-from microslip import cli, theory
-from microslip.cache import CacheError
-from microslip.errors import InputError
+from microslip.app import cli
+from microslip.foundation.errors import InputError
 from microslip.si.materials import Material
 from microslip.si.predict import predict
 from microslip.si.quantities import si_value
+from microslip.sweeps.cache import CacheError
+from microslip.theory import paper
 
 LAST_DIGITS = 1e-15
 """Relative: what rounding leaves in the expected value, which is made of a few floats."""
@@ -130,7 +131,7 @@ def test_a_travel_as_long_as_allowed_ends_in_the_steady_state():
         microslip.history("continuous-bore", 0.5, cells=8, steps=16, travel=travel).force_forward
         for travel in (10.0, 1e6)
     ]
-    assert ends[1][-1] == pytest.approx(theory.bore_forward(0.5), abs=1e-3)
+    assert ends[1][-1] == pytest.approx(paper.bore_forward(0.5), abs=1e-3)
     assert ends[1][-1] == pytest.approx(ends[0][-1], abs=1e-3)
 
 

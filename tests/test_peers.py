@@ -10,15 +10,18 @@ import pytest
 from studies_stub import configured
 
 import microslip
-from microslip import keys, methods, trial
-from microslip.methods import aspher
-from microslip.models import MODELS
-from microslip.models.cartesian import CartesianContact
-from microslip.motion import Motion, Resolution
-from microslip.path import EULER, make_path
-from microslip.scenes import SCENES, TRANSVERSE
-from microslip.settings import MODELS_OF_SCENE
-from microslip.studies import accuracy_cost, ladders
+from microslip.adaptive import single_run as trial
+from microslip.config.records import MODELS_OF_SCENE
+from microslip.models.path import EULER, make_path
+from microslip.models.registry import MODELS
+from microslip.models.squares.contact import CartesianContact
+from microslip.motions.registry import SCENES, TRANSVERSE
+from microslip.solver import method_names
+from microslip.solver.methods import aspher
+from microslip.solver.problem import Motion, Resolution
+from microslip.studies import ladders
+from microslip.studies.accuracy import accuracy_cost
+from microslip.sweeps import keys
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # read when the package is first imported
 needs_it = pytest.mark.skipif(find_spec("aspher") is None, reason="the package is not installed")
@@ -34,26 +37,26 @@ def without(monkeypatch):
     def found(name):
         return None if name == "aspher" else find_spec(name)
 
-    monkeypatch.setattr(methods, "find_spec", found)
+    monkeypatch.setattr(method_names, "find_spec", found)
     monkeypatch.setitem(sys.modules, "aspher", None)
 
 
 @pytest.fixture
 def within(monkeypatch):
     """As if the package were installed; nothing of it can be run."""
-    monkeypatch.setattr(methods, "find_spec", lambda name: object())
+    monkeypatch.setattr(method_names, "find_spec", lambda name: object())
 
 
 def test_no_other_method_needs_a_package(without):
-    lacking = {name: methods.missing(name) for name in methods.names()}
+    lacking = {name: method_names.missing(name) for name in method_names.names()}
     assert {name for name, reason in lacking.items() if reason} == {"aspher"}
     assert "the package aspher" in lacking["aspher"]
-    assert methods.method_named("aspher").requires == "aspher"
+    assert method_names.method_named("aspher").requires == "aspher"
 
 
 def test_the_name_stays_good_without_the_package(without):
     """A configuration that works in one place works in all."""
-    assert methods.refusal("aspher") == ""
+    assert method_names.refusal("aspher") == ""
     assert "aspher" in configured({"methods": ["shipped", "aspher"]}).accuracy.methods
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip import theory
-from microslip.hertz import TORQUE_FULL_SLIP
+from microslip.theory import paper
+from microslip.theory.hertz import TORQUE_FULL_SLIP
 
 POINTS = [
     ("transverse", 0.1, 0.6, 0.0),
@@ -92,7 +92,7 @@ def test_areas_fill_the_disc_and_carry_the_load(given):
 def test_the_contact_never_slides_fully_near_the_static_limit():
     found = microslip.period("bore", 0.01, 1.0)
     assert not found.slips.all(axis=1).any()
-    inside = theory.bore_stick_radius(1.0) * 0.5
+    inside = paper.bore_stick_radius(1.0) * 0.5
     core = np.hypot(found.forward_position, found.lateral_position) < inside
     # the patches alternate: what slips on the right at one turn slips on the left at the other
     right = core & (found.lateral_position > 0.3 * inside)

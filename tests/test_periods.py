@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip import answers, periods, source_digest, sweep
-from microslip.cache import Store
-from microslip.inside import NoPeriodicState
+from microslip.adaptive.history import NoPeriodicState
+from microslip.foundation import source_digest
+from microslip.sweeps import batches, evaluate, period_codec
+from microslip.sweeps.cache import Store
 
 POINTS = [("transverse", "0.1", "0.6", "0"), ("transverse", "0.1", "0.6", "0.3")]
 POINTS += [("bore", "0.05", "0.7", "0.3"), ("zigzag", "0.2", "1", "0")]
@@ -22,25 +23,25 @@ def asked(point):
 
 @pytest.mark.parametrize("point", POINTS, ids=str)
 def test_a_stored_period_is_the_computed_one_within_half_a_step(point, tmp_path):
-    record, _ = sweep.answer(asked(point), Store(tmp_path))
-    assert sweep.answer(asked(point), Store(tmp_path)) == (record, 0.0)
-    found = periods.unpacked(record["result"])
+    record, _ = batches.answer(asked(point), Store(tmp_path))
+    assert batches.answer(asked(point), Store(tmp_path)) == (record, 0.0)
+    found = period_codec.unpacked(record["result"])
     scene, velocity, amplitude, poisson = point[0], *map(float, point[1:])
     truth = microslip.period(scene, velocity, amplitude, poisson=poisson, **COUNTS)
-    for name in (*periods.HISTORIES, "forward_position", "lateral_position", "bound"):
+    for name in (*period_codec.HISTORIES, "forward_position", "lateral_position", "bound"):
         assert found[name] == pytest.approx(getattr(truth, name), abs=1e-7), name
     # the state repeats itself and its mirror image no better than it converged
     for name in ("traction_forward", "traction_lateral"):
         off = np.abs(found[name] - getattr(truth, name)) / truth.bound
-        assert off.max() < 0.5 / periods.SHARES + 1e-3, name
+        assert off.max() < 0.5 / period_codec.SHARES + 1e-3, name
     assert (found["slips"] == truth.slips).all()
     assert (found["mu_macro"], found["converged"]) == (truth.mu_macro, truth.converged)
 
 
 def test_a_stored_period_takes_few_bytes():
     unpacked = microslip.period("bore", 0.1, 1.0, **COUNTS)
-    everything = json.dumps(answers.plain(vars(unpacked)))
-    result = answers.computed(asked(("bore", "0.1", "1", "0")))
+    everything = json.dumps(evaluate.plain(vars(unpacked)))
+    result = evaluate.computed(asked(("bore", "0.1", "1", "0")))
     assert len(json.dumps(result)) < 0.1 * len(everything)
 
 
@@ -49,7 +50,7 @@ def test_where_there_is_no_state_a_result_says_so(monkeypatch):
         raise NoPeriodicState("velocity = 0.1: no periodic state")
 
     monkeypatch.setattr("microslip.period", none, raising=False)
-    result = answers.computed(asked(POINTS[0]))
+    result = evaluate.computed(asked(POINTS[0]))
     assert result == {"converged": False, "reason": "velocity = 0.1: no periodic state"}
 
 

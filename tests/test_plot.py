@@ -15,19 +15,19 @@ from matplotlib.legend import Legend
 from matplotlib.text import Text
 from PIL import Image
 
-from microslip import plot, theory
-from microslip.cache import CacheError
-from microslip.plot import poisson
+from microslip.report.figures import drawing, poisson
+from microslip.sweeps.cache import CacheError
+from microslip.theory import paper
 
 #: The paper's figures; those of the studies have tests of their own.
-PAPERS = [name for name in plot.FIGURES if name.startswith("fig")]
+PAPERS = [name for name in drawing.FIGURES if name.startswith("fig")]
 
 
 def fake_transverse(n: int = 9) -> xr.Dataset:
     """A transverse sweep: between the exact static limit and Eq 6, with a slider's history."""
     amplitude, velocity = np.linspace(0, 3, n), np.geomspace(1e-3, 10, n)
-    large = theory.large_amplitude_transverse(velocity, amplitude[:, None])
-    exact = theory.static_limit_transverse(amplitude)
+    large = paper.large_amplitude_transverse(velocity, amplitude[:, None])
+    exact = paper.static_limit_transverse(amplitude)
     phase = np.linspace(0, 8 * np.pi, 401)
     path, force = 0.2 * phase + 1j * np.sin(phase), np.ones(phase.size, complex)
     for i in range(1, phase.size):  # a single elastic slider
@@ -38,8 +38,8 @@ def fake_transverse(n: int = 9) -> xr.Dataset:
         {
             **fake_map(exact[:, None] + (1 - exact[:, None]) * large),
             "mu_large_amplitude": (both, large),
-            "mu_static_slider": (one, theory.static_slider(amplitude)),
-            "mu_static_stick_zone": (one, theory.static_transverse(amplitude)),
+            "mu_static_slider": (one, paper.static_slider(amplitude)),
+            "mu_static_stick_zone": (one, paper.static_transverse(amplitude)),
             "mu_static": (one, exact),
             "history_phase": ("history_step", phase, {"units": "rad"}),
             "history_force_forward": ("history_step", force.real),
@@ -55,13 +55,13 @@ def fake_transverse(n: int = 9) -> xr.Dataset:
 def fake_bore(n: int = 9) -> xr.Dataset:
     """A bore sweep that runs between the exact static limit and Eq 29."""
     amplitude, velocity = np.linspace(0, 5, n), np.geomspace(1e-3, 10, n)
-    large, exact = theory.large_amplitude_bore(velocity), theory.static_limit_bore(amplitude)
+    large, exact = paper.large_amplitude_bore(velocity), paper.static_limit_bore(amplitude)
     return xr.Dataset(
         {
             **fake_map(exact[:, None] + (1 - exact[:, None]) * large),
             "mu_large_amplitude": (("velocity",), large),
-            "mu_static_stick_zone": (("amplitude",), theory.static_bore(amplitude)),
-            "mu_static_stick_zone_printed": (("amplitude",), theory.static_bore_printed(amplitude)),
+            "mu_static_stick_zone": (("amplitude",), paper.static_bore(amplitude)),
+            "mu_static_stick_zone_printed": (("amplitude",), paper.static_bore_printed(amplitude)),
             "mu_static": (("amplitude",), exact),
         },
         coords={"amplitude": amplitude, "velocity": velocity},
@@ -81,8 +81,8 @@ def fake_map(mu: np.ndarray) -> dict:
 def fake_continuous_bore(n: int = 9, rings: int = 8) -> xr.Dataset:
     """A steady bore: Eqs 15, 21 and 22, and starts that decay to them."""
     velocity = np.geomspace(0.1, 10, n)
-    force, torque = theory.bore_forward(velocity), theory.bore_torque(velocity)
-    end = theory.bore_forward(0.8), theory.bore_torque(0.8)
+    force, torque = paper.bore_forward(velocity), paper.bore_torque(velocity)
+    end = paper.bore_forward(0.8), paper.bore_torque(0.8)
     r = np.sin((np.arange(rings) + 0.5) / rings * np.pi / 2)
     turn = (np.arange(3 * rings) + 0.5) * 2 * np.pi / (3 * rings)
     x, y = (np.outer(r, f(turn)).ravel() for f in (np.cos, np.sin))
@@ -132,7 +132,7 @@ def datasets() -> dict[str, xr.Dataset]:
 @pytest.fixture(scope="module")
 def figures(datasets):
     """All six figures, drawn once."""
-    return {name: plot.draw(name, datasets) for name in PAPERS}
+    return {name: drawing.draw(name, datasets) for name in PAPERS}
 
 
 def artists(figure, gid: str) -> list:
@@ -152,10 +152,10 @@ def check_nothing_cut_off(figure) -> None:
 
 @pytest.mark.parametrize("name", PAPERS)
 def test_saves_whole_and_reproducibly(name, datasets, figures, tmp_path):
-    redrawn = plot.draw(name, datasets)
+    redrawn = drawing.draw(name, datasets)
     for kind, start in (("png", b"\x89PNG"), ("pdf", b"%PDF")):
-        first = plot.save(figures[name], tmp_path / "new" / f"first.{kind}")
-        again = plot.save(redrawn, tmp_path / "new" / f"again.{kind}")
+        first = drawing.save(figures[name], tmp_path / "new" / f"first.{kind}")
+        again = drawing.save(redrawn, tmp_path / "new" / f"again.{kind}")
         content = first.read_bytes()
         assert content.startswith(start)
         assert content == again.read_bytes()
@@ -165,12 +165,12 @@ def test_saves_whole_and_reproducibly(name, datasets, figures, tmp_path):
 
 def test_a_figure_says_what_made_it(datasets, tmp_path):
     made = datasets["bore"].assign_attrs(title="friction", source_digest="f00d", author="nobody")
-    figure = plot.draw("fig6_bore_map", {"bore": made})
-    with Image.open(plot.save(figure, tmp_path / "map.png")) as image:
+    figure = drawing.draw("fig6_bore_map", {"bore": made})
+    with Image.open(drawing.save(figure, tmp_path / "map.png")) as image:
         (said,) = json.loads(image.info["Description"])
     assert said["source_digest"] == "f00d"
     assert "author" not in said
-    assert b"f00d" in plot.save(figure, tmp_path / "map.pdf").read_bytes()
+    assert b"f00d" in drawing.save(figure, tmp_path / "map.pdf").read_bytes()
 
 
 @pytest.mark.parametrize("name", PAPERS)
@@ -239,7 +239,7 @@ def test_points_that_are_not_converged_are_hatched_and_hollow(datasets):
     bad["converged"][2:4, 0:2] = 0
     bad["mu_macro_error"][2, 0], bad["mu_macro_error"][3, 0] = 0.1, np.inf
     bad["mu_macro"][2, 1] = np.nan
-    figure = plot.draw("fig6_bore_map", {"bore": bad})
+    figure = drawing.draw("fig6_bore_map", {"bore": bad})
     check_nothing_cut_off(figure)
     (cells,) = [a for a in artists(figure, "unconverged") if isinstance(a, PolyCollection)]
     assert cells.get_hatch()
@@ -252,11 +252,11 @@ def test_points_that_are_not_converged_are_hatched_and_hollow(datasets):
 
 def test_history_mean_and_phase(datasets):
     dataset = datasets["transverse"].copy()
-    (mean,) = artists(plot.draw("fig1_force_history", {"transverse": dataset}), "mean")
+    (mean,) = artists(drawing.draw("fig1_force_history", {"transverse": dataset}), "mean")
     last = dataset["history_force_forward"].values[-101:]
     assert mean.get_ydata()[0] == pytest.approx((last[1:].mean() + last[:-1].mean()) / 2)
     turns = (dataset["history_phase"] / (2 * np.pi)).assign_attrs(units="periods")
-    figure = plot.draw("fig1_force_history", {"transverse": dataset.assign(history_phase=turns)})
+    figure = drawing.draw("fig1_force_history", {"transverse": dataset.assign(history_phase=turns)})
     assert artists(figure, "forward")[0].get_xdata()[-1] == pytest.approx(4.0)
 
 
@@ -270,7 +270,7 @@ def test_history_mean_and_phase(datasets):
 def test_the_static_limit_is_called_exact_only_where_it_is(datasets, scene, name, label):
     for ratio, expected in ((0.0, "exact limit"), (0.3, label)):
         given = {scene: datasets[scene].assign_coords(poisson=ratio)}
-        (line,) = artists(plot.draw(name, given), "mu_static")
+        (line,) = artists(drawing.draw(name, given), "mu_static")
         assert line.get_label() == expected
 
 
@@ -279,7 +279,7 @@ def test_the_static_limit_is_called_exact_only_where_it_is(datasets, scene, name
 )
 def test_all_of_poissons_ratios_in_a_sweep_are_drawn(datasets, key, name):
     given = at_ratios(datasets[key], 0.0, 0.5).isel(poisson=[1, 0])
-    figure = plot.draw(name, {key: given})
+    figure = drawing.draw(name, {key: given})
     check_nothing_cut_off(figure)
     assert len(artists(figure, "contours")) == 2
     headed = [axes.get_title(loc="left") for axes in figure.findobj(Axes)]
@@ -297,7 +297,7 @@ def test_all_of_poissons_ratios_in_a_sweep_are_drawn(datasets, key, name):
 
 def test_of_many_of_poissons_ratios_it_is_said_how_many_are_drawn(datasets):
     given = at_ratios(datasets["bore"], *np.linspace(0, 0.5, 11))
-    figure = plot.draw("fig6_bore_map", {"bore": given})
+    figure = drawing.draw("fig6_bore_map", {"bore": given})
     assert len(artists(figure, "contours")) == 6
     said = " ".join(text.get_text() for text in figure.findobj(Text))
     assert "6 of the 11 of Poisson's ratios" in said
@@ -313,9 +313,9 @@ def at_ratios(dataset, *ratios):
 
 
 def test_what_poissons_ratio_changes(datasets):
-    assert len(poisson.LOOKS) == plot.MOST_POISSONS
+    assert len(poisson.LOOKS) == drawing.MOST_POISSONS
     given = {name: at_ratios(datasets[name], 0.0, 0.5) for name in ("transverse", "bore")}
-    figure = plot.draw("poisson", given)
+    figure = drawing.draw("poisson", given)
     check_nothing_cut_off(figure)
     words = [text.get_text() for text in figure.findobj(Text)]
     assert r"$\nu = 0.5$" in words
@@ -327,29 +327,29 @@ def test_what_poissons_ratio_changes(datasets):
     many = {name: at_ratios(datasets[name], *np.linspace(0, 0.5, 5)) for name in given}
     for bad in (datasets, many):
         with pytest.raises(ValueError, match="poisson"):
-            plot.draw("poisson", bad)
+            drawing.draw("poisson", bad)
 
 
 def test_a_theory_curve_may_have_a_finer_axis_of_its_own(datasets):
     fine = np.linspace(0, 1, 50)
     line = xr.DataArray(1 - fine**1.5, {"amplitude_fine": fine}, "amplitude_fine")
     dataset = datasets["transverse"].assign(mu_static_stick_zone=line)
-    figure = plot.draw("fig2_transverse_map", {"transverse": dataset})
+    figure = drawing.draw("fig2_transverse_map", {"transverse": dataset})
     np.testing.assert_array_equal(artists(figure, "mu_static_stick_zone")[0].get_xdata(), fine)
 
 
 def test_what_is_missing_is_named(datasets, figures, tmp_path):
     with pytest.raises(ValueError, match=r"unknown figure 'fig7'.*fig6_bore_map"):
-        plot.draw("fig7", datasets)
+        drawing.draw("fig7", datasets)
     with pytest.raises(ValueError, match="fig6_bore_map needs the dataset 'bore'"):
-        plot.draw("fig6_bore_map", {"transverse": datasets["transverse"]})
+        drawing.draw("fig6_bore_map", {"transverse": datasets["transverse"]})
     lacking = datasets["transverse"].drop_vars("mu_static_slider")
     with pytest.raises(ValueError, match="'transverse' has no variable 'mu_static_slider'"):
-        plot.draw("fig2_transverse_map", {"transverse": lacking})
+        drawing.draw("fig2_transverse_map", {"transverse": lacking})
     with pytest.raises(ValueError, match="two amplitudes"):
-        plot.draw("fig6_bore_map", {"bore": datasets["bore"].isel(amplitude=[0])})
+        drawing.draw("fig6_bore_map", {"bore": datasets["bore"].isel(amplitude=[0])})
     with pytest.raises(ValueError, match=r"\.png or \.pdf"):
-        plot.save(figures["fig5_transients"], tmp_path / "figure.svg")
+        drawing.save(figures["fig5_transients"], tmp_path / "figure.svg")
 
 
 def test_a_failed_save_leaves_the_old_file(figures, tmp_path, monkeypatch):
@@ -362,14 +362,14 @@ def test_a_failed_save_leaves_the_old_file(figures, tmp_path, monkeypatch):
 
     monkeypatch.setattr(figure, "savefig", fail)
     with pytest.raises(CacheError, match="disk full"):
-        plot.save(figure, path)
+        drawing.save(figure, path)
     assert [file.read_text() for file in tmp_path.iterdir()] == ["old"]
 
 
 def test_the_users_settings_play_no_part_and_stay(datasets, figures, tmp_path):
     name = "fig5_transients"
-    expected = plot.save(figures[name], tmp_path / "expected.png").read_bytes()
+    expected = drawing.save(figures[name], tmp_path / "expected.png").read_bytes()
     with matplotlib.rc_context({"font.size": 20, "savefig.dpi": 50, "lines.linewidth": 9}):
-        found = plot.save(plot.draw(name, datasets), tmp_path / "found.png").read_bytes()
+        found = drawing.save(drawing.draw(name, datasets), tmp_path / "found.png").read_bytes()
         assert matplotlib.rcParams["font.size"] == 20
     assert found == expected

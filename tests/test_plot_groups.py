@@ -12,10 +12,10 @@ from matplotlib.legend import Legend
 from matplotlib.text import Text
 from test_plot import artists, check_nothing_cut_off, fake_map
 
-from microslip import plot, theory
-from microslip.plot import lines, small_maps
-from microslip.plot.formulas import mathtext
-from microslip.scenes import FAMILIES, SCENES, scene_named
+from microslip.motions.registry import FAMILIES, SCENES, scene_named
+from microslip.report.figures import drawing, lines, small_maps
+from microslip.report.figures.formulas import mathtext
+from microslip.theory import paper
 
 VELOCITY = "v0 / (omega u_lim)"
 
@@ -23,7 +23,7 @@ VELOCITY = "v0 / (omega u_lim)"
 def spanning(title="", shift=0.0, amplitude_label="x0 / u_lim", group="motions") -> xr.Dataset:
     """A map that falls from 1 to `shift`."""
     amplitude, velocity = np.linspace(0, 2, 7), np.geomspace(1e-3, 10, 9)
-    mu = theory.large_amplitude_transverse(velocity, amplitude[:, None])
+    mu = paper.large_amplitude_transverse(velocity, amplitude[:, None])
     return labelled(
         xr.Dataset(
             fake_map(shift + (1 - shift) * mu),
@@ -70,33 +70,33 @@ def motions(count=3):
 
 def test_a_group_is_drawn_from_its_own_datasets_in_their_order():
     given = {"s": static("still"), "b": spanning("second"), "a": spanning("first")}
-    figure = plot.draw("extended_motions", given)
+    figure = drawing.draw("extended_motions", given)
     titles = [axes.get_title(loc="left") for axes in panels(figure)]
     assert [title.split()[-1] for title in titles] == ["second", "first"]
 
 
 def test_a_group_that_is_not_there_or_is_mixed_is_refused():
     with pytest.raises(ValueError, match="unknown figure 'extended_loops'; known figures: fig1"):
-        plot.draw("extended_loops", motions())
+        drawing.draw("extended_loops", motions())
     odd = {"a": spanning("a"), "b": spanning("flat").isel(amplitude=[1])}
     with pytest.raises(ValueError, match="'flat' spans no map"):
-        plot.draw("extended_motions", odd)
+        drawing.draw("extended_motions", odd)
     lacking = {"a": spanning("a").drop_vars("converged")}
     with pytest.raises(ValueError, match="'a' has no variable 'converged'"):
-        plot.draw("extended_motions", lacking)
+        drawing.draw("extended_motions", lacking)
     with pytest.raises(ValueError, match="allowed: up to 12"):
-        plot.draw("extended_motions", motions(13))
+        drawing.draw("extended_motions", motions(13))
     many = {f"s{i}": static(f"s{i}") for i in range(9)}
     with pytest.raises(ValueError, match="allowed: up to 8"):
-        plot.draw("extended_static", many)
+        drawing.draw("extended_static", many)
 
 
 @pytest.mark.parametrize("given", [motions(2), {"a": static("a"), "b": static("b")}])
 def test_saves_whole_and_reproducibly(given, tmp_path):
-    name = plot.figure_of(next(iter(given.values())).attrs["group"])
+    name = drawing.figure_of(next(iter(given.values())).attrs["group"])
     for kind in ("png", "pdf"):
         first, again = (
-            plot.save(plot.draw(name, given), tmp_path / f"{i}.{kind}").read_bytes()
+            drawing.save(drawing.draw(name, given), tmp_path / f"{i}.{kind}").read_bytes()
             for i in range(2)
         )
         assert first == again
@@ -107,7 +107,7 @@ def test_saves_whole_and_reproducibly(given, tmp_path):
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 8, 12])
 def test_any_number_of_maps_has_room(count):
-    figure = plot.draw("extended_motions", motions(count))
+    figure = drawing.draw("extended_motions", motions(count))
     size, edges = figure.get_size_inches(), figure.get_tightbbox().extents
     assert np.all(edges[:2] > -0.02) and np.all(edges[2:] < size + 0.02)
     assert len(artists(figure, "map")) == count
@@ -124,14 +124,14 @@ def test_any_number_of_maps_has_room(count):
 
 
 def test_maps_share_one_scale_and_their_labels():
-    figure = plot.draw("extended_motions", motions(3))
+    figure = drawing.draw("extended_motions", motions(3))
     (bar,) = [axes for axes in figure.axes if axes.get_label() == "<colorbar>"]
     assert bar.get_ylim() == (0, 1)
     said = words(figure)
     assert said.count(r"$v_{0}/(\omega\,u_{\mathrm{lim}})$") == 1
     assert said.count(r"$x_{0}/u_{\mathrm{lim}}$") == 1
     other = motions(2) | {"c": spanning("c", amplitude_label="phi0 / phi_lk(a/2)")}
-    labels = [axes.get_ylabel() for axes in panels(plot.draw("extended_motions", other))]
+    labels = [axes.get_ylabel() for axes in panels(drawing.draw("extended_motions", other))]
     assert labels[2] == r"$\varphi_{0}/\varphi_{\mathrm{lk}}(a/2)$"
     assert labels[0] == r"$x_{0}/u_{\mathrm{lim}}$"
 
@@ -144,7 +144,7 @@ def test_friction_below_zero_widens_the_scale_of_all():
     fills, *_ = small_maps.levels_of([spanning(shift=-0.004)])  # an error, no more
     assert (fills[0], fills[-1]) == (0.0, 1.0)
     given = {"a": spanning("a"), "b": spanning("b", shift=-0.234)}
-    check_nothing_cut_off(plot.draw("extended_motions", given))
+    check_nothing_cut_off(drawing.draw("extended_motions", given))
 
 
 def test_what_did_not_converge_is_hatched_and_said_once():
@@ -152,7 +152,7 @@ def test_what_did_not_converge_is_hatched_and_said_once():
     for dataset in given.values():
         dataset["converged"][2:4, 1] = 0
         dataset["mu_macro"][2, 1] = np.nan
-    figure = plot.draw("extended_motions", given)
+    figure = drawing.draw("extended_motions", given)
     hatched = [a for a in artists(figure, "unconverged") if isinstance(a, PolyCollection)]
     assert [len(cells.get_paths()) for cells in hatched] == [2, 2]
     assert words(figure).count("not converged") == 1
@@ -164,19 +164,21 @@ def at_two_ratios(first):
 
 
 def test_all_of_poissons_ratios_are_drawn_whatever_else_is_in_the_group():
-    figure = plot.draw("extended_motions", {"a": at_two_ratios(spanning("a")), "b": spanning("b")})
+    figure = drawing.draw(
+        "extended_motions", {"a": at_two_ratios(spanning("a")), "b": spanning("b")}
+    )
     heads = [axes.get_title(loc="left") for axes in panels(figure)]
     assert len(heads) == 3
     assert [r"$\nu = 0.3$" in head for head in heads] == [False, True, False]
     given = {"a": at_two_ratios(static("a")), "b": static("b")}
-    (legend,) = plot.draw("extended_static", given).findobj(Legend)
+    (legend,) = drawing.draw("extended_static", given).findobj(Legend)
     said = [text.get_text() for text in legend.get_texts()]
     assert said == [r"a, $\nu = 0$", r"a, $\nu = 0.3$", "b"]
     # what they change has a figure for three maps, and more have a map of each
     changed = at_two_ratios(spanning()).assign_attrs(tolerance=1e-3, group="motions")
     changed["mu_macro_change"] = changed.mu_macro - changed.mu_macro.isel(poisson=0)
     given = {f"m{k}": changed.assign_attrs(title=f"m{k}") for k in range(4)}
-    assert len(panels(plot.draw("extended_motions", given))) == 8
+    assert len(panels(drawing.draw("extended_motions", given))) == 8
 
 
 # Texts from outside
@@ -198,34 +200,36 @@ def drawn_words(figure):
 
 def test_titles_are_drawn_as_they_stand(tmp_path):
     given = {f"m{k}": spanning(title) for k, title in enumerate(TITLES)}
-    figure = plot.draw("extended_motions", given)
+    figure = drawing.draw("extended_motions", given)
     assert set(TITLES) <= set(drawn_words(figure))
     for kind in ("png", "pdf"):
-        plot.save(figure, tmp_path / f"maps.{kind}")
+        drawing.save(figure, tmp_path / f"maps.{kind}")
     given = {f"s{k}": static(title) for k, title in enumerate(TITLES[:8])}
-    figure = plot.draw("extended_static", given)
+    figure = drawing.draw("extended_static", given)
     (legend,) = figure.findobj(Legend)
     shown = [text.get_text() for text in legend.get_texts()]
     assert len(shown) == 8  # one that begins with an underscore, too
     assert r"$\_$first" in shown
     for kind in ("png", "pdf"):
-        plot.save(figure, tmp_path / f"lines.{kind}")
+        drawing.save(figure, tmp_path / f"lines.{kind}")
 
 
 @pytest.mark.filterwarnings("ignore:Glyph")
 def test_a_sign_that_the_font_lacks_and_a_word_without_end_do_no_harm(tmp_path):
     given = {"a": spanning("\u4e2d\u6587"), "b": spanning("x" * 100), "c": spanning("c")}
-    figure = plot.draw("extended_motions", given)
+    figure = drawing.draw("extended_motions", given)
     for kind in ("png", "pdf"):
-        plot.save(figure, tmp_path / f"maps.{kind}")
+        drawing.save(figure, tmp_path / f"maps.{kind}")
     heads = [axes.title for axes in panels(figure)] + [axes._left_title for axes in panels(figure)]
     right = max(head.get_window_extent().x1 for head in heads)
     assert right <= figure.bbox.x1
     boxes = [axes._left_title.get_window_extent() for axes in panels(figure)]
     assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
-    lines = plot.draw("extended_static", {"a": static("\u4e2d \U0001f600"), "b": static("y" * 100)})
+    lines = drawing.draw(
+        "extended_static", {"a": static("\u4e2d \U0001f600"), "b": static("y" * 100)}
+    )
     for kind in ("png", "pdf"):
-        plot.save(lines, tmp_path / f"lines.{kind}")
+        drawing.save(lines, tmp_path / f"lines.{kind}")
 
 
 # Lines
@@ -234,7 +238,7 @@ def test_a_sign_that_the_font_lacks_and_a_word_without_end_do_no_harm(tmp_path):
 def test_lines_show_the_limit_and_marks_the_smallest_velocity():
     slow, loop = static("line", velocity=(0.0, 1e-3, 0.5)), static("loop", velocity=(1e-3,))
     slow = slow.isel(velocity=[0, 1])
-    figure = plot.draw("extended_static", {"a": slow, "b": loop})
+    figure = drawing.draw("extended_static", {"a": slow, "b": loop})
     check_nothing_cut_off(figure)
     (line,) = artists(figure, "limit")  # a loop has none
     np.testing.assert_array_equal(line.get_ydata(), slow["mu_macro"].sel(velocity=0))
@@ -253,25 +257,25 @@ def test_a_limit_from_theory_is_drawn_on_its_finer_axis():
     curve = ("amplitude_curve", np.maximum(1 - fine, 0))
     dataset = static("a", mu_static=("amplitude", np.zeros(7)), mu_static_curve=curve)
     dataset = dataset.assign_coords(amplitude_curve=fine)
-    (line,) = artists(plot.draw("extended_static", {"a": dataset}), "limit")
+    (line,) = artists(drawing.draw("extended_static", {"a": dataset}), "limit")
     assert len(line.get_xdata()) == 50
     # It holds for Poisson's ratio 0 alone.
     other = dataset.assign_coords(poisson=0.3)
-    (line,) = artists(plot.draw("extended_static", {"a": other}), "limit")
+    (line,) = artists(drawing.draw("extended_static", {"a": other}), "limit")
     assert len(line.get_xdata()) == 7
 
 
 def test_marks_that_did_not_converge_are_hollow():
     dataset = static("a")
     dataset["converged"][3, 1] = 0
-    figure = plot.draw("extended_static", {"a": dataset})
+    figure = drawing.draw("extended_static", {"a": dataset})
     faces = [c.lines[0].get_markerfacecolor() for c in figure.axes[0].containers]
     assert faces == [lines.LOOKS[0][0], "white"]
 
 
 def test_a_steady_motion_is_drawn_over_its_velocity():
     velocity = np.geomspace(0.01, 100, 9)
-    force = theory.bore_forward(velocity)
+    force = paper.bore_forward(velocity)
     steady = {name: ("velocity", part[1][0]) for name, part in fake_map(force[None]).items()}
     dataset = labelled(
         xr.Dataset(
@@ -281,7 +285,7 @@ def test_a_steady_motion_is_drawn_over_its_velocity():
         ),
         "",
     )
-    figure = plot.draw("extended_steady", {"spin": dataset})
+    figure = drawing.draw("extended_steady", {"spin": dataset})
     assert figure.axes[0].get_xscale() == "log"
     (line,) = artists(figure, "limit")
     np.testing.assert_array_equal(line.get_ydata(), force)
@@ -327,7 +331,7 @@ def test_maps_at_several_of_poissons_ratios_show_what_these_change():
         return both.assign_attrs(tolerance=1e-3)
 
     given = {"one": at_ratios("along"), "other": at_ratios("across")}
-    figure = plot.draw("extended_motions", given)
+    figure = drawing.draw("extended_motions", given)
     check_nothing_cut_off(figure)
     assert sum("less that" in axes.get_ylabel() for axes in figure.axes) == 2
     said = words(figure)

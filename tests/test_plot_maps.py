@@ -16,10 +16,11 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 
-from microslip import plot, query, theory
-from microslip.plot import map_panel, signed, small_maps
-from microslip.plot import style as look
-from microslip.plot.surface import refined
+from microslip.datasets.query import open_map
+from microslip.report.figures import drawing, map_panel, signed, small_maps
+from microslip.report.figures import style as look
+from microslip.report.figures.surface import refined
+from microslip.theory import paper
 
 # Colours
 
@@ -74,7 +75,7 @@ def test_negative_friction_is_even_and_another_hue_for_all_kinds_of_colour_visio
 
 def test_a_map_with_negative_friction_is_drawn_in_these_colours():
     given = {"a": groups.spanning("a", shift=-0.234), "b": groups.spanning("b")}
-    figure = plot.draw("extended_motions", given)
+    figure = drawing.draw("extended_motions", given)
     (bands,) = [c for c in figure.axes[0].collections if len(getattr(c, "levels", ())) > 20]
     middles = (bands.levels[1:] + bands.levels[:-1]) / 2
     drawn = bands.get_facecolor()[:, :3]
@@ -90,7 +91,7 @@ def test_a_map_with_negative_friction_is_drawn_in_these_colours():
 def mapped(velocities=9, amplitudes=7):
     """A map that query can be asked about, far from any limit on its values."""
     velocity, amplitude = np.geomspace(1e-2, 10, velocities), np.linspace(0.2, 3, amplitudes)
-    mu = theory.large_amplitude_transverse(velocity, amplitude[:, None])
+    mu = paper.large_amplitude_transverse(velocity, amplitude[:, None])
     return xr.Dataset(
         test_plot.fake_map(mu),
         coords={"amplitude": amplitude, "velocity": velocity, "poisson": 0.0},
@@ -102,7 +103,7 @@ def test_the_surface_is_that_of_friction_at():
     dataset = mapped()
     x, y, fine = refined(*(dataset[n].values for n in ("velocity", "amplitude", "mu_macro")))
     assert min(fine.shape) > 150
-    said = query.Friction(dataset).at(x, np.clip(y, 0.2, 3))
+    said = open_map.Friction(dataset).at(x, np.clip(y, 0.2, 3))
     away = np.abs(fine.filled(np.inf) - said["mu_macro"].values)
     assert np.all(away <= said["mu_macro_error"].values)
     assert np.median(away) < 1e-12  # it differs where a cubic would leave the points' values alone
@@ -140,7 +141,7 @@ def test_numbers_are_inside_the_frame_and_off_other_lines(velocities, amplitudes
     given = {f"m{k}": mapped(velocities, amplitudes) for k in range(6)}
     for key, dataset in given.items():
         dataset.attrs = {"title": key, "group": "motions"}
-    figure = plot.draw("extended_motions", given)
+    figure = drawing.draw("extended_motions", given)
     figure.draw_without_rendering()
     found = 0
     for axes in test_plot.artists(figure, "map"):
@@ -177,17 +178,17 @@ def figures():
     given = scenes | {"continuous_bore": test_plot.fake_continuous_bore()}
     given |= {"accuracy_cost": of_studies.fake_accuracy(3), "claims": of_studies.claims()}
     given["stability"] = of_studies.fake_stability(axes=3, cases=3)
-    drawn = {name: plot.draw(name, given) for name in plot.FIGURES if name != "poisson"}
+    drawn = {name: drawing.draw(name, given) for name in drawing.FIGURES if name != "poisson"}
     two = {name: test_plot.at_ratios(dataset, 0.0, 0.5) for name, dataset in scenes.items()}
     for dataset in two.values():
         dataset["velocity"].attrs["formula"] = "v0 / (omega u_lim)"
         dataset["amplitude"].attrs["formula"] = "y0 / u_lim"
-    drawn["poisson"] = plot.draw("poisson", two)
+    drawn["poisson"] = drawing.draw("poisson", two)
     drawn |= {
-        f"two {name}": plot.draw(name, two) for name in ("fig2_transverse_map", "fig6_bore_map")
+        f"two {name}": drawing.draw(name, two) for name in ("fig2_transverse_map", "fig6_bore_map")
     }
-    drawn["maps"] = plot.draw("extended_motions", groups.motions(3))
-    drawn["lines"] = plot.draw("extended_static", {"a": groups.static("a")})
+    drawn["maps"] = drawing.draw("extended_motions", groups.motions(3))
+    drawn["lines"] = drawing.draw("extended_static", {"a": groups.static("a")})
     return drawn
 
 
@@ -238,7 +239,7 @@ def test_pictures_have_300_dots_an_inch(tmp_path, figures):
     from PIL import Image
 
     figure = figures["fig4_continuous_bore"]
-    with Image.open(plot.save(figure, tmp_path / "figure.png")) as image:
+    with Image.open(drawing.save(figure, tmp_path / "figure.png")) as image:
         assert image.size[0] == pytest.approx(300 * figure.get_size_inches()[0], abs=1)
 
 

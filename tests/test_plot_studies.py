@@ -13,8 +13,9 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.legend import Legend
 from matplotlib.text import Text
 
-from microslip import plot, studies
-from microslip.plot import style as look
+from microslip.report.figures import drawing
+from microslip.report.figures import style as look
+from microslip.studies import registry
 
 MODELS = ("rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian")
 RESOLVED = ("radial", "polar", "cartesian")
@@ -264,12 +265,12 @@ def small() -> dict[str, xr.Dataset]:
 @pytest.fixture(scope="module")
 def figures(datasets):
     """All figures of the studies, drawn once."""
-    return {name: plot.draw(name, datasets) for name in ALL}
+    return {name: drawing.draw(name, datasets) for name in ALL}
 
 
 def claims(**changes) -> xr.Dataset:
     """The dataset of the claims, of made-up answers."""
-    return studies.build("claims", claims_stub.configured(**changes), claims_stub.answered()[0])
+    return registry.build("claims", claims_stub.configured(**changes), claims_stub.answered()[0])
 
 
 def artists(where, gid: str) -> list:
@@ -312,16 +313,16 @@ def grey(color) -> float:
 
 
 def test_figures_name_their_datasets():
-    assert set(FIGURES) <= set(plot.FIGURES)
-    assert plot.FIGURES["stability_atlas"] == ("stability",)
-    assert {plot.FIGURES[name] for name in FIGURES[:-1]} == {("accuracy_cost",)}
+    assert set(FIGURES) <= set(drawing.FIGURES)
+    assert drawing.FIGURES["stability_atlas"] == ("stability",)
+    assert {drawing.FIGURES[name] for name in FIGURES[:-1]} == {("accuracy_cost",)}
 
 
 @pytest.mark.parametrize("name", ALL)
 def test_saves_whole_and_reproducibly(name, small, tmp_path):
     for kind, start in (("png", b"\x89PNG"), ("pdf", b"%PDF")):
-        first = plot.save(plot.draw(name, small), tmp_path / f"first.{kind}").read_bytes()
-        again = plot.save(plot.draw(name, small), tmp_path / f"again.{kind}").read_bytes()
+        first = drawing.save(drawing.draw(name, small), tmp_path / f"first.{kind}").read_bytes()
+        again = drawing.save(drawing.draw(name, small), tmp_path / f"again.{kind}").read_bytes()
         assert first.startswith(start)
         assert first == again
         assert b"Date" not in first
@@ -363,7 +364,7 @@ def test_legends_hide_no_panel_and_no_other_legend(name, figures):
 def test_a_small_dataset_is_drawn_without_complaint(name, small):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        figure = plot.draw(name, small)
+        figure = drawing.draw(name, small)
     assert np.all(figure.get_tightbbox().extents[:2] > -0.02)
 
 
@@ -381,9 +382,9 @@ def test_a_small_dataset_is_drawn_without_complaint(name, small):
     ],
 )
 def test_a_missing_variable_is_named(name, variable, small):
-    (key,) = plot.FIGURES[name]
+    (key,) = drawing.FIGURES[name]
     with pytest.raises(ValueError, match=f"figure {name}: dataset '{key}' has no .*'{variable}'"):
-        plot.draw(name, {key: small[key].drop_vars(variable)})
+        drawing.draw(name, {key: small[key].drop_vars(variable)})
 
 
 # Accuracy against cost and effort
@@ -486,7 +487,7 @@ def test_an_exact_trial_does_not_stretch_the_axis(small):
     dataset = small["accuracy_cost"].copy(deep=True)
     dataset["reference_error"][:] = 0.0
     dataset["error"][0] = 1e-17
-    axes = plot.draw("accuracy_vs_cost", {"accuracy_cost": dataset}).axes[0]
+    axes = drawing.draw("accuracy_vs_cost", {"accuracy_cost": dataset}).axes[0]
     assert axes.get_ylim()[1] / axes.get_ylim()[0] < 1e8
     (arrows,) = artists(axes, "low")
     assert float(dataset["seconds"][0]) in arrows.get_xdata()
@@ -509,7 +510,7 @@ def test_the_references_error_is_hatched_from_the_bottom_up(datasets, figures):
 def test_an_unknown_error_of_the_reference_draws_no_band(small):
     dataset = small["accuracy_cost"].copy(deep=True)
     dataset["reference_error"][0] = np.nan
-    first, second = plot.draw("accuracy_vs_cost", {"accuracy_cost": dataset}).axes[:2]
+    first, second = drawing.draw("accuracy_vs_cost", {"accuracy_cost": dataset}).axes[:2]
     assert not artists(first, "reference")
     assert artists(second, "reference")
 
@@ -559,7 +560,7 @@ def test_effort_is_called_what_the_dataset_calls_it(small):
     for words in ("step solves times unknowns", "iterations times unknowns"):
         dataset = small["accuracy_cost"].copy()
         dataset["effort"].attrs["long_name"] = words
-        axes = plot.draw("accuracy_vs_work", {"accuracy_cost": dataset}).axes[0]
+        axes = drawing.draw("accuracy_vs_work", {"accuracy_cost": dataset}).axes[0]
         shown = axes.get_xlabel().replace("\n", " ").replace(r"$\times$", "times")
         assert shown == f"effort: {words} (dimensionless)"
 
@@ -604,7 +605,7 @@ def test_every_panel_is_headed_by_its_point(datasets, figures):
 @pytest.mark.parametrize("points", [1, 2, 3, 4])
 def test_any_number_of_points_finds_room_for_panels_and_legends(points):
     dataset = fake_accuracy(points, (*METHODS, "admm:penalty=0.1,relaxation=1.5"))
-    figure = plot.draw("accuracy_vs_work", {"accuracy_cost": dataset})
+    figure = drawing.draw("accuracy_vs_work", {"accuracy_cost": dataset})
     assert sum(axes.axison for axes in figure.axes) == points
     panels = [axes.get_window_extent() for axes in figure.axes if axes.axison]
     legends = [legend.get_window_extent() for legend in figure.findobj(Legend)]
@@ -617,7 +618,7 @@ def test_any_number_of_points_finds_room_for_panels_and_legends(points):
 def test_a_dataset_without_trials_is_refused(small):
     empty = small["accuracy_cost"].isel(trial=[])
     with pytest.raises(ValueError, match="no points or no trials"):
-        plot.draw("accuracy_vs_cost", {"accuracy_cost": empty})
+        drawing.draw("accuracy_vs_cost", {"accuracy_cost": empty})
 
 
 # Map of models
@@ -653,7 +654,7 @@ def test_every_region_of_the_map_is_named_where_it_is():
     names = np.full((9, 13), "polar", "<U9")
     names[2:4, 1:3] = names[6:8, 9:12] = names[0, 12] = "mdr"
     maps["bore_cheapest"] = (maps["bore_cheapest"].dims, np.array([names, names]))
-    axes = plot.draw("model_map", {"accuracy_cost": maps}).axes[2]
+    axes = drawing.draw("model_map", {"accuracy_cost": maps}).axes[2]
     velocity, amplitude = maps["bore_velocity"].values, maps["bore_amplitude"].values
     cells = set()
     for text in artists(axes, "region"):
@@ -676,7 +677,7 @@ def test_a_map_of_one_point_is_drawn():
     maps = fake_maps().isel(map_tolerance=[0])
     maps = maps.isel({f"{s}_{n}": [3] for s in ("transverse", "bore") for n in ("velocity",)})
     maps = maps.isel(transverse_amplitude=[2], bore_amplitude=[2])
-    figure = plot.draw("model_map", {"accuracy_cost": maps})
+    figure = drawing.draw("model_map", {"accuracy_cost": maps})
     for axes, scene in zip(figure.axes, ("transverse", "bore"), strict=True):
         low, high = axes.get_xlim()
         assert low < maps[f"{scene}_velocity"] < high
@@ -709,7 +710,7 @@ def test_scaling_shows_the_sizes_and_the_exponents(datasets, figures):
 def test_an_exponent_that_could_not_be_fitted_is_left_out(small):
     dataset = small["accuracy_cost"].copy(deep=True)
     dataset["scaling_exponent_memory"][1] = np.nan
-    figure = plot.draw("scaling", {"accuracy_cost": dataset})
+    figure = drawing.draw("scaling", {"accuracy_cost": dataset})
     labels = [line.get_label() for line in artists(figure, "memory")]
     assert labels[1] == "polar"
     assert "nan" not in " ".join(labels)
@@ -718,7 +719,7 @@ def test_an_exponent_that_could_not_be_fitted_is_left_out(small):
 def test_an_axis_shorter_than_a_decade_has_labels(small):
     dataset = small["accuracy_cost"].copy(deep=True)
     dataset["scaling_iterations"][:] = np.linspace(12, 47, 15).reshape(3, 5)
-    axes = plot.draw("scaling", {"accuracy_cost": dataset}).axes[0]
+    axes = drawing.draw("scaling", {"accuracy_cost": dataset}).axes[0]
     gone = out_of_view(axes)
     shown = [label.get_text() for label in axes.get_yticklabels() if label not in gone]
     assert shown == ["$10$", "$20$", "$50$"]
@@ -782,7 +783,7 @@ def test_the_atlas_heads_every_block_and_explains_every_outcome(datasets, figure
 def test_methods_that_apply_to_nothing_in_a_band_are_left_out():
     dataset = fake_stability(axes=1, methods=("paper", "jacobi", "shipped"))
     dataset["outcome"].loc[{"method": "jacobi"}] = 0
-    figure = plot.draw("stability_atlas", {"stability": dataset})
+    figure = drawing.draw("stability_atlas", {"stability": dataset})
     labels = [label.get_text() for label in figure.axes[0].get_yticklabels()]
     assert labels == ["shipped", "paper"]
 
@@ -791,8 +792,8 @@ def test_a_stability_dataset_that_contradicts_itself_is_refused(small):
     stray = small["stability"].copy(deep=True)
     stray["case_axis"] = ("case", ["nowhere", *stray["case_axis"].values[1:]])
     with pytest.raises(ValueError, match="'nowhere' is not on the dimension 'axis'"):
-        plot.draw("stability_atlas", {"stability": stray})
+        drawing.draw("stability_atlas", {"stability": stray})
     odd = small["stability"].copy(deep=True)
     odd["outcome"][0, 0] = 7
     with pytest.raises(ValueError, match="outcome 7 is none of 0 to 4"):
-        plot.draw("stability_atlas", {"stability": odd})
+        drawing.draw("stability_atlas", {"stability": odd})

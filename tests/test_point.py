@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from point_contract import CONTRACT
 
 import microslip
-from microslip import theory
-from microslip.motion import Resolution
-from microslip.scenes import SCENES, scene_named
-from microslip.simulate import simulate
+from microslip.motions.registry import SCENES, scene_named
+from microslip.solver.problem import Resolution
+from microslip.solver.simulate import simulate
+from microslip.theory import paper
 
 # Certificates
 
@@ -123,10 +123,10 @@ def test_without_vibration_friction_is_exactly_one(scene, model, nu, velocity):
 @pytest.mark.parametrize(
     ("scene", "amplitude", "limit"),
     [
-        ("transverse", 0.3, theory.static_limit_transverse),
-        ("transverse", 0.9, theory.static_limit_transverse),
-        ("bore", 0.5, theory.static_limit_bore),
-        ("bore", 1.0, theory.static_limit_bore),
+        ("transverse", 0.3, paper.static_limit_transverse),
+        ("transverse", 0.9, paper.static_limit_transverse),
+        ("bore", 0.5, paper.static_limit_bore),
+        ("bore", 1.0, paper.static_limit_bore),
     ],
 )
 def test_slow_sliding_approaches_the_static_limit(scene, amplitude, limit):
@@ -147,14 +147,14 @@ def test_pure_rotation_has_no_forward_friction_and_its_whole_torque():
 @pytest.mark.parametrize(("velocity", "amplitude"), [(1e-2, 3.0), (0.1, 0.5), (2.0, 2.0)])
 def test_rigid_model_is_eq_6(velocity, amplitude):
     result = microslip.solve("transverse", velocity, amplitude, model="rigid")
-    exact = theory.large_amplitude_transverse(velocity, amplitude)
+    exact = paper.large_amplitude_transverse(velocity, amplitude)
     assert result.converged and result.mu_macro == pytest.approx(exact, abs=1e-3)
 
 
 @pytest.mark.parametrize("velocity", [1e-2, 0.3, 2.0])
 def test_rigid_model_is_eq_29(velocity):
     result = microslip.solve("bore", velocity, 1.0, model="rigid")
-    exact = theory.large_amplitude_bore(velocity)
+    exact = paper.large_amplitude_bore(velocity)
     assert result.converged and result.mu_macro == pytest.approx(exact, abs=1e-3)
 
 
@@ -162,13 +162,13 @@ def test_large_amplitudes_tend_to_the_rigid_contact():
     """Claims 1 and 5: Eq 6 overestimates the reduction a little, Eq 29 is good far out."""
     excess = [
         microslip.solve("transverse", 0.5 * a, a).mu_macro
-        - theory.large_amplitude_transverse(0.5 * a, a)
+        - paper.large_amplitude_transverse(0.5 * a, a)
         for a in (2.0, 8.0, 32.0)
     ]
     assert excess[0] > excess[1] > excess[2] > -1e-3
     assert excess[2] < 0.01
     far = microslip.solve("bore", 0.5, 20.0).mu_macro
-    assert far == pytest.approx(theory.large_amplitude_bore(0.5), abs=5e-3)
+    assert far == pytest.approx(paper.large_amplitude_bore(0.5), abs=5e-3)
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.3])
@@ -353,7 +353,7 @@ def test_unmet_tolerance_is_said():
     """Squares no finer than the last level cannot certify one part in a million."""
     result = microslip.solve("continuous-bore", 0.5, model="rigid", tolerance=1e-6)
     assert not result.converged and "error over" in result.reason
-    error = abs(result.mu_macro - theory.bore_forward(0.5))
+    error = abs(result.mu_macro - paper.bore_forward(0.5))
     assert 1e-6 < error < result.mu_macro_error < 1e-3
 
 
@@ -439,16 +439,16 @@ def test_closed_forms_and_models_without_cells_need_no_more():
 
 def test_periods_are_full_ones_whatever_a_lap_is(monkeypatch):
     """Counted by hand: a lap of a motion whose second half mirrors the first is half a period."""
-    from microslip import cycle
+    from microslip.solver import period_map
 
     laps = []
-    march = cycle.Cycle.__call__
+    march = period_map.Cycle.__call__
 
     def counted(self, *arguments, **settings):
         laps.append(self.path.phase[-1] - self.path.phase[0])
         return march(self, *arguments, **settings)
 
-    monkeypatch.setattr(cycle.Cycle, "__call__", counted)
+    monkeypatch.setattr(period_map.Cycle, "__call__", counted)
     for scene, lap in (("transverse", np.pi), ("elliptic:forward=0.5,phase=30", 2 * np.pi)):
         laps.clear()
         run = simulate(scene_named(scene), 0.3, 1.0, 0.0, "radial", Resolution(8, 1, 16), 1e-5)
@@ -475,8 +475,8 @@ def test_an_extrapolated_run_scales_its_tolerance_once(monkeypatch):
     """Under a load that changes both of its runs are asked for the same."""
     from dataclasses import replace
 
-    from microslip import simulate as module
-    from microslip.method import SHIPPED
+    from microslip.solver import simulate as module
+    from microslip.solver.method import SHIPPED
 
     seen, run = [], module._run
 

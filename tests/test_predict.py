@@ -10,9 +10,9 @@ import pint
 import pytest
 
 import microslip
-from microslip import cli
+from microslip.app import cli
 from microslip.si.materials import Material
-from microslip.si.scenes import SCENES
+from microslip.si.motions import SCENES
 
 BALL = {"radius": "5 mm", "load": "10 N", "mu": 0.3, "speed": "1 mm/s"}
 EXAMPLE = BALL | {"young": "210 GPa", "nu": 0.3, "amplitude": "1 um", "frequency": "20 kHz"}

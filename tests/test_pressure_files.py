@@ -9,12 +9,12 @@ import pytest
 import xarray as xr
 
 import microslip
-from microslip import named_files
-from microslip.cli import main
-from microslip.errors import InputError
-from microslip.pressures import HERTZ, pressure_named
+from microslip.app.cli import main
+from microslip.foundation import named_files
+from microslip.foundation.errors import InputError
+from microslip.motions.registry import scene_named
 from microslip.pressures.measured import of_grid
-from microslip.scenes import scene_named
+from microslip.pressures.registry import HERTZ, pressure_named
 
 AXIS = np.linspace(-1.25, 1.25, 51)
 HERTZIAN = np.sqrt(np.maximum(1.0 - AXIS[:, None] ** 2 - AXIS**2, 0.0))
@@ -375,7 +375,7 @@ def test_a_file_is_found_without_any_other_import(tmp_path):
     """By the module that solves alone, in a fresh process."""
     name = csv(tmp_path / "p.csv", *2 * [np.array([0.0, 1.0])], np.ones((2, 2)))
     script = (
-        "from microslip.point import checked_point\n"
+        "from microslip.adaptive.point import checked_point\n"
         f"kind = checked_point('transverse', 0.5, 0.5, 0.0, {name!r})[0]\n"
         "print(kind.pressure.name)"
     )

@@ -6,13 +6,14 @@ from scipy.integrate import quad
 from scipy.signal import fftconvolve
 
 import microslip
-from microslip import hertz, indenter_limits, pressures, theory
-from microslip.models import MODELS
 from microslip.models.contact import forward_slip
-from microslip.path import EULER, make_path
-from microslip.pressures import FAMILIES, HERTZ, pressure_named
-from microslip.rings import make_rings
-from microslip.scenes import scene_named
+from microslip.models.path import EULER, make_path
+from microslip.models.registry import MODELS
+from microslip.models.rings.mesh import make_rings
+from microslip.motions.registry import scene_named
+from microslip.pressures import registry
+from microslip.pressures.registry import FAMILIES, HERTZ, pressure_named
+from microslip.theory import hertz, indenters, paper
 
 INDENTERS = ["power", "power:exponent=1", "power:exponent=8", "punch", "punch:flat=0.5"]
 EXTREME = ["power:exponent=100", "punch:flat=0", "punch:flat=0.99"]
@@ -179,18 +180,18 @@ def test_a_ring_slides_as_a_whole_at_u_lim_and_not_before(name):
 def test_integrals_over_the_record_are_the_closed_forms_of_a_sphere(name):
     pressure = pressure_named(name)
     for amplitude in (1e-3, 0.25, 0.9):
-        found = indenter_limits.static_transverse(pressure, amplitude)
-        assert found == pytest.approx(theory.static_limit_transverse(amplitude), abs=1e-9)
+        found = indenters.static_transverse(pressure, amplitude)
+        assert found == pytest.approx(paper.static_limit_transverse(amplitude), abs=1e-9)
         assert 1.0 - pressure.loading(amplitude) == pytest.approx(
             (1.0 - amplitude) ** 1.5, abs=1e-9
         )
     for amplitude in (0.1, 1.0, 3.0):
-        found = indenter_limits.static_bore(pressure, float(hertz.bore_angle(amplitude)))
-        assert found == pytest.approx(theory.static_limit_bore(amplitude), abs=1e-9)
+        found = indenters.static_bore(pressure, float(hertz.bore_angle(amplitude)))
+        assert found == pytest.approx(paper.static_limit_bore(amplitude), abs=1e-9)
     r = np.array([0.05, 0.2, 0.399])
-    angle = indenter_limits.torsion_angle(pressure, 0.4, 0.3)
+    angle = indenters.torsion_angle(pressure, 0.4, 0.3)
     assert angle == pytest.approx(hertz.lubkin_angle(0.4, 0.3), rel=1e-10)
-    found = indenter_limits.torsion_traction(pressure, r, 0.4)
+    found = indenters.torsion_traction(pressure, r, 0.4)
     assert found == pytest.approx(hertz.lubkin_traction(r, 0.4), rel=1e-9)
 
 
@@ -336,7 +337,7 @@ BLUNT = '''"""Between a sphere and an end that is flatter: depth (1 - w) c^2 + w
 
 import numpy as np
 
-from microslip.pressures.indenters import indenter
+from microslip.pressures.axisymmetric_indenter import indenter
 
 DEFAULTS = {"share": 0.5}
 
@@ -363,13 +364,13 @@ def pressure(name, share):
 @pytest.fixture
 def blunt(tmp_path):
     """A pressure in one file of one's own; what it changes in the registry is undone."""
-    known, path = dict(FAMILIES), list(pressures.__path__)
+    known, path = dict(FAMILIES), list(registry.__path__)
     (tmp_path / "blunt.py").write_text(BLUNT)
-    pressures.find(tmp_path)
+    registry.find(tmp_path)
     yield "blunt:share=0.4"
     FAMILIES.clear()
     FAMILIES.update(known)
-    pressures.__path__[:] = path
+    registry.__path__[:] = path
 
 
 def test_a_pressure_is_one_file(blunt):

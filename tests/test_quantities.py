@@ -5,7 +5,7 @@ import math
 import pytest
 from odd_quantities import ROWS, Q
 
-from microslip.errors import InputError
+from microslip.foundation.errors import InputError
 from microslip.si.quantities import si_value
 
 HALF_A_DIGIT = 3e-16

@@ -9,11 +9,13 @@ import pytest
 import xarray as xr
 
 import microslip
-from microslip import cache, theory
-from microslip.cache import CacheError
-from microslip.errors import InputError
-from microslip.query import SOURCES, beyond, open_map
-from microslip.query.interpolation import Axis, Table
+from microslip.datasets.query import beyond
+from microslip.datasets.query.interpolation import Axis, Table
+from microslip.datasets.query.open_map import SOURCES, open_map
+from microslip.foundation.errors import InputError
+from microslip.sweeps import cache
+from microslip.sweeps.cache import CacheError
+from microslip.theory import paper
 
 VELOCITY = np.geomspace(1e-3, 10, 13)
 AMPLITUDE = np.linspace(0, 3, 13)
@@ -22,7 +24,7 @@ AMPLITUDE = np.linspace(0, 3, 13)
 def made_up(velocity=VELOCITY, amplitude=AMPLITUDE, error=0.0, **more):
     """A map of Eq 6 with a stiffer amplitude: smooth, 1 at amplitude 0, rising with velocity."""
     v, a = np.meshgrid(velocity, amplitude)
-    mu = theory.large_amplitude_transverse(v, a**1.5)
+    mu = paper.large_amplitude_transverse(v, a**1.5)
     dims = ("amplitude", "velocity")
     return xr.Dataset(
         {
@@ -102,7 +104,7 @@ def test_the_error_covers_what_is_missed_and_what_the_nodes_are_off():
     rng = np.random.default_rng(3)
     v = xr.DataArray(10 ** rng.uniform(-3, 1, 500), dims="n")
     a = xr.DataArray(rng.uniform(0, 3, 500), dims="n")
-    truth = theory.large_amplitude_transverse(v.values, a.values**1.5)
+    truth = paper.large_amplitude_transverse(v.values, a.values**1.5)
     answer = made_up().friction.at(v, a)
     miss = np.abs(answer.mu_macro.values - truth)
     assert (miss <= answer.mu_macro_error.values + 1e-12).mean() >= 0.99
@@ -152,7 +154,7 @@ def test_between_poissons_ratios_the_error_covers_what_is_missed(poissons):
     both = over_poisson(poissons)
     for nu in (0.05, 0.2, 0.33, 0.5):
         answer = both.friction.at(v, a, poisson=nu)
-        truth = theory.large_amplitude_transverse(v.values, a.values**1.5)
+        truth = paper.large_amplitude_transverse(v.values, a.values**1.5)
         truth = 1 - (1 - truth) * (1 - nu**2)
         miss = np.abs(answer.mu_macro.values - truth)
         assert (miss <= answer.mu_macro_error.values + 1e-12).mean() >= 0.99
@@ -315,7 +317,7 @@ def test_what_is_known_without_a_map(friction):
     answer = friction.at([0.0, 0.1], [0.0, 0.5])
     assert answer.mu_macro.sel(amplitude=0).values == pytest.approx(1.0, abs=1e-12)
     static = answer.sel(velocity=0, amplitude=0.5)
-    assert float(static.mu_macro) == pytest.approx(theory.static_limit_transverse(0.5))
+    assert float(static.mu_macro) == pytest.approx(paper.static_limit_transverse(0.5))
     assert SOURCES[int(static.source)] == "static limit"
 
 
@@ -366,7 +368,7 @@ def test_the_steady_bore_is_a_closed_form_beyond_its_axis():
     velocity = np.geomspace(0.1, 10, 9)
     dataset = xr.Dataset(
         {
-            "mu_macro": ("velocity", theory.bore_forward(velocity)),
+            "mu_macro": ("velocity", paper.bore_forward(velocity)),
             "mu_macro_error": ("velocity", np.full(9, 1e-4)),
             "converged": ("velocity", np.ones(9, bool)),
         },
@@ -375,7 +377,7 @@ def test_the_steady_bore_is_a_closed_form_beyond_its_axis():
     )
     for v, source in ((0.0, "closed form"), (0.5, "map"), (40.0, "closed form")):
         answer = dataset.friction.at(v)
-        assert abs(float(answer.mu_macro) - theory.bore_forward(v)) <= answer.mu_macro_error
+        assert abs(float(answer.mu_macro) - paper.bore_forward(v)) <= answer.mu_macro_error
         assert SOURCES[int(answer.source)] == source
     with pytest.raises(ValueError, match="amplitude = 1"):
         dataset.friction.at(0.5, 1)
@@ -386,7 +388,7 @@ def test_the_steady_bore_is_a_closed_form_beyond_its_axis():
 
 @pytest.fixture
 def results(tmp_path):
-    from microslip import dataset
+    from microslip.datasets import sweep_dataset as dataset
 
     made = made_up(error=1e-4)
     made["converged"] = made.converged.astype(np.int8)

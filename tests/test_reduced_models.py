@@ -5,13 +5,13 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 import microslip
-from microslip import hertz, theory
 from microslip.models.contact import forces
-from microslip.models.dahl import DahlContact
-from microslip.models.mdr import mdr_contact
-from microslip.models.radial import RadialContact
-from microslip.path import EULER, make_path
-from microslip.pressures import HERTZ
+from microslip.models.path import EULER, make_path
+from microslip.models.reduced.dahl import DahlContact
+from microslip.models.reduced.mdr import mdr_contact
+from microslip.models.rings.contact import RadialContact
+from microslip.pressures.registry import HERTZ
+from microslip.theory import hertz, paper
 
 
 def straight(displacements):
@@ -54,7 +54,7 @@ def test_static_limit_of_springs_in_a_row(amplitude):
     expected = quad(lambda x: 1.5 * np.sqrt((1 - x * x) ** 2 - amplitude**2), 0.0, stick)[0]
     assert found.converged
     assert abs(found.mu_macro - expected) <= found.mu_macro_error + 1e-9
-    assert abs(expected - theory.static_limit_transverse(amplitude)) > 5e-3  # not the half-space's
+    assert abs(expected - paper.static_limit_transverse(amplitude)) > 5e-3  # not the half-space's
 
 
 def test_springs_in_a_row_come_close_to_the_rings():
@@ -104,7 +104,7 @@ def test_a_bristle_resists_no_infinitely_slow_motion():
 @pytest.mark.parametrize("model", ["slider", "dahl", "mdr"])
 def test_long_strokes_make_all_models_rigid(model):
     found = microslip.solve("transverse", 20.0, 60.0, model=model)
-    expected = theory.large_amplitude_transverse(20.0, 60.0)
+    expected = paper.large_amplitude_transverse(20.0, 60.0)
     assert found.converged and found.mu_macro == pytest.approx(expected, abs=0.02)
 
 

@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip import motions, scenes, theory
-from microslip.cli import main
-from microslip.motion import Motion, Resolution
-from microslip.scenes import SCENES, TRANSVERSE, ZIGZAG
-from microslip.static_run import simulate_static
+from microslip import motions
+from microslip.app.cli import main
+from microslip.motions import registry
+from microslip.motions.registry import SCENES, TRANSVERSE, ZIGZAG
+from microslip.solver.problem import Motion, Resolution
+from microslip.solver.static_run import simulate_static
+from microslip.theory import paper
 
 PERIODIC = [scene for scene in SCENES.values() if scene.periodic]
 MIRRORED = [scene for scene in PERIODIC if scene.half_period_mirror]
@@ -72,12 +74,12 @@ def test_the_static_limit_knows_the_turning_points_alone():
         for scene in (ZIGZAG, TRANSVERSE)
     )
     assert one == pytest.approx(other, abs=1e-9)
-    assert one == pytest.approx(theory.static_limit_transverse(0.5), abs=1e-3)
+    assert one == pytest.approx(paper.static_limit_transverse(0.5), abs=1e-3)
 
 
 def test_a_slow_zigzag_tends_to_the_static_limit():
     slow = microslip.solve("zigzag", 1e-5, 0.5, tolerance=1e-3)
-    limit = theory.static_limit_transverse(0.5)
+    limit = paper.static_limit_transverse(0.5)
     assert slow.converged
     assert -slow.mu_macro_error < slow.mu_macro - limit < 5e-3
 
@@ -108,12 +110,12 @@ SCENE = replace(
 @pytest.fixture
 def cube(tmp_path):
     """A motion in one file of one's own; what it changes in the registry is undone."""
-    known, path = dict(scenes.SCENES), list(motions.__path__)
+    known, path = dict(registry.SCENES), list(motions.__path__)
     (tmp_path / "sine_cubed.py").write_text(CUBE)
-    scenes.find(tmp_path)
+    registry.find(tmp_path)
     yield "sine-cubed"
-    scenes.SCENES.clear()
-    scenes.SCENES.update(known)
+    registry.SCENES.clear()
+    registry.SCENES.update(known)
     motions.__path__[:] = path
 
 
@@ -130,7 +132,7 @@ def test_a_motion_is_one_file(cube, capsys):
     assert abs(squares.mu_macro - answer["mu_macro"]) <= squares.mu_macro_error + 1e-3
     found = microslip.solve(cube, 0.0, 0.5)
     assert found.mu_macro == pytest.approx(
-        theory.static_limit_transverse(0.5), abs=found.mu_macro_error
+        paper.static_limit_transverse(0.5), abs=found.mu_macro_error
     )
     with pytest.raises(ValueError, match="allowed is one of transverse, .*, sine-cubed"):
         microslip.solve("cubed", 0.1, 0.5)

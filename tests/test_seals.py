@@ -2,7 +2,7 @@
 
 import pytest
 
-from microslip import cache
+from microslip.sweeps import cache
 
 
 @pytest.fixture

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip import approach, point, simulate
+from microslip.adaptive import continuation, point
+from microslip.solver import simulate
 
 
 @dataclass(frozen=True)
@@ -36,20 +37,20 @@ class Stubborn:
 
 def test_what_converges_is_run_once():
     run_at = Stubborn(easy=0.5, reach=1.0)
-    assert approach.run_safely(run_at, 1.0, None) == FakeRun(True, 1.0)
+    assert continuation.run_safely(run_at, 1.0, None) == FakeRun(True, 1.0)
     assert run_at.asked == [1.0]
 
 
 def test_tighter_steps_come_first():
     run_at = Stubborn(easy=0.5, reach=1.0, careless=False)
-    found = approach.run_safely(run_at, 1.0, None)
+    found = continuation.run_safely(run_at, 1.0, None)
     assert (found.converged, found.retried, found.work) == (True, 1, 20)
 
 
 @pytest.mark.parametrize("reach", [8.0, 3.0, 1.5, 1.2])
 def test_the_velocity_is_lowered_in_steps_that_succeed(reach):
     run_at = Stubborn(easy=100.0, reach=reach)
-    found = approach.run_safely(run_at, 1.0, None)
+    found = continuation.run_safely(run_at, 1.0, None)
     assert found.converged and found.mu == 1.0 and found.retried == 1
     assert found.work == 10 * len(run_at.asked)
     assert run_at.asked[-1] == 1.0
@@ -57,7 +58,7 @@ def test_the_velocity_is_lowered_in_steps_that_succeed(reach):
 
 def test_a_failure_is_told_as_the_first_attempt_tells_it():
     for run_at in (Stubborn(easy=100.0, reach=1.1), Stubborn(easy=1e99, reach=1.1)):
-        found = approach.run_safely(run_at, 1.0, None)
+        found = continuation.run_safely(run_at, 1.0, None)
         assert not found.converged
         assert found.reason == "failed at 1"
         assert found.effort == 5 * len(run_at.asked) < 5 * 100

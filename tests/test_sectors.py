@@ -3,13 +3,19 @@
 import numpy as np
 import pytest
 
-from microslip.halfspace import ring_influence
-from microslip.models import sectors
 from microslip.models.contact import energy_norm
-from microslip.models.polar import PolarContact
-from microslip.models.sectors import apply_sectors, fold, influence_sectors, quickest, unfold
-from microslip.path import EULER, SDIRK2, make_path
-from microslip.rings import make_rings
+from microslip.models.path import EULER, SDIRK2, make_path
+from microslip.models.polar import angular_modes
+from microslip.models.polar.angular_modes import (
+    apply_sectors,
+    fold,
+    influence_sectors,
+    quickest,
+    unfold,
+)
+from microslip.models.polar.contact import PolarContact
+from microslip.models.rings.influence import ring_influence
+from microslip.models.rings.mesh import make_rings
 
 CASES = [
     (4, 2, True, 0.0, None),
@@ -128,7 +134,7 @@ def test_operator_is_symmetric_and_positive_in_the_energy(cells, angles, rotates
 def test_shifted_inverse_undoes_the_shifted_operator(cells, angles, rotates, nu, focus, rng):
     operator, _ = influence_sectors(cells, angles, rotates, nu, focus)
     for shift in (rng.uniform(0.1, 2.0, cells), np.zeros(cells)):
-        inverse = operator_on(sectors.shifted_inverse(operator, shift))
+        inverse = operator_on(angular_modes.shifted_inverse(operator, shift))
         apply = operator_on(operator)
         state = rng.normal(size=(2, angles, cells))
         assert inverse(apply(state) + shift * state) == pytest.approx(state, abs=1e-10)
@@ -139,10 +145,10 @@ def test_shifted_inverse_undoes_the_shifted_operator(cells, angles, rotates, nu,
 @cases
 def test_dense_and_modal_forms_agree(cells, angles, rotates, nu, focus, rng, monkeypatch):
     operator, compliance = influence_sectors(cells, angles, rotates, nu, focus)
-    for each in (operator, sectors.shifted_inverse(operator, compliance)):
-        monkeypatch.setattr(sectors, "LARGEST_DENSE", 0)
+    for each in (operator, angular_modes.shifted_inverse(operator, compliance)):
+        monkeypatch.setattr(angular_modes, "LARGEST_DENSE", 0)
         assert quickest(each).dense.size == 0
-        monkeypatch.setattr(sectors, "LARGEST_DENSE", 10**6)
+        monkeypatch.setattr(angular_modes, "LARGEST_DENSE", 10**6)
         dense = quickest(each)
         # all four parts are separate at nu = 0, two and two together otherwise
         count, parts = (2, 2) if nu > 0.0 else (4, 1)
@@ -155,7 +161,7 @@ def test_dense_and_modal_forms_agree(cells, angles, rotates, nu, focus, rng, mon
 @pytest.mark.parametrize(("largest", "dense"), [(23, False), (24, True)])
 def test_dense_form_is_taken_up_to_the_largest_size(largest, dense, monkeypatch):
     operator, _ = influence_sectors(6, 4, True, 0.3, None)  # two sectors of 24 unknowns
-    monkeypatch.setattr(sectors, "LARGEST_DENSE", largest)
+    monkeypatch.setattr(angular_modes, "LARGEST_DENSE", largest)
     assert (quickest(operator).dense.size > 0) == dense
 
 

@@ -7,12 +7,12 @@ import pytest
 from scipy.integrate import quad
 
 import microslip
-from microslip import hertz
-from microslip.errors import InputError
+from microslip.foundation.errors import InputError
 from microslip.si import quantities
-from microslip.si.contact import TwoBodies
-from microslip.si.groups import RealMotion, groups
+from microslip.si.bodies import TwoBodies
+from microslip.si.dimensionless import RealMotion, groups
 from microslip.si.materials import MATERIALS, RIGID, Material
+from microslip.theory import hertz
 
 Q = pint.UnitRegistry().Quantity
 STEEL = Material(210e9, 0.3)

@@ -10,9 +10,10 @@ from pathlib import Path
 import pytest
 
 import microslip
-from microslip import keys, source_digest, sweep
-from microslip.source_digest import Sources
-from microslip.syntax_digest import digest_of_source
+from microslip.foundation import source_digest
+from microslip.foundation.source_digest import Sources
+from microslip.foundation.syntax_digest import digest_of_source
+from microslip.sweeps import batches, keys
 
 PACKAGE = Path(microslip.__file__).parent
 MODULE = '''
@@ -228,7 +229,7 @@ def test_what_reads_a_file_counts_for_its_pressure():
 
 
 def test_every_kind_of_request_has_its_digest():
-    assert source_digest.ANSWERED_BY.keys() == sweep.FOLDERS.keys()
+    assert source_digest.ANSWERED_BY.keys() == batches.FOLDERS.keys()
     for modules in source_digest.ANSWERED_BY.values():
         assert all((PACKAGE / f"{module}.py").is_file() for module in modules)
 
@@ -308,8 +309,8 @@ def test_a_long_session_keeps_nothing_of_code_that_was_edited_under_it(tmp_path)
 
 def test_a_batch_that_was_planned_with_other_sources_is_refused(tmp_path, monkeypatch):
     request = {"kind": "point", "scene": "bore", "velocity": "1", "amplitude": "1"}
-    name = sweep.name_of_batch([request])
+    name = batches.name_of_batch([request])
     monkeypatch.setattr(source_digest, "of_request", lambda request: "of other sources")
-    with pytest.raises(sweep.SourcesEdited, match="run again"):
-        sweep.run_batch([request], store=None, name=name)
+    with pytest.raises(batches.SourcesEdited, match="run again"):
+        batches.run_batch([request], store=None, name=name)
     assert keys.result_key(request, "a") != keys.result_key(request, "b")

@@ -4,17 +4,18 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip import hertz
-from microslip.cycle import Cycle
-from microslip.methods import _searches, method_named
 from microslip.models.contact import FORWARD, StepFailure, energy_norm, forward_slip
-from microslip.models.radial import RadialContact
-from microslip.models.slider import slider_contact
-from microslip.motion import Motion, Resolution, build_contact
-from microslip.path import SDIRK2, make_path
-from microslip.periodic import find_periodic_state
-from microslip.scenes import BORE, TRANSVERSE
-from microslip.static import static_state
+from microslip.models.path import SDIRK2, make_path
+from microslip.models.reduced.slider import slider_contact
+from microslip.models.rings.contact import RadialContact
+from microslip.motions.registry import BORE, TRANSVERSE
+from microslip.solver.method_names import method_named
+from microslip.solver.methods import _searches
+from microslip.solver.period_map import Cycle
+from microslip.solver.periodic import find_periodic_state
+from microslip.solver.problem import Motion, Resolution, build_contact
+from microslip.solver.static_limit import static_state
+from microslip.theory import hertz
 
 MIDPOINT = method_named("midpoint").integrator
 

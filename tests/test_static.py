@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip import hertz, theory
-from microslip.models import MODELS
-from microslip.scenes import BORE, TRANSVERSE
-from microslip.static import oscillating_part, residual_part, static_state
+from microslip.models.registry import MODELS
+from microslip.motions.registry import BORE, TRANSVERSE
+from microslip.solver.static_limit import oscillating_part, residual_part, static_state
+from microslip.theory import hertz, paper
 
 
 def contact_for(scene, amplitude, model, cells, angles=1, poisson=0.0):
@@ -60,7 +60,7 @@ def test_residual_is_the_furthest_point_of_the_lens():
 
 @pytest.mark.parametrize("amplitude", [0.1, 0.5, 0.9])
 def test_pointwise_form_converges_to_the_closed_form_transverse(amplitude):
-    exact = float(theory.static_limit_transverse(amplitude))
+    exact = float(paper.static_limit_transverse(amplitude))
     errors = [abs(numerical_limit(TRANSVERSE, amplitude, "radial", n) - exact) for n in (8, 32)]
     order = np.log(errors[0] / errors[1]) / np.log(4.0)
     assert errors[1] < 3e-4
@@ -71,19 +71,19 @@ def test_pointwise_form_converges_to_the_closed_form_transverse(amplitude):
 @pytest.mark.parametrize("poisson", [0.0, 0.4])
 def test_pointwise_form_agrees_with_the_closed_form_bore(amplitude, poisson):
     found = numerical_limit(BORE, amplitude, "polar", 32, 16, poisson)
-    assert found == pytest.approx(float(theory.static_limit_bore(amplitude)), abs=3e-4)
+    assert found == pytest.approx(float(paper.static_limit_bore(amplitude)), abs=3e-4)
 
 
 def test_squares_find_the_same_limits():
     found = numerical_limit(TRANSVERSE, 0.5, "cartesian", 32)
-    assert found == pytest.approx(float(theory.static_limit_transverse(0.5)), abs=5e-3)
+    assert found == pytest.approx(float(paper.static_limit_transverse(0.5)), abs=5e-3)
     found = numerical_limit(BORE, 1.0, "cartesian", 32)
-    assert found == pytest.approx(float(theory.static_limit_bore(1.0)), abs=5e-3)
+    assert found == pytest.approx(float(paper.static_limit_bore(1.0)), abs=5e-3)
 
 
 def test_slider_limit_is_eq_7():
     found = microslip.solve("transverse", 0.0, 0.5, model="slider")
-    assert found.mu_macro == pytest.approx(float(theory.static_slider(0.5)), abs=1e-6)
+    assert found.mu_macro == pytest.approx(float(paper.static_slider(0.5)), abs=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -103,6 +103,6 @@ def test_slow_marches_approach_the_limit(scene, amplitude, poisson):
 
 def test_limits_lie_below_those_of_the_whole_stick_zone():
     amplitude = np.linspace(0.05, 0.95, 19)
-    assert np.all(theory.static_limit_transverse(amplitude) < theory.static_transverse(amplitude))
+    assert np.all(paper.static_limit_transverse(amplitude) < paper.static_transverse(amplitude))
     amplitude = np.linspace(0.1, 4.0, 20)
-    assert np.all(theory.static_limit_bore(amplitude) < theory.static_bore(amplitude))
+    assert np.all(paper.static_limit_bore(amplitude) < paper.static_bore(amplitude))

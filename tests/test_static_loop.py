@@ -5,12 +5,12 @@ import pytest
 from scipy.integrate import quad
 
 import microslip
-from microslip import theory
-from microslip.motion import Resolution
-from microslip.scenes import scene_named
-from microslip.simulate import simulate
-from microslip.static_loop import largest_shift
-from microslip.static_run import simulate_static
+from microslip.motions.registry import scene_named
+from microslip.solver.problem import Resolution
+from microslip.solver.simulate import simulate
+from microslip.solver.static_loop import largest_shift
+from microslip.solver.static_run import simulate_static
+from microslip.theory import paper
 
 NARROW = "elliptic:forward=0.5,phase=30"
 EIGHT = "elliptic:forward=0.5,phase=0,forward_cycles=2"
@@ -49,9 +49,9 @@ def test_nothing_is_left_where_slip_goes_both_ways():
 def test_a_loop_of_no_width_has_the_limit_of_its_line(amplitude):
     """A loop as narrow as this is within 2e-4 of the line, for which there are closed forms."""
     across = microslip.solve("elliptic:forward=0.001", 0.0, amplitude)
-    within(across, float(theory.static_limit_transverse(amplitude)), 2e-4)
+    within(across, float(paper.static_limit_transverse(amplitude)), 2e-4)
     along = microslip.solve("elliptic:lateral=0.001", 0.0, amplitude)
-    within(along, float(theory.static_limit_longitudinal(amplitude)), 2e-4)
+    within(along, float(paper.static_limit_longitudinal(amplitude)), 2e-4)
 
 
 def test_on_a_line_the_whole_lap_says_what_the_turning_points_say():
@@ -146,7 +146,7 @@ def test_poissons_ratio_and_squares_without_symmetry_are_in():
 
 
 def test_a_state_that_does_not_settle_is_no_number(monkeypatch):
-    monkeypatch.setattr("microslip.static_run.LAPS", 1)
-    monkeypatch.setattr("microslip.static_run.MOST_ROUNDS", 1)
+    monkeypatch.setattr("microslip.solver.static_run.LAPS", 1)
+    monkeypatch.setattr("microslip.solver.static_run.MOST_ROUNDS", 1)
     found = microslip.solve(NARROW, 0.0, 0.5)
     assert not found.converged and "no periodic state" in found.reason

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip import hertz, theory
-from microslip.inside import STARTS
-from microslip.models.cartesian import CartesianContact
-from microslip.models.polar import PolarContact
-from microslip.scenes import CONTINUOUS_BORE
-from microslip.steady import steady_state
+from microslip.adaptive.history import STARTS
+from microslip.models.polar.contact import PolarContact
+from microslip.models.squares.contact import CartesianContact
+from microslip.motions.registry import CONTINUOUS_BORE
+from microslip.solver.steady import steady_state
+from microslip.theory import hertz, paper
 
 VELOCITIES = np.geomspace(0.1, 10.0, 7)
 
@@ -32,8 +32,8 @@ def test_every_initial_state_ends_in_eqs_21_and_22(velocity, nu):
         begin = {"stress-free": (0, 0), "full-slip": (1, 0), "full-rotation": (0, 1)}[start]
         assert (forward[0], torque[0]) == pytest.approx(begin, abs=1e-12)
         assert history.displacement_forward[-1] == pytest.approx(max(10.0, 4 * velocity))
-        assert forward[-1] == pytest.approx(theory.bore_forward(velocity), abs=2e-3)
-        assert torque[-1] == pytest.approx(theory.bore_torque(velocity), abs=2e-3)
+        assert forward[-1] == pytest.approx(paper.bore_forward(velocity), abs=2e-3)
+        assert torque[-1] == pytest.approx(paper.bore_torque(velocity), abs=2e-3)
         ends.append((forward[-1], torque[-1]))
     assert np.ptp(ends, axis=0) == pytest.approx(0.0, abs=1e-3)
 
@@ -43,9 +43,9 @@ def test_every_initial_state_ends_in_eqs_21_and_22(velocity, nu):
 def test_solve_agrees_with_eqs_21_and_22(velocity, nu):
     result = microslip.solve("continuous-bore", velocity, poisson=nu)
     assert result.converged and result.mu_macro_error <= result.tolerance == 1e-3
-    assert result.mu_macro == pytest.approx(theory.bore_forward(velocity), abs=1e-3)
+    assert result.mu_macro == pytest.approx(paper.bore_forward(velocity), abs=1e-3)
     assert result.mu_torque == pytest.approx(
-        theory.bore_torque(velocity), abs=max(result.mu_torque_error, 1e-4)
+        paper.bore_torque(velocity), abs=max(result.mu_torque_error, 1e-4)
     )
 
 
@@ -54,19 +54,19 @@ def test_solve_agrees_with_eqs_21_and_22(velocity, nu):
 def test_other_models_agree_with_eqs_21_and_22(velocity, model):
     result = microslip.solve("continuous-bore", velocity, model=model, tolerance=2e-3)
     assert result.converged and result.model == model
-    assert result.mu_macro == pytest.approx(theory.bore_forward(velocity), abs=2e-3)
-    assert result.mu_torque == pytest.approx(theory.bore_torque(velocity), abs=4e-3)
+    assert result.mu_macro == pytest.approx(paper.bore_forward(velocity), abs=2e-3)
+    assert result.mu_torque == pytest.approx(paper.bore_torque(velocity), abs=4e-3)
 
 
 @pytest.mark.parametrize("velocity", [0.2, 0.5, 0.8, 1.5])
 def test_steady_field_is_eq_15_and_nothing_sticks(velocity):
     """Up to v = 1 the instantaneous centre, where the slip vanishes, is inside the contact."""
     field = microslip.traction_field("continuous-bore", velocity, cells=16)
-    assert field["centre_lateral"] == theory.rotation_centre(velocity)[0]
+    assert field["centre_lateral"] == paper.rotation_centre(velocity)[0]
     lateral, forward = field["lateral_position"], field["forward_position"]
     found = np.stack([field["traction_lateral"], field["traction_forward"]])
     assert np.hypot(*found) == pytest.approx(field["bound"], rel=1e-12)
-    expected = theory.steady_bore_traction(lateral, forward, velocity)
+    expected = paper.steady_bore_traction(lateral, forward, velocity)
     direction = expected / hertz.friction_bound(np.hypot(lateral, forward))
     # next to the centre of rotation directions settle last
     away = np.hypot(lateral + velocity, forward) > 0.1

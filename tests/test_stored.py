@@ -6,8 +6,10 @@ import math
 import pytest
 
 import microslip
-from microslip import cli, config, sweep
-from microslip.cache import CacheError, Store
+from microslip.app import cli
+from microslip.config import load
+from microslip.sweeps import batches
+from microslip.sweeps.cache import CacheError, Store
 
 PLACE = ("bore", 0.5, 1.0)
 SETTINGS = {"poisson": 0.3, "tolerance": 1e-2}
@@ -42,8 +44,8 @@ def test_an_answer_is_computed_once_and_equal(tmp_path, monkeypatch):
 def test_sweep_command_line_and_python_find_each_others_points(tmp_path, monkeypatch, capsys):
     calls = counting(monkeypatch)
     axes = {"velocity": [0.5], "amplitude": [1], "poisson": 0.3, "tolerance": 1e-2}
-    grid = config.from_mapping({"sweeps": {"bore": axes}}).sweeps["bore"]
-    sweep.run_batch(sweep.PointRequests(grid), Store(tmp_path))
+    grid = load.from_mapping({"sweeps": {"bore": axes}}).sweeps["bore"]
+    batches.run_batch(batches.PointRequests(grid), Store(tmp_path))
     assert len(calls) == 1
     found = microslip.solve_stored(*PLACE, results=tmp_path, **SETTINGS)
     options = ["--velocity", "0.5", "--amplitude", "1", "--poisson", "0.3", "--tolerance", "1e-2"]

@@ -13,14 +13,18 @@ from studies_stub import ACCURACY, asked, configured
 from sweep_stub import Solver
 
 import microslip
-from microslip import answers, config, keys, schemas, studies, sweep, trial
-from microslip.cache import Store
-from microslip.choice import choose_model
-from microslip.methods import paper
-from microslip.models import MODELS
-from microslip.scenes import SCENES
-from microslip.studies import accuracy_cost, fronts, ladders, stability
+from microslip.adaptive import single_run
+from microslip.adaptive.choice import choose_model
+from microslip.config import load, schema
+from microslip.models.registry import MODELS
+from microslip.motions.registry import SCENES
+from microslip.solver.methods import paper
+from microslip.studies import ladders, registry
 from microslip.studies import requests as study_requests
+from microslip.studies.accuracy import accuracy_cost, fronts
+from microslip.studies.stability import stability
+from microslip.sweeps import batches, evaluate, keys
+from microslip.sweeps.cache import Store
 
 # Ladders: what is run where
 
@@ -28,14 +32,14 @@ from microslip.studies import requests as study_requests
 @pytest.mark.parametrize("poisson", [0.0, 0.3])
 @pytest.mark.parametrize("scene", SCENES)
 def test_models_apply_here_exactly_where_the_solver_lets_them(scene, poisson):
-    known = {m for m in MODELS if not trial.applies(scene, poisson, m, "shipped")}
+    known = {m for m in MODELS if not single_run.applies(scene, poisson, m, "shipped")}
     assert set(ladders.models_of(scene, poisson)) == known
     assert ladders.exact_model(scene, poisson) == choose_model(SCENES[scene], poisson)
 
 
 def test_every_model_has_a_ladder_and_fixed_methods_run_where_they_say():
     assert set(ladders.LADDERS) == set(MODELS)
-    assert trial.applies("transverse", 0.0, "cartesian", "paper") == ""
+    assert single_run.applies("transverse", 0.0, "cartesian", "paper") == ""
     assert paper.METHOD.resolution == (paper.CELLS, 1, paper.STEPS_PER_PERIOD)
 
 
@@ -94,8 +98,8 @@ def test_references_are_ordinary_points_and_tight():
     study = configured().accuracy
     request = accuracy_cost.truth(study.points["mid"])
     sweep_of_it = {"velocity": [0.1], "amplitude": [0.5], "tolerance": 1e-6}
-    (point,) = sweep.PointRequests(
-        config.from_mapping({"sweeps": {"transverse": sweep_of_it}}).sweeps["transverse"]
+    (point,) = batches.PointRequests(
+        load.from_mapping({"sweeps": {"transverse": sweep_of_it}}).sweeps["transverse"]
     )
     assert request == point
     assert accuracy_cost.truth(replace(study.points["mid"], poisson=0.5))["tolerance"] == "3e-5"
@@ -109,14 +113,14 @@ def test_without_the_shipped_method_there_is_no_choice_of_it():
     assert {r["method"] for r in found} == {"euler"}
 
 
-@pytest.mark.parametrize("study", studies.DATASETS)
+@pytest.mark.parametrize("study", registry.DATASETS)
 def test_requests_are_plain_and_named_apart(study):
     found = [json.loads(text) for text in asked(study, configured())]
     names = {keys.result_key(request, "d") for request in found}
     assert len(names) == len({keys.canonical_json(request) for request in found})
     for request in found:
-        assert sweep.group(request).split("/")[0] in set(sweep.FOLDERS.values())
-        assert sweep.label(request)
+        assert batches.group(request).split("/")[0] in set(batches.FOLDERS.values())
+        assert batches.label(request)
         for name in ("velocity", "tolerance"):
             assert isinstance(request.get(name, ""), str)
 
@@ -125,7 +129,7 @@ def test_requests_are_plain_and_named_apart(study):
 def test_another_method_adds_jobs_and_changes_none(study):
     def cuts(methods):
         changed = {"methods": methods}
-        long, short = studies.pieces(study, configured(changed, changed))
+        long, short = registry.pieces(study, configured(changed, changed))
         return {keys.canonical_json(piece) for piece in long + short}
 
     before, after = cuts(["shipped", "euler"]), cuts(["shipped", "march", "euler"])
@@ -139,7 +143,7 @@ def test_another_point_adds_requests_and_changes_none():
     asked = [
         {
             keys.canonical_json(request)
-            for part in studies.pieces("accuracy", one)
+            for part in registry.pieces("accuracy", one)
             for piece in part
             for request in piece
         }
@@ -149,7 +153,7 @@ def test_another_point_adds_requests_and_changes_none():
 
 
 def test_what_takes_long_starts_first():
-    long, short = studies.pieces("accuracy", configured({"levels": 6}))
+    long, short = registry.pieces("accuracy", configured({"levels": 6}))
     early = [request for piece in long for request in piece]
     assert {request["kind"] for request in early} == {"point", "scaling", "trial"}
     assert all(r["cells"] >= 64 for r in early if r["kind"] == "trial")
@@ -164,7 +168,7 @@ def test_what_takes_long_starts_first():
 
 
 def test_blocks_have_names_that_the_configuration_knows():
-    rule = schemas.schema()["properties"]["stability"]["properties"]["axes"]
+    rule = schema.schema()["properties"]["stability"]["properties"]["axes"]
     assert [axis.name for axis in stability.AXES] == rule["items"]["enum"]
     study = configured(stability={"axes": ["steps", "poisson"]}).stability
     assert [axis.name for axis in stability.axes(study)] == ["steps", "poisson"]
@@ -206,7 +210,7 @@ def test_numbers_of_a_method_are_varied_in_that_method_only():
 
 
 def test_methods_have_the_numbers_that_blocks_vary():
-    from microslip.methods import refusal
+    from microslip.solver.method_names import refusal
 
     for axis in stability.AXES:
         for method, parameter in axis.parameters:
@@ -221,7 +225,7 @@ class Clock:
 
     def __init__(self, monkeypatch, *seconds):
         self.now, self.calls, self.seconds = 0.0, 0, seconds
-        monkeypatch.setattr(answers.time, "process_time", lambda: self.now)
+        monkeypatch.setattr(evaluate.time, "process_time", lambda: self.now)
 
     def run(self):
         self.now += self.seconds[min(self.calls, len(self.seconds) - 1)]
@@ -231,36 +235,36 @@ class Clock:
 
 def test_a_time_is_the_median_after_a_first_call(monkeypatch):
     clock = Clock(monkeypatch, 4.0, 0.3, 0.1, 0.2, 0.1, 5.0)
-    result, seconds = answers.timed(clock.run, 5)
+    result, seconds = evaluate.timed(clock.run, 5)
     assert result == {"call": 1}
     assert (clock.calls, seconds) == (6, pytest.approx(0.2))
 
 
 def test_long_runs_are_timed_less_often(monkeypatch):
     clock = Clock(monkeypatch, 1.5)
-    assert answers.timed(clock.run, 5)[1] == pytest.approx(1.5)
+    assert evaluate.timed(clock.run, 5)[1] == pytest.approx(1.5)
     assert clock.calls == 3
     clock = Clock(monkeypatch, 60.0)
-    assert answers.timed(clock.run, 5)[1] == pytest.approx(60.0)
+    assert evaluate.timed(clock.run, 5)[1] == pytest.approx(60.0)
     assert clock.calls == 1  # compiling is next to nothing of it
 
 
 @pytest.mark.parametrize("seconds", [1e-2, 1e-3, 1e-5])
 def test_short_runs_are_timed_together(monkeypatch, seconds):
     clock = Clock(monkeypatch, seconds)
-    assert answers.timed(clock.run, 3)[1] == pytest.approx(seconds)
-    assert clock.now >= 3 * answers.SHORTEST
-    assert clock.now < 3 * answers.LONG_ENOUGH
+    assert evaluate.timed(clock.run, 3)[1] == pytest.approx(seconds)
+    assert clock.now >= 3 * evaluate.SHORTEST
+    assert clock.now < 3 * evaluate.LONG_ENOUGH
 
 
 class Trials(Solver):
-    """Stands in for microslip.trial, too. A trial errs by 1/cells^2, and march never applies."""
+    """Stands in for microslip.adaptive.single_run, too. A trial errs by 1/cells^2, and march never applies."""
 
     def __init__(self, monkeypatch, **settings):
         super().__init__(monkeypatch, **settings)
         self.asked = []
         for name in ("applies", "run_trial", "measure_steps"):
-            monkeypatch.setattr(f"microslip.trial.{name}", getattr(self, name))
+            monkeypatch.setattr(f"microslip.adaptive.single_run.{name}", getattr(self, name))
 
     def applies(self, scene, poisson, model, method, pressure="hertz"):
         return "not here" if method == "march" else ""
@@ -286,7 +290,7 @@ def trial_request(**changes):
 
 def test_a_trial_is_run_as_asked_and_timed(monkeypatch, tmp_path):
     stub = Trials(monkeypatch)
-    record, _ = sweep.answer(trial_request(), Store(tmp_path))
+    record, _ = batches.answer(trial_request(), Store(tmp_path))
     assert record["result"]["mu_macro"] == pytest.approx(0.1 / 1.6 + 1 / 64)
     assert record["result"]["seconds"] >= 0
     assert record["result"]["applies"] is True
@@ -300,18 +304,18 @@ def test_a_trial_is_run_as_asked_and_timed(monkeypatch, tmp_path):
         "tolerance": pytest.approx(3e-5 / 2**1.5),
     }
     assert list(tmp_path.glob("trials/transverse/*/*.json"))
-    again, took = sweep.answer(trial_request(), Store(tmp_path))
+    again, took = batches.answer(trial_request(), Store(tmp_path))
     assert (again, took) == (record, 0.0)
 
 
 def test_what_does_not_apply_is_not_run(monkeypatch):
     stub = Trials(monkeypatch)
-    result = answers.computed(trial_request(method="march"))
+    result = evaluate.computed(trial_request(method="march"))
     assert result == {"applies": False, "converged": False, "reason": "not here"}
     request = stability.probe(
         configured().stability, "march", stability.AXES[0], 8, stability.AXES[0].cases[0][1]
     )
-    assert answers.computed(request)["applies"] is False
+    assert evaluate.computed(request)["applies"] is False
     assert not stub.asked
     assert not stub.calls
 
@@ -331,13 +335,13 @@ def test_a_method_that_fails_is_data(monkeypatch, error):
     def fail(*_, **__):
         raise error
 
-    monkeypatch.setattr("microslip.trial.run_trial", fail)
+    monkeypatch.setattr("microslip.adaptive.single_run.run_trial", fail)
     monkeypatch.setattr("microslip.solve", fail)
     probe = stability.probe(
         configured().stability, "admm", *stability.cases(configured().stability)[0]
     )
     for request in (trial_request(), probe):
-        result = answers.computed(request)
+        result = evaluate.computed(request)
         assert result["converged"] is False
         assert result["reason"] == f"{type(error).__name__}: {error}"
 
@@ -352,7 +356,7 @@ def test_probes_hand_on_the_method_and_the_resolution(monkeypatch):
 
     monkeypatch.setattr("microslip.solve", solve)
     study = configured(stability={"axes": ["steps"]}).stability
-    result = answers.computed(stability.probe(study, "euler", *stability.cases(study)[2]))
+    result = evaluate.computed(stability.probe(study, "euler", *stability.cases(study)[2]))
     assert seen == {
         "poisson": 0.0,
         "model": "auto",
@@ -433,22 +437,22 @@ def test_a_trial_and_patches_take_the_pressure_that_is_asked_for(monkeypatch):
     place = {"scene": "transverse", "velocity": "0.1", "amplitude": "0.8", "poisson": "0"}
     how = {"model": "radial", "method": "shipped", "cells": 8, "angles": 4, "steps": 16}
     trial_of = place | how | {"kind": "run", "tolerance": "1e-4"}
-    sphere, cone = answers.computed(trial_of), answers.computed(trial_of | {"pressure": CONE})
+    sphere, cone = evaluate.computed(trial_of), evaluate.computed(trial_of | {"pressure": CONE})
     assert sphere["converged"] and cone["converged"]
     given = {"cells": 8, "steps": 16, "tolerance": None, "pressure": CONE}
     certified = microslip.solve("transverse", 0.1, 0.8, **given)
     assert cone["mu_macro"] == pytest.approx(certified.mu_macro, abs=1e-4)
     assert abs(cone["mu_macro"] - sphere["mu_macro"]) > 1e-3
-    timed = answers.computed(trial_of | {"pressure": CONE, "kind": "trial", "repeats": 1})
+    timed = evaluate.computed(trial_of | {"pressure": CONE, "kind": "trial", "repeats": 1})
     assert timed["mu_macro"] == cone["mu_macro"]
     sizes = {"kind": "patches", "cells": 8, "angles": 4, "steps": 16}
-    sphere, cone = (answers.computed(place | sizes | more) for more in ({}, {"pressure": CONE}))
+    sphere, cone = (evaluate.computed(place | sizes | more) for more in ({}, {"pressure": CONE}))
     assert cone["converged"] and cone["moment_share"] != sphere["moment_share"]
 
 
 def test_the_papers_run_is_under_the_pressure_that_is_asked_for(monkeypatch):
     """What it presses the squares with are the loads of that pressure."""
-    from microslip.pressures import pressure_named
+    from microslip.pressures.registry import pressure_named
 
     class Seen(Exception):
         pass
@@ -456,10 +460,10 @@ def test_the_papers_run_is_under_the_pressure_that_is_asked_for(monkeypatch):
     def march(contact, path, state, tolerance):
         raise Seen(contact.bound * contact.size**2)
 
-    monkeypatch.setattr("microslip.models.cartesian.CartesianContact.march", march)
+    monkeypatch.setattr("microslip.models.squares.contact.CartesianContact.march", march)
     for name in ("hertz", CONE):
         with pytest.raises(Seen) as caught:
-            trial.run_trial(
+            single_run.run_trial(
                 "transverse", 0.1, 0.8, poisson=0.0, model="cartesian", method="paper",
                 cells=32, angles=1, steps=100, tolerance=1e-3, pressure=name,
             )  # fmt: skip

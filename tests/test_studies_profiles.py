@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from microslip import methods
-from microslip.studies import profiles
+from microslip.solver import method_names
+from microslip.studies.accuracy import profiles
 
 
 def test_every_method_has_a_contest_by_the_part_that_it_exchanges():
     found = {
-        name: profiles.contest_of(name) for name in methods.names() if not methods.missing(name)
+        name: profiles.contest_of(name)
+        for name in method_names.names()
+        if not method_names.missing(name)
     }
     assert found["shipped"] == found["paper"] == "models"
     assert found["euler"] == found["extrapolated"] == found["theta"] == "integrators"

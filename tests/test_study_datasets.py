@@ -8,16 +8,17 @@ import pytest
 import xarray as xr
 from studies_stub import GOOD, accuracy_result, answered, asked, configured, stability_result
 
-from microslip import dataset, netcdf, studies
-from microslip.studies.stability_dataset import OUTCOMES, outcome
+from microslip.datasets import netcdf, sweep_dataset
+from microslip.studies import registry
+from microslip.studies.stability.dataset import OUTCOMES, outcome
 
 
 @pytest.fixture
 def accuracy(tmp_path):
     """The dataset of made-up answers, read back from disk."""
     answer, _ = answered(accuracy_result)
-    data = studies.build("accuracy", configured(), answer)
-    dataset.write(data, tmp_path / "accuracy_cost.nc", studies.groups("accuracy"))
+    data = registry.build("accuracy", configured(), answer)
+    sweep_dataset.write(data, tmp_path / "accuracy_cost.nc", registry.groups("accuracy"))
     return netcdf.whole(tmp_path / "accuracy_cost.nc")
 
 
@@ -30,7 +31,7 @@ def accuracy(tmp_path):
 )
 def test_datasets_ask_for_what_jobs_have_answered_and_for_all_of_it(study, result):
     answer, seen = answered(result)
-    studies.build(study, configured(), answer)
+    registry.build(study, configured(), answer)
     assert set(seen) == set(asked(study, configured()))
 
 
@@ -102,7 +103,7 @@ def test_a_reference_that_did_not_converge_says_so():
             found |= {"converged": False, "reason": "stalled"}
         return found
 
-    data = studies.build("accuracy", configured(), answered(result)[0])
+    data = registry.build("accuracy", configured(), answered(result)[0])
     assert data.reference_source.values[0] == "model radial, tolerance 1e-6, not met: stalled"
     assert data.reference.values[0] == pytest.approx(0.1 / 1.6)
 
@@ -148,13 +149,13 @@ def test_where_no_model_is_good_enough_the_map_is_empty():
         found = accuracy_result(request)
         return found | {"mu_macro": 0.9} if request["kind"] == "trial" else found
 
-    data = studies.build("accuracy", configured(), answered(result)[0])
+    data = registry.build("accuracy", configured(), answered(result)[0])
     assert (data.bore_cheapest == "").all()
     assert np.isnan(data.bore_cheapest_seconds).all()
 
 
 def test_the_cost_of_a_step_and_its_exponents():
-    data = studies.build("accuracy", configured({"levels": 6}), answered(accuracy_result)[0])
+    data = registry.build("accuracy", configured({"levels": 6}), answered(accuracy_result)[0])
     assert list(data.scaling_model.values) == ["radial", "polar", "cartesian"]
     polar = data.sel(scaling_model="polar")
     assert list(polar.scaling_label.values[:4]) == ["8 x 8", "16 x 16", "32 x 32", "64 x 64"]
@@ -210,8 +211,8 @@ def test_a_method_is_not_to_blame_for_a_resolution_that_was_imposed():
 @pytest.fixture
 def atlas(tmp_path):
     """The dataset of made-up probes, read back from disk."""
-    data = studies.build("stability", configured(), answered(stability_result)[0])
-    dataset.write(data, tmp_path / "stability.nc", studies.groups("stability"))
+    data = registry.build("stability", configured(), answered(stability_result)[0])
+    sweep_dataset.write(data, tmp_path / "stability.nc", registry.groups("stability"))
     return netcdf.whole(tmp_path / "stability.nc")
 
 
@@ -240,11 +241,11 @@ def test_the_atlas_holds_what_became_of_every_method(atlas, tmp_path):
 
 
 def test_reports_count(accuracy, atlas):
-    assert list(studies.report("accuracy", accuracy))[0] == (
+    assert list(registry.report("accuracy", accuracy))[0] == (
         f"mid: {rows_of(accuracy, point='mid').sizes['trial']} trials, 3 not converged, "
         "reference within 2.0e-04"
     )
-    assert list(studies.report("stability", atlas)) == [
+    assert list(registry.report("stability", atlas)) == [
         "shipped: 21 converged, 0 slow, 0 wrong, 0 diverged",
         "admm: 21 converged, 0 slow, 0 wrong, 0 diverged",
         "euler: 0 converged, 14 slow, 0 wrong, 0 diverged",
@@ -270,7 +271,7 @@ def test_conventions_and_provenance(name, request):
 def test_the_digest_of_results_follows_what_was_asked():
     def digest(**changes):
         configuration = configured(stability=changes)
-        return studies.build(
+        return registry.build(
             "stability", configuration, answered(stability_result)[0]
         ).results_digest
 

@@ -7,15 +7,18 @@ import math
 import pytest
 from sweep_stub import EFFORT, Solver
 
-from microslip import answers, batch_files, cache, config, source_digest, sweep
-from microslip.cache import CacheError, Store
-from microslip.errors import InputError
+from microslip.config import load
+from microslip.foundation import source_digest
+from microslip.foundation.errors import InputError
+from microslip.sweeps import batch_files, cache, evaluate
+from microslip.sweeps import batches as sweep
+from microslip.sweeps.cache import CacheError, Store
 
 
 def configured(**transverse):
     grid = {"velocity": [0.1, 1], "amplitude": [0, 1, 2], **transverse}
     bore = {"velocity": [0.5]}
-    return config.from_mapping({"sweeps": {"transverse": grid, "continuous_bore": bore}})
+    return load.from_mapping({"sweeps": {"transverse": grid, "continuous_bore": bore}})
 
 
 def requests_of(**transverse):
@@ -196,11 +199,11 @@ def test_whatever_is_raised_is_a_gap_for_every_kind_of_request(monkeypatch, kind
     def fail(request):
         raise ValueError("a root finder\nfound none")
 
-    monkeypatch.setitem(answers._KINDS, kind, fail)
-    result = answers.computed({"kind": kind})
+    monkeypatch.setitem(evaluate._KINDS, kind, fail)
+    result = evaluate.computed({"kind": kind})
     assert result["converged"] is False
     assert result["reason"] == "ValueError: a root finder found none"
-    assert not answers.is_final(result)
+    assert not evaluate.is_final(result)
 
 
 def test_a_point_that_failed_is_computed_again_and_kept_then(monkeypatch, store):

@@ -13,7 +13,7 @@ import pytest
 from bad_configurations import FILES, GOOD
 
 import microslip
-from microslip import launch
+from microslip.app import sweep_command
 
 ROOT = Path(__file__).parent.parent
 SOURCE = str(Path(microslip.__file__).parent.parent)
@@ -38,14 +38,14 @@ def test_the_targets_are_those_of_the_workflow():
         parts = re.split(r"^(?:use )?rule (\w+)", path.read_text(), flags=re.MULTILINE)[1:]
         rules |= dict(zip(parts[::2], parts[1::2], strict=True))
     by_name = {name for name, text in rules.items() if not re.search(r"output:[^:]*\{\{", text)}
-    assert by_name == {*launch.TARGETS, *launch.RULES}
+    assert by_name == {*sweep_command.TARGETS, *sweep_command.RULES}
 
 
 def test_help_and_pages_name_every_target():
     head = (ROOT / "Snakefile").read_text().partition("\nimport ")[0]
     table = (ROOT / "docs" / "workflow.md").read_text()
-    for target in launch.TARGETS:
-        assert f"    {target} " in launch.HELP
+    for target in sweep_command.TARGETS:
+        assert f"    {target} " in sweep_command.HELP
         assert f"`{target}`" in table
         assert target == "all" or f"snakemake {target}" in head.replace("snakemake -j2 ", "")
 

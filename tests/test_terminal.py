@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 import microslip
-from microslip.compiled import OPTIONS
-from microslip.models.sectors import FUSED
+from microslip.foundation.compiled import OPTIONS
+from microslip.models.polar.angular_modes import FUSED
 
 PACKAGE = Path(microslip.__file__).parent
 COMMAND = [sys.executable, "-m", "microslip"]

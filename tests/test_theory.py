@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from microslip import any_pressure, hertz, theory
+from microslip.theory import axisymmetric, hertz
+from microslip.theory import paper as theory
 
 AMPLITUDE = st.floats(0.0, 5.0)
 
@@ -59,12 +60,12 @@ def test_eq_11_is_eq_10_at_the_radius_of_eq_8(amplitude):
 
 def test_stick_zone_of_any_pressure():
     c = np.array([[0.0, 1e-3], [0.5, 1.0]])
-    general = any_pressure.static_stick_zone_of(hertz_pressure, c)
+    general = axisymmetric.static_stick_zone_of(hertz_pressure, c)
     assert general == pytest.approx(theory.static_stick_zone(c), rel=1e-9)
     # Flat-ended punch: the load inside c is 1 - sqrt(1 - c^2); uniform pressure: c^2.
-    punch = any_pressure.static_stick_zone_of(lambda r: 1 / np.sqrt(1 - r * r), c)
+    punch = axisymmetric.static_stick_zone_of(lambda r: 1 / np.sqrt(1 - r * r), c)
     assert punch == pytest.approx(1 - np.sqrt(1 - c**2), abs=1e-8)
-    assert any_pressure.static_stick_zone_of(lambda r: 7.0, c) == pytest.approx(c**2, rel=1e-10)
+    assert axisymmetric.static_stick_zone_of(lambda r: 7.0, c) == pytest.approx(c**2, rel=1e-10)
 
 
 # Continuous bore
@@ -136,7 +137,7 @@ def test_kernels_at_their_ends():
 
 @pytest.mark.parametrize("velocity", [1e-6, 0.1, 0.8, 0.999, 1.0, 1.001, 1.5, 30.0, 1e6])
 def test_closed_bore_forms_are_the_integrals_of_the_kernels(velocity):
-    forward, torque = any_pressure.bore_of(hertz_pressure, velocity)
+    forward, torque = axisymmetric.bore_of(hertz_pressure, velocity)
     assert theory.bore_forward(velocity) == pytest.approx(forward, rel=1e-10)
     assert theory.bore_torque(velocity) == pytest.approx(torque, rel=1e-10)
 
@@ -175,7 +176,7 @@ def test_bore_of_a_ring_of_pressure():
     # A plain sum converges fast for so smooth a ring.
     r = np.linspace(0, 1, 20001)
     weight = ring(r)
-    forward, torque = any_pressure.bore_of(ring, [0.3, 2.0])
+    forward, torque = axisymmetric.bore_of(ring, [0.3, 2.0])
     for i, v in enumerate((0.3, 2.0)):
         share = np.sum(weight * r * theory.forward_kernel(r / v)) / np.sum(weight * r)
         assert forward[i] == pytest.approx(share / (2 * np.pi), rel=1e-8)
@@ -370,12 +371,12 @@ def test_bad_input_is_named(name, function, bad):
         (lambda: theory.large_amplitude_transverse(0.1, np.nan), "amplitude = nan"),
         (lambda: theory.static_stick_zone(1.5), "stick_radius = 1.5"),
         (
-            lambda: any_pressure.static_stick_zone_of(lambda r: 0.0, 0.5),
+            lambda: axisymmetric.static_stick_zone_of(lambda r: 0.0, 0.5),
             "pressure integrates to 0.0",
         ),
         (lambda: theory.steady_bore_traction(np.nan, 0.0, 1.0), "lateral = nan"),
         (lambda: theory.steady_bore_traction(0.0, np.inf, 1.0), "forward = inf"),
-        (lambda: any_pressure.bore_of(hertz_pressure, 0.0), "velocity = 0.0"),
+        (lambda: axisymmetric.bore_of(hertz_pressure, 0.0), "velocity = 0.0"),
         (lambda: theory.bore_amplitude_at(0.0), "stick_radius = 0.0"),
     ],
 )

@@ -5,8 +5,8 @@ from itertools import product
 
 import pytest
 
-from microslip.studies import verdicts
-from microslip.studies.verdicts import (
+from microslip.studies.claims import verdicts
+from microslip.studies.claims.verdicts import (
     FAILS,
     HOLDS,
     NOT,

@@ -51,21 +51,21 @@ def test_a_new_amplitude_computes_its_points_only(project):
 
 
 def test_editing_a_plotting_module_draws_its_figures_again(project):
-    project.append("src/microslip/plot/field.py", "\nSPARE = 1\n")
+    project.append("src/microslip/report/figures/field.py", "\nSPARE = 1\n")
     assert project.planned() == {"draw_figure": 1, "all": 1}
-    project.append("src/microslip/plot/style.py", "\nSPARE = 1\n")
+    project.append("src/microslip/report/figures/style.py", "\nSPARE = 1\n")
     assert project.planned() == {"draw_figure": 6, "all": 1}
 
 
 def test_editing_the_datasets_collects_again(project):
-    project.append("src/microslip/dataset.py", "\nSPARE = 1\n")
+    project.append("src/microslip/datasets/sweep_dataset.py", "\nSPARE = 1\n")
     assert project.planned() == {"collect": 3, "draw_figure": 6, "all": 1}
 
 
 def test_editing_the_solver_computes_everything_again_but_a_comment_does_not(project):
-    project.append("src/microslip/halfspace.py", "\n# More to read.\n")
+    project.append("src/microslip/models/rings/influence.py", "\n# More to read.\n")
     assert project.planned() == {}
-    project.append("src/microslip/halfspace.py", "\nSPARE = 1\n")
+    project.append("src/microslip/models/rings/influence.py", "\nSPARE = 1\n")
     assert project.planned() == ALL_JOBS
 
 
@@ -105,7 +105,7 @@ def test_what_a_killed_run_left_half_written_is_cleared_later(project):
 
 def test_a_job_that_fails_does_not_hide_what_the_others_say(project):
     (project.folder / "results" / "bore.nc").unlink()
-    project.append("src/microslip/plot/maps.py", "\nraise ValueError('no maps today')\n")
+    project.append("src/microslip/report/figures/maps.py", "\nraise ValueError('no maps today')\n")
     done = project.snakemake(*RUN)
     assert done.returncode != 0
     assert "no maps today" in done.stderr
@@ -142,7 +142,7 @@ def test_a_sweep_too_small_for_a_map_has_no_map(project):
 
 
 def test_points_that_do_not_converge_are_listed_and_drawn_with_a_job_a_point(project):
-    project.append("src/microslip/point.py", STALLING)
+    project.append("src/microslip/adaptive/point.py", STALLING)
     axes = {**AXES, "amplitude": [1, 2]}
     project.configure({**TINY, "sweeps": {"transverse": axes}, "points_per_job": 1})
     assert project.planned()["solve_batch"] == 5

@@ -3,7 +3,8 @@
 import pytest
 from workflow_project import Project
 
-from microslip import cache, netcdf
+from microslip.datasets import netcdf
+from microslip.sweeps import cache
 
 pytestmark = pytest.mark.slow
 

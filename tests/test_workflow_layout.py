@@ -7,12 +7,15 @@ from types import SimpleNamespace
 import pytest
 import yaml
 
-from microslip import config, plot, schemas, source_digest, summary
+from microslip.config import load, schema
+from microslip.foundation import source_digest
+from microslip.report import dataset_page
+from microslip.report.figures import drawing
 
 ROOT = Path(__file__).parent.parent
 
 
-FIGURES = [*plot.FIGURES, "extended_motions", "extended_static"]
+FIGURES = [*drawing.FIGURES, "extended_motions", "extended_static"]
 
 
 @pytest.mark.parametrize("figure", FIGURES)
@@ -40,7 +43,7 @@ def rendered(name, **wildcards):
     environment = jinja2.Environment(undefined=jinja2.StrictUndefined, trim_blocks=True)
     snakemake = SimpleNamespace(
         wildcards=SimpleNamespace(**wildcards, keys=lambda: wildcards.keys()),
-        config=schemas.filled(config.read_yaml(ROOT / "config" / "config.yaml")),
+        config=schema.filled(load.read_yaml(ROOT / "config" / "config.yaml")),
         input=["results/any.nc"],
         output=["results/any.nc"],
     )
@@ -55,7 +58,7 @@ def test_a_page_about_a_dataset_lists_no_more_than_can_be_read():
         def __contains__(self, name):
             return False
 
-    page = summary.page(Dataset(), [f"line {i}" for i in range(100)])
+    page = dataset_page.page(Dataset(), [f"line {i}" for i in range(100)])
     assert page.startswith("Many\n\nline 0\n")
     assert "line 39\n... and 60 lines more" in page
     assert page.endswith("a: [1, 2]\n")
@@ -75,12 +78,12 @@ def test_the_layout_is_that_of_the_catalogue():
 def test_the_configuration_is_described_key_by_key():
     text = re.sub("```.*?```", "", (ROOT / "config" / "README.md").read_text(), flags=re.DOTALL)
     named = set(re.findall(r"\w+", " ".join(re.findall(r"`[^`]+`", text))))
-    assert keys_of(schemas.schema()) <= named
+    assert keys_of(schema.schema()) <= named
 
 
 def keys_of(rule):
     """Names of all keys that a schema knows."""
-    rule = schemas._resolved(rule)
+    rule = schema._resolved(rule)
     deeper = [*rule.get("properties", {}).values(), rule.get("additionalProperties")]
     found = [keys_of(part) for part in deeper if isinstance(part, dict)]
     return set(rule.get("properties", {})).union(*found)

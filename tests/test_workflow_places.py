@@ -15,7 +15,7 @@ import xarray as xr
 import yaml
 from workflow_project import AXES, ROOT, RUN, TINY, Project
 
-from microslip import source_digest
+from microslip.foundation import source_digest
 
 pytestmark = pytest.mark.slow
 
@@ -167,7 +167,7 @@ def installed(ordinary):
 
     def microslip(place, *arguments):
         return subprocess.run(
-            [sys.executable, "-m", "microslip.cli", *arguments],
+            [sys.executable, "-m", "microslip.app.cli", *arguments],
             cwd=place.folder,
             env={"PATH": "/usr/bin:/bin", "HOME": os.environ["HOME"], "PYTHONPATH": str(folder)},
             capture_output=True,

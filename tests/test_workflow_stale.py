@@ -11,7 +11,7 @@ import xarray as xr
 import yaml
 from workflow_project import AXES, RUN, SNAKEMAKE, TINY
 
-from microslip import cache
+from microslip.sweeps import cache
 
 pytestmark = pytest.mark.slow
 OTHER = {**TINY, "sweeps": {**TINY["sweeps"], "transverse": {**AXES, "velocity": [0.5, 3]}}}
@@ -146,7 +146,7 @@ def test_a_kill_while_a_dataset_is_collected_leaves_the_old_one(project):
     path = project.folder / "results" / "transverse.nc"
     old = path.read_bytes()
     project.configure(OTHER)
-    project.append("src/microslip/dataset.py", SLOWLY)
+    project.append("src/microslip/datasets/sweep_dataset.py", SLOWLY)
     running = subprocess.Popen(
         [SNAKEMAKE, "results/transverse.nc", *RUN],
         cwd=project.folder,
@@ -162,8 +162,10 @@ def test_a_kill_while_a_dataset_is_collected_leaves_the_old_one(project):
     os.killpg(running.pid, signal.SIGKILL)
     running.wait()
     assert path.read_bytes() == old
-    text = (project.folder / "src/microslip/dataset.py").read_text()
-    (project.folder / "src/microslip/dataset.py").write_text(text.replace(SLOWLY, ""))
+    text = (project.folder / "src/microslip/datasets/sweep_dataset.py").read_text()
+    (project.folder / "src/microslip/datasets/sweep_dataset.py").write_text(
+        text.replace(SLOWLY, "")
+    )
     done = project.snakemake("--unlock", *RUN)
     assert done.returncode == 0, done.stderr
     project.run()
@@ -187,7 +189,7 @@ def solve(scene, velocity, amplitude=None, **settings):
 
 def test_sources_that_are_edited_while_a_run_is_on_end_it(project):
     """What is computed then is kept under no name, and the next run is of the new sources."""
-    project.append("src/microslip/point.py", EDITS)
+    project.append("src/microslip/adaptive/point.py", EDITS)
     before = project.points()
     done = project.snakemake(*RUN)
     assert done.returncode != 0

@@ -7,7 +7,8 @@ import pytest
 from matplotlib.text import Text
 from workflow_project import RUN, Project
 
-from microslip import netcdf, plot
+from microslip.datasets import netcdf
+from microslip.report.figures import drawing
 
 pytestmark = pytest.mark.slow
 
@@ -35,8 +36,8 @@ TINY = {
 METHOD = '''
 """Backward Euler under another name."""
 
-from microslip.method import Method
-from microslip.path import EULER
+from microslip.solver.method import Method
+from microslip.models.path import EULER
 
 METHOD = Method("my own way", integrator=EULER)
 '''
@@ -81,7 +82,7 @@ def project(finished, tmp_path):
 def texts(name, path):
     """All that is written in a figure drawn from the dataset at `path`."""
     with netcdf.whole(path) as data:
-        figure = plot.draw(name, {plot.FIGURES[name][0]: data})
+        figure = drawing.draw(name, {drawing.FIGURES[name][0]: data})
         return " ".join(text.get_text() for text in figure.findobj(Text))
 
 
@@ -96,7 +97,7 @@ def test_a_method_in_one_new_file_is_in_the_dataset_and_in_the_figures(finished)
         assert set(data.trial_model.values) >= {"rigid", "radial", "cartesian", "auto"}
         assert (data.transverse_cheapest.values != "").all()
     assert "my-method" in texts("accuracy_profile", path)  # elsewhere it is one of the grey marks
-    figures = {name for name, data in plot.FIGURES.items() if data == ("accuracy_cost",)}
+    figures = {name for name, data in drawing.FIGURES.items() if data == ("accuracy_cost",)}
     for name in figures:
         for form in ("png", "pdf"):
             assert (finished.folder / f"results/figures/{name}.{form}").stat().st_size > 0

@@ -7,20 +7,20 @@ that importing the package costs next to nothing.
 
 from importlib import import_module as _import_module
 
-from microslip import source_digest as _source_digest  # noqa: F401  reads what will be loaded
+from microslip.foundation import source_digest as _source_digest  # noqa: F401  reads what will be loaded
 
 _WHERE = {
-    "solve": "microslip.point",
-    "Result": "microslip.point",
-    "warm_up": "microslip.point",
-    "solve_stored": "microslip.stored",
+    "solve": "microslip.adaptive.point",
+    "Result": "microslip.adaptive.point",
+    "warm_up": "microslip.adaptive.point",
+    "solve_stored": "microslip.sweeps.solve_stored",
     "predict": "microslip.si.predict",
-    "open_map": "microslip.query",
-    "history": "microslip.inside",
-    "History": "microslip.inside",
-    "traction_field": "microslip.inside",
-    "period": "microslip.inside",
-    "Period": "microslip.inside",
+    "open_map": "microslip.datasets.query.open_map",
+    "history": "microslip.adaptive.history",
+    "History": "microslip.adaptive.history",
+    "traction_field": "microslip.adaptive.history",
+    "period": "microslip.adaptive.history",
+    "Period": "microslip.adaptive.history",
 }
 __all__ = sorted(_WHERE)
 __version__ = "0.1.0"

@@ -9,12 +9,12 @@ import sys
 
 
 def main():
-    """Run this process as the command; returns the exit code, see microslip.cli.main."""
+    """Run this process as the command; returns the exit code, see microslip.app.cli.main."""
     stoppable = sys.argv[1:2] != ["sweep"]  # whose signals are for Snakemake
     asked = signal.getsignal(signal.SIGINT)
     if asked != signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.SIG_DFL)  # until there is something better
-    from microslip import terminal
+    from microslip.app import terminal
 
     if not stoppable:
         signal.signal(signal.SIGINT, asked)
@@ -22,7 +22,7 @@ def main():
 
 
 def _command():
-    from microslip import cli
+    from microslip.app import cli
 
     return cli.main(sys.argv[1:])
 

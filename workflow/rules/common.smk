@@ -5,8 +5,8 @@ from glob import glob
 from snakemake.logging import logger as snakemake_log
 
 from microslip import batch_files, explorer, jobs, keys, plan, schemas, source_digest, sweep
-from microslip.plan import Plan
-from microslip.watch import Watch
+from microslip.app.plan import Plan
+from microslip.app.progress import Watch
 
 # In a module the files are those of another workflow, which may hold more than this one knows.
 FILES = [os.path.relpath(file) for file in workflow.configfiles] if MAIN else []

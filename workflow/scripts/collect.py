@@ -12,26 +12,29 @@ page that sums it up.
 
 import xarray as xr
 
-from microslip import cache, config, dataset, summary, sweep
-from microslip.jobs import job_log
-from microslip.plan import Plan
+from microslip.app.job_log import job_log
+from microslip.app.plan import Plan
+from microslip.config import load
+from microslip.datasets import sweep_dataset
+from microslip.report import dataset_page
+from microslip.sweeps import batches, cache
 
 name = snakemake.wildcards.sweep
 
 with job_log(snakemake.log[0]) as log:
-    configuration = config.from_mapping(snakemake.config, ask_solver=False)
+    configuration = load.from_mapping(snakemake.config, ask_solver=False)
     Plan(configuration).refuse_edited(f"{name}.nc", snakemake.params.code)
     grid = configuration.grids[name]
-    dataset.write_sweep(
+    sweep_dataset.write_sweep(
         snakemake.output[0],
         grid,
-        sweep.records_for(sweep.PointRequests(grid), snakemake.input.batches),
-        list(sweep.records_in(snakemake.input.histories)),
+        batches.records_for(batches.PointRequests(grid), snakemake.input.batches),
+        list(batches.records_in(snakemake.input.histories)),
         configuration.of_sweep(name),
     )
     with xr.open_dataset(snakemake.output[0]) as data:
-        lines = list(dataset.report(data, grid.group and name))
+        lines = list(sweep_dataset.report(data, grid.group and name))
         for line in lines:
             log.info(line)
-        summary.write(snakemake.output.summary, data, lines)
+        dataset_page.write(snakemake.output.summary, data, lines)
     cache.mark(snakemake.output, snakemake.params.made_of)

@@ -7,20 +7,23 @@ Output: netCDF-4, CF conventions, all quantities dimensionless but for seconds a
 and an HTML page that sums it up.
 """
 
-from microslip import cache, config, dataset, studies, sweep
-from microslip.jobs import job_log
-from microslip.plan import Plan
+from microslip.app.job_log import job_log
+from microslip.app.plan import Plan
+from microslip.config import load
+from microslip.datasets import sweep_dataset
+from microslip.studies import registry
+from microslip.sweeps import batches, cache
 
 study = snakemake.params.study
 
 with job_log(snakemake.log[0]) as log:
-    configuration = config.from_mapping(snakemake.config, ask_solver=False)
+    configuration = load.from_mapping(snakemake.config, ask_solver=False)
     Plan(configuration).refuse_edited(f"{snakemake.wildcards.dataset}.nc", snakemake.params.code)
-    answer = sweep.lookup(sweep.records_in(snakemake.input.batches))
-    data = studies.build(study, configuration, answer)
-    dataset.write(data, snakemake.output[0], studies.groups(study))
-    lines = list(studies.report(study, data))
+    answer = batches.lookup(batches.records_in(snakemake.input.batches))
+    data = registry.build(study, configuration, answer)
+    sweep_dataset.write(data, snakemake.output[0], registry.groups(study))
+    lines = list(registry.report(study, data))
     for line in lines:
         log.info(line)
-    studies.write_page(study, snakemake.output.summary, data, lines)
+    registry.write_page(study, snakemake.output.summary, data, lines)
     cache.mark(snakemake.output, snakemake.params.made_of)

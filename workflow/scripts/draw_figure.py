@@ -3,18 +3,20 @@
 Output: the figure as PNG and as PDF.
 """
 
-from microslip import cache, config, plot
-from microslip.jobs import job_log
-from microslip.plan import Plan
-from microslip.plot.data import loaded
+from microslip.app.job_log import job_log
+from microslip.app.plan import Plan
+from microslip.config import load
+from microslip.report.figures import drawing
+from microslip.report.figures.data import loaded
+from microslip.sweeps import cache
 
 with job_log(snakemake.log[0]):
-    configuration = config.from_mapping(snakemake.config, ask_solver=False)
+    configuration = load.from_mapping(snakemake.config, ask_solver=False)
     file = f"figures/{snakemake.wildcards.figure}.png"
     Plan(configuration).refuse_edited(file, snakemake.params.code)
     names = snakemake.params.names
     data = {name: loaded(path) for name, path in zip(names, snakemake.input, strict=True)}
-    figure = plot.draw(snakemake.wildcards.figure, data)
+    figure = drawing.draw(snakemake.wildcards.figure, data)
     for path in snakemake.output:
-        plot.save(figure, path)
+        drawing.save(figure, path)
     cache.mark(snakemake.output, snakemake.params.made_of)

@@ -3,15 +3,18 @@
 Output: HTML, one file that needs no network; the numbers in it are dimensionless.
 """
 
-from microslip import cache, config, explorer, plan, sweep
-from microslip.jobs import job_log
-from microslip.plot.data import loaded
+from microslip.app import plan
+from microslip.app.job_log import job_log
+from microslip.config import load
+from microslip.report.explorer import explorer
+from microslip.report.figures.data import loaded
+from microslip.sweeps import batches, cache
 
 with job_log(snakemake.log[0]) as log:
-    configuration = config.from_mapping(snakemake.config, ask_solver=False)
+    configuration = load.from_mapping(snakemake.config, ask_solver=False)
     plan.Plan(configuration).refuse_edited(plan.PAGE, snakemake.params.code)
     names = snakemake.params.names
-    answer = sweep.lookup(sweep.records_in(snakemake.input.batches))
+    answer = batches.lookup(batches.records_in(snakemake.input.batches))
     periods = {
         name: [answer(request) for request in explorer.period_requests(configuration, name)]
         for name in names

@@ -8,14 +8,15 @@ sweep.FOLDERS names.
 
 import json
 
-from microslip import batch_files, cache, named_files, sweep
-from microslip.jobs import job_log
-from microslip.watch import counted
+from microslip.app.job_log import job_log
+from microslip.app.progress import counted
+from microslip.foundation import named_files
+from microslip.sweeps import batch_files, batches, cache
 
 with job_log(snakemake.log[0]) as log:
     # Requests name files by what these hold.
     named_files.remember(given["pressure"] for given in snakemake.config["extended"].values())
-    records, done = sweep.run_batch(
+    records, done = batches.run_batch(
         json.loads(snakemake.params.requests),
         cache.Store(snakemake.params.store),
         lambda requests: counted(requests, snakemake.params.counter),

@@ -4,8 +4,8 @@ Output: a text file that says that it was done.
 """
 
 import microslip
-from microslip.cache import write_atomically
-from microslip.jobs import job_log
+from microslip.app.job_log import job_log
+from microslip.sweeps.cache import write_atomically
 
 with job_log(snakemake.log[0]):
     microslip.warm_up()

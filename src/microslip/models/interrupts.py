@@ -11,7 +11,7 @@ import signal
 
 from numba import types
 
-from microslip.compiled import kernel
+from microslip.foundation.compiled import kernel
 
 _hold = types.ExternalFunction("PyGILState_Ensure", types.intc())
 _let_go = types.ExternalFunction("PyGILState_Release", types.void(types.intc))

@@ -3,8 +3,8 @@ motion."""
 
 import numpy as np
 
-from microslip import hertz
-from microslip.scene import Scene, within_rings
+from microslip.motions.motion import Scene, within_rings
+from microslip.theory import hertz
 
 
 def displacement(phase, velocity, amplitude, poisson):

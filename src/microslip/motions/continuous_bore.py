@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from microslip.scene import Scene, within_rings
+from microslip.motions.motion import Scene, within_rings
 
 
 def displacement(phase, velocity, amplitude, poisson):

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip import parameters
-from microslip.errors import InputError
-from microslip.path import HALF_PERIOD
-from microslip.scene import Scene, stick_focus
+from microslip.foundation import spec
+from microslip.foundation.errors import InputError
+from microslip.models.path import HALF_PERIOD
+from microslip.motions.motion import Scene, stick_focus
 
 SUMMARY = "sliding forward while oscillating along two directions"
 HELP = (
@@ -35,11 +35,11 @@ _LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
 def scene(name, forward, lateral, phase, forward_cycles, lateral_cycles):
     """The Scene of these numbers; raises InputError for shares below 0, none at all, and cycles
     that are no whole numbers."""
-    parameters.refuse_shares(name, "scene", {"forward": forward, "lateral": lateral})
+    spec.refuse_shares(name, "scene", {"forward": forward, "lateral": lateral})
     if max(forward, lateral) == 0.0:
         raise InputError("scene", name, "allowed is forward or lateral above 0")
     cycles = {"forward_cycles": forward_cycles, "lateral_cycles": lateral_cycles}
-    parameters.refuse_counts(name, "scene", cycles, MOST_CYCLES)
+    spec.refuse_counts(name, "scene", cycles, MOST_CYCLES)
     lead = np.deg2rad(phase % 360.0)
 
     def displacement(phase, velocity, amplitude, poisson):

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from microslip import masing
 from microslip.motions import transverse
+from microslip.theory import masing
 
 
 def displacement(phase, velocity, amplitude, poisson):

@@ -14,10 +14,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip import hertz, parameters, pulsating
-from microslip.errors import InputError
+from microslip.foundation import spec
+from microslip.foundation.errors import InputError
 from microslip.motions.elliptic import MOST_CYCLES
-from microslip.scene import Scene, within_rings
+from microslip.motions.motion import Scene, within_rings
+from microslip.theory import hertz, oscillating_load
 
 SUMMARY = "sliding forward while the normal load oscillates, or the indentation"
 HELP = (
@@ -94,7 +95,7 @@ def scene(
         if not pressure.is_indenter:
             return None
         place = (velocity / normal_cycles, amplitude * share, by_load, pressure)
-        return pulsating.friction(*place)
+        return oscillating_load.friction(*place)
 
     aside_odd = lateral == 0.0 or lateral_cycles % 2 == 1
     turns_odd = angle == 0.0 or angle_cycles % 2 == 1
@@ -126,7 +127,7 @@ def scene(
         ),
         depth=depth,
         deepest=lambda amplitude, pressure: extreme(1.0, amplitude, pressure),
-        mean_load=lambda amplitude, pressure: pulsating.mean_load(
+        mean_load=lambda amplitude, pressure: oscillating_load.mean_load(
             amplitude * share, by_load, pressure
         ),
         whole=whole if alone else None,
@@ -134,11 +135,11 @@ def scene(
 
 
 def _check(name, shares, cycles):
-    parameters.refuse_shares(name, "scene", shares)
+    spec.refuse_shares(name, "scene", shares)
     if shares["load"] == shares["indentation"] == 0.0:
         raise InputError("scene", name, "allowed is load or indentation above 0")
     if shares["indentation"] > 0.0 and shares["load"] != DEFAULTS["load"]:
         raise InputError(
             "scene", name, f"load = {shares['load']:g}: allowed is no load beside an indentation"
         )
-    parameters.refuse_counts(name, "scene", cycles, MOST_CYCLES)
+    spec.refuse_counts(name, "scene", cycles, MOST_CYCLES)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from microslip.scene import Scene, stick_focus
+from microslip.motions.motion import Scene, stick_focus
 
 
 def displacement(phase, velocity, amplitude, poisson):

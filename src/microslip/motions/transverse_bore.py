@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip import hertz, parameters
-from microslip.errors import InputError
-from microslip.scene import Scene, stick_focus, within_rings
+from microslip.foundation import spec
+from microslip.foundation.errors import InputError
+from microslip.motions.motion import Scene, stick_focus, within_rings
+from microslip.theory import hertz
 
 SUMMARY = "sliding forward while oscillating sideways and in rotation"
 HELP = (
@@ -24,7 +25,7 @@ DEFAULTS = {"lateral": 1.0, "angle": 1.0, "phase": 0.0}
 
 def scene(name, lateral, angle, phase):
     """The Scene of these numbers; raises InputError for shares below 0, and none at all."""
-    parameters.refuse_shares(name, "scene", {"lateral": lateral, "angle": angle})
+    spec.refuse_shares(name, "scene", {"lateral": lateral, "angle": angle})
     if max(lateral, angle) == 0.0:
         raise InputError("scene", name, "allowed is lateral or angle above 0")
     lead = np.deg2rad(phase % 360.0) if lateral > 0.0 else 0.0

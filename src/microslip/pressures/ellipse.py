@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import ellipk
 
-from microslip import hertz
-from microslip.errors import InputError
-from microslip.pressures.record import Pressure
-from microslip.pressures.squares import of_corner_loads
+from microslip.foundation.errors import InputError
+from microslip.pressures.cell_loads import of_corner_loads
+from microslip.pressures.pressure import Pressure
+from microslip.theory import hertz
 
 DEFAULTS = {"ratio": 0.5, "across": 0.0}
 SMALLEST_RATIO = 0.05

@@ -9,11 +9,11 @@ is what sensors give, and what makes the load the sum of values times areas what
 
 from __future__ import annotations
 
-from microslip import named_files
-from microslip.errors import InputError
+from microslip.foundation import named_files
+from microslip.foundation.errors import InputError
 from microslip.pressures import grid_csv, grid_netcdf
 from microslip.pressures.measured import READINGS, of_grid
-from microslip.pressures.record import Pressure
+from microslip.pressures.pressure import Pressure
 
 SOURCE = "file"
 """What names begin with, before a colon and a text of their own."""

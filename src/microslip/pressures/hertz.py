@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip import hertz
 from microslip.pressures.ellipse import ellipse_loads
-from microslip.pressures.record import Pressure
+from microslip.pressures.pressure import Pressure
+from microslip.theory import hertz
 
 
 def _hertz_means(psi):

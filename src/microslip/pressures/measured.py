@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from microslip.errors import InputError
-from microslip.pressures.record import Pressure
-from microslip.pressures.squares import of_loads
+from microslip.foundation.errors import InputError
+from microslip.pressures.cell_loads import of_loads
+from microslip.pressures.pressure import Pressure
 
 AXES = ("forward", "lateral")
 READINGS = ("cells", "samples")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.errors import InputError
-from microslip.pressures.indenters import indenter
+from microslip.foundation.errors import InputError
+from microslip.pressures.axisymmetric_indenter import indenter
 
 DEFAULTS = {"exponent": 2.0}
 SMALLEST, LARGEST = 1.0, 100.0

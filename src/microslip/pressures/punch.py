@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.errors import InputError
-from microslip.pressures.indenters import indenter
+from microslip.foundation.errors import InputError
+from microslip.pressures.axisymmetric_indenter import indenter
 
 DEFAULTS = {"flat": 0.8}
 LARGEST_FLAT = 0.99

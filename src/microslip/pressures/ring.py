@@ -9,9 +9,9 @@ from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 from scipy.special import ellipkm1
 
-from microslip.errors import InputError
-from microslip.pressures.record import Pressure, of_radii
-from microslip.pressures.squares import round_loads
+from microslip.foundation.errors import InputError
+from microslip.pressures.cell_loads import round_loads
+from microslip.pressures.pressure import Pressure, of_radii
 
 DEFAULTS = {"inner": 0.5}
 SMALLEST, LARGEST = 0.05, 0.95

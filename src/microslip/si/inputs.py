@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from microslip.errors import InputError
-from microslip.si.contact import TwoBodies
-from microslip.si.doubts import SENSELESS
-from microslip.si.groups import RealMotion
+from microslip.foundation.errors import InputError
+from microslip.si.bodies import TwoBodies
+from microslip.si.dimensionless import RealMotion
 from microslip.si.materials import RIGID, Material, material_named
+from microslip.si.motions import SCENES, UNIT_OF_AMPLITUDE
 from microslip.si.quantities import read
-from microslip.si.scenes import SCENES, UNIT_OF_AMPLITUDE
+from microslip.si.validity import SENSELESS
 
 LARGEST_MU = 10.0
 """No pair of bodies in elastic contact has more; what is larger is a slip of the pen."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from microslip.errors import InputError
+from microslip.foundation.errors import InputError
 from microslip.si.quantities import si_value
 
 

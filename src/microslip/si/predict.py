@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass, field
 
-from microslip.errors import InputError
-from microslip.point import LARGEST, SMALLEST_TOLERANCE, Result, solve
-from microslip.si.doubts import doubts, unchecked
-from microslip.si.groups import groups
+from microslip.adaptive.point import LARGEST, SMALLEST_TOLERANCE, Result, solve
+from microslip.foundation.errors import InputError
+from microslip.si.dimensionless import groups
 from microslip.si.inputs import read_body, read_contact, read_counterbody, read_motion
 from microslip.si.quantities import read
 from microslip.si.reduction import friction_of, motion_for
+from microslip.si.validity import doubts, unchecked
 
 LARGEST_TOLERANCE = 0.1
 """Of mu_macro; what is larger is no answer."""

@@ -16,16 +16,8 @@ from numbers import Real
 
 import numpy as np
 
-from microslip.errors import InputError
-from microslip.si.units import (
-    TURN_RATE,
-    Unit,
-    UnitError,
-    exact,
-    full_turn,
-    read_unit,
-    si_unit,
-)
+from microslip.foundation.errors import InputError
+from microslip.si.units import TURN_RATE, Unit, UnitError, exact, full_turn, read_unit, si_unit
 from microslip.si.units import registry as registry  # whoever builds quantities for this module
 
 EXAMPLES = {

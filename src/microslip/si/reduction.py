@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from microslip.errors import InputError
-from microslip.point import LARGEST, Result, solve
-from microslip.si.contact import TwoBodies
-from microslip.si.groups import RealMotion, groups
+from microslip.adaptive.point import LARGEST, Result, solve
+from microslip.foundation.errors import InputError
+from microslip.si.bodies import TwoBodies
+from microslip.si.dimensionless import RealMotion, groups
 
 LARGEST_AMPLITUDE = 1e4
 """Dimensionless amplitude beyond which no smaller friction is looked for."""

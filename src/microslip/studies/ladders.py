@@ -7,8 +7,8 @@ which model applies where, as plain data; a test keeps it the same as what the s
 
 from typing import NamedTuple
 
-from ..methods import SHIPPED, declared, missing, split
-from ..settings import MODELS_OF_SCENE
+from microslip.config.records import MODELS_OF_SCENE
+from microslip.solver.method_names import SHIPPED, declared, missing, split
 
 
 class Level(NamedTuple):

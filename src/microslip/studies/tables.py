@@ -3,14 +3,14 @@
 import numpy as np
 import xarray as xr
 
-from .. import columns, dataset
-from ..keys import canonical_json, sha256
+from microslip.datasets import point_variables, sweep_dataset
+from microslip.sweeps.keys import canonical_json, sha256
 
 
 class Answers:
     """Results by request; takes note of their names and of the versions of libraries behind them.
 
-    answer(request) -> record, see microslip.sweep.
+    answer(request) -> record, see microslip.sweeps.batches.
     """
 
     def __init__(self, answer):
@@ -34,14 +34,14 @@ def value_of(result, name, kind=float):
 def variable(dims, values, long_name, kind=float, units="1"):
     """A variable of a dataset with its attributes; kind: type of its values."""
     values = np.asarray(values).astype(object if kind is str else kind)
-    return dims, values, columns.attributes(kind, long_name, units)
+    return dims, values, point_variables.attributes(kind, long_name, units)
 
 
 def finished(variables, coords, title, answers, settings, **attributes):
     """A Dataset with what says where it comes from; settings: dict, kept as JSON."""
     # The names of all results: they depend on the sources of the methods, too.
     digest = sha256("\n".join(sorted(answers.keys)))
-    described = dataset.provenance(
+    described = sweep_dataset.provenance(
         title, settings, answers.versions, results_digest=digest, **attributes
     )
     return xr.Dataset(variables, coords, described)

@@ -1,0 +1,1 @@
+"""Many runs: the model, the resolution and the error of an answer."""

@@ -1,0 +1,162 @@
+"""Chains of runs along one axis: a value at ever finer resolutions, and how far to trust it.
+
+See microslip.adaptive.refinement for how an answer is made of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+EXTRAPOLATION_SHARE = 0.6
+CHANGE_SHARE = 0.5
+"""Errors of cells over the last extrapolation, and over the change of the extrapolated value."""
+READING_CAUTION = 2.5
+"""Error over the sum of what the readings of a pressure change: a peak or an edge that falls
+between the points of a grid shows in none of them in full."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One axis of refinement.
+
+    levels: resolutions, increasing; base: index of the one that the chains of other axes are run
+    at; first: indices of the runs to start with, as many as the error is estimated from, at least
+    three.
+    regular: the error falls smoothly, with the second power of the levels, so that it can be
+    extrapolated; imposed: the last level is what was asked for, and its error, the spread of the
+    last three again, is only reported; caution: errors of irregular axes over their spread; tied:
+    name and levels of what is refined together with it, where neither converges without the other.
+    """
+
+    name: str
+    levels: tuple[int, ...]
+    base: int
+    first: tuple[int, ...]
+    regular: bool = False
+    imposed: bool = False
+    caution: float = 1.0
+    tied: tuple[str, tuple[int, ...]] | None = None
+
+    @property
+    def refines(self):
+        """Names of what it refines: itself, and what is tied to it."""
+        return (self.name,) if self.tied is None else (self.name, self.tied[0])
+
+
+class Runs:
+    """Runs at (cells, angles, steps), given as indices into the levels of the axes; each once."""
+
+    def __init__(self, run, coarsest, axes):
+        self.run, self.coarsest, self.axes = run, coarsest, {axis.name: axis for axis in axes}
+        self.base = {axis.name: axis.base for axis in axes}
+        self.done = {}
+
+    def resolution(self, **indices):
+        """The base with some indices replaced, as a motion.Resolution."""
+        at = self.base | indices
+        levels = {name: self.axes[name].levels[index] for name, index in at.items()}
+        tied = ((self.axes[name].tied, index) for name, index in at.items())
+        levels |= {pair[0]: pair[1][index] for pair, index in tied if pair is not None}
+        return replace(self.coarsest, **levels)
+
+    def __call__(self, **indices):
+        resolution = self.resolution(**indices)
+        if resolution not in self.done:
+            guess = self.done.get(self.resolution())
+            self.done[resolution] = self.run(resolution, guess)
+        return self.done[resolution]
+
+
+class Readings:
+    """The finest run along the cells, under other pressures that the same numbers may stand for."""
+
+    def __init__(self, runs, readings):
+        self.runs, self.readings, self.done = runs, readings, {}
+
+    def open(self, chains, name):
+        """How far they leave a value open."""
+        first = refines_cells(chains)
+        finest = {} if first is None else {first: chains[first].indices[-1]}
+        resolution, value = self.runs.resolution(**finest), getattr(self.runs(**finest), name)
+        for number, run in enumerate(self.readings):
+            if (number, resolution) not in self.done:
+                self.done[number, resolution] = run(resolution, None)
+        return READING_CAUTION * sum(
+            abs(getattr(self.done[number, resolution], name) - value)
+            for number in range(len(self.readings))
+        )
+
+
+class Chain:
+    """Runs along one axis, the others at the base."""
+
+    def __init__(self, runs, axis):
+        self.runs, self.axis = runs, axis
+        self.indices = list(axis.first)
+
+    @property
+    def levels(self):
+        return [self.axis.levels[index] for index in self.indices]
+
+    def values(self, name):
+        return [getattr(self.runs(**{self.axis.name: index}), name) for index in self.indices]
+
+    def rebase(self):
+        """Go on from a new base: no more runs than the error needs, up to the base at least."""
+        last = max(self.indices[-1], self.runs.base[self.axis.name])
+        self.indices = list(range(max(last + 1 - len(self.axis.first), 0), last + 1))
+
+    def refine(self):
+        """One more run; False if there is no finer level."""
+        if self.indices[-1] + 1 == len(self.axis.levels):
+            return False
+        self.indices.append(self.indices[-1] + 1)
+        return True
+
+    def correction(self, name):
+        """What the chain adds to the value at the base."""
+        values = self.values(name)
+        added = values[-1] - getattr(self.runs(), name)
+        if self.axis.regular:
+            added += _extrapolation(values, self.levels)
+        return added
+
+    def error(self, name):
+        """Estimated error after the correction."""
+        values, levels = self.values(name), self.levels
+        if not self.axis.regular:
+            last = values[-len(self.axis.first) :]
+            return self.axis.caution * (max(last) - min(last))
+        beyond = _extrapolation(values, levels)
+        before = _extrapolation(values[:-1], levels[:-1])
+        change = values[-1] + beyond - values[-2] - before
+        return EXTRAPOLATION_SHARE * abs(beyond) + CHANGE_SHARE * abs(change)
+
+
+def _extrapolation(values, levels):
+    """What second-order convergence would still add to the last of the values."""
+    return (values[-1] - values[-2]) / ((levels[-1] / levels[-2]) ** 2 - 1.0)
+
+
+def refines_cells(chains):
+    """Name of the axis that refines the cells, or None."""
+    return next((name for name, chain in chains.items() if "cells" in chain.axis.refines), None)
+
+
+def mixed_difference(runs, chains, name):
+    """How far the corrections along cells and angles fail to add up: their mixed difference.
+
+    It is taken next to the finest angles, since few of them may hide what cells are worth.
+    """
+    first = refines_cells(chains)
+    if first is None or "angles" not in chains or chains[first].axis.imposed:
+        return 0.0
+    beside = {}
+    for axis in (first, "angles"):
+        base = runs.base[axis]
+        last = chains[axis].indices[-1]
+        step = max(last - base - 1, 1) if axis == "angles" else 1
+        beside[axis] = base + step if last > base else base - 1
+    one, other = ({axis: index} for axis, index in beside.items())
+    both, one, other, base = (getattr(runs(**at), name) for at in (beside, one, other, {}))
+    return both - one - other + base

@@ -1,0 +1,285 @@
+"""The public question and answer: one point, certified; a force history; a traction field."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import replace
+from functools import partial
+
+from microslip.adaptive.choice import choose_model, closed_form, method_refusal, no_vibration, plan
+from microslip.adaptive.continuation import run_safely
+from microslip.adaptive.refinement import certify
+from microslip.adaptive.result import Result
+from microslip.foundation.arguments import LARGEST, count, is_real, real
+from microslip.foundation.errors import InputError
+from microslip.motions.registry import read_otherwise, scene_named
+from microslip.solver.budget import Budget
+from microslip.solver.method_names import SHIPPED, method_named, refuse_missing
+from microslip.solver.simulate import simulate
+from microslip.solver.static_run import simulate_static
+
+PERIODICITY_SHARE = 0.07
+"""Share of the tolerance that the distance from the periodic state may take."""
+SMALLEST_TOLERANCE = 1e-6
+CLOSED_FORM = "closed-form"
+TOLERANCE = 1e-3
+"""Unless told otherwise; and how strict the search for a periodic state is where none is meant."""
+MOST_WORK = {"polar": 2e9, "cartesian": 2e9}
+MOST_WORK_OF_OTHERS = 2e8
+"""Work, by model, beyond which a point is given up unless told otherwise: more than ten times what
+the slowest points of the paper's range take at the tolerance 1e-4.  Rings have few unknowns, and
+each of them takes longer."""
+
+
+def solve(
+    scene,
+    velocity,
+    amplitude=None,
+    *,
+    pressure="hertz",
+    poisson=0.0,
+    model="auto",
+    tolerance=TOLERANCE,
+    cells=None,
+    steps=None,
+    method=SHIPPED,
+    most_work=None,
+    time_limit=None,
+    progress=None,
+):
+    """Macroscopic friction of a vibrated contact at one point.
+
+    scene: "transverse", "bore" or "continuous-bore"; velocity, amplitude: the paper's dimensionless
+    groups (amplitude: None for continuous-bore; velocity 0: the limit v -> 0), in units of the
+    pressure's own u_lim; pressure: "hertz", "power:exponent=1", "file:measured.csv", see
+    microslip.pressures.registry; poisson: nu;
+    model: "auto" or a name in models.MODELS; tolerance: absolute, on mu_macro, None where cells and
+    steps are imposed and the error is only to be told; cells, steps (in a full period): impose a
+    resolution instead of letting the tolerance choose; method: one of methods.names(), to be
+    compared with what ships; most_work: step solves x unknowns, over all runs, beyond which a point
+    is given up, None: MOST_WORK; time_limit: seconds by the wall clock after which it is given up,
+    looked at between marches, None: never; progress: called with the Resolution of every run before
+    it starts.
+    Returns a Result; ``converged`` is False, with the reason, where the tolerance was not met, be
+    it that of an imposed resolution.  Without a tolerance it says that every run found its periodic
+    state, searched for as strictly as at the tolerance 1e-3.
+    Raises InputError, naming the argument, for input out of range or a model that does not apply.
+    """
+    kind, velocity, amplitude, poisson = checked_point(
+        scene, velocity, amplitude, poisson, pressure
+    )
+    asked, cells, steps = checked_request(tolerance, cells, steps)
+    refuse_bounds(most_work=most_work, time_limit=time_limit)
+    if progress is not None and not callable(progress):
+        raise InputError("progress", progress, "allowed is a function of one argument")
+    tolerance = TOLERANCE if asked is None else asked
+    name, how = choose_model(kind, poisson, model), method_named(method)
+    _refuse_method(kind, name, method, how)
+    started = time.perf_counter()
+    point = {
+        "scene": kind.name,
+        "pressure": kind.pressure.name,
+        "velocity": velocity,
+        "amplitude": amplitude,
+        "poisson": poisson,
+        "tolerance": asked,
+        "method": method,
+    }
+    place = (velocity, amplitude, poisson)
+    exact = no_vibration(kind, amplitude)
+    if exact is None and model == "auto" and method == SHIPPED:
+        exact = _exact(kind, *place, asked, cells, steps)
+    if exact is not None:
+        used = CLOSED_FORM if model == "auto" else name
+        return _exact_result(point | {"model": used}, exact, time.perf_counter() - started)
+    coarsest, axes = plan(kind, name, *place, tolerance, cells, steps)
+    imposed, names = any(axis.imposed for axis in axes), [axis.name for axis in axes]
+    if asked is None:
+        _refuse_free(axes)
+    share = PERIODICITY_SHARE * tolerance
+    if most_work is None:
+        most_work = MOST_WORK.get(name, MOST_WORK_OF_OTHERS)
+    budget = Budget(most_work, math.inf if time_limit is None else time_limit)
+
+    def run(resolution, guess, kind=kind):
+        if progress is not None:
+            progress(resolution)
+        if velocity == 0.0 and kind.periodic:
+            return simulate_static(kind, amplitude, poisson, name, resolution, share, how, budget)
+
+        def run_at(velocity, guess, careful=False):
+            where = (kind, velocity, amplitude, poisson, name, resolution, share)
+            return simulate(*where, guess, how, careful, budget)
+
+        if method != SHIPPED or not kind.periodic:
+            return run_at(velocity, guess)
+        return run_safely(run_at, velocity, guess)
+
+    readings = [partial(run, kind=other) for other in read_otherwise(kind)]
+    certified = certify(run, coarsest, axes, tolerance, readings)
+    if budget.exhausted:
+        certified = replace(certified, **budget.counts())
+    steady = not kind.periodic
+    within = asked is None or certified.error <= asked
+    reason = certified.reason
+    if certified.converged and not within:
+        where = "at the imposed resolution the error" if imposed else "the estimated error"
+        reason = f"{where} is {certified.error:.1e}, above the tolerance of {asked:g}"
+        left_open = certified.errors.get("model", 0.0)
+        if left_open > 0.5 * certified.error:
+            reason += f": the file's own resolution leaves {left_open:.1e} open"
+    return Result(
+        **point,
+        model=name,
+        mu_macro=_within(kind, certified.mu),
+        mu_macro_error=certified.error,
+        **{
+            f"error_{source}": error
+            for source, error in ({"model": 0.0} | certified.errors).items()
+        },
+        mu_torque=certified.torque if steady else None,
+        mu_torque_error=certified.torque_error + certified.errors["periodicity"]
+        if steady
+        else None,
+        converged=bool(certified.converged and within),
+        periodic=certified.periodic,
+        reason=reason,
+        cells=certified.finest.cells,
+        angles=certified.finest.angles,
+        steps_per_period=2 * certified.finest.steps if "steps" in names else 0,
+        periods=certified.periods,
+        iterations=certified.iterations,
+        work=certified.work,
+        effort=certified.effort,
+        retried=certified.retried,
+        exhausted=budget.exhausted,
+        solve_time_s=time.perf_counter() - started,
+    )
+
+
+def _within(kind, mu):
+    """A mean force brought to where it can be: what lies beyond is rounding and error."""
+    least = -1.0 if kind.drives else 0.0
+    return min(max(mu, least), 1.0) if math.isfinite(mu) else math.nan
+
+
+def checked_point(scene, velocity, amplitude, poisson, pressure="hertz"):
+    """Scene record and numbers of a point; raises InputError naming the argument at fault."""
+    kind = scene_named(scene, pressure)
+    velocity = real("velocity", velocity, 0.0, LARGEST["velocity"])
+    poisson = real("poisson", poisson, 0.0, 0.5)
+    if kind.periodic:
+        if amplitude is None:
+            raise InputError("amplitude", None, f"{kind.name} needs an amplitude >= 0")
+        amplitude = real("amplitude", amplitude, 0.0, LARGEST["amplitude"])
+    elif amplitude is not None:
+        raise InputError("amplitude", amplitude, f"{kind.name} has no amplitude")
+    return kind, velocity, amplitude, poisson
+
+
+def checked_accuracy(tolerance, cells, steps):
+    """Tolerance and imposed resolution; raises InputError naming the argument at fault."""
+    tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
+    return tolerance, _count("cells", cells, 4), _count("steps", steps, 8)
+
+
+def checked_request(tolerance, cells, steps):
+    """As ``checked_accuracy``, but that no tolerance, None, may be asked for."""
+    _, cells, steps = checked_accuracy(TOLERANCE, cells, steps)
+    if tolerance is not None:
+        tolerance, _, _ = checked_accuracy(tolerance, None, None)
+    return tolerance, cells, steps
+
+
+def refuse_choice(kind, model, place, cells, steps):
+    """Raise InputError where a resolution would have to be chosen, and there is no tolerance to do
+    that; place: velocity, amplitude, poisson, and all as checked."""
+    exact = no_vibration(kind, place[1])
+    if exact is None and model == "auto":
+        exact = _exact(kind, *place, None, cells, steps)
+    if exact is None:
+        name = choose_model(kind, place[2], model)
+        _refuse_free(plan(kind, name, *place, TOLERANCE, cells, steps)[1])
+
+
+def _exact(kind, velocity, amplitude, poisson, asked, cells, steps):
+    """choice.closed_form, but that an imposed resolution is to be run, if anything is marched."""
+    if velocity > 0.0 and not (cells is None and steps is None):
+        return None
+    return closed_form(kind, velocity, amplitude, poisson, asked or 0.0)
+
+
+def _refuse_free(axes):
+    """Raise InputError where a tolerance would have to choose the cells or the steps."""
+    free = [name for axis in axes if not axis.imposed for name in axis.refines if name != "angles"]
+    if free:
+        what = " and ".join(free)
+        allowed = f"allowed is a number, or none where {what} are imposed"
+        raise InputError("tolerance", None, allowed)
+
+
+def refuse_bounds(**given):
+    """Raise InputError for a bound, None or a number, that is not above 0."""
+    for name, value in given.items():
+        if value is None:
+            continue
+        if not (is_real(value) and value > 0.0):
+            raise InputError(name, value, "allowed is a number above 0")
+
+
+def _refuse_method(kind, model, method, how):
+    """Raise InputError where a method, by name and as a method.Method, has no part in a solve."""
+    refuse_missing(method)
+    refusal = method_refusal(kind, model, how)
+    if not refusal and how.run is not None:
+        refusal = "it is one run, which cannot be refined"
+    if refusal:
+        raise InputError(
+            "method", method, f"does not apply to {kind.name}, model {model}: {refusal}"
+        )
+
+
+def _count(name, value, low):
+    return None if value is None else count(name, value, low, most=LARGEST[name], even=True)
+
+
+def _exact_result(point, values, seconds):
+    (mu, torque, error), asked = values, point["tolerance"]
+    within = asked is None or error <= asked
+    return Result(
+        **point,
+        mu_macro=mu,
+        mu_macro_error=error,
+        error_space=0.0,
+        error_time=0.0,
+        error_periodicity=0.0,
+        error_solver=0.0,
+        error_model=error,
+        mu_torque=torque,
+        mu_torque_error=None if torque is None else error,
+        converged=within,
+        periodic=True,
+        reason="" if within else f"the error is {error:.1e}, above the tolerance of {asked:g}",
+        cells=0,
+        angles=0,
+        steps_per_period=0,
+        periods=0.0,
+        iterations=0,
+        work=0,
+        effort=0,
+        retried=0,
+        exhausted="",
+        solve_time_s=seconds,
+    )
+
+
+def warm_up():
+    """Compile the kernels of the automatic models (and leave them in Numba's cache).
+
+    Takes a while the first time; squares are compiled when they are first used.
+    """
+    solve("transverse", 0.5, 0.5, tolerance=1e-2)
+    solve("transverse", 0.5, 0.5, poisson=0.3, tolerance=1e-2)
+    solve("bore", 0.5, 0.5, tolerance=1e-2)
+    solve("continuous-bore", 0.5, model="polar", tolerance=1e-2)

@@ -1,0 +1,115 @@
+"""One run of any model by any method at one resolution, and what a step costs at any size.
+
+For comparing methods: a trial is not certified, its number is as good as its resolution.
+"""
+
+from __future__ import annotations
+
+import time
+from statistics import median
+
+import numpy as np
+
+from microslip.adaptive.choice import method_refusal
+from microslip.models.contact import forward_slip
+from microslip.models.path import EULER, half_period_phases, make_path
+from microslip.models.registry import MODELS
+from microslip.motions.registry import BORE, TRANSVERSE, scene_named
+from microslip.pressures.registry import HERTZ
+from microslip.solver.method_names import method_named, missing
+from microslip.solver.problem import Motion, Resolution, build_contact
+from microslip.solver.simulate import simulate
+
+STEP_TOLERANCE = 1e-6
+
+
+def applies(scene, poisson, model, method, pressure=HERTZ.name):
+    """Why a model or a method, by name, cannot be tried on a scene, as one line; "" if it can."""
+    kind = scene_named(scene, pressure)
+    refusal = MODELS[model].refuses(kind, poisson) or missing(method)
+    return refusal or method_refusal(kind, model, method_named(method))
+
+
+def run_trial(
+    scene,
+    velocity,
+    amplitude,
+    *,
+    poisson,
+    model,
+    method,
+    cells,
+    angles,
+    steps,
+    tolerance,
+    pressure=HERTZ.name,
+):
+    """One run: a dict of mu_macro (nan if there is none), converged, reason, periods (full ones, of
+    all searches together), iterations, solves, unknowns, work = solves x unknowns and effort =
+    iterations x unknowns; nothing in it depends on the machine.
+
+    Arguments as for ``microslip.solve``, steps in a full period, tolerance on the periodic state (a
+    force over mu F_z); angles: on half the disc.  Raises ValueError where ``applies`` says why.
+    """
+    refusal = applies(scene, poisson, model, method, pressure)
+    if refusal:
+        raise ValueError(f"model = {model!r}, method = {method!r}: {refusal}")
+    resolution = Resolution(cells, angles, max(steps // 2, 1))
+    kind = scene_named(scene, pressure)
+    point = (kind, velocity, amplitude, poisson, model, resolution, tolerance)
+    run = simulate(*point, method=method_named(method))
+    unknowns = run.work // run.solves if run.solves else 0
+    return {
+        "mu_macro": float(run.mu),
+        "converged": bool(run.converged),
+        "reason": run.reason,
+        "periods": run.periods,
+        "iterations": run.iterations,
+        "solves": run.solves,
+        "unknowns": unknowns,
+        "work": run.work,
+        "effort": run.effort,
+    }
+
+
+def measure_steps(model, cells, angles, poisson, steps):
+    """What a backward Euler step costs: a dict of unknowns, iterations and seconds (CPU) a step,
+    and memory, the bytes that the arrays of the contact take.
+
+    The path is half a period in ``steps`` steps from full slip, transverse for rings, else bore,
+    each step solved to 1e-6 of mu F_z.  Times are the median of three marches, after one that
+    compiles.
+    """
+    scene = TRANSVERSE if model == "radial" else BORE
+    motion = Motion(scene, 0.1, 1.0, poisson)
+    contact = build_contact(motion, model, Resolution(cells, angles, steps))
+    path = make_path(motion.displacement, half_period_phases(steps), EULER)
+    start = forward_slip(contact)
+    contact.march(make_path(motion.displacement, path.phase[:2], EULER), start, STEP_TOLERANCE)
+    times = []
+    for _ in range(3):
+        began = time.process_time()
+        march = contact.march(path, start, STEP_TOLERANCE)
+        times.append(time.process_time() - began)
+    return {
+        "unknowns": march.state.size,
+        "iterations": march.iterations / march.solves,
+        "seconds": median(times) / march.solves,
+        "memory": held_bytes(contact),
+    }
+
+
+def held_bytes(thing):
+    """Bytes in the arrays that an object holds, whatever holds them, each counted once."""
+    sizes, stack = {}, [thing]
+    while stack:
+        one = stack.pop()
+        if isinstance(one, np.ndarray):
+            base = one if one.base is None else one.base
+            if isinstance(base, np.ndarray):
+                sizes[id(base)] = base.nbytes
+        elif isinstance(one, list | tuple):
+            stack += one
+        elif type(one).__module__.startswith("microslip"):
+            stack += vars(one).values()
+    return sum(sizes.values())

@@ -1,0 +1,47 @@
+"""Where the contact sticks in a period: shares of its area, right and left, and single moments."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.adaptive.history import period
+from microslip.pressures.registry import HERTZ
+
+
+def patches(
+    scene, velocity, amplitude, *, pressure=HERTZ.name, poisson=0.0, cells=16, angles=16, steps=64
+):
+    """Stick and slip over a period of the periodic state, reduced to what figures and checks need.
+
+    Arguments and errors as for ``microslip.period``; a scene whose second half of a period mirrors
+    the first.  Returns a dict: mu_macro, converged, reason;
+    phase, stick_right, stick_left: lists over the steps, the last two the shares of the contact's
+    area that stick at positive and at negative lateral positions; least_stick: of both together;
+    forward_position, lateral_position, area: of the points (units a and a^2, the areas add up to
+    pi); moment_phase: phases of single moments, and moment_share, shape (moments, points): size of
+    the traction over the bound there, 1 where a point slips.  The moments are: when least of the
+    contact sticks in a stroke, the middle of the stroke, and the same of the stroke back.
+    """
+    sizes = {"cells": cells, "angles": angles, "steps": steps}
+    found = period(scene, velocity, amplitude, pressure=pressure, poisson=poisson, **sizes)
+    sticking = np.where(found.slips, 0.0, found.area / np.pi)
+    right = found.lateral_position > 0.0
+    # the first row repeats the last one: a stroke is rows 1 to half
+    half = steps // 2
+    least = 1 + int(np.argmin(sticking[1 : half + 1].sum(axis=1)))
+    moments = np.array([least, half // 2, least + half, half // 2 + half])
+    share = np.hypot(found.traction_forward, found.traction_lateral)[moments] / found.bound
+    return {
+        "mu_macro": found.mu_macro,
+        "converged": found.converged,
+        "reason": found.reason,
+        "phase": found.phase,
+        "stick_right": sticking[:, right].sum(axis=1),
+        "stick_left": sticking[:, ~right].sum(axis=1),
+        "least_stick": sticking[1:].sum(axis=1).min(),
+        "forward_position": found.forward_position,
+        "lateral_position": found.lateral_position,
+        "area": found.area,
+        "moment_phase": found.phase[moments],
+        "moment_share": np.where(found.slips[moments], 1.0, np.minimum(share, 1.0)),
+    }

@@ -1,0 +1,1 @@
+"""The command line, the plan of a run, and how a process starts and ends."""

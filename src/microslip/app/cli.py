@@ -1,0 +1,265 @@
+"""The command line: ``microslip point SCENE ...`` answers for one point, ``sweep`` for many."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+from microslip import __version__
+from microslip.app import command_line, predict_command, sweep_command, terminal
+from microslip.foundation import spec
+from microslip.foundation.errors import InputError
+
+RATIO = "a ratio: mean forward force over mu F_z; the coefficient felt is mu_apparent = mu mu_macro"
+"""What is said beside a number."""
+BORE = "Bore means spin: rotation about the contact normal."
+
+
+def build_parser(asked=None):
+    """Parser of the command line, with all that follows the command ``asked``."""
+    parser = command_line.OneLineParser(
+        allow_abbrev=False,
+        prog="microslip",
+        description="How far friction falls when a frictional contact is vibrated: an elastic "
+        "sphere on a flat (Hertz contact, Coulomb friction at every point) slides forward while "
+        "it also oscillates or rotates.  point and sweep take dimensionless quantities, predict "
+        f"takes units.  {BORE}",
+        epilog="Exit codes: 0 done, 1 not converged, 2 bad input, 74 the answer could not be "
+        "written, 130 interrupted, 141 nobody reads the answer; those of sweep are Snakemake's.",
+    )
+    parser.add_argument("--version", action="version", version=f"microslip {__version__}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    point = commands.add_parser(
+        "point",
+        allow_abbrev=False,
+        help="macroscopic friction at one (velocity, amplitude)",
+        description="Mean forward friction force over mu F_z at one point, with an error estimate. "
+        "The answer mu_macro is a ratio: 1 means that the vibration does nothing, 0 that it takes "
+        "all friction away; the coefficient of friction felt is mu_apparent = mu mu_macro.  "
+        f"{BORE}",
+    )
+    commands.add_parser("sweep", help="the workflow: maps, datasets and figures, by Snakemake")
+    commands.add_parser("gc", help="what no configuration asks for in a folder of results")
+    if asked == "point":
+        _add_motions(point)
+    else:
+        point.add_argument("scene", metavar="SCENE")
+    predict_command.add_parser(commands)
+    return parser
+
+
+def _add_motions(parser):
+    """A parser for each motion; what they are is asked of the solver, so only where it counts."""
+    from microslip.motions.registry import FAMILIES, SCENES
+
+    scenes = parser.add_subparsers(dest="scene", required=True, metavar="SCENE")
+    known = {name: (scene.summary, scene.periodic, None) for name, scene in SCENES.items()}
+    known |= {name: (family.SUMMARY, True, family.HELP) for name, family in FAMILIES.items()}
+    for name, (summary, periodic, path) in known.items():
+        scene = scenes.add_parser(
+            name,
+            help=summary,
+            description=f"The indenter is {summary}. u_lim: the tangential displacement at which "
+            "the whole contact slides; a: contact radius; phi_lk(a/2): the angle that leaves half "
+            f"of it sticking.{f'  {BORE}' if 'bore' in name else ''}",
+            allow_abbrev=False,
+        )
+        record = SCENES.get(name) or FAMILIES[name].scene(name, **FAMILIES[name].DEFAULTS)
+        scene.add_argument(
+            "--velocity",
+            required=True,
+            metavar="V",
+            help=f"{record.velocity_label}; 0: v -> 0",
+        )
+        if periodic:
+            scene.add_argument(
+                "--amplitude", required=True, metavar="A", help=record.amplitude_label
+            )
+        if path:
+            scene.add_argument("--path", metavar="NUMBERS", help=path)
+        _add_options(scene)
+
+
+def _add_options(parser):
+    parser.add_argument(
+        "--pressure",
+        default="hertz",
+        metavar="NAME",
+        help="hertz (a sphere), power:exponent=1 (a cone; any power), punch:flat=0.8 (rounded "
+        "edge), ring:inner=0.5, ellipse:ratio=0.5 (across=1: long axis across), or file:FILE, a "
+        "grid of forward,lateral,pressure, CSV or netCDF, means over cells unless "
+        "file:FILE,grid=samples says values at points (hertz)",
+    )
+    parser.add_argument(
+        "--poisson",
+        "--nu",
+        action=command_line.Said,
+        default="0",
+        metavar="NU",
+        help="Poisson's ratio, 0 to 0.5 (0)",
+    )
+    parser.add_argument(
+        "--model",
+        default="auto",
+        metavar="NAME",
+        help="auto (the cheapest that is right), rigid, slider, dahl, mdr, radial, polar or "
+        "cartesian",
+    )
+    parser.add_argument(
+        "--tolerance",
+        default="1e-3",
+        metavar="T",
+        help="largest accepted error of mu_macro, absolute (1e-3); none, where cells and steps are "
+        "imposed: whatever their error is",
+    )
+    parser.add_argument(
+        "--cells",
+        metavar="N",
+        help="impose N rings, or N x N squares (even, from 4 on)",
+    )
+    parser.add_argument("--steps", metavar="N", help="impose N steps a period (even)")
+    parser.add_argument(
+        "--time-limit",
+        metavar="SECONDS",
+        help="give up after so long, looked at between two marches; the answer is not kept then",
+    )
+    parser.add_argument(
+        "--method",
+        default="shipped",
+        metavar="NAME",
+        help="another way to compute it, for comparison: the name of a file in microslip/methods",
+    )
+    parser.add_argument(
+        "--results",
+        metavar="FOLDER",
+        help="look the answer up in a folder of results, say of a sweep, and keep it there",
+    )
+    parser.add_argument(
+        "--json", action="store_true", help="print one JSON object and nothing else"
+    )
+
+
+def main(arguments=None):
+    """Entry point.
+
+    Parameters
+    ----------
+    arguments : list of str, optional
+        Words after the name of the program.  Without them this process is the command: those that
+        it was started with count, and signals end it, see microslip.app.terminal.
+
+    Returns
+    -------
+    int
+        0 converged, 1 not converged, 2 bad input; of ``sweep`` Snakemake's.
+    """
+    if arguments is None:
+        words = sys.argv[1:]
+        return terminal.run(lambda: main(words), stoppable=words[:1] != ["sweep"])
+    if arguments[:1] == ["gc"]:
+        from microslip.app import leftovers
+
+        return leftovers.main(arguments[1:])
+    if arguments[:1] == ["sweep"]:  # not for argparse: what follows is Snakemake's
+        return sweep_command.main(arguments[1:])
+    options = build_parser(next(iter(arguments), None)).parse_args(command_line.joined(arguments))
+    if options.command == "predict":
+        return predict_command.run(options)
+    from microslip.sweeps.cache import CacheError
+    from microslip.sweeps.evaluate import plain  # only now: --help and bad options need no solver
+
+    progress, named = _Progress(enabled=sys.stderr.isatty()), f"microslip point {options.scene}"
+    try:
+        result = _answer(options, progress)
+    except InputError as error:
+        problem = error.renamed(*_as_given(options, error.argument))
+        terminal.complain(f"{named}: {problem}")
+        return 2
+    except CacheError as error:
+        terminal.complain(f"{named}: --results: {error}")
+        return 2
+    except ValueError as error:
+        terminal.complain(f"{named}: {error}")
+        return 2
+    finally:
+        progress.close()
+    if options.json:
+        print(json.dumps({"amplitude": None} | plain(result.to_dict())))
+    else:
+        print(_as_text(result))
+    return 0 if result.converged else 1
+
+
+def _as_given(options, argument):
+    """Name of the option for an argument of ``solve``, and its value on the command line."""
+    if argument == "scene":
+        path = getattr(options, "path", None)
+        return ("SCENE", options.scene) if path is None else ("--path", path)
+    option = getattr(options, "said", {}).get(argument, f"--{argument.replace('_', '-')}")
+    return option, getattr(options, argument, None)
+
+
+def _answer(options, progress):
+    """What the options ask for; raises InputError and CacheError as microslip.solve_stored."""
+    reals = [name for name in ("velocity", "amplitude", "poisson", "tolerance") if name in options]
+    given = {name: getattr(options, name) for name in reals}
+    numbers = {name: spec.read(name, text) for name, text in given.items() if text != "none"}
+    numbers.setdefault("tolerance", None)
+    if options.time_limit is not None:
+        numbers["time_limit"] = spec.read("time_limit", options.time_limit)
+    for name in ("cells", "steps"):
+        text = getattr(options, name)
+        numbers[name] = None if text is None else spec.read(name, text, whole=True)
+    if options.results is not None and options.method != "shipped":
+        allowed = "allowed is shipped with --results, which keeps points of sweeps"
+        raise InputError("method", options.method, allowed)
+    from microslip import solve, solve_stored
+
+    path = getattr(options, "path", None)
+    settings = {"pressure": options.pressure, "model": options.model, **numbers}
+    settings["scene"] = f"{options.scene}:{path}" if path else options.scene
+    if options.results is None:
+        return solve(**settings, method=options.method, progress=progress)
+    return solve_stored(**settings, results=options.results)
+
+
+class _Progress:
+    """A line on standard error that counts the runs; silent where nobody looks."""
+
+    def __init__(self, enabled):
+        self.enabled, self.bar = enabled, None
+
+    def __call__(self, resolution):
+        if not self.enabled:
+            return
+        if self.bar is None:
+            from tqdm import tqdm
+
+            self.bar = tqdm(unit=" runs", leave=False)
+        self.bar.set_description(
+            f"{resolution.cells} cells, {resolution.angles} angles, {resolution.steps} steps"
+        )
+        self.bar.update()
+
+    def close(self):
+        if self.bar is not None:
+            self.bar.close()
+
+
+def _as_text(result):
+    lines = [f"mu_macro = {result.mu_macro:.6g} +- {result.mu_macro_error:.1g}", RATIO]
+    if result.mu_torque is not None:
+        lines.append(f"mu_torque = {result.mu_torque:.6g} +- {result.mu_torque_error:.1g}")
+    resolved = f"{result.cells} cells"
+    if result.angles > 1:
+        resolved += f" x {result.angles} angles"
+    if result.steps_per_period:
+        resolved += f", {result.steps_per_period} steps a period"
+    lines.append(f"model {result.model}" + (f" ({resolved})" if result.cells else ""))
+    if not result.converged:
+        lines.append(f"NOT CONVERGED: {result.reason}")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

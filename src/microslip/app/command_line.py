@@ -1,0 +1,85 @@
+"""Parsing of command lines: what is wrong with one is one line on standard error, exit code 2."""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+import re
+
+from microslip.app.terminal import complain
+
+SYNONYMS = {
+    "--nu": "--poisson",
+    "--poisson": "--nu",
+    "--speed": "--velocity",
+    "--velocity": "--speed",
+}
+"""Options of one command under the names that the other has for the same quantity."""
+
+NEGATIVE = re.compile(r"-\s*([0-9.,]|inf|nan)", re.IGNORECASE)
+"""How a word begins that is a negative number, or meant to be one, and no option."""
+
+
+class OneLineParser(argparse.ArgumentParser):
+    """Bad input gets one line on standard error and exit code 2."""
+
+    def error(self, message):
+        complain(f"{self.prog}: {message} (see {self.prog} --help)")
+        raise SystemExit(2)
+
+    def parse_known_args(self, args=None, namespace=None):
+        self._refuse_strange_words(args)
+        return super().parse_known_args(args, namespace)
+
+    def _refuse_strange_words(self, words):
+        """Before argparse does, which would rather say that the right one is missing."""
+        known = self._option_string_actions
+        commands = [a for a in self._actions if a.nargs == argparse.PARSER]
+        for word in words:
+            if commands and not word.startswith("-"):
+                return self._refuse_command(word, commands[0])
+            name = word.partition("=")[0]
+            strange = word.startswith("-") and name.strip("-") and name not in known
+            if strange and not NEGATIVE.match(word):
+                self._refuse_option(name, [n for n in known if n.startswith("--")])
+        if commands and not {"-h", "--help", "--version"} & set(words):
+            (command,) = commands
+            self.error(f"{command.metavar} is missing; allowed: {', '.join(command.choices)}")
+
+    def _refuse_command(self, word, command):
+        if word not in command.choices:
+            allowed = f"allowed is one of {', '.join(command.choices)}"
+            self.error(f"{command.metavar} = {word!r}: {_hint(word, command.choices)}{allowed}")
+
+    def _refuse_option(self, name, known):
+        hint = _hint(f"--{name.lstrip('-')}", known)
+        first = [action.metavar for action in self._actions if action.nargs == argparse.PARSER]
+        allowed = ", ".join([*known, *(f"{command} before other options" for command in first)])
+        self.error(f"unknown option {name}; {hint}allowed: {allowed}")
+
+
+def _hint(given, known):
+    """'did you mean this? ' if one of the known names is like what is given, else ''."""
+    synonym = [name for name in [SYNONYMS.get(given)] if name in known]
+    near = synonym or difflib.get_close_matches(given, known, n=1)
+    return f"did you mean {near[0]}? " if near else ""
+
+
+class Said(argparse.Action):
+    """Keeps a value, and by which of its names the option was called."""
+
+    def __call__(self, parser, namespace, value, option_string=None):
+        setattr(namespace, self.dest, value)
+        namespace.said = getattr(namespace, "said", {}) | {self.dest: option_string}
+
+
+def joined(arguments):
+    """Options and negative numbers, with a unit or not, as one word: argparse takes -1e-3 for an
+    option."""
+    out = []
+    for word in arguments:
+        if NEGATIVE.match(word) and out and out[-1].startswith("--") and "=" not in out[-1]:
+            out[-1] += f"={word}"
+        else:
+            out.append(word)
+    return out

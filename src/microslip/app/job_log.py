@@ -1,0 +1,100 @@
+"""What every job of the workflow has: a log, and one clear message on failure."""
+
+import errno
+import gc
+import logging
+import re
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+
+from microslip.sweeps.cache import NO_WRITING, CacheError, advice
+
+
+class _LogFile(logging.FileHandler):
+    """A log that keeps what the system has against writing it, and raises nothing."""
+
+    problem = None
+
+    def handleError(self, record):
+        # What could not be written is tried again with the next message, and on closing.
+        if not isinstance(sys.exc_info()[1], OSError):
+            super().handleError(record)
+
+    def close(self):
+        try:
+            super().close()
+        except OSError as error:
+            self.problem = error
+
+
+@contextmanager
+def job_log(path, shown=logging.WARNING):
+    """Context of a job: yields a logger that writes to the file `path`.
+
+    Messages from the level `shown` on go to standard error too. An error goes to the log in full;
+    one that the user can mend ends the process with its message alone.
+    """
+    try:
+        handlers = [_LogFile(path, mode="w", encoding="utf-8"), logging.StreamHandler()]
+    except OSError as error:
+        sys.exit(f"Error: {advice('write', path, error)}")
+    log = logging.getLogger("microslip")
+    log.setLevel(logging.INFO)
+    handlers[1].setLevel(shown)
+    for handler in handlers:
+        handler.setFormatter(logging.Formatter("%(message)s"))
+        log.addHandler(handler)
+    failed = True
+    try:
+        yield log
+        failed = False
+    except CacheError as error:
+        log.error("Error: %s", error)
+    except Exception as error:
+        if getattr(error, "errno", None) in NO_WRITING:
+            log.error("Error: %s", advice("write", error.filename or "a file", error))
+        else:
+            log.exception("The job failed:")
+    finally:
+        for handler in handlers:
+            log.removeHandler(handler)
+            handler.close()
+        # The process is about to end: searching all that its libraries made for garbage once more
+        # would take it a quarter of a second.
+        gc.freeze()
+    if failed:
+        sys.exit(1)
+    # A log that is cut short would leave out points that did not converge.
+    if handlers[0].problem is not None:
+        sys.exit(f"Error: {advice('write', path, handlers[0].problem)}")
+
+
+REFUSED = re.compile(r"^\w+: \[Errno (\d+)\] ([^:\n]+)(?:: '(.+)')?\s*\Z", re.MULTILINE)
+
+
+def plain_words(folder):
+    """Filter for Snakemake's log: where the system refuses Snakemake itself, what to do about it.
+
+    It comes in the place of a traceback. folder: named where the system names no file.
+    """
+
+    def say_plainly(record):
+        refused = REFUSED.search(str(record.msg))
+        if refused and "Traceback" in record.msg and int(refused[1]) in (*NO_WRITING, errno.EACCES):
+            error = OSError(int(refused[1]), refused[2])
+            record.msg = f"Error: {advice('write', refused[3] or folder, error)}"
+        return True
+
+    return say_plainly
+
+
+def closing_lines(folder, names):
+    """What the logs of collecting say about datasets: a list of lines; names: of the datasets.
+
+    How many points each has, and which of them did not converge.
+    """
+    paths = (Path(folder, "logs", "collect", f"{name}.log") for name in names)
+    lines = [line for p in paths if p.is_file() for line in p.read_text("utf-8").splitlines()]
+    # Damage that was met on the way was a warning, and has been shown.
+    return [line for line in lines if not line.startswith("damaged result")]

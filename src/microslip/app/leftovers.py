@@ -1,0 +1,152 @@
+"""``microslip gc``: what is in a folder of results that no configuration asks for any more.
+
+After an edit of the solver, an axis or a tolerance, older points, batches, datasets and figures
+stay where they are: another configuration may ask for them. This lists them, and removes them if
+told to. Only files that the workflow names and seals are looked at; all else in a folder is
+somebody's own.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from microslip.app.command_line import OneLineParser
+from microslip.app.plan import Plan
+from microslip.app.terminal import complain
+from microslip.config import load
+from microslip.config.records import ConfigError, Configuration
+from microslip.sweeps import batches, cache
+
+RECORD = re.compile(r"[0-9a-f]{64}\.json")
+BATCH = re.compile(r"[0-9a-f]{16}\.json")
+MADE = (".nc", ".html", ".png", ".pdf")
+FOLDERS_MADE = (".", "summaries", "figures")
+DEFAULT = "config/config.yaml"
+KINDS = ("points and single runs", "batches", "datasets, pages and figures")
+
+
+def asked_for(plans: Iterable[Plan]) -> set[str]:
+    """Paths, inside the folder of results, of all that some of the plans would make."""
+    found = set()
+    for plan in plans:
+        found |= {*plan.made_files(), *plan.batch_files(*plan.groups)}
+        for group in plan.groups:
+            for requests in plan.batches_in(group).values():
+                found |= {_path_of(request) for request in requests}
+    return found
+
+
+def _path_of(request):
+    key = batches.key_of(request)
+    return cache.Store(".").path(batches.group(request), key).as_posix()
+
+
+def there(folder: Path) -> Iterator[tuple[str, Path]]:
+    """(kind of KINDS, path) of every file in a folder of results that a run has made.
+
+    A folder or a link under the name of one is somebody's own.
+    """
+    for kind, path in _named(folder):
+        if path.is_file() and not path.is_symlink():
+            yield kind, path
+
+
+def _named(folder):
+    for group in sorted(set(batches.FOLDERS.values())):
+        for path in sorted((folder / group).rglob("*.json")):
+            if RECORD.fullmatch(path.name):
+                yield KINDS[0], path
+    for path in sorted((folder / "batches").glob("*/*.json")):
+        if BATCH.fullmatch(path.name):
+            yield KINDS[1], path
+    for place in FOLDERS_MADE:
+        for path in sorted((folder / place).glob("*")):
+            if path.suffix in MADE and cache.seal_of(path).exists():
+                yield KINDS[2], path
+
+
+def left_over(folder: Path, plans: Iterable[Plan]) -> dict[str, list[Path]]:
+    """Files in a folder of results that none of the plans asks for, by their kind."""
+    wanted = asked_for(plans)
+    found = {kind: [] for kind in KINDS}
+    for kind, path in there(folder):
+        if path.relative_to(folder).as_posix() not in wanted:
+            found[kind].append(path)
+    return found
+
+
+def remove(paths: Iterable[Path]) -> None:
+    """Remove files with their seals, and folders that are empty then."""
+    for path in paths:
+        for file in (path, cache.seal_of(path)):
+            try:
+                file.unlink(missing_ok=True)
+            except OSError as error:
+                raise cache.CacheError(cache.advice("remove", file, error)) from error
+        for folder in path.parents[:2]:
+            if not any(folder.iterdir()):
+                folder.rmdir()
+
+
+def main(arguments: list[str]) -> int:
+    """Entry point of ``microslip gc``; returns the exit code: 0, or 2 for bad input."""
+    options = _parser().parse_args(arguments)
+    try:
+        configurations = [load.load(path) for path in options.configfile or [DEFAULT]]
+        folder = _folder(configurations)
+        cache.refuse_unusable([folder], [])
+        if not os.path.isdir(folder):
+            raise ConfigError(f"results: {folder} is not there; allowed: a folder of results")
+        found = left_over(folder, [Plan(configuration) for configuration in configurations])
+        _say(found, folder, options.delete, options.list)
+        if options.delete:
+            remove(path for paths in found.values() for path in paths)
+    except (ConfigError, cache.CacheError) as error:
+        complain(f"microslip gc: {error}")
+        return 2
+    return 0
+
+
+def _folder(configurations: list[Configuration]) -> Path:
+    """The one folder of results that they all have, however its path is written."""
+    folders = {
+        os.path.realpath(configuration.results): Path(configuration.results)
+        for configuration in configurations
+    }
+    if len(folders) > 1:
+        names = ", ".join(sorted(map(str, folders.values())))
+        raise ConfigError(f"results: {names} are several folders; allowed: configurations of one")
+    return next(iter(folders.values()))
+
+
+def _say(found, folder, deletes, lists):
+    for kind, paths in found.items():
+        size = sum(path.stat().st_size for path in paths) / 1e6
+        print(f"{folder}: {len(paths)} {kind} that nothing asks for, {size:.1f} MB")
+        for path in paths if lists else ():
+            print(f"  {path}")
+    if any(found.values()):
+        print("removed" if deletes else "nothing is removed without --delete")
+
+
+def _parser():
+    parser = OneLineParser(
+        prog="microslip gc",
+        description="List points, batches, datasets and figures in a folder of results that none "
+        "of the configurations asks for, with this version of the solver. Points that only the "
+        "command line or solve_stored has kept there are among them.",
+        allow_abbrev=False,
+    )
+    parser.add_argument(
+        "--configfile",
+        nargs="+",
+        action="extend",  # of an option given twice none may be forgotten: its results would go
+        metavar="FILE",
+        help="configurations whose results are to stay (config/config.yaml)",
+    )
+    parser.add_argument("--list", action="store_true", help="list every file")
+    parser.add_argument("--delete", action="store_true", help="remove them")
+    return parser

@@ -1,0 +1,194 @@
+"""What a configuration leads to: batches of requests, datasets, figures, and what each is made of.
+
+The workflow's rules ask this; nothing here knows Snakemake. Importing it is cheap, since the
+workflow is parsed by every job.
+"""
+
+from __future__ import annotations
+
+from functools import cache, cached_property
+from pathlib import PurePosixPath
+
+from microslip.config.records import Configuration
+from microslip.foundation import source_digest
+from microslip.report.explorer import explorer
+from microslip.report.figures import drawing
+from microslip.studies import registry
+from microslip.sweeps import batches as sweep
+from microslip.sweeps.keys import canonical_json, fingerprint
+
+PERIODS_PER_JOB = 150
+"""Periods for the explorer that one job computes: a few seconds of work."""
+
+DATASET_CODE = ("dataset.py", "columns.py", "limits.py", "summary.py")
+"""Modules that make the dataset of a sweep, besides what these import."""
+STUDY_CODE = ("dataset.py", "columns.py", "summary.py", "studies")
+PAGE = "explorer.html"
+
+
+class Plan:
+    """What a checked configuration leads to. Paths are inside the folder of results.
+
+    Attributes
+    ----------
+    configuration : Configuration
+    studies : dict of str to str
+        Studies by the names of their datasets.
+    explored : list of str
+        Names of the maps that the explorer shows.
+    figures : dict of str to tuple of str
+        Figures that there is data for, and the datasets of each.
+    """
+
+    def __init__(self, configuration: Configuration):
+        self.configuration = configuration
+        self.studies = {dataset: study for study, dataset in registry.DATASETS.items()}
+        self.explored = explorer.maps_of(configuration)
+        self.figures = dict(_figures(configuration, self.studies))
+        self.batches_in = cache(self.batches_in)
+        self.fingerprint_of = cache(self.fingerprint_of)
+
+    # Batches
+
+    @cached_property
+    def early_groups(self) -> list[str]:
+        """Groups of what takes long, so that it does not start when all else is done."""
+        return [f"{study}_first" for study in self.studies.values()]
+
+    @cached_property
+    def groups(self) -> list[str]:
+        """Names of all groups of batches: a sweep, or what is computed beside it."""
+        sweeps = self.configuration.sweeps
+        found = [group for name in sweeps for group in (name, f"{name}_histories")]
+        found += [group for s in self.studies.values() for group in (f"{s}_first", s)]
+        return [
+            *found,
+            *(f"{name}_periods" for name in self.explored),
+            *self.configuration.extended,
+        ]
+
+    def batches_in(self, group: str) -> dict[str, list]:
+        """Requests of the batches of a group by name.
+
+        Those of `extended` are made when they are asked for: names of motions with numbers are read
+        by the solver, which jobs for other sweeps do without.
+        """
+        configuration = self.configuration
+        if group in configuration.grids:
+            requests = sweep.PointRequests(configuration.grids[group])
+            return sweep.batches(requests, configuration.points_per_job[group])
+        name, _, beside = group.rpartition("_")
+        if beside == "histories":
+            requests = sweep.history_requests(configuration, name)
+            return sweep.batches(requests, configuration.points_per_job[name])
+        if beside == "periods":
+            return sweep.batches(explorer.period_requests(configuration, name), PERIODS_PER_JOB)
+        study = name if beside == "first" else group
+        first, rest = registry.pieces(study, configuration)
+        cuts = (sweep.batches(cut, len(cut)) for cut in (first if beside == "first" else rest))
+        return {name: cut for batch in cuts for name, cut in batch.items()}
+
+    def groups_of(self, dataset: str) -> list[str]:
+        """Groups whose batches a dataset is made of."""
+        if dataset in self.studies:
+            study = self.studies[dataset]
+            return [f"{study}_first", study]
+        return [dataset]
+
+    def groups_beside(self, dataset: str) -> list[str]:
+        """Groups whose batches hold the single runs in the dataset of a sweep."""
+        group = f"{dataset}_histories"
+        return [group] if group in self.groups else []
+
+    # Files
+
+    @property
+    def datasets(self) -> list[str]:
+        """Names of all datasets."""
+        return [*self.configuration.grids, *self.studies]
+
+    def batch_files(self, *groups: str) -> list[str]:
+        """Files of all batches of these groups, in the order of their requests."""
+        return [
+            f"batches/{group}/{name}.json" for group in groups for name in self.batches_in(group)
+        ]
+
+    def dataset_files(self, names) -> list[str]:
+        """Files of datasets and of the pages about them."""
+        return [file for name in names for file in (f"{name}.nc", f"summaries/{name}.html")]
+
+    def figure_files(self, datasets) -> list[str]:
+        """Files of all figures that are drawn from these datasets."""
+        return [
+            f"figures/{figure}.{form}"
+            for figure, names in self.figures.items()
+            if set(names) <= set(datasets)
+            for form in ("png", "pdf")
+        ]
+
+    def made_files(self) -> list[str]:
+        """All files that are made to be kept: datasets, pages, figures."""
+        names = self.datasets
+        return [*self.dataset_files(names), *self.figure_files(names), PAGE]
+
+    # What things are made of
+
+    def code_of(self, file: str) -> str:
+        """Digest of the code that makes a file, of those in `made_files`."""
+        path = PurePosixPath(file)
+        if file == PAGE:
+            return explorer.digest()
+        if path.parts[0] == "figures":
+            return source_digest.of_modules(*drawing.modules_of(path.stem))
+        return source_digest.of_modules(
+            *(STUDY_CODE if path.stem in self.studies else DATASET_CODE)
+        )
+
+    def refuse_edited(self, file: str, code: str):
+        """Raise SourcesEdited if the code that makes a file is not, or no longer, the planned one.
+
+        code: what `code_of` said when the file was planned.
+        """
+        if code != self.code_of(file):
+            raise sweep.SourcesEdited("the code that makes it")
+
+    def settings_of(self, dataset: str) -> str:
+        """All settings that a dataset depends on, as JSON."""
+        if dataset in self.studies:
+            return canonical_json(registry.settings(self.studies[dataset], self.configuration))
+        return canonical_json(self.configuration.of_sweep(dataset))
+
+    def fingerprint_of(self, file: str) -> str:
+        """What a file in `made_files` is made of, as a short text: settings, code, points."""
+        path, code = PurePosixPath(file), self.code_of(file)
+        if file == PAGE:
+            names, groups = self.explored, [f"{name}_periods" for name in self.explored]
+        elif path.parts[0] == "figures":
+            names, groups = self.figures[path.stem], ()
+        else:
+            groups = [*self.groups_of(path.stem), *self.groups_beside(path.stem)]
+            batches = self.batch_files(*groups)
+            return fingerprint(code, self.settings_of(path.stem), batches)
+        datasets = [self.fingerprint_of(f"{name}.nc") for name in names]
+        return fingerprint(code, path.stem, datasets, self.batch_files(*groups))
+
+
+def _figures(configuration, of_studies):
+    """(name, names of its datasets) of the figures that there is data for."""
+    for figure, names in drawing.FIGURES.items():
+        known = all(name in configuration.sweeps or name in of_studies for name in names)
+        if known and _is_drawable(figure, names, configuration):
+            yield figure, names
+    for group, names in configuration.groups.items():
+        yield drawing.figure_of(group), names
+
+
+def _is_drawable(figure, names, configuration):
+    """Whether there is enough of a map for the figures that show maps."""
+    if figure not in ("fig2_transverse_map", "fig6_bore_map", "poisson"):
+        return True
+    grids = [configuration.sweeps[name] for name in names]
+    if not all(grid.spans_a_map for grid in grids):
+        return False
+    few = all(1 < len(grid.poisson) <= drawing.MOST_POISSONS for grid in grids)
+    return few or figure != "poisson"

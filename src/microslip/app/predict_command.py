@@ -1,0 +1,172 @@
+"""``microslip predict``: a contact in SI units."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+from microslip.app.command_line import Said
+from microslip.app.terminal import complain
+from microslip.foundation.errors import shown
+from microslip.si.motions import SCENES
+
+OPTIONS = {
+    "young": ("E", "Young's modulus of the body, such as '210 GPa'"),
+    "nu": ("NU", "Poisson's ratio of the body"),
+    "material": ("NAME", "instead of both: steel, stainless-steel, aluminium or glass"),
+    "counterbody": ("BODY", "rigid (if not given), a material, or E and nu as in '70 GPa, 0.22'"),
+    "radius": ("R", "radius of the sphere, such as '5 mm'"),
+    "counter-radius": ("R2", "radius of the counterbody, negative if hollow; flat if not given"),
+    "load": ("F", "normal load, such as '10 N'"),
+    "mu": ("MU", "coefficient of friction without vibration"),
+    "speed": ("V", "forward speed, such as '1 mm/s'"),
+    "amplitude": ("A", "half stroke, such as '1 um', or an angle for bore, such as '0.5 deg'"),
+    "frequency": (
+        "F",
+        "of the oscillation: cyclic, such as '20 kHz', or angular, such as '1200 rpm' or "
+        "'125664 rad/s'",
+    ),
+    "rotation": (
+        "W",
+        "speed of the spin of continuous-bore, such as '60 rpm', '1 Hz' or '6 rad/s'",
+    ),
+    "reduction": ("SHARE", "instead of an amplitude: find the one that takes '50 %%' away"),
+    "hardness": ("H", "of the body, to warn of yielding, such as '7 GPa'"),
+    "density": ("RHO", "of the body, to warn of inertia, such as '7850 kg/m^3'"),
+    "counter-hardness": ("H2", "of the counterbody"),
+    "counter-density": ("RHO2", "of the counterbody"),
+    "tolerance": ("T", "largest accepted error of the ratio mu_macro, absolute (1e-3)"),
+}
+NEEDED = ("radius", "load", "mu", "speed")
+OTHER_NAMES = {"nu": ("--poisson",)}
+UNDERSTOOD = {
+    "scene": "scene",
+    "body": "body",
+    "counterbody": "counterbody",
+    "radius": "radius",
+    "counter_radius": "counter radius",
+    "load": "load",
+    "mu": "mu",
+    "speed": "speed",
+    "amplitude": "amplitude",
+    "frequency": "frequency",
+    "rotation": "rotation",
+    "reduction": "reduction",
+}
+"""What a Prediction has understood, in the order of the answer, and what it is called there."""
+WIDTH = 18
+
+
+def add_parser(commands):
+    """Add the parser of ``predict`` to those of the other commands."""
+    parser = commands.add_parser(
+        "predict",
+        allow_abbrev=False,
+        help="friction of a real contact, in SI units",
+        description="How much friction falls in a contact given in SI units, and how far to trust "
+        "that.  All quantities take units.  The answer has two kinds of numbers: mu_macro is a "
+        "ratio, the friction with vibration over that without; mu_apparent is the coefficient of "
+        "friction that is felt.",
+    )
+    scenes = "; ".join(f"{name}: it {what}" for name, what in SCENES.items())
+    parser.add_argument("scene", metavar="SCENE", help=f"what the sphere does. {scenes}")
+    for name, (metavar, text) in OPTIONS.items():
+        parser.add_argument(
+            *(f"--{name}", *OTHER_NAMES.get(name, ())),
+            dest=name.replace("-", "_"),
+            action=Said,
+            metavar=metavar,
+            help=text,
+            required=name in NEEDED,
+        )
+    parser.add_argument(
+        "--json", action="store_true", help="print one JSON object and nothing else"
+    )
+
+
+def run(options):
+    """Answer; returns the exit code: 0 converged, 1 not converged, 2 bad input."""
+    from microslip import predict
+    from microslip.foundation.errors import InputError
+    from microslip.sweeps.evaluate import plain
+
+    typed = getattr(options, "said", {})
+    try:
+        found = predict(options.scene, **{name: getattr(options, name) for name in typed})
+    except InputError as error:
+        complain(f"microslip predict: {_complaint(error, typed)}")
+        return 2
+    text = json.dumps(plain(found.to_dict())) if options.json else _as_text(found)
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"  # units may be no letters of it
+    print(text.encode(encoding, "backslashreplace").decode(encoding))
+    return 0 if found.converged else 1
+
+
+def _complaint(error, typed):
+    """The option, its value as it was given, and what is allowed, in one line."""
+    name = f"--{error.argument.replace('_', '-')}"
+    option = "SCENE" if error.argument == "scene" else typed.get(error.argument, name)
+    given = "" if error.value is None else f" = {shown(error.value)}"
+    return " ".join(f"{option}{given}: {error.allowed}".split())
+
+
+def _as_text(found):
+    lines = [
+        _line(title, found.understood[name])
+        for name, title in UNDERSTOOD.items()
+        if name in found.understood
+    ]
+    lines += [
+        "",
+        _line("contact radius", _length(found.contact_radius_m)),
+        _line("indentation", _length(found.indentation_m)),
+        _line("u_lim", _length(found.u_lim_m)),
+        _line("largest pressure", f"{found.largest_pressure_Pa / 1e6:.4g} MPa"),
+    ]
+    if found.amplitude is not None:
+        size = found.amplitude_si
+        real = f"{size:.4g} rad" if found.scene == "bore" else _length(size)
+        lines.append(_line("amplitude", f"{real}, dimensionless {found.amplitude:.4g}"))
+    if found.velocity is not None:
+        lines.append(_line("velocity", f"dimensionless {found.velocity:.4g}"))
+    lines += _friction(found)
+    if not found.converged:
+        lines.append(f"NOT CONVERGED: {found.reason}")
+    lines += [f"warning: {text}" for text in found.warnings]
+    lines += [f"not checked: {text}" for text in found.not_checked]
+    return "\n".join(lines)
+
+
+def _friction(found):
+    """Lines of the answer itself: which number is a ratio, and which a coefficient."""
+    still, added = found.friction_force_still_N, "spin" if "bore" in found.scene else "vibration"
+    ratio = f"{found.mu_macro:.4f} +- {found.mu_macro_error:.1g}"
+    coefficient = f"{found.mu_apparent:.4f} +- {found.mu_apparent_error:.1g}"
+    less = 100.0 * found.force_reduction
+    lines = [
+        _line("mu_macro", f"{ratio}: ratio of friction with {added} to friction without"),
+        _line(
+            "mu_apparent",
+            f"{coefficient}: coefficient of friction with {added}, "
+            f"instead of {found.understood['mu']}",
+        ),
+        _line(
+            "friction force",
+            f"{found.friction_force_N:.4g} N instead of {still:.4g} N: {less:.1f} % less",
+        ),
+    ]
+    if found.mu_static is not None:
+        text = f"{found.mu_static_apparent:.4f}: coefficient of friction at vanishing speed"
+        lines.append(_line("static friction", text))
+    return lines
+
+
+def _line(title, text):
+    return f"{title:<{WIDTH}}{text}"
+
+
+def _length(metres):
+    for unit, size in (("m", 1.0), ("mm", 1e-3), ("um", 1e-6)):
+        if metres >= size:
+            return f"{metres / size:.4g} {unit}"
+    return f"{metres / 1e-9:.4g} nm"

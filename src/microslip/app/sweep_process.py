@@ -1,0 +1,113 @@
+"""Snakemake as ``microslip sweep`` starts it: what can be seen to be wrong is one line, before it.
+
+Snakemake reads the files given with --configfile before the workflow has a say, and prints all of
+its options where one is unknown.  So its own parser, which knows profiles and abbreviations, is
+asked first.
+"""
+
+from __future__ import annotations
+
+import atexit
+import io
+import os
+import re
+import shutil
+import sys
+import tempfile
+from contextlib import redirect_stderr
+
+from microslip.app.sweep_command import RULES, TARGETS
+from microslip.app.terminal import complain
+from microslip.config import load, schema
+from microslip.foundation.errors import InputError
+
+KEY_AND_VALUE = re.compile(r"[A-Za-z_][\w-]*\w=")
+
+
+def main(arguments: list[str]) -> int:
+    """Run Snakemake in this process; returns its exit code, 2 for arguments that are bad."""
+    try:
+        try:
+            _check(arguments)
+        except InputError as error:
+            complain(f"microslip sweep: {error}")
+            return 2
+        except load.ConfigError as error:
+            complain(f"microslip sweep: --configfile: {error}")
+            return 2
+        _spare_cache()
+        from snakemake.cli import main as snakemake
+
+        snakemake(arguments)  # ends by SystemExit
+    except KeyboardInterrupt:  # what Snakemake does not catch while it plans
+        complain("microslip sweep: interrupted")
+        return 130
+    return 0
+
+
+def _spare_cache():
+    """Have Snakemake keep its own files in a temporary folder where the home takes none.
+
+    It makes a folder there whenever it starts, and ends with a traceback where it cannot.
+    """
+    home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    try:
+        os.makedirs(os.path.join(home, "snakemake"), exist_ok=True)
+        if os.access(home, os.W_OK):
+            return
+    except OSError:
+        pass
+    spare = tempfile.mkdtemp(prefix="microslip-")
+    atexit.register(shutil.rmtree, spare, ignore_errors=True)
+    os.environ["XDG_CACHE_HOME"] = spare
+    complain(f"microslip sweep: {home} cannot be written to: Snakemake's own files are in {spare}")
+
+
+def _check(arguments):
+    """Raise InputError or ConfigError for what Snakemake would be slow, or long, to refuse."""
+    options = _parsed(arguments)
+    if options is None:
+        return
+    if options.directory is None and not os.access(".", os.W_OK):
+        raise InputError("--directory", os.getcwd(), "allowed is a folder that can be written to")
+    for name in ("cores", "jobs"):
+        count = getattr(options, name)
+        if isinstance(count, int) and count < 1:
+            raise InputError(f"--{name}", count, "allowed is a whole number of at least 1, or all")
+    for target in options.targets:
+        if not {".", "/"} & set(target) and target not in {*TARGETS, *RULES}:
+            hint = schema.near_miss(target, list(TARGETS))
+            allowed = f"{hint}allowed is one of {', '.join(TARGETS)}, or a file"
+            raise InputError("TARGET", target, allowed)
+    for entry in options.config or ():
+        if not KEY_AND_VALUE.match(entry):
+            raise InputError("--config", entry, "allowed is KEY=VALUE")
+    if sum(word.partition("=")[0] == "--configfile" for word in arguments) > 1:
+        raise InputError(
+            "--configfile", "twice", "Snakemake would forget the first; allowed is --configfile A B"
+        )
+    for file in options.configfile or ():
+        load.read_yaml(os.path.relpath(file))
+
+
+def _parsed(arguments):
+    """What Snakemake's parser makes of the arguments; None where it says something by itself."""
+    from snakemake.cli import parse_args
+
+    said = io.StringIO()
+    try:
+        with redirect_stderr(said):
+            _, options = parse_args(arguments)
+    except SystemExit as error:
+        if error.code in (0, None):
+            raise  # --version
+        line = said.getvalue().strip().rpartition("\n")[2]
+        complain(f"microslip sweep: {line.partition('error: ')[2] or line}")
+        raise SystemExit(2) from None
+    except Exception:  # it will say so again
+        return None
+    return options
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))

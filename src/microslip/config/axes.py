@@ -1,0 +1,117 @@
+"""From settings to grids of points: axes expanded, and what does not go together refused.
+
+Imports nothing heavy, since the workflow reads it whenever it is parsed.
+"""
+
+import math
+from itertools import pairwise
+
+from microslip.config.records import MODELS_OF_SCENE, SCENE_OF_SWEEP, ConfigError, Sweep
+from microslip.sweeps.keys import number
+
+# More points than this are a slip of the pen: naming them all takes the workflow a minute whenever
+# it starts.
+MOST_POINTS = 1_000_000
+
+
+def of_paper(name, given, where):
+    """The Sweep of a scene of the paper; given: dict of settings, with defaults filled in.
+
+    where: how messages begin, file and key. Raises ConfigError.
+    """
+    sweep = grid_of(name, SCENE_OF_SWEEP[name], given, where)
+    _refuse_mismatch(sweep, where)
+    return sweep
+
+
+def grid_of(name, scene, given, where, **more):
+    """A Sweep with its axes expanded, of settings with defaults filled in; more: its other fields.
+
+    Raises ConfigError, beginning with `where`, for a bad axis or too many points.
+    """
+    poisson, amplitude = given["poisson"], given.get("amplitude")
+    sweep = Sweep(
+        name=name,
+        scene=scene,
+        velocity=axis_of(given["velocity"], f"{where}.velocity"),
+        amplitude=None if amplitude is None else axis_of(amplitude, f"{where}.amplitude"),
+        poisson=axis_of(poisson if isinstance(poisson, list) else [poisson], f"{where}.poisson"),
+        poisson_is_axis=isinstance(poisson, list),
+        model=given["model"],
+        tolerance=None if given["tolerance"] is None else float(number(given["tolerance"])),
+        cells=given["cells"],
+        steps=given["steps"],
+        **more,
+    )
+    _refuse_no_tolerance(sweep, where)
+    points = len(sweep.velocity) * len(sweep.amplitude or (None,)) * len(sweep.poisson)
+    refuse_crowd(points, where, MOST_POINTS)
+    return sweep
+
+
+def _refuse_no_tolerance(sweep, where):
+    """Raise ConfigError where no tolerance is meant but the resolution is not imposed, either.
+
+    What has neither cells nor steps is left to the solver, which then has nothing to choose.
+    """
+    free = [name for name in ("cells", "steps") if getattr(sweep, name) is None]
+    if sweep.amplitude is None:  # a steady motion takes no steps
+        free = [name for name in free if name == "cells"]
+    if sweep.tolerance is None and free:
+        raise ConfigError(
+            f"{where}.tolerance: null is not allowed; allowed: a number, or {' and '.join(free)} "
+            "imposed"
+        )
+
+
+def refuse_crowd(points, where, most):
+    """Raise ConfigError for more points than `most`."""
+    if points > most:
+        raise ConfigError(f"{where}: {points} points are not allowed; allowed: at most {most}")
+
+
+def axis_of(given, where, positive=False):
+    """Coordinates of an axis, an ascending tuple; given: a list, or a dict of one spacing.
+
+    positive: whether 0 is refused. Raises ConfigError, beginning with `where`.
+    """
+    if isinstance(given, list):
+        values = [float(number(value)) for value in given]
+    else:
+        ((spacing, spec),) = given.items()
+        values = _spaced(spacing, spec, f"{where}.{spacing}")
+    values.sort()
+    for low, high in pairwise(values):
+        if high - low <= 1e-9 * high:
+            raise ConfigError(f"{where}: {high:.12g} occurs twice; allowed: different values")
+    if positive and values[0] <= 0:
+        raise ConfigError(f"{where}: {values[0]:g} is not allowed; allowed: numbers > 0")
+    return tuple(values)
+
+
+def _spaced(spacing, spec, where):
+    start, stop, count = spec["start"], spec["stop"], spec["count"]
+    if stop <= start:
+        raise ConfigError(f"{where}.stop: {stop} is not allowed; allowed: a number above {start}")
+    if spacing == "log" and math.isinf(stop / start):
+        raise ConfigError(f"{where}.start: {start} is not allowed; allowed: a number nearer {stop}")
+    if spacing == "linear":
+        values = (start + (stop - start) * i / (count - 1) for i in range(count))
+    else:
+        values = (start * math.exp(math.log(stop / start) * i / (count - 1)) for i in range(count))
+    # Six digits make the coordinates readable, and the same on every machine.
+    return [float(f"{value:.6g}") for value in values]
+
+
+def _refuse_mismatch(sweep, where):
+    """Refuse settings that are fine one by one but not together."""
+    known = MODELS_OF_SCENE[sweep.scene]
+    if sweep.model not in known:
+        raise ConfigError(
+            f'{where}.model: "{sweep.model}" does not apply to {sweep.scene}; '
+            f"allowed: {', '.join(known)}"
+        )
+    if sweep.model == "radial" and sweep.poisson[-1] > 0:
+        raise ConfigError(
+            f"{where}.poisson: {sweep.poisson[-1]:g} does not go with model radial; allowed: 0"
+        )

@@ -1,0 +1,162 @@
+"""Sweeps of other motions and pressures than the paper's: the key `extended` of a configuration.
+
+What the solver calls a motion or a pressure is a name with numbers, such as
+"elliptic:forward=0.5,phase=30". Only the solver can tell if there is one, so it is imported by the
+functions that ask it, and by nothing else: the workflow reads this whenever it is parsed.
+"""
+
+from microslip.config import axes
+from microslip.config.records import TAKEN, ConfigError
+from microslip.foundation import named_files
+from microslip.foundation.errors import InputError
+
+MOST_PANELS = 12
+"""Sweeps on a figure of maps, each as often as it has Poisson's ratios."""
+MOST_LINES = 8
+"""Sweeps on a figure of lines, each with a colour and a marker of its own."""
+
+
+def with_files_found(given, where, folders, strict=True):
+    """Settings by the names of their sweeps, with the places and digests of files in them.
+
+    Whoever reads them again, such as a job, finds the same files without knowing where the
+    configuration lies.
+
+    Parameters
+    ----------
+    given : dict
+        Settings by name, as in the configuration.
+    where : str
+        How messages begin, file and key.
+    folders : iterable of paths
+        Where files are looked for, before the working directory.
+    strict : bool
+        Whether a file that is not there is refused; else its name stays as it is.
+
+    Raises
+    ------
+    ConfigError
+        For a file that is not there or cannot be read.
+    """
+    found = dict(given)
+    for name, settings in given.items():
+        pressure = settings.get("pressure")
+        if not named_files.speaks_of_file(pressure):
+            continue
+        try:
+            file = named_files.parsed(pressure)
+            if file.digest and file.path:  # found before
+                named_files.remember([pressure])
+                continue
+            file, _ = named_files.found(pressure, folders)
+        except InputError as error:
+            if strict:
+                said = f"{error.value!r}: {error.allowed}"
+                line = f"{where}.{name}.{error.argument}: {said}"
+                raise ConfigError(" ".join(line.split())) from None
+        else:
+            found[name] = settings | {"pressure": file.placed}
+    return found
+
+
+def sweeps(given, where):
+    """Sweeps by their names, in their order; given: dict of settings with defaults filled in.
+
+    where: how messages begin, file and key. Raises ConfigError. Whether the solver knows the
+    motions and pressures is not checked, see `refuse_unsolvable`.
+    """
+    found = {}
+    for name, settings in given.items():
+        if name in TAKEN:
+            raise ConfigError(f"{where}.{name}: another result has this name; allowed: a new one")
+        more = {"group": settings["group"], "title": settings["title"] or name}
+        more["pressure"] = _by_content(settings["pressure"])
+        found[name] = axes.grid_of(name, settings["scene"], settings, f"{where}.{name}", **more)
+    return found
+
+
+def _by_content(pressure):
+    """The name of a pressure, without the place of a file whose content is known."""
+    if not named_files.speaks_of_file(pressure):
+        return pressure
+    file = named_files.parsed(pressure)
+    return file.name if file.digest else pressure
+
+
+def refuse_mixtures(given, where):
+    """Raise ConfigError for a group of Sweeps that cannot be one figure; where: as above."""
+    for group in dict.fromkeys(sweep.group for sweep in given):
+        _refuse_mixture([sweep for sweep in given if sweep.group == group], where)
+
+
+def _refuse_mixture(together, where):
+    first, last = together[0], together[-1]
+    for sweep in together:
+        if sweep.drawn_over != first.drawn_over:
+            raise ConfigError(
+                f"{where}.{sweep.name}.group: {sweep.group} is drawn over {first.drawn_over}, as "
+                f"{first.name} asks, and this over {sweep.drawn_over}; allowed: another group"
+            )
+    most = MOST_PANELS if first.spans_a_map else MOST_LINES
+    drawn = sum(len(sweep.poisson) for sweep in together)
+    if drawn > most:
+        ratios = " at their Poisson's ratios" if drawn > len(together) else ""
+        raise ConfigError(
+            f"{where}.{last.name}.group: {first.group} has {drawn} sweeps{ratios}; allowed: up to "
+            f"{most}, or another group"
+        )
+
+
+def refuse_unsolvable(given, where):
+    """Raise ConfigError where the solver refuses one of the Sweeps; where: as above."""
+    for sweep in given:
+        try:
+            _ask_solver(sweep, f"{where}.{sweep.name}")
+        except InputError as error:  # its arguments have the names of the keys
+            line = f"{where}.{sweep.name}.{error.argument}: {error.value!r}: {error.allowed}"
+            raise ConfigError(" ".join(line.split())) from None
+        except ConfigError:
+            raise
+        except ValueError as error:  # what reads a file may say it in its own words
+            line = f"{where}.{sweep.name}: {error}"
+            raise ConfigError(" ".join(line.split())) from None
+
+
+def _ask_solver(sweep, where):
+    """Raise InputError, in the solver's words, for what it does not know or do; ConfigError for an
+    amplitude that is missing, or too much."""
+    scene = _scene_of(sweep)
+    if scene.periodic and sweep.amplitude is None:
+        raise ConfigError(f"{where}.amplitude: missing; required for {scene.name}")
+    if sweep.amplitude is not None and not scene.periodic:
+        raise ConfigError(
+            f"{where}.amplitude: {list(sweep.amplitude)} is not allowed; {scene.name} has no "
+            "amplitude"
+        )
+    if sweep.model != "auto":
+        from microslip.adaptive.choice import choose_model
+
+        choose_model(scene, sweep.poisson[-1], sweep.model)
+    if sweep.velocity[0] == 0:
+        from microslip.adaptive.point import checked_point
+
+        amplitude = sweep.amplitude and sweep.amplitude[0]
+        checked_point(sweep.scene, 0, amplitude, sweep.poisson[-1], sweep.pressure)
+
+
+def solver_names(sweep):
+    """Names of a Sweep's scene and pressure as the solver writes them, however they were given.
+
+    Equal ones are written alike, so that their points are found again.
+    """
+    if ":" not in sweep.scene + sweep.pressure:
+        return sweep.scene, sweep.pressure  # there are no two ways to write a plain name
+    scene = _scene_of(sweep)
+    return scene.name, scene.pressure.name
+
+
+def _scene_of(sweep):
+    """The Scene of a Sweep; raises ValueError where the solver knows no such motion or pressure."""
+    from microslip.motions.registry import scene_named
+
+    return scene_named(sweep.scene, sweep.pressure)

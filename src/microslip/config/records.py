@@ -1,0 +1,146 @@
+"""What a checked configuration is: sweeps, studies and single runs as records.
+
+`config` makes them from a file. Imports nothing heavy, since the workflow reads it whenever it is
+parsed.
+"""
+
+from dataclasses import asdict, dataclass
+
+# Sweeps are named like their datasets, scenes as on the command line.
+SCENE_OF_SWEEP = {"transverse": "transverse", "bore": "bore", "continuous_bore": "continuous-bore"}
+
+# The single runs, for figures, that a dataset carries besides its sweep.
+HISTORIES_OF_SWEEP = {
+    "transverse": ("transverse",),
+    "bore": (),
+    "continuous_bore": ("field", "transients"),
+}
+# Names that no other sweep may have: of datasets, and of folders of batches.
+TAKEN = (*SCENE_OF_SWEEP, "accuracy", "accuracy_cost", "stability", "claims")
+TAKEN += tuple(f"{name}_histories" for name in SCENE_OF_SWEEP)
+TAKEN += tuple(f"{name}_periods" for name in SCENE_OF_SWEEP)
+TAKEN += tuple(f"{study}_first" for study in ("accuracy", "stability", "claims"))
+# What microslip.models.registry refuses, which takes too long to import here; a test keeps them the same.
+MODELS_OF_SCENE = {
+    "transverse": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
+    "bore": ("auto", "rigid", "polar", "cartesian"),
+    "continuous-bore": ("auto", "rigid", "polar", "cartesian"),
+    "longitudinal": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
+    "zigzag": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
+}
+
+
+class ConfigError(ValueError):
+    """A configuration that cannot be used. The message is one line: file, key, value, allowed."""
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A grid of points. The axes are ascending tuples of floats, all dimensionless."""
+
+    name: str
+    scene: str  # with numbers as they were given; extended.solver_names writes equal ones alike
+    velocity: tuple
+    amplitude: tuple | None  # None: the scene has no amplitude
+    poisson: tuple
+    poisson_is_axis: bool  # a list was given, so the dataset gets a dimension of this name
+    model: str
+    tolerance: float | None  # None: the resolution is imposed, and its error only told
+    cells: int | None
+    steps: int | None
+    pressure: str = "hertz"  # as for scene
+    group: str | None = None  # of the figure that shows it, None for the paper's
+    title: str | None = None  # there
+
+    @property
+    def spans_a_map(self):
+        """Whether there is an area to draw: two amplitudes and two velocities above 0 at least."""
+        positive = [velocity for velocity in self.velocity if velocity > 0]
+        return len(self.amplitude or ()) > 1 and len(positive) > 1
+
+    @property
+    def drawn_over(self):
+        """What the figure of a group shows friction over."""
+        if self.spans_a_map:
+            return "velocity and amplitude"
+        return "amplitude" if len(self.amplitude or ()) > 1 else "velocity"
+
+
+@dataclass(frozen=True)
+class StudyPoint:
+    """A point that methods are compared at. All numbers are dimensionless."""
+
+    name: str
+    scene: str
+    velocity: float
+    amplitude: float | None  # None: the scene has no amplitude
+    poisson: float
+    title: str
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """What is asked to see what accuracy costs."""
+
+    methods: tuple
+    points: dict  # name -> StudyPoint
+    levels: int
+    repeats: int
+    map_velocity: tuple
+    map_amplitude: dict  # scene -> tuple
+    map_tolerance: tuple  # from loose to tight
+
+
+@dataclass(frozen=True)
+class Stability:
+    """What is asked to see where methods fail."""
+
+    methods: tuple
+    tolerance: float
+    axes: tuple | None  # None: all blocks of studies.stability
+
+
+@dataclass(frozen=True)
+class Claims:
+    """What is asked to judge the statements of the paper. All numbers are dimensionless."""
+
+    tolerance: float
+    velocity: tuple
+    amplitude: dict  # scene -> tuple
+    cells: int  # rings, and angles on half the disc, of periods seen from inside
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """A checked configuration with its defaults filled in and its axes expanded."""
+
+    results: str
+    sweeps: dict  # name -> Sweep, in the order of SCENE_OF_SWEEP
+    extended: dict  # name -> Sweep, of other motions and pressures
+    points_per_job: dict  # name of a sweep -> int; no dataset depends on it
+    histories: dict  # transverse, field, transients -> dict of settings, as in the schema
+    accuracy: Accuracy
+    stability: Stability
+    claims: Claims
+
+    @property
+    def grids(self):
+        """All sweeps by name, the paper's first."""
+        return self.sweeps | self.extended
+
+    @property
+    def groups(self):
+        """Names of the sweeps in `extended` by group, a dict of tuples."""
+        groups = dict.fromkeys(sweep.group for sweep in self.extended.values())
+        return {
+            group: tuple(s.name for s in self.extended.values() if s.group == group)
+            for group in groups
+        }
+
+    def of_sweep(self, name):
+        """All settings that the dataset of the sweep `name` depends on, as a dict for JSON."""
+        names = HISTORIES_OF_SWEEP.get(name, ())
+        return {
+            "sweep": asdict(self.grids[name]),
+            "histories": {history: self.histories[history] for history in names},
+        }

@@ -1,0 +1,1 @@
+"""Records to xarray and netCDF, with the limits from theory; questions to datasets."""

@@ -1,0 +1,174 @@
+"""Results of the points of a sweep as variables of its dataset, written block by block.
+
+Memory does not grow with the number of points: at most BLOCK of them are held at a time.
+"""
+
+from itertools import islice
+
+import numpy as np
+
+from microslip.datasets.netcdf import characters_of
+from microslip.sweeps.keys import canonical_json
+
+# Variables over the sweep: name -> (type, long_name). 0 stands where a count does not apply. A
+# long_name is short enough for the axis of a plot; what else there is to say is in DESCRIPTIONS.
+POINT_VARIABLES = {
+    "mu_macro": (float, "mean forward friction force over mu F_z"),
+    "mu_macro_error": (float, "estimated error of mu_macro"),
+    "error_space": (float, "error of mu_macro from the cells"),
+    "error_time": (float, "error of mu_macro from the time steps"),
+    "error_periodicity": (float, "error of mu_macro from periodicity"),
+    "error_solver": (float, "error of mu_macro from the iteration"),
+    "error_model": (float, "error of mu_macro from model or data"),
+    "converged": (bool, "mu_macro_error is within the tolerance"),
+    "cells": (np.int32, "rings, or squares across the contact"),
+    "angles": (np.int32, "angular points on half a ring"),
+    "steps_per_period": (np.int32, "time steps in a period"),
+    "periods": (float, "full periods marched in the longest run"),
+    "iterations": (np.int32, "iterations of the step solver"),
+    "work": (np.int64, "step solves times unknowns"),
+    "effort": (np.int64, "iterations times unknowns"),
+    "retried": (np.int32, "runs done again by safer steps"),
+    "model": (str, "contact model that was used"),
+    "reason": (str, "why the point did not converge"),
+}
+TORQUE = "torque over its value at velocity 0"
+TORQUE_VARIABLES = {
+    "mu_torque": (float, TORQUE),
+    "mu_torque_error": (float, "estimated error of mu_torque"),
+}
+CHANGES = {
+    "mu_macro_change": ("mu_macro", -1.0, "mu_macro less that at the smallest nu"),
+    "mu_macro_change_error": ("mu_macro_error", 1.0, "estimated error of mu_macro_change"),
+}
+"""Variables of a sweep over Poisson's ratios: name -> (of what, sign of the first, long_name)."""
+DESCRIPTIONS = {
+    "error_space": "part of mu_macro_error from the cells",
+    "error_time": "part of mu_macro_error from the time steps",
+    "error_periodicity": "part of mu_macro_error from the distance to the periodic state",
+    "error_solver": "part of mu_macro_error from the iteration in each step",
+    "error_model": "part of mu_macro_error from a closed form in place of a run, or a file's "
+    "resolution",
+    "converged": "mu_macro_error is within the tolerance, if one is meant",
+    "iterations": "iterations of the step solver in all runs",
+    "work": "step solves times unknowns, summed over all runs",
+    "effort": "iterations of the step solver times unknowns, summed over all runs",
+    "retried": "runs done again by safer steps, since they had not converged",
+    "reason": "why the point did not converge, empty if it did",
+    "mu_torque": "torque about the normal over its value at zero forward velocity",
+    "mu_macro_change": "mu_macro less that at the smallest Poisson's ratio",
+}
+"""All of what a variable is, where its long_name does not say that: the attribute `description`."""
+MISSING = {float: np.nan, bool: False, np.int32: 0, np.int64: 0, str: ""}
+
+WIDTHS = {"model": 32, "reason": 256}
+"""Bytes that a text is given in a dataset; what is longer is cut, see `_text`."""
+BLOCK = 4096
+"""Points that are held at a time when a dataset is written, and a chunk of larger ones."""
+
+
+def append(file, sweep, axes, points):
+    """Write POINT_VARIABLES over the axes into an open file; the versions behind the records."""
+    table = POINT_VARIABLES | (TORQUE_VARIABLES if sweep.amplitude is None else {})
+    shape = tuple(len(values) for values in axes.values())
+    boxes = list(_boxes(shape))
+    for name, (kind, long_name) in table.items():
+        _create(file, name, kind, long_name, tuple(axes), boxes[0] if len(boxes) > 1 else None)
+    records, versions, count = iter(points), set(), 0
+    for box in boxes:
+        extent = tuple(part.stop - part.start for part in box)
+        block = list(islice(records, int(np.prod(extent))))
+        count += len(block)
+        if len(block) < np.prod(extent):
+            break
+        versions.update(canonical_json(record["versions"]) for record in block)
+        for name, (kind, _) in table.items():
+            column = _column(block, name, kind)
+            file[name][box] = column.reshape(*extent, *column.shape[1:])
+    if len(axes.get("poisson", ())) > 1:
+        _add_changes(file, tuple(axes), boxes[0] if len(boxes) > 1 else None)
+    count += sum(1 for _ in islice(records, 1))
+    size = int(np.prod(shape))
+    if count != size:
+        raise ValueError(f"{sweep.name}: {min(count, size + 1)} results for {size} points")
+    return versions
+
+
+def _add_changes(file, dims, box):
+    """What Poisson's ratio changes: mu_macro less that at the smallest one, and the errors of both,
+    one ratio at a time."""
+    file.set_auto_mask(False)
+    for name, (source, sign, long_name) in CHANGES.items():
+        _create(file, name, float, long_name, dims, box)
+        first = file[source][0]
+        for i in range(file[source].shape[0]):
+            file[name][i] = file[source][i] + sign * first
+
+
+def _boxes(shape):
+    """Boxes of at most BLOCK points, as tuples of slices, that fill a grid in the order of C."""
+    whole = len(shape)
+    while whole and np.prod(shape[whole - 1 :]) <= BLOCK:
+        whole -= 1  # axes from here on are not cut
+    if whole == 0:
+        yield tuple(slice(0, n) for n in shape)
+        return
+    trailing = shape[whole:]
+    step = max(1, BLOCK // int(np.prod(trailing)))
+    for leading in np.ndindex(shape[: whole - 1]):
+        for start in range(0, shape[whole - 1], step):
+            cut = slice(start, min(start + step, shape[whole - 1]))
+            before = (slice(index, index + 1) for index in leading)
+            yield (*before, cut, *(slice(0, n) for n in trailing))
+
+
+def _create(file, name, kind, long_name, dims, box):
+    """An empty variable; box: one of those that its chunks are to be, None for a single one."""
+    stored = {bool: np.int8, str: "S1"}.get(kind, kind)
+    chunks = None if box is None else tuple(part.stop - part.start for part in box)
+    more = {}
+    if kind is str:
+        width = WIDTHS[name]
+        file.createDimension(characters_of(name), width)
+        dims = (*dims, characters_of(name))
+        if chunks is not None:  # that is, where the size of the file matters
+            chunks, more = (*chunks, width), {"compression": "zlib", "complevel": 1}
+    variable = file.createVariable(name, stored, dims, chunksizes=chunks, fill_value=False, **more)
+    flags = "not_converged converged" if name == "converged" else "no yes"
+    variable.setncatts(attributes(kind, long_name, flags=flags))
+    if name in DESCRIPTIONS:
+        variable.setncattr("description", DESCRIPTIONS[name])
+    if kind is bool:
+        variable.setncattr("dtype", "bool")  # what xarray writes and reads
+    if kind is str:
+        variable.setncattr("_Encoding", "utf-8")  # so that all who read it join the characters
+        variable.set_auto_chartostring(False)
+
+
+def _column(block, name, kind):
+    """A value of every record, as an array; of texts the bytes, along a further axis."""
+    values = [record["result"].get(name) for record in block]
+    filled = [MISSING[kind] if value is None else value for value in values]
+    if kind is str:
+        texts = np.array([_text(value, WIDTHS[name]) for value in filled], f"S{WIDTHS[name]}")
+        return texts.view("S1").reshape(len(filled), WIDTHS[name])
+    return np.array(filled, {bool: np.int8}.get(kind, kind))
+
+
+def _text(value, width):
+    """A text as at most so many bytes; of a longer one the beginning, and dots."""
+    coded = value.encode()
+    if len(coded) <= width:
+        return coded
+    return coded[: width - 3].decode(errors="ignore").encode() + b"..."
+
+
+def attributes(kind, long_name, units="1", flags="no yes"):
+    """Attributes of a variable whose values are of a type; flags: what the two of bool mean."""
+    if kind is str:
+        return {"long_name": long_name}
+    if kind is bool:
+        # Stored as bytes with these meanings; xarray gives them back as bool.
+        values = np.array([0, 1], np.int8)
+        return {"long_name": long_name, "flag_values": values, "flag_meanings": flags}
+    return {"long_name": long_name, "units": units}

@@ -1,0 +1,1 @@
+"""Questions to a map, between and beyond its nodes."""

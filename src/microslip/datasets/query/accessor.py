@@ -1,0 +1,320 @@
+"""``dataset.friction.at(...)``: certified answers from the dataset of a sweep."""
+
+from __future__ import annotations
+
+import warnings
+from decimal import Decimal
+from functools import cache
+from numbers import Real
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import xarray as xr
+
+from microslip.datasets.query import beyond
+from microslip.datasets.query.nodes import SAME, nodes_of, refuse_negative
+from microslip.datasets.query.within import refuse_beyond, within
+from microslip.foundation.arguments import is_real, real
+from microslip.foundation.errors import InputError
+from microslip.motions.registry import scene_named
+from microslip.sweeps.cache import CacheError
+from microslip.sweeps.solve_stored import solve_stored
+from microslip.theory import hertz, paper
+
+SOURCES = (
+    "map",
+    "no vibration",
+    "static limit",
+    "between static limit and map",
+    "between map and fast sliding",
+    "between map and large amplitude",
+    "between map and no vibration",
+    "closed form",
+    "solver",
+)
+"""Where an answer comes from, by its code in the variable `source`."""
+ALLOWED = "allowed is a finite number >= 0, or several"
+(MAP, STILL, STATIC, SLOWER, FASTER, WIDER, NARROWER, EXACT, SOLVER) = range(len(SOURCES))
+
+
+@xr.register_dataset_accessor("friction")
+class Friction:
+    """Friction at any point of a scene, from a dataset of one of its sweeps.
+
+    Raises ValueError where the dataset is none of a sweep.
+    """
+
+    def __init__(self, dataset):
+        try:
+            self._motion = scene_named(dataset.attrs.get("scene"))
+        except ValueError:
+            raise ValueError(
+                "no scene of microslip: allowed is the dataset of a sweep, with its attributes"
+            ) from None
+        self._dataset = dataset
+        self._scene = self._motion.name
+        self._pressure = dataset.attrs.get("pressure", "hertz")
+        self._tables = {}  # by what they are made of: a dataset may be changed in place
+
+    def at(self, velocity, amplitude=None, *, poisson=None, tolerance=None):
+        """Friction and a bound of its error, whatever the point.
+
+        Between the nodes of a map the error holds what interpolation leaves (see `interpolation`,
+        between Poisson's ratios `nodes`) and what the nodes themselves may be off; beyond the map
+        see `beyond`.  Next to a point that did not converge mu_macro is NaN, or its error infinite.
+
+        The dataset may be a part of one, chosen or joined by xarray, lazy or not, as long as it has
+        mu_macro, mu_macro_error, their coordinates and its attributes.  Without `converged`, nodes
+        with an error above the attribute `tolerance` count as not converged.
+
+        Parameters
+        ----------
+        velocity, amplitude : number, sequence or DataArray
+            >= 0, no amplitude for continuous-bore.  A sequence becomes a dimension of the answer;
+            DataArrays broadcast by their dimensions.
+        poisson : number, optional
+            Within the range of the dataset's; its only one unless told.
+        tolerance : number, optional
+            Where the bound is larger, the solver is asked.  Results are kept beside the dataset if
+            it came from `open_map`; where nothing can be written, for as long as Python runs.
+
+        Returns
+        -------
+        xarray.Dataset
+            mu_macro, mu_macro_error and source, an index into SOURCES with its meanings in
+            flag_meanings.
+
+        Raises
+        ------
+        InputError
+            Naming the argument, for what is no such number, for what the dataset has lost, and for
+            what no limit is proved for: of other motions and pressures than the paper's, all beyond
+            the map, unless there is a tolerance.
+        """
+        nodes = nodes_of(self._dataset, periodic=self._motion.periodic, poisson=poisson)
+        if beyond.is_known(self._scene, self._pressure):
+            refuse_negative(nodes)
+        nu = _poisson_within(nodes.poisson, poisson)
+        velocity, amplitude = self._points(velocity, amplitude)
+        flat_velocity = velocity.values.ravel().astype(float)
+        flat_amplitude = np.full(len(flat_velocity), np.nan)
+        if amplitude is not None:
+            flat_amplitude = amplitude.values.ravel().astype(float)
+        if not beyond.is_known(self._scene, self._pressure):
+            answer = self._map_alone(nodes, flat_velocity, flat_amplitude, nu, tolerance)
+        elif self._table(nodes, nu) is None:
+            raise InputError("velocity", 0.0, "friction.at needs nodes above 0 in the dataset")
+        elif amplitude is None:
+            answer = self._steady(nodes, flat_velocity, nu)
+        else:
+            answer = self._oscillating(nodes, flat_velocity, flat_amplitude, nu)
+        value, error, source = answer
+        error[np.isnan(value) | np.isnan(error)] = np.inf
+        if tolerance is not None:
+            tolerance = real("tolerance", tolerance, 0.0)
+            if tolerance == 0.0:
+                raise InputError("tolerance", tolerance, "allowed is a number above 0")
+            point = flat_velocity, flat_amplitude
+            self._solve((value, error, source), point, nu, tolerance)
+        return self._answer(velocity, value, error, source, nu)
+
+    # The question
+
+    def _points(self, velocity, amplitude):
+        if (amplitude is None) == self._motion.periodic:
+            need = "none" if amplitude is not None else "a number"
+            raise InputError("amplitude", amplitude, f"allowed for {self._scene} is {need}")
+        velocity = _labelled("velocity", velocity)
+        if amplitude is None:
+            return velocity, None
+        # An outer product has the order of the datasets.
+        amplitude, velocity = xr.broadcast(_labelled("amplitude", amplitude), velocity)
+        return velocity, amplitude
+
+    def _table(self, nodes, nu, still=False):
+        """The map for one Poisson's ratio, see Nodes.table."""
+        key = nodes.fingerprint, nu, still
+        if key not in self._tables:
+            self._tables[key] = nodes.table(nu, still=still)
+        return self._tables[key]
+
+    # What no limit is known of
+
+    def _map_alone(self, nodes, velocity, amplitude, nu, tolerance):
+        rows = np.nan_to_num(amplitude)
+        tables = self._table(nodes, nu), self._table(nodes, nu, still=True)
+        if tolerance is None:
+            what = self._scene if self._pressure == "hertz" else f"pressure {self._pressure}"
+            refuse_beyond(*tables, velocity, rows, what)
+        value, error = within(*tables, velocity, rows)
+        return value, error, np.full(len(value), MAP)
+
+    # Steady motion
+
+    def _steady(self, nodes, velocity, nu):
+        table = self._table(nodes, nu)
+        inside = table.columns.holds(velocity)
+        value, error = paper.bore_forward(velocity), np.full(velocity.shape, beyond.ROUNDING)
+        value = np.array(value, float)
+        value[inside], error[inside] = table.at(np.zeros(inside.sum()), velocity[inside])
+        return value, error, np.where(inside, MAP, EXACT)
+
+    # Oscillation
+
+    def _oscillating(self, nodes, velocity, amplitude, nu):
+        table, limits = self._table(nodes, nu), beyond.LIMITS[self._scene]
+        slowest, fastest = table.columns.values[[0, -1]]
+        narrowest, widest = table.rows.values[[0, -1]]
+        if limits.static_needs_nu_0 and nu > 0.0 and (velocity < slowest).any():
+            raise ValueError(
+                f"velocity = {velocity.min():g}: allowed for nu = {nu:g} is {slowest:g} or more: "
+                "the static limit is proved for nu = 0; microslip.solve computes it"
+            )
+        # Outward from the nearest point on the edge of the map; above it, first down to where the
+        # limit for large amplitudes is the same.
+        wide = amplitude > widest
+        below = np.where(
+            wide, limits.same_limit(velocity, np.fmax(amplitude, widest), widest), velocity
+        )
+        value, error = table.at(
+            np.clip(amplitude, narrowest, widest), np.clip(below, slowest, fastest)
+        )
+        source = np.full(len(value), MAP)
+        edge = (part[-1] for part in (table.values, table.errors))
+        far = beyond.distances(limits, table.columns.values, *edge, below, widest)
+        for where, code, rule, coordinates, end in (
+            (amplitude < narrowest, NARROWER, beyond.narrower, (amplitude,), narrowest),
+            (below < slowest, SLOWER, beyond.slower, (below, np.fmin(amplitude, widest)), slowest),
+            (below > fastest, FASTER, beyond.faster, (below, np.fmin(amplitude, widest)), fastest),
+            (wide, WIDER, beyond.wider, (far, velocity, amplitude), widest),
+        ):
+            if where.any():
+                at = (part[where] for part in (value, error, *coordinates))
+                value[where], error[where] = rule(limits, *at, end)
+                source[where] = code
+        value, error = beyond.within_the_balance(limits, value, error, velocity, amplitude)
+        for where, code, known in (
+            (velocity == 0.0, STATIC, limits.static(amplitude)),
+            (amplitude == 0.0, STILL, np.ones_like(value)),
+        ):
+            value[where], error[where], source[where] = known[where], beyond.ROUNDING, code
+        return value, error, source
+
+    # The solver
+
+    def _solve(self, answer, point, nu, tolerance):
+        """Replace what is not good enough by what the solver says."""
+        value, error, source = answer
+        path = self._dataset.encoding.get("source")
+        settings = {"poisson": nu, "tolerance": tolerance, "pressure": self._pressure}
+        folder = str(Path(path).parent) if path else "results"
+        for k in np.flatnonzero(~(error <= tolerance)):
+            velocity, amplitude = (float(part[k]) for part in point)
+            size = None if np.isnan(amplitude) else amplitude
+            found = _solved(folder, self._scene, velocity, size, **settings)
+            source[k] = SOLVER
+            value[k], error[k] = np.nan, np.inf
+            if found.converged:
+                value[k], error[k] = found.mu_macro, found.mu_macro_error
+
+    # The answer
+
+    def _answer(self, shape, value, error, source, nu):
+        def variable(values, long_name, **more):
+            attributes = {"long_name": long_name} | more
+            return shape.dims, values.reshape(shape.shape), attributes
+
+        answer = xr.Dataset(
+            {
+                "mu_macro": variable(value, "mean forward friction force over mu F_z", units="1"),
+                "mu_macro_error": variable(error, "bound of its error", units="1"),
+                "source": variable(
+                    source.astype(np.int8),
+                    "where the answer comes from",
+                    flag_values=np.arange(len(SOURCES), dtype=np.int8),
+                    flag_meanings=" ".join(name.replace(" ", "_") for name in SOURCES),
+                ),
+            },
+            coords=shape.coords,
+            attrs={"scene": self._scene},
+        )
+        if "poisson" in answer.dims:
+            return answer
+        about = {"long_name": "Poisson's ratio", "units": "1"}
+        return answer.assign_coords(poisson=((), nu, about))
+
+
+def _poisson_within(known, poisson):
+    """The Poisson's ratio that is asked for, a float within the range of those known, ascending."""
+    low, high = float(known[0]), float(known[-1])
+    allowed = f"allowed is {low:g}" + (
+        f" to {high:g}" if high > low else ", the dataset's only one"
+    )
+    if poisson is None and high > low:
+        raise InputError("poisson", None, f"{allowed}: the dataset has {len(known)} of them")
+    if not (poisson is None or is_real(poisson)):
+        raise InputError("poisson", poisson, f"{allowed}, one number")
+    try:
+        nu = low if poisson is None else float(poisson)
+    except OverflowError:  # a whole number of more than 308 digits
+        nu = np.inf
+    if not low - SAME <= nu <= high + SAME:
+        raise InputError("poisson", poisson, f"{allowed}; microslip.solve computes any")
+    return nu
+
+
+def _solved(folder, *point, **settings):
+    """What solve_stored says, kept in the folder, or for now where that takes nothing."""
+    try:
+        return solve_stored(*point, results=folder, **settings)
+    except CacheError as error:
+        warnings.warn(f"answers are not kept: {error}", stacklevel=4)
+        return solve_stored(*point, results=_spare_folder().name, **settings)
+
+
+@cache
+def _spare_folder():
+    """A folder that is gone when Python ends."""
+    return TemporaryDirectory(prefix="microslip-")
+
+
+def _labelled(name, given):
+    """A DataArray of numbers >= 0; sequences get a dimension of their name."""
+    array = given if isinstance(given, xr.DataArray) else _array(name, given)
+    if array.dtype.kind not in "iuf":
+        raise InputError(name, given, f"{ALLOWED}, not of type {array.dtype}")
+    try:
+        hertz.checked(name, np.asarray(array, float))
+    except ValueError:
+        raise InputError(name, given, ALLOWED) from None
+    if isinstance(array, xr.DataArray):
+        return array
+    if array.ndim > 1:
+        allowed = f"allowed are {array.ndim} dimensions only with names (DataArray)"
+        raise InputError(name, given, allowed)
+    return xr.DataArray(
+        array, dims=(name,) * array.ndim, coords={name: array} if array.ndim else {}
+    )
+
+
+def _array(name, given):
+    """What is given as an array: of floats, where it holds numbers.
+
+    NumPy makes floats of texts, times, masked places and quantities, too, without a word.
+    """
+    if hasattr(given, "units"):
+        raise InputError(name, given, f"{ALLOWED}, dimensionless, without a unit")
+    if np.ma.is_masked(given):
+        raise InputError(name, given, f"{ALLOWED}, none of them masked")
+    try:
+        array = np.asarray(given)
+        if array.dtype.kind in "iuf" or all(_is_plain(one) for one in array.flat):
+            return array.astype(float)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(name, given, ALLOWED) from None
+    return array
+
+
+def _is_plain(value):
+    return isinstance(value, Real | Decimal) and not isinstance(value, bool | np.generic)

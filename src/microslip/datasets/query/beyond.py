@@ -1,0 +1,126 @@
+"""Friction where a map ends: limits that are proved, and brackets between them and the map.
+
+Known without a map: friction without vibration (1), the static limit, the largest drop that
+the energy balance allows.  Between these and the edge of a map a value is bracketed, as friction
+rises with the velocity (bounds.py) and, in all that was computed, falls with the amplitude; what a
+bracket leaves open is in the error.
+
+For large amplitudes friction tends to a limit (Eqs 6 and 29), but not from one side: how far it is
+from there changes its sign with the velocity.  The largest distance that the upper edge of the map
+shows within a decade of velocities is taken for that of all larger amplitudes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from microslip.theory import bounds, paper
+
+ROUNDING = 1e-12
+SLOW_EXPONENT = 2.0 / 3.0
+"""Friction comes close to its static limit about as this power of the velocity."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What is proved about a scene, functions of arrays of velocity and amplitude.
+
+    static: limit for vanishing velocity, of the amplitude; static_needs_nu_0: whether it is proved
+    for that Poisson's ratio alone; large: limit for large amplitudes; same_limit: velocity at which
+    another amplitude has the same one (velocity, amplitude, other amplitude); drop: upper bound of
+    1 - mu_macro.
+    """
+
+    static: Callable
+    static_needs_nu_0: bool
+    large: Callable
+    same_limit: Callable
+    drop: Callable
+
+
+LIMITS = {
+    "transverse": Limits(
+        paper.static_limit_transverse,
+        True,
+        paper.large_amplitude_transverse,
+        lambda velocity, amplitude, other: velocity * other / amplitude,
+        np.vectorize(bounds.largest_drop_transverse, otypes=[float]),
+    ),
+    "bore": Limits(
+        paper.static_limit_bore,
+        False,
+        lambda velocity, amplitude: paper.large_amplitude_bore(velocity),
+        lambda velocity, amplitude, other: velocity,
+        np.vectorize(bounds.largest_drop_bore, otypes=[float]),
+    ),
+}
+
+
+def is_known(scene, pressure):
+    """Whether limits of a scene under a pressure are proved."""
+    return pressure == "hertz" and (scene in LIMITS or scene == "continuous-bore")
+
+
+def slower(limits, edge, edge_error, velocity, amplitude, slowest):
+    """Value and error for velocities from 0 to the slowest of a map, shape (n,) each.
+
+    edge, edge_error: friction at the slowest velocity and the same amplitudes.
+    """
+    static = limits.static(amplitude)
+    high = np.maximum(edge + edge_error, static)
+    share = (velocity / slowest) ** SLOW_EXPONENT
+    return _within(static, high, static + share * (edge - static))
+
+
+def faster(limits, edge, edge_error, velocity, amplitude, fastest):
+    """... for velocities above the fastest of a map; edge may be NaN where nothing is known."""
+    low = 1.0 - limits.drop(velocity, amplitude)
+    low = np.clip(np.fmax(low, edge - edge_error), 0.0, 1.0)
+    far = 1.0 - (1.0 - edge) * (fastest / velocity) ** 2
+    return _within(low, np.ones_like(low), np.where(np.isnan(far), low, far))
+
+
+def wider(limits, edge, edge_error, distance, velocity, amplitude, widest):
+    """... for amplitudes above the largest of a map.
+
+    edge, edge_error: friction at the largest amplitude, at the velocity with the same limit;
+    distance: see `distances`.
+    """
+    end = limits.large(velocity, amplitude)
+    left = (edge - end) * widest / amplitude
+    return np.clip(end + left, 0.0, 1.0), distance + np.abs(left) + edge_error
+
+
+def distances(limits, nodes, values, errors, velocity, widest):
+    """Largest distance from the limit for large amplitudes within a decade of velocities, (n,).
+
+    nodes, values, errors: the edge of a map at its largest amplitude, (m,); velocity: (n,).
+    """
+    off = np.abs(values - limits.large(nodes, np.full_like(nodes, widest))) + errors
+    away = np.abs(np.log10(np.clip(velocity, nodes[0], nodes[-1])[:, None] / nodes))
+    near = (away <= 1.0) | (away == away.min(axis=1, keepdims=True))
+    return np.where(near, off, 0.0).max(axis=1)
+
+
+def narrower(limits, edge, edge_error, amplitude, narrowest):
+    """... for amplitudes from 0 to the smallest of a map."""
+    low = np.clip(edge - edge_error, 0.0, 1.0)
+    guess = 1.0 - (1.0 - edge) * amplitude / narrowest
+    return _within(low, np.ones_like(low), guess)
+
+
+def within_the_balance(limits, value, error, velocity, amplitude):
+    """Any value and error, no worse than the energy balance allows; NaN stays what it is."""
+    low = np.maximum(1.0 - limits.drop(velocity, amplitude), 0.0)
+    value = np.clip(value, low, 1.0)
+    reach = np.maximum(1.0 - value, value - low) + ROUNDING
+    return value, np.where(np.isnan(value), error, np.fmin(error, reach))
+
+
+def _within(low, high, guess):
+    """A guess brought into its bracket, and how far the bracket reaches from there."""
+    value = np.clip(guess, low, high)
+    return value, np.maximum(high - value, value - low) + ROUNDING

@@ -1,0 +1,205 @@
+"""The nodes of a map: what a dataset, or a part of one, knows, as a table for a Poisson's ratio.
+
+Between two Poisson's ratios every node is interpolated as along the other axes: by a cubic through
+the nearest ratios, or what fewer of them allow.  Its error holds those of the nodes and the largest
+miss when ratios are left out, of two ratios how far their values are apart.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from microslip.datasets.query.interpolation import Axis, Table, largest_around
+from microslip.foundation.errors import InputError
+
+SAME = 1e-12
+"""Poisson's ratios that differ by less are one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Nodes:
+    """Values and their errors at the nodes of a map; NaN: not known.
+
+    Attributes
+    ----------
+    poisson, amplitude, velocity : numpy.ndarray
+        The axes, ascending, shapes (k,), (n,) and (m,); dimensionless.
+    values, errors : numpy.ndarray
+        mu_macro and the bound of its error, shape (k, n, m).
+    """
+
+    poisson: np.ndarray
+    amplitude: np.ndarray
+    velocity: np.ndarray
+    values: np.ndarray
+    errors: np.ndarray
+
+    @property
+    def fingerprint(self) -> bytes:
+        """What tells these nodes from others."""
+        parts = self.poisson, self.amplitude, self.velocity, self.values, self.errors
+        return hashlib.sha256(b"|".join(part.tobytes() for part in parts)).digest()
+
+    def table(self, poisson: float, *, still: bool = False) -> Table | None:
+        """The map for a Poisson's ratio above velocity 0, or of that alone; None: there is none."""
+        chosen = self.velocity == 0.0 if still else self.velocity > 0.0
+        if not chosen.any():
+            return None
+        values, errors = self._at(poisson)
+        columns = Axis(self.velocity[chosen])
+        return Table(Axis(self.amplitude), columns, values[:, chosen], errors[:, chosen])
+
+    def _at(self, poisson):
+        """Values and errors at a Poisson's ratio, shape (n, m)."""
+        near = int(np.argmin(np.abs(self.poisson - poisson)))
+        if abs(self.poisson[near] - poisson) <= SAME:
+            return self.values[near], self.errors[near]
+        axis = Axis(self.poisson)
+        (cell,), (share,), (index,), (weights,) = axis.cubics(np.array([poisson]))
+        value = np.tensordot(weights, self.values[index], 1)
+        flat = self.values.reshape(len(self.poisson), -1)
+        misses = axis.misses(flat).reshape(self.values.shape)
+        # the misses of the nodes around the cell, as along the other axes
+        around = misses[max(cell - 1, 0) : cell + 3].max(axis=0)
+        left = 4.0 * share * (1.0 - share) * largest_around(around)
+        return value, self.errors[index].max(axis=0) + left
+
+
+def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = None) -> Nodes:
+    """The nodes that a dataset of a sweep, or a part of one, knows.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        mu_macro and mu_macro_error over velocity, amplitude if the motion is periodic, and poisson;
+        one of a single value may be a coordinate without a dimension.  Nodes that did not converge
+        are not known; without `converged` these are those whose error is above the `tolerance` of
+        the dataset's attributes.
+    periodic : bool
+        Whether the motion has an amplitude.
+    poisson : float, optional
+        What to take for Poisson's ratio where the dataset has lost it.
+
+    Raises
+    ------
+    InputError
+        With the name of what the dataset has lost, or of a dimension too many.
+    """
+    axes = ("poisson", "amplitude", "velocity") if periodic else ("poisson", "velocity")
+    if "poisson" not in dataset.coords and poisson is not None:
+        dataset = dataset.assign_coords(poisson=float(poisson))
+    for name in ("mu_macro", "mu_macro_error", *axes):
+        if name not in dataset.variables:
+            raise InputError(
+                name, None, "friction.at needs it, and the dataset has lost it: keep it"
+            )
+    _refuse_no_numbers(dataset, ("mu_macro", "mu_macro_error", *axes))
+    if dataset["poisson"].ndim and dataset["poisson"].dims != ("poisson",):
+        raise InputError(
+            "poisson",
+            f"over {dataset['poisson'].dims}",
+            "friction.at needs one, or an axis of them",
+        )
+    chosen = dataset[["mu_macro", "mu_macro_error"]].assign(known=_known(dataset))
+    chosen = chosen.compute()
+    for extra in set(chosen.dims) - set(axes):
+        raise InputError(
+            str(extra), f"{chosen.sizes[extra]} entries", "friction.at needs one of them: select it"
+        )
+    for dim in axes:
+        if dim not in chosen.dims:
+            chosen = chosen.expand_dims(dim)
+        if not chosen.sizes[dim]:
+            raise InputError(
+                dim, "no entry", "friction.at needs one at least, and none is selected"
+            )
+    _refuse_contradictions(chosen, axes)
+    chosen = chosen.drop_duplicates(list(axes)).sortby(list(axes)).transpose(*axes)
+    values, errors = (
+        chosen[name].where(chosen["known"]).values.astype(float)
+        for name in ("mu_macro", "mu_macro_error")
+    )
+    if not periodic:
+        values, errors = values[:, None], errors[:, None]
+    amplitude = chosen["amplitude"].values.astype(float) if periodic else np.zeros(1)
+    poissons, velocity = (chosen[dim].values.astype(float) for dim in ("poisson", "velocity"))
+    nodes = Nodes(poissons, amplitude, velocity, values, errors)
+    _refuse_impossible(nodes)
+    return nodes
+
+
+def _refuse_no_numbers(dataset, names):
+    for name in names:
+        kind = dataset[name].dtype
+        if kind.kind not in "iuf":
+            raise InputError(name, f"of type {kind}", "friction.at needs numbers there")
+
+
+def _refuse_contradictions(chosen, axes):
+    """Of nodes that are there twice, as after a join, one is taken: they have to be the same."""
+    for axis in axes:
+        values = chosen[axis].values
+        _, first = np.unique(values, return_index=True)
+        twice = np.setdiff1d(np.arange(len(values)), first)
+        for index in twice:
+            one = chosen.isel({axis: int(np.flatnonzero(values == values[index])[0])})
+            other = chosen.isel({axis: index})
+            both = one["known"] & other["known"]
+            apart = np.abs(one["mu_macro"] - other["mu_macro"]).where(both, 0.0)
+            allowed = one["mu_macro_error"] + other["mu_macro_error"]
+            if bool((apart > allowed).any()):
+                raise InputError(
+                    axis,
+                    float(values[index]),
+                    "is there twice with mu_macro that differ by more than their errors: keep one",
+                )
+
+
+def _refuse_impossible(nodes):
+    """Coordinates, or values by more than their errors, that no sweep can have."""
+    for name, top in (("poisson", 0.5 + SAME), ("amplitude", np.inf), ("velocity", np.inf)):
+        axis = getattr(nodes, name)
+        wrong = axis[~(np.isfinite(axis) & (axis >= 0.0) & (axis <= top))]
+        if wrong.size:
+            allowed = "0 to 0.5" if name == "poisson" else "a finite number >= 0"
+            raise InputError(name, float(wrong[0]), f"in the dataset; allowed is {allowed}")
+    if (nodes.errors < 0.0).any():
+        raise InputError(
+            "mu_macro_error", float(np.nanmin(nodes.errors)), "in the dataset; allowed is 0 or more"
+        )
+    _refuse_values(nodes, -1.0)
+
+
+def refuse_negative(nodes: Nodes) -> None:
+    """Raise InputError for mu_macro below 0, where the vibration cannot turn friction round."""
+    _refuse_values(nodes, 0.0)
+
+
+def _refuse_values(nodes, least):
+    """Raise InputError for mu_macro outside of least to 1: the force is at most mu F_z."""
+    off = np.fmax(nodes.values - 1.0, least - nodes.values) > nodes.errors + SAME
+    if off.any():
+        raise InputError(
+            "mu_macro", float(nodes.values[off][0]), f"in the dataset; allowed is {least:g} to 1"
+        )
+
+
+def _known(dataset):
+    """Which nodes converged."""
+    if "converged" in dataset:
+        return dataset["converged"] == 1  # not what a join has filled in
+    if "tolerance" not in dataset.attrs:
+        raise InputError(
+            "converged", None, "friction.at needs it, and the dataset has lost it: keep it"
+        )
+    tolerance = dataset.attrs["tolerance"]
+    try:
+        return dataset["mu_macro_error"] <= float(tolerance)
+    except (TypeError, ValueError):
+        raise InputError(
+            "tolerance", tolerance, "friction.at needs a number there, or the variable converged"
+        ) from None

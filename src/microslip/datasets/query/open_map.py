@@ -1,0 +1,109 @@
+"""Questions to a finished sweep.
+
+    friction = microslip.open_map("transverse")
+    friction.mu_macro.sel(velocity=0.1, method="nearest")     # plain xarray
+    friction.friction.at(velocity=0.05, amplitude=0.8)        # a value and a bound of its error
+    microslip.open_map("transverse", group="history")         # what has axes of its own
+
+`interpolation` holds the rule and its error, `beyond` what is known where a map ends, `accessor`
+asks both.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import xarray as xr
+
+from microslip.config.records import SCENE_OF_SWEEP
+from microslip.datasets.netcdf import group_names
+from microslip.datasets.query.accessor import SOURCES, Friction
+from microslip.foundation.errors import InputError
+from microslip.sweeps.cache import CacheError, is_damaged, refuse_no_folder
+
+__all__ = ["SOURCES", "Friction", "open_map"]
+
+
+def open_map(
+    name: str | os.PathLike[str],
+    results: str | os.PathLike[str] = "results",
+    chunks=None,
+    *,
+    group: str | None = None,
+) -> xr.Dataset:
+    """Open the dataset of a sweep, with the accessor ``friction`` for certified answers.
+
+    Parameters
+    ----------
+    name : str or path
+        transverse, bore, continuous_bore or another sweep of the configuration, or the path of such
+        a dataset.
+    results : str or path
+        Folder that the workflow wrote to.
+    chunks : as for xarray.open_dataset
+        {} for dask.
+    group : str, optional
+        Part of the file with axes of its own, instead of the map: velocity_curves and
+        amplitude_curves (limits from theory on fine axes), history (Figure 1), field (Figure 3),
+        transients (Figure 5), as far as the sweep has them.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensionless; a group has the attributes of the map besides its own title.
+
+    Raises
+    ------
+    InputError
+        For another name or group.
+    CacheError
+        One line, for a file that is missing, damaged, or not from a sweep.
+    """
+    if not (isinstance(name, str | os.PathLike) and isinstance(os.fspath(name), str)):
+        raise InputError("name", name, "allowed is the name of a sweep, or a path")
+    if not isinstance(results, str | os.PathLike):
+        raise InputError("results", results, "is not allowed; allowed: the name of a folder")
+    refuse_no_folder(results)
+    try:
+        return _found(name, results, chunks, group)
+    except OSError as error:  # damage inside a file, or a name that no file can have
+        why = " ".join((error.strerror or str(error)).split())[:120]
+        raise CacheError(
+            f"cannot read the dataset {name!s} of {results!s}: {why}; allowed: a netCDF file as "
+            "the workflow makes it: run it again"
+        ) from None
+
+
+def _found(name, results, chunks, group):
+    path = Path(name)
+    if path.suffix != ".nc":
+        path = Path(results, f"{name}.nc")
+        if str(name) not in SCENE_OF_SWEEP and not path.is_file():
+            raise InputError(
+                "name",
+                name,
+                f"allowed is {', '.join(SCENE_OF_SWEEP)}, another sweep of which {results} has the "
+                "dataset, or a path",
+            )
+    if not path.is_file():
+        raise CacheError(f"{path} is not there: run the workflow first, or name its results folder")
+    if is_damaged(path):
+        raise CacheError(f"{path} is damaged: run the workflow again, which makes it anew")
+    dataset = _opened(path, chunks=chunks)
+    if "scene" not in dataset.attrs or "mu_macro" not in dataset:
+        dataset.close()
+        raise CacheError(f"{path} is not the dataset of a sweep")
+    if group is None:
+        return dataset
+    if group not in (known := group_names(path)):
+        raise InputError("group", group, f"allowed is one of {', '.join(known) or 'none'}")
+    part = _opened(path, chunks=chunks, group=group)
+    return part.assign_attrs(dataset.attrs | part.attrs)
+
+
+def _opened(path, **how):
+    dataset = xr.open_dataset(path, engine="netcdf4", **how)
+    for variable in dataset.variables.values():
+        variable.encoding.pop("original_shape", None)  # else xarray warns when a part is saved
+    return dataset

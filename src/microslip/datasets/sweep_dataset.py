@@ -1,0 +1,241 @@
+"""Results of a sweep as an xarray Dataset, and onto disk.
+
+Every dataset follows the CF conventions, holds the paper's limits as variables of their own and
+says what made it. The root of a file is the map alone; finer curves and single runs are in groups
+(see `netcdf`). All quantities are dimensionless. The same results give the same bytes: nothing in a
+file depends on when, where or in how many jobs it was made.
+"""
+
+import netCDF4
+import numpy as np
+import xarray as xr
+
+import microslip
+from microslip.config.extended import solver_names
+from microslip.datasets import netcdf, point_variables, theory_limits
+from microslip.foundation import named_files, source_digest
+from microslip.motions.registry import scene_named
+from microslip.sweeps.cache import writing_beside
+from microslip.sweeps.keys import canonical_json
+from microslip.theory import paper
+
+CONVENTIONS = "CF-1.11"
+PAPER = "R. Pohrt, Front. Mech. Eng. 6:566440 (2020), doi:10.3389/fmech.2020.566440"
+
+VELOCITY = {
+    "transverse": "forward velocity over angular frequency and u_lim (Eq 4)",
+    "bore": "forward velocity over largest rotational velocity of the contact's edge (Eq 28)",
+    "continuous-bore": "forward velocity over rotational velocity of the contact's edge (Eq 13)",
+}
+AMPLITUDE = {
+    "transverse": "amplitude of the transverse oscillation over u_lim (Eq 2)",
+    "bore": "amplitude of the rotation over the one that leaves the stick radius a/2 (Eq 27)",
+}
+
+
+def write_sweep(path, sweep, points, histories, settings):
+    """Write the dataset of a sweep to the netCDF-4 file `path`, all of it or nothing.
+
+    sweep: settings.Sweep. points: records in the order of sweep.PointRequests, any iterable; it is
+    read a block at a time, so that memory does not grow with their number. histories: records
+    in the order of sweep.history_requests. settings: dict of the configuration that led here, kept
+    as provenance. The root has dims (amplitude, velocity), those of them that the scene has, and
+    poisson before them if that is an axis; what has other axes is in GROUPS. The same results give
+    the same bytes. Raises ValueError if there are not as many points as the grid has, CacheError as
+    `write` does.
+    """
+    axes = _axes(sweep)
+    scene, pressure = solver_names(sweep)
+    title = sweep.title or f"Friction of a vibrated Hertz contact, scene {scene}"
+    tolerance = np.nan if sweep.tolerance is None else sweep.tolerance
+    about = {"scene": scene, "pressure": pressure, "tolerance": tolerance}
+    if named_files.base_name(pressure):
+        about["pressure_file"] = named_files.base_name(pressure)
+    if sweep.group is not None:
+        about["group"] = sweep.group
+    failed = [record for record in histories if record["result"].get("crashed")]
+    if failed:
+        reasons = (f"{r['request']['kind']}: {r['result']['reason']}" for r in failed)
+        about["single_runs_failed"] = "; ".join(reasons)
+    versions = {canonical_json(record["versions"]) for record in histories}
+    with writing_beside(path, sealed=True) as beside:
+        netcdf.write(beside, _root(sweep), _parts(sweep, histories))
+        with netCDF4.Dataset(beside, "a") as file:
+            versions |= point_variables.append(file, sweep, axes, points)
+            file.setncatts(provenance(title, settings, versions, **about))
+
+
+GROUPS = {
+    "velocity_curves": "Limits from theory on a fine axis of velocities",
+    "amplitude_curves": "Limits from theory on a fine axis of amplitudes",
+    "history": "Forces over time, the data of Figure 1",
+    "field": "Tractions all over the contact, the data of Figure 3",
+    "transients": "Forces on the way to steady motion, the data of Figure 5",
+}
+"""Groups in the file of a sweep, as far as its scene has them, and their titles."""
+
+
+def _root(sweep):
+    """Dataset of the axes and the limits on them, without the points."""
+    coords = {name: (name, np.array(values)) for name, values in _axes(sweep).items()}
+    if not sweep.poisson_is_axis:
+        coords["poisson"] = ((), sweep.poisson[0])
+    dataset = xr.Dataset(theory_limits.variables(sweep), coords)
+    _describe_axes(dataset, sweep)
+    return dataset
+
+
+def _parts(sweep, histories):
+    """Datasets of GROUPS by name, those that have anything."""
+    found = theory_limits.curves(sweep) | _single_runs(sweep, histories)
+    about = {"scene": solver_names(sweep)[0]}
+    return {
+        name: xr.Dataset(found[name], attrs={"title": title} | about)
+        for name, title in GROUPS.items()
+        if name in found
+    }
+
+
+def provenance(title, settings, versions, **more):
+    """Attributes that say what made a dataset; settings: dict, kept as JSON; versions: set of
+    texts, those of the libraries behind its results."""
+    return {
+        "Conventions": CONVENTIONS,
+        "title": title,
+        "references": PAPER,
+        "microslip_version": microslip.__version__,
+        "source_digest": source_digest.of_solver(),
+        "configuration": canonical_json(settings),
+        "library_versions": "; ".join(sorted(versions)),
+    } | more
+
+
+def write(dataset, path, groups=None):
+    """Write a Dataset to the netCDF-4 file `path`, all of it or nothing.
+
+    groups: those of its dims that are to be in groups of the file, as for `netcdf.divided`.  The
+    same dataset gives the same bytes. Raises CacheError, one line that says what to do, on a full
+    disk, a read-only folder and the like.
+    """
+    with writing_beside(path, sealed=True) as beside:
+        netcdf.write(beside, *netcdf.divided(dataset, groups or {}))
+
+
+def report(dataset, name=None):
+    """Lines of text: how many points there are and, one each, those that did not converge.
+
+    name: of the sweep, that of its scene unless told.
+    """
+    converged = dataset["converged"]
+    bad = np.argwhere(~converged.values)
+    yield f"{name or dataset.scene}: {converged.size} points, {len(bad) or 'none'} not converged"
+    for index in bad:
+        point = dataset.isel(dict(zip(converged.dims, index, strict=True)))
+        where = ", ".join(f"{dim} {float(point[dim]):g}" for dim in converged.dims)
+        yield f"  not converged: {where}: {point['reason'].item()}"
+    if "single_runs_failed" in dataset.attrs:
+        yield f"  single runs left out: {dataset.single_runs_failed}"
+
+
+def _axes(sweep):
+    axes = {"poisson": sweep.poisson} if sweep.poisson_is_axis else {}
+    if sweep.amplitude is not None:
+        axes["amplitude"] = sweep.amplitude
+    return axes | {"velocity": sweep.velocity}
+
+
+def _describe_axes(dataset, sweep):
+    """Name the axes; `formula` is what a coordinate is, in the words of the scene."""
+    scene = scene_named(sweep.scene)
+    names = {"velocity": (VELOCITY, "forward velocity", scene.velocity_label)}
+    if sweep.amplitude is not None:
+        names["amplitude"] = (AMPLITUDE, "amplitude", scene.amplitude_label)
+    for name, (of_paper, quantity, formula) in names.items():
+        said = {"long_name": f"{quantity}, {formula}", "units": "1", "formula": formula}
+        if scene.name in of_paper:
+            said["description"] = of_paper[scene.name]
+        dataset[name].attrs = said
+    dataset["poisson"].attrs = {"long_name": "Poisson's ratio", "units": "1"}
+
+
+# Single runs, the data of Figures 1, 3 and 5
+
+
+def _single_runs(sweep, records):
+    """Variables of the groups of single runs, a dict of dicts."""
+    if not records or any(record["result"].get("crashed") for record in records):
+        return {}  # see `report`
+    if sweep.scene == "transverse":
+        return {"history": _force_history(records[0])}
+    fields = [record for record in records if record["request"]["kind"] == "field"]
+    transients = [record for record in records if record not in fields]
+    return {"field": _traction_field(fields[0]), "transients": _transients(transients)}
+
+
+def _force_history(record):
+    result, request = record["result"], record["request"]
+    step, friction = "history_step", "friction force over mu F_z"
+    return {
+        "history_phase": _variable(step, result["phase"], "phase of the oscillation", "rad"),
+        "history_force_forward": _variable(step, result["force_forward"], f"forward {friction}"),
+        "history_force_lateral": _variable(step, result["force_lateral"], f"lateral {friction}"),
+        "history_velocity": _variable((), request["velocity"], "forward velocity of the history"),
+        "history_amplitude": _variable((), request["amplitude"], "amplitude of the history"),
+    }
+
+
+FIELD = {
+    "lateral_position": "lateral position over a",
+    "forward_position": "forward position over a",
+    "traction_lateral": "lateral traction over mu F_z/a^2",
+    "traction_forward": "forward traction over mu F_z/a^2",
+    "bound": "friction bound over mu F_z/a^2",
+}
+
+
+def _traction_field(record):
+    result, velocity = record["result"], record["request"]["velocity"]
+    centre = "centre of rotation, lateral, over a"
+    variables = {f"field_{name}": _variable("cell", result[name], FIELD[name]) for name in FIELD}
+    return variables | {
+        "field_velocity": _variable((), velocity, "forward velocity of the traction field"),
+        "field_centre_lateral": _variable((), result["centre_lateral"], centre),
+    }
+
+
+def _transients(records):
+    velocity = float(records[0]["request"]["velocity"])
+    starts = [record["request"]["start"] for record in records]
+    dims = ("start", "transient_step")
+    rows = {
+        name: np.array([record["result"][name] for record in records], float)
+        for name in ("displacement_forward", "force_forward", "torque")
+    }
+    force, torque = "forward friction force over mu F_z", point_variables.TORQUE
+    return {
+        "start": ("start", starts, {"long_name": "initial state of the transient"}),
+        "transient_displacement": _variable(
+            dims, rows["displacement_forward"], "forward travel over u_lim"
+        ),
+        "transient_force_forward": _variable(dims, rows["force_forward"], force),
+        "transient_torque": _variable(
+            dims, rows["torque"], torque, description=point_variables.DESCRIPTIONS["mu_torque"]
+        ),
+        "transient_velocity": _variable((), velocity, "forward velocity of the transients"),
+        "transient_force_theory": _variable(
+            (),
+            paper.bore_forward(velocity),
+            "steady forward force (Eq 21)",
+            description=f"steady {force} (Eq 21)",
+        ),
+        "transient_torque_theory": _variable(
+            (),
+            paper.bore_torque(velocity),
+            "steady torque (Eq 22)",
+            description=f"steady {point_variables.DESCRIPTIONS['mu_torque']} (Eq 22)",
+        ),
+    }
+
+
+def _variable(dims, values, long_name, units="1", **more):
+    return dims, np.array(values, float), {"long_name": long_name, "units": units} | more

@@ -1,0 +1,1 @@
+"""What every room stands on: bad input, names with numbers, compiled functions, sources."""

@@ -1,0 +1,49 @@
+"""Checks of numbers handed in by Python: which types count, and in what range."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from microslip.foundation.errors import InputError
+
+LARGEST = {"velocity": 1e6, "amplitude": 1e6, "cells": 1000, "steps": 1_000_000}
+"""What is larger is a slip, and would run out of memory or of the range of floating-point numbers;
+a test keeps them as in the schema of configurations."""
+
+
+def is_real(value: object) -> bool:
+    """Whether a value is a real number; a span of time is none, which NumPy counts as whole."""
+    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(
+        value, bool | np.timedelta64
+    )
+
+
+def is_whole(value: object) -> bool:
+    """Whether a value is of a type of whole numbers."""
+    return is_real(value) and isinstance(value, int | np.integer)
+
+
+def real(name: str, value: object, low: float, high: float = math.inf) -> float:
+    """A finite number from low to high, as a float; raises InputError for anything else."""
+    if not is_real(value):
+        raise InputError(name, value, "allowed is a number")
+    try:
+        number = float(value)
+    except OverflowError:  # a whole number of more than 308 digits
+        number = math.inf
+    if not (math.isfinite(number) and low <= number <= high):
+        upper = f" and at most {high:g}" if high < math.inf else ""
+        raise InputError(name, value, f"allowed is a finite number of at least {low:g}{upper}")
+    return number
+
+
+def count(name: str, value: object, low: int, *, most: int, even: bool = False) -> int:
+    """A whole number from low to most, as an int; raises InputError for anything else."""
+    if not is_whole(value) or not low <= value <= most:
+        kind = "an even whole number" if even else "a whole number"
+        raise InputError(name, value, f"allowed is {kind} of at least {low} and at most {most:g}")
+    if even and value % 2:
+        raise InputError(name, value, "allowed is an even number (half of it is run, too)")
+    return int(value)

@@ -1,0 +1,90 @@
+"""Names with numbers: "elliptic:forward=0.5,phase=90" is the name elliptic and two numbers."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+
+from microslip.foundation.errors import InputError
+
+NUMBER = re.compile(
+    r"[+-]?(([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?|inf|infinity|nan)", re.ASCII | re.IGNORECASE
+)
+WHOLE = re.compile(r"[+-]?[0-9]{1,18}", re.ASCII)
+MINUS = "\N{MINUS SIGN}"
+
+
+def read(argument: str, text: str, whole: bool = False) -> float | int:
+    """The number that a text is: what Python writes for one, digit by digit.
+
+    Underscores, digits of other scripts and a comma for the point are none of it; spaces around it
+    and a typographic minus, as copied from a page, do no harm.
+
+    Parameters
+    ----------
+    argument
+        Name of what the number is for.
+    text
+        The number, perhaps infinite or NaN.
+    whole
+        Whether it has to be a whole number, and is returned as int.
+
+    Raises
+    ------
+    InputError
+        For any other text.
+    """
+    plain = text.strip().replace(MINUS, "-", 1)
+    if (WHOLE if whole else NUMBER).fullmatch(plain):
+        return int(plain) if whole else float(plain)
+    hint = plain.replace(",", ".")
+    if not whole and "," in plain and NUMBER.fullmatch(hint):
+        raise InputError(argument, text, f"allowed is a number with a point: {hint}")
+    raise InputError(argument, text, f"allowed is a {'whole ' if whole else ''}number")
+
+
+def split(text, what, names):
+    """Name and numbers (dict) in a text; raises InputError about ``what`` if the name is none of
+    ``names`` or the numbers cannot be read."""
+    name, colon, rest = text.partition(":")
+    if name not in names:
+        near = difflib.get_close_matches(name, names, n=1)
+        hint = f"did you mean {near[0]}? " if near else ""
+        raise InputError(what, text, f"{hint}allowed is one of {', '.join(names)}")
+    numbers = {}
+    for part in rest.split(",") if colon else ():
+        key, equals, value = (word.strip() for word in part.partition("="))
+        if key in numbers:
+            raise InputError(what, text, f"{key} occurs twice; allowed: each number once")
+        try:
+            numbers[key] = read(key, value)
+        except InputError:
+            numbers[key] = math.nan
+        if not (key and equals and math.isfinite(numbers[key])):
+            raise InputError(what, text, f"allowed are numbers as in {name}:key=0.5")
+    return name, numbers
+
+
+def refuse_unknown(text, what, numbers, known):
+    """Raise InputError about ``what`` for a number that a name does not take."""
+    strange = sorted(numbers.keys() - set(known))
+    if strange:
+        allowed = ", ".join(known) or "none"
+        raise InputError(what, text, f"unknown number {strange[0]}; allowed: {allowed}")
+
+
+def refuse_shares(text, what, shares):
+    """Raise InputError about ``what`` for a share outside 0..1; shares: dict."""
+    for key, share in shares.items():
+        if not 0.0 <= share <= 1.0:
+            raise InputError(what, text, f"{key} = {share:g}: allowed is a share in 0..1")
+
+
+def refuse_counts(text, what, counts, most):
+    """... for what is no whole number from 1 to ``most``; counts: dict."""
+    for key, count in counts.items():
+        if count != round(count) or not 1 <= count <= most:
+            raise InputError(
+                what, text, f"{key} = {count:g}: allowed is a whole number from 1 to {most}"
+            )

@@ -1,8 +1,0 @@
-"""No acceleration: period after period, until the state repeats itself."""
-
-from __future__ import annotations
-
-from microslip.method import Method
-from microslip.methods import _searches
-
-METHOD = Method("plain march to the periodic state", search=_searches.march, prepared=False)

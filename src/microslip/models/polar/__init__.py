@@ -1,0 +1,1 @@
+"""The contact on rings and angular modes: rotation, and nu > 0."""

@@ -1,0 +1,266 @@
+"""The influence operator on rings x angles, cut into the pieces that symmetry keeps apart.
+
+Points sit on half the disc at theta_j = (j + 1/2) pi / M.  The mirror theta -> pi - theta maps them
+onto themselves and commutes with the operator, so *folded* tractions, the parts that are even and
+odd under it on the first M/2 angles, split into sectors that do not see each other: even forward
+with odd lateral and the reverse, and at nu = 0 all four by themselves.  Each sector is applied as
+one dense matrix while that is small, through its angular modes otherwise.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from microslip.foundation.compiled import kernel
+from microslip.models.rings.influence import ring_influence
+from microslip.models.rings.mesh import make_rings
+from microslip.pressures.registry import HERTZ
+
+FUSED = {"fastmath": {"contract"}}
+"""Allows fused multiply-add, which keeps the order of operations."""
+LARGEST_DENSE = 96
+"""Unknowns in a sector up to which its dense matrix is faster than its modes."""
+EVEN_FORWARD, ODD_LATERAL, ODD_FORWARD, EVEN_LATERAL = range(4)
+"""Order of the folded parts: sectors are neighbours in memory."""
+
+
+class Sectors(NamedTuple):
+    """An operator on folded tractions (4, M/2, N), for compiled code.
+
+    dense: transposed sector matrices (sectors, n, n), or no sectors where the modes are used;
+    to_modes, to_points: (sectors, Z, Z) between the folded angles of a sector and its modes;
+    members: modes that a block couples, (sectors, blocks, 2), second -1 if single, first -1 if
+    there is no such block; blocks: transposed, (sectors, blocks, b N, b N).
+    """
+
+    dense: np.ndarray
+    to_modes: np.ndarray
+    to_points: np.ndarray
+    members: np.ndarray
+    blocks: np.ndarray
+
+
+@kernel
+def fold(x, out):
+    """Even and odd parts (4, M/2, N) of tractions (2, M, N)."""
+    last = x.shape[1] - 1
+    for j in range(out.shape[1]):
+        for i in range(out.shape[2]):
+            out[0, j, i] = 0.5 * (x[0, j, i] + x[0, last - j, i])
+            out[1, j, i] = 0.5 * (x[1, j, i] - x[1, last - j, i])
+            out[2, j, i] = 0.5 * (x[0, j, i] - x[0, last - j, i])
+            out[3, j, i] = 0.5 * (x[1, j, i] + x[1, last - j, i])
+
+
+@kernel
+def unfold(x, out):
+    """Tractions (2, M, N) from their folded parts."""
+    last = out.shape[1] - 1
+    for j in range(x.shape[1]):
+        for i in range(x.shape[2]):
+            out[0, j, i] = x[0, j, i] + x[2, j, i]
+            out[0, last - j, i] = x[0, j, i] - x[2, j, i]
+            out[1, j, i] = x[3, j, i] + x[1, j, i]
+            out[1, last - j, i] = x[3, j, i] - x[1, j, i]
+
+
+@kernel(**FUSED)
+def _add_columns(matrix, given, result):
+    """result += matrix^T given, eight columns at a time (which the compiler vectorises)."""
+    n = len(given)
+    for j in range(0, n - 7, 8):
+        a, b, c, d = given[j], given[j + 1], given[j + 2], given[j + 3]
+        e, f, g, h = given[j + 4], given[j + 5], given[j + 6], given[j + 7]
+        m = matrix[j : j + 8]
+        for i in range(len(result)):
+            one = m[0, i] * a + m[1, i] * b + m[2, i] * c + m[3, i] * d
+            two = m[4, i] * e + m[5, i] * f + m[6, i] * g + m[7, i] * h
+            result[i] += one + two
+    for j in range(n - n % 8, n):
+        a = given[j]
+        for i in range(len(result)):
+            result[i] += matrix[j, i] * a
+
+
+@kernel(**FUSED)
+def _transform(matrix, x, out):
+    """out = matrix x for short rows of x; x, out: (Z, N)."""
+    out[:] = 0.0
+    for k in range(matrix.shape[0]):
+        for j in range(matrix.shape[1]):
+            a, source, target = matrix[k, j], x[j], out[k]
+            for i in range(len(target)):
+                target[i] += a * source[i]
+
+
+@kernel(**FUSED)
+def apply_sectors(sectors, x, out):
+    """Apply an operator to folded tractions x, all (4, M/2, N)."""
+    dense, to_modes, to_points, members, blocks = sectors
+    n = x.shape[2]
+    out[:] = 0.0
+    if dense.shape[0] > 0:
+        given = x.reshape(dense.shape[0], dense.shape[1])
+        result = out.reshape(dense.shape[0], dense.shape[1])
+        for s in range(dense.shape[0]):
+            _add_columns(dense[s], given[s], result[s])
+        return
+    count, z = to_modes.shape[0], to_modes.shape[1]
+    given, result = x.reshape(count, z, n), out.reshape(count, z, n)
+    modes, images = np.empty((z, n)), np.empty((z, n))
+    for s in range(count):
+        _transform(to_modes[s], given[s], modes)
+        images[:] = 0.0
+        if blocks.shape[2] == n:
+            for k in range(z):
+                _add_columns(blocks[s, k], modes[k], images[k])
+        else:
+            _add_pairs(members[s], blocks[s], modes, images)
+        _transform(to_points[s], images, result[s])
+
+
+@kernel
+def _add_pairs(members, blocks, modes, images):
+    """Apply the blocks of coupled modes."""
+    n = modes.shape[1]
+    pair, image = np.zeros(2 * n), np.empty(2 * n)
+    for k in range(members.shape[0]):
+        first, second = members[k]
+        if first < 0:
+            continue
+        for i in range(n):
+            pair[i] = modes[first, i]
+            pair[n + i] = modes[second, i] if second >= 0 else 0.0
+        image[:] = 0.0
+        _add_columns(blocks[k], pair, image)
+        for i in range(n):
+            images[first, i] += image[i]
+            if second >= 0:
+                images[second, i] += image[n + i]
+
+
+def _waves(angles, rotates, coupled):
+    """Angular functions, each as (key, folded parts (4, M/2)), grouped by sector.
+
+    key (m, part) names the mode: at nu > 0 the complex wave e^{i m theta} of forward - i lateral
+    times 1 (part 0) or i (part 1); at nu = 0 a cosine (part 0) or sine (part 1) of one component.
+    Part 2: the shortest sine, which has no cosine beside it.
+    """
+    half = angles // 2
+    theta = (np.arange(half) + 0.5) * np.pi / angles
+    groups = [[] for _ in range(2 if coupled else 4)]
+
+    def add(key, wave, parts):
+        out = np.zeros((4, half))
+        for part in parts:
+            out[part] = (wave.real, -wave.imag, wave.real, -wave.imag)[part]
+        groups[parts[0] // 2 if coupled else parts[0]].append((key, out))
+
+    if not coupled:
+        for m in range(0, angles, 1 if rotates else 2):
+            cosine = np.exp(1j * m * theta)
+            add((m, 0), cosine.real, [EVEN_FORWARD if m % 2 == 0 else ODD_FORWARD])
+            m = m + 1 if rotates else m + 2
+            sine = np.sin(m * theta)
+            add((m, 1), -1j * sine, [EVEN_LATERAL if m % 2 else ODD_LATERAL])
+            if not rotates:
+                add((m, 1), sine + 0j, [ODD_FORWARD])
+                add((m - 2, 0), -1j * cosine.real, [EVEN_LATERAL])
+        return groups
+    even, odd = [EVEN_FORWARD, ODD_LATERAL], [ODD_FORWARD, EVEN_LATERAL]
+    if rotates:
+        for m in range(1 - angles, angles):
+            add((m, 0), np.exp(1j * m * theta), even if m % 2 == 0 else odd)
+        add((angles, 2), 1j * np.sin(angles * theta), even if angles % 2 == 0 else odd)
+        return groups
+    first = -(angles // 2) + (1 - angles % 2)
+    for k in range(first, first + angles):
+        for part in (0, 1):
+            add((2 * k, part), np.exp(2j * k * theta) * (1, 1j)[part], odd if part else even)
+    return groups
+
+
+def _mode_blocks(keys, near, far, kappa, ratio):
+    """Members and influence blocks of the modes ``keys`` (nu > 0: m and 2 - m together)."""
+    index = {key: k for k, key in enumerate(keys)}
+    members, blocks = [], []
+    for k, (m, part) in enumerate(keys):
+        partner = index.get((2 - m, part)) if kappa > 0.0 and part < 2 else None
+        sign = -kappa if part == 0 else kappa
+        if partner is None:
+            members.append((k, -1))
+            blocks.append(near[abs(m)])
+        elif partner == k:
+            members.append((k, -1))
+            blocks.append(near[1] + 0.5 * sign * (far[0] + far[0].T * ratio.T))
+        elif m > 2 - m:
+            members.append((k, partner))
+            cross = sign * far[m - 1]
+            blocks.append(np.block([[near[m], cross], [cross.T * ratio.T, near[abs(2 - m)]]]))
+    return members, blocks
+
+
+@lru_cache(maxsize=32)
+def influence_sectors(cells, angles, rotates, poisson, focus, pressure=HERTZ):
+    """The operator (a Sectors that keeps its modes) and the self-influence of each ring (N,)."""
+    kappa = poisson / (2.0 - poisson)
+    rings = make_rings(cells, focus, pressure)
+    near, far = ring_influence(rings.psi, angles + 1, poisson > 0.0, modulus=pressure.G_star)
+    ratio = rings.area[:, None] / rings.area[None, :]  # the transpose in the area-weighted product
+    groups = _waves(angles, rotates, poisson > 0.0)
+    z = len(groups[0])
+    to_points = np.zeros((len(groups), z, z))
+    found = []
+    for s, group in enumerate(groups):
+        rows = [part for part in range(4) if any(wave[part].any() for _, wave in group)]
+        to_points[s] = np.stack([wave[rows].ravel() for _, wave in group], axis=1)
+        found.append(_mode_blocks([key for key, _ in group], near, far, kappa, ratio))
+    most = max(len(members) for members, _ in found)
+    size = max(len(block) for _, blocks in found for block in blocks)
+    members = np.full((len(groups), most, 2), -1)
+    packed = np.zeros((len(groups), most, size, size))
+    for s, (pairs, blocks) in enumerate(found):
+        members[s, : len(pairs)] = pairs
+        for k, block in enumerate(blocks):
+            packed[s, k, : len(block), : len(block)] = block.T
+    none = np.zeros((0, 0, 0))
+    operator = Sectors(none, np.linalg.inv(to_points), to_points, members, packed)
+    return operator, np.ascontiguousarray(np.diag(near[0]))
+
+
+def shifted_inverse(operator, shift):
+    """(A + shift)^-1 of an operator that keeps its modes; shift: one number for each ring, (N,)."""
+    blocks, n = np.zeros_like(operator.blocks), len(shift)
+    for s, pairs in enumerate(operator.members):
+        for k, (first, second) in enumerate(pairs):
+            size = 0 if first < 0 else n if second < 0 else 2 * n
+            added = np.diag(np.tile(shift, size // n))
+            blocks[s, k, :size, :size] = np.linalg.inv(operator.blocks[s, k, :size, :size] + added)
+    return operator._replace(blocks=blocks)
+
+
+def scaled(operator, factor):
+    """The operator times a number."""
+    return operator._replace(dense=operator.dense * factor, blocks=operator.blocks * factor)
+
+
+def quickest(operator):
+    """The same operator in the form that is applied fastest at its size."""
+    sectors, z = operator.to_modes.shape[:2]
+    rings = operator.blocks.shape[2] // (1 if (operator.members[:, :, 1] < 0).all() else 2)
+    size = z * rings
+    if size > LARGEST_DENSE:
+        return operator
+    dense = np.empty((sectors, size, size))
+    unit = np.zeros((4, sectors * z // 4, rings))
+    image = np.empty_like(unit)
+    for s in range(sectors):
+        for j in range(size):
+            unit[:] = 0.0
+            unit.reshape(sectors, size)[s, j] = 1.0
+            apply_sectors(operator, unit, image)
+            dense[s, j] = image.reshape(sectors, size)[s]
+    return operator._replace(dense=dense)

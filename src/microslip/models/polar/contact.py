@@ -1,0 +1,146 @@
+"""Rings times angular modes: rotating scenes at any nu, translation at nu > 0.
+
+Points sit on rings at angles theta_j = (j + 1/2) pi / M, theta from the lateral axis; the other
+half of the disc follows from symmetry:
+
+- scenes that rotate: mirror image across the lateral axis (forward traction even, lateral odd);
+- translation: point symmetry, traction(-z) = traction(z), so even modes only.
+
+Coulomb's law is asked for at the points; the elastic operator is block-diagonal in the angular
+modes, one small ring matrix each (two modes m and 2 - m together where nu > 0).  A step is solved
+by ADMM: the quadratic part through the blocks factorised once, the friction bound point by point.
+"""
+
+from __future__ import annotations
+
+from copy import copy
+from functools import lru_cache
+
+import numpy as np
+
+from microslip.models import contact
+from microslip.models.interrupts import unbroken
+from microslip.models.polar import march as polar_march
+from microslip.models.polar.angular_modes import (
+    apply_sectors,
+    fold,
+    influence_sectors,
+    quickest,
+    scaled,
+    shifted_inverse,
+    unfold,
+)
+from microslip.models.rings.contact import RadialContact
+from microslip.models.rings.mesh import make_rings
+from microslip.pressures.registry import HERTZ
+
+PENALTY = 1.0
+"""Augmentation over the self-influence of a ring; iterations double at half and at twice it."""
+
+
+class PolarContact:
+    """``cells`` rings x ``angles`` points on half the disc (see models.contact.Contact).
+
+    rotates: mirror symmetry of rotating scenes, else point symmetry of translations; states:
+    (2, angles, cells).  Raises ValueError where the half disc cannot be filled.
+    """
+
+    has_sensitivity = False
+    sticks = True
+    radius = 1.0
+    loaded = None
+    """Rings that know the bounds while the normal load changes, a RadialContact."""
+
+    def __init__(self, cells, angles, rotates, poisson=0.0, focus=None, pressure=HERTZ):
+        if angles < 2 or angles % 2:
+            raise ValueError(f"angles = {angles}: allowed is an even number of at least 2")
+        self.rings = make_rings(cells, focus, pressure)
+        self.angles, self.rotates, self.stiffness = angles, rotates, pressure.stiffness
+        self.edges = np.sin(self.rings.psi) if pressure.inner == 0.0 else None
+        theta = (np.arange(angles) + 0.5) * np.pi / angles
+        self.lateral_position = np.cos(theta)[:, None] * self.rings.radius
+        self.forward_position = np.sin(theta)[:, None] * self.rings.radius
+        self.bound = self.rings.bound
+        self.weight = self.rings.area / angles
+        key = (cells, angles, rotates, poisson, focus, pressure)
+        self.influence, self.inverse, self.compliance = _prepared(*key)
+        self.penalty = PENALTY * self.compliance
+        self._made_of = cells, focus, pressure
+
+    def pressed(self, deepest, start):
+        """The same points spread over the contact at its ``deepest``, with the bound at ``start``;
+        see RadialContact.pressed."""
+        out = copy(self)
+        out.loaded = RadialContact.resolved(*self._made_of).pressed(deepest, start)
+        out.radius = radius = out.loaded.radius
+        out.forward_position = self.forward_position * radius
+        out.lateral_position = self.lateral_position * radius
+        out.bound, out.weight = out.loaded.bound, self.weight * radius**2
+        out.influence = scaled(self.influence, radius)
+        out.inverse = scaled(self.inverse, 1.0 / radius)
+        out.compliance, out.penalty = self.compliance * radius, self.penalty * radius
+        out.stiffness = self.stiffness * radius
+        return out
+
+    def bounds(self, depths):
+        """Mean friction bound of each ring at each depth, shape (len(depths), cells)."""
+        return self.loaded.bounds(depths)
+
+    def bounds_along(self, path):
+        """Bounds at the start and at every stage of a path, (1 + steps stages, cells)."""
+        return self.loaded.bounds_along(path)
+
+    def at_phases(self, march, start):
+        """Tractions at every phase of a march from ``start``, (steps + 1, 2, angles, cells)."""
+        return start + np.concatenate(
+            [np.zeros((1, *start.shape)), np.cumsum(march.stages[0].sum(axis=1), axis=0)]
+        )
+
+    def displacement(self, state):
+        """A q; shapes (2, angles, cells)."""
+        folded = np.empty((4, self.angles // 2, state.shape[2]))
+        image, out = np.empty_like(folded), np.empty(state.shape)
+        fold(np.ascontiguousarray(state), folded)
+        apply_sectors(self.influence, folded, image)
+        unfold(image, out)
+        return out
+
+    def mirrored(self, state):
+        """theta -> pi - theta, lateral traction negated."""
+        return state[:, ::-1, :] * contact.MIRROR
+
+    def march(self, path, state, tolerance, sensitivity=False, previous=None):
+        """March along ``path``; see models.contact.Contact."""
+        forces = np.zeros((path.steps + 1, 3))
+        if previous is None:
+            stages = np.empty((2, *path.stages.shape[:2], *state.shape))
+        else:
+            stages = previous.stages.copy()
+        state, residual, iterations = unbroken(
+            polar_march.march,
+            self.influence,
+            self.inverse,
+            self.penalty,
+            self.bound[None] if path.depth is None else self.bounds_along(path),
+            self.weight,
+            (self.forward_position, self.lateral_position),
+            (path.positions, path.stages, path.carry, path.end),
+            np.ascontiguousarray(state),
+            tolerance,
+            previous is not None,
+            stages[0],
+            stages[1],
+            forces,
+        )
+        # the half disc that is not resolved cancels what symmetry forbids
+        forces[:, contact.LATERAL if self.rotates else contact.TORQUE] = 0.0
+        solves = path.stages.shape[0] * path.stages.shape[1]
+        return contact.March(state, forces, residual, iterations, solves, stages=stages)
+
+
+@lru_cache(maxsize=32)
+def _prepared(cells, angles, rotates, poisson, focus, pressure):
+    """The operator, (A + penalty)^-1, and the self-influence of each ring."""
+    operator, compliance = influence_sectors(cells, angles, rotates, poisson, focus, pressure)
+    inverse = shifted_inverse(operator, PENALTY * compliance)
+    return quickest(operator), quickest(inverse), compliance

@@ -1,0 +1,1 @@
+"""Models that leave elasticity or partial slip out."""

@@ -1,0 +1,61 @@
+"""The rigid contact: no elasticity, every point slips along its rigid velocity at every instant.
+
+Translation makes it the rigid slider behind Eq 6; rotation the quasi-steady contact behind Eqs 21,
+22 and 29.  There is no state: a march is an evaluation.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.models import contact
+from microslip.models.rings.mesh import make_rings
+from microslip.pressures.registry import HERTZ
+
+GRADING = 0.98
+"""Steps at the turning points, over the mean: the direction turns there within a phase v/y."""
+
+
+class RigidContact:
+    """Points on rings x half-circle angles (one point for translation); see models.contact."""
+
+    has_sensitivity = False
+    sticks = False
+    grading = GRADING
+
+    def __init__(self, cells, angles, rotates, pressure=HERTZ):
+        self.stiffness = pressure.stiffness
+        self.angles = angles if rotates else 1
+        if rotates:
+            rings = make_rings(cells, pressure=pressure)
+            theta = (np.arange(angles) + 0.5) * np.pi / angles
+            self.lateral_position = np.cos(theta)[:, None] * rings.radius
+            self.forward_position = np.sin(theta)[:, None] * rings.radius
+            self.bound, self.weight = rings.bound, rings.area / angles
+        else:
+            self.lateral_position = self.forward_position = np.zeros((1, 1))
+            self.bound = self.weight = np.ones(1)
+        self.compliance = np.ones_like(self.bound)
+
+    def displacement(self, state):
+        """No elastic displacement."""
+        return np.zeros_like(state)
+
+    def mirrored(self, state):
+        """theta -> pi - theta, lateral traction negated."""
+        return state[:, ::-1, :] * contact.MIRROR
+
+    def march(self, path, state, tolerance, sensitivity=False, previous=None):
+        """Forces of full slip along the velocity at each phase of the path."""
+        velocity = np.gradient(path.positions, path.phase, axis=0, edge_order=2)
+        forces = np.empty((path.steps + 1, 3))
+        for k, (forward, lateral, angle) in enumerate(velocity):
+            q = contact.full_slip(
+                self,
+                forward + angle * self.lateral_position,
+                lateral - angle * self.forward_position,
+            )
+            forces[k] = contact.forces(self, q)
+        if self.angles > 1:
+            forces[:, contact.LATERAL] = 0.0  # cancelled by the half disc that is not resolved
+        return contact.March(q, forces, 0.0, 0, path.steps + 1)

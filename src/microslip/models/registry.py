@@ -1,0 +1,153 @@
+"""The model hierarchy: which model resolves which scene, and how well.
+
+| model     | transverse, nu = 0 | transverse, nu > 0 | bore (oscillating, continuous)     |
+|-----------|--------------------|--------------------|------------------------------------|
+| rigid     | approximate, Eq 6  | approximate, Eq 6  | approximate, Eq 29 (steady: exact) |
+| slider    | approximate, Eq 7  | approximate        | not applicable: it cannot turn     |
+| dahl      | approximate        | approximate        | not applicable: it cannot turn     |
+| mdr       | approximate        | approximate        | not applicable: it cannot turn     |
+| radial    | exact (rings)      | not applicable     | not applicable                     |
+| polar     | exact              | exact              | exact (rings x angular modes)      |
+| cartesian | exact              | exact              | exact (squares, any outline)       |
+
+In mdr, radial and polar the normal load may change; for motion along one line at nu = 0 mdr is
+exact then, too.
+
+"Exact" means: converges to the solution of the contact problem as its cells and steps are refined;
+"approximate": leaves out elasticity, partial slip or how points of the contact act on each other,
+and no refinement brings it back.
+
+Every model that marches keeps the contract of ``models.contact.Contact``.  A new one is a file
+beside these and a row in ``MODELS``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from microslip.models.polar.contact import PolarContact
+from microslip.models.reduced.dahl import DahlContact
+from microslip.models.reduced.mdr import mdr_contact
+from microslip.models.reduced.rigid import RigidContact
+from microslip.models.reduced.slider import slider_contact
+from microslip.models.rings.contact import RadialContact
+from microslip.models.squares.contact import CartesianContact
+
+
+@dataclass(frozen=True)
+class Model:
+    """How a model is built and where it applies.
+
+    build(scene, poisson, cells, angles, focus) -> Contact; refuses(scene, poisson) -> reason or "";
+    exact(scene) -> whether refinement converges to the truth; axes(scene) -> what of its space can
+    be refined: "cells", "angles".
+    """
+
+    build: Callable
+    refuses: Callable
+    exact: Callable
+    axes: Callable
+
+
+LOAD_CHANGES = "it knows a constant normal load alone"
+
+
+def _refuse_pulsation(scene, poisson):
+    return LOAD_CHANGES if scene.depth is not None else ""
+
+
+def _refuse_other_loads(scene, poisson):
+    if scene.depth is None or scene.pressure.is_indenter:
+        return ""
+    return f"the load of axisymmetric indenters may change, not that of {scene.pressure.name}"
+
+
+def _any_of(*refusals):
+    """What the first refusal says that says something."""
+    return lambda scene, poisson: next(filter(None, (r(scene, poisson) for r in refusals)), "")
+
+
+def _refuse_rings(scene, poisson):
+    if not scene.pressure.is_round:
+        return f"rings cannot resolve the pressure {scene.pressure.name}"
+    if scene.rotates:
+        return "rings alone cannot resolve a rotation"
+    return "rings alone cannot resolve nu > 0" if poisson > 0.0 else ""
+
+
+def _refuse_rotation(scene, poisson):
+    return "it has no extension that could turn" if scene.rotates else ""
+
+
+def _refuse_springs(scene, poisson):
+    if not scene.pressure.is_indenter:
+        return f"it is known for axisymmetric indenters only, not for {scene.pressure.name}"
+    return _refuse_rotation(scene, poisson)
+
+
+def _refuse_half_disc(scene, poisson):
+    if not scene.pressure.is_round:
+        return f"rings cannot resolve the pressure {scene.pressure.name}"
+    return "" if scene.half_disc else "half of the contact does not tell the other half"
+
+
+def _refuse_rigid(scene, poisson):
+    return _refuse_half_disc(scene, poisson) if scene.rotates else ""
+
+
+MODELS = {
+    "rigid": Model(
+        build=lambda scene, poisson, cells, angles, focus: RigidContact(
+            cells, angles, scene.rotates, scene.pressure
+        ),
+        refuses=_any_of(_refuse_pulsation, _refuse_rigid),
+        exact=lambda scene: not scene.periodic,
+        axes=lambda scene: ("cells", "angles") if scene.rotates else (),
+    ),
+    "slider": Model(
+        build=lambda scene, poisson, cells, angles, focus: slider_contact(),
+        refuses=_any_of(_refuse_rotation, _refuse_pulsation),
+        exact=lambda scene: False,
+        axes=lambda scene: (),
+    ),
+    "dahl": Model(
+        build=lambda scene, poisson, cells, angles, focus: DahlContact(scene.pressure.stiffness),
+        refuses=_any_of(_refuse_rotation, _refuse_pulsation),
+        exact=lambda scene: False,
+        axes=lambda scene: (),
+    ),
+    "mdr": Model(
+        build=lambda scene, poisson, cells, angles, focus: mdr_contact(
+            cells, focus, scene.pressure
+        ),
+        refuses=_any_of(_refuse_other_loads, _refuse_springs),
+        exact=lambda scene: False,
+        axes=lambda scene: ("cells",),
+    ),
+    "radial": Model(
+        build=lambda scene, poisson, cells, angles, focus: RadialContact.resolved(
+            cells, focus, scene.pressure
+        ),
+        refuses=_any_of(_refuse_other_loads, _refuse_rings),
+        exact=lambda scene: True,
+        axes=lambda scene: ("cells",),
+    ),
+    "polar": Model(
+        build=lambda scene, poisson, cells, angles, focus: PolarContact(
+            cells, angles, scene.rotates, poisson, focus, scene.pressure
+        ),
+        refuses=_any_of(_refuse_other_loads, _refuse_half_disc),
+        exact=lambda scene: True,
+        axes=lambda scene: ("cells", "angles"),
+    ),
+    "cartesian": Model(
+        build=lambda scene, poisson, cells, angles, focus: CartesianContact(
+            cells, poisson, scene.pressure
+        ),
+        refuses=_refuse_pulsation,
+        exact=lambda scene: True,
+        axes=lambda scene: ("cells",),
+    ),
+}
+"""Models by name."""

@@ -1,0 +1,1 @@
+"""The contact on rings: motion along one line at nu = 0."""

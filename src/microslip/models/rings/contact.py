@@ -1,0 +1,175 @@
+"""Rings: exact for translation at nu = 0, where the traction vector depends on the radius alone.
+
+The compiled work is done in ring_factors (the linear part of a step), ring_kernels (one step) and
+ring_march (a march, and its derivative, which makes the periodic state a Newton problem).
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from scipy.linalg import solve_triangular
+
+from microslip.models import contact
+from microslip.models.interrupts import unbroken
+from microslip.models.rings import march as ring_march
+from microslip.models.rings.influence import ring_influence
+from microslip.models.rings.mesh import make_rings
+from microslip.models.rings.tangent import cholesky
+from microslip.models.varying_load import Growth, load_on_rings
+from microslip.pressures.registry import HERTZ
+
+
+class RadialContact:
+    """Contact of ``cells`` rings (see models.contact.Contact); states have shape (2, 1, cells).
+
+    influence: (cells, cells), mean ring tractions to ring-averaged displacements, symmetric once
+    its rows are weighted; bound, weight: friction bound and area of each ring; stiffness: of the
+    whole, see there, by default that of the matrix.  ``resolved`` builds
+    the half-space's; the elastic slider is the one-ring contact of unit compliance.
+    growth: depth.Growth of the rings, without which the normal load cannot change; edges: radii
+    between them before the contact is ``pressed``, None where there are none or it has a hole.
+    """
+
+    has_sensitivity = True
+    sticks = True
+    angles = 1
+    radius = 1.0
+    edges = None
+
+    def __init__(self, influence, bound, weight, stiffness=None, growth=None):
+        self.influence = np.ascontiguousarray(influence, dtype=float)
+        self.bound, self.weight, self.growth = bound, weight, growth
+        if growth is not None and growth.pressure.inner == 0.0:
+            self.edges = growth.edges
+        self.compliance = np.diag(self.influence)
+        self.forward_position = self.lateral_position = np.zeros((1, len(bound)))
+        weighted = weight[:, None] * self.influence
+        self._stiffness = 0.5 * (weighted + weighted.T)
+        self._factor = cholesky(self._stiffness)
+        if stiffness is None:  # the force that moves all points by one
+            stiffness = weight @ np.linalg.solve(self._stiffness, weight)
+        self.stiffness = float(stiffness)
+
+    @staticmethod
+    def resolved(cells, focus=None, pressure=HERTZ):
+        """The half-space on ``cells`` rings refined around the radius ``focus``."""
+        return _resolved(cells, focus, pressure)
+
+    def pressed(self, deepest, start):
+        """The same rings spread over the contact at its ``deepest``, with the bound at ``start``.
+
+        Both are depths (see depth.py), deepest > 0.
+        """
+        growth, radius = self.growth, float(self.growth.pressure.radius(deepest))
+        out = RadialContact(
+            self.influence * radius**growth.influence_power,
+            self.bound,
+            self.weight * radius**growth.weight_power,
+            self.stiffness * radius,
+            growth._replace(edges=growth.edges * radius),
+        )
+        out.radius, out.edges = radius, self.edges
+        radii = out._effective_radii()
+        out._joins = 0.5 * (radii[1:-1] + radii[2:])
+        out.bound = out.bounds(np.array([start]))[0]
+        return out
+
+    def _effective_radii(self):
+        """Radius of the contact that is as stiff as the first k rings, stuck together, for k from 0
+        to all; shape (cells + 1,).
+
+        It is a little less than their outer edge.  A ring joins the contact halfway from the radius
+        without it to that with it: then a growing contact has the right stiffness in the mean.
+        Were it to join where the edge of the contact reaches it, all of it would be held too early
+        by its inner part, an error of first order.
+        """
+        upper = np.triu(self._factor)
+        np.fill_diagonal(upper, 1.0 / np.diag(upper))
+        part = solve_triangular(upper, self.weight, trans="T")
+        # w^T B^-1 w of the first k rings
+        return np.concatenate([[0.0], np.cumsum(part**2) * self.radius / self.stiffness])
+
+    def bounds(self, depths, edge=None):
+        """Mean friction bound of each ring at each depth, shape (len(depths), cells).
+
+        edge: radii (len(depths),) that say which rings are in contact, by default those of the
+        contact.  What is outside of these rings counts for the last of them.
+        """
+        carried = self.growth.carried(self.growth.pressure, self.growth.edges, depths)
+        edge = self.growth.pressure.radius(depths) if edge is None else edge
+        outside = edge[:, None] <= self._joins
+        carried[:, 1:-1] = np.where(outside, carried[:, -1:], carried[:, 1:-1])
+        return np.maximum(np.diff(carried, axis=1), 0.0) / self.weight
+
+    def bounds_along(self, path):
+        """Bounds at the start and at every stage of a path, (1 + steps stages, cells).
+
+        Rings join or leave at the last stage of a step only: what jumps at an earlier one would be
+        carried on by the integrator.  At steady pace a ring that joins there has been stretched for
+        the share 1 / (1 + carried) of the step, where it should be half of it in the mean: the edge
+        of the contact is seen as early as makes up for it.
+        """
+        stages = path.stages.shape[1]
+        ends = self.growth.pressure.radius(path.depth[::stages])
+        shift = 0.5 - 1.0 / (1.0 + path.carry[-1].sum())
+        seen = ends.copy()
+        seen[:-1] += shift * np.diff(ends)  # the last as it is: there the next lap begins
+        edge = np.repeat(seen[:-1, None], stages, axis=1)
+        edge[:, -1] = seen[1:]
+        return self.bounds(path.depth, np.append(seen[:1], edge))
+
+    def at_phases(self, march, start):
+        """Tractions at every phase of a march from ``start``, (steps + 1, 2, 1, cells)."""
+        stages = march.solves // (len(march.forces) - 1)
+        return march.stages[::stages, :, None]
+
+    def displacement(self, state):
+        """A q; shapes (2, 1, cells)."""
+        return state @ self.influence.T
+
+    def mirrored(self, state):
+        """Lateral traction negated."""
+        return state * contact.MIRROR
+
+    def march(self, path, state, tolerance, sensitivity=False, previous=None):
+        """March along ``path`` (translations only); see models.contact.Contact.
+
+        The stages of the result, and of ``previous``, are the tractions at the start and after
+        every stage, (1 + steps stages, 2, cells).
+        """
+        stages = path.stages.shape[0] * path.stages.shape[1]
+        known = None if previous is None else previous.stages
+        if known is None or known.shape != (1 + stages, 2, len(self.bound)):
+            known = np.empty((0, 2, 0))
+        end, tractions, forces, residual, iterations, derivative = unbroken(
+            ring_march.march,
+            self._stiffness,
+            self._factor,
+            self.bound[None] if path.depth is None else self.bounds_along(path),
+            self.weight,
+            (path.positions, path.stages, path.carry, path.end),
+            np.ascontiguousarray(state[:, 0]),
+            known,
+            tolerance,
+            sensitivity,
+        )
+        return contact.March(
+            state=end[:, None],
+            forces=forces,
+            residual=residual,
+            iterations=iterations,
+            solves=stages,
+            sensitivity=derivative if sensitivity else None,
+            stages=tractions,
+        )
+
+
+@lru_cache(maxsize=32)
+def _resolved(cells, focus, pressure):
+    """Shared by runs that differ in their motion only: a contact never changes."""
+    rings = make_rings(cells, focus, pressure)
+    near, _ = ring_influence(rings.psi, 1, False, modulus=pressure.G_star)
+    growth = Growth(pressure, np.sin(rings.psi), load_on_rings, influence_power=1, weight_power=2)
+    return RadialContact(near[0], rings.bound, rings.area, pressure.stiffness, growth)

@@ -1,0 +1,144 @@
+"""One Coulomb step on rings, solved by a semismooth Newton method (ring_factors: the linear part).
+
+A step starts from a guess whose slipping rings are mostly right, so Newton steps come first.  Where
+one helps little a projected Gauss-Seidel sweep settles which rings slip; where one does not help at
+all over-relaxed sweeps take over, and these always converge.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.foundation.compiled import kernel
+from microslip.models.coulomb import shrink
+from microslip.models.rings.tangent import copy, factorise, subtract
+
+MAX_ITERATIONS = 200
+RESCUE_SWEEPS = 12
+RESCUE_RELAXATION = 1.4
+GOOD_STEP = 0.3
+"""A Newton step that leaves more than this share of the residual is followed by a sweep."""
+
+
+@kernel
+def weighted_slip(stiffness, imposed, q, out):
+    """out = imposed - B q; all (2, n)."""
+    n = q.shape[1]
+    for c in range(2):
+        for i in range(n):
+            out[c, i] = imposed[c, i]
+        for k in range(n):
+            x = q[c, k]
+            for i in range(n):
+                out[c, i] -= stiffness[k, i] * x
+
+
+@kernel
+def step_residual(stiffness, q, slip, bound, weight):
+    """friction.coulomb_residual for weighted slips on rings."""
+    total = 0.0
+    for i in range(q.shape[1]):
+        scale = 1.0 / stiffness[i, i]
+        x, y = q[0, i] + slip[0, i] * scale, q[1, i] + slip[1, i] * scale
+        f = shrink(x, y, bound[i])
+        x, y = x * f - q[0, i], y * f - q[1, i]
+        total += weight[i] * np.sqrt(x * x + y * y)
+    return total
+
+
+@kernel
+def _sweep(stiffness, bound, q, slip, relaxation):
+    """One projected Gauss-Seidel sweep; keeps slip = imposed - B q up to date."""
+    for i in range(q.shape[1]):
+        scale = relaxation / stiffness[i, i]
+        x, y = q[0, i] + slip[0, i] * scale, q[1, i] + slip[1, i] * scale
+        f = shrink(x, y, bound[i])
+        dx, dy = x * f - q[0, i], y * f - q[1, i]
+        if dx != 0.0 or dy != 0.0:
+            q[0, i] += dx
+            q[1, i] += dy
+            subtract(slip[0], dx, stiffness[i])
+            subtract(slip[1], dy, stiffness[i])
+
+
+@kernel
+def _newton_step(slip, stick, factors):
+    """Fill factors.change (in the order of the factors) with the Newton step against ``slip``."""
+    upper, matrix, change = factors.upper, factors.tangent, factors.change
+    order, direction = factors.order, factors.direction
+    n = len(order)
+    for c in range(2):
+        for p in range(n):
+            change[c, p] = slip[c, order[p]]
+        for j in range(stick):
+            change[c, j] *= upper[j, j]
+            x = change[c, j]
+            for p in range(j + 1, n):
+                change[c, p] -= x * upper[j, p]
+    # the angle's part; both components follow from it
+    for p in range(stick, n):
+        change[0, p] = direction[0, p] * change[0, p] + direction[1, p] * change[1, p]
+    for j in range(stick, n):
+        change[0, j] *= matrix[j - stick, j - stick]
+        x = change[0, j]
+        for s in range(j + 1, n):
+            change[0, s] -= x * matrix[j - stick, s - stick]
+    for j in range(n - 1, stick - 1, -1):
+        x = change[0, j]
+        for s in range(j + 1, n):
+            x -= matrix[j - stick, s - stick] * change[0, s]
+        change[0, j] = x * matrix[j - stick, j - stick]
+    for p in range(stick, n):
+        change[1, p] = direction[1, p] * change[0, p]
+        change[0, p] *= direction[0, p]
+    for j in range(stick - 1, -1, -1):
+        x, y = change[0, j], change[1, j]
+        for p in range(j + 1, n):
+            x -= upper[j, p] * change[0, p]
+            y -= upper[j, p] * change[1, p]
+        change[0, j], change[1, j] = x * upper[j, j], y * upper[j, j]
+
+
+@kernel
+def solve_step(stiffness, whole, imposed, bound, weight, q, slip, tolerance, factors):
+    """Solve one Coulomb step on rings in place.
+
+    stiffness: B, (n, n); whole: its Cholesky factor; imposed: weighted displacement, (2, n); q:
+    start and result, (2, n), within the bound; slip: receives imposed - B q.  Returns (iterations,
+    residual); the caller compares the residual with the tolerance.
+    """
+    n = len(bound)
+    trial, trial_slip = factors.trial, factors.trial_slip
+    weighted_slip(stiffness, imposed, q, slip)
+    residual = step_residual(stiffness, q, slip, bound, weight)
+    failures = 0
+    for iteration in range(MAX_ITERATIONS):
+        if residual <= tolerance:
+            return iteration, residual
+        trial_residual = np.inf
+        stick = factorise(stiffness, whole, bound, q, slip, factors)
+        if stick >= 0:
+            _newton_step(slip, stick, factors)
+            for p in range(n):
+                i = factors.order[p]
+                x, y = q[0, i] + factors.change[0, p], q[1, i] + factors.change[1, p]
+                f = shrink(x, y, bound[i])
+                if p >= stick and bound[i] > 0.0:  # a slipping traction ends on the bound
+                    f = bound[i] / np.sqrt(x * x + y * y)
+                trial[0, i], trial[1, i] = x * f, y * f
+            weighted_slip(stiffness, imposed, trial, trial_slip)
+            trial_residual = step_residual(stiffness, trial, trial_slip, bound, weight)
+        good = trial_residual <= max(GOOD_STEP * residual, tolerance)
+        if trial_residual < residual:
+            copy(q, trial)
+            copy(slip, trial_slip)
+            residual = trial_residual
+        else:
+            failures += 1
+        if not good:
+            sweeps = RESCUE_SWEEPS if failures > 1 else 1
+            for _ in range(sweeps):
+                _sweep(stiffness, bound, q, slip, RESCUE_RELAXATION if sweeps > 1 else 1.0)
+            weighted_slip(stiffness, imposed, q, slip)
+            residual = step_residual(stiffness, q, slip, bound, weight)
+    return MAX_ITERATIONS, residual

@@ -1,0 +1,1 @@
+"""The contact on squares: any outline, any motion."""

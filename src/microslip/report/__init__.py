@@ -1,0 +1,1 @@
+"""Datasets to figures and pages; nothing is computed here."""

@@ -1,0 +1,1 @@
+"""One page for a browser that shows what is behind every point."""

@@ -1,0 +1,50 @@
+"""The explorer: one page, for a browser without a network, that shows what is behind every point.
+
+`requests` says which periods the page needs, `payload` packs datasets and periods, `page` writes
+the page. It draws what datasets and stored periods hold and computes nothing. The JavaScript beside
+these modules runs in the browser; plotly.js draws.
+
+Importing this package is cheap, since the workflow reads it whenever it is parsed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+from microslip.foundation import source_digest
+from microslip.report.explorer.requests import maps_of, period_requests, refusal
+
+__all__ = ["ASSETS", "digest", "maps_of", "period_requests", "refusal", "report", "write"]
+
+#: What the page is made of besides numbers and plotly.js, in the order in which scripts run.
+ASSETS = ("page.html", "style.css", "data.js", "charts.js", "disc.js", "page.js")
+
+
+def digest() -> str:
+    """Digest of all that the page depends on besides datasets and periods."""
+    parts = [Path(__file__).with_name(name).read_bytes() for name in ASSETS]
+    parts.append(source_digest.of_modules("explorer", "periods.py").encode())
+    return hashlib.sha256(b"\0".join(parts)).hexdigest()
+
+
+def write(path, datasets, periods):
+    """Write the page to `path`, whole or not at all; see `page.write`."""
+    from microslip.report.explorer import page
+
+    page.write(path, datasets, periods)
+
+
+def report(periods):
+    """Lines of text: how many periods there are and, one each, those that did not converge.
+
+    periods: dict of lists of records, by the names of maps.
+    """
+    for name, records in periods.items():
+        bad = [record for record in records if not record["result"]["converged"]]
+        yield f"explorer: {name}: {len(records)} periods, {len(bad) or 'none'} not converged"
+        for record in bad:
+            where = ", ".join(
+                f"{dim} {record['request'][dim]}" for dim in ("amplitude", "velocity")
+            )
+            yield f"  not converged: {where}: {record['result']['reason']}"

@@ -1,0 +1,44 @@
+"""The page as one file: markup, style, plotly.js, the scripts beside this module, numbers."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from plotly.offline import get_plotlyjs
+
+from microslip.report.explorer import payload
+from microslip.report.explorer.explorer import ASSETS
+from microslip.sweeps.cache import writing_beside
+
+FOLDER = Path(__file__).parent
+
+
+def write(path, datasets, periods):
+    """Write the page to `path`, whole or not at all.
+
+    datasets, periods: as for `payload.build`. The same ones give the same bytes. Raises ValueError
+    as `payload.build` does, CacheError, one line that says what to do, where the system refuses.
+    """
+    text = page(payload.build(datasets, periods))
+    with writing_beside(path, sealed=True) as beside:
+        beside.write_text(text, encoding="utf-8", newline="\n")
+
+
+def page(content):
+    """Return the text of the page; content: as `payload.build` makes it."""
+    template, style, *scripts = (
+        (FOLDER / name).read_text(encoding="utf-8").rstrip() for name in ASSETS
+    )
+    # Inside a script "<" could end it; JSON has another way to write it.
+    numbers = json.dumps(content, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+    parts = {
+        "style": style,
+        "plotly": get_plotlyjs(),
+        "numbers": numbers,
+        "scripts": "\n".join(scripts),
+    }
+    # Cut once, so that nothing inside a part is taken for the place of another one.
+    pieces = template.split("@@")
+    pieces[1::2] = [parts[name] for name in pieces[1::2]]
+    return "".join(pieces) + "\n"

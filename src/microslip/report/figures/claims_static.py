@@ -1,0 +1,112 @@
+"""The static limit beside the paper's formulas, and the part of the bound that makes the gap."""
+
+from __future__ import annotations
+
+import matplotlib
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from microslip.report.figures import style as look
+from microslip.report.figures.cuts import computed
+from microslip.report.figures.data import require
+
+#: Each column: the scene, its name, the label of its amplitude, and its curves: variable, label,
+#: colour and line style.
+SCENES = (
+    (
+        "transverse",
+        "transverse oscillation",
+        r"amplitude  $\tilde{y}_0 = y_0/u_\mathrm{lim}$",
+        (
+            ("limit", "exact limit", look.BLUE, look.SOLID),
+            ("zone", "Eq 11", look.GREEN, look.DASHED),
+            ("slider", "Eq 7", look.ORANGE, look.DASHDOT),
+        ),
+    ),
+    (
+        "bore",
+        "oscillating bore",
+        r"amplitude  $\tilde{\varphi} = \varphi_0/\varphi_\mathrm{lk}(a/2)$",
+        (
+            ("limit", "exact limit", look.BLUE, look.SOLID),
+            ("zone", "Eq 33", look.GREEN, look.DASHED),
+            ("zone_printed", "Eq 33 as printed", look.ORANGE, look.DOTTED),
+        ),
+    ),
+)
+SYMBOLS = {"transverse": r"\tilde{y}_0", "bore": r"\tilde{\varphi}"}
+POINTS = ("slow", "slow_error", "paper", "march", "march_error")
+#: Shades for curves of one kind, from dark to light; the lightest are too pale for lines.
+LIGHTEST = 0.82
+
+
+def draw(name: str, dataset: xr.Dataset) -> Figure:
+    """Draw friction over amplitude above, shares of the bound over the radius below."""
+    needed = ["share_radius", "claims_slowest", "claims_paper_velocity"]
+    for scene, _, _, curves in SCENES:
+        needed += [f"{scene}_curve_{n}" for n in ("amplitude", *(c[0] for c in curves))]
+        needed += [f"{scene}_{n}" for n in ("amplitude", "used_share", "left_share", *POINTS)]
+    require(name, "claims", dataset, needed)
+
+    figure = look.new_figure(look.DOUBLE, 6.4)
+    grid = figure.subplots(2, 2)
+    for axes, below, upper, lower, scene in zip(*grid, "ab", "cd", SCENES, strict=True):
+        _friction(axes, dataset, *scene)
+        look.legend_above(axes, upper, scene[1])
+        _shares(below, dataset, scene[0])
+        look.legend_above(below, lower, "share of the friction bound")
+    return figure
+
+
+def _friction(axes: Axes, dataset: xr.Dataset, scene: str, _: str, label: str, curves: tuple):
+    """The limit and formulas for it as lines; certified points and the paper's run as marks."""
+    amplitude = dataset[f"{scene}_curve_amplitude"].values
+    for variable, text, color, linestyle in curves:
+        values = dataset[f"{scene}_curve_{variable}"].values
+        axes.plot(
+            amplitude, values, color=color, linestyle=linestyle, label=text, gid=variable, zorder=3
+        )
+    at = dataset[f"{scene}_amplitude"].values
+    paper, slowest = (float(dataset[f"claims_{n}"]) for n in ("paper_velocity", "slowest"))
+    for variable, velocity, marker in (("slow", paper, "o"), ("march", slowest, "v")):
+        values, errors = (dataset[f"{scene}_{n}"].values for n in (variable, f"{variable}_error"))
+        text = rf"$\tilde{{v}} = {look.number(velocity)}$"
+        good = np.isfinite(errors)
+        ink = {"marker": marker, "color": look.BLACK, "clip_on": False}
+        computed(axes, at, values, errors, good, text, **ink)
+    axes.plot(
+        at,
+        dataset[f"{scene}_paper"].values,
+        label=rf"the paper's run, $\tilde{{v}} = {look.number(paper)}$",
+        gid="paper",
+        linestyle="none",
+        marker="s",
+        markersize=6.5,
+        markerfacecolor="none",
+        markeredgecolor=look.VERMILLION,
+        markeredgewidth=1.1,
+        zorder=6,
+        clip_on=False,
+    )
+    axes.set(xlim=(0.0, amplitude[-1]), xlabel=label, ylabel=look.FRICTION)
+    look.unit_range(axes)
+
+
+def _shares(axes: Axes, dataset: xr.Dataset, scene: str) -> None:
+    """What the oscillation uses at its turning points, solid, and what is left, dashed."""
+    radius = dataset["share_radius"].values
+    dim = f"{scene}_share_amplitude"
+    amplitudes = dataset[dim].values
+    shades = matplotlib.colormaps[look.COLOURMAP](np.linspace(0.0, LIGHTEST, amplitudes.size))
+    for index, (amplitude, color) in enumerate(zip(amplitudes, shades, strict=True)):
+        row = dataset.isel({dim: index})
+        used, left = (row[f"{scene}_{n}_share"].values for n in ("used", "left"))
+        text = rf"${SYMBOLS[scene]} = {look.number(float(amplitude))}$"
+        axes.plot(radius, used, color=color, linestyle=look.SOLID, label=text, gid="used")
+        axes.plot(radius, left, color=color, linestyle=look.DASHED, gid="left")
+    for linestyle, text in ((look.SOLID, "used"), (look.DASHED, "left, forward")):
+        axes.plot([], [], color=look.BLACK, linestyle=linestyle, label=text)
+    axes.set(xlim=(0.0, 1.0), xlabel=r"radius  $r/a$", ylabel="share of the bound  (dimensionless)")
+    look.unit_range(axes)

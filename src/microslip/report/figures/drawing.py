@@ -1,0 +1,162 @@
+"""Datasets to figures.
+
+The figures draw what the datasets hold and compute nothing: every curve, theory included, is a
+variable of a dataset. One module draws one kind of figure; `style` holds the look, `data` the
+checks on what a dataset holds.
+
+    figure = draw("fig2_transverse_map", {"transverse": data.loaded("results/transverse.nc")})
+    save(figure, "results/figures/fig2_transverse_map.pdf")
+
+Importing this package is cheap: matplotlib is loaded by the first `draw` or `save`.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from microslip.config.records import SCENE_OF_SWEEP
+from microslip.sweeps.cache import writing_beside
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+#: Every figure and the datasets it is drawn from, but for those of groups in `extended`, which have
+#: the names that `figure_of` gives and all the datasets of their group.
+FIGURES: dict[str, tuple[str, ...]] = {
+    "fig1_force_history": ("transverse",),
+    "fig2_transverse_map": ("transverse",),
+    "fig3_traction_field": ("continuous_bore",),
+    "fig4_continuous_bore": ("continuous_bore",),
+    "fig5_transients": ("continuous_bore",),
+    "fig6_bore_map": ("bore",),
+    "poisson": ("transverse", "bore"),
+    "accuracy_profile": ("accuracy_cost",),
+    "accuracy_vs_cost": ("accuracy_cost",),
+    "accuracy_vs_work": ("accuracy_cost",),
+    "model_map": ("accuracy_cost",),
+    "scaling": ("accuracy_cost",),
+    "stability_atlas": ("stability",),
+    "claims_static": ("claims",),
+    "claims_patches": ("claims",),
+}
+
+#: Lines that the figure of Poisson's ratios can tell apart.
+MOST_POISSONS = 4
+
+#: File formats `save` can write: metadata that would otherwise hold dates or versions of libraries,
+#: and the name of the one that says what the figure was made from.
+FORMATS: dict[str, tuple[dict[str, None], str]] = {
+    "png": ({"Software": None}, "Description"),
+    "pdf": ({"Creator": None, "Producer": None, "CreationDate": None}, "Subject"),
+}
+PROVENANCE = ("title", "references", "microslip_version", "source_digest", "results_digest")
+PROVENANCE += ("configuration", "library_versions")
+
+_MODULES = {
+    "fig1_force_history": "history",
+    "fig2_transverse_map": "maps",
+    "fig3_traction_field": "field",
+    "fig4_continuous_bore": "steady",
+    "fig5_transients": "transients",
+    "fig6_bore_map": "maps",
+    "poisson": "poisson",
+    "accuracy_profile": "profile",
+    "accuracy_vs_cost": "work_precision",
+    "accuracy_vs_work": "work_precision",
+    "model_map": "model_map",
+    "scaling": "scaling",
+    "stability_atlas": "atlas",
+    "claims_static": "claims_static",
+    "claims_patches": "claims_patches",
+}
+
+__all__ = ["FIGURES", "FORMATS", "draw", "save"]
+
+
+def figure_of(group: str) -> str:
+    """Name of the figure of a group of sweeps in `extended`."""
+    return f"extended_{group}"
+
+
+def modules_of(name: str) -> tuple[str, ...]:
+    """Paths inside the package of the modules that draw a figure, besides what they import."""
+    return "plot/__init__.py", f"plot/{_MODULES.get(name, 'groups')}.py"
+
+
+def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
+    """Draw one figure.
+
+    name: a key of `FIGURES`, or what `figure_of` gives for a group. datasets: at least those that
+    `FIGURES[name]` lists, by their key, or all of that group; others are ignored. Raises ValueError
+    if the name is unknown, a dataset is of another scene, or a dataset, variable or dimension the
+    figure needs is missing. The figure belongs to no window and no global state.
+    """
+    keys = _keys_of(name, datasets)
+    missing = [key for key in keys if key not in datasets]
+    if missing:
+        given = ", ".join(map(repr, datasets)) or "none"
+        raise ValueError(f"figure {name} needs the dataset {missing[0]!r}; given: {given}")
+    for key in keys:
+        scene, found = SCENE_OF_SWEEP.get(key), datasets[key].attrs.get("scene")
+        if scene and found not in (scene, None):
+            raise ValueError(f"figure {name}: dataset {key!r} is of {found!r}; allowed: {scene!r}")
+    from microslip.report.figures.style import style
+
+    module = importlib.import_module(
+        f"microslip.report.figures.drawing.{_MODULES.get(name, 'groups')}"
+    )
+    with style():
+        figure = module.draw(name, *(datasets[key] for key in keys))
+        for _ in range(2):  # the layout settles, and is then fixed: every save gives the same
+            figure.draw_without_rendering()
+        figure.set_layout_engine("none")
+        for finish in getattr(figure, "finishing", ()):
+            finish()
+    figure.made_from = made_from(datasets[key] for key in keys)
+    return figure
+
+
+def _keys_of(name: str, datasets: Mapping[str, xr.Dataset]) -> tuple[str, ...]:
+    """Keys of the datasets that a figure is drawn from."""
+    if name in FIGURES:
+        return FIGURES[name]
+    groups = {key: dataset.attrs.get("group") for key, dataset in datasets.items()}
+    keys = tuple(key for key, group in groups.items() if group and figure_of(group) == name)
+    if not keys:
+        raise ValueError(
+            f"unknown figure {name!r}; known figures: {', '.join(FIGURES)}, and extended_GROUP for "
+            "the group of datasets that are given"
+        )
+    return keys
+
+
+def made_from(datasets: Iterable[xr.Dataset]) -> str:
+    """What made datasets, as JSON: a list of those of their attributes that say so."""
+    found = [{key: d.attrs[key] for key in PROVENANCE if key in d.attrs} for d in datasets]
+    return json.dumps(found, sort_keys=True)
+
+
+def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
+    """Write a figure as `.png` (300 dpi) or `.pdf`, whole or not at all, and return its path.
+
+    Its metadata say what made it, see `made_from`. The same figure gives the same bytes: no date is
+    written. The folder is made if it is not there. Raises CacheError, one line that says what to
+    do, on a full disk, a read-only folder and the like.
+    """
+    from microslip.report.figures.style import style
+
+    path = Path(path)
+    kind = path.suffix.lower().removeprefix(".")
+    if kind not in FORMATS:
+        raise ValueError(f"cannot write {path.name!r}: the name must end in .png or .pdf")
+    plain, key = FORMATS[kind]
+    metadata = plain | {key: getattr(figure, "made_from", None)}
+    with writing_beside(path, sealed=True) as beside, style():
+        figure.savefig(beside, format=kind, metadata=metadata)
+    return path

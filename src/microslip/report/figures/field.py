@@ -1,0 +1,123 @@
+"""Figure 3: the traction field of the steady bore and its instantaneous centre of rotation."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+from matplotlib.tri import Triangulation
+from scipy.interpolate import griddata
+
+from microslip.report.figures import style as look
+from microslip.report.figures.data import at_one_poisson, require
+
+VARIABLES = (
+    "field_lateral_position",
+    "field_forward_position",
+    "field_traction_lateral",
+    "field_traction_forward",
+    "field_bound",
+    "field_velocity",
+    "field_centre_lateral",
+)
+
+#: Distance between the arrows, in contact radii.
+SPACING = 0.14
+
+#: Light enough everywhere for black arrows.
+SHADES = LinearSegmentedColormap.from_list("bound", ["#FFFFFF", "#8CC8EE"])
+
+
+def draw(name: str, dataset: xr.Dataset) -> Figure:
+    """Draw traction arrows over the friction bound, lateral across and forward up."""
+    require(name, "continuous_bore", dataset, VARIABLES)
+    dataset, _ = at_one_poisson(dataset)
+    x, y, tx, ty, bound = (dataset[variable].values for variable in VARIABLES[:5])
+    centre = float(dataset["field_centre_lateral"])
+
+    figure = look.new_figure(look.SINGLE, 3.95)
+    axes = figure.add_subplot(aspect="equal")
+    axes.add_patch(Circle((0, 0), 1.0, facecolor="none", edgecolor=look.BLACK, linewidth=0.9))
+    shade = _background(axes, x, y, bound)
+    bar = figure.colorbar(shade, ax=axes, orientation="horizontal", pad=0.02, aspect=32)
+    bar.set_label(r"friction bound  $\mu p\,a^2/(\mu F_z)$")
+
+    arrows = axes.quiver(
+        *lattice(x, y, tx, ty, centre=centre),
+        angles="xy",
+        scale_units="xy",
+        scale=bound.max() / (1.15 * SPACING),
+        width=0.006,
+        headwidth=3.6,
+        headlength=4.2,
+        headaxislength=3.8,
+        minlength=0.6,
+        pivot="mid",
+        color=look.BLACK,
+        gid="traction",
+    )
+    axes.quiverkey(arrows, 0.7, 1.042, 0.4, r"$0.4\,\mu F_z/a^2$", labelpos="E", labelsep=0.06)
+    axes.plot(
+        [centre],
+        [0.0],
+        linestyle="none",
+        marker="o",
+        markersize=6.5,
+        markerfacecolor="white",
+        markeredgecolor=look.VERMILLION,
+        markeredgewidth=1.6,
+        zorder=6,
+        gid="centre",
+        label="instantaneous centre",
+    )
+    axes.set(xlim=(min(-1.1, centre - 0.15), 1.1), ylim=(-1.1, 1.1))
+    axes.set(xlabel=look.LATERAL, ylabel=look.FORWARD)
+    axes.set(xticks=_ticks(axes.get_xlim()), yticks=_ticks(axes.get_ylim()))
+    velocity = look.number(float(dataset["field_velocity"]))
+    axes.text(0.035, 0.97, rf"$\tilde{{v}} = {velocity}$", transform=axes.transAxes, va="top")
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), handlelength=1.0, borderaxespad=0.1)
+    return figure
+
+
+def _ticks(limits: tuple[float, float]) -> np.ndarray:
+    """The multiples of a half within the limits."""
+    return np.arange(np.ceil(2 * limits[0]), 2 * limits[1]) / 2
+
+
+def _background(axes: Axes, x: np.ndarray, y: np.ndarray, bound: np.ndarray) -> object:
+    """Shade the friction bound between the cells; beyond the outermost the nearest cell's."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
+    rim_x, rim_y = np.cos(turn), np.sin(turn)
+    nearest = np.argmin((rim_x[:, None] - x) ** 2 + (rim_y[:, None] - y) ** 2, axis=1)
+    shade = axes.tripcolor(
+        Triangulation(np.append(x, rim_x), np.append(y, rim_y)),
+        np.append(bound, bound[nearest]),
+        shading="gouraud",
+        cmap=SHADES,
+        vmin=0.0,
+        zorder=0,
+    )
+    shade.set_clip_path(Circle((0, 0), 1.0, transform=axes.transData))
+    return shade
+
+
+def lattice(
+    x: np.ndarray, y: np.ndarray, *fields: np.ndarray, centre: float
+) -> tuple[np.ndarray, ...]:
+    """Nodes of an even square lattice, and the fields there, linear between the cells.
+
+    Arrows on the cells themselves would crowd where the cells do, in the middle and at the rim.
+    Nodes close to the rim and to the centre of rotation, where an arrow is a dot, are left out.
+    """
+    count = round(1.0 / SPACING)
+    line = SPACING * np.arange(-count, count + 1)
+    nodes = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
+    cells = np.column_stack((x, y))
+    values = griddata(cells, np.column_stack(fields), nodes)
+    shown = np.isfinite(values).all(axis=1)
+    shown &= np.hypot(*nodes.T) < 1.0 - 0.4 * SPACING
+    shown &= np.hypot(nodes[:, 0] - centre, nodes[:, 1]) > SPACING / 2.0
+    return (*nodes[shown].T, *values[shown].T)

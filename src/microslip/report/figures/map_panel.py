@@ -1,0 +1,100 @@
+"""One panel with a map: bands, contours, and hatched cells where a point is not converged."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.contour import ContourSet
+from matplotlib.patches import Patch
+from matplotlib.ticker import LogLocator
+
+from microslip.report.figures import contour_labels, signed
+from microslip.report.figures import style as look
+from microslip.report.figures.surface import refined
+
+FILL_LEVELS = np.linspace(0.0, 1.0, 21)
+LINE_LEVELS = np.linspace(0.1, 0.9, 9)
+
+
+def fill(
+    axes: Axes,
+    dataset: xr.Dataset,
+    fills: np.ndarray = FILL_LEVELS,
+    lines: np.ndarray = LINE_LEVELS,
+    labelled: np.ndarray = LINE_LEVELS,
+    size: float = 7.5,
+) -> tuple[ContourSet, int]:
+    """Fill a panel with `mu_macro` over velocity and amplitude, interpolated as `friction.at` does.
+
+    fills, lines, labelled: levels of bands, of contours (dashed below 0, and heavier at 0 where
+    there are such) and of those that have a number, ascending; size: of the numbers. Returns the
+    bands, for a colour bar, and the number of hatched cells.
+    """
+    shown = dataset.isel(velocity=dataset["velocity"].values > 0)
+    if min(shown.sizes["amplitude"], shown.sizes["velocity"]) < 2:
+        raise ValueError("a map needs two amplitudes and two positive velocities at least")
+    shown = shown.transpose("amplitude", "velocity", ...)
+    velocity, amplitude = shown["velocity"].values, shown["amplitude"].values
+    x, y, values = refined(velocity, amplitude, shown["mu_macro"].values)
+
+    colours, norm = signed.scale(fills)
+    filled = axes.contourf(
+        x,
+        y,
+        np.clip(values, fills[0], fills[-1]),  # rounding beyond the ends must leave no white holes
+        levels=fills,
+        cmap=colours,
+        norm=norm,
+    )
+    filled.set_edgecolor("face")  # no hairlines between the bands in a PDF
+    filled.set_linewidth(0.3)
+    contours = axes.contour(
+        x,
+        y,
+        values,
+        levels=lines,
+        colors=signed.inks(lines, fills),
+        linestyles=["dashed" if level < 0 else "solid" for level in lines],
+        linewidths=[1.1 if level == 0 else 0.7 for level in lines],
+        gid="contours",
+    )
+    axes.set_xscale("log")
+    axes.set(xlim=(velocity[0], velocity[-1]), ylim=(amplitude[0], amplitude[-1]))
+    axes.xaxis.set_major_locator(LogLocator(numticks=12))
+    axes.tick_params(which="both", direction="out", top=False, right=False)
+    look.after_layout(axes.figure, lambda: contour_labels.label(axes, contours, labelled, size))
+    return filled, _hatch(axes, velocity, amplitude, shown["converged"].values != 0)
+
+
+_HATCHED = {
+    "facecolor": (1.0, 1.0, 1.0, 0.45),
+    "edgecolor": look.BLACK,
+    "linewidth": 0.0,
+    "hatch": "//////",
+}
+
+
+def unconverged(label: str) -> Patch:
+    """What a legend shows for hatched cells."""
+    return Patch(label=label, **_HATCHED)
+
+
+def _hatch(axes: Axes, velocity: np.ndarray, amplitude: np.ndarray, done: np.ndarray) -> int:
+    """Hatch the cell around every point that is not converged, and count them."""
+    x = np.exp(_cell_edges(np.log(velocity)))
+    y = _cell_edges(amplitude)
+    cells = [
+        [(x[j], y[i]), (x[j + 1], y[i]), (x[j + 1], y[i + 1]), (x[j], y[i + 1])]
+        for i, j in np.argwhere(~done)
+    ]
+    if cells:
+        hatched = PolyCollection(cells, gid="unconverged", zorder=4, **_HATCHED)
+        axes.add_collection(hatched, autolim=False)
+    return len(cells)
+
+
+def _cell_edges(points: np.ndarray) -> np.ndarray:
+    """Edges half-way between the points; the outer ones at the outermost points."""
+    return np.concatenate(([points[0]], (points[1:] + points[:-1]) / 2, [points[-1]]))

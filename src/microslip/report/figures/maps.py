@@ -1,0 +1,218 @@
+"""Figures 2 and 6: mu_macro over velocity and amplitude, with cuts along two edges of the map."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from microslip.report.figures import style as look
+from microslip.report.figures.cuts import computed
+from microslip.report.figures.data import at_each_poisson, curve, limit, require, sweep
+from microslip.report.figures.map_panel import fill, unconverged
+
+#: A cut's panel ends where all of its curves have fallen below this.
+NOTHING = 0.02
+#: Colour and marker of the points at each of Poisson's ratios, from the first one on.
+POISSONS = (
+    (look.BLACK, "o"),
+    (look.PURPLE, "s"),
+    (look.GREY, "^"),
+    (look.SKY, "D"),
+    (look.VERMILLION, "v"),
+    (look.ORANGE, "P"),
+)
+#: Columns of maps, and height in inches of a row of them, where there are several.
+COLUMNS, ROW = 3, {2: 2.9, 3: 2.4}
+
+
+@dataclass(frozen=True)
+class Overlay:
+    """A theory curve: the variable that holds it, its name in the legend, its look."""
+
+    variable: str
+    label: str
+    color: str
+    linestyle: object
+    linewidth: float = 1.3
+
+
+@dataclass(frozen=True)
+class Map:
+    """What one map figure shows."""
+
+    key: str
+    velocity_symbol: str
+    velocity_label: str
+    amplitude_symbol: str
+    amplitude_label: str
+    static: tuple[Overlay, ...]
+    large: Overlay
+
+
+EXACT = Overlay("mu_static", "exact limit", look.BLUE, look.SOLID)
+#: Exact for Poisson's ratio 0 alone; at any other it is shown as what it is.
+EXACT_AT_0 = replace(EXACT, label=r"limit at $\nu = 0$")
+
+MAPS = {
+    "fig2_transverse_map": Map(
+        key="transverse",
+        velocity_symbol=r"\tilde{v}_0",
+        velocity_label=r"forward velocity  $\tilde{v}_0 = v_0/(\omega\,u_\mathrm{lim})$",
+        amplitude_symbol=r"\tilde{y}_0",
+        amplitude_label=r"amplitude  $\tilde{y}_0 = y_0/u_\mathrm{lim}$",
+        static=(
+            Overlay("mu_static_slider", "Eq 7, slider", look.ORANGE, look.DASHDOT),
+            Overlay("mu_static_stick_zone", "Eq 11, stick zone", look.GREEN, look.DASHED),
+            EXACT,
+        ),
+        large=Overlay("mu_large_amplitude", "Eq 6", look.VERMILLION, look.DASHED),
+    ),
+    "fig6_bore_map": Map(
+        key="bore",
+        velocity_symbol=r"\tilde{v}",
+        velocity_label=r"forward velocity  $\tilde{v} = v_0/(\Omega\,\varphi_0\,a)$",
+        amplitude_symbol=r"\tilde{\varphi}_0",
+        amplitude_label=r"amplitude  $\tilde{\varphi}_0 = \varphi_0/\varphi_\mathrm{lk}(a/2)$",
+        static=(
+            Overlay(
+                "mu_static_stick_zone_printed", "Eq 33 as printed", look.PURPLE, look.DOTTED, 1.0
+            ),
+            Overlay("mu_static_stick_zone", "Eq 33, corrected", look.GREEN, look.DASHED),
+            EXACT,
+        ),
+        large=Overlay("mu_large_amplitude", "Eq 29", look.VERMILLION, look.DASHED),
+    ),
+}
+
+
+def draw(name: str, dataset: xr.Dataset) -> Figure:
+    """Draw the map `name` with the static and the large-amplitude cut.
+
+    At several of Poisson's ratios there is a map for each, and the cuts show all of them; of more
+    than `POISSONS` has looks for, so many from the smallest to the largest, which is said.
+    """
+    plan = MAPS[name]
+    overlays = [overlay.variable for overlay in (*plan.static, plan.large)]
+    needed = ["amplitude", "velocity", "mu_macro", "mu_macro_error", "converged", *overlays]
+    require(name, plan.key, dataset, needed)
+    every = at_each_poisson(dataset)
+    chosen = np.unique(np.linspace(0, len(every) - 1, len(POISSONS)).round().astype(int))
+    shown = [sweep(every[k], ("amplitude", "velocity")) for k in chosen]
+    if plan.key == "transverse" and any(poisson > 0 for _, poisson in shown):
+        static = (EXACT_AT_0 if overlay is EXACT else overlay for overlay in plan.static)
+        plan = replace(plan, static=tuple(static))
+    figure, panels, cuts = _page(len(shown))
+    if len(shown) < len(every):
+        some = f"{len(shown)} of the {len(every)} of Poisson's ratios in the dataset"
+        figure.suptitle(some, x=0.01, ha="left", fontsize=look.HEADING)
+    letters = look.letters(len(shown) + 2)
+    for axes, letter, (part, poisson) in zip(panels, letters, shown, strict=False):
+        note = rf"$\nu = {look.number(poisson)}$" if len(every) > 1 or poisson else ""
+        _map(axes, part, plan, letter, note)
+    _static_cut(cuts[0], shown, plan, letters[-2])
+    _large_cut(cuts[1], shown, plan, letters[-1])
+    return figure
+
+
+def _page(count: int) -> tuple[Figure, list[Axes], list[Axes]]:
+    """A figure, panels for so many maps, and panels for the two cuts."""
+    if count == 1:
+        figure = look.new_figure(look.DOUBLE, 4.2)
+        left, right = figure.subfigures(1, 2, width_ratios=(1.3, 1.0))
+        return figure, [left.subplots()], list(right.subplots(2, 1))
+    columns = min(count, COLUMNS)
+    rows = -(-count // columns)
+    heights = rows * ROW[columns], 2.7
+    figure = look.new_figure(look.DOUBLE, sum(heights))
+    upper, lower = figure.subfigures(2, 1, height_ratios=heights)
+    panels = list(upper.subplots(rows, columns, squeeze=False).ravel())
+    for axes in panels[count:]:
+        axes.remove()
+    return figure, panels[:count], list(lower.subplots(1, 2))
+
+
+def _map(axes: Axes, dataset: xr.Dataset, plan: Map, letter: str, note: str) -> None:
+    """A map with its colours, its letter, and its hatching explained above it."""
+    filled, hatched = fill(axes, dataset)
+    grid = axes.get_subplotspec().get_gridspec()
+    alone = grid.ncols == 1
+    axes.set(xlabel=plan.velocity_label if alone else f"forward velocity  ${plan.velocity_symbol}$")
+    axes.set(ylabel=plan.amplitude_label if alone else f"amplitude  ${plan.amplitude_symbol}$")
+    last = axes.get_subplotspec().is_last_col()
+    bar = axes.figure.colorbar(filled, ax=axes, pad=0.02, aspect=32, ticks=np.linspace(0, 1, 6))
+    bar.set_label(look.FRICTION if alone or last else "")
+    bar.ax.tick_params(direction="out")
+    look.letter(axes, letter, note)
+    if hatched:
+        text = f"not converged ({hatched} of {dataset['mu_macro'].size})"
+        axes.legend(
+            handles=[unconverged(text)],
+            loc="lower right",
+            bbox_to_anchor=(1.0, 1.0),
+            borderaxespad=0.2,
+        )
+
+
+def _static_cut(axes: Axes, shown: list[tuple[xr.Dataset, float]], plan: Map, letter: str) -> None:
+    """mu_macro against amplitude at the smallest velocity, with the static limits."""
+    velocity = float(shown[0][0]["velocity"][0])
+    for overlay in plan.static:
+        _overlay(axes, shown[0][0], overlay, velocity=velocity)
+    _points(axes, [(part.sel(velocity=velocity), nu) for part, nu in shown], "amplitude")
+    symbol = plan.velocity_symbol
+    where = "left edge" if velocity > 0 else "static limit"
+    look.legend_above(axes, letter, rf"{where}, ${symbol} = {look.number(velocity)}$")
+    axes.set(xlabel=plan.amplitude_label, xlim=_where_not_zero(axes))
+
+
+def _where_not_zero(axes: Axes) -> tuple[float, float]:
+    """The horizontal range in which any line drawn is above zero, and half as much again."""
+    x, y = np.concatenate([line.get_xydata() for line in axes.get_lines()]).T
+    last = x[y > NOTHING].max(initial=x.min())
+    following = x[x > last].min(initial=x.max())
+    return x.min(), min(max(1.5 * last, following), x.max())
+
+
+def _large_cut(axes: Axes, shown: list[tuple[xr.Dataset, float]], plan: Map, letter: str) -> None:
+    """mu_macro against velocity at the largest amplitude, with the limit for large amplitudes."""
+    amplitude = float(shown[0][0]["amplitude"][-1])
+    _overlay(axes, shown[0][0], plan.large, amplitude=amplitude)
+    _points(axes, [(part.sel(amplitude=amplitude), nu) for part, nu in shown], "velocity")
+    symbol = plan.amplitude_symbol
+    look.legend_above(axes, letter, rf"top edge, ${symbol} = {look.number(amplitude)}$")
+    velocity = shown[0][0]["velocity"].values
+    axes.set_xscale("log")
+    axes.set(xlabel=plan.velocity_label, xlim=(velocity[velocity > 0][0], velocity[-1]))
+    axes.xaxis.set_major_locator(LogLocator(numticks=12))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+
+
+def _overlay(axes: Axes, dataset: xr.Dataset, overlay: Overlay, **at: float) -> None:
+    """Draw a theory curve as the dataset holds it."""
+    x, y = curve(limit(dataset, overlay.variable), **at)
+    axes.plot(
+        x,
+        y,
+        label=overlay.label,
+        color=overlay.color,
+        linestyle=overlay.linestyle,
+        linewidth=overlay.linewidth,
+        gid=overlay.variable,
+    )
+
+
+def _points(axes: Axes, lines: list[tuple[xr.Dataset, float]], dim: str) -> None:
+    """Draw the computed points of a cut and give its panel the common vertical axis."""
+    columns = ("mu_macro", "mu_macro_error", "converged")
+    for (line, poisson), (color, marker) in zip(lines, POISSONS, strict=False):
+        ratio = rf", $\nu = {look.number(poisson)}$" if len(lines) > 1 else ""
+        values = (line[name].values for name in columns)
+        ink = {"color": color, "marker": marker}
+        computed(axes, line[dim].values, *values, f"computed{ratio}", **ink)
+    look.unit_range(axes)
+    axes.set_ylabel(look.FRICTION.replace("  (", "\n("))

@@ -1,0 +1,65 @@
+"""Colours of friction: those of Figure 2 from 0 up, and another hue below 0."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import matplotlib
+import numpy as np
+from matplotlib.colors import Colormap, LinearSegmentedColormap, Normalize, TwoSlopeNorm, to_rgb
+
+from microslip.report.figures import style as look
+
+#: Colours of friction 0, -0.05, ..., -1. They begin where `style.COLOURMAP` begins, are equally far
+#: apart in CIELAB, and get lighter away from 0 as that map does. Down to -0.5, by far the most that
+#: a motion drives, they keep apart from all of that map for all common kinds of colour vision.
+BELOW = (
+    "#00224E",
+    "#24204A",
+    "#371D46",
+    "#471B43",
+    "#571941",
+    "#671840",
+    "#77183F",
+    "#871C3E",
+    "#97243D",
+    "#A72E3B",
+    "#B7393B",
+    "#C9463C",
+    "#E05846",
+    "#ED6E59",
+    "#F07F6A",
+    "#F18E7A",
+    "#F29D8A",
+    "#F4AE9C",
+    "#F6BEAF",
+    "#F6CEC1",
+    "#F5DED3",
+)
+LOWEST = -1.0
+#: Lines on colours darker than this are white, on others black.
+DARK = 0.5
+
+
+def scale(levels: Sequence[float]) -> tuple[Colormap, Normalize]:
+    """Colours and their norm for bands between ascending levels.
+
+    0 has the same colour whatever the levels are, and so has every value between 0 and 1 unless
+    there are larger ones.
+    """
+    top = max(float(levels[-1]), 1.0)
+    above = matplotlib.colormaps[look.COLOURMAP]
+    if levels[0] >= 0:
+        return above, Normalize(0.0, top)
+    shades = np.linspace(0.0, 1.0, 201)
+    below = LinearSegmentedColormap.from_list("below", BELOW)(shades[:0:-1])
+    both = LinearSegmentedColormap.from_list("signed", [*below, *above(shades)], N=1024)
+    return both, TwoSlopeNorm(0.0, LOWEST, top)
+
+
+def inks(levels: Sequence[float], fills: Sequence[float]) -> list[str]:
+    """Colours of lines at these levels, which stand out from the bands between `fills`."""
+    colours, norm = scale(fills)
+    weights = (0.2126, 0.7152, 0.0722)  # of luminance, by Rec. 709
+    shown = [np.dot(weights, to_rgb(colours(norm(level)))) for level in levels]
+    return ["white" if luminance < DARK else "black" for luminance in shown]

@@ -1,0 +1,52 @@
+"""Figure 4: forward friction and torque of the steady bore against the forward velocity."""
+
+from __future__ import annotations
+
+import xarray as xr
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from microslip.report.figures import style as look
+from microslip.report.figures.cuts import computed
+from microslip.report.figures.data import curve, limit, require, sweep
+
+#: Each quantity's name, its theory, its values and their error, and its look.
+CURVES = (
+    ("force", "Eq 21", "mu_forward_theory", "mu_macro", look.BLUE, look.SOLID, "o"),
+    ("torque", "Eq 22", "mu_torque_theory", "mu_torque", look.VERMILLION, look.DASHED, "s"),
+)
+
+
+def draw(name: str, dataset: xr.Dataset) -> Figure:
+    """Draw Eqs 21 and 22 with the computed steady values."""
+    needed = [n for _, _, theory, values, *_ in CURVES for n in (theory, values)]
+    needed += ["velocity", "converged", "mu_macro_error", "mu_torque_error"]
+    require(name, "continuous_bore", dataset, needed)
+    dataset, _ = sweep(dataset, ("velocity",))
+    velocity = dataset["velocity"].values
+
+    figure = look.new_figure(look.SINGLE, 2.7)
+    axes = figure.add_subplot()
+    for what, equation, theory, values, color, linestyle, marker in CURVES:
+        label = f"{what}, {equation}"
+        line = {"color": color, "linestyle": linestyle, "label": label, "gid": theory}
+        axes.plot(*curve(limit(dataset, theory)), **line)
+        columns = (values, f"{values}_error", "converged")
+        computed(
+            axes,
+            velocity,
+            *(dataset[name].values for name in columns),
+            label=f"{what}, computed",
+            color=color,
+            marker=marker,
+        )
+    if velocity[0] > 0 and velocity[-1] >= 20 * velocity[0]:
+        axes.set_xscale("log")
+        axes.xaxis.set_major_locator(LogLocator(numticks=12))
+        axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.set_xlim(velocity[0], velocity[-1])
+    axes.set_xlabel(r"forward velocity  $\tilde{v} = v_0/(\omega\,a)$")
+    axes.set_ylabel(f"force  {look.FORCE_FORWARD}\ntorque  {look.TORQUE}")
+    look.unit_range(axes)
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, columnspacing=1.5)
+    return figure

@@ -1,0 +1,113 @@
+"""Hertz contact of two elastic bodies in SI units, and what their mismatch couples."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from microslip.foundation.errors import InputError
+from microslip.si.materials import Material
+from microslip.theory.hertz import checked
+
+
+@dataclass(frozen=True)
+class TwoBodies:
+    """A sphere pressed on a flat or on a second sphere, both elastic or one rigid.
+
+    The tangential problem of two half-spaces is that of one whose compliance is the sum of both:
+    its G and Poisson's ratio follow from the sums of 1/G and nu/G.  Normal and tangential problem
+    are taken as uncoupled.
+
+    Attributes
+    ----------
+    first, second : Material
+        The bodies.
+    radius : float
+        Radius of relative curvature, m: 1/R = 1/R1 + 1/R2.
+    load : float
+        Normal force, N.
+    mu : float
+        Coefficient of friction without vibration, dimensionless.
+    radii : tuple of float
+        R1 and R2, m, negative if hollow, infinite if flat; empty: R1 is ``radius``, R2 is flat.
+
+    Raises
+    ------
+    ValueError
+        For a value that is not finite or not positive, and for two rigid bodies.
+    """
+
+    first: Material
+    second: Material
+    radius: float
+    load: float
+    mu: float
+    radii: tuple = ()
+
+    def __post_init__(self):
+        for name in ("radius", "load", "mu"):
+            checked(name, getattr(self, name), low_open=True)
+        if self.first.rigid and self.second.rigid:
+            allowed = "allowed is an elastic one for a rigid body"
+            raise InputError("counterbody", "rigid", allowed)
+
+    @property
+    def bodies(self):
+        return (self.first, self.second)
+
+    @property
+    def E_star(self):
+        """1/E* = sum (1 - nu^2)/E, Pa (Hertz)."""
+        return 1.0 / sum((1.0 - body.poisson**2) / body.young for body in self.bodies)
+
+    @property
+    def G(self):
+        """1/G = sum 1/G_i, Pa: what torsion feels."""
+        return 1.0 / sum(1.0 / body.shear_modulus for body in self.bodies)
+
+    @property
+    def poisson(self):
+        """Poisson's ratio of the equal half-space on a rigid one, sum(nu/G) / sum(1/G)."""
+        compliances = [1.0 / body.shear_modulus for body in self.bodies]
+        total = sum(compliances)  # of one elastic body it is that body's ratio, to the last bit
+        return sum(b.poisson * (c / total) for b, c in zip(self.bodies, compliances, strict=True))
+
+    @property
+    def G_star(self):
+        """1/G* = sum (2 - nu)/(4 G), Pa (Eq 3 for two bodies)."""
+        return 4.0 * self.G / (2.0 - self.poisson)
+
+    @property
+    def contact_radius(self):
+        """a = (3 F R / (4 E*))^(1/3), m (Hertz)."""
+        return (0.75 * self.load * self.radius / self.E_star) ** (1.0 / 3.0)
+
+    @property
+    def smallest_radius(self):
+        """The smaller |radius| of either body, m."""
+        return min(map(abs, self.radii), default=self.radius)
+
+    @property
+    def indentation(self):
+        """d = a^2/R, m (Hertz)."""
+        return self.contact_radius**2 / self.radius
+
+    @property
+    def largest_pressure(self):
+        """p0 = 3 F / (2 pi a^2), Pa (Hertz)."""
+        return 1.5 * self.load / (math.pi * self.contact_radius**2)
+
+    @property
+    def u_lim(self):
+        """Displacement at which the whole contact slides, mu d E*/G*, m (below Eq 2)."""
+        return self.mu * self.indentation * self.E_star / self.G_star
+
+    @property
+    def mismatch(self):
+        """Dundurs' constant beta: how far pressure moves the surfaces apart sideways, 0 if equal.
+
+        Half of the difference of (1 - 2 nu)/G over the sum of (1 - nu)/G.
+        """
+        first, second = ((1.0 - 2.0 * body.poisson) / body.shear_modulus for body in self.bodies)
+        both = sum((1.0 - body.poisson) / body.shear_modulus for body in self.bodies)
+        return 0.5 * (first - second) / both

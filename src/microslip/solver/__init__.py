@@ -1,0 +1,1 @@
+"""One run at one resolution: its periodic, steady or static state."""

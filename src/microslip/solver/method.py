@@ -1,0 +1,52 @@
+"""A method: how a contact is marched and how its periodic state is found.  What ships is SHIPPED.
+
+Others exist to be compared with it (see the package ``methods``).  Each replaces a part: the
+integrator, the solver of a step, the search for the periodic state, or its start.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from microslip.models.path import SDIRK2, Integrator
+from microslip.solver.periodic import find_periodic_state
+
+
+@dataclass(frozen=True)
+class Method:
+    """The parts of a method; what is left out is as shipped.
+
+    summary: in a line, for tables and figures; integrator: path.Integrator; dress(contact,
+    **parameters) -> a contact that solves its steps in another way, None: as it is;
+    parameters: numbers that ``dress`` takes, with their defaults; search(cycle, start, tolerance,
+    step_tolerance, most_laps, inverse) -> cycle.PeriodicState; prepared: start near the static
+    limit and with coarse steps, else once from full slip; extrapolated: add the difference to the
+    run with half the steps; run: replaces the whole simulation, see methods.paper; model: the only
+    one that ``run`` stands for; resolution: (cells, angles, steps a period) that ``run`` keeps to
+    whatever is asked for; requires: package that it takes besides those of microslip; turns:
+    whether it knows motions that rotate.
+
+    In a method's file the last four are literals: they are read without running it, see
+    methods.declared.
+    """
+
+    summary: str
+    integrator: Integrator = SDIRK2
+    dress: Callable | None = None
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    search: Callable = find_periodic_state
+    prepared: bool = True
+    extrapolated: bool = False
+    run: Callable | None = None
+    model: str = ""
+    resolution: tuple[int, int, int] | None = None
+    requires: str = ""
+    turns: bool = True
+
+    def dressed(self, contact):
+        """The contact with this method's solver of a step."""
+        return contact if self.dress is None else self.dress(contact, **self.parameters)
+
+
+SHIPPED = Method("what microslip.solve does unless told otherwise")

@@ -1,0 +1,105 @@
+"""Methods to compare with the one that ships: one file a method.
+
+A method is the file ``name_of_it.py`` in this folder, which holds METHOD, a ``method.Method``; it
+is then known as ``name-of-it``, to ``microslip.solve`` as well as in a configuration.  Files whose
+name starts with an underscore are shared by methods.  Numbers that a method takes may follow its
+name: "admm:penalty=0.1,relaxation=1.5".  A method may require a package that is not one of
+microslip's: where that is not installed, nothing asks for it.
+
+Listing and checking names imports no solver.
+"""
+
+from __future__ import annotations
+
+import ast
+from functools import cache
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+
+from microslip.foundation import spec
+from microslip.foundation.errors import InputError
+
+SHIPPED = "shipped"
+
+
+@cache
+def names():
+    """Names of all methods, the one that ships first."""
+    stems = (file.stem for file in Path(__file__).parent.glob("[!_]*.py"))
+    # not a copy or a checkpoint of one, which nobody means
+    return (SHIPPED, *sorted(stem.replace("_", "-") for stem in stems if stem.isidentifier()))
+
+
+def split(text):
+    """Name and numbers (dict) of a method; raises InputError if the text cannot be read."""
+    if not isinstance(text, str):
+        raise InputError("method", text, f"allowed is one of {', '.join(names())}")
+    return spec.split(text, "method", names())
+
+
+def refusal(text):
+    """Why a text names no method, as one line; "" if it does.  Imports no solver."""
+    try:
+        check(text)
+    except InputError as error:
+        return str(error)
+    return ""
+
+
+def check(text):
+    """Raise InputError where a text names no method.  Imports no solver."""
+    name, numbers = split(text)
+    spec.refuse_unknown(text, "method", numbers, _parameters(name))
+
+
+def missing(text):
+    """Why a method cannot run here, as one line: the package that it requires is not installed.
+
+    "" if it can.  Imports neither the solver nor the package.  Raises InputError as ``split``.
+    """
+    try:
+        refuse_missing(text)
+    except InputError as error:
+        return str(error)
+    return ""
+
+
+def refuse_missing(text):
+    """Raise InputError where the package that a method requires is not installed, see above."""
+    name, _ = split(text)
+    package = declared(name, "requires")
+    if package and find_spec(package) is None:
+        raise InputError("method", text, f"needs the package {package}, which is not installed")
+
+
+def method_named(text):
+    """The method.Method that a text names; raises InputError, with what is allowed, if none."""
+    check(text)
+    from dataclasses import replace
+
+    name, numbers = split(text)
+    if name == SHIPPED:
+        return import_module("microslip.solver.method").SHIPPED
+    method = import_module(f"{__name__}.{name.replace('-', '_')}").METHOD
+    return replace(method, parameters={**method.parameters, **numbers})
+
+
+def _parameters(name):
+    """Names of the numbers that a method takes."""
+    return tuple(declared(name, "parameters") or ())
+
+
+@cache
+def declared(name, field):
+    """What a method's file gives for a field of METHOD, read without running it; None: nothing.
+
+    name: without numbers; the value has to be a literal.
+    """
+    if name == SHIPPED:
+        return None
+    file = Path(__file__).parent / f"{name.replace('-', '_')}.py"
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.keyword) and node.arg == field:
+            return ast.literal_eval(node.value)
+    return None

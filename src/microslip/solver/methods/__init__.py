@@ -1,0 +1,1 @@
+"""Methods to compare with the one that ships: one file a method, see method_names."""

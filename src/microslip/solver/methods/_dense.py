@@ -1,0 +1,143 @@
+"""A contact that marches with another solver of its steps, on a dense influence matrix.
+
+The solver is a compiled function
+
+    solve(matrix, scale, bound, weight, b, q, slip, tolerance, settings) -> (iterations, residual)
+
+matrix: A, (2 K, 2 K), forward components first; scale: its diagonal, bound, weight: of each point,
+(K,); b: imposed displacement, (2, K); q: first guess and result, (2, K); slip: receives b - A q;
+settings: whatever ``prepare(matrix, scale, **parameters)`` returned.  The residual is that of
+friction.coulomb_residual.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.foundation.compiled import kernel
+from microslip.models.contact import March, StepFailure, forces
+from microslip.models.coulomb import coulomb_residual, shrink
+
+FAR_FROM_SOLVED = 1e-2
+"""Residual of a step, over mu F_z, above which it counts as diverged rather than slow."""
+MAX_DESCENTS = 3000
+
+
+def nothing(matrix, scale):
+    """Settings of a solver that has none."""
+    return 0.0
+
+
+class DenseContact:
+    """A contact (see models.contact.Contact) whose steps are solved by ``solve``."""
+
+    has_sensitivity = False
+
+    def __init__(self, contact, solve, prepare=nothing, **parameters):
+        self.contact, self.solve = contact, solve
+        self.shape = (2, *contact.forward_position.shape)
+        points = self.shape[1:]
+        self.matrix = _matrix(contact, self.shape)
+        self.scale, self.flat_bound, self.flat_weight = (
+            np.broadcast_to(values, points).ravel().astype(float)
+            for values in (contact.compliance, contact.bound, contact.weight)
+        )
+        self.settings = prepare(self.matrix, self.scale, **parameters)
+
+    def __getattr__(self, name):
+        return getattr(self.contact, name)
+
+    def march(self, path, state, tolerance, sensitivity=False, previous=None):
+        """March along ``path``; raises StepFailure at the first step that stays unsolved."""
+        q = state.reshape(2, -1).copy()
+        held, z = q.copy(), self._elastic(q) - self._rigid(path.positions[0])
+        found = np.empty((path.steps + 1, 3))
+        found[0] = forces(self.contact, held.reshape(self.shape))
+        slips = np.empty((path.stages.shape[1], *q.shape))
+        total, iterations = 0.0, 0
+        for k, stages in enumerate(path.stages):
+            for s, motion in enumerate(stages):
+                rigid = self._rigid(motion)
+                b = z + rigid - np.tensordot(path.carry[s, :s], slips[:s], 1)
+                count, residual = self._solved(b, q, slips[s], tolerance)
+                iterations, total = iterations + count, total + residual
+            now = b - slips[-1] - rigid
+            z = z + (now - z) / path.end
+            held = q.copy() if path.end == 1.0 else held + (q - held) / path.end
+            found[k + 1] = forces(self.contact, held.reshape(self.shape))
+        solves = path.stages.shape[0] * path.stages.shape[1]
+        return March(held.reshape(self.shape), found, total, iterations, solves)
+
+    def _solved(self, b, q, slip, tolerance):
+        point = (self.matrix, self.scale, self.flat_bound, self.flat_weight, b, q, slip)
+        try:
+            count, residual = self.solve(*point, tolerance, self.settings)
+        except np.linalg.LinAlgError as error:
+            raise StepFailure(f"diverged: {error}") from error
+        if not residual <= tolerance:  # NaN is not, either
+            far = not residual <= FAR_FROM_SOLVED
+            raise StepFailure(
+                f"{'diverged: ' if far else ''}a step was left unsolved after {count} iterations: "
+                f"residual {residual:.1e}"
+            )
+        return count, residual
+
+    def _elastic(self, q):
+        return self.contact.displacement(q.reshape(self.shape)).reshape(2, -1)
+
+    def _rigid(self, motion):
+        forward, lateral, angle = motion
+        return np.stack(
+            [
+                forward + angle * self.contact.lateral_position.ravel(),
+                lateral - angle * self.contact.forward_position.ravel(),
+            ]
+        )
+
+
+def safe_length(matrix):
+    """Length of a gradient step that lowers the energy for certain: 1 / largest eigenvalue."""
+    return 1.0 / np.abs(np.linalg.eigvals(matrix)).max()
+
+
+def _matrix(contact, shape):
+    """The influence operator of a contact, column by column."""
+    size = int(np.prod(shape))
+    columns = np.empty((size, size))
+    unit = np.zeros(size)
+    for k in range(size):
+        unit[k] = 1.0
+        columns[k] = contact.displacement(unit.reshape(shape)).ravel()
+        unit[k] = 0.0
+    return np.ascontiguousarray(columns.T)
+
+
+@kernel
+def judge(matrix, scale, bound, weight, b, q, slip):
+    """Fill slip = b - A q, all (2, K), and return the residual of the step."""
+    slip[:] = b - (matrix @ q.ravel()).reshape(q.shape)
+    points = (2, 1, q.shape[1])
+    return coulomb_residual(q.reshape(points), slip.reshape(points), bound, weight, scale)
+
+
+@kernel
+def project_in_place(q, bound):
+    """Shrink every traction of q, (2, K), onto its bound."""
+    for i in range(q.shape[1]):
+        f = shrink(q[0, i], q[1, i], bound[i])
+        q[0, i] *= f
+        q[1, i] *= f
+
+
+@kernel
+def descend(matrix, scale, bound, weight, b, q, slip, tolerance, length):
+    """Solve a step by projected gradient steps of fixed length, that of each point in ``length``,
+    (K,); see the module's docstring."""
+    residual = judge(matrix, scale, bound, weight, b, q, slip)
+    for iteration in range(MAX_DESCENTS):
+        if residual <= tolerance:
+            return iteration, residual
+        q += length * slip
+        project_in_place(q, bound)
+        residual = judge(matrix, scale, bound, weight, b, q, slip)
+    return MAX_DESCENTS, residual

@@ -1,0 +1,47 @@
+"""ADMM on the dense matrix: a linear solve, factorised once, and a projection in turns.
+
+penalty: over the self-influence of each point; relaxation: 1 none, below 2.  It converges for any
+penalty; how fast depends on it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.foundation.compiled import kernel
+from microslip.solver.method import Method
+from microslip.solver.methods._dense import DenseContact, judge, project_in_place
+
+MAX_ITERATIONS = 2000
+
+
+def _inverse(matrix, scale, penalty, relaxation):
+    """(A + penalty)^-1, the penalty of every point, and the relaxation."""
+    added = penalty * scale
+    return np.linalg.inv(matrix + np.diag(np.tile(added, 2))), added, relaxation
+
+
+@kernel
+def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, settings):
+    inverse, penalty, relaxation = settings
+    residual = judge(matrix, scale, bound, weight, b, q, slip)
+    dual = slip / penalty
+    for iteration in range(MAX_ITERATIONS):
+        if residual <= tolerance:
+            return iteration, residual
+        free = (inverse @ (b + penalty * (q - dual)).ravel()).reshape(q.shape)
+        dual += relaxation * free + (1.0 - relaxation) * q
+        q[:] = dual
+        project_in_place(q, bound)
+        dual -= q
+        residual = judge(matrix, scale, bound, weight, b, q, slip)
+    return MAX_ITERATIONS, residual
+
+
+def _dress(contact, penalty, relaxation):
+    return DenseContact(contact, _solve, _inverse, penalty=penalty, relaxation=relaxation)
+
+
+METHOD = Method(
+    "ADMM on the dense matrix", dress=_dress, parameters={"penalty": 1.0, "relaxation": 1.7}
+)

@@ -1,0 +1,137 @@
+"""The incremental frictional solver of the package aspher, on the same squares and the same path.
+
+V. A. Yastrebov, https://github.com/cofebem/aspher (BSD-3-Clause); it is asked only where it is
+installed.  It solves the normal contact on the squares, then one tangential problem a step by a
+projected conjugate gradient method: backward Euler.  It knows translations alone, at any nu.
+
+It marches from no traction, without any search, until the means of two periods agree or for
+MOST_PERIODS: only where the forward motion is fast does the state become periodic in that time.
+Two settings are not its own:
+
+- Without its preconditioner, which suits points that stick: where slip turns its direction it takes
+  about five times as many iterations with it, for means that are no better.
+- A step that it would refuse counts as failed, and the march goes on from the best tractions that
+  it found.  Left to itself it falls back to those before the step, and the means become worthless.
+
+An iteration of its takes two products with the influence operator, where one of ours takes one:
+the effort counts iterations all the same.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from microslip.models.coulomb import project
+from microslip.models.path import EULER
+from microslip.models.squares.convolution import square_convolution
+from microslip.solver.method import Method
+from microslip.solver.simulate import Run, failed_run
+from microslip.theory.hertz import G_STAR
+
+MOST_PERIODS = 6
+ACCEPTED = 1e-2
+"""Its own limit of a solved step: largest change of a traction in a projected step, over the
+largest bound."""
+
+
+class Solver:
+    """A sphere under load on ``cells`` x ``cells`` squares over [-1, 1]^2, to be moved step by
+    step; working units, mu = 1."""
+
+    def __init__(self, cells, poisson):
+        import aspher
+
+        # G* = 4G/(2 - nu) is given, G = E* (1 - nu)/2; the load of radius 1 is 4/3 E*/R = 1
+        modulus = G_STAR * (2.0 - poisson) / (2.0 * (1.0 - poisson))
+        self.size = 2.0 / cells
+        self.scale = square_convolution(cells, poisson)[1]
+        self.unknowns = 2 * cells**2
+        self.iterations = self.solves = self.failed = 0
+        self._solver = aspher.FrictionSolver(
+            grid_size=cells,
+            domain_size=2.0,
+            E_star=modulus,
+            nu=poisson,
+            model=aspher.CoulombFriction(1.0),
+            precond=False,
+        )
+        centres = (np.arange(cells) + 0.5) * self.size - 1.0
+        forward, lateral = np.meshgrid(centres, centres)  # its first component is along axis 1
+        self._solver.set_gap((forward**2 + lateral**2) / (2.0 * 4.0 / 3.0 * modulus))
+        self.loaded = self._solver.step(p_bar=1.0 / 4.0).converged
+        self.bound = np.asarray(self._solver.pressure).reshape(cells, cells)
+
+    def step(self, forward, lateral):
+        """Move on to a rigid displacement (in u_lim); returns the forward force (over mu F_z) and
+        the residual, as friction.coulomb_residual.  Takes note of steps that failed."""
+        step = self._solver.step(delta_t=(forward, lateral), tol_kkt=math.inf)
+        self.iterations += step.tangential_iters
+        self.solves += 1
+        self.failed += not (step.converged and step.proj_residual <= ACCEPTED)
+        q, slip = np.stack([step.qx, step.qy]), np.stack([step.slip_x, step.slip_y])
+        left = project(q + slip / self.scale, self.bound) - q
+        force, residual = q[0].sum(), np.hypot(*left).sum()
+        return float(force) * self.size**2, float(residual) * self.size**2
+
+
+def half_period(solver, path, number):
+    """March the half period of this number, from 0; returns the forward forces at its phases, the
+    first one left out, and the sum of the residuals."""
+    start, end = path.positions[0, :2], path.positions[-1, :2]
+    sign = (-1) ** number
+    forward = path.positions[1:, 0] - start[0] + number * (end[0] - start[0])
+    lateral = sign * path.positions[1:, 1] - start[1]
+    found = np.array([solver.step(*to) for to in zip(forward, lateral, strict=True)])
+    return found[:, 0], float(found[:, 1].sum())
+
+
+def _run(motion, model, resolution, tolerance):
+    solver = Solver(resolution.cells, motion.poisson)
+    if not solver.loaded:
+        return failed_run("the normal contact was left unsolved")
+    path = motion.path(solver, resolution.steps, EULER)
+    force, means, residuals, change = 0.0, [], [], math.inf
+    for number in range(2 * MOST_PERIODS):
+        forces, residual = half_period(solver, path, number)
+        means.append(float(path.mean(np.array([force, *forces]))))
+        residuals.append(residual)
+        force = forces[-1]
+        if number % 2 == 1 and number > 1:
+            change = abs(sum(means[-2:]) - sum(means[-4:-2])) / 2.0
+            if not change > tolerance:
+                break
+    return Run(
+        mu=sum(means[-2:]) / 2.0,
+        torque=0.0,
+        distance=change,
+        solver_residual=sum(residuals[-2:]),
+        periods=0.5 * len(means),
+        iterations=solver.iterations,
+        solves=solver.solves,
+        work=solver.solves * solver.unknowns,
+        effort=solver.iterations * solver.unknowns,
+        converged=solver.failed == 0 and change <= tolerance,
+        reason=_reason(solver, 0.5 * len(means), change, tolerance),
+    )
+
+
+def _reason(solver, periods, change, tolerance):
+    reasons = []
+    if solver.failed:
+        reasons.append(f"{solver.failed} of {solver.solves} steps failed")
+    if not change <= tolerance:
+        reasons.append(
+            f"not periodic within {periods:g} periods: the mean still changed by {change:.1e}"
+        )
+    return "; ".join(reasons)
+
+
+METHOD = Method(
+    "another package's projected conjugate gradients: squares, backward Euler, plain march",
+    run=_run,
+    model="cartesian",
+    requires="aspher",
+    turns=False,
+)

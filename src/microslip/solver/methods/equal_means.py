@@ -1,0 +1,11 @@
+"""The plain march, stopped when the mean friction of two half periods agrees.
+
+The state creeps on long after two means look alike: the slower the motion, the longer.
+"""
+
+from __future__ import annotations
+
+from microslip.solver.method import Method
+from microslip.solver.methods import _searches
+
+METHOD = Method("plain march until two means agree", search=_searches.equal_means, prepared=False)

@@ -1,0 +1,62 @@
+"""Semismooth Newton's method on q = P(q + slip / scale), always with the full step.
+
+Near the solution it takes a few steps; further away the set of slipping points flips back and forth
+and nothing brings it down.  Points where the bound is next to nothing flip first.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.foundation.compiled import kernel
+from microslip.solver.method import Method
+from microslip.solver.methods._dense import DenseContact, judge, project_in_place
+
+MAX_ITERATIONS = 60
+
+
+@kernel
+def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, settings):
+    n = q.shape[1]
+    system, right = np.empty_like(matrix), np.empty(2 * n)
+    trial, trial_slip = q.copy(), np.empty_like(q)
+    residual = judge(matrix, scale, bound, weight, b, trial, trial_slip)
+    for iteration in range(MAX_ITERATIONS):
+        if residual <= tolerance:
+            q[:] = trial
+            slip[:] = trial_slip
+            return iteration, residual
+        for i in range(n):
+            x = trial[0, i] + trial_slip[0, i] / scale[i]
+            y = trial[1, i] + trial_slip[1, i] / scale[i]
+            size = np.sqrt(x * x + y * y)
+            if size <= bound[i]:  # sticks: no slip
+                for c in range(2):
+                    system[c * n + i] = matrix[c * n + i]
+                    right[c * n + i] = b[c, i]
+                continue
+            # slips: dq = D (dq + dslip / scale), D the derivative of the projection
+            x, y, f = x / size, y / size, bound[i] / size
+            d = ((f * y * y, -f * x * y), (-f * x * y, f * x * x))
+            ends = (bound[i] * x, bound[i] * y)
+            for c in range(2):
+                row = c * n + i
+                system[row] = (d[c][0] * matrix[i] + d[c][1] * matrix[n + i]) / scale[i]
+                system[row, i] -= d[c][0]
+                system[row, n + i] -= d[c][1]
+                system[row, row] += 1.0
+                right[row] = ends[c] - d[c][0] * trial[0, i] - d[c][1] * trial[1, i]
+                right[row] += (d[c][0] * (b[0, i] - trial_slip[0, i])) / scale[i]
+                right[row] += (d[c][1] * (b[1, i] - trial_slip[1, i])) / scale[i]
+        trial = np.linalg.solve(system, right).reshape((2, n))
+        residual = judge(matrix, scale, bound, weight, b, trial, trial_slip)
+    project_in_place(trial, bound)
+    q[:] = trial
+    return MAX_ITERATIONS, judge(matrix, scale, bound, weight, b, q, slip)
+
+
+def _dress(contact):
+    return DenseContact(contact, _solve)
+
+
+METHOD = Method("semismooth Newton, full steps", dress=_dress)

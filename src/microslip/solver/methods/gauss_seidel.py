@@ -1,0 +1,51 @@
+"""Projected Gauss-Seidel: point after point, each seeing what those before it did.
+
+It lowers the energy with every point, so it converges for any relaxation between 0 and 2.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.foundation.compiled import kernel
+from microslip.models.coulomb import shrink
+from microslip.solver.method import Method
+from microslip.solver.methods._dense import DenseContact, judge
+
+MAX_ITERATIONS = 1000
+
+
+def _columns(matrix, scale, relaxation):
+    """The matrix by columns, which is how its entries are used, and the relaxation."""
+    return np.ascontiguousarray(matrix.T), relaxation
+
+
+@kernel
+def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, settings):
+    columns, relaxation = settings
+    n = q.shape[1]
+    residual = judge(matrix, scale, bound, weight, b, q, slip)
+    for iteration in range(MAX_ITERATIONS):
+        if residual <= tolerance:
+            return iteration, residual
+        for i in range(n):
+            x = q[0, i] + relaxation * slip[0, i] / scale[i]
+            y = q[1, i] + relaxation * slip[1, i] / scale[i]
+            f = shrink(x, y, bound[i])
+            dx, dy = f * x - q[0, i], f * y - q[1, i]
+            if dx != 0.0 or dy != 0.0:
+                q[0, i] += dx
+                q[1, i] += dy
+                for c in range(2):
+                    for j in range(n):
+                        k = c * n + j
+                        slip[c, j] -= columns[i, k] * dx + columns[n + i, k] * dy
+        residual = judge(matrix, scale, bound, weight, b, q, slip)
+    return MAX_ITERATIONS, residual
+
+
+def _dress(contact, relaxation):
+    return DenseContact(contact, _solve, _columns, relaxation=relaxation)
+
+
+METHOD = Method("projected Gauss-Seidel", dress=_dress, parameters={"relaxation": 1.0})

@@ -1,0 +1,8 @@
+"""No acceleration: period after period, until the state repeats itself."""
+
+from __future__ import annotations
+
+from microslip.solver.method import Method
+from microslip.solver.methods import _searches
+
+METHOD = Method("plain march to the periodic state", search=_searches.march, prepared=False)

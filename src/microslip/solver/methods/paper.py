@@ -1,0 +1,60 @@
+"""The paper's own run: 32 x 32 squares, backward Euler, 8,000 steps from full slip, no search.
+
+R. Pohrt, Front. Mech. Eng. 6:566440 (2020): stresses to 0.1 %, and the mean of the last period.  A
+period has 100 steps here; a step counts as solved once its tractions are off Coulomb's law by 0.1 %
+of the total friction.  Whatever resolution is asked for, this is what runs.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.models.contact import FORWARD, forward_slip
+from microslip.models.path import EULER, make_path
+from microslip.models.squares.contact import CartesianContact
+from microslip.solver.method import Method
+from microslip.solver.simulate import Run
+
+CELLS, STEPS_PER_PERIOD = 32, 100
+STEPS = 8000
+STRESS_TOLERANCE = 1e-3
+
+
+def path_of(motion, steps=STEPS):
+    """Path of so many steps from the middle of a stroke."""
+    phase = 2.0 * np.pi / STEPS_PER_PERIOD * np.arange(steps + 1)
+    return make_path(motion.displacement, phase, EULER)
+
+
+def last_means(march):
+    """Mean forward force over each of the last two periods, the last one first."""
+    force = march.forces[1:, FORWARD]
+    last, before = force[-STEPS_PER_PERIOD:], force[-2 * STEPS_PER_PERIOD : -STEPS_PER_PERIOD]
+    return float(last.mean()), float(before.mean())
+
+
+def _run(motion, model, resolution, tolerance):
+    contact = CartesianContact(CELLS, motion.poisson, motion.scene.pressure)
+    march = contact.march(path_of(motion), forward_slip(contact), STRESS_TOLERANCE)
+    mean, before = last_means(march)
+    return Run(
+        mu=mean,
+        torque=0.0,
+        distance=abs(mean - before),
+        solver_residual=march.residual,
+        periods=STEPS / STEPS_PER_PERIOD,
+        iterations=march.iterations,
+        solves=march.solves,
+        work=march.solves * march.state.size,
+        effort=march.iterations * march.state.size,
+        converged=True,
+        reason="",
+    )
+
+
+METHOD = Method(
+    "the paper's run: squares, 8,000 steps of backward Euler",
+    run=_run,
+    model="cartesian",
+    resolution=(32, 1, 100),
+)

@@ -1,0 +1,23 @@
+"""Projected gradient with a fixed step: safe up to twice the reciprocal of the largest eigenvalue.
+
+Short enough to be safe it is slow, since smooth tractions yield far more than rough ones.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.solver.method import Method
+from microslip.solver.methods._dense import DenseContact, descend, safe_length
+
+
+def _lengths(matrix, scale, step):
+    """``step`` in units of the reciprocal of the largest eigenvalue, for every point."""
+    return np.full_like(scale, step * safe_length(matrix))
+
+
+def _dress(contact, step):
+    return DenseContact(contact, descend, _lengths, step=step)
+
+
+METHOD = Method("projected gradient, fixed step", dress=_dress, parameters={"step": 1.0})

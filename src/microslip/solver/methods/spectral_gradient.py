@@ -1,0 +1,48 @@
+"""Projected gradient with Barzilai-Borwein steps, as the squares ship with, on the dense matrix.
+
+The length of a step is what the last one measured of the matrix along its own direction.
+"""
+
+from __future__ import annotations
+
+from microslip.foundation.compiled import kernel
+from microslip.solver.method import Method
+from microslip.solver.methods._dense import DenseContact, judge, project_in_place, safe_length
+
+MAX_ITERATIONS = 2000
+PATIENCE = 60
+"""Iterations granted to long steps for halving the residual; then steps are short until it is."""
+
+
+def _shortest(matrix, scale):
+    return safe_length(matrix)
+
+
+@kernel
+def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, shortest):
+    residual = judge(matrix, scale, bound, weight, b, q, slip)
+    length, best, best_at = shortest, residual, 0
+    for iteration in range(MAX_ITERATIONS):
+        if residual <= tolerance:
+            return iteration, residual
+        moved, changed = -q, slip.copy()
+        q += length * slip
+        project_in_place(q, bound)
+        residual = judge(matrix, scale, bound, weight, b, q, slip)
+        moved += q
+        changed -= slip
+        share = (weight * moved * changed).sum()
+        if residual < 0.5 * best:
+            best, best_at = residual, iteration
+        if iteration - best_at > PATIENCE or not share > 0.0:
+            length = shortest
+        else:
+            length = (weight * moved * moved).sum() / share
+    return MAX_ITERATIONS, residual
+
+
+def _dress(contact):
+    return DenseContact(contact, _solve, _shortest)
+
+
+METHOD = Method("projected gradient, Barzilai-Borwein steps", dress=_dress)

@@ -1,0 +1,64 @@
+"""Fixed-point stick/slip switching: guess who slips and which way, solve for the rest, guess again.
+
+Slipping points keep their traction at the bound along the slip seen last, sticking points do not
+slip; then points beyond the bound are let go, and points dragged against their slip are caught.
+Nothing measures progress, so the guesses may chase each other for ever.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.foundation.compiled import kernel
+from microslip.solver.method import Method
+from microslip.solver.methods._dense import DenseContact, judge
+
+MAX_ITERATIONS = 200
+
+
+@kernel
+def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, settings):
+    n = q.shape[1]
+    residual = judge(matrix, scale, bound, weight, b, q, slip)
+    sticks = np.zeros(n, np.bool_)
+    for i in range(n):
+        sticks[i] = q[0, i] ** 2 + q[1, i] ** 2 < (bound[i] * (1.0 - 1e-12)) ** 2
+    for iteration in range(MAX_ITERATIONS):
+        if residual <= tolerance:
+            return iteration, residual
+        # slipping tractions point along the slip; a point without slip keeps its direction
+        for i in range(n):
+            if sticks[i]:
+                continue
+            x, y = slip[0, i], slip[1, i]
+            if x * q[0, i] + y * q[1, i] <= 0.0:
+                x, y = q[0, i], q[1, i]
+            size = np.sqrt(x * x + y * y)
+            if size > 0.0:
+                q[0, i], q[1, i] = bound[i] * x / size, bound[i] * y / size
+        known = np.flatnonzero(sticks)
+        both = np.concatenate((known, known + n))
+        if len(both) > 0:
+            flat = q.copy().ravel()
+            flat[both] = 0.0
+            right = b.copy().ravel() - matrix @ flat
+            inner = matrix[both][:, both]
+            flat[both] = np.linalg.solve(inner, right[both])
+            q[:] = flat.reshape(q.shape)
+        residual = judge(matrix, scale, bound, weight, b, q, slip)
+        for i in range(n):
+            if sticks[i]:
+                size = np.sqrt(q[0, i] ** 2 + q[1, i] ** 2)
+                if size > bound[i]:
+                    sticks[i] = False
+                    slip[0, i], slip[1, i] = q[0, i], q[1, i]  # the way it was held back
+            elif slip[0, i] * q[0, i] + slip[1, i] * q[1, i] < 0.0:
+                sticks[i] = True
+    return MAX_ITERATIONS, residual
+
+
+def _dress(contact):
+    return DenseContact(contact, _solve)
+
+
+METHOD = Method("fixed-point stick/slip switching", dress=_dress)

@@ -1,0 +1,14 @@
+"""The theta method a little beyond the midpoint: what rings there is damped here, slowly."""
+
+from __future__ import annotations
+
+from microslip.models.path import theta_method
+from microslip.solver.method import Method
+from microslip.solver.methods import _searches
+
+THETA = 0.55
+METHOD = Method(
+    f"theta method, theta = {THETA}",
+    integrator=theta_method(THETA),
+    search=_searches.accelerated,
+)

@@ -1,0 +1,134 @@
+"""One (half) period as a map of the tractions at its beginning, and the verdict on a fixed point.
+
+The verdict is always that of the plain map: its residual, the distance to the fixed point that the
+last correction measured, and what the residual means at the pace of the motion: close to the static
+limit a state changes so little in a period that a small residual proves nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from microslip.models.contact import March, StepFailure, energy_norm
+from microslip.models.coulomb import project
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicState:
+    """Result of the search.
+
+    forces: (steps + 1, 3) over the last (half) period marched; start: tractions at its beginning;
+    residual: what the plain map still changed, distance: estimated distance from the fixed point
+    (both bounds on a force over mu F_z); solver_residual: sum over the stages of the last period;
+    laps: maps marched; iterations, solves: of the step solver, over all of them; inverse: what
+    turned residuals into corrections, (start.size, start.size), if anything did.
+    """
+
+    forces: np.ndarray
+    start: np.ndarray
+    residual: float
+    distance: float
+    solver_residual: float
+    laps: int
+    iterations: int
+    solves: int
+    converged: bool
+    inverse: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How slowly a state can go wrong.
+
+    static_force: mean forward force of the static limit; gain: force that a contact which does not
+    slip gains in half a period.  A state whose plain map still changes a share of ``gain`` moves
+    forward at a velocity wrong by that share, and as the force depends on the velocity only through
+    its excess over the static limit, at most the same share of the excess is in doubt.
+    """
+
+    static_force: float
+    gain: float
+
+    def doubt(self, residual, force):
+        """Error of the mean forward force that a residual of the plain map stands for."""
+        return abs(force - self.static_force) * residual / self.gain
+
+
+@dataclass(frozen=True, eq=False)
+class Lap:
+    """One march over a lap from ``state`` to ``image``, where the next lap begins: the end of the
+    period, or the mirror image of its middle.
+
+    change: image - state; residual: its size, as a force over mu F_z.
+    """
+
+    state: np.ndarray
+    image: np.ndarray
+    change: np.ndarray
+    residual: float
+    march: March
+
+
+class Cycle:
+    """The map of a contact over a path, which counts the marches: Cycle(...)(state) -> Lap.
+
+    path: half a period, from turning point to turning point, whose second half is its lateral
+    mirror image, or without ``mirror`` a whole one; pace: if the motion may be slow, see Pace.
+    """
+
+    def __init__(self, contact, path, pace=None, mirror=True):
+        self.contact, self.path, self.pace, self.mirror = contact, path, pace, mirror
+        self.laps = self.iterations = self.solves = 0
+        self._march = None
+        self._share = np.diff(path.phase) / (path.phase[-1] - path.phase[0])  # of each step
+
+    def __call__(self, state, step_tolerance, sensitivity=False):
+        """March once from ``state``; steps are solved to ``step_tolerance``.
+
+        Raises StepFailure where the tractions blow up.
+        """
+        self._march = march = self.contact.march(
+            self.path, state, step_tolerance, sensitivity=sensitivity, previous=self._march
+        )
+        self.laps += 1
+        self.iterations += march.iterations
+        self.solves += march.solves
+        image = self.image(march.state)
+        change = image - state
+        if not np.isfinite(change).all():
+            raise StepFailure("diverged: tractions are not finite")
+        return Lap(state, image, change, energy_norm(self.contact, change), march)
+
+    def image(self, state):
+        """Where the next lap begins, for tractions at the end of one; linear."""
+        return self.contact.mirrored(state) if self.mirror else state
+
+    def admissible(self, state):
+        """The state projected on the friction bound, where the integrator keeps to it."""
+        return project(state, self.contact.bound) if self.path.end == 1.0 else state
+
+    def distance(self, lap, proposal):
+        """Estimated distance of a lap's state from the fixed point, given a better state."""
+        distance = max(energy_norm(self.contact, proposal - lap.state), lap.residual)
+        if self.pace is not None:
+            force = lap.march.forces[:, 0]
+            mean = 0.5 * float(self._share @ force[1:] + self._share @ force[:-1])
+            distance = max(distance, self.pace.doubt(lap.residual, mean))
+        return distance
+
+    def result(self, lap, distance, converged, inverse=None):
+        """The PeriodicState that a lap amounts to."""
+        return PeriodicState(
+            forces=lap.march.forces,
+            start=lap.state,
+            residual=lap.residual,
+            distance=float(distance),
+            solver_residual=lap.march.residual,
+            laps=self.laps,
+            iterations=self.iterations,
+            solves=self.solves,
+            converged=bool(converged),
+            inverse=inverse,
+        )

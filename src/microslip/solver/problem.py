@@ -1,0 +1,110 @@
+"""A motion at one point of its parameters: its path in time, and the contact that suits it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from microslip.models.path import SDIRK2, make_path, phases_between, turning_point_grading
+from microslip.models.registry import MODELS
+from microslip.models.rings.mesh import Focus
+
+WEAKEST_FOCUS, STRONGEST_FOCUS, STATIC_FOCUS = 0.3, 1.0 - 2.0**-6, 0.9
+"""Bounds of rings.Focus.strength, and its value for the static limit."""
+
+
+@dataclass(frozen=True, order=True)
+class Resolution:
+    """Cells (rings, or squares along a side), angular points on half the disc, steps a half period
+    (steady motion: not used)."""
+
+    cells: int
+    angles: int
+    steps: int
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A scene at one point of its parameters."""
+
+    scene: object
+    velocity: float
+    amplitude: float
+    poisson: float
+
+    def displacement(self, phase):
+        """Rigid displacement (forward, lateral, angle) at a phase."""
+        return self.scene.displacement(phase, self.velocity, self.amplitude, self.poisson)
+
+    def oscillation(self, phase):
+        """... without the forward motion."""
+        return self.scene.displacement(phase, 0.0, self.amplitude, self.poisson)
+
+    @cached_property
+    def depth(self):
+        """Indentation over the reference one, a function of the phase; None: it does not change."""
+        depth, pressure = self.scene.depth, self.scene.pressure
+        return None if depth is None else lambda phase: depth(phase, self.amplitude, pressure)
+
+    @cached_property
+    def mean_load(self):
+        """Mean of the normal load over a period, over that of the reference state."""
+        return float(self.scene.mean_load(self.amplitude, self.scene.pressure))
+
+    @cached_property
+    def creep(self):
+        """Forward displacement in one radian of phase, in u_lim."""
+        return self.scene.creep(self.velocity, self.amplitude, self.poisson)
+
+    @cached_property
+    def grading(self):
+        """How much shorter steps are at the turning points (see path.turning_point_grading)."""
+        return turning_point_grading(self.creep, self.scene.stroke(self.amplitude, self.poisson))
+
+    def path(self, contact, steps, integrator=SDIRK2):
+        """A lap in steps that suit the motion, or the contact if it has a say in it: half a period,
+        where the second half is the mirror image of the first one, else the whole."""
+        return _path(self, steps, getattr(contact, "grading", self.grading), integrator)
+
+
+@lru_cache(maxsize=32)
+def _path(motion, steps, grading, integrator):
+    turns = motion.scene.turns(motion.velocity, motion.amplitude)
+    phases = phases_between(turns, steps, grading)
+    return make_path(motion.displacement, phases, integrator, motion.depth)
+
+
+def _focus_strength(creep):
+    """How closely rings should gather at the stick radius; creep: in a radian, in u_lim.
+
+    Slip that is as small as the creep fills a layer whose width goes like creep^(2/3).  With ring
+    widths that grow quadratically from it, the square root of that is the right share of the mean
+    width; in powers of two, so that points share grids.
+    """
+    layer = 2.0 ** round(np.log2(creep) / 3.0)
+    return float(np.clip(1.0 - layer, WEAKEST_FOCUS, STRONGEST_FOCUS))
+
+
+def _focus(motion):
+    """Where the slip starts: rings gather there, the closer, the slower the creep."""
+    scene = motion.scene
+    radius = scene.focus(motion.velocity, motion.amplitude, scene.pressure)
+    if radius is None or not scene.periodic:
+        return radius
+    creep = motion.creep
+    return Focus(radius, _focus_strength(creep) if creep > 0.0 else STATIC_FOCUS)
+
+
+def build_contact(motion, model, resolution, focus=None):
+    """The contact, its rings gathered at a rings.Focus, by default where the slip starts."""
+    scene = motion.scene
+    focus = focus or _focus(motion)
+    build = MODELS[model].build
+    contact = build(scene, motion.poisson, resolution.cells, resolution.angles, focus)
+    if scene.depth is None:
+        return contact
+    start = scene.turns(motion.velocity, motion.amplitude)[0]
+    deepest = scene.deepest(motion.amplitude, scene.pressure)
+    return contact.pressed(deepest, float(motion.depth(np.array(start))))

@@ -1,0 +1,280 @@
+"""One run at one resolution: build the contact and the path, find the state that repeats itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from microslip.models.contact import FORWARD, StepFailure, forces, forward_slip
+from microslip.models.coulomb import project
+from microslip.solver.budget import Budget
+from microslip.solver.method import SHIPPED
+from microslip.solver.period_map import Cycle, Pace
+from microslip.solver.periodic import MOST_LAPS
+from microslip.solver.problem import Motion, build_contact
+from microslip.solver.static_limit import static_state
+from microslip.solver.steady import steady_state
+
+STEP_SHARE = 1e-2
+SLOW_STEP_SHARE = 3e-4
+"""Tolerance of a step over that of the periodic state: the slower the motion, the less a state
+changes in a period, and the more an error of its steps adds up."""
+CAREFUL = 0.1
+"""The floor of these tolerances in a second attempt, over that in a first one."""
+MARCH_SHARE = 0.16
+"""Bound of the sum over the steps of half a period, two stages each: a third of the tolerance."""
+SLOW_PUSH, LARGEST_PUSH = 4.0, 0.6
+"""Forward traction added to the static limit's, as a share of the bound, for a start: it grows as
+the friction itself does with the creep in a radian, so that every point slips forward too much.
+From there an accelerated search finds its way down; below, points would only drift."""
+
+COARSENING, COARSEST_STEPS = 8, 12
+COARSE_TOLERANCE = 1e-5
+"""Where marches give derivatives, a search in this many times fewer steps comes first, as long as
+no fewer are left than these, and no tighter than this."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """Outcome of one run: forward friction and torque over their full-slip values, and the effort.
+
+    Where the normal load changes, forces are over mu times its mean.
+
+    distance: estimated distance from the periodic (steady) state; solver_residual: summed over the
+    last period; both forces over mu F_z.  periods: full ones that were marched in search of a state
+    that repeats itself, 0 for a steady motion; iterations, solves: of all searches together;
+    work: step solves x unknowns; effort: iterations x unknowns; retried: 1 if the run is a second
+    attempt, see approach.run_safely.  For other runs of the point:
+    state, the periodic tractions; inverse: see cycle.PeriodicState; static_force: mean forward
+    force of the static limit.
+    """
+
+    mu: float
+    torque: float
+    distance: float
+    solver_residual: float
+    periods: float
+    iterations: int
+    solves: int
+    work: int
+    effort: int
+    converged: bool
+    reason: str
+    state: np.ndarray | None = None
+    inverse: np.ndarray | None = None
+    static_force: float = 0.0
+    retried: int = 0
+
+
+def simulate(
+    scene,
+    velocity,
+    amplitude,
+    poisson,
+    model,
+    resolution,
+    tolerance,
+    guess=None,
+    method=SHIPPED,
+    careful=False,
+    budget=None,
+):
+    """Run ``model`` on a scene at one resolution to its periodic (or steady) state.
+
+    scene: scenes.Scene; velocity > 0, amplitude > 0 (None for steady scenes), poisson in 0..0.5:
+    checked by the caller; tolerance: of the periodic state, a force over mu F_z, steps are solved
+    a hundred times tighter; guess: a Run of the same point, of use if cells and angles are the
+    same, too; method: method.Method; careful: solve the steps of slow motions tighter; budget: a
+    budget.Budget, None: without bounds.  Returns a Run; never raises for want of convergence, but
+    budget.Spent where the budget is.
+    """
+    motion = Motion(scene, velocity, amplitude, poisson)
+    left = tolerance * motion.mean_load  # inside of a run forces are over mu F_z
+    if method.run is not None:
+        return method.run(motion, model, resolution, left)
+    budget = Budget() if budget is None else budget
+    try:
+        run = _run(motion, model, resolution, left, guess, method, careful, budget)
+    except (StepFailure, ArithmeticError, np.linalg.LinAlgError) as failure:
+        return failed_run(str(failure))
+    if method.extrapolated and run.converged:
+        half = replace(resolution, steps=max(resolution.steps // 2, 1))
+        other = replace(method, extrapolated=False)
+        point = (scene, velocity, amplitude, poisson, model, half, tolerance, run, other)
+        return _extrapolated(run, simulate(*point, budget=budget))
+    return run
+
+
+def failed_run(reason):
+    """The Run of a march that could not go on: no number, and why."""
+    return Run(np.nan, np.nan, np.inf, np.inf, 0.0, 0, 0, 0, 0, False, reason)
+
+
+def _run(motion, model, resolution, tolerance, guess, method, careful, budget):
+    contact = budget.metered(method.dressed(build_contact(motion, model, resolution)))
+    step_tolerance = STEP_SHARE * tolerance
+    if not motion.scene.periodic:
+        return _steady_run(contact, motion, tolerance, step_tolerance)
+    slow_share = contact.stiffness * motion.creep * np.pi * STEP_SHARE
+    floor = CAREFUL * SLOW_STEP_SHARE if careful else SLOW_STEP_SHARE
+    share = min(max(slow_share, floor), STEP_SHARE, MARCH_SHARE / resolution.steps)
+    step_tolerance = share * tolerance
+    search = _Search(contact, motion, method, resolution.steps, tolerance, step_tolerance)
+    return search.run(guess)
+
+
+def _extrapolated(fine, coarse):
+    """The Run that two of first order amount to, one with half as many steps as the other."""
+    return replace(
+        fine,
+        mu=2.0 * fine.mu - coarse.mu,
+        torque=2.0 * fine.torque - coarse.torque,
+        distance=2.0 * fine.distance + coarse.distance,
+        solver_residual=2.0 * fine.solver_residual + coarse.solver_residual,
+        periods=fine.periods + coarse.periods,
+        iterations=fine.iterations + coarse.iterations,
+        solves=fine.solves + coarse.solves,
+        work=fine.work + coarse.work,
+        effort=fine.effort + coarse.effort,
+        converged=coarse.converged,
+        reason=coarse.reason,
+    )
+
+
+class _Search:
+    """The search for the periodic state of one run, from one start after the other."""
+
+    def __init__(self, contact, motion, method, steps, tolerance, step_tolerance):
+        self.contact, self.motion, self.method, self.steps = contact, motion, method, steps
+        self.tolerance, self.step_tolerance = tolerance, step_tolerance
+        lap = np.pi if motion.scene.half_period_mirror else 2.0 * np.pi
+        self.pace = Pace(0.0, contact.stiffness * motion.creep * lap)
+        self.path = self._path(steps)
+        self.done = []
+
+    def _path(self, steps):
+        return self.motion.path(self.contact, steps, self.method.integrator)
+
+    def run(self, guess=None):
+        """The Run; guess: see simulate."""
+        found = None
+        if guess is not None and self._fits(guess):
+            self.pace = replace(self.pace, static_force=guess.static_force)
+            found = self._find(self.path, guess.state, guess.inverse)
+        if found is None or not found.converged:
+            found = self._search_afresh()
+        return self._summary(found)
+
+    def _fits(self, guess):
+        shape = (2, *self.contact.forward_position.shape)
+        return guess.converged and guess.state.shape == shape
+
+    def _search_afresh(self):
+        slipping = forward_slip(self.contact)
+        if not self.method.prepared:
+            return self._find(self.path, slipping, None)
+        for start in (self._start_near_the_limit(slipping), slipping):
+            found = self._find_in_stages(start)
+            if found.converged:
+                break
+        return found
+
+    def _start_near_the_limit(self, slipping):
+        """The static limit with all points pushed forward; also takes note of its force."""
+        contact, creep = self.contact, self.motion.creep
+        if not (contact.sticks and self.motion.scene.straight):
+            return slipping
+        residual, oscillating = static_state(contact, self.motion.oscillation, self.step_tolerance)
+        force = float(forces(contact, residual)[FORWARD])
+        self.pace = replace(self.pace, static_force=force)
+        push = min(SLOW_PUSH * creep ** (2.0 / 3.0), LARGEST_PUSH)
+        return project(residual + oscillating + push * slipping, contact.bound)
+
+    def _find_in_stages(self, start):
+        """From coarse steps to the steps asked for, each on the result of the last."""
+        counts = [self.steps]
+        while self.contact.has_sensitivity and counts[0] >= 2 * COARSEST_STEPS:
+            counts.insert(0, max(counts[0] // COARSENING, COARSEST_STEPS))
+        inverse = None
+        for count in counts[:-1]:
+            found = self._find(
+                self._path(count), start, inverse, max(self.tolerance, COARSE_TOLERANCE)
+            )
+            if found.converged:
+                start, inverse = found.start, found.inverse
+        return self._find(self.path, start, inverse)
+
+    def _find(self, path, start, inverse, tolerance=None):
+        looser = (tolerance or self.tolerance) / self.tolerance
+        cycle = Cycle(self.contact, path, self.pace, self.motion.scene.half_period_mirror)
+        tolerances = looser * self.tolerance, looser * self.step_tolerance
+        self.done.append(self.method.search(cycle, start, *tolerances, MOST_LAPS, inverse))
+        return self.done[-1]
+
+    def _summary(self, found):
+        full = self.motion.mean_load
+        forward, _, torque = mean_forces(self.contact, self.motion, self.path, found.forces)
+        solves = sum(one.solves for one in self.done)
+        solved = found.solver_residual <= _solved_sum(self.path, self.step_tolerance)
+        periods = periods_of(sum(one.laps for one in self.done), self.motion.scene)
+        reason = ""
+        if not found.converged:
+            reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
+        elif not solved:
+            reason = f"a step was left unsolved: residual {found.solver_residual:.1e}"
+        return Run(
+            mu=float(forward) / full,
+            torque=float(torque) / self.motion.scene.pressure.torque,
+            distance=found.distance / full,
+            solver_residual=found.solver_residual / full,
+            periods=periods,
+            iterations=sum(one.iterations for one in self.done),
+            solves=solves,
+            work=solves * found.start.size,
+            effort=sum(one.iterations for one in self.done) * found.start.size,
+            converged=found.converged and solved,
+            reason=reason,
+            state=found.start,
+            inverse=found.inverse,
+            static_force=self.pace.static_force,
+        )
+
+
+def periods_of(laps, scene):
+    """Full periods in so many laps of a scene.Scene, a float: a lap is half of one where its
+    second half is the mirror image of the first."""
+    return 0.5 * laps if scene.half_period_mirror else float(laps)
+
+
+def mean_forces(contact, motion, path, forces):
+    """Means over a lap of the forces at its phases, shape (3,)."""
+    if motion.depth is None:
+        return path.mean(forces)
+    # by what they lack of full slip, whose mean is known: less is left to the trapezoidal rule,
+    # and to how the rings in contact follow its edge
+    bounds = contact.bounds(motion.depth(path.phase))
+    full = contact.angles * (bounds @ contact.weight)[:, None] * [1.0, 0.0, 0.0]
+    return [motion.mean_load, 0.0, 0.0] - path.mean(full - forces)
+
+
+def _solved_sum(path, step_tolerance):
+    """Largest sum of residuals that a march solved to ``step_tolerance`` can leave."""
+    return path.stages.shape[0] * path.stages.shape[1] * step_tolerance
+
+
+def _steady_run(contact, motion, tolerance, step_tolerance):
+    found = steady_state(contact, motion.displacement, motion.velocity, tolerance, step_tolerance)
+    return Run(
+        mu=float(found.forces[0]),
+        torque=float(found.forces[2]) / motion.scene.pressure.torque,
+        distance=found.distance,
+        solver_residual=found.solver_residual,
+        periods=0.0,
+        iterations=found.iterations,
+        solves=found.solves,
+        work=found.solves * found.state.size,
+        effort=found.iterations * found.state.size,
+        converged=found.converged,
+        reason="" if found.converged else f"no steady state: {found.distance:.1e} left",
+    )

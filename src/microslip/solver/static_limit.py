@@ -1,0 +1,70 @@
+"""The static limit: what resists a forward motion infinitely slower than the oscillation.
+
+Let +-q_osc be the tractions at the two turning points of the oscillation alone, their mean removed.
+As the forward velocity vanishes, every point that still sticks at times has to creep forward by a
+little in each cycle, at instants when |R + q_osc| reaches the bound, R being the constant part of
+its traction.  Creep so slow does not change q_osc, and the flow rule makes R the best there is:
+
+    maximise  R . e_forward   subject to   |R + q_osc| <= g  and  |R - q_osc| <= g   at every point,
+
+a ratcheting counterpart of Melan's shakedown theorem.  In between the turning points q_osc runs
+along the segment that joins them, so these two instants are the only ones that count.  Motions on
+a loop, and a load that oscillates, are in static_loop.py.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.models.path import EULER, make_path
+
+STEPS = 4
+"""Steps from one turning point to the next.  Between them the slip of each point keeps its
+direction and only grows, so that backward Euler steps of any size end in the same tractions.  (A
+method of second order may end a step below the bound, and the residual feels the square root.)"""
+
+
+def at_turning_points(scene):
+    """Whether the turning points tell the static limit of a scenes.Scene: motion on a line under a
+    load that stays."""
+    return scene.straight and scene.depth is None
+
+
+def oscillating_part(contact, oscillation, step_tolerance):
+    """Tractions at the first turning point under the oscillation alone, mean removed.
+
+    oscillation(phase) -> rigid displacement without forward motion; the phase -pi/2 is the turning
+    point meant.  Shape of the contact's states.
+    """
+    shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
+    quarter = make_path(oscillation, np.linspace(0.0, np.pi / 2, STEPS // 2 + 1), EULER)
+    # by Masing's rule the first quarter from a stress-free start already ends on the closed loop,
+    # and at the other turning point tractions are the same with the opposite sign
+    return -contact.march(quarter, np.zeros((2, *shape)), step_tolerance).state
+
+
+def residual_part(oscillating, bound):
+    """The constant tractions R, point by point; arrays (2, ...), forward component first.
+
+    The two discs |R +- q| <= g intersect in a lens.  Its point furthest forward is the forward tip
+    of one of the discs where the other contains it, else the forward corner of the lens.
+    """
+    q_forward, q_lateral = oscillating
+    size = np.hypot(q_forward, q_lateral)
+    height = np.sqrt(np.maximum(bound**2 - size**2, 0.0))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        slope = np.where(size > 0.0, np.abs(q_lateral) / size, 1.0)
+        turn = np.where(size > 0.0, -np.sign(q_lateral) * q_forward / size, 0.0)
+    corner = height * np.stack([slope, turn])
+    # the disc whose centre lies behind has its tip inside the other one, if any has
+    ahead = np.abs(q_forward)
+    tip = np.stack([bound - ahead, -np.sign(q_forward) * q_lateral])
+    other = np.hypot(bound - 2.0 * ahead, 2.0 * q_lateral)
+    residual = np.where(other <= bound, tip, corner)
+    return np.where(size < bound, residual, 0.0)
+
+
+def static_state(contact, oscillation, step_tolerance):
+    """Residual and oscillating tractions of the static limit (see the module's docstring)."""
+    oscillating = oscillating_part(contact, oscillation, step_tolerance)
+    return residual_part(oscillating, contact.bound), oscillating

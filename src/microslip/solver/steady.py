@@ -1,0 +1,62 @@
+"""The steady state of a motion that does not oscillate: marched until its tractions stand still."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from microslip.models.contact import energy_norm, forward_slip
+from microslip.models.path import EULER, make_path
+
+STEADY_STRETCH = 8
+"""Steps marched between two looks at whether a steady motion has reached its steady state."""
+STEADY_TRAVEL = 0.5
+"""Largest rigid displacement of a steady motion in one step, in u_lim."""
+MAX_STRETCHES = 200
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyState:
+    """Where a steady motion settles: tractions, forces (3,), and the effort (see Run)."""
+
+    state: np.ndarray
+    forces: np.ndarray
+    distance: float
+    solver_residual: float
+    stretches: int
+    iterations: int
+    solves: int
+    converged: bool
+
+
+def steady_state(contact, displacement, velocity, tolerance, step_tolerance):
+    """March a steady motion until its tractions stand still to ``tolerance`` (a force)."""
+    step = STEADY_TRAVEL / max(1.0, velocity)
+    state, iterations, solves = forward_slip(contact), 0, 0
+    previous = distance = np.inf
+    for stretch in range(1, MAX_STRETCHES + 1):
+        phase = step * STEADY_STRETCH * (stretch - 1) + step * np.arange(STEADY_STRETCH + 1)
+        march = contact.march(make_path(displacement, phase, EULER), state, step_tolerance)
+        change = energy_norm(contact, march.state - state)
+        state = march.state
+        iterations += march.iterations
+        solves += march.solves
+        # the changes of a contraction fall geometrically; what is left is their tail
+        if np.isfinite(previous):
+            ratio = min(change / previous, 0.9) if previous > 0.0 else 0.0
+            distance = change / (1.0 - ratio)
+        previous = change
+        if distance <= tolerance:
+            break
+    solved = march.residual <= march.solves * step_tolerance
+    return SteadyState(
+        state,
+        march.forces[-1],
+        distance,
+        march.residual,
+        stretch,
+        iterations,
+        solves,
+        bool(distance <= tolerance and solved),
+    )

@@ -1,0 +1,261 @@
+"""The dataset accuracy_cost: trials with errors and costs, maps of models, costs of a step."""
+
+from dataclasses import asdict
+
+import numpy as np
+
+from microslip.studies.accuracy import accuracy_cost as study
+from microslip.studies.accuracy import profiles
+from microslip.studies.accuracy.fronts import cheapest, confirmed, exponent, on_front
+from microslip.studies.ladders import exact_model
+from microslip.studies.tables import Answers, finished, value_of, variable
+from microslip.theory import paper
+
+MEASURED = (
+    "seconds are CPU times measured in the runs that made this file: medians, compiled, one "
+    "thread. They belong to the machine, and come out a little different each time; everything "
+    "else is reproducible."
+)
+
+GROUPS = {
+    "points": ("Points that trials are run at, and their references", ("point",)),
+    "scaling": ("What a step costs on finer grids", ("scaling_model", "scaling_size")),
+} | {
+    f"{scene}_map": (
+        f"The cheapest model that is good enough, scene {scene}",
+        ("map_tolerance", f"{scene}_amplitude", f"{scene}_velocity"),
+    )
+    for scene in study.MAP_SCENES
+}
+GROUPS["profile"] = (
+    "How much dearer than the best a model or a method is",
+    ("competitor", "map_tolerance", "point"),
+)
+"""What is not a column of the table of trials."""
+
+# Columns of the table of trials: name -> (type, units, long_name). 0: a count does not apply.
+TRIAL_VARIABLES = {
+    "trial_point": (str, "", "point that the trial was run at"),
+    "trial_model": (str, "", "contact model, or auto for the choice that follows a tolerance"),
+    "trial_method": (str, "", "method that was run"),
+    "trial_level": (np.int32, "1", "level of the ladder of resolutions, or of tolerances"),
+    "trial_cells": (np.int32, "1", "rings, or squares across the contact"),
+    "trial_angles": (np.int32, "1", "angular points on half a ring"),
+    "trial_steps": (np.int32, "1", "time steps in a period"),
+    "trial_tolerance": (float, "1", "tolerance that was asked for"),
+    "mu_macro": (float, "1", "mean forward friction force over mu F_z"),
+    "error": (float, "1", "distance of mu_macro from the reference"),
+    "seconds": (float, "s", "median CPU time of a run, compiled"),
+    "effort": (float, "1", "iterations of the step solver times unknowns"),
+    "converged": (bool, "", "the run says that it converged"),
+    "reason": (str, "", "why the run did not converge, empty if it did"),
+    "claimed_error": (float, "1", "error that the result claims for itself, where it claims one"),
+    "front_seconds": (bool, "", "no trial of the point is faster and as accurate"),
+    "front_effort": (bool, "", "no trial of the point takes less effort and is as accurate"),
+}
+
+
+def build(settings, answer):
+    """Assemble the Dataset.
+
+    settings: settings.Accuracy. answer(request) -> record, such as sweep.answer with a store.
+    """
+    answers = Answers(answer)
+    points = list(settings.points.values())
+    coords = {"point": variable("point", [p.name for p in points], "name of the point", str)}
+    variables = _points(points, answers)
+    columns = _columns(settings, points, answers, variables)
+    variables |= {
+        name: variable("trial", columns[name], long_name, kind, units)
+        for name, (kind, units, long_name) in TRIAL_VARIABLES.items()
+    }
+    names = [point.name for point in points]
+    variables |= profiles.variables(columns, names, settings.map_tolerance)
+    variables |= _scaling(settings, answers)
+    for scene in study.MAP_SCENES:
+        variables |= _map(settings, scene, answers)
+        for name, values in (
+            ("velocity", settings.map_velocity),
+            ("amplitude", settings.map_amplitude[scene]),
+        ):
+            long_name = f"{name} in the groups of the scene {scene}"
+            coords[f"{scene}_{name}"] = variable(f"{scene}_{name}", values, long_name)
+    within = "largest error of mu_macro that the map allows"
+    coords["map_tolerance"] = variable("map_tolerance", settings.map_tolerance, within)
+    models = list(study.SCALING_SIZES)
+    coords["scaling_model"] = variable("scaling_model", models, "contact model", str)
+    title = "Accuracy and cost of methods for the friction of a vibrated Hertz contact"
+    return finished(variables, coords, title, answers, asdict(settings), comment=MEASURED)
+
+
+def report(dataset):
+    """Lines of text: how many trials there are at every point, and how good the reference is."""
+    for point in dataset["point"].values:
+        own = dataset["trial_point"].values == point
+        bad = int(own.sum() - dataset["converged"].values[own].sum())
+        error = float(dataset["reference_error"].sel(point=point))
+        yield (
+            f"{point}: {own.sum()} trials, {bad or 'none'} not converged, "
+            f"reference within {error:.1e}"
+        )
+
+
+# Points and trials
+
+
+def _points(points, answers):
+    found = [_reference(point, answers) for point in points]
+    columns = {
+        "point_title": (str, "title of the point", [p.title for p in points]),
+        "point_scene": (str, "what moves", [p.scene for p in points]),
+        "point_velocity": (float, "forward velocity of the point", [p.velocity for p in points]),
+        "point_amplitude": (
+            float,
+            "amplitude of the point",
+            [np.nan if p.amplitude is None else p.amplitude for p in points],
+        ),
+        "point_poisson": (float, "Poisson's ratio of the point", [p.poisson for p in points]),
+        "reference": (float, "mu_macro that trials are compared with", [f[0] for f in found]),
+        "reference_error": (float, "error that the reference claims", [f[1] for f in found]),
+        "reference_source": (str, "where the reference comes from", [f[2] for f in found]),
+    }
+    return {
+        name: variable("point", values, long_name, kind)
+        for name, (kind, long_name, values) in columns.items()
+    }
+
+
+def _reference(point, answers):
+    """(mu, error, source) that the trials of a point are compared with."""
+    request = study.truth(point)
+    if request is None:
+        return float(paper.bore_forward(point.velocity)), 0.0, "closed form, Eq 21"
+    result = answers(request)
+    source = f"model {value_of(result, 'model', str)}, tolerance {request['tolerance']}"
+    if not result["converged"]:
+        source += f", not met: {value_of(result, 'reason', str)}"
+    return value_of(result, "mu_macro"), value_of(result, "mu_macro_error"), source
+
+
+def _columns(settings, points, answers, of_points):
+    """Columns of TRIAL_VARIABLES, as lists."""
+    rows, fronts = [], {"front_seconds": [], "front_effort": []}
+    for i, point in enumerate(points):
+        reference, floor = (of_points[name][1][i] for name in ("reference", "reference_error"))
+        found = []
+        for level, request in study.trials(settings, point):
+            result = answers(request)
+            if result.get("applies", True):
+                found.append(_row(point, level, request, result, reference))
+        rows += found
+        # What the reference does not resolve does not count.
+        error = [max(row["error"], floor) if row["converged"] else np.nan for row in found]
+        for name, front in fronts.items():
+            front.extend(on_front([row[name.removeprefix("front_")] for row in found], error))
+    return {name: [row[name] for row in rows] for name in TRIAL_VARIABLES if name not in fronts} | (
+        fronts
+    )
+
+
+def _row(point, level, request, result, reference):
+    chosen = request["kind"] == "choice"
+    used = result if chosen else request | result
+    mu = value_of(result, "mu_macro")
+    return {
+        "trial_point": point.name,
+        "trial_model": "auto" if chosen else request["model"],
+        "trial_method": study.SHIPPED if chosen else request["method"],
+        "trial_level": level,
+        "trial_cells": value_of(used, "cells", int),
+        "trial_angles": value_of(used, "angles", int),
+        "trial_steps": value_of(used, "steps_per_period" if chosen else "steps", int),
+        "trial_tolerance": float(request["tolerance"]),
+        "mu_macro": mu,
+        "error": abs(mu - reference),
+        "seconds": value_of(result, "seconds"),
+        "effort": value_of(result, "effort"),
+        "converged": value_of(result, "converged", bool),
+        "reason": value_of(result, "reason", str),
+        "claimed_error": value_of(result, "mu_macro_error") if chosen else np.nan,
+    }
+
+
+# Models that are good enough, and the cost of a step
+
+
+def _map(settings, scene, answers):
+    dims = ("map_tolerance", f"{scene}_amplitude", f"{scene}_velocity")
+    points = study.map_points(settings, scene)
+    best = {name: [] for name in ("", "_cells", "_seconds")}
+    found = [_candidates(settings, point, answers) for point in points]
+    for tolerance in settings.map_tolerance:
+        for models, cells, seconds, error in found:
+            i = cheapest(seconds, error, tolerance)
+            best[""].append("" if i is None else models[i])
+            best["_cells"].append(0 if i is None else cells[i])
+            best["_seconds"].append(np.nan if i is None else seconds[i])
+    shape = (
+        len(settings.map_tolerance),
+        len(settings.map_amplitude[scene]),
+        len(settings.map_velocity),
+    )
+    described = {
+        "": (str, "", "cheapest model within the tolerance, empty if there is none"),
+        "_cells": (np.int32, "1", "cells that the cheapest model needs"),
+        "_seconds": (float, "s", "median CPU time of the cheapest model"),
+    }
+    return {
+        f"{scene}_cheapest{name}": variable(
+            dims, np.array(best[name], object).reshape(shape), long_name, kind, units
+        )
+        for name, (kind, units, long_name) in described.items()
+    }
+
+
+def _candidates(settings, point, answers):
+    """Models, cells, seconds and errors of all trials at a point of a map, as lists."""
+    truth = value_of(answers(study.map_truth(settings, point)), "mu_macro")
+    requests = study.map_trials(settings, point)
+    results = [answers(request) for request in requests]
+    error = [
+        abs(value_of(r, "mu_macro") - truth) if value_of(r, "converged", bool) else np.inf
+        for r in results
+    ]
+    models = [request["model"] for request in requests]
+    exact = exact_model(point.scene, point.poisson)
+    return (
+        models,
+        [request["cells"] for request in requests],
+        [value_of(result, "seconds") for result in results],
+        confirmed(models, error, exact),
+    )
+
+
+def _scaling(settings, answers):
+    dims = ("scaling_model", "scaling_size")
+    asked = [study.scaling(settings, model) for model in study.SCALING_SIZES]
+    shape = (len(asked), max(map(len, asked)))
+    described = {
+        "unknowns": ("1", "tractions that a step solves for"),
+        "iterations": ("1", "iterations of the step solver in a step"),
+        "seconds": ("s", "median CPU time of a step"),
+        "memory": ("byte", "memory that the contact's arrays take"),
+    }
+    values = {name: np.full(shape, np.nan) for name in described}
+    labels = np.full(shape, "", object)
+    for i, requests in enumerate(asked):
+        for j, request in enumerate(requests):
+            result = answers(request)
+            labels[i, j] = study.size_label(request)
+            for name in described:
+                values[name][i, j] = value_of(result, name)
+    variables = {
+        f"scaling_{name}": variable(dims, values[name], long_name, units=units)
+        for name, (units, long_name) in described.items()
+    }
+    variables["scaling_label"] = variable(dims, labels, "size of the grid", str)
+    for name in ("iterations", "seconds", "memory"):
+        fitted = [exponent(*row) for row in zip(values["unknowns"], values[name], strict=True)]
+        long_name = f"exponent of {name} over unknowns, fitted to the larger half of the sizes"
+        variables[f"scaling_exponent_{name}"] = variable("scaling_model", fitted, long_name)
+    return variables

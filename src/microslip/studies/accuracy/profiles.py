@@ -1,0 +1,148 @@
+"""Performance profiles: how often a model or a method is how much dearer than the best.
+
+E. D. Dolan and J. J. More, Math. Program. 91 (2002) 201-213, doi:10.1007/s101070100263. A case is a
+point and a tolerance; a competitor's cost there is the least among its runs that are within the
+tolerance, and its ratio that cost over the least of all competitors of its contest.
+"""
+
+import numpy as np
+
+from microslip.solver.method_names import SHIPPED, method_named
+from microslip.studies.tables import variable
+
+MODELS = "models"
+CHOSEN = "auto"
+
+
+def contest_of(method):
+    """The contest that a method takes part in, by the part of a run that it exchanges.
+
+    Parameters
+    ----------
+    method : str
+        Name of a method, numbers may follow.
+
+    Returns
+    -------
+    str
+        "models" for what ships and what replaces the whole run, else "integrators", "solvers of a
+        step" or "searches".
+    """
+    parts, shipped = method_named(method), method_named(SHIPPED)
+    if method == SHIPPED or parts.run is not None:
+        return MODELS
+    if parts.dress is not None:
+        return "solvers of a step"
+    if parts.extrapolated or parts.integrator != shipped.integrator:
+        return "integrators"
+    return "searches"
+
+
+def ratios(points, names, costs, tolerance, errors, levels, models):
+    """Least cost of every competitor at every point over the least of all.
+
+    A run counts if it and all finer ones of its model and competitor are within the tolerance,
+    since a coarse one may be right by chance.
+
+    Parameters
+    ----------
+    points, names, models : sequence of str, shape (n,)
+        Point, competitor and contact model of each run.
+    costs, errors : sequence of float, shape (n,)
+        Seconds, and distances from the reference (dimensionless); NaN where there is no result.
+    levels : sequence of int, shape (n,)
+        The finer, the larger.
+    tolerance : float
+        Dimensionless.
+
+    Returns
+    -------
+    tuple
+        Names of the competitors in the order in which they appear, names of the points, and ratios
+        of shape (competitors, points), infinite where no run counts.
+    """
+    of_point, of_name = list(dict.fromkeys(points)), list(dict.fromkeys(names))
+    least = np.full((len(of_name), len(of_point)), np.inf)
+    runs = list(zip(points, names, models, levels, costs, errors, strict=True))
+    for point, name, model, level, cost, error in runs:
+        finer = [run[5] for run in runs if run[:3] == (point, name, model) and run[3] >= level]
+        known = [other for other in finer if np.isfinite(other)]
+        if np.isfinite(error) and np.isfinite(cost) and max(known) <= tolerance:
+            place = of_name.index(name), of_point.index(point)
+            least[place] = min(least[place], cost)
+    best = least.min(axis=0, initial=np.inf)
+    solved = np.isfinite(least)
+    return of_name, of_point, np.divide(least, best, out=np.full_like(least, np.inf), where=solved)
+
+
+def variables(columns, points, tolerances):
+    """Variables of the dataset: a row for each competitor of each contest.
+
+    Parameters
+    ----------
+    columns : dict of list
+        Columns of the table of trials: trial_point, trial_model, trial_method, trial_level, error,
+        seconds, converged.
+    points : list of str
+        Names of all points.
+    tolerances : sequence of float
+        Dimensionless.
+
+    Returns
+    -------
+    dict
+        competitor_contest, competitor and profile_ratio, as xarray.Dataset takes them.
+    """
+    rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+    contests, names, table = [], [], []
+    for contest, entries in _entries(rows).items():
+        found = []
+        for tolerance in tolerances:
+            known, at, values = ratios(
+                [row["trial_point"] for row, _ in entries],
+                [name for _, name in entries],
+                [row["seconds"] for row, _ in entries],
+                tolerance=tolerance,
+                errors=[row["error"] if row["converged"] else np.nan for row, _ in entries],
+                levels=[row["trial_level"] for row, _ in entries],
+                models=[row["trial_model"] for row, _ in entries],
+            )
+            every = np.full((len(known), len(points)), np.inf)
+            every[:, [points.index(point) for point in at]] = values
+            found.append(every)
+        contests += [contest] * len(known)
+        names += known
+        table.append(np.stack(found, axis=1))
+    table = np.concatenate(table) if table else np.empty((0, len(tolerances), len(points)))
+    about = "least CPU time within the tolerance over that of the contest's best, infinite: never"
+    return {
+        "competitor_contest": variable("competitor", contests, "what is compared", str),
+        "competitor": variable("competitor", names, "model or method", str),
+        "profile_ratio": variable(("competitor", "map_tolerance", "point"), table, about),
+    }
+
+
+def _entries(rows):
+    """Rows of each contest with the name that each competes under."""
+    others = {row["trial_method"] for row in rows} - {SHIPPED}
+    contests = {method: contest_of(method) for method in sorted(others)}
+    found = {MODELS: []}
+    for row in rows:
+        model, method = row["trial_model"], row["trial_method"]
+        if method == SHIPPED:
+            found[MODELS].append((row, model))
+        elif contests[method] == MODELS:
+            found[MODELS].append((row, method))
+    for contest in dict.fromkeys(contests.values()):
+        if contest == MODELS:
+            continue
+        mine = {method for method, of in contests.items() if of == contest}
+        # What ships is compared where the others were run.
+        places = {(r["trial_point"], r["trial_model"]) for r in rows if r["trial_method"] in mine}
+        found[contest] = [
+            (row, row["trial_method"])
+            for row in rows
+            if (row["trial_method"] in mine or row["trial_method"] == SHIPPED)
+            and (row["trial_point"], row["trial_model"]) in places
+        ]
+    return {contest: entries for contest, entries in found.items() if entries}

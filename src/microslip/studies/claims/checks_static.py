@@ -1,0 +1,157 @@
+"""What the runs say about static friction: checks of the parts about Eqs 7, 11 and 33.
+
+As in claims_checks: one function for each part, (study, runs) -> list of verdicts.Check.
+"""
+
+from microslip.studies.claims import claims as asked
+from microslip.studies.claims import statements as say
+from microslip.studies.claims import static_limits as static
+from microslip.studies.claims.checks import check, within
+from microslip.studies.claims.runs import friction
+from microslip.theory import paper
+
+
+def _at_limit(study, runs, scene, judge, chosen):
+    """Checks at the static limit: judge(amplitude, limit) -> (against, margin)."""
+    found = []
+    for amplitude in filter(chosen, asked.limited(study, scene)):
+        limit = static.limit(study, runs, scene, amplitude)
+        against, margin = judge(amplitude, limit.value)
+        place = {"amplitude": amplitude}
+        found.append(check(limit.value, against, margin, limit.error, limit.runs, **place))
+    return found
+
+
+def _below_one(amplitude):
+    return amplitude < 1.0  # beyond there is no static friction, and nothing to compare
+
+
+def _formula_above(study, runs, scene, formula, chosen):
+    """Whether a formula lies above the static limit."""
+
+    def judge(amplitude, limit):
+        value = formula(amplitude)
+        return value, value - limit
+
+    return _at_limit(study, runs, scene, judge, chosen)
+
+
+def slider_above(study, runs):
+    return _formula_above(study, runs, "transverse", paper.static_slider, _below_one)
+
+
+def zone_nearer(study, runs):
+    def judge(amplitude, limit):
+        zone = paper.static_transverse(amplitude)
+        return zone, abs(paper.static_slider(amplitude) - limit) - abs(zone - limit)
+
+    return _at_limit(study, runs, "transverse", judge, _below_one)
+
+
+def zone_above(study, runs):
+    return _formula_above(study, runs, "transverse", paper.static_transverse, _below_one)
+
+
+def slider_above_march(study, runs):
+    return _above_march(study, runs, "transverse", paper.static_slider, _below_one)
+
+
+def _above_march(study, runs, scene, formula, chosen):
+    """A formula against the smallest velocity that is marched. Friction rises with velocity, so
+    that this bounds the limit from above, whatever one thinks of closed forms for it."""
+    velocity, found = asked.velocities(study)[0], []
+    for amplitude in filter(chosen, asked.limited(study, scene)):
+        run = runs(asked.point(study, scene, velocity, amplitude))
+        mu, error = friction(run)
+        against = formula(amplitude)
+        found.append(check(mu, against, against - mu, error, [run], amplitude=amplitude))
+    return found
+
+
+def _above_turning(amplitude):
+    return amplitude > say.TURNING_BORE
+
+
+def _below_turning(amplitude):
+    return amplitude < say.TURNING_BORE
+
+
+def _bore_zone(study, runs, judge, chosen):
+    """judge(Eq 33, limit) -> margin."""
+
+    def of(amplitude, limit):
+        zone = paper.static_bore(amplitude)
+        return zone, judge(zone, limit)
+
+    return _at_limit(study, runs, "bore", of, chosen)
+
+
+def bore_zone_near(study, runs):
+    return _bore_zone(study, runs, lambda eq, mu: say.GOOD - abs(eq - mu), _above_turning)
+
+
+def bore_zone_relative(study, runs):
+    return _bore_zone(study, runs, lambda eq, mu: say.RELATIVE * mu - abs(eq - mu), _above_turning)
+
+
+def bore_zone_above(study, runs):
+    return _formula_above(study, runs, "bore", paper.static_bore, _below_turning)
+
+
+def bore_zone_printed(study, runs):
+    def judge(amplitude, limit):
+        printed = paper.static_bore_printed(amplitude)
+        return printed, say.GOOD - abs(printed - limit)
+
+    return _at_limit(study, runs, "bore", judge, _above_turning)
+
+
+def bore_zone_above_march(study, runs):
+    return _above_march(study, runs, "bore", paper.static_bore, _below_turning)
+
+
+def bore_zone_seen(study, runs):
+    found = []
+    for amplitude in filter(_above_turning, asked.limited(study, "bore")):
+        run = runs(asked.point(study, "bore", asked.PAPER_VELOCITY, amplitude))
+        mu, error = friction(run)
+        zone = paper.static_bore(amplitude)
+        found.append(within(say.GOOD, mu, zone, error, [run], amplitude=amplitude))
+    return found
+
+
+# Whether anything is left, at any amplitude
+
+
+def limit_positive(study, runs):
+    asked_for = [asked.point(study, "bore", 0.0, a) for a in study.amplitude["bore"]]
+    return _positive(runs, asked_for)
+
+
+def limit_positive_rings(study, runs):
+    amplitudes = asked.limited(study, "bore")
+    return _positive(runs, [asked.resolved_limit(study, "bore", a) for a in amplitudes])
+
+
+def _positive(runs, asked_for):
+    """Whether friction is left, for a list of requests."""
+    found = []
+    for request in asked_for:
+        run = runs(request)
+        mu, error = friction(run)
+        place = {"amplitude": float(request["amplitude"])}
+        found.append(check(mu, 0.0, mu - say.VANISHES, error, [run], **place))
+    return found
+
+
+def limit_asymptote(study, runs):
+    found = []
+    for amplitude in study.amplitude["bore"]:
+        if amplitude < say.FAR:
+            continue
+        run = runs(asked.point(study, "bore", 0.0, amplitude))
+        mu, error = friction(run)
+        far = float(static.asymptote(amplitude))
+        margin = say.RELATIVE * far - abs(mu - far)
+        found.append(check(mu, far, margin, error, [run], amplitude=amplitude))
+    return found

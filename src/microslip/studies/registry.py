@@ -1,0 +1,61 @@
+"""Studies: how accuracy is paid for, where methods fail, and which of the paper's claims hold.
+
+`ladders` says in which resolutions a model is run; `accuracy_cost`, `stability` and `claims` say
+what is asked; `fronts` picks and fits, `verdicts` judges; the modules with `dataset` in their name
+turn the answers into datasets. What is asked is plain data that imports nothing heavy, since the
+workflow reads it whenever it is parsed.
+"""
+
+from dataclasses import asdict
+from importlib import import_module
+
+from microslip.studies.accuracy import accuracy_cost
+from microslip.studies.claims import claims
+from microslip.studies.stability import stability
+
+# Studies, named as in the configuration, and their datasets.
+DATASETS = {"accuracy": "accuracy_cost", "stability": "stability", "claims": "claims"}
+
+_ASKED = {"accuracy": accuracy_cost, "stability": stability, "claims": claims}
+
+
+def pieces(study, configuration):
+    """What one job each answers: two lists of lists of requests, those that take long first."""
+    return _ASKED[study].pieces(getattr(configuration, study))
+
+
+def settings(study, configuration):
+    """All settings that the dataset of a study depends on, as a dict for JSON."""
+    return asdict(getattr(configuration, study))
+
+
+def build(study, configuration, answer):
+    """Assemble the xarray.Dataset of a study.
+
+    configuration: settings.Configuration. answer(request) -> record, see microslip.sweeps.batches.
+    """
+    return _dataset_of(study).build(getattr(configuration, study), answer)
+
+
+def groups(study):
+    """What of the dataset of a study goes to groups of its file, as for netcdf.divided: dims by
+    the name of a group, each with its title."""
+    return _dataset_of(study).GROUPS
+
+
+def report(study, dataset):
+    """Lines of text that sum up the dataset of a study."""
+    return _dataset_of(study).report(dataset)
+
+
+def write_page(study, path, dataset, lines):
+    """Write the page about a study's dataset; lines: those of its report.
+
+    Raises CacheError as `cache.writing_beside` does.
+    """
+    page = import_module(".claims_page", __name__) if study == "claims" else summary
+    page.write(path, dataset, lines)
+
+
+def _dataset_of(study):
+    return import_module(f".{DATASETS[study]}_dataset", __name__)

@@ -1,0 +1,198 @@
+"""Stability: the cases that methods are sent to, one axis at a time.
+
+Every axis varies one thing from a base point until it hurts, or holds still where others break. A
+case is a value, the point and resolution that it stands for, and what it sets in a method. All
+probes ask for the same tolerance.
+"""
+
+from dataclasses import dataclass
+from itertools import groupby
+
+from microslip.config.load import StudyPoint
+from microslip.solver.method_names import SHIPPED, split
+from microslip.studies import requests
+from microslip.sweeps.keys import canonical_json, number
+
+
+@dataclass(frozen=True)
+class Axis:
+    """What is varied.
+
+    label: what it is, for axes of figures (mathtext allowed, without blanks in it); note: what is
+    held; cases: pairs of the value and what it sets in the request: scene, velocity, amplitude,
+    poisson, cells or steps; parameters: by method, the name of the number that takes the value; an
+    axis that has them asks only these methods, and the shipped one to compare with.
+    """
+
+    name: str
+    label: str
+    note: str
+    cases: tuple
+    parameters: tuple = ()
+
+
+def _varied(key, values, **held):
+    """Cases that give the values to `key`, or to nothing but the method if that is None."""
+    return tuple((value, held if key is None else held | {key: value}) for value in values)
+
+
+_SLOW = (1.0, 0.1, 0.01, 1e-3, 1e-4, 1e-5, 1e-6)
+_SLOW_BORE = (1.0, 0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4)
+_AROUND_ONE = (0.9, 0.99, 0.999, 1.0, 1.001, 1.01, 1.1)
+_TINY = (1.0, 0.3, 0.1, 0.05, 0.02, 0.01, 1e-3)
+_BASE = {"scene": "transverse", "velocity": 0.1, "amplitude": 1.0}
+_BORE = {"scene": "bore", "velocity": 0.1, "amplitude": 1.0}
+
+AXES = (
+    Axis(
+        "steps",
+        "steps in a period",
+        "transverse, v 0.1, A 1",
+        _varied("steps", (8, 16, 32, 64, 128, 256, 512), **_BASE),
+    ),
+    Axis(
+        "slow-transverse",
+        r"velocity $v_0/(\omega{}u_\mathrm{lim})$",
+        "transverse, A 0.5",
+        _varied("velocity", _SLOW, scene="transverse", amplitude=0.5),
+    ),
+    Axis(
+        "slow-bore",
+        r"velocity $v_0/(\Omega\varphi_0{}a)$",
+        "bore, A 1",
+        _varied("velocity", _SLOW_BORE, scene="bore", amplitude=1.0),
+    ),
+    Axis(
+        "critical-amplitude",
+        r"amplitude $y_0/u_\mathrm{lim}$ around the critical one",
+        "transverse, v 0.01",
+        _varied("amplitude", _AROUND_ONE, scene="transverse", velocity=0.01),
+    ),
+    Axis(
+        "tiny-amplitude",
+        r"amplitude $\varphi_0/\varphi_\mathrm{lk}$",
+        "bore, v 0.001",
+        _varied("amplitude", _TINY, scene="bore", velocity=1e-3),
+    ),
+    Axis(
+        "poisson",
+        r"Poisson's ratio $\nu$",
+        "transverse, v 0.1, A 0.7",
+        _varied(
+            "poisson",
+            (0.0, 0.1, 0.2, 0.3, 0.4, 0.49, 0.5),
+            scene="transverse",
+            velocity=0.1,
+            amplitude=0.7,
+        ),
+    ),
+    # The outermost cells get ever smaller, and the bound of friction goes to 0 there.
+    Axis(
+        "edge",
+        "rings: small at the edge",
+        "transverse, v 0.01, A 0.5",
+        _varied("cells", (8, 16, 32, 64, 128), scene="transverse", velocity=0.01, amplitude=0.5),
+    ),
+    # The innermost cells of a polar grid get ever more slender.
+    Axis(
+        "centre",
+        "rings: slender cells at the centre",
+        "bore, v 0.1, A 1",
+        _varied("cells", (4, 8, 12, 16, 24), **_BORE),
+    ),
+    # Up to 1 the instantaneous centre lies inside the contact: the slip has no direction there.
+    Axis(
+        "rotation-centre",
+        "velocity: where the centre of rotation lies",
+        "bore, A 5; inside the contact up to 1",
+        _varied("velocity", (0.05, 0.2, 0.5, 0.8, 1.0, 1.2, 2.0), scene="bore", amplitude=5.0),
+    ),
+    Axis(
+        "reversal",
+        "amplitude of a zigzag",
+        "lateral speed constant but for its sign, v 0.1",
+        _varied("amplitude", (0.5, 1.0, 2.0, 5.0, 20.0, 100.0), scene="zigzag", velocity=0.1),
+    ),
+    Axis(
+        "penalty",
+        "penalty",
+        "transverse, v 0.1, A 1",
+        _varied(None, (0.01, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0), **_BASE),
+        parameters=(("admm", "penalty"),),
+    ),
+    Axis(
+        "relaxation",
+        "relaxation",
+        "transverse, v 0.1, A 1",
+        _varied(None, (0.5, 1.0, 1.5, 1.7, 1.9, 2.0, 2.1), **_BASE),
+        parameters=(("admm", "relaxation"), ("gauss-seidel", "relaxation")),
+    ),
+    Axis(
+        "step-length",
+        "step length",
+        "transverse, v 0.1, A 1",
+        _varied(None, (0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0), **_BASE),
+        parameters=(("projected-gradient", "step"),),
+    ),
+)
+"""All blocks of the atlas, in the order in which it shows them."""
+TRUTH_SHARE = 0.1
+"""Tolerance of what probes are compared with, over theirs."""
+BLOCKS_TOGETHER = 5
+"""Blocks that one job sends a method to."""
+
+
+def axes(study):
+    """The blocks that a settings.Stability asks for, in the order of AXES."""
+    return [axis for axis in AXES if study.axes is None or axis.name in study.axes]
+
+
+def cases(study):
+    """List (axis, value, overrides) of all blocks, in the order of the dataset."""
+    return [(axis, *case) for axis in axes(study) for case in axis.cases]
+
+
+def probe(study, method, axis, value, overrides):
+    """The request that sends a method to a case; None if the axis does not apply to the method."""
+    if axis.parameters:
+        base, _ = split(method)
+        if base in dict(axis.parameters):
+            method = _with_number(method, dict(axis.parameters)[base], value)
+        elif base != SHIPPED:
+            return None
+    imposed = {key: overrides.get(key) for key in ("cells", "steps")}
+    return requests.probe(_point(overrides), method, study.tolerance, **imposed)
+
+
+def reference(study, overrides):
+    """The request that the probes of a case are compared with: as shipped, nothing imposed."""
+    return requests.reference(_point(overrides), TRUTH_SHARE * study.tolerance)
+
+
+def pieces(study):
+    """What one job each answers: two lists of lists of requests, those that take long first."""
+    asked = [list(block) for _, block in groupby(cases(study), key=lambda case: case[0].name)]
+    known, long, short = set(), [], []
+    for block in asked:
+        found = {canonical_json(r): r for r in (reference(study, case[2]) for case in block)}
+        long.append([r for text, r in found.items() if text not in known])
+        known |= found.keys()
+    for method in study.methods:
+        for at in range(0, len(asked), BLOCKS_TOGETHER):
+            some = [case for block in asked[at : at + BLOCKS_TOGETHER] for case in block]
+            found = [probe(study, method, *case) for case in some]
+            short.append([request for request in found if request is not None])
+    return [piece for piece in long if piece], [piece for piece in short if piece]
+
+
+def _point(overrides):
+    place = ("scene", "velocity", "amplitude", "poisson")
+    given = {"poisson": 0.0} | {key: overrides[key] for key in place if key in overrides}
+    return StudyPoint(name="", title="", **given)
+
+
+def _with_number(method, parameter, value):
+    """The text of a method with one number set: "admm:penalty=0.1,relaxation=1.5"."""
+    name, numbers = split(method)
+    numbers[parameter] = value
+    return f"{name}:" + ",".join(f"{key}={number(n)}" for key, n in numbers.items())

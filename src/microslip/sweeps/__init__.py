@@ -1,0 +1,1 @@
+"""Requests to the solver, their names, their answers and where these are kept."""

@@ -1,0 +1,251 @@
+"""The answer to a request: ask the solver, and turn what it says into plain values.
+
+See microslip.sweeps.batches for what a request is. The solver is imported only when it is asked.
+"""
+
+import logging
+import math
+import time
+from statistics import median
+
+import microslip
+from microslip.sweeps.cache import NO_WRITING, CacheError
+
+log = logging.getLogger(__name__)
+
+SHORTEST = 0.02
+"""CPU seconds that are worth a reading of the clock; shorter runs are read together."""
+LONG_ENOUGH = 2.0
+"""CPU seconds of readings after which no more are taken."""
+FIRST_COUNTS = 8.0
+"""CPU seconds of a first call from which on it is the only one; loading kernels takes some 0.1."""
+
+
+def computed(request, time_limit=None):
+    """Ask the solver; the result as a dict of values that JSON can hold.
+
+    time_limit: of a point, as for microslip.solve. Whatever is raised is an answer, too: a result
+    that is not converged, with the exception as its reason in one line, and `crashed`. One point
+    that fails is a gap in the map, not the end of the sweep. But a full disk is nothing of the
+    point's: CacheError and the OSError of one go on.
+    """
+    try:
+        limits = {} if time_limit is None else {"time_limit": time_limit}
+        return plain(_KINDS[request["kind"]](request, **limits))
+    except CacheError:
+        raise
+    except Exception as error:
+        if isinstance(error, OSError) and error.errno in NO_WRITING:
+            raise
+        log.debug("%s", request, exc_info=True)
+        reason = " ".join(f"{type(error).__name__}: {error}".split())
+        return {"converged": False, "crashed": True, "reason": reason}
+
+
+def is_final(result):
+    """Whether equal requests have this result for ever.
+
+    Not so what ran out of time or of memory, or fell over what the next version of a library or of
+    the machine may do: that is asked again.
+    """
+    return not result.get("crashed") and result.get("exhausted") != "time"
+
+
+def timed(run, repeats):
+    """Return what `run()` gives and the CPU seconds that it takes, compiled and with warm caches.
+
+    The first call is not counted, unless it takes so long that compiling is next to nothing of it.
+    The seconds are the median of `repeats` readings, or fewer if they take long. CPU time does not
+    count what other processes do on the same cores meanwhile.
+    """
+    begun = time.process_time()
+    result = run()
+    first = time.process_time() - begun
+    if first > FIRST_COUNTS:
+        return result, first
+    readings, spent, calls = [], 0.0, 1
+    while len(readings) < repeats and (spent < LONG_ENOUGH or not readings):
+        begun = time.process_time()
+        for _ in range(calls):
+            run()
+        took = time.process_time() - begun
+        spent += took
+        if took < SHORTEST and not readings:
+            calls = max(2 * calls, math.ceil(1.2 * calls * SHORTEST / max(took, 1e-6)))
+        else:
+            readings.append(took / calls)
+    return result, median(readings)
+
+
+# Kinds of requests
+
+
+def _point(request, time_limit=None):
+    return _solved(request, model=request["model"], time_limit=time_limit)
+
+
+def _history(request):
+    history = microslip.history(request["scene"], **_of_single_run(request))
+    names = ("phase", "displacement_forward", "force_forward", "force_lateral", "torque")
+    return {name: getattr(history, name) for name in names}
+
+
+def _field(request):
+    return microslip.traction_field(request["scene"], **_of_single_run(request))
+
+
+def _period(request):
+    """A period of the periodic state in few bytes, see microslip.sweeps.period_codec."""
+    from microslip.sweeps.period_codec import packed
+
+    return _found(lambda: packed(microslip.period(**_at(request)), request["angles"]))
+
+
+def _trial(request):
+    """One run at one resolution; `applies` is False where there is nothing to run."""
+    from microslip.adaptive import single_run
+
+    place = _place(request)
+    settings = {"model": request["model"], "method": request["method"]}
+    motion = {name: place[name] for name in ("scene", "poisson", "pressure") if name in place}
+    reason = single_run.applies(**motion, **settings)
+    if reason:
+        return {"applies": False, "converged": False, "reason": reason}
+    settings |= {"cells": request["cells"], "angles": request["angles"]}
+    settings["steps"] = request["steps"] or 2  # a steady motion takes any number, and none
+    settings["tolerance"] = float(request["tolerance"])
+
+    def run():
+        return single_run.run_trial(**place, **settings)
+
+    return {"applies": True} | _timed(run, request["repeats"])
+
+
+def _choice(request):
+    """What `solve` does when only a tolerance is given."""
+    return _timed(lambda: _solved(request), request["repeats"])
+
+
+def _probe(request):
+    """A certified solve with another method; `applies` is False where it cannot be used."""
+    from microslip.adaptive import single_run
+    from microslip.adaptive.choice import choose_model
+    from microslip.motions.registry import scene_named
+
+    place = _place(request)
+    scene = scene_named(place["scene"], place.get("pressure", "hertz"))
+    model = choose_model(scene, place["poisson"], request["model"])
+    how = {"model": model, "method": request["method"], "pressure": scene.pressure.name}
+    reason = single_run.applies(place["scene"], place["poisson"], **how)
+    if reason:
+        return {"applies": False, "converged": False, "reason": reason}
+    settings = {"model": request["model"], "method": request["method"]}
+    return {"applies": True} | _solved(request, **settings)
+
+
+def _scaling(request):
+    from microslip.adaptive import single_run
+
+    sizes = [request["cells"], request["angles"], float(request["poisson"]), request["steps"]]
+    return single_run.measure_steps(request["model"], *sizes)
+
+
+def _run(request):
+    """One run at one resolution, with nothing timed: equal requests have equal results."""
+    from microslip.adaptive import single_run
+
+    names = ("model", "method", "cells", "angles", "steps")
+    settings = {name: request[name] for name in names}
+    tolerance = float(request["tolerance"])
+    return single_run.run_trial(**_place(request), **settings, tolerance=tolerance)
+
+
+def _patches(request):
+    """Where the contact sticks over a period."""
+    from microslip.adaptive.stick_area import patches
+
+    return _found(lambda: patches(**_at(request)))
+
+
+_KINDS = {
+    "point": _point,
+    "history": _history,
+    "field": _field,
+    "period": _period,
+    "trial": _trial,
+    "choice": _choice,
+    "probe": _probe,
+    "scaling": _scaling,
+    "run": _run,
+    "patches": _patches,
+}
+
+
+# What they share
+
+
+def _place(request):
+    amplitude = request["amplitude"]
+    place = {
+        "scene": request["scene"],
+        "velocity": float(request["velocity"]),
+        "amplitude": None if amplitude is None else float(amplitude),
+        "poisson": float(request["poisson"]),
+    }
+    if "pressure" in request:
+        place["pressure"] = request["pressure"]
+    return place
+
+
+def _of_single_run(request):
+    given = {k: float(request[k]) for k in ("velocity", "amplitude", "travel") if k in request}
+    return given | {k: request[k] for k in ("cells", "steps", "periods", "start") if k in request}
+
+
+def _solved(request, **settings):
+    place = _place(request)
+    names = ("cells", "steps", "most_work")
+    settings |= {name: request[name] for name in names if name in request}
+    tolerance = request["tolerance"]
+    result = microslip.solve(
+        place.pop("scene"),
+        place.pop("velocity"),
+        place.pop("amplitude"),
+        tolerance=None if tolerance is None else float(tolerance),
+        **place,
+        **settings,
+    ).to_dict()
+    result.pop("solve_time_s", None)
+    return result
+
+
+def _at(request):
+    return _place(request) | {name: request[name] for name in ("cells", "angles", "steps")}
+
+
+def _found(look):
+    """What `look` sees in a period, or why there is none."""
+    from microslip.adaptive.history import NoPeriodicState
+
+    try:
+        return look()
+    except NoPeriodicState as error:
+        return {"converged": False, "reason": str(error)}
+
+
+def _timed(run, repeats):
+    result, seconds = timed(run, repeats)
+    return dict(result) | {"seconds": seconds}
+
+
+def plain(value):
+    """Python values that JSON can hold, from NumPy's or a dict of them; NaN becomes None."""
+    if isinstance(value, dict):
+        return {str(name): plain(item) for name, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if hasattr(value, "tolist"):
+        return plain(value.tolist())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

@@ -1,0 +1,147 @@
+"""Sliding forward while the normal load or the indentation oscillates, without marching.
+
+While a contact moves along one line its force is that of independent springs at |x| < c(d), d the
+indentation over its mean and c the contact radius, each of which yields at the way d - h(x) in
+u_lim, h(x) the depth at which that radius is x: x^2 for a sphere (Popov, Popov and Popov, Mater.
+Res. 4, 2017).  A spring that came into contact at T has been stretched to
+
+    least of  v (t - tau) + d(tau) - h(x)  over  tau from T to t,
+
+since it lost what it carried above its bound at every tau.  So, with phi(t) = d(t) - v t, it lacks
+phi(t) - min phi of its bound, whatever its x, and the mean over the springs is one over T.  Exact
+for Poisson's ratio 0.  Dimensionless, in the working units of an indenter's pressures.Pressure.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from microslip.pressures.registry import HERTZ
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
+_ANGLES = 0.25 * np.pi * (_NODES + 1.0)
+_NODES, _WEIGHTS = np.sin(_ANGLES) ** 2, 0.25 * np.pi * _WEIGHTS * np.sin(2.0 * _ANGLES)
+"""Quadrature on 0..1, clustered at both ends."""
+_HALVINGS = 60
+_LOOKED_AT = 2001
+
+
+def mean_load(amplitude, by_load, pressure=HERTZ):
+    """Mean normal load over that of the reference state, for a change of the load (by_load), or of
+    the indentation, by ``amplitude`` >= 0 of its mean."""
+    motion = _Motion(0.0, amplitude, by_load, pressure)
+    loss = np.pi - motion.touch
+    if by_load:
+        return float(loss + amplitude * np.sin(loss)) / np.pi
+    # at the height where contact is lost the load goes like its power 3/2: clustered twice
+    t = np.pi - loss * _NODES**2
+    return float(loss * (2.0 * _NODES * _WEIGHTS) @ pressure.total(motion.depth(t))) / np.pi
+
+
+def friction(velocity, amplitude, by_load, pressure=HERTZ):
+    """Mean forward friction over mu times the mean normal load.
+
+    velocity >= 0 over omega u_lim (0: the limit), omega the frequency of the oscillation;
+    amplitude, by_load: as for mean_load.
+    """
+    if amplitude == 0.0:
+        return 1.0
+    mean = mean_load(amplitude, by_load, pressure)
+    motion = _Motion(velocity, amplitude, by_load, pressure)
+    if velocity == 0.0:
+        return float(pressure.total(motion.depth(np.array(0.0)))) / mean
+    lacking, before = 0.0, 0.0
+    rises = motion.rises()
+    for i, (low, high) in enumerate(rises):
+        later = rises[i + 1 :]
+        start, end = (float(pressure.radius(motion.depth(np.array(t)))) for t in (low, high))
+        # springs that come into contact while phi falls, or never lose it, lack what those at its
+        # next low do
+        lacking += (start - before) * motion.lack(np.array([low]), high, later)[0]
+        for one, other in pairwise([start, *motion.kinks(low, high, later), end]):
+            width = other - one
+            when = np.clip(motion.touched(one + width * _NODES), low, high)
+            lacking += width * float(_WEIGHTS @ motion.lack(when, high, later))
+        before = end
+    return 1.0 - pressure.stiffness * lacking / (2.0 * np.pi) / mean
+
+
+class _Motion:
+    """The indentation over a period, from its least at t = 0 to its largest at pi and back."""
+
+    def __init__(self, velocity, amplitude, by_load, pressure):
+        self.velocity, self.amplitude, self.by_load = velocity, amplitude, by_load
+        self.pressure = pressure
+        self.touch = float(np.arccos(1.0 / amplitude)) if amplitude > 1.0 else 0.0
+
+    def depth(self, t):
+        height = np.maximum(1.0 - self.amplitude * np.cos(t), 0.0)
+        return self.pressure.of_load(height) if self.by_load else height
+
+    def phi(self, t):
+        return self.depth(t) - self.velocity * t
+
+    def touched(self, radius):
+        """When the growing contact has a radius."""
+        load = self.pressure.load(radius, radius)
+        height = load if self.by_load else self.pressure.depth(radius)
+        return np.arccos(np.clip((1.0 - height) / self.amplitude, -1.0, 1.0))
+
+    def _climbs(self, t):
+        """Of the sign of phi', and finite where contact begins."""
+        height = np.maximum(1.0 - self.amplitude * np.cos(t), 0.0)
+        if self.by_load:  # the load grows by the stiffness of the contact as it is
+            radius = self.pressure.radius(self.pressure.of_load(height))
+            return self.amplitude * np.sin(t) - self.velocity * self.pressure.stiffness * radius
+        return self.amplitude * np.sin(t) - self.velocity
+
+    def rises(self):
+        """Intervals of the growing contact in which phi rises, as (low, high)."""
+        t = self.touch + (np.pi - self.touch) * np.sin(np.linspace(0.0, np.pi / 2, _LOOKED_AT)) ** 2
+        up = self._climbs(t) > 0.0
+        up[-1] = False
+        turns = np.flatnonzero(up[1:] != up[:-1])
+        at = _first_not(lambda s: (self._climbs(s) > 0.0) == up[turns], t[turns], t[turns + 1])
+        if up[0]:
+            at = np.concatenate([t[:1], at])
+        return list(zip(at[::2].tolist(), at[1::2].tolist(), strict=True))
+
+    def kinks(self, low, high, later):
+        """Radii at which a spring that comes into contact begins to slip before a later low."""
+        for other, _ in later:
+            if self.phi(np.array(low)) < self.phi(np.array(other)) < self.phi(np.array(high)):
+                level = self.phi(np.array([other]))
+                at = _first_not(
+                    lambda t, level=level: self.phi(t) < level, np.array([low]), np.array([high])
+                )
+                yield float(self.pressure.radius(self.depth(at))[0])
+
+    def lack(self, start, high, later):
+        """Integral over time of phi - min phi from ``start`` (n,) on.
+
+        phi rises until ``high``, and in the intervals ``later``.
+        """
+        level = self.phi(start)
+        last = later[-1][1] if later else high
+        low, end = np.full_like(start, last), np.full_like(start, 2.0 * np.pi)
+        lowest = np.zeros_like(start)
+        for other, top in reversed(later):
+            falls_short = self.phi(np.array(other)) < level
+            beyond = self.lack(np.array([other]), top, [o for o in later if o[0] > other])[0]
+            lowest = np.where(falls_short, beyond, lowest)
+            low, end = np.where(falls_short, high, low), np.where(falls_short, other, end)
+        end = _first_not(lambda t: self.phi(t) >= level, low, end)
+        t = start[:, None] + (end - start)[:, None] * _NODES
+        return lowest + (end - start) * ((self.phi(t) - level[:, None]) @ _WEIGHTS)
+
+
+def _first_not(holds, low, high):
+    """Where a condition that holds at ``low`` ceases to before ``high``, shape (n,)."""
+    low, high = low.copy(), high.copy()
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        still = holds(middle)
+        low, high = np.where(still, middle, low), np.where(still, high, middle)
+    return 0.5 * (low + high)

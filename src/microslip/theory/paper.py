@@ -1,0 +1,277 @@
+"""The closed forms of the paper, one function each, and the exact limits for v -> 0.
+
+All quantities are dimensionless: lengths in the contact radius a, amplitudes in u_lim
+(transverse, y~0) or in phi_lk(1/2) (bore, phi~), velocities in omega u_lim (transverse),
+a omega (continuous bore) or Omega phi0 a (oscillating bore), friction in mu*F_z. The names
+follow the motion: forward is the direction of the macroscopic velocity, lateral is across.
+
+Every function takes floats or arrays, broadcasts, and raises ValueError for an argument that is
+not finite or lies outside the range stated with it.
+"""
+
+import numpy as np
+from scipy.special import ellipe, ellipkm1, elliprd, hyp2f1
+
+from microslip.theory import hertz
+from microslip.theory.hertz import checked
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
+_NODES, _WEIGHTS = (_NODES + 1) / 2, _WEIGHTS / 2  # on 0..1
+
+
+# Transverse oscillation
+def large_amplitude_transverse(velocity, amplitude):
+    """Friction of a rigid slider under transverse oscillation, the large-amplitude limit (Eq 6).
+
+    velocity >= 0, amplitude >= 0 (broadcast), else ValueError. It depends on amplitude/velocity
+    alone, as (2/pi) K(m = -(amplitude/velocity)^2); 1 at amplitude 0, else 0 at velocity 0.
+    """
+    velocity, amplitude = checked("velocity", velocity), checked("amplitude", amplitude)
+    # K(-m) = q K'(q) with q = v/sqrt(v^2 + A^2), safe for every ratio of the two.
+    total = np.hypot(velocity, amplitude)
+    q = np.where(amplitude > 0, velocity / np.where(total > 0, total, 1.0), 1.0)
+    positive = np.maximum(q, np.finfo(float).tiny)
+    elliptic = np.where(q < 1e-9, np.log(4) - np.log(positive), ellipkm1(np.maximum(q, 1e-9) ** 2))
+    return (2 / np.pi * q * elliptic)[()]
+
+
+def static_slider(amplitude):
+    """Static friction of one slider on a spring, sqrt(1 - amplitude^2) (Eq 7).
+
+    amplitude >= 0 (any shape), else ValueError; 0 from amplitude 1 on.
+    """
+    amplitude = np.minimum(checked("amplitude", amplitude), 1.0)
+    return np.sqrt((1 - amplitude) * (1 + amplitude))
+
+
+def stick_radius_transverse(amplitude):
+    """Stick radius that a transverse oscillation alone leaves, sqrt(1 - amplitude) (Eq 8).
+
+    amplitude >= 0 (any shape), else ValueError; 0 from amplitude 1 on.
+    """
+    return hertz.mindlin_stick_radius(checked("amplitude", amplitude))
+
+
+def static_stick_zone(stick_radius):
+    """Share of Hertz's load inside the stick radius, 1 - (1 - c^2)^(3/2) (Eq 10).
+
+    0 <= stick_radius <= 1 (any shape), else ValueError.
+    """
+    return hertz.load_inside(checked("stick_radius", stick_radius, high=1.0))
+
+
+def static_transverse(amplitude):
+    """The paper's static friction under transverse oscillation, 1 - amplitude^(3/2) (Eq 11).
+
+    amplitude >= 0 (any shape), else ValueError; 0 from amplitude 1 on. See
+    static_limit_transverse.
+    """
+    return 1 - np.minimum(checked("amplitude", amplitude), 1.0) ** 1.5
+
+
+# Continuous bore
+def rotation_centre(velocity, time=0.0):
+    """Instantaneous centre of rotation (lateral, forward), in the frame at rest (Eq 14).
+
+    velocity >= 0, time t~ = t v0/a >= 0 (broadcast), else ValueError. Returns two arrays:
+    -velocity and time. The paper's t/(v0 a) in Eq 13 has a dimension and is read as t v0/a.
+    """
+    velocity, time = checked("velocity", velocity), checked("time", time)
+    return 0 * time - velocity, time + 0 * velocity
+
+
+def steady_bore_traction(lateral, forward, velocity):
+    """Traction on the body that bores and moves forward, slipping everywhere (Eq 15).
+
+    lateral, forward: position from the contact centre; velocity >= 0 (all broadcast), else
+    ValueError. Returns (lateral, forward) traction: size hertz.friction_bound(r), opposite to the
+    local velocity (-forward, velocity + lateral), 0 in the centre of rotation itself. Both signs
+    are set by that; the paper's pair has one wrong. The mean lateral force is 0 (Eq 16).
+    """
+    lateral = checked("lateral", lateral, low=-np.inf)
+    forward = checked("forward", forward, low=-np.inf)
+    arm = lateral + checked("velocity", velocity)
+    speed = np.hypot(arm, forward)
+    scale = hertz.friction_bound(np.hypot(lateral, forward)) / np.where(speed > 0, speed, 1.0)
+    return scale * forward, -scale * arm
+
+
+def forward_kernel(ratio):
+    """Q_Y: forward friction of a ring of radius ratio*velocity, over its bound (Eq 19).
+
+    ratio >= 0 (any shape), else ValueError. Falls from 2 pi at 0 through 4 at 1 to pi/ratio. It
+    equals 4 E(k) at the modulus k = ratio up to 1, and Q_M(1/ratio) beyond.
+    """
+    inside, even, odd = _ring_integrals(ratio)
+    return np.where(inside, even, odd)[()]
+
+
+def torque_kernel(ratio):
+    """Q_M: torque of a ring of radius ratio*velocity, over bound and radius (Eq 20).
+
+    ratio >= 0 (any shape), else ValueError. Rises from pi*ratio through 4 at 1 to 2 pi. It equals
+    4 (E - (1 - k^2) K)/k at the modulus k = ratio up to 1, and Q_Y(1/ratio) beyond.
+    """
+    inside, even, odd = _ring_integrals(ratio)
+    return np.where(inside, odd, even)[()]
+
+
+def _ring_integrals(ratio):
+    ratio = checked("ratio", ratio)
+    k = np.minimum(ratio, 1 / np.maximum(ratio, 1.0))
+    # Carlson's R_D gives (E - (1 - k^2) K)/k without cancellation; it is infinite at k = 1 only.
+    rest = np.maximum((1 - k) * (1 + k), 1e-100)
+    return ratio <= 1, 4 * ellipe(k * k), 4 / 3 * k * rest * elliprd(0.0, 1.0, rest)
+
+
+def bore_forward(velocity):
+    """Forward friction of the steady continuous bore under Hertz's pressure (Eq 21).
+
+    velocity >= 0 (any shape), else ValueError. It is (3 pi/8)(v - v^3/4) up to v = 1 and the
+    hypergeometric 2F1(-1/2, 1/2; 5/2; 1/v^2) beyond, where it tends to 1.
+    """
+    velocity = checked("velocity", velocity)
+    slow = np.minimum(velocity, 1.0)
+    slow = 3 * np.pi / 8 * slow * (1 - slow**2 / 4)
+    return np.where(velocity <= 1, slow, _fast_forward(1 / np.maximum(velocity, 1.0)))[()]
+
+
+def _fast_forward(inverse):
+    # Eq 21 at velocity 1/inverse >= 1: the power series of 4 E(k), integrated term by term.
+    return hyp2f1(-0.5, 0.5, 2.5, inverse**2)
+
+
+def bore_torque(velocity):
+    """Torque of the steady continuous bore over its value at rest, Hertz's pressure (Eq 22).
+
+    velocity >= 0 (any shape), else ValueError. It is 1 - v^2 + (3/8) v^4 up to v = 1 and 16/(15 pi
+    v) 2F1(1/2, 1/2; 7/2; 1/v^2) beyond.
+    """
+    velocity = checked("velocity", velocity)
+    slow, inverse = np.minimum(velocity, 1.0) ** 2, 1 / np.maximum(velocity, 1.0)
+    slow = 1 - slow + 0.375 * slow**2
+    fast = 16 / (15 * np.pi) * inverse * hyp2f1(0.5, 0.5, 3.5, inverse**2)
+    return np.where(velocity <= 1, slow, fast)[()]
+
+
+# Oscillating bore
+def large_amplitude_bore(velocity):
+    """Forward friction under oscillating bore, steady at each instant (Eq 29).
+
+    velocity >= 0 (any shape), else ValueError. The mean of bore_forward(velocity/cos(tau)), for
+    large amplitudes.
+    """
+    velocity = checked("velocity", velocity)
+    fast, slow = np.maximum(velocity, 1.0), np.clip(velocity, np.finfo(float).tiny, 1 - 1e-16)
+    mean = np.where(velocity < 1, _slow_mean(slow), _fast_mean(fast))
+    return np.where(velocity > 0, mean, 0.0)[()]
+
+
+def _fast_mean(velocity):
+    # The integrand is periodic and smooth, so equal steps converge faster than any power of
+    # their number; at velocity 1, where |tau|^5 is left in it, as its sixth power.
+    tau = (np.arange(128) + 0.5) * (np.pi / 256)
+    return np.mean(_fast_forward(np.cos(tau) / velocity[..., None]), axis=-1)
+
+
+def _slow_mean(velocity):
+    # While cos(tau) > v the cubic branch of Eq 21 holds, and the mean of sec and sec^3 is known.
+    v = velocity
+    sine = np.sqrt((1 - v) * (1 + v))
+    rotating = 3 * np.pi / 8 * ((v - v**3 / 8) * np.log((1 + sine) / v) - v * sine / 8)
+    # The rest, in s = cos(tau)/v from 0 to 1: v f(s) / sqrt(1 - v^2 s^2), with f singular at
+    # s = 1 (half powers), the root singular next to it; 1 - s = (1/v - 1) sinh(h)^2 removes both.
+    h_end = np.arcsinh(np.sqrt(v / (1 - v)))
+    sinh = np.sinh(h_end[..., None] * _NODES)
+    gap, v_col = (1 - v)[..., None], v[..., None]
+    s = np.clip(1 - gap / v_col * sinh**2, 0.0, 1.0)
+    integrand = 2 * np.sqrt(gap) * sinh * _fast_forward(s) / np.sqrt(1 + v_col * s)
+    sliding = h_end * np.sum(_WEIGHTS * integrand, axis=-1)
+    return 2 / np.pi * (rotating + sliding)
+
+
+def bore_amplitude_at(stick_radius):
+    """Bore amplitude that leaves this stick radius, D(c)/D(1/2) (Eqs 30, 31).
+
+    0 < stick_radius <= 1 (any shape), else ValueError.
+    """
+    stick_radius = checked("stick_radius", stick_radius, high=1.0, low_open=True)
+    return hertz.D(stick_radius) / hertz.D_HALF
+
+
+def bore_stick_radius(amplitude):
+    """Stick radius that an oscillating bore alone leaves (Eq 32, inverse of bore_amplitude_at).
+
+    amplitude >= 0 (any shape), else ValueError. In 0..1, never 0.
+    """
+    return hertz.lubkin_stick_radius(hertz.bore_angle(amplitude))
+
+
+def static_bore(amplitude):
+    """The paper's static friction under oscillating bore, 1 - (1 - c^2)^(3/2) (Eq 33, corrected).
+
+    amplitude >= 0 (any shape), else ValueError. This is Eq 10 at the radius of Eq 32; see
+    static_limit_bore.
+    """
+    return static_stick_zone(bore_stick_radius(amplitude))
+
+
+def static_bore_printed(amplitude):
+    """Eq 33 as printed, 1 - (1 - c)^(3/2), without the square that Eq 10 demands.
+
+    amplitude >= 0 (any shape), else ValueError. For comparison only.
+    """
+    return static_stick_zone(np.sqrt(bore_stick_radius(amplitude)))
+
+
+# The exact limits for v -> 0: at each point of the oscillation's stick zone the largest constant
+# forward traction that stays within the friction bound together with the oscillation's own.
+def static_limit_transverse(amplitude):
+    """Static friction under transverse oscillation, v -> 0 (exact for Poisson's ratio 0).
+
+    amplitude >= 0 (any shape), else ValueError; 0 from amplitude 1 on. Integral over the stick
+    zone of sqrt(g^2 - (g - g_c)^2), where g_c is the inner bound of mindlin_traction. For other
+    Poisson's ratios Mindlin's traction, and with it this limit, is an approximation.
+    """
+    amplitude = np.minimum(checked("amplitude", amplitude), 1.0)
+    step, bound, inner = _stick_zone_rule(np.sqrt(1 - amplitude), np.sqrt(amplitude))
+    left = np.sqrt(inner * (2 * bound - inner))
+    return np.minimum(3 * np.sum(step * inner * bound * left, axis=-1), 1.0)
+
+
+def static_limit_longitudinal(amplitude):
+    """Static friction under oscillation along the forward direction, (1 - amplitude)^(3/2).
+
+    amplitude >= 0 in u_lim (any shape), else ValueError; 0 from amplitude 1 on. What is left is
+    the inner bound g_c of mindlin_traction. Exact for Poisson's ratio 0.
+    """
+    return (1 - np.minimum(checked("amplitude", amplitude), 1.0)) ** 1.5
+
+
+def static_limit_bore(amplitude):
+    """Static friction under oscillating bore, v -> 0.
+
+    amplitude >= 0 (any shape), else ValueError. Poisson's ratio drops out: at a given phi~ neither
+    the stick radius nor the torsional traction tau depends on it. Integral over the stick zone of
+    (2/pi) g arccos(tau/g): the best forward traction, averaged over the angle.
+    """
+    c = bore_stick_radius(amplitude)
+    step, bound, inner = _stick_zone_rule(c, np.sqrt((1 - c) * (1 + c)))
+    r = np.sqrt(np.maximum(c[..., None] - inner, 0.0) * (c[..., None] + inner))
+    angle = np.arccos(hertz.lubkin_share(r, c[..., None]))
+    return np.minimum(6 / np.pi * np.sum(step * inner * bound**2 * angle, axis=-1), 1.0)
+
+
+def _stick_zone_rule(c, complement):
+    """Quadrature over r < c: weights for d(eta), and sqrt(1 - r^2), sqrt(c^2 - r^2) at the nodes.
+
+    These roots are complement*cosh(eta) and complement*sinh(eta), complement = sqrt(1 - c^2), and
+    r dr = -product of the roots times d(eta): this resolves the edge layer of a small amplitude.
+    eta runs with the square of a sine, since the integrands hold half powers at both ends.
+    """
+    # Below this an amplitude changes friction by less than rounding.
+    complement = np.maximum(complement, 1e-8)
+    end = np.arcsinh(c / complement)[..., None]
+    eta = end * np.sin(np.pi / 2 * _NODES) ** 2
+    step = end * np.pi / 2 * np.sin(np.pi * _NODES) * _WEIGHTS
+    return step, complement[..., None] * np.cosh(eta), complement[..., None] * np.sinh(eta)
