@@ -49,7 +49,7 @@ if not (workflow.overwrite_configfiles if MAIN else config):
         DEFAULT = str(workflow.current_basedir.join(DEFAULT))
     if "://" not in DEFAULT:
         with refused_in_one_line(DEFAULT):
-            microslip_config.read_yaml(os.path.relpath(DEFAULT))  # says where a mistake is
+            load.read_yaml(os.path.relpath(DEFAULT))  # says where a mistake is
 
     configfile: DEFAULT
 

@@ -23,7 +23,7 @@ def pytest_collection_modifyitems(items):
 @pytest.fixture(scope="session")
 def finished(tmp_path_factory):
     """A project after its first run, and what that run said. To be left as it is."""
-    from workflow_project import ALL_JOBS, Project
+    from stubs.workflow_project import ALL_JOBS, Project
 
     project = Project(tmp_path_factory.mktemp("finished"))
     assert project.planned() == ALL_JOBS

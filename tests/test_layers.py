@@ -1,4 +1,4 @@
-"""Data flows one way: a module imports only from layers above it."""
+"""Data flows one way: a package imports only from those to its left in one line."""
 
 import ast
 from pathlib import Path
@@ -8,131 +8,80 @@ import pytest
 import microslip
 
 PACKAGE = Path(microslip.__file__).parent
-
-# From the ground up; modules on one line do not know each other.
-LAYERS = [
-    {"errors", "syntax_digest"},
-    {"arguments", "source_digest"},
-    {"compiled"},
-    {"hertz", "parameters", "named_files"},
-    {"pressures"},
-    {"theory", "masing", "bounds", "halfspace", "friction", "path", "indenter_limits", "depth"},
-    {"rings", "scene", "any_pressure", "frames", "pulsating", "budget", "result"},
-    {"motions"},
-    {"scenes"},
-    {"models"},
-    {"motion"},
-    {"static", "static_loop", "cycle", "steady"},
-    {"newton", "anderson"},
-    {"periodic"},
-    {"method"},
-    {"simulate"},
-    {"static_run"},
-    {"methods"},
-    {"chains"},
-    {"accuracy", "approach"},
-    {"choice"},
-    {"point"},
-    {"inside", "trial"},
-    {"patches"},
-    {"keys", "schemas", "settings", "strict_yaml"},
-    {"grids"},
-    {"extended"},
-    {"cache", "config", "periods", "netcdf"},
-    {"limits_of_pressures"},
-    {"answers", "batch_files", "jobs", "watch", "limits", "columns", "summary"},
-    {"sweep", "dataset"},
-    {"stored", "si"},
-    {"query"},
-    {"studies"},
-    {"plot", "terminal"},
-    {"launch", "command_line"},
-    {"sweep_process"},
-    {"explorer"},
-    {"plan"},
-    {"cli_predict", "leftovers"},
-    {"cli"},
-    {"__main__"},
-]
-LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
-BELOW_ALL = {"source_digest", "syntax_digest", "compiled", "named_files"}
-PHYSICS = {name for names in LAYERS[: LEVEL["keys"]] for name in names} - BELOW_ALL
+RULE = (
+    "foundation < theory < pressures < motions < models < solver < adaptive < si < config < sweeps "
+    "< datasets < studies < report < app"
+)
+ROOMS = RULE.split(" < ")
+PHYSICS = ROOMS[1 : ROOMS.index("si")]
 FROM_FILES = {"from_file", "grid_csv", "grid_netcdf", "grid_units"}
 """The one pressure that is read from a file, found by its name like every other one: what marches
 gets the record that all pressures have, and cannot tell."""
-MODULES = sorted(
-    path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py") if path.name != "__pycache__"
-)
-
-
-def top_name(path):
-    """First part of a module's name inside the package."""
-    return path.parts[0].removesuffix(".py")
+LISTS_FILES = Path("solver", "method_names.py")
+"""Methods are listed without importing them."""
+MODULES = sorted(path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py"))
 
 
 def imported(path):
-    """Top names of the package's modules that a file imports, and of everything else."""
+    """Modules of the package that a file imports, as tuples of names, and all others by name."""
     inside, outside = set(), set()
     for node in ast.walk(ast.parse((PACKAGE / path).read_text(encoding="utf-8"))):
-        if isinstance(node, ast.ImportFrom) and node.level == 1 and len(path.parts) > 1:
-            inside.add(top_name(path))  # from its own folder
-        elif isinstance(node, ast.ImportFrom) and node.level:
-            names = [node.module] if node.module else [alias.name for alias in node.names]
-            inside |= {name.split(".")[0] for name in names}
-        elif isinstance(node, ast.ImportFrom | ast.Import):
-            module = getattr(node, "module", None)
-            for alias in node.names:
-                full = f"{module}.{alias.name}" if module else alias.name
-                parts = full.split(".")
-                if parts[0] == "microslip":
-                    inside |= set(parts[1:2]) & LEVEL.keys()
-                else:
-                    outside.add(parts[0])
+        if isinstance(node, ast.ImportFrom):
+            assert not node.level, f"{path}: line {node.lineno} is no absolute import"
+            names = [f"{node.module}.{alias.name}" for alias in node.names]
+        elif isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        else:
+            continue
+        for name in names:
+            package, *rest = name.split(".")
+            if package == "microslip" and rest and rest[0] in ROOMS:
+                inside.add(tuple(rest))
+            elif package != "microslip":
+                outside.add(package)
     return inside, outside
 
 
-def test_every_module_has_a_layer():
-    assert {top_name(path) for path in MODULES} - {"__init__"} == set(LEVEL)
+def test_every_module_is_in_a_room():
+    assert {path.parts[0] for path in MODULES} == {*ROOMS, "__init__.py", "__main__.py"}
+    assert {path.name for path in PACKAGE.iterdir() if path.is_dir()} - {"__pycache__"} == {*ROOMS}
 
 
 @pytest.mark.parametrize("path", MODULES, ids=str)
-def test_imports_point_upward(path):
-    name = top_name(path)
-    if name == "__init__":
-        return
+def test_imports_follow_the_rule(path):
+    if path.parts[0] not in ROOMS:
+        return  # the public names, and the command
     inside, _ = imported(path)
-    lower = {other for other in inside - {name} if LEVEL[other] >= LEVEL[name]}
-    assert not lower, f"{path} imports {lower}, which lie below it"
+    right = ROOMS[ROOMS.index(path.parts[0]) + 1 :]
+    assert not {".".join(name) for name in inside if name[0] in right}
+
+
+def test_no_modules_import_each_other_in_a_circle():
+    names = {tuple(path.with_suffix("").parts): path for path in MODULES}
+    waits = {}
+    for name, path in names.items():
+        targets = {n[:end] for n in imported(path)[0] for end in (2, 3, 4)}
+        waits[name] = (targets & names.keys()) - {name}
+    while free := {name for name, targets in waits.items() if not targets}:
+        waits = {n: targets - free for n, targets in waits.items() if n not in free}
+    assert not waits
 
 
 @pytest.mark.parametrize("path", MODULES, ids=str)
 def test_physics_knows_no_files_workflow_or_plots(path):
-    if path == Path("methods", "__init__.py"):
-        return  # it lists the files beside it
-    if path.parts[0] == "pressures" and path.stem in FROM_FILES:
+    files = path == LISTS_FILES or (path.parts[0] == "pressures" and path.stem in FROM_FILES)
+    if path.parts[0] not in PHYSICS or files:
         return
-    if top_name(path) in PHYSICS:
-        _, outside = imported(path)
-        forbidden = {
-            "xarray",
-            "netCDF4",
-            "matplotlib",
-            "snakemake",
-            "yaml",
-            "json",
-            "os",
-            "pathlib",
-        }
-        assert not outside & forbidden
+    forbidden = {"xarray", "netCDF4", "matplotlib", "snakemake", "yaml", "json", "os", "pathlib"}
+    assert not imported(path)[1] & forbidden
 
 
 def test_nothing_else_in_the_physics_knows_where_files_are():
-    users = {path for path in MODULES if "named_files" in imported(path)[0]}
-    physics = {path for path in users if top_name(path) in PHYSICS}
-    assert physics == {Path("pressures", "from_file.py")}
+    named = ("foundation", "named_files")
+    users = {path for path in MODULES if any(name[:2] == named for name in imported(path)[0])}
+    assert {p for p in users if p.parts[0] in PHYSICS} == {Path("pressures", "from_file.py")}
 
 
-def test_theory_and_the_solvers_meet_only_in_the_public_answer():
-    users = {top_name(path) for path in MODULES if "theory" in imported(path)[0]}
-    limits = {"limits", "limits_of_pressures"}
-    assert users <= limits | {"any_pressure", "choice", "dataset", "studies", "query"}
+def test_a_module_can_be_held_in_mind():
+    long = {str(path) for path in MODULES if len((PACKAGE / path).read_text().splitlines()) > 300}
+    assert not long

@@ -12,6 +12,7 @@ from microslip.foundation import source_digest as _source_digest  # noqa: F401  
 _WHERE = {
     "solve": "microslip.adaptive.point",
     "Result": "microslip.adaptive.point",
+    "InputError": "microslip.foundation.errors",
     "warm_up": "microslip.adaptive.point",
     "solve_stored": "microslip.sweeps.solve_stored",
     "predict": "microslip.si.predict",
@@ -19,8 +20,8 @@ _WHERE = {
     "history": "microslip.adaptive.history",
     "History": "microslip.adaptive.history",
     "traction_field": "microslip.adaptive.history",
-    "period": "microslip.adaptive.history",
-    "Period": "microslip.adaptive.history",
+    "period": "microslip.adaptive.period",
+    "Period": "microslip.adaptive.period",
 }
 __all__ = sorted(_WHERE)
 __version__ = "0.1.0"

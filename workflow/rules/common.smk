@@ -4,9 +4,13 @@ from glob import glob
 
 from snakemake.logging import logger as snakemake_log
 
-from microslip import batch_files, explorer, jobs, keys, plan, schemas, source_digest, sweep
+from microslip.app import job_log, plan
 from microslip.app.plan import Plan
 from microslip.app.progress import Watch
+from microslip.config import schema
+from microslip.foundation import canonical, source_digest
+from microslip.report.explorer import explorer
+from microslip.sweeps import batch_files, batches
 
 # In a module the files are those of another workflow, which may hold more than this one knows.
 FILES = [os.path.relpath(file) for file in workflow.configfiles] if MAIN else []
@@ -18,14 +22,14 @@ ORIGIN = ", ".join([*FILES, *OVERRIDDEN]) or f"configuration{OF_MODULE}"
 
 with refused_in_one_line(ORIGIN):
     for file in FILES:
-        microslip_config.read_yaml(file)  # refuses a key that occurs twice
+        load.read_yaml(file)  # refuses a key that occurs twice
     # Jobs parse this again, and need not pay for asking the solver what it knows.
     places = {"source": ORIGIN, "folders": FOLDERS}
-    CONFIGURATION = microslip_config.from_mapping(
+    CONFIGURATION = load.from_mapping(
         config, ask_solver=workflow.is_main_process, **places
     )
     # Captions name the defaults too, and jobs find the files that were found here.
-    config = microslip_config.with_files_found(config, strict=workflow.is_main_process, **places)
+    config = load.with_files_found(config, strict=workflow.is_main_process, **places)
     RESULTS = os.path.normpath(CONFIGURATION.results)
     # RESULTS with the prefix that a module may have; Snakemake adds it to the paths of rules itself.
     PLACE = str(workflow.modifier.modify_path(RESULTS))
@@ -103,8 +107,8 @@ def requests_of(group, batch):
     swapped numbers."""
     requests = PLAN.batches_in(group).get(batch)
     if requests is None:  # in a job, where the sources are no longer those of the plan
-        sys.exit(f"Error: {sweep.SourcesEdited('the solver')}")
-    return keys.canonical_json(requests)
+        sys.exit(f"Error: {batches.SourcesEdited('the solver')}")
+    return canonical.canonical_json(requests)
 
 
 def batches_for(dataset):
@@ -127,7 +131,7 @@ def datasets_for(figure):
 # Rules that seal what they make.
 SEALING = ("collect", "collect_study", "draw_figure", "explorer")
 STORED_ELSEWHERE = workflow.storage_settings.default_storage_provider is not None
-GROUPS = {"batches", "figures", "logs", "warm_up", *sweep.FOLDERS.values()}
+GROUPS = {"batches", "figures", "logs", "warm_up", *batches.FOLDERS.values()}
 # Where another run may be writing, what looks damaged may be about to be whole.
 ASKING = workflow.is_main_process and not glob(".snakemake/locks/*")
 
@@ -136,7 +140,7 @@ with refused_in_one_line(ORIGIN):
         folders = [placed(group) for group in sorted(GROUPS)]
         cache.refuse_unusable(folders, map(placed, PLAN.made_files()))
 
-snakemake_log.addFilter(jobs.plain_words(PLACE))
+snakemake_log.addFilter(job_log.plain_words(PLACE))
 WATCH = Watch(COUNTER)
 
 
@@ -164,7 +168,7 @@ def show_the_end():
     WATCH.stop()
     made = {path for job in workflow.dag.finished_jobs for path in job.output}
     names = [name for name in NAMES if f"{PLACE}/{name}.nc" in made]
-    for line in jobs.closing_lines(PLACE, names):
+    for line in job_log.closing_lines(PLACE, names):
         print(line, file=sys.stderr)
 
 

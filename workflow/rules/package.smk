@@ -20,8 +20,8 @@ os.environ.update(
     )
 )
 
-from microslip import cache
-from microslip import config as microslip_config
+from microslip.config import load
+from microslip.sweeps import sealed_files
 
 
 @contextmanager
@@ -29,9 +29,9 @@ def refused_in_one_line(origin):
     """Context in which what the user has to mend ends the run with one line, before any job."""
     try:
         yield
-    except microslip_config.ConfigError as error:
+    except load.ConfigError as error:
         sys.exit(f"Error in {error}")
-    except cache.CacheError as error:
+    except sealed_files.CacheError as error:
         sys.exit(f"Error in {origin}: results: {error}")
 
 

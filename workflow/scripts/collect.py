@@ -17,7 +17,7 @@ from microslip.app.plan import Plan
 from microslip.config import load
 from microslip.datasets import sweep_dataset
 from microslip.report import dataset_page
-from microslip.sweeps import batches, cache
+from microslip.sweeps import batches, sealed_files
 
 name = snakemake.wildcards.sweep
 
@@ -37,4 +37,4 @@ with job_log(snakemake.log[0]) as log:
         for line in lines:
             log.info(line)
         dataset_page.write(snakemake.output.summary, data, lines)
-    cache.mark(snakemake.output, snakemake.params.made_of)
+    sealed_files.mark(snakemake.output, snakemake.params.made_of)

@@ -11,8 +11,9 @@ from microslip.app.job_log import job_log
 from microslip.app.plan import Plan
 from microslip.config import load
 from microslip.datasets import sweep_dataset
+from microslip.report import study_page
 from microslip.studies import registry
-from microslip.sweeps import batches, cache
+from microslip.sweeps import batches, sealed_files
 
 study = snakemake.params.study
 
@@ -25,5 +26,5 @@ with job_log(snakemake.log[0]) as log:
     lines = list(registry.report(study, data))
     for line in lines:
         log.info(line)
-    registry.write_page(study, snakemake.output.summary, data, lines)
-    cache.mark(snakemake.output, snakemake.params.made_of)
+    study_page.write(study, snakemake.output.summary, data, lines)
+    sealed_files.mark(snakemake.output, snakemake.params.made_of)

@@ -8,7 +8,7 @@ from microslip.app.plan import Plan
 from microslip.config import load
 from microslip.report.figures import drawing
 from microslip.report.figures.data import loaded
-from microslip.sweeps import cache
+from microslip.sweeps import sealed_files
 
 with job_log(snakemake.log[0]):
     configuration = load.from_mapping(snakemake.config, ask_solver=False)
@@ -19,4 +19,4 @@ with job_log(snakemake.log[0]):
     figure = drawing.draw(snakemake.wildcards.figure, data)
     for path in snakemake.output:
         drawing.save(figure, path)
-    cache.mark(snakemake.output, snakemake.params.made_of)
+    sealed_files.mark(snakemake.output, snakemake.params.made_of)

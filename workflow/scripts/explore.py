@@ -8,7 +8,7 @@ from microslip.app.job_log import job_log
 from microslip.config import load
 from microslip.report.explorer import explorer
 from microslip.report.figures.data import loaded
-from microslip.sweeps import batches, cache
+from microslip.sweeps import batches, sealed_files
 
 with job_log(snakemake.log[0]) as log:
     configuration = load.from_mapping(snakemake.config, ask_solver=False)
@@ -23,4 +23,4 @@ with job_log(snakemake.log[0]) as log:
     explorer.write(snakemake.output[0], datasets, periods)
     for line in explorer.report(periods):
         log.info(line)
-    cache.mark(snakemake.output, snakemake.params.made_of)
+    sealed_files.mark(snakemake.output, snakemake.params.made_of)

@@ -5,7 +5,7 @@ Output: a text file that says that it was done.
 
 import microslip
 from microslip.app.job_log import job_log
-from microslip.sweeps.cache import write_atomically
+from microslip.sweeps.sealed_files import write_atomically
 
 with job_log(snakemake.log[0]):
     microslip.warm_up()

@@ -177,7 +177,7 @@ def _static(scene, of_sphere, amplitude, poisson):
 
 
 def plan(scene, name, velocity, amplitude, poisson, tolerance, cells=None, steps=None):
-    """Resolution of what is not refined, and the axes to refine (see accuracy.certify).
+    """Resolution of what is not refined, and the axes to refine (see refinement.certify).
 
     name: of the model; cells, steps (in a full period): impose a resolution instead.
     """

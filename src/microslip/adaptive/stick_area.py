@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.adaptive.history import period
+from microslip.adaptive.period import period
 from microslip.pressures.registry import HERTZ
 
 

@@ -165,8 +165,8 @@ def main(arguments=None):
     options = build_parser(next(iter(arguments), None)).parse_args(command_line.joined(arguments))
     if options.command == "predict":
         return predict_command.run(options)
-    from microslip.sweeps.cache import CacheError
     from microslip.sweeps.evaluate import plain  # only now: --help and bad options need no solver
+    from microslip.sweeps.sealed_files import CacheError
 
     progress, named = _Progress(enabled=sys.stderr.isatty()), f"microslip point {options.scene}"
     try:

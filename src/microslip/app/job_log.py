@@ -8,7 +8,7 @@ import sys
 from contextlib import contextmanager
 from pathlib import Path
 
-from microslip.sweeps.cache import NO_WRITING, CacheError, advice
+from microslip.sweeps.sealed_files import NO_WRITING, CacheError, advice
 
 
 class _LogFile(logging.FileHandler):

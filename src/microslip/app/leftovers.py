@@ -18,7 +18,7 @@ from microslip.app.plan import Plan
 from microslip.app.terminal import complain
 from microslip.config import load
 from microslip.config.records import ConfigError, Configuration
-from microslip.sweeps import batches, cache
+from microslip.sweeps import batches, cache, sealed_files
 
 RECORD = re.compile(r"[0-9a-f]{64}\.json")
 BATCH = re.compile(r"[0-9a-f]{16}\.json")
@@ -64,7 +64,7 @@ def _named(folder):
             yield KINDS[1], path
     for place in FOLDERS_MADE:
         for path in sorted((folder / place).glob("*")):
-            if path.suffix in MADE and cache.seal_of(path).exists():
+            if path.suffix in MADE and sealed_files.seal_of(path).exists():
                 yield KINDS[2], path
 
 
@@ -81,11 +81,11 @@ def left_over(folder: Path, plans: Iterable[Plan]) -> dict[str, list[Path]]:
 def remove(paths: Iterable[Path]) -> None:
     """Remove files with their seals, and folders that are empty then."""
     for path in paths:
-        for file in (path, cache.seal_of(path)):
+        for file in (path, sealed_files.seal_of(path)):
             try:
                 file.unlink(missing_ok=True)
             except OSError as error:
-                raise cache.CacheError(cache.advice("remove", file, error)) from error
+                raise sealed_files.CacheError(sealed_files.advice("remove", file, error)) from error
         for folder in path.parents[:2]:
             if not any(folder.iterdir()):
                 folder.rmdir()
@@ -97,14 +97,14 @@ def main(arguments: list[str]) -> int:
     try:
         configurations = [load.load(path) for path in options.configfile or [DEFAULT]]
         folder = _folder(configurations)
-        cache.refuse_unusable([folder], [])
+        sealed_files.refuse_unusable([folder], [])
         if not os.path.isdir(folder):
             raise ConfigError(f"results: {folder} is not there; allowed: a folder of results")
         found = left_over(folder, [Plan(configuration) for configuration in configurations])
         _say(found, folder, options.delete, options.list)
         if options.delete:
             remove(path for paths in found.values() for path in paths)
-    except (ConfigError, cache.CacheError) as error:
+    except (ConfigError, sealed_files.CacheError) as error:
         complain(f"microslip gc: {error}")
         return 2
     return 0

@@ -11,18 +11,18 @@ from pathlib import PurePosixPath
 
 from microslip.config.records import Configuration
 from microslip.foundation import source_digest
+from microslip.foundation.canonical import canonical_json, fingerprint
 from microslip.report.explorer import explorer
 from microslip.report.figures import drawing
 from microslip.studies import registry
 from microslip.sweeps import batches as sweep
-from microslip.sweeps.keys import canonical_json, fingerprint
 
 PERIODS_PER_JOB = 150
 """Periods for the explorer that one job computes: a few seconds of work."""
 
-DATASET_CODE = ("dataset.py", "columns.py", "limits.py", "summary.py")
+DATASET_CODE = ("datasets/sweep_dataset.py", "report/dataset_page.py")
 """Modules that make the dataset of a sweep, besides what these import."""
-STUDY_CODE = ("dataset.py", "columns.py", "summary.py", "studies")
+STUDY_CODE = ("datasets/sweep_dataset.py", "report/study_page.py", "studies")
 PAGE = "explorer.html"
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from microslip.app.terminal import complain
 
-PACKAGE = Path(__file__).parent
+PACKAGE = Path(__file__).parents[1]
 
 # Arguments that say how many jobs run at once, by themselves or through a profile.
 SETS_CORES = re.compile(r"-[cje]|--(cores|jobs|executor|profile|workflow-profile)(=|$)")

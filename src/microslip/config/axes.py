@@ -7,7 +7,7 @@ import math
 from itertools import pairwise
 
 from microslip.config.records import MODELS_OF_SCENE, SCENE_OF_SWEEP, ConfigError, Sweep
-from microslip.sweeps.keys import number
+from microslip.foundation.canonical import number
 
 # More points than this are a slip of the pen: naming them all takes the workflow a minute whenever
 # it starts.

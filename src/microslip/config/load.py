@@ -1,7 +1,7 @@
 """The configuration of sweeps and studies: read YAML, check it, fill in defaults, expand the axes.
 
-The JSON schema in microslip.config.schema holds the shape, the ranges, the defaults and a description
-of every key. What it cannot say is checked here: duplicates, and settings that do not go together.
+The JSON schema in config.schema.yaml holds the shape, the ranges, the defaults and a description of
+every key. What it cannot say is checked here: duplicates, and settings that do not go together.
 
 Imports nothing heavy, since the workflow reads it whenever it is parsed.
 """
@@ -25,9 +25,9 @@ from microslip.config.records import (
     StudyPoint,
 )
 from microslip.config.strict_yaml import StrictLoader
+from microslip.foundation.canonical import number
 from microslip.foundation.errors import InputError
 from microslip.solver import method_names
-from microslip.sweeps.keys import number
 
 # The points of a study's map are computed by every model, at every tolerance.
 MOST_MAP_POINTS = 10_000

@@ -20,7 +20,7 @@ TAKEN = (*SCENE_OF_SWEEP, "accuracy", "accuracy_cost", "stability", "claims")
 TAKEN += tuple(f"{name}_histories" for name in SCENE_OF_SWEEP)
 TAKEN += tuple(f"{name}_periods" for name in SCENE_OF_SWEEP)
 TAKEN += tuple(f"{study}_first" for study in ("accuracy", "stability", "claims"))
-# What microslip.models.registry refuses, which takes too long to import here; a test keeps them the same.
+# What models.registry refuses, which takes too long to import here; a test keeps them the same.
 MODELS_OF_SCENE = {
     "transverse": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
     "bore": ("auto", "rigid", "polar", "cartesian"),

@@ -8,7 +8,7 @@ from itertools import islice
 import numpy as np
 
 from microslip.datasets.netcdf import characters_of
-from microslip.sweeps.keys import canonical_json
+from microslip.foundation.canonical import canonical_json
 
 # Variables over the sweep: name -> (type, long_name). 0 stands where a count does not apply. A
 # long_name is short enough for the axis of a plot; what else there is to say is in DESCRIPTIONS.

@@ -14,9 +14,9 @@ import microslip
 from microslip.config.extended import solver_names
 from microslip.datasets import netcdf, point_variables, theory_limits
 from microslip.foundation import named_files, source_digest
+from microslip.foundation.canonical import canonical_json
 from microslip.motions.registry import scene_named
-from microslip.sweeps.cache import writing_beside
-from microslip.sweeps.keys import canonical_json
+from microslip.sweeps.sealed_files import writing_beside
 from microslip.theory import paper
 
 CONVENTIONS = "CF-1.11"

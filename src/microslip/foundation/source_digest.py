@@ -19,33 +19,30 @@ import sys
 from functools import cache
 from pathlib import Path
 
-PACKAGE = Path(__file__).parent
+PACKAGE = Path(__file__).parents[1]
 
 ANSWERED_BY = {
-    "point": ("point",),
-    "history": ("inside",),
-    "field": ("inside",),
-    "period": ("inside", "periods"),
-    "trial": ("trial",),
-    "choice": ("point",),
-    "probe": ("point", "trial"),
-    "scaling": ("trial",),
-    "run": ("trial",),
-    "patches": ("patches",),
+    "point": ("adaptive/point",),
+    "history": ("adaptive/history",),
+    "field": ("adaptive/history",),
+    "period": ("adaptive/period", "sweeps/period_codec"),
+    "trial": ("adaptive/single_run",),
+    "choice": ("adaptive/point",),
+    "probe": ("adaptive/point", "adaptive/single_run"),
+    "scaling": ("adaptive/single_run",),
+    "run": ("adaptive/single_run",),
+    "patches": ("adaptive/stick_area",),
 }
-"""Kinds of requests (see microslip.sweeps.batches) and the modules that `answers` asks for them."""
+"""Kinds of requests (see sweeps.batches) and the modules that `answers` asks for them."""
 
-ASKS = "answers.py"
+ASKS = "sweeps/evaluate.py"
 """It imports what answers a request where that is asked; only what it always imports counts."""
 
-NAMED_IN_REQUESTS = {"methods": "method", "motions": "scene", "pressures": "pressure"}
+NAMED_IN_REQUESTS = {"solver/methods": "method", "motions": "scene", "pressures": "pressure"}
 """Folders of files that requests name, and the key that names them."""
 
-NAMES_ONLY = {"source_digest.py", "syntax_digest.py"}
+NAMES_ONLY = {"foundation/source_digest.py", "foundation/syntax_digest.py"}
 """They say what results are called, and change no number in them."""
-
-FOUND_BY_NAME = "motions/"
-"""Files here count where they are named: that another file imports them to list them is nothing."""
 
 
 class Sources:
@@ -150,9 +147,7 @@ class Sources:
         for dotted in _imports_of(self._content(name), [self.package.name, *parts[:-1]], deep):
             path = "/".join(dotted)
             for target in (f"{path}.py", f"{path}/__init__.py"):
-                listed = target.startswith(FOUND_BY_NAME) and not name.startswith(FOUND_BY_NAME)
-                counts = not listed or target.endswith("__init__.py")
-                if target in self.contents and counts and target not in NAMES_ONLY:
+                if target in self.contents and target not in NAMES_ONLY:
                     yield target
 
 
@@ -223,7 +218,7 @@ LOADED = Sources()
 
 
 def files_of_request(request: dict) -> set[str]:
-    """Modules that the result of a request depends on; request: see microslip.sweeps.batches."""
+    """Modules that the result of a request depends on; request: see sweeps.batches."""
     return _files_of_request(request["kind"], *_named(request))
 
 

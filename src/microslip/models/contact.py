@@ -53,7 +53,7 @@ class Contact(Protocol):
     if it is not there, and ``bound`` is that at the start of a lap then.
 
     A contact whose normal load may change also has pressed, bounds, bounds_along and at_phases; one
-    of rings may tell its edges, for rings to be gathered at one of them: see radial.RadialContact.
+    of rings may tell its edges, for rings to be gathered at one of them: see RadialContact.
     """
 
     bound: np.ndarray

@@ -18,6 +18,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from microslip.motions.motion import HALF_PERIOD
+
 _GAMMA = 1.0 - np.sqrt(0.5)
 
 
@@ -120,10 +122,6 @@ def make_path(displacement, phase, integrator=SDIRK2, depth=None):
             times[:, -1] = phase[1:]  # to the last bit: the end of a lap is where the next begins
         depths = depth(np.concatenate([phase[:1], times.ravel()]))
     return Path(phase, positions, stages, integrator.carry_matrix(), integrator.end, depths)
-
-
-HALF_PERIOD = (-np.pi / 2, np.pi / 2)
-"""From one turning point of a sine to the next."""
 
 
 def half_period_phases(steps, grading=0.0):

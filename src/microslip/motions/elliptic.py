@@ -12,8 +12,7 @@ import numpy as np
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
-from microslip.models.path import HALF_PERIOD
-from microslip.motions.motion import Scene, stick_focus
+from microslip.motions.motion import HALF_PERIOD, Scene, stick_focus
 
 SUMMARY = "sliding forward while oscillating along two directions"
 HELP = (

@@ -12,11 +12,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.models.path import HALF_PERIOD
 from microslip.pressures.registry import HERTZ, Pressure
 
 FOCUS_RANGE = (0.05, 0.9995)
 """Radii that rings may gather at; a stick zone smaller than the first carries next to no load."""
+
+
+HALF_PERIOD = (-np.pi / 2, np.pi / 2)
+"""From one turning point of a sine to the next."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +37,7 @@ class Scene:
     Without it a whole period is marched.
     straight: the oscillation alone goes to and fro on a line, from the phase -pi/2 to pi/2.
     drives: the oscillation alone may drive the contact forward, so that friction may be negative;
-    without it the mean force resists, see bounds.py.
+    without it the mean force resists, see theory/bounds.py.
     cycles: of the oscillation in a period, along the direction that has more.
     depth(phase, amplitude, pressure): indentation over that of the reference state, >= 0 (0: no
     contact), of the shape of ``phase``; None: it does not change.

@@ -1,8 +1,8 @@
 """Every motion by its name, under the pressure asked for.
 
-A scene is one ``Scene`` record (see scene.py for it and for the names of directions).  A motion is
+A scene is one ``Scene`` record (see motion.py for it and for the names of directions).  A motion is
 a file in the folder ``motions``, "a_motion.py" for the name "a-motion", and nothing else in the
-package has to name it; closed forms that hold for it alone have their place in choice.py.
+package has to name it; closed forms that hold for it alone have their place in adaptive/choice.py.
 """
 
 from __future__ import annotations
@@ -17,15 +17,12 @@ import numpy as np
 from microslip import motions
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
-from microslip.motions.bore import SCENE as BORE
-from microslip.motions.continuous_bore import SCENE as CONTINUOUS_BORE
-from microslip.motions.longitudinal import SCENE as LONGITUDINAL
-from microslip.motions.transverse import SCENE as TRANSVERSE
-from microslip.motions.zigzag import SCENE as ZIGZAG
 from microslip.pressures.registry import HERTZ, pressure_named
 
-_FIRST = (TRANSVERSE, LONGITUDINAL, ZIGZAG, BORE, CONTINUOUS_BORE)
-SCENES = {scene.name: scene for scene in _FIRST}
+_FIRST = ("transverse", "longitudinal", "zigzag", "bore", "continuous_bore")
+"""Files in the order in which they are listed, before all others."""
+SCENES = {}
+"""Name -> Scene."""
 FAMILIES = {}
 """Name -> module with DEFAULTS, numbers and their values if not given, and scene(name, ...)."""
 
@@ -37,21 +34,27 @@ def find(folder):
     for file in iter_modules([str(folder)]):
         if not file.name.isidentifier():
             continue  # a copy or a checkpoint of one, which nobody means
-        module = import_module(f"{motions.__name__}.{file.name}")
-        name = file.name.replace("_", "-")
-        if hasattr(module, "SCENE"):
-            SCENES[name] = module.SCENE
-        elif hasattr(module, "DEFAULTS"):
-            FAMILIES[name] = module
+        _add(file.name)
 
 
+def _add(file):
+    module = import_module(f"{motions.__name__}.{file}")
+    name = file.replace("_", "-")
+    if hasattr(module, "SCENE"):
+        SCENES[name] = module.SCENE
+    elif hasattr(module, "DEFAULTS"):
+        FAMILIES[name] = module
+
+
+for _file in _FIRST:
+    _add(_file)
 for _folder in list(motions.__path__):
     find(_folder)
 
 
 def scene_named(name, pressure=HERTZ.name):
     """The scene of this name, or of a family for the numbers that follow its name, such as
-    "elliptic:forward=0.5,phase=90", under the pressure of this name (see pressures.pressure_named).
+    "elliptic:forward=0.5,phase=90", under the pressure of this name (see pressures.registry).
     Raises InputError saying what is allowed."""
     scene = _motion_named(name)
     return scene if pressure == HERTZ.name else _under(scene, pressure_named(pressure))

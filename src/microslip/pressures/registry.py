@@ -1,6 +1,6 @@
 """Pressures: how the load is spread over the contact, and so what every point can take.
 
-A pressure is one ``Pressure`` record (see record.py for it and for the working units), in a file
+A pressure is one ``Pressure`` record (see pressure.py for it and for the working units), in a file
 of its name, as PRESSURE.  A family gives one for numbers that follow its name: its file holds
 DEFAULTS, the numbers and their values if they are not given, and pressure(name, **numbers), which
 raises InputError for numbers out of range.  A source gives one for a text of its own that follows
@@ -13,6 +13,7 @@ from functools import lru_cache
 from importlib import import_module
 from pkgutil import iter_modules
 
+from microslip import pressures
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
 from microslip.pressures.hertz import PRESSURE as HERTZ
@@ -30,12 +31,12 @@ SOURCES = {}
 
 def find(folder):
     """Make the families in a folder known: those of the package, or one's own."""
-    if str(folder) not in __path__:
-        __path__.append(str(folder))
+    if str(folder) not in pressures.__path__:
+        pressures.__path__.append(str(folder))
     for file in iter_modules([str(folder)]):
         if not file.name.isidentifier():
             continue  # a copy or a checkpoint of one, which nobody means
-        module = import_module(f"{__name__}.{file.name}")
+        module = import_module(f"{pressures.__name__}.{file.name}")
         if hasattr(module, "PRESSURE"):
             PRESSURES[file.name] = module.PRESSURE
         elif hasattr(module, "DEFAULTS"):
@@ -44,7 +45,7 @@ def find(folder):
             SOURCES[module.SOURCE] = module
 
 
-for _folder in list(__path__):
+for _folder in list(pressures.__path__):
     find(_folder)
 
 

@@ -11,7 +11,7 @@ import yaml
 
 from microslip.studies.claims.static_limits import FORMULAS, SPLIT
 from microslip.studies.claims.verdicts import OUTCOMES, WORDS
-from microslip.sweeps.cache import writing_beside
+from microslip.sweeps.sealed_files import writing_beside
 
 STYLE = """
 body { font: 15px/1.45 sans-serif; max-width: 76em; margin: 2em auto; padding: 0 1em; }

@@ -5,7 +5,7 @@ from html import escape
 
 import yaml
 
-from microslip.sweeps.cache import writing_beside
+from microslip.sweeps.sealed_files import writing_beside
 
 # Quantities whose range tells at a glance whether a run came out well, where a dataset has them.
 RANGES = ("mu_macro", "mu_macro_error", "mu_torque", "reference_error", "seconds")

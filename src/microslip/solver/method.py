@@ -22,8 +22,8 @@ class Method:
     parameters: numbers that ``dress`` takes, with their defaults; search(cycle, start, tolerance,
     step_tolerance, most_laps, inverse) -> cycle.PeriodicState; prepared: start near the static
     limit and with coarse steps, else once from full slip; extrapolated: add the difference to the
-    run with half the steps; run: replaces the whole simulation, see methods.paper; model: the only
-    one that ``run`` stands for; resolution: (cells, angles, steps a period) that ``run`` keeps to
+    run with half the steps; run: replaces the whole simulation, as in methods/paper.py; model: the
+    only one that ``run`` stands for; resolution: (cells, angles, steps a period) that ``run`` keeps to
     whatever is asked for; requires: package that it takes besides those of microslip; turns:
     whether it knows motions that rotate.
 

@@ -1,10 +1,10 @@
 """Methods to compare with the one that ships: one file a method.
 
-A method is the file ``name_of_it.py`` in this folder, which holds METHOD, a ``method.Method``; it
-is then known as ``name-of-it``, to ``microslip.solve`` as well as in a configuration.  Files whose
-name starts with an underscore are shared by methods.  Numbers that a method takes may follow its
-name: "admm:penalty=0.1,relaxation=1.5".  A method may require a package that is not one of
-microslip's: where that is not installed, nothing asks for it.
+A method is the file ``name_of_it.py`` in the folder ``methods``, which holds METHOD, a
+``method.Method``; it is then known as ``name-of-it``, to ``microslip.solve`` as well as in a
+configuration.  Files whose name starts with an underscore are shared by methods.  Numbers that a
+method takes may follow its name: "admm:penalty=0.1,relaxation=1.5".  A method may require a package
+that is not one of microslip's: where that is not installed, nothing asks for it.
 
 Listing and checking names imports no solver.
 """
@@ -19,14 +19,16 @@ from pathlib import Path
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
+from microslip.solver import methods
 
 SHIPPED = "shipped"
+METHODS = Path(methods.__file__).parent
 
 
 @cache
 def names():
     """Names of all methods, the one that ships first."""
-    stems = (file.stem for file in Path(__file__).parent.glob("[!_]*.py"))
+    stems = (file.stem for file in METHODS.glob("[!_]*.py"))
     # not a copy or a checkpoint of one, which nobody means
     return (SHIPPED, *sorted(stem.replace("_", "-") for stem in stems if stem.isidentifier()))
 
@@ -81,7 +83,7 @@ def method_named(text):
     name, numbers = split(text)
     if name == SHIPPED:
         return import_module("microslip.solver.method").SHIPPED
-    method = import_module(f"{__name__}.{name.replace('-', '_')}").METHOD
+    method = import_module(f"{methods.__name__}.{name.replace('-', '_')}").METHOD
     return replace(method, parameters={**method.parameters, **numbers})
 
 
@@ -98,7 +100,7 @@ def declared(name, field):
     """
     if name == SHIPPED:
         return None
-    file = Path(__file__).parent / f"{name.replace('-', '_')}.py"
+    file = METHODS / f"{name.replace('-', '_')}.py"
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         if isinstance(node, ast.keyword) and node.arg == field:
             return ast.literal_eval(node.value)

@@ -45,8 +45,8 @@ class Run:
     last period; both forces over mu F_z.  periods: full ones that were marched in search of a state
     that repeats itself, 0 for a steady motion; iterations, solves: of all searches together;
     work: step solves x unknowns; effort: iterations x unknowns; retried: 1 if the run is a second
-    attempt, see approach.run_safely.  For other runs of the point:
-    state, the periodic tractions; inverse: see cycle.PeriodicState; static_force: mean forward
+    attempt, see continuation.run_safely.  For other runs of the point:
+    state, the periodic tractions; inverse: see period_map.PeriodicState; static_force: mean forward
     force of the static limit.
     """
 

@@ -1,8 +1,8 @@
 """The static limit of an oscillation that is not to and fro on a line, and of one of the load.
 
-static.py says why the limit is a problem of its own at every point.  On a line two instants count;
-here the whole lap does.  Let q(t) be the tractions that the oscillation alone settles into, g(t)
-the friction bound.  A constant traction s may be added wherever it leaves |q + s| <= g at all
+static_limit.py says why the limit is a problem of its own at every point.  On a line two instants
+count; here the whole lap does.  Let q(t) be the tractions that the oscillation alone settles into,
+g(t) the friction bound.  A constant traction s may be added wherever it leaves |q + s| <= g at all
 times, and where a point creeps forward s is the best there is:
 
     mu F_z mu_static = Integral { mean of q_forward

@@ -48,14 +48,5 @@ def report(study, dataset):
     return _dataset_of(study).report(dataset)
 
 
-def write_page(study, path, dataset, lines):
-    """Write the page about a study's dataset; lines: those of its report.
-
-    Raises CacheError as `cache.writing_beside` does.
-    """
-    page = import_module(".claims_page", __name__) if study == "claims" else summary
-    page.write(path, dataset, lines)
-
-
 def _dataset_of(study):
-    return import_module(f".{DATASETS[study]}_dataset", __name__)
+    return import_module(f"microslip.studies.{study}.dataset")

@@ -1,4 +1,4 @@
-"""Requests of the studies: plain dicts with numbers as canonical strings, see microslip.sweeps.batches.
+"""Requests of the studies: plain dicts with numbers as canonical strings, see sweeps.batches.
 
 - trial: one timed run of (point, model, method, resolution);
 - choice: one timed solve at a tolerance, which picks its own model and resolution;
@@ -7,8 +7,8 @@
 - scaling: what a step costs at one size.
 """
 
+from microslip.foundation.canonical import number
 from microslip.studies.ladders import exact_model
-from microslip.sweeps.keys import number
 
 RINGS_TOLERANCE, TOLERANCE = 1e-6, 3e-5
 """Of references: with rings alone, which are cheap, and with angular points."""

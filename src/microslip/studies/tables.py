@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from microslip.datasets import point_variables, sweep_dataset
-from microslip.sweeps.keys import canonical_json, sha256
+from microslip.foundation.canonical import canonical_json, sha256
 
 
 class Answers:

@@ -9,7 +9,8 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-from microslip.sweeps.cache import CacheError, advice, line_of, record_in, write_atomically
+from microslip.sweeps.cache import line_of, record_in
+from microslip.sweeps.sealed_files import CacheError, advice, write_atomically
 
 NOT_FINAL = b" not final\n"
 """How the last line of a batch ends whose results need not last."""

@@ -16,9 +16,10 @@ from collections.abc import Sequence
 from microslip.config.extended import solver_names
 from microslip.config.records import HISTORIES_OF_SWEEP
 from microslip.foundation import source_digest
+from microslip.foundation.canonical import number
 from microslip.sweeps import batch_files, evaluate
-from microslip.sweeps.cache import CacheError
-from microslip.sweeps.keys import batch_name, number, result_key
+from microslip.sweeps.keys import batch_name, result_key
+from microslip.sweeps.sealed_files import CacheError
 
 log = logging.getLogger(__name__)
 

@@ -5,36 +5,15 @@ to disk and renamed, so a reader sees all of it or nothing. On reading, the text
 what its record writes, checksum included; any other file counts as absent and is written anew.
 """
 
-import errno
-import hashlib
 import json
 import logging
-import os
-import time
-import uuid
-from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from microslip.foundation.errors import shown
-from microslip.sweeps.keys import canonical_json, sha256
+from microslip.foundation.canonical import canonical_json, sha256
+from microslip.sweeps import sealed_files
+from microslip.sweeps.sealed_files import CacheError, advice, refuse_no_folder, write_atomically
 
 log = logging.getLogger(__name__)
-
-# Bytes that a disk must still have room for before anything is computed.
-LEAST_ROOM = 65536
-
-# What files that others read begin with; one without a seal that does not is no such file.
-BEGINNINGS = {".nc": b"\x89HDF", ".png": b"\x89PNG", ".pdf": b"%PDF"}
-
-# Errors of the system that say by themselves what the user is to mend.
-NO_WRITING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
-
-# Half a file that nobody has written to for that long (s) is left of a process that was killed.
-ABANDONED = 3600.0
-
-
-class CacheError(RuntimeError):
-    """The results folder cannot be used. The message is one line that says what to do."""
 
 
 class Store:
@@ -84,211 +63,10 @@ class Store:
             return
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            check_room(self.folder)
+            sealed_files.check_room(self.folder)
         except OSError as error:
             raise CacheError(advice("write to", self.folder, error)) from error
         self._tried = True
-
-
-def refuse_no_folder(folder):
-    """Raise CacheError for what is not the name of a folder: nothing, what is no text, and a ~ that
-    no shell has replaced, which would become a folder of that name."""
-    named = isinstance(folder, str | os.PathLike) and isinstance(os.fspath(folder), str)
-    name = os.fspath(folder) if named else ""
-    if not name.strip() or "\0" in name:
-        raise CacheError(f"{shown(folder)} is not allowed; allowed: the name of a folder")
-    if Path(name).parts[:1] == ("~",):
-        home = "allowed: the name of a folder, with that of the home folder in place of ~"
-        raise CacheError(f"{shown(name)} is not allowed; {home}")
-
-
-def refuse_unusable(folders, files):
-    """Raise CacheError where a file is in the place of a folder, or a folder in that of a file.
-
-    folders, files: to be made in time, with all folders above them. Makes nothing itself.
-    """
-    try:
-        for folder in map(Path, folders):
-            for place in (*reversed(folder.parents), folder):
-                if os.path.lexists(place) and not place.is_dir():
-                    raise CacheError(f"{place} is not a folder; allowed: a folder, or a new name")
-        for file in map(Path, files):
-            if file.is_dir():
-                raise CacheError(f"{file} is a folder; allowed there: a file, or nothing yet")
-    except OSError as error:
-        raise CacheError(advice("use", folder, error)) from error
-
-
-def write_atomically(path, content):
-    """Write bytes to `path` so that it holds all of them or what it held before.
-
-    Raises CacheError, one line that says what to do, where the system refuses.
-    """
-    with writing_beside(path) as beside:
-        beside.write_bytes(content)
-
-
-@contextmanager
-def writing_beside(path, sealed=False):
-    """Context that yields a Path beside `path` to write to, and puts it in place at its end.
-
-    The file is flushed to disk before it is renamed; sealed: with its checksum, see `is_damaged`.
-    What is in its place and was not made like this, a file of the user's own perhaps, is renamed.
-    After an error or an interrupt `path` is what it was. Raises CacheError, one line that says
-    what to do, where the system refuses.
-    """
-    path = Path(path)
-    beside = _unique_beside(path)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        yield beside
-        with open(beside, "rb") as file:
-            os.fsync(file.fileno())
-            if sealed:
-                _set_aside(path)
-                _write_seal(path, hashlib.file_digest(file, "sha256").hexdigest())
-        os.replace(beside, path)
-    except OSError as error:
-        raise CacheError(advice("write", path, _cause(error, beside))) from error
-    except RuntimeError as error:
-        # What netCDF says when HDF5 could not write.
-        if not str(error).startswith("NetCDF: "):
-            raise
-        raise CacheError(advice("write", path, _cause(error, beside))) from error
-    finally:
-        # Gone already after the rename, left by an interrupt; in a read-only folder never made.
-        with suppress(OSError):
-            beside.unlink()
-
-
-def _unique_beside(path):
-    """A name beside a path that no other thread, process or container writes to.
-
-    Process numbers are the same in many containers, so it takes a random part; the number is there
-    for `clear_abandoned`.
-    """
-    return path.with_name(f".{path.name}.{uuid.uuid4().hex[:12]}.{os.getpid()}.part")
-
-
-def _cause(error, beside):
-    """What keeps files from being written beside one, if anything does, else the error itself.
-
-    HDF5 says "Permission denied" and "HDF error" on a full disk.
-    """
-    if getattr(error, "errno", None) in NO_WRITING:
-        return error
-    try:
-        check_room(beside.parent)
-    except OSError as truth:
-        return truth
-    return error
-
-
-def check_room(folder):
-    """Write a small file to a folder and remove it; raises OSError where that is refused."""
-    trial = _unique_beside(Path(folder, "room"))
-    try:
-        with open(trial, "wb") as file:
-            file.write(bytes(LEAST_ROOM))
-            file.flush()
-            os.fsync(file.fileno())
-    finally:
-        with suppress(OSError):
-            trial.unlink()
-
-
-def clear_abandoned(folder):
-    """Remove what processes that were killed have left half written; return the paths.
-
-    A file that has been written to within the last hour is left alone, and so is one whose process
-    may still be there: it may be about to be put in place.
-    """
-    found = []
-    for path in Path(folder).rglob(".*.part"):
-        with suppress(OSError):
-            if time.time() - path.stat().st_mtime > ABANDONED and not _may_run(path):
-                path.unlink()
-                found.append(path)
-    return found
-
-
-def _may_run(path):
-    """Whether there is a process with the number in the name of a half written file."""
-    if os.name != "posix":
-        return False  # there the question itself would end it
-    try:
-        os.kill(int(path.name.split(".")[-2]), 0)
-    except (ValueError, OverflowError, ProcessLookupError):
-        return False
-    except OSError:
-        return True
-    return True
-
-
-# Seals: a checksum beside a file, and what the file is made of
-
-
-def seal_of(path):
-    """Path of the seal that stands beside a file."""
-    path = Path(path)
-    return path.with_name(f".{path.name}.sha256")
-
-
-def _write_seal(path, *words):
-    # Before the file itself: between the two a run that is killed leaves a seal that does not fit,
-    # and the file is made again. The other way round it would leave an old seal on a good file.
-    write_atomically(seal_of(path), f"{' '.join(words)}\n".encode())
-
-
-def _seal(path):
-    """The words of a seal, the checksum first; empty where there is none."""
-    try:
-        return seal_of(path).read_bytes().decode("ascii", errors="replace").split()
-    except FileNotFoundError:
-        return []
-
-
-def _set_aside(path):
-    """Rename a file that is damaged, or that the workflow did not make: it may be of use to
-    someone."""
-    if path.is_file() and (not _seal(path) or is_damaged(path)):
-        aside = path.with_name(f"{path.name}.damaged")
-        os.replace(path, aside)
-        log.warning("%s was not as the workflow made it: it is kept as %s", path, aside)
-
-
-def mark(paths, fingerprint):
-    """Add to the seals of files what they are made of; fingerprint: see keys.fingerprint.
-
-    Raises CacheError as `writing_beside` does.
-    """
-    for path in paths:
-        _write_seal(path, *_seal(path)[:1], fingerprint)
-
-
-def is_made_of(path, fingerprint):
-    """Whether a file is whole, and of these inputs by this code; False where there is no file."""
-    try:
-        return _seal(path)[1:] == [fingerprint] and Path(path).exists() and not is_damaged(path)
-    except OSError as error:
-        raise CacheError(advice("read", path, error)) from error
-
-
-def is_damaged(path):
-    """Whether a file is not what was sealed, or without a seal not what its name says.
-
-    False where there is no file.
-    """
-    begins = BEGINNINGS.get(Path(path).suffix, b"")
-    try:
-        with open(path, "rb") as file:
-            if not seal_of(path).exists():
-                return file.read(len(begins)) != begins
-            return [hashlib.file_digest(file, "sha256").hexdigest()] != _seal(path)[:1]
-    except FileNotFoundError:
-        return False
-    except OSError as error:
-        raise CacheError(advice("read", path, error)) from error
 
 
 def line_of(record):
@@ -304,12 +82,3 @@ def record_in(text):
         return record if line_of(record) == text else None
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return None
-
-
-def advice(verb, path, error):
-    """One line: what could not be done, why, and what to do about it."""
-    reason = getattr(error, "strerror", None) or error
-    return (
-        f"cannot {verb} {path}: {reason}; make room or set permissions there, or choose another "
-        "folder for results, and run again: finished points are kept"
-    )

@@ -9,7 +9,7 @@ import time
 from statistics import median
 
 import microslip
-from microslip.sweeps.cache import NO_WRITING, CacheError
+from microslip.sweeps.sealed_files import NO_WRITING, CacheError
 
 log = logging.getLogger(__name__)
 
@@ -225,7 +225,7 @@ def _at(request):
 
 def _found(look):
     """What `look` sees in a period, or why there is none."""
-    from microslip.adaptive.history import NoPeriodicState
+    from microslip.adaptive.period import NoPeriodicState
 
     try:
         return look()

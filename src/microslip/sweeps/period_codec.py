@@ -18,7 +18,7 @@ HISTORIES = ("phase", "forward", "lateral", "angle", "force_forward", "force_lat
 
 
 def packed(period, angles):
-    """A microslip.adaptive.history.Period as a dict of plain values and texts; angles: points on half a ring.
+    """A period.Period as a dict of plain values and texts; angles: points on half a ring.
 
     Of a scene whose second half of a period is the mirror image of the first.
 
@@ -51,7 +51,7 @@ def packed(period, angles):
 def unpacked(result):
     """What `packed` kept, on the whole disc and over the whole period: a dict of arrays.
 
-    The names and shapes are those of microslip.adaptive.history.Period, without slip_forward, slip_lateral
+    The names and shapes are those of period.Period, without slip_forward, slip_lateral
     and area. traction_forward and traction_lateral are off by bound/254 at most.
     """
     angles, radius = result["angles"], np.array(result["radius"])

@@ -1,7 +1,7 @@
 """Closed forms for any axisymmetric indenter at Poisson's ratio 0 (bore: any): static limits
 under an oscillation, and torsion.
 
-For a sphere they are those of theory.py, which are quicker and better tested; here they are
+For a sphere they are those of paper.py, which are quicker and better tested; here they are
 integrals over the record of a pressures.Pressure, to about 1e-8.  Dimensionless as there.
 """
 
@@ -18,7 +18,7 @@ SMALLEST_STICK_RADIUS = 1e-6
 def static_transverse(pressure, amplitude):
     """Static friction under transverse oscillation, v -> 0, nu = 0; amplitude >= 0 (a float).
 
-    Integral over the stick zone of sqrt(g^2 - (g - g_c)^2), see theory.static_limit_transverse.
+    Integral over the stick zone of sqrt(g^2 - (g - g_c)^2), see paper.static_limit_transverse.
     """
     if amplitude >= 1.0:
         return 0.0
@@ -80,7 +80,7 @@ def torsion_traction(pressure, r, stick_radius):
 def static_bore(pressure, angle, poisson=0.0):
     """Static friction under oscillating bore, v -> 0; angle >= 0 in u_lim/a.
 
-    4 Integral_0^c g arccos(tau / g) r dr, see theory.static_limit_bore.
+    4 Integral_0^c g arccos(tau / g) r dr, see paper.static_limit_bore.
     """
     c = torsion_stick_radius(pressure, angle, poisson)
     if c in (0.0, 1.0):

@@ -18,8 +18,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from microslip.pressures.registry import HERTZ
-
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
 _ANGLES = 0.25 * np.pi * (_NODES + 1.0)
 _NODES, _WEIGHTS = np.sin(_ANGLES) ** 2, 0.25 * np.pi * _WEIGHTS * np.sin(2.0 * _ANGLES)
@@ -28,7 +26,7 @@ _HALVINGS = 60
 _LOOKED_AT = 2001
 
 
-def mean_load(amplitude, by_load, pressure=HERTZ):
+def mean_load(amplitude, by_load, pressure):
     """Mean normal load over that of the reference state, for a change of the load (by_load), or of
     the indentation, by ``amplitude`` >= 0 of its mean."""
     motion = _Motion(0.0, amplitude, by_load, pressure)
@@ -40,7 +38,7 @@ def mean_load(amplitude, by_load, pressure=HERTZ):
     return float(loss * (2.0 * _NODES * _WEIGHTS) @ pressure.total(motion.depth(t))) / np.pi
 
 
-def friction(velocity, amplitude, by_load, pressure=HERTZ):
+def friction(velocity, amplitude, by_load, pressure):
     """Mean forward friction over mu times the mean normal load.
 
     velocity >= 0 over omega u_lim (0: the limit), omega the frequency of the oscillation;

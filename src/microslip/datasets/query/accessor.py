@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from decimal import Decimal
 from functools import cache
-from numbers import Real
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -13,14 +11,15 @@ import numpy as np
 import xarray as xr
 
 from microslip.datasets.query import beyond
+from microslip.datasets.query.coordinates import labelled
 from microslip.datasets.query.nodes import SAME, nodes_of, refuse_negative
 from microslip.datasets.query.within import refuse_beyond, within
 from microslip.foundation.arguments import is_real, real
 from microslip.foundation.errors import InputError
 from microslip.motions.registry import scene_named
-from microslip.sweeps.cache import CacheError
+from microslip.sweeps.sealed_files import CacheError
 from microslip.sweeps.solve_stored import solve_stored
-from microslip.theory import hertz, paper
+from microslip.theory import paper
 
 SOURCES = (
     "map",
@@ -34,7 +33,6 @@ SOURCES = (
     "solver",
 )
 """Where an answer comes from, by its code in the variable `source`."""
-ALLOWED = "allowed is a finite number >= 0, or several"
 (MAP, STILL, STATIC, SLOWER, FASTER, WIDER, NARROWER, EXACT, SOLVER) = range(len(SOURCES))
 
 
@@ -125,11 +123,11 @@ class Friction:
         if (amplitude is None) == self._motion.periodic:
             need = "none" if amplitude is not None else "a number"
             raise InputError("amplitude", amplitude, f"allowed for {self._scene} is {need}")
-        velocity = _labelled("velocity", velocity)
+        velocity = labelled("velocity", velocity)
         if amplitude is None:
             return velocity, None
         # An outer product has the order of the datasets.
-        amplitude, velocity = xr.broadcast(_labelled("amplitude", amplitude), velocity)
+        amplitude, velocity = xr.broadcast(labelled("amplitude", amplitude), velocity)
         return velocity, amplitude
 
     def _table(self, nodes, nu, still=False):
@@ -277,44 +275,3 @@ def _solved(folder, *point, **settings):
 def _spare_folder():
     """A folder that is gone when Python ends."""
     return TemporaryDirectory(prefix="microslip-")
-
-
-def _labelled(name, given):
-    """A DataArray of numbers >= 0; sequences get a dimension of their name."""
-    array = given if isinstance(given, xr.DataArray) else _array(name, given)
-    if array.dtype.kind not in "iuf":
-        raise InputError(name, given, f"{ALLOWED}, not of type {array.dtype}")
-    try:
-        hertz.checked(name, np.asarray(array, float))
-    except ValueError:
-        raise InputError(name, given, ALLOWED) from None
-    if isinstance(array, xr.DataArray):
-        return array
-    if array.ndim > 1:
-        allowed = f"allowed are {array.ndim} dimensions only with names (DataArray)"
-        raise InputError(name, given, allowed)
-    return xr.DataArray(
-        array, dims=(name,) * array.ndim, coords={name: array} if array.ndim else {}
-    )
-
-
-def _array(name, given):
-    """What is given as an array: of floats, where it holds numbers.
-
-    NumPy makes floats of texts, times, masked places and quantities, too, without a word.
-    """
-    if hasattr(given, "units"):
-        raise InputError(name, given, f"{ALLOWED}, dimensionless, without a unit")
-    if np.ma.is_masked(given):
-        raise InputError(name, given, f"{ALLOWED}, none of them masked")
-    try:
-        array = np.asarray(given)
-        if array.dtype.kind in "iuf" or all(_is_plain(one) for one in array.flat):
-            return array.astype(float)
-    except (TypeError, ValueError, OverflowError):
-        raise InputError(name, given, ALLOWED) from None
-    return array
-
-
-def _is_plain(value):
-    return isinstance(value, Real | Decimal) and not isinstance(value, bool | np.generic)

@@ -20,7 +20,7 @@ from microslip.config.records import SCENE_OF_SWEEP
 from microslip.datasets.netcdf import group_names
 from microslip.datasets.query.accessor import SOURCES, Friction
 from microslip.foundation.errors import InputError
-from microslip.sweeps.cache import CacheError, is_damaged, refuse_no_folder
+from microslip.sweeps.sealed_files import CacheError, is_damaged, refuse_no_folder
 
 __all__ = ["SOURCES", "Friction", "open_map"]
 

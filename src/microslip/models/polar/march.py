@@ -1,7 +1,7 @@
 """A march of rings times angles, compiled: every stage is solved by over-relaxed ADMM.
 
-The quadratic part goes through the blocks of the elastic operator (sectors.py), factorised once;
-the friction bound is kept to point by point.
+The quadratic part goes through the blocks of the elastic operator (angular_modes.py), factorised
+once; the friction bound is kept to point by point.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def _project(free, bound, q, dual):
 
 @kernel
 def _copy(out, values):
-    """out[:] = values for shape (2, M, N); see ring_factors.copy."""
+    """out[:] = values for shape (2, M, N); see rings.tangent.copy."""
     for c in range(2):
         for j in range(out.shape[1]):
             for i in range(out.shape[2]):

@@ -60,7 +60,7 @@ class RadialContact:
     def pressed(self, deepest, start):
         """The same rings spread over the contact at its ``deepest``, with the bound at ``start``.
 
-        Both are depths (see depth.py), deepest > 0.
+        Both are depths (see varying_load.py), deepest > 0.
         """
         growth, radius = self.growth, float(self.growth.pressure.radius(deepest))
         out = RadialContact(

@@ -15,11 +15,11 @@ from __future__ import annotations
 import numpy as np
 
 from microslip.foundation.compiled import kernel
-from microslip.models.coulomb import extended, shrink
+from microslip.models.coulomb import extended
 from microslip.models.interrupts import BETWEEN_LOOKS, interrupted
+from microslip.models.rings.first_guess import extrapolate, follow, stretch, within
 from microslip.models.rings.newton_step import solve_step, weighted_slip
 from microslip.models.rings.tangent import (
-    ON_BOUND,
     combine,
     copy,
     factorise,
@@ -27,9 +27,6 @@ from microslip.models.rings.tangent import (
     subtract,
     turning,
 )
-
-LONGEST_STRETCH = 3.0
-"""Longest extrapolation of tractions, over the stage that it is taken from."""
 
 
 @kernel
@@ -158,57 +155,6 @@ def _carry_derivative(dz, touched, share, dslip, slid):
 
 
 @kernel
-def _follow(q, bound, now, before):
-    """First guess: move q as another march moved its tractions in the same stage.
-
-    Rings that slipped there are taken to slip here in the same direction.
-    """
-    for i in range(len(bound)):
-        x, y = now[0, i], now[1, i]
-        limit = bound[i] * ON_BOUND
-        if x * x + y * y < limit * limit:
-            x += q[0, i] - before[0, i]
-            y += q[1, i] - before[1, i]
-            f = shrink(x, y, bound[i])
-            x, y = x * f, y * f
-        q[0, i], q[1, i] = x, y
-
-
-@kernel
-def _extrapolate(q, last, bound, before, ratio):
-    """First guess: go on as from ``before`` to q, ``ratio`` times as far; slip stays slip.
-
-    last, bound: those that q obeys, and that the guess shall.
-    """
-    for i in range(len(bound)):
-        x, y = q[0, i], q[1, i]
-        limit = last[i] * ON_BOUND
-        slips = x * x + y * y >= limit * limit
-        x += ratio * (x - before[0, i])
-        y += ratio * (y - before[1, i])
-        size = np.sqrt(x * x + y * y)
-        if size > bound[i] or (slips and size > 0.0):
-            x, y = x * bound[i] / size, y * bound[i] / size
-        q[0, i], q[1, i] = x, y
-
-
-@kernel
-def _stretch(way, at):
-    """Length of the stage that ends at ``at`` over that of the stage before, at most 3."""
-    before = np.hypot(way[at - 1, 0] - way[at - 2, 0], way[at - 1, 1] - way[at - 2, 1])
-    length = np.hypot(way[at, 0] - way[at - 1, 0], way[at, 1] - way[at - 1, 1])
-    return length / before if length < LONGEST_STRETCH * before else LONGEST_STRETCH
-
-
-@kernel
-def _within(q, bound):
-    """Shrink q onto the bound."""
-    for i in range(len(bound)):
-        f = shrink(q[0, i], q[1, i], bound[i])
-        q[0, i], q[1, i] = q[0, i] * f, q[1, i] * f
-
-
-@kernel
 def march(stiffness, whole, bounds, weight, path, state, known, tolerance, tangent):
     """March along a path.
 
@@ -259,12 +205,12 @@ def march(stiffness, whole, bounds, weight, path, state, known, tolerance, tange
                     subtract(b[c], carry[s, j], slips[j, c])
             bound = bounds[changes * at]
             if changes and at == 1:
-                _within(q, bound)
+                within(q, bound)
             if len(known) > 0:
-                _follow(q, bound, known[at], known[at - 1])
+                follow(q, bound, known[at], known[at - 1])
             elif at > 1:
                 last = bounds[changes * (at - 1)]
-                _extrapolate(q, last, bound, tractions[at - 2], _stretch(way, at))
+                extrapolate(q, last, bound, tractions[at - 2], stretch(way, at))
             count, residual = solve_step(
                 stiffness, whole, b, bound, weight, q, slips[s], tolerance, factors
             )

@@ -62,7 +62,7 @@ def influence(cells, padded, poisson, modulus=G_STAR):
     """Influence coefficients on the traction and on its conjugate, (P, P) each; u_lim per unit
     traction, first axis forward, second lateral offset, negative offsets wrapped around.
 
-    Closed forms of the kernels of halfspace.py integrated over a square, taken at cell centres.
+    Closed forms of the kernels of rings/influence.py, integrated over a square, at cell centres.
     """
     size = 2.0 / cells
     offsets = np.fft.fftfreq(padded, 1.0 / padded) * size

@@ -24,7 +24,7 @@ ASSETS = ("page.html", "style.css", "data.js", "charts.js", "disc.js", "page.js"
 def digest() -> str:
     """Digest of all that the page depends on besides datasets and periods."""
     parts = [Path(__file__).with_name(name).read_bytes() for name in ASSETS]
-    parts.append(source_digest.of_modules("explorer", "periods.py").encode())
+    parts.append(source_digest.of_modules("report/explorer", "sweeps/period_codec.py").encode())
     return hashlib.sha256(b"\0".join(parts)).hexdigest()
 
 

@@ -9,7 +9,7 @@ from plotly.offline import get_plotlyjs
 
 from microslip.report.explorer import payload
 from microslip.report.explorer.explorer import ASSETS
-from microslip.sweeps.cache import writing_beside
+from microslip.sweeps.sealed_files import writing_beside
 
 FOLDER = Path(__file__).parent
 

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from microslip.datasets import theory_limits
+from microslip.foundation.canonical import number
 from microslip.report.figures import drawing, maps, style
 from microslip.report.figures.data import limit, require, sweep
 from microslip.sweeps.evaluate import plain
-from microslip.sweeps.keys import number
 from microslip.sweeps.period_codec import SHARES, text_of, unpacked_half
 
 UNSIGNED, SIGNED = 65535, 32767

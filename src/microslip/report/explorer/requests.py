@@ -1,6 +1,6 @@
 """Which periods the page needs: one for every point of the maps that moves and oscillates."""
 
-from microslip.sweeps.keys import number
+from microslip.foundation.canonical import number
 
 MAPS = ("transverse", "bore")
 CELLS, ANGLES, STEPS = 10, 12, 32

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from microslip.config.records import SCENE_OF_SWEEP
-from microslip.sweeps.cache import writing_beside
+from microslip.sweeps.sealed_files import writing_beside
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -86,7 +86,8 @@ def figure_of(group: str) -> str:
 
 def modules_of(name: str) -> tuple[str, ...]:
     """Paths inside the package of the modules that draw a figure, besides what they import."""
-    return "plot/__init__.py", f"plot/{_MODULES.get(name, 'groups')}.py"
+    folder = "report/figures"
+    return f"{folder}/drawing.py", f"{folder}/{_MODULES.get(name, 'groups')}.py"
 
 
 def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
@@ -108,9 +109,7 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
             raise ValueError(f"figure {name}: dataset {key!r} is of {found!r}; allowed: {scene!r}")
     from microslip.report.figures.style import style
 
-    module = importlib.import_module(
-        f"microslip.report.figures.drawing.{_MODULES.get(name, 'groups')}"
-    )
+    module = importlib.import_module(f"microslip.report.figures.{_MODULES.get(name, 'groups')}")
     with style():
         figure = module.draw(name, *(datasets[key] for key in keys))
         for _ in range(2):  # the layout settles, and is then fixed: every save gives the same

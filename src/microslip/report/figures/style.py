@@ -20,7 +20,7 @@ GREEN, ORANGE, PURPLE = "#009E73", "#E69F00", "#CC79A7"
 GREY, PALE, SKY = "#6E6E6E", "#D4D4D4", "#56B4E9"
 
 #: Perceptually even and readable in grey and by colour-blind readers. For shares from 0 to 1; where
-#: friction may be negative as well, `plot.signed` continues it below 0.
+#: friction may be negative as well, `signed` continues it below 0.
 COLOURMAP = "cividis"
 
 # Line styles, so that curves differ without colour as well.

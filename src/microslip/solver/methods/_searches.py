@@ -1,4 +1,4 @@
-"""Searches for the periodic state that people write first; see cycle.Cycle for what they act on.
+"""Searches for the periodic state that people write first, on a period_map.Cycle.
 
 All return a cycle.PeriodicState.
 """

@@ -1,7 +1,7 @@
 """What the runs say about each part of the paper's statements: checks with margins and errors.
 
 One function for each name in claims_statements.PARTS: (study, runs) -> list of verdicts.Check.
-study: settings.Claims; runs(request) -> tables of results, see claims_runs.Runs.
+study: settings.Claims; runs(request) -> tables of results, see runs.Runs.
 """
 
 from itertools import pairwise

@@ -6,9 +6,9 @@ own numbers or a look inside are wanted there are single runs.
 """
 
 from microslip.config.load import STATIC_AMPLITUDES, StudyPoint
+from microslip.foundation.canonical import number
 from microslip.studies import requests
 from microslip.studies.ladders import exact_model
-from microslip.sweeps.keys import number
 
 PAPER_VELOCITY = 0.005
 """The smallest velocity in the paper's maps, of both scenes."""

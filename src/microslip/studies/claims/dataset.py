@@ -4,9 +4,8 @@ from dataclasses import asdict
 
 import numpy as np
 
-from microslip.studies.claims import checks as claims_checks
+from microslip.studies.claims import checks, checks_static, static_limits, verdicts
 from microslip.studies.claims import claims as asked
-from microslip.studies.claims import static_limits, verdicts
 from microslip.studies.claims.runs import Runs, command, friction, made_by, resolution
 from microslip.studies.claims.statements import PARTS, STATEMENTS
 from microslip.studies.tables import finished, value_of, variable
@@ -47,8 +46,8 @@ def build(settings, answer):
     settings: settings.Claims. answer(request) -> record, such as sweep.answer with a store.
     """
     runs = Runs(answer)
-    checks = {part.name: collected(part.name, settings, runs) for part in PARTS}
-    variables = _claims(checks) | _parts(checks) | _checks(checks)
+    found = {part.name: collected(part.name, settings, runs) for part in PARTS}
+    variables = _claims(found) | _parts(found) | _checks(found)
     variables |= static_limits.variables(settings, runs) | _patches(settings, runs)
     variables |= _runs(runs.found.values())
     coordinates = {
@@ -61,7 +60,7 @@ def build(settings, answer):
 
 def collected(name, settings, runs):
     """The checks of a part by its name: list of verdicts.Check."""
-    module = claims_checks if hasattr(claims_checks, name) else claims_checks_static
+    module = checks if hasattr(checks, name) else checks_static
     return getattr(module, name)(settings, runs)
 
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from microslip.foundation.canonical import canonical_json
 from microslip.studies.tables import Answers, value_of
-from microslip.sweeps.keys import canonical_json
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from microslip.config.load import StudyPoint
+from microslip.foundation.canonical import canonical_json, number
 from microslip.solver.method_names import SHIPPED, split
 from microslip.studies import requests
-from microslip.sweeps.keys import canonical_json, number
 
 
 @dataclass(frozen=True)

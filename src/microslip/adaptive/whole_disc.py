@@ -1,0 +1,26 @@
+"""The whole disc from the half of it that the polar model resolves."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def points_of(contact):
+    """Forward and lateral positions, bounds and areas on the whole disc, (points,) each."""
+    forward, lateral = contact.forward_position, contact.lateral_position
+    other = lateral if contact.rotates else -lateral
+    bound = np.broadcast_to(contact.bound, forward.shape)
+    # a point of the half that is resolved stands for its image, too
+    area = np.broadcast_to(0.5 * contact.weight, forward.shape)
+    parts = (forward, -forward), (lateral, other), (bound, bound), (area, area)
+    return [np.concatenate([half.ravel() for half in part]) for part in parts]
+
+
+def whole_disc(contact, field):
+    """Forward and lateral parts of a field (n, 2, M, N) on the whole disc, (n, points) each: the
+    other half is the mirror image across the lateral axis, of a translation the same turned round.
+    """
+    flat = field.reshape(len(field), 2, -1)
+    other = flat * [[1.0], [-1.0]] if contact.rotates else flat
+    both = np.concatenate([flat, other], axis=2)
+    return both[:, 0], both[:, 1]

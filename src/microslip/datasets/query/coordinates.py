@@ -1,0 +1,55 @@
+"""What a question is asked at: velocities and amplitudes as labelled arrays of floats."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+from numbers import Real
+
+import numpy as np
+import xarray as xr
+
+from microslip.foundation.errors import InputError
+from microslip.theory import hertz
+
+ALLOWED = "allowed is a finite number >= 0, or several"
+
+
+def labelled(name, given):
+    """A DataArray of numbers >= 0; sequences get a dimension of their name."""
+    array = given if isinstance(given, xr.DataArray) else _array(name, given)
+    if array.dtype.kind not in "iuf":
+        raise InputError(name, given, f"{ALLOWED}, not of type {array.dtype}")
+    try:
+        hertz.checked(name, np.asarray(array, float))
+    except ValueError:
+        raise InputError(name, given, ALLOWED) from None
+    if isinstance(array, xr.DataArray):
+        return array
+    if array.ndim > 1:
+        allowed = f"allowed are {array.ndim} dimensions only with names (DataArray)"
+        raise InputError(name, given, allowed)
+    return xr.DataArray(
+        array, dims=(name,) * array.ndim, coords={name: array} if array.ndim else {}
+    )
+
+
+def _array(name, given):
+    """What is given as an array: of floats, where it holds numbers.
+
+    NumPy makes floats of texts, times, masked places and quantities, too, without a word.
+    """
+    if hasattr(given, "units"):
+        raise InputError(name, given, f"{ALLOWED}, dimensionless, without a unit")
+    if np.ma.is_masked(given):
+        raise InputError(name, given, f"{ALLOWED}, none of them masked")
+    try:
+        array = np.asarray(given)
+        if array.dtype.kind in "iuf" or all(_is_plain(one) for one in array.flat):
+            return array.astype(float)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(name, given, ALLOWED) from None
+    return array
+
+
+def _is_plain(value):
+    return isinstance(value, Real | Decimal) and not isinstance(value, bool | np.generic)

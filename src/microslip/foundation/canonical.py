@@ -1,0 +1,41 @@
+"""Canonical texts of values, and hashes of them: equal values have equal names.
+
+Imports nothing but the standard library, since the workflow reads it whenever it is parsed.
+"""
+
+import hashlib
+import json
+import math
+
+
+def number(value):
+    """Canonical decimal string of a finite number: 1 for 1.0, 0.001, 1e-8.
+
+    Rounded to 12 significant digits, so that 0.1 + 0.2 and 0.3 are the same coordinate.
+    Raises ValueError for what is not a finite number.
+    """
+    if isinstance(value, bool | str) or not math.isfinite(value):
+        raise ValueError(f"{value!r} is not a finite number")
+    rounded = float(f"{value:.12g}")
+    if rounded == 0:
+        return "0"  # also for -0.0
+    text = repr(rounded)
+    if "e" in text:
+        mantissa, _, exponent = text.partition("e")
+        return f"{mantissa.removesuffix('.0')}e{int(exponent)}"
+    return text.removesuffix(".0")
+
+
+def canonical_json(value):
+    """JSON with sorted keys and no white space. Raises ValueError for NaN and infinities."""
+    return json.dumps(value, sort_keys=True, separators=(",", ":"), allow_nan=False)
+
+
+def sha256(text):
+    """SHA-256 of a string, in hexadecimal."""
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def fingerprint(*parts):
+    """Short name of what something is made of; parts: what JSON can hold."""
+    return sha256(canonical_json(parts))[:32]

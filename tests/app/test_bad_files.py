@@ -1,0 +1,277 @@
+"""Files that are not what they should be: one line, before any work starts, and nothing lost."""
+
+import errno
+import logging
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import microslip
+from microslip.app import cli, job_log
+from microslip.report.figures import drawing
+from microslip.report.figures.data import loaded
+from microslip.sweeps import batches, evaluate, sealed_files
+from microslip.sweeps.cache import Store
+from microslip.sweeps.sealed_files import CacheError
+
+SOURCE = str(Path(microslip.__file__).parent.parent)
+POINT = ["point", "continuous-bore", "--velocity", "2"]
+REQUEST = {
+    "kind": "point",
+    "scene": "continuous-bore",
+    "velocity": "2",
+    "amplitude": None,
+    "poisson": "0",
+    "model": "auto",
+    "tolerance": "0.001",
+    "cells": None,
+    "steps": None,
+}
+
+
+def one_line(error):
+    assert "\n" not in str(error.value)
+    return str(error.value)
+
+
+# A folder for results that cannot be used
+
+
+def full(*_):
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+@pytest.mark.parametrize(
+    ("name", "part"),
+    [
+        ("new", "No space left on device"),
+        ("file", "Not a directory"),
+        ("file/new", "Not a directory"),
+        ("half", "Not a directory"),
+        ("link", "File exists"),
+    ],
+)
+def test_a_folder_that_cannot_keep_results_is_refused_before_work(
+    name, part, tmp_path, monkeypatch, capfd
+):
+    (tmp_path / "file").write_text("kept")
+    (tmp_path / "link").symlink_to("nowhere/at/all")
+    (tmp_path / "half").mkdir()
+    (tmp_path / "half" / "points").write_text("kept")
+    if name == "new":
+        monkeypatch.setattr(sealed_files.os, "fsync", full)
+    monkeypatch.setattr(evaluate, "computed", lambda _: pytest.fail("work has started"))
+    with pytest.raises(CacheError) as caught:
+        batches.run_batch([REQUEST], Store(tmp_path / name))
+    message = one_line(caught)
+    assert str(tmp_path / name) in message and part in message and "another folder" in message
+    assert cli.main([*POINT, "--results", str(tmp_path / name)]) == 2
+    out, line = capfd.readouterr()
+    assert out == "" and line == f"microslip point continuous-bore: --results: {message}\n"
+    files = [p.name for p in tmp_path.rglob("*") if p.is_file()]
+    assert sorted(files) == ["file", "points"]
+
+
+def test_a_place_to_write_is_tried_once(tmp_path, monkeypatch):
+    store = Store(tmp_path / "new")
+    store.try_writing()
+    assert list(tmp_path.rglob("*")) == [store.folder]
+    monkeypatch.setattr(sealed_files.os, "fsync", full)
+    store.try_writing()
+    with pytest.raises(CacheError, match="No space left"):
+        Store(tmp_path / "new").try_writing()
+
+
+def test_an_answer_that_is_there_needs_no_place_to_write(tmp_path, monkeypatch, capsys):
+    command = [*POINT, "--json", "--results", str(tmp_path)]
+    assert cli.main(command) == 0
+    monkeypatch.setattr(sealed_files.os, "fsync", full)
+    assert cli.main(command) == 0
+    first, second = capsys.readouterr().out.splitlines()
+    assert first.partition('"solve_time_s"')[0] == second.partition('"solve_time_s"')[0]
+
+
+@pytest.mark.parametrize(
+    ("make", "part"),
+    [
+        (lambda there: there.write_text(""), "results is not a folder"),
+        (lambda there: there.symlink_to("nowhere"), "results is not a folder"),
+        (lambda there: (there.mkdir(), (there / "points").touch()), "points is not a folder"),
+        (lambda there: (there / "bore.nc").mkdir(parents=True), "bore.nc is a folder"),
+    ],
+)
+def test_files_and_folders_that_have_changed_places_are_refused(make, part, tmp_path):
+    there = tmp_path / "results"
+    make(there)
+    before = sorted(tmp_path.rglob("*"))
+    with pytest.raises(CacheError, match="allowed") as caught:
+        sealed_files.refuse_unusable([there / "points", there / "figures"], [there / "bore.nc"])
+    assert part in one_line(caught)
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_what_is_not_there_yet_or_as_it_should_be_is_not_refused(tmp_path):
+    folders, files = [tmp_path / "results" / "points"], [tmp_path / "results" / "bore.nc"]
+    sealed_files.refuse_unusable(folders, files)
+    assert not list(tmp_path.iterdir())
+    folders[0].mkdir(parents=True)
+    files[0].touch()
+    sealed_files.refuse_unusable(folders, files)
+
+
+def test_a_log_that_cannot_be_written_is_one_line(tmp_path):
+    (tmp_path / "logs").write_text("")
+    with (
+        pytest.raises(
+            SystemExit, match=r"^Error: cannot write [^\n]*logs/job.log: Not a dir[^\n]*$"
+        ),
+        job_log.job_log(tmp_path / "logs" / "job.log"),
+    ):
+        pytest.fail("work has started")
+
+
+# Damage to what is there
+
+
+def test_a_damaged_point_is_computed_again_and_said(tmp_path, capsys, caplog):
+    command = [*POINT, "--results", str(tmp_path)]
+    assert cli.main(command) == 0
+    (path,) = tmp_path.glob("points/*/*/*.json")
+    whole = path.read_bytes()
+    path.write_bytes(whole[:100])
+    with caplog.at_level(logging.WARNING):
+        assert cli.main(command) == 0
+    assert caplog.messages == [f"damaged result {path}: computed again"]
+    assert path.read_bytes() == whole
+    first, second = capsys.readouterr().out.split("mu_macro = ")[1:]
+    assert first == second
+
+
+def data():
+    values = {"mu_macro": ("velocity", np.linspace(0.0, 1.0, 2000))}
+    return xr.Dataset(values, attrs={"scene": "bore"})
+
+
+@pytest.fixture
+def sealed(tmp_path):
+    """A dataset as the workflow leaves it."""
+    path = tmp_path / "bore.nc"
+    with sealed_files.writing_beside(path, sealed=True) as beside:
+        data().to_netcdf(beside)
+    return path
+
+
+DAMAGES = {
+    "cut off": lambda path: os.truncate(path, path.stat().st_size // 2),
+    "emptied": lambda path: os.truncate(path, 0),
+    "longer": lambda path: path.write_bytes(path.read_bytes() + b"\0"),
+    "a bit flipped": lambda path: path.write_bytes(
+        path.read_bytes()[:-50] + bytes([path.read_bytes()[-50] ^ 1]) + path.read_bytes()[-49:]
+    ),
+    "replaced": lambda path: path.write_text("velocity,mu_macro\n"),
+    "replaced, not sealed": lambda path: (
+        path.write_text("velocity,mu_macro\n"),
+        sealed_files.seal_of(path).unlink(),
+    ),
+    "a seal that is none": lambda path: sealed_files.seal_of(path).write_bytes(b"\xff\xfe"),
+    "a seal cut off": lambda path: os.truncate(sealed_files.seal_of(path), 10),
+}
+
+
+@pytest.mark.parametrize("case", DAMAGES)
+def test_damage_to_a_dataset_is_noticed(case, sealed):
+    assert not sealed_files.is_damaged(sealed)
+    DAMAGES[case](sealed)
+    assert sealed_files.is_damaged(sealed)
+
+
+def test_what_is_whole_or_absent_is_not_damaged(sealed):
+    sealed_files.seal_of(sealed).unlink()  # written by other means
+    assert not sealed_files.is_damaged(sealed)
+    assert not sealed_files.is_damaged(sealed.with_name("transverse.nc"))
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda path: path.write_text("velocity,mu_macro\n"),
+        lambda path: os.truncate(path, 0),
+        lambda path: os.truncate(path, path.stat().st_size // 2),
+        lambda path: path.unlink(),
+        lambda path: (path.unlink(), path.mkdir()),
+    ],
+)
+def test_a_dataset_that_cannot_be_read_is_one_line(spoil, sealed):
+    assert loaded(sealed).identical(data())
+    spoil(sealed)
+    with pytest.raises(CacheError, match="allowed: a netCDF file") as caught:
+        loaded(sealed)
+    assert f"cannot read the dataset {sealed}: " in one_line(caught)
+
+
+FULL_DISK = """
+import resource, sys
+import numpy, xarray
+from microslip import cache, dataset
+data = xarray.Dataset({"a": ("x", numpy.random.default_rng(1).random(99999))})
+resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+try:
+    dataset.write(data, sys.argv[1])
+except sealed_files.CacheError as error:
+    print(error)
+"""
+
+
+def test_a_disk_that_fills_up_under_a_dataset_leaves_the_old_one(sealed):
+    """A limit on the size of files stands for the disk: both end a write half-way."""
+    before = sealed.read_bytes()
+    done = subprocess.run(
+        [sys.executable, "-c", FULL_DISK, sealed],
+        env={**os.environ, "PYTHONPATH": SOURCE},
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert (done.stdout.count("\n"), done.returncode) == (1, 0)
+    assert f"cannot write {sealed}: " in done.stdout and "make room" in done.stdout
+    assert sealed.read_bytes() == before
+    assert {p.name for p in sealed.parent.iterdir()} == {"bore.nc", ".bore.nc.sha256"}
+
+
+# Datasets that a figure cannot be drawn from
+
+
+@pytest.mark.parametrize(
+    ("figure", "datasets", "parts"),
+    [
+        ("fig7", {}, ["unknown figure 'fig7'", "fig1_force_history, "]),
+        ("fig6_bore_map", {}, ["needs the dataset 'bore'", "given: none"]),
+        ("fig6_bore_map", {"bores": data()}, ["needs the dataset 'bore'", "given: 'bores'"]),
+        ("fig6_bore_map", {"bore": data()}, ["dataset 'bore' has no variable", "'amplitude'"]),
+        ("fig2_transverse_map", {"transverse": data()}, ["is of 'bore'", "allowed: 'transverse'"]),
+        (
+            "fig4_continuous_bore",
+            {"continuous_bore": data().assign_attrs(scene="spin")},
+            ["dataset 'continuous_bore' is of 'spin'", "allowed: 'continuous-bore'"],
+        ),
+        ("stability_atlas", {"stability": data()}, ["dataset 'stability' has no variable"]),
+    ],
+)
+def test_a_figure_of_other_data_is_one_line(figure, datasets, parts):
+    with pytest.raises(ValueError) as caught:
+        drawing.draw(figure, datasets)
+    message = one_line(caught)
+    assert figure in message and [part for part in parts if part not in message] == []
+
+
+@pytest.mark.parametrize("name", ["figure", "figure.jpg", "figure.svg"])
+def test_a_figure_of_another_format_is_one_line(name, tmp_path):
+    with pytest.raises(ValueError, match=r"must end in .png or .pdf$") as caught:
+        drawing.save(None, tmp_path / name)
+    assert repr(name) in one_line(caught)
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,238 @@
+"""The command line as its users and checks run it: in a process of its own."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+from stubs.point_contract import CONTRACT
+
+import microslip
+from microslip.app import cli, sweep_command
+from microslip.motions.registry import FAMILIES, SCENES
+
+TRANSVERSE = ("point", "transverse", "--velocity", "0.5", "--amplitude", "0.5")
+SPIN = "spin: rotation about the contact normal"
+
+
+def run(*arguments):
+    return subprocess.run(
+        [sys.executable, "-m", "microslip", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+
+
+def refused(*arguments):
+    """The one line on standard error of a run that must end with exit code 2."""
+    done = run(*arguments)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.endswith("\n") and done.stderr.count("\n") == 1
+    return done.stderr
+
+
+@pytest.mark.parametrize(
+    ("scene", "arguments"),
+    [
+        ("transverse", {"velocity": 0.5, "amplitude": 0.5}),
+        ("bore", {"velocity": 0.5, "amplitude": 1.0, "poisson": 0.3, "tolerance": 5e-3}),
+        ("continuous-bore", {"velocity": 0.5}),
+        ("transverse", {"velocity": 0, "amplitude": 0.5}),
+        ("transverse", {"velocity": 0.5, "amplitude": 0.5, "model": "slider", "steps": 32}),
+        ("bore", {"velocity": 2, "amplitude": 1, "cells": 6, "steps": 8, "tolerance": 0.1}),
+    ],
+)
+def test_json_is_the_answer_of_solve_and_nothing_else(scene, arguments):
+    options = [word for name, value in arguments.items() for word in (f"--{name}", value)]
+    done = run("point", scene, *options, "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.count("\n") == 1
+    fields = json.loads(done.stdout)
+    assert fields.keys() >= CONTRACT | {"amplitude"}
+    steady = scene == "continuous-bore"
+    assert (fields["amplitude"] is None) == ("mu_torque" in fields) == steady
+    assert fields["converged"] is True
+    velocity, amplitude = arguments.pop("velocity"), arguments.pop("amplitude", None)
+    expected = microslip.solve(scene, velocity, amplitude, **arguments).to_dict()
+    expected = {"amplitude": None} | expected
+    for answer in (fields, expected):  # equal to the last bit, the time apart
+        answer.pop("solve_time_s")
+    assert fields == expected
+
+
+def test_text_says_what_was_found():
+    done = run("point", "continuous-bore", "--velocity", "0.5", "--tolerance", "1e-2")
+    assert (done.returncode, done.stderr) == (0, "")
+    result = microslip.solve("continuous-bore", 0.5, tolerance=1e-2)
+    assert f"mu_macro = {result.mu_macro:.6g} +- " in done.stdout
+    assert f"mu_torque = {result.mu_torque:.6g} +- " in done.stdout
+    assert done.stdout.count("ratio") == done.stdout.count("mu_apparent = mu mu_macro") == 1
+    assert "closed-form" in done.stdout and "NOT CONVERGED" not in done.stdout
+
+
+def test_tolerance_out_of_reach_is_exit_code_1():
+    arguments = ["continuous-bore", "--velocity", 0.5, "--model", "rigid", "--tolerance", 1e-6]
+    done = run("point", *arguments, "--json")
+    fields = json.loads(done.stdout)
+    assert done.returncode == 1 and done.stderr == ""
+    assert fields["converged"] is False and fields["reason"]
+    done = run("point", *arguments)
+    assert done.returncode == 1 and "NOT CONVERGED: " + fields["reason"] in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("option", "arguments"),
+    [
+        ("--velocity", ("point", "transverse", "--velocity", "fast", "--amplitude", "1")),
+        ("--velocity", ("point", "transverse", "--velocity=-1", "--amplitude", "1")),
+        ("--velocity", ("point", "transverse", "--velocity", "nan", "--amplitude", "1")),
+        ("--velocity", ("point", "transverse", "--velocity", "inf", "--amplitude", "1")),
+        ("--velocity", ("point", "transverse", "--amplitude", "1")),
+        ("--amplitude", ("point", "transverse", "--velocity", "1")),
+        ("--amplitude", ("point", "transverse", "--velocity", "1", "--amplitude=-0.5")),
+        ("--amplitude", ("point", "continuous-bore", "--velocity", "1", "--amplitude", "1")),
+        ("--poisson", (*TRANSVERSE, "--poisson", "0.6")),
+        ("--poisson", (*TRANSVERSE, "--poisson", "steel")),
+        ("--model", (*TRANSVERSE, "--model", "best")),
+        ("--model", (*TRANSVERSE, "--model", "radial", "--poisson", "0.3")),
+        ("--model", ("point", "bore", "--velocity", "1", "--amplitude", "1", "--model", "slider")),
+        ("--tolerance", (*TRANSVERSE, "--tolerance", "0")),
+        ("--tolerance", (*TRANSVERSE, "--tolerance", "1e-12")),
+        ("--cells", (*TRANSVERSE, "--cells", "7")),
+        ("--cells", (*TRANSVERSE, "--cells", "8.5")),
+        ("--steps", (*TRANSVERSE, "--steps", "2")),
+        ("--step", (*TRANSVERSE, "--step", "8")),
+        ("--colour", (*TRANSVERSE, "--colour", "red")),
+        ("SCENE", ("point", "sideways", "--velocity", "1")),
+        ("SCENE", ("point",)),
+        ("COMMAND", ()),
+        ("COMMAND", ("solve",)),
+        ("extra", (*TRANSVERSE, "extra")),
+    ],
+)
+def test_bad_input_is_one_line_that_names_the_option(option, arguments):
+    assert option in refused(*arguments)
+
+
+def test_model_that_does_not_apply_says_to_which_scene():
+    line = refused("point", "bore", "--velocity", "1", "--amplitude", "1", "--model", "radial")
+    assert "bore" in line and "rotation" in line
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (
+            (),
+            ["point", "friction", "vibrated", "dimensionless", "sweep", "predict", SPIN],
+        ),
+        (("point",), [*SCENES, *FAMILIES, "mu F_z", "ratio", "mu_apparent", SPIN]),
+        (("sweep",), [*sweep_command.TARGETS, "--cores", "--report", SPIN]),
+        (
+            ("point", "transverse"),
+            ["--velocity", "v0 / (omega u_lim)", "--amplitude", "y0 / u_lim", "Poisson"],
+        ),
+        (("point", "bore"), ["v0 / (Omega phi0 a)", "phi0 / phi_lk(a/2)", "--nu", SPIN]),
+        (("point", "continuous-bore"), ["v0 / (omega a)", "--cells", "--json", SPIN]),
+    ],
+)
+def test_help_explains_the_terms(arguments, words):
+    done = run(*arguments, "--help")
+    assert (done.returncode, done.stderr) == (0, "")
+    text = " ".join(done.stdout.split())
+    assert [word for word in words if word not in text] == []
+    assert max(map(len, done.stdout.splitlines())) <= 100
+    if arguments == ("point", "continuous-bore"):
+        assert "--amplitude" not in text
+
+
+def test_version_is_that_of_the_package():
+    done = run("--version")
+    assert (done.returncode, done.stdout) == (0, f"microslip {microslip.__version__}\n")
+
+
+def test_help_and_bad_options_do_not_load_the_solver():
+    """They must answer at once; the compiled kernels take their time to load."""
+    code = (
+        "import sys, microslip.app.cli as cli\n"
+        "try: cli.main(['point', 'bore', '--help'])\n"
+        "except SystemExit: pass\n"
+        "sys.exit('numba' in sys.modules)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
+    assert done.returncode == 0
+
+
+def test_a_negative_number_with_an_exponent_is_a_number(capsys):
+    """argparse by itself takes it for an option."""
+    assert cli.main(["point", "transverse", "--velocity", "-1e-3", "--amplitude", "1"]) == 2
+    assert "velocity = '-1e-3'" in capsys.readouterr().err
+
+
+def test_a_steady_scene_has_no_amplitude(capsys):
+    assert cli.main(["point", "continuous-bore", "--velocity", "2", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["amplitude"] is None
+
+
+@pytest.mark.parametrize("name", ["--poisson", "--nu"])
+@pytest.mark.parametrize("given", ["0.3", " 0.3 ", "+.3", "3e-1", "0.30"])
+def test_poissons_ratio_goes_by_two_names_and_is_what_was_written(name, given, capsys):
+    command = ["point", "transverse", "--velocity", "0", "--amplitude", "0", name, given, "--json"]
+    assert cli.main(command) == 0
+    assert json.loads(capsys.readouterr().out)["poisson"] == 0.3
+
+
+def test_an_error_without_an_option_is_one_line(monkeypatch, capsys):
+    def failing(**_):
+        raise ValueError("pressure: the file\nis odd")
+
+    monkeypatch.setattr(microslip, "solve", failing, raising=False)
+    assert cli.main([*TRANSVERSE]) == 2
+    assert capsys.readouterr().err == "microslip point transverse: pressure: the file is odd\n"
+
+
+def test_public_names_are_listed_before_they_are_used():
+    """In a new process, since each becomes an attribute once it has been asked for."""
+    code = (
+        "import sys, microslip\n"
+        "names = dir(microslip)\n"
+        "assert set(microslip.__all__) <= set(names), names\n"
+        "assert names == sorted(names) and '__version__' in names\n"
+        "sys.exit('numpy' in sys.modules)\n"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_names_are_completed_as_a_shell_of_python_does_it():
+    code = (
+        "import rlcompleter, microslip\n"
+        "found = rlcompleter.Completer({'microslip': microslip}).attr_matches('microslip.sol')\n"
+        "print(*sorted(name.rstrip('(') for name in found))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "microslip.solve microslip.solve_stored\n"
+
+
+def test_exit_0_means_within_the_tolerance_at_an_imposed_resolution_too(capsys):
+    place = ["point", "transverse", "--velocity", "0.1", "--amplitude", "1", "--json"]
+    coarse = [*place, "--cells", "16", "--steps", "8"]
+    assert cli.main(coarse) == 1
+    said = json.loads(capsys.readouterr().out)
+    assert said["converged"] is False and said["mu_macro_error"] > said["tolerance"]
+    assert said["reason"].startswith("at the imposed resolution the error is ")
+    assert cli.main([*coarse, "--tolerance", "none"]) == 0
+    free = json.loads(capsys.readouterr().out)
+    assert free["converged"] is True and free["tolerance"] is None
+    assert free["mu_macro_error"] == said["mu_macro_error"]
+    assert cli.main([*place, "--tolerance", "none"]) == 2
+    assert "tolerance" in capsys.readouterr().err
+
+
+def test_a_time_limit_ends_a_point_as_not_converged(capsys):
+    slow = ["point", "transverse", "--velocity", "1e-9", "--amplitude", "0.5", "--json"]
+    assert cli.main([*slow, "--tolerance", "1e-6", "--time-limit", "1e-9"]) == 1
+    said = json.loads(capsys.readouterr().out)
+    assert said["exhausted"] == "time" and "time limit" in said["reason"]

@@ -1,0 +1,98 @@
+"""``microslip gc``: what nothing asks for is found, and nothing else is ever removed."""
+
+from pathlib import Path
+
+import pytest
+import yaml
+from stubs.sweep_stub import Solver
+
+from microslip.app import leftovers
+from microslip.app.plan import Plan
+from microslip.config import load
+from microslip.sweeps import batch_files, batches, cache, sealed_files
+
+AXES = {"velocity": [0.5, 2], "amplitude": [0, 1], "tolerance": 1e-2}
+
+
+def configured(folder, name, **bore):
+    """A file of a configuration with one small sweep."""
+    path = folder / f"{name}.yaml"
+    given = {"results": str(folder / "results"), "sweeps": {"bore": AXES | bore}}
+    path.write_text(yaml.safe_dump(given))
+    return path
+
+
+@pytest.fixture
+def results(tmp_path, monkeypatch):
+    """A folder with the points, the batches and a dataset of two configurations."""
+    Solver(monkeypatch)
+    folder = tmp_path / "results"
+    for name, more in (("first", {}), ("second", {"velocity": [0.5, 3]})):
+        plan = Plan(load.load(configured(tmp_path, name, **more)))
+        for batch, requests in plan.batches_in("bore").items():
+            records, _ = batches.run_batch(requests, cache.Store(folder))
+            batch_files.write_batch(folder / "batches" / "bore" / f"{batch}.json", records)
+    for file in ("bore.nc", "summaries/bore.html", "figures/fig6_bore_map.png", "pendulum.nc"):
+        with sealed_files.writing_beside(folder / file, sealed=True) as beside:
+            beside.write_bytes(b"content")
+    (folder / "notes.txt").write_text("mine")
+    (folder / "mine.nc").write_bytes(b"not sealed")
+    (folder / "points" / "mine.json").write_text("{}")
+    return folder
+
+
+def names(folder):
+    return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_without_delete_nothing_is_removed(results, tmp_path, capsys):
+    before = names(results)
+    assert leftovers.main(["--configfile", str(tmp_path / "first.yaml"), "--list"]) == 0
+    assert names(results) == before
+    said = capsys.readouterr().out
+    assert "2 points and single runs that nothing asks for" in said
+    assert "1 batches that nothing asks for" in said
+    assert "1 datasets, pages and figures" in said and "pendulum.nc" in said
+    assert "nothing is removed without --delete" in said
+    assert "mine" not in said
+
+
+def test_what_no_configuration_asks_for_is_removed(results, tmp_path):
+    before = names(results)
+    assert leftovers.main(["--configfile", str(tmp_path / "first.yaml"), "--delete"]) == 0
+    gone = before - names(results)
+    assert {Path(name).parts[0] for name in gone} == {
+        "points",
+        "batches",
+        "pendulum.nc",
+        ".pendulum.nc.sha256",
+    }
+    assert len(gone) == 2 + 1 + 2
+    store, plan = cache.Store(results), Plan(load.load(tmp_path / "first.yaml"))
+    for requests in plan.batches_in("bore").values():
+        for request in requests:
+            assert store.read(batches.group(request), batches.key_of(request)) is not None
+
+
+def test_what_any_of_several_asks_for_stays(results, tmp_path, capsys):
+    files = [str(tmp_path / "first.yaml"), str(tmp_path / "second.yaml")]
+    assert leftovers.main(["--configfile", *files, "--delete"]) == 0
+    assert "0 points and single runs" in capsys.readouterr().out
+    assert len(list((results / "points").rglob("*.json"))) == 6 + 1
+
+
+def test_two_folders_of_results_are_refused(results, tmp_path, capsys):
+    other = tmp_path / "other.yaml"
+    other.write_text(yaml.safe_dump({"results": "elsewhere", "sweeps": {"bore": AXES}}))
+    files = [str(tmp_path / "first.yaml"), str(other)]
+    before = names(results)
+    assert leftovers.main(["--configfile", *files, "--delete"]) == 2
+    assert "several folders" in capsys.readouterr().err
+    assert names(results) == before
+
+
+def test_a_configuration_that_cannot_be_read_removes_nothing(results, tmp_path, capsys):
+    before = names(results)
+    assert leftovers.main(["--configfile", str(tmp_path / "none.yaml"), "--delete"]) == 2
+    assert "none.yaml: cannot be read" in capsys.readouterr().err
+    assert names(results) == before

@@ -1,0 +1,217 @@
+"""What strangers write, give and damage: right, or refused in one line that says why."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+from bad_input import odd_files as odd
+from bad_input.odd_files import SWEEP
+from test_leftovers import configured, names, results  # noqa: F401 (a fixture)
+
+import microslip
+from microslip.app import cli
+from microslip.config import load
+from microslip.config.records import ConfigError
+from microslip.datasets.query.open_map import open_map
+from microslip.foundation.errors import InputError
+from microslip.pressures.registry import pressure_named
+from microslip.sweeps.sealed_files import CacheError
+
+SOURCE = str(Path(microslip.__file__).parent.parent)
+
+
+def one_line(caught, words):
+    said = str(caught.value)
+    assert "\n" not in said
+    assert [word for word in words if word not in said] == []
+    return said
+
+
+@pytest.mark.parametrize(("text", "expected"), odd.VELOCITIES)
+def test_numbers_mean_what_they_show(text, expected, tmp_path):
+    path = tmp_path / "given.yaml"
+    path.write_text(SWEEP % text, encoding="utf-8")
+    if isinstance(expected, tuple):
+        assert load.load(path).sweeps["bore"].velocity == expected
+        return
+    with pytest.raises(ConfigError) as caught:
+        load.load(path)
+    one_line(caught, [str(path), *expected["words"]])
+
+
+@pytest.mark.parametrize(("text", "words"), odd.KEYS)
+def test_odd_settings(text, words, tmp_path):
+    path = tmp_path / "given.yaml"
+    path.write_text(SWEEP % "[1]" + text + "\n", encoding="utf-8")
+    if words is None:
+        key, value = next(iter(yaml.safe_load(text).items()))
+        found = getattr(load.load(path), key)
+        assert found == value or set(found.values()) == {value}
+        return
+    with pytest.raises(ConfigError) as caught:
+        load.load(path)
+    one_line(caught, [str(path), *words]).encode()  # it can be printed
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(("text", "expected"), odd.CSV)
+def test_odd_pressures_as_text(text, expected, tmp_path):
+    path = tmp_path / "p.csv"
+    path.write_bytes(text.encode())
+    if isinstance(expected, list):
+        assert pressure_named(f"file:{path}").cell_loads(2).tolist() == [
+            pytest.approx(row, abs=1e-9) for row in expected
+        ]
+        return
+    with pytest.raises(InputError) as caught:
+        pressure_named(f"file:{path}")
+    one_line(caught, [str(path), *expected["words"]])
+
+
+@pytest.mark.parametrize(("data", "expected"), odd.NETCDF)
+def test_odd_pressures_as_netcdf(data, expected, tmp_path):
+    path = tmp_path / "p.nc"
+    data.to_netcdf(path)
+    if expected == "stretched":
+        # a thousand times as long as wide: the mean distance is a quarter of the length, over half
+        assert pressure_named(f"file:{path}").torque == pytest.approx(0.5, abs=1e-4)
+        return
+    with pytest.raises(InputError) as caught:
+        pressure_named(f"file:{path}")
+    one_line(caught, [str(path), *expected["words"]])
+
+
+OPEN_DAMAGED = """
+import sys
+from microslip.foundation.errors import InputError
+from microslip.pressures.registry import pressure_named
+try:
+    pressure_named(sys.argv[1])
+except InputError as error:
+    print(error)
+"""
+
+
+@pytest.mark.parametrize("case", odd.DAMAGES)
+def test_a_damaged_pressure_is_refused_and_does_not_hang(case, tmp_path):
+    path = tmp_path / "p.nc"
+    odd.grid().to_netcdf(path)
+    path.write_bytes(odd.DAMAGES[case](path.read_bytes()))
+    done = subprocess.run(
+        [sys.executable, "-c", OPEN_DAMAGED, f"file:{path}"],
+        env={**os.environ, "PYTHONPATH": SOURCE},
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert (done.returncode, done.stdout.count("\n")) == (0, 1)
+    assert str(path) in done.stdout and "not a netCDF file" in done.stdout
+
+
+@pytest.mark.parametrize("case", odd.DATASETS)
+def test_a_dataset_that_no_sweep_has_made_is_refused(case):
+    change, word = odd.DATASETS[case]
+    with pytest.raises(InputError) as caught:
+        change(odd.whole()).friction.at(0.15, 1.3)
+    one_line(caught, [word])
+    assert odd.whole().friction.at(0.15, 1.3).mu_macro_error < 0.1  # the same, unchanged
+
+
+@pytest.mark.parametrize(("arguments", "more", "word"), odd.QUESTIONS)
+def test_odd_questions(arguments, more, word):
+    with pytest.raises(InputError) as caught:
+        odd.whole().friction.at(*arguments, **more)
+    one_line(caught, [word])
+
+
+@pytest.mark.parametrize(("name", "more", "word"), odd.OPENED)
+def test_odd_names_of_datasets(name, more, word):
+    with pytest.raises((InputError, CacheError)) as caught:
+        open_map(name, **more)
+    one_line(caught, [word])
+
+
+@pytest.mark.parametrize("case", odd.DAMAGES)
+def test_a_damaged_dataset_without_a_seal_is_one_line(case, tmp_path):
+    path = tmp_path / "map.nc"
+    odd.whole().to_netcdf(path)
+    path.write_bytes(odd.DAMAGES[case](path.read_bytes()))
+    with pytest.raises(CacheError) as caught:
+        open_map(path)
+    one_line(caught, [str(path)])
+
+
+@pytest.mark.parametrize(("arguments", "word"), odd.GC)
+def test_odd_arguments_of_gc(arguments, word, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("long.yaml").write_text(f"{SWEEP % '[1]'}results: {'x' * 300}\n")
+    try:
+        code = cli.main(["gc", *arguments])
+    except SystemExit as ended:
+        code = ended.code
+    out, line = capsys.readouterr()
+    assert (code, out, line.count("\n")) == (2, "", 1)
+    assert word in line
+
+
+def test_gc_forgets_no_configuration_that_is_given_apart(results, tmp_path, capsys):  # noqa: F811
+    files = [str(tmp_path / "first.yaml"), str(tmp_path / "second.yaml")]
+    apart = ["--configfile", files[0], "--configfile", files[1]]
+    before = len([name for name in names(results) if name.startswith("points/")])
+    assert cli.main(["gc", *apart, "--delete"]) == 0
+    assert len([name for name in names(results) if name.startswith("points/")]) == before
+
+
+def test_gc_knows_a_folder_by_any_path(results, tmp_path, monkeypatch, capsys):  # noqa: F811
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "link").symlink_to(results)
+    given = [str(tmp_path / "first.yaml")]
+    for number, place in enumerate(("./results/", "x/../results", "link")):
+        (tmp_path / "x").mkdir(exist_ok=True)
+        path = configured(tmp_path, f"other{number}")
+        settings = yaml.safe_load(path.read_text()) | {"results": place}
+        path.write_text(yaml.safe_dump(settings))
+        given.append(str(path))
+    assert cli.main(["gc", "--configfile", *given]) == 0
+
+
+def test_gc_leaves_folders_and_links_alone(results, tmp_path):  # noqa: F811
+    odd_places = results / "points" / "00"
+    (odd_places / f"{'0' * 64}.json").mkdir(parents=True)
+    (odd_places / f"{'1' * 64}.json").symlink_to("nowhere")
+    (odd_places / f"{'2' * 64}.json").symlink_to(tmp_path / "first.yaml")
+    assert cli.main(["gc", "--configfile", str(tmp_path / "first.yaml"), "--delete"]) == 0
+    assert len(list(odd_places.iterdir())) == 3
+    assert (tmp_path / "first.yaml").is_file()
+
+
+def sweep(folder, *arguments, **environment):
+    (folder / "tiny.yaml").write_text(
+        "sweeps: {bore: {velocity: [1], amplitude: [0, 1], model: rigid, tolerance: 0.01}}\n"
+    )
+    return subprocess.run(
+        [sys.executable, "-m", "microslip", "sweep", "-n", "--configfile", *arguments],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": SOURCE} | environment,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+
+
+def test_sweep_forgets_no_configuration_that_is_given_apart(tmp_path):
+    done = sweep(tmp_path, "tiny.yaml", "--configfile", "tiny.yaml")
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert "--configfile" in done.stderr and "--configfile A B" in done.stderr
+
+
+def test_sweep_runs_where_the_home_takes_no_files(tmp_path):
+    (tmp_path / "home").write_text("no folder")
+    more = {"HOME": str(tmp_path / "home"), "XDG_CACHE_HOME": "", "NUMBA_CACHE_DIR": ""}
+    done = sweep(tmp_path, "tiny.yaml", **more)
+    assert done.returncode == 0, done.stderr
+    assert "Traceback" not in done.stderr
+    assert done.stderr.count("cannot be written to: Snakemake's own files are in") == 1

@@ -1,0 +1,165 @@
+"""Odd inputs: the right answer, or one line that says what is wrong with what was given."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+from bad_input.odd_inputs import AT, CALLS, NUMBERS, PREDICTIONS, QUANTITIES, SAME
+
+import microslip
+from microslip.app import cli
+from microslip.foundation.errors import InputError
+from microslip.si.materials import Material
+from microslip.si.predict import predict
+from microslip.si.quantities import si_value
+from microslip.sweeps.sealed_files import CacheError
+from microslip.theory import paper
+
+LAST_DIGITS = 1e-15
+"""Relative: what rounding leaves in the expected value, which is made of a few floats."""
+LONGEST_LINE = 1500
+"""Characters; a value of a million of them is not written out."""
+
+
+def short(value):
+    try:
+        return repr(value)[:40]
+    except ValueError:
+        return "huge"
+
+
+def one_line(error, part):
+    line = str(error)
+    assert "\n" not in line and len(line) < LONGEST_LINE
+    assert part in line
+
+
+@pytest.mark.parametrize(("value", "unit", "expected"), QUANTITIES, ids=short)
+def test_a_quantity(value, unit, expected):
+    if isinstance(expected, float):
+        found = si_value("size", value, unit, low=-math.inf)
+        assert found == pytest.approx(expected, rel=LAST_DIGITS, abs=0.0)
+        return
+    with pytest.raises(InputError) as caught:
+        si_value("size", value, unit, low=-math.inf)
+    one_line(caught.value, expected)
+
+
+# A contact
+
+BALL = {"material": "steel", "radius": "5 mm", "load": "10 N", "mu": "0.3", "speed": "10 mm/s"}
+BALL |= {"amplitude": "1 um", "frequency": "20 kHz", "tolerance": "0.1"}
+
+
+@pytest.fixture
+def nothing_runs(monkeypatch):
+    def work(*_, **__):
+        raise AssertionError("work has started")
+
+    monkeypatch.setattr("microslip.si.predict.solve", work)
+    monkeypatch.setattr("microslip.si.reduction.solve", work)
+
+
+@pytest.mark.parametrize(("changed", "part"), PREDICTIONS, ids=short)
+def test_a_contact_is_refused_in_one_line(changed, part, nothing_runs, capsys):
+    given = {"scene": "transverse"} | BALL | changed
+    scene = given.pop("scene")
+    words = [(f"--{name.replace('_', '-')}", text) for name, text in given.items() if text]
+    assert cli.main(["predict", scene, *(word for pair in words for word in pair)]) == 2
+    out, line = capsys.readouterr()
+    assert out == "" and line.endswith("\n")
+    one_line(line[:-1], part)
+
+
+@pytest.mark.parametrize(("changed", "same"), SAME, ids=short)
+def test_the_same_contact_in_other_words(changed, same, monkeypatch):
+    """What the solver is asked is the same to the last digits."""
+
+    def asked(words):
+        seen = []
+
+        def solve(scene, velocity, amplitude, **settings):
+            seen.append((velocity, amplitude, settings["poisson"], settings["tolerance"]))
+            return RIGID
+
+        monkeypatch.setattr("microslip.si.predict.solve", solve)
+        monkeypatch.setattr("microslip.si.reduction.solve", solve)
+        found = predict("transverse", **BALL | words)
+        return [*seen[0], found.contact_radius_m, found.u_lim_m]
+
+    assert asked(changed) == pytest.approx(asked(same), rel=4 * LAST_DIGITS, abs=0.0)
+
+
+RIGID = microslip.solve("transverse", 0.5, 0.5, model="rigid", tolerance=0.1)
+
+
+@pytest.mark.parametrize("scene", ["transverse", "longitudinal"])
+def test_all_static_friction_is_taken_by_the_stroke_that_lets_the_contact_slide(scene):
+    """At vanishing speed nothing resists from u_lim on, and something does below it."""
+    words = {name: text for name, text in BALL.items() if name != "amplitude"}
+    found = predict(scene, **words | {"speed": "0 m/s", "counterbody": "steel"}, reduction="100 %")
+    assert found.amplitude_si == pytest.approx(found.u_lim_m, rel=1e-6)
+
+
+# Python
+
+GOOD = {
+    "solve": {"scene": "transverse", "velocity": 0.5, "amplitude": 0.5},
+    "history": {"scene": "transverse", "velocity": 0.5, "amplitude": 0.5, "cells": 4, "steps": 8},
+    "period": {"scene": "transverse", "velocity": 0.5, "amplitude": 0.5, "cells": 4, "steps": 8},
+    "traction_field": {"scene": "continuous-bore", "velocity": 0.5},
+    "solve_stored": {"scene": "transverse", "velocity": 0.5, "amplitude": 0.5},
+    "open_map": {"name": "transverse"},
+    "Material": {"young": "210 GPa", "poisson": 0.3},
+}
+
+
+@pytest.mark.parametrize(("function", "changed", "part"), CALLS, ids=short)
+def test_a_call_is_refused_in_one_line(function, changed, part, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    called = Material if function == "Material" else getattr(microslip, function)
+    with pytest.raises((InputError, CacheError)) as caught:
+        called(**GOOD[function] | changed)
+    one_line(caught.value, part)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_travel_as_long_as_allowed_ends_in_the_steady_state():
+    """Eq 21 whatever the length of the steps; the polar model is as far off with short ones."""
+    ends = [
+        microslip.history("continuous-bore", 0.5, cells=8, steps=16, travel=travel).force_forward
+        for travel in (10.0, 1e6)
+    ]
+    assert ends[1][-1] == pytest.approx(paper.bore_forward(0.5), abs=1e-3)
+    assert ends[1][-1] == pytest.approx(ends[0][-1], abs=1e-3)
+
+
+# A map
+
+
+@pytest.fixture(scope="module")
+def friction():
+    velocity, amplitude = np.array([0.01, 0.1, 0.3, 1.0]), np.array([0.0, 0.5, 1.0])
+    mu = velocity / (amplitude[:, None] + velocity)
+    axes = ("amplitude", "velocity")
+    return xr.Dataset(
+        {"mu_macro": (axes, mu), "mu_macro_error": (axes, 0.0 * mu + 1e-3)},
+        {"velocity": velocity, "amplitude": amplitude, "poisson": 0.0},
+        {"scene": "transverse", "tolerance": 1e-2},
+    ).friction
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(("changed", "part"), AT, ids=short)
+def test_a_question_to_a_map_is_refused_in_one_line(changed, part, friction):
+    with pytest.raises(InputError) as caught:
+        friction.at(**{"velocity": 0.1, "amplitude": 0.5} | changed)
+    one_line(caught.value, part)
+
+
+@pytest.mark.parametrize("velocity", NUMBERS, ids=short)
+def test_numbers_of_other_types_are_numbers(velocity, friction):
+    """A node of the map answers with its value, 0.3 / (0.5 + 0.3)."""
+    found = friction.at(velocity, 0.5).mu_macro
+    assert float(found.squeeze()) == pytest.approx(0.375, abs=1e-6)

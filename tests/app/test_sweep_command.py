@@ -1,0 +1,176 @@
+"""``microslip sweep``: what is refused before Snakemake starts, what its help says, how it ends."""
+
+import contextlib
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from bad_input.bad_configurations import FILES, GOOD
+
+import microslip
+from microslip.app import sweep_command
+
+ROOT = Path(__file__).parents[2]
+SOURCE = str(Path(microslip.__file__).parent.parent)
+SWEEP = [sys.executable, "-m", "microslip", "sweep"]
+SNAKEMAKE = [str(Path(sys.executable).with_name("snakemake")), "-s", str(ROOT / "Snakefile")]
+ENVIRONMENT = {**os.environ, "PYTHONPATH": SOURCE}
+
+
+def run(command, folder):
+    return subprocess.run(
+        command, cwd=folder, env=ENVIRONMENT, capture_output=True, text=True, timeout=120
+    )
+
+
+# Help
+
+
+def test_the_targets_are_those_of_the_workflow():
+    """A rule whose files have no names to fill in is one that can be asked for by name."""
+    rules = {}
+    for path in (ROOT / "Snakefile", *(ROOT / "workflow" / "rules").glob("*.smk")):
+        parts = re.split(r"^(?:use )?rule (\w+)", path.read_text(), flags=re.MULTILINE)[1:]
+        rules |= dict(zip(parts[::2], parts[1::2], strict=True))
+    by_name = {name for name, text in rules.items() if not re.search(r"output:[^:]*\{\{", text)}
+    assert by_name == {*sweep_command.TARGETS, *sweep_command.RULES}
+
+
+def test_help_and_pages_name_every_target():
+    head = (ROOT / "Snakefile").read_text().partition("\nimport ")[0]
+    table = (ROOT / "docs" / "workflow.md").read_text()
+    for target in sweep_command.TARGETS:
+        assert f"    {target} " in sweep_command.HELP
+        assert f"`{target}`" in table
+        assert target == "all" or f"snakemake {target}" in head.replace("snakemake -j2 ", "")
+
+
+# What is refused
+
+CORES = "allowed is a whole number of at least 1, or all"
+REFUSED = [
+    ("--cores 0", "--cores = 0", CORES),
+    ("--cores=0", "--cores = 0", CORES),
+    ("--core 0 -n", "--cores = 0", CORES),
+    ("-c0", "--cores = 0", CORES),
+    ("-c -1", "--cores = -1", CORES),
+    ("-j 0", "--jobs = 0", CORES),
+    ("-j0 -n", "--jobs = 0", CORES),
+    ("--jobs=0", "--jobs = 0", CORES),
+    ("-nj0", "--jobs = 0", CORES),
+    ("--no-such-option", "unrecognized arguments: --no-such-option"),
+    ("--cores 1 --configfile", "argument --configfile", "expected at least one argument"),
+    ("al", "TARGET = 'al'", "did you mean all?", "explorer, or a file"),
+    ("bore", "TARGET = 'bore'", "allowed is one of all,"),
+    ("-n --config poisson", "--config = 'poisson'", "KEY=VALUE"),
+    ("-n --config 1=2", "--config = '1=2'", "KEY=VALUE"),
+    ("-n --configfile none.yaml", "--configfile: none.yaml: cannot be read: No such file"),
+    ("-n --configfile .", "--configfile: .: cannot be read: Is a directory"),
+    ("-n --configfile good.yaml tabs.yaml", "--configfile: tabs.yaml: not valid YAML:"),
+]
+SHOWN = ["empty", "not UTF-8", "UTF-16", "binary", "tabs", "a key twice", "nothing to merge"]
+
+
+@pytest.mark.parametrize(("arguments", "parts"), [(first, rest) for first, *rest in REFUSED])
+def test_bad_arguments_are_one_line_before_snakemake_starts(arguments, parts, tmp_path):
+    (tmp_path / "good.yaml").write_text(GOOD)
+    (tmp_path / "tabs.yaml").write_bytes(FILES["tabs"][0])
+    refused([*SWEEP, *arguments.split()], tmp_path, parts)
+
+
+@pytest.mark.parametrize("case", SHOWN)
+def test_a_file_that_is_no_configuration_is_one_line(case, tmp_path):
+    content, *parts = FILES[case]
+    (tmp_path / "given.yaml").write_bytes(content)
+    refused([*SWEEP, "-n", "--configfile", "given.yaml"], tmp_path, ["given.yaml: ", *parts])
+
+
+def refused(command, folder, parts):
+    before = sorted(folder.rglob("*"))
+    done = run(command, folder)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert done.stderr.startswith("microslip sweep: ")
+    assert [part for part in parts if part not in done.stderr] == []
+    assert sorted(folder.rglob("*")) == before
+
+
+def test_a_folder_that_is_gone_is_one_line(tmp_path):
+    line = f"rmdir {tmp_path}; exec {' '.join(SWEEP)} -n"
+    done = run(["bash", "-c", line], tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "microslip sweep: the current folder: No such file or directory\n"
+
+
+@pytest.mark.parametrize("option", ["-j0", "--cores=0", "-c -2"])
+def test_plain_snakemake_is_told_that_it_has_no_cores(option, tmp_path):
+    done = run([*SNAKEMAKE, *option.split(), "--configfile", ROOT / "config/smoke.yaml"], tmp_path)
+    assert done.returncode == 1
+    line = done.stderr.strip().splitlines()[-1]
+    assert line.startswith("Error in --cores: ") and "allowed: a whole number >= 1" in line
+
+
+# How it ends
+
+# Hours of work for two jobs.
+SLOW = """
+sweeps:
+  bore: {velocity: [1.0e-3, 2.0e-3], amplitude: [0.5, 0.6], poisson: 0.3, tolerance: 1.0e-6}
+points_per_job: 2
+"""
+
+
+def session(leader):
+    """Processes of a session that have not ended, as the system's table of processes shows them."""
+    found = []
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):
+            state, _, _, of = stat.read_text().rpartition(")")[2].split()[:4]
+            if int(of) == leader and state not in "ZX":
+                found.append(stat.parent)
+    return found
+
+
+def is_job(process):
+    with contextlib.suppress(OSError):
+        return b"solve_batch.py" in (process / "cmdline").read_bytes()
+    return False
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs Linux")
+@pytest.mark.parametrize("command", [SWEEP, SNAKEMAKE], ids=["microslip sweep", "snakemake"])
+def test_a_terminal_that_is_closed_ends_all_processes_and_leaves_no_lock(command, tmp_path):
+    """The system tells the first process of a session, and a shell all that it has started."""
+    (tmp_path / "slow.yaml").write_text(SLOW)
+    with subprocess.Popen(
+        [*command, "-c1", "--configfile", "slow.yaml"],
+        cwd=tmp_path,
+        env=ENVIRONMENT,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    ) as process:
+        try:
+            wait_until(lambda: any(map(is_job, session(process.pid))), "no job has started")
+            tell = os.killpg if command is SNAKEMAKE else os.kill
+            tell(process.pid, signal.SIGHUP)
+            wait_until(lambda: process.poll() is not None, "it goes on")
+            wait_until(lambda: not session(process.pid), "a child goes on")
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+    assert process.returncode == 1
+    assert not list(tmp_path.glob(".snakemake/locks/*"))
+
+
+def wait_until(holds, otherwise):
+    for _ in range(1000):
+        if holds():
+            return
+        time.sleep(0.2)
+    pytest.fail(otherwise)

@@ -1,0 +1,142 @@
+"""Bad input: one line that says what is wrong with what, before any work starts."""
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+from bad_input.bad_command_lines import COMMAND_LINES, NAMES, NUMBERS, RESULTS
+from bad_input.bad_configurations import EXTENDED, FILES, KEYS, STUDIES, TOGETHER, changed
+
+import microslip
+from microslip.adaptive import point
+from microslip.app import cli
+from microslip.config import load, schema
+
+SOURCE = str(Path(microslip.__file__).parent.parent)
+
+
+@pytest.fixture
+def nothing_runs(monkeypatch):
+    """Whatever would compute an answer fails the test."""
+
+    def work(*_, **__):
+        raise AssertionError("work has started")
+
+    for name in ("certify", "simulate", "simulate_static", "no_vibration", "closed_form"):
+        monkeypatch.setattr(f"microslip.adaptive.point.{name}", work)
+
+
+@pytest.fixture
+def there(tmp_path, monkeypatch):
+    """The folder that commands run in, with what bad input may point to; nothing may be added."""
+    (tmp_path / "a-file").write_text("kept\n")
+    (tmp_path / "lost-link").symlink_to("nowhere/at/all")
+    monkeypatch.chdir(tmp_path)
+    before = sorted(tmp_path.rglob("*"))
+    yield tmp_path
+    assert sorted(tmp_path.rglob("*")) == before
+    assert (tmp_path / "a-file").read_text() == "kept\n"
+
+
+def refused(arguments):
+    """Exit code of the command line, called in this process."""
+    try:
+        return cli.main(shlex.split(arguments))
+    except SystemExit as error:
+        return error.code
+
+
+@pytest.mark.parametrize(("arguments", "parts"), [(first, rest) for first, *rest in COMMAND_LINES])
+def test_a_bad_command_line_is_one_line(arguments, parts, nothing_runs, there, capfd):
+    assert refused(arguments) == 2
+    out, line = capfd.readouterr()
+    assert out == ""
+    assert re.fullmatch(r"microslip[^\n]*: [^\n]+\n", line)
+    assert [part for part in parts if part not in line] == []
+
+
+def test_every_option_is_given_a_bad_value():
+    """A new option needs bad input of its own."""
+    scene = cli.build_parser("point")._subparsers._group_actions[0].choices["point"]
+    scene = scene._subparsers._group_actions[0].choices["transverse"]
+    options = {name for name in scene._option_string_actions if name.startswith("--")}
+    given = {word for first, *_ in COMMAND_LINES for word in re.findall(r"--[a-z-]+", first)}
+    assert options - given == {"--help"}
+
+
+def test_the_same_lines_come_from_a_process(there):
+    for arguments, *parts in (NUMBERS[0], NAMES[0], RESULTS[3]):
+        done = subprocess.run(
+            [sys.executable, "-m", "microslip.app.cli", *shlex.split(arguments), "--json"],
+            env={**os.environ, "PYTHONPATH": SOURCE},
+            capture_output=True,
+            text=True,
+            timeout=60,
+        )
+        assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+        assert [part for part in parts if part not in done.stderr] == []
+
+
+def test_the_command_line_has_the_limits_of_configurations():
+    rules = schema.schema()["$defs"]
+    limits = {name: rules[name]["maximum"] for name in ("cells", "steps", "non_negative")}
+    limits |= dict.fromkeys(["velocity", "amplitude"], limits.pop("non_negative"))
+    assert limits == point.LARGEST
+
+
+# Configurations
+
+
+def refusal(path):
+    with pytest.raises(load.ConfigError) as caught:
+        load.load(path)
+    message = str(caught.value)
+    assert "\n" not in message and message.isprintable()
+    return message
+
+
+def test_what_is_changed_is_good_before():
+    for key in ("results", "accuracy.levels"):
+        assert load.from_mapping(yaml.safe_load(changed({key: "1" if "." in key else "here"})))
+
+
+@pytest.mark.parametrize(
+    ("settings", "named", "parts"),
+    [({key: value}, key, parts) for key, value, *parts in KEYS + STUDIES + EXTENDED]
+    + [(settings, named, parts) for settings, named, *parts in TOGETHER],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_a_bad_setting_is_one_line_that_begins_with_its_key(settings, named, parts, tmp_path):
+    path = tmp_path / "sweep.yaml"
+    path.write_text(changed(settings))
+    message = refusal(path)
+    assert message.startswith(f"{path}: {named}: ")
+    assert [part for part in parts if part not in message] == []
+    assert re.search("allowed|required|write |no amplitude|does not apply", message)
+
+
+@pytest.mark.parametrize("case", FILES)
+def test_a_file_that_is_no_configuration_is_one_line(case, tmp_path):
+    content, *parts = FILES[case]
+    path = tmp_path / "sweep.yaml"
+    path.write_bytes(content)
+    message = refusal(path)
+    assert message.startswith(f"{path}: ")
+    assert [part for part in parts if part not in message] == []
+
+
+@pytest.mark.parametrize(
+    ("name", "part"),
+    [
+        ("none.yaml", "cannot be read: No such file or directory"),
+        ("", "cannot be read: Is a directory"),
+        (f"{'x' * 300}.yaml", "cannot be read: File name too long"),
+    ],
+)
+def test_a_file_that_cannot_be_read_is_one_line(name, part, tmp_path):
+    assert refusal(tmp_path / name) == f"{tmp_path / name}: {part}"

@@ -1,0 +1,338 @@
+"""Sweeps of other motions and pressures: configured, asked for, collected, found again."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+from stubs.sweep_stub import Solver
+
+import microslip
+from microslip.config import extended, load
+from microslip.config import records as settings
+from microslip.datasets import sweep_dataset, theory_limits
+from microslip.motions.registry import SCENES, scene_named
+from microslip.pressures.registry import pressure_named
+from microslip.studies import registry
+from microslip.sweeps import batches as sweep
+from microslip.sweeps.cache import Store
+from microslip.theory import masing, paper
+
+PAPER = {"bore": {"velocity": [1], "amplitude": [1]}}
+CIRCLE = {"scene": "elliptic", "group": "loops", "velocity": [0.1, 1], "amplitude": [0, 1]}
+
+
+def configured(**sweeps):
+    return load.from_mapping({"sweeps": PAPER, "extended": sweeps})
+
+
+POWER = "power:exponent=1"
+
+
+# Configuration
+
+
+def test_defaults_are_those_of_other_sweeps():
+    found = configured(circle=CIRCLE)
+    sweep = found.extended["circle"]
+    assert (sweep.pressure, sweep.group, sweep.title) == ("hertz", "loops", "circle")
+    assert (sweep.model, sweep.tolerance, sweep.poisson) == ("auto", 1e-3, (0.0,))
+    assert list(found.grids) == ["bore", "circle"]
+    assert found.points_per_job == {"bore": 50, "circle": 50}
+    assert found.of_sweep("circle")["histories"] == {}
+    assert json.loads(json.dumps(found.of_sweep("circle")))["sweep"]["group"] == "loops"
+
+
+def test_there_need_be_none():
+    found = load.from_mapping({"sweeps": PAPER})
+    assert found.extended == found.groups == {}
+
+
+def test_groups_keep_the_order_of_their_sweeps():
+    lines = CIRCLE | {"group": "still", "velocity": [0.1]}
+    found = configured(b=CIRCLE, c=lines, a=CIRCLE)
+    assert found.groups == {"loops": ("b", "a"), "still": ("c",)}
+    assert found.extended["c"].drawn_over == "amplitude"
+
+
+def test_a_steady_motion_has_no_amplitude():
+    steady = {"scene": "continuous-bore", "group": "steady", "velocity": [0.1, 1]}
+    (sweep,) = configured(spin=steady).extended.values()
+    assert (sweep.amplitude, sweep.drawn_over) == (None, "velocity")
+
+
+def test_names_of_other_results_are_taken():
+    assert {*registry.DATASETS, *registry.DATASETS.values()} <= set(settings.TAKEN)
+    for name in ("transverse", "claims", "bore_histories"):
+        with pytest.raises(load.ConfigError, match=f"extended.{name}: another result has this"):
+            configured(**{name: CIRCLE})
+
+
+def test_a_figure_has_room_for_so_many():
+    configured(**{f"a{i}": CIRCLE for i in range(12)})
+    with pytest.raises(load.ConfigError, match=r"a12.group: loops has 13 .* allowed: up to 12"):
+        configured(**{f"a{i}": CIRCLE for i in range(13)})
+    lines = CIRCLE | {"velocity": [0.1]}
+    with pytest.raises(load.ConfigError, match="allowed: up to 8"):
+        configured(**{f"a{i}": lines for i in range(9)})
+    # every one of Poisson's ratios is drawn
+    ratios = CIRCLE | {"poisson": [0, 0.3, 0.5]}
+    configured(**{f"a{i}": ratios for i in range(4)})
+    with pytest.raises(load.ConfigError, match=r"loops has 15 sweeps at their Poisson's .* 12"):
+        configured(**{f"a{i}": ratios for i in range(5)})
+
+
+def test_jobs_do_not_ask_the_solver(monkeypatch):
+    monkeypatch.setattr(extended, "_ask_solver", None)
+    given = {"sweeps": PAPER, "extended": {"circle": CIRCLE | {"scene": "no such"}}}
+    found = load.from_mapping(given, ask_solver=False)
+    assert found.extended["circle"].scene == "no such"
+
+
+ALONE = """
+import sys
+from microslip import config, sweep
+given = {"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}, "extended": {"ellipse": {
+    "scene": "elliptic:phase=30", "group": "g", "velocity": [1], "amplitude": [1]}}}
+found = config.from_mapping(given, ask_solver=False)
+list(sweep.PointRequests(found.sweeps["bore"]))
+print("numpy" in sys.modules)
+"""
+
+
+def test_jobs_of_other_sweeps_do_not_import_the_solver():
+    done = subprocess.run([sys.executable, "-c", ALONE], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
+
+
+def test_a_static_limit_is_allowed_where_the_solver_knows_it():
+    line = CIRCLE | {"scene": "elliptic:phase=0", "velocity": [0, 0.1]}
+    assert configured(line=line).extended["line"].velocity == (0.0, 0.1)
+
+
+# Requests
+
+
+def requests_of(**changes):
+    return list(sweep.PointRequests(configured(circle=CIRCLE | changes).extended["circle"]))
+
+
+def test_a_plain_point_is_asked_for_as_ever():
+    plain = load.from_mapping({"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}})
+    (expected,) = sweep.PointRequests(plain.sweeps["bore"])
+    assert "pressure" not in expected
+    (found,) = requests_of(scene="bore", velocity=[1], amplitude=[1])
+    assert found == expected
+
+
+def test_equal_motions_are_asked_for_alike():
+    assert requests_of(scene="elliptic:phase=90,forward=1") == requests_of()
+    one, other = (f"elliptic:{n}" for n in ("forward=0.5,phase=30", "phase=30.0,forward=0.50"))
+    assert requests_of(scene=one) == requests_of(scene=other) != requests_of()
+
+
+def test_a_pressure_is_part_of_the_request_and_is_handed_to_the_solver(monkeypatch, tmp_path):
+    solver, seen = Solver(monkeypatch), []
+
+    def solve(*place, **given):
+        seen.append(given.get("pressure"))
+        return solver.solve(*place, **given)
+
+    monkeypatch.setattr("microslip.solve", solve)
+    requests = requests_of(pressure="power:exponent=1.0")
+    assert {request["pressure"] for request in requests} == {POWER}
+    sweep.run_batch(requests, Store(tmp_path))
+    sweep.run_batch(requests_of(), Store(tmp_path))
+    assert seen == 4 * [POWER] + 4 * [None]
+    assert sweep.label(requests[0]).startswith("elliptic at pressure power:exponent=1, poisson 0")
+
+
+def test_a_pressure_from_a_file_is_named_by_its_content(tmp_path):
+    file = tmp_path / "even.csv"
+    rows = [f"{x},{y},1" for x in (-1, 0, 1) for y in (-1, 0, 1)]
+    file.write_text("\n".join(["forward,lateral,pressure", *rows]))
+    first = requests_of(pressure=f"file:{file}")[0]["pressure"]
+    assert first.startswith("file:sha256=")
+    file.write_text(file.read_text().replace("0,0,1", "0,0,2"))
+    assert requests_of(pressure=f"file:{file}")[0]["pressure"] != first
+    with pytest.raises(load.ConfigError, match="circle.pressure: 'file:gone.csv': .* No such"):
+        requests_of(pressure="file:gone.csv")
+
+
+EVEN = "forward,lateral,pressure\n0,0,1\n0,1,1\n1,0,1\n1,1,1\n"
+
+
+def with_pressure(folder, pressure):
+    """A configuration in a file of a folder, with one sweep under that pressure."""
+    path = folder / "mine.yaml"
+    sweep = CIRCLE | {"scene": "transverse", "pressure": pressure}
+    path.write_text(json.dumps({"sweeps": PAPER, "extended": {"pad": sweep}}))
+    return path
+
+
+def test_files_of_a_configuration_are_looked_for_beside_it_then_here(tmp_path, monkeypatch):
+    beside, here = tmp_path / "beside", tmp_path / "here"
+    for folder, pressure in ((beside, 1), (here, 2)):
+        folder.mkdir()
+        (folder / "pad.csv").write_text(f"# {pressure}\n{EVEN}")
+    monkeypatch.chdir(here)
+    path = with_pressure(beside, "file:pad.csv")
+
+    def digest(found):
+        return found.extended["pad"].pressure
+
+    first = digest(load.load(path))
+    assert first == pressure_named(f"file:{beside / 'pad.csv'}").name
+    (beside / "pad.csv").unlink()
+    assert digest(load.load(path)) == pressure_named("file:pad.csv").name != first
+    (here / "pad.csv").unlink()
+    with pytest.raises(load.ConfigError) as refused:
+        load.load(path)
+    said = str(refused.value)
+    assert said.startswith(f"{path}: extended.pad.pressure: 'file:pad.csv': pad.csv cannot be read")
+    assert f"No such file; looked for {beside / 'pad.csv'}, {here / 'pad.csv'}" in said
+    # A job for other sweeps does without it.
+    mapping = load.read_yaml(path)
+    assert load.from_mapping(mapping, ask_solver=False).extended["pad"].name == "pad"
+
+
+def test_a_request_names_a_file_by_its_content_and_jobs_find_it(tmp_path, monkeypatch):
+    """By relative and absolute paths, by a link, read again elsewhere: one request."""
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "pad.csv").write_text(EVEN)
+    (tmp_path / "sub" / "link.csv").symlink_to(tmp_path / "pad.csv")
+    asked = []
+    for folder, name in (
+        (tmp_path, "file:pad.csv"),
+        (tmp_path, "file:./sub/../pad.csv"),
+        (tmp_path / "sub", "file:link.csv"),
+        (tmp_path / "sub", f"file:{tmp_path / 'pad.csv'},grid=cells"),
+    ):
+        found = load.load(with_pressure(folder, name))
+        asked.append([*sweep.PointRequests(found.extended["pad"])])
+        assert str(tmp_path) not in json.dumps(found.of_sweep("pad"))
+    assert all(requests == asked[0] for requests in asked)
+    assert asked[0][0]["pressure"].startswith("file:sha256=")
+    # What is handed to a job, in another folder and process.
+    mapping = load.read_yaml(with_pressure(tmp_path, "file:pad.csv"))
+    handed = load.with_files_found(mapping, folders=[tmp_path])
+    monkeypatch.setattr("microslip.foundation.named_files._PLACES", {})
+    monkeypatch.chdir(tmp_path / "sub")
+    found = load.from_mapping(handed, ask_solver=False)
+    assert [*sweep.PointRequests(found.extended["pad"])] == asked[0]
+    assert load.with_files_found(handed) == handed
+
+
+def test_a_dataset_says_what_its_file_is_called(monkeypatch, tmp_path):
+    Solver(monkeypatch)
+    (tmp_path / "pad.csv").write_text(EVEN)
+    grid = load.load(with_pressure(tmp_path, "file:pad.csv")).extended["pad"]
+    store, path = Store(tmp_path / "results"), tmp_path / "pad.nc"
+    records = [sweep.answer(request, store)[0] for request in sweep.PointRequests(grid)]
+    sweep_dataset.write_sweep(path, grid, records, [], {})
+    with xr.open_dataset(path) as data:
+        assert data.attrs["pressure"] == grid.pressure
+        assert data.attrs["pressure_file"] == "pad.csv"
+
+
+def test_python_finds_the_points_of_a_sweep(monkeypatch, tmp_path):
+    solver = Solver(monkeypatch)
+    grid = configured(circle=CIRCLE | {"velocity": [0.5], "amplitude": [1]}).extended["circle"]
+    sweep.run_batch(sweep.PointRequests(grid), Store(tmp_path))
+    found = microslip.solve_stored("elliptic:phase=90", 0.5, 1, results=tmp_path)
+    assert (solver.calls, found.mu_macro) == (1, pytest.approx(0.2))
+
+
+# Datasets
+
+
+def built(folder, name="circle", **changes):
+    configuration = configured(**{name: CIRCLE | changes})
+    grid, store = configuration.grids[name], Store(folder)
+    points = (sweep.answer(request, store)[0] for request in sweep.PointRequests(grid))
+    path = folder / f"{name}.nc"
+    sweep_dataset.write_sweep(path, grid, points, [], configuration.of_sweep(name))
+    with xr.open_dataset(path) as data:
+        return data.load()
+
+
+def test_a_dataset_says_what_it_is_of(monkeypatch, tmp_path):
+    Solver(monkeypatch)
+    data = built(tmp_path, scene="elliptic:phase=90.0", title="a circle")
+    assert data.mu_macro.dims == ("amplitude", "velocity")
+    said = {key: data.attrs[key] for key in ("scene", "pressure", "title", "group")}
+    assert said == {"scene": "elliptic", "pressure": "hertz", "title": "a circle", "group": "loops"}
+    scene = scene_named("elliptic")
+    assert data.velocity.formula == scene.velocity_label
+    assert data.amplitude.long_name == f"amplitude, {scene.amplitude_label}"
+    assert not [name for name in data if "static" in name]
+    assert list(sweep_dataset.report(data, "circle")) == ["circle: 4 points, none not converged"]
+    for variable in data.variables.values():
+        assert variable.attrs["long_name"]
+
+
+def test_limits_stand_beside_the_points_of_motions_that_have_some(monkeypatch, tmp_path):
+    Solver(monkeypatch)
+    data = built(tmp_path, "along", scene="longitudinal", amplitude=[0, 0.5, 1])
+    a = data.amplitude.values
+    assert data.mu_static.values == pytest.approx(paper.static_limit_longitudinal(a))
+    assert float(data.mu_closed_form.sel(velocity=0.1, amplitude=0.5)) == pytest.approx(
+        float(masing.longitudinal(0.1, 0.5))
+    )
+
+
+def test_limits_are_those_of_the_paper_under_its_pressure_alone():
+    assert theory_limits.LIMITS.keys() <= SCENES.keys()
+    assert "(Eq 9)" in theory_limits.formulas("transverse", POWER)["mu_static_stick_zone"][2]
+    assert theory_limits.formulas("elliptic") == {}
+    assert "mu_static" in theory_limits.formulas("bore")
+
+
+# Questions
+
+
+@pytest.fixture
+def friction(monkeypatch, tmp_path):
+    Solver(monkeypatch)
+    axes = {"velocity": list(np.geomspace(0.1, 10, 9)), "amplitude": list(np.linspace(0, 2, 9))}
+    built(tmp_path, **axes)
+    return microslip.open_map("circle", tmp_path).friction
+
+
+def test_within_the_map_friction_is_interpolated(friction):
+    answer = friction.at([0.3, 2.0], [0.7, 1.9])
+    v, a = answer.velocity, answer.amplitude
+    off = abs(answer.mu_macro - v / (1 + v + a))
+    assert (off <= answer.mu_macro_error).all()
+    assert (answer.mu_macro_error < 0.02).all()
+
+
+def test_beyond_the_map_nothing_is_known_and_the_solver_may_be_asked(friction):
+    for place, said in (
+        ((0.01, 1), "velocity = 0.01: allowed is 0.1 to 10"),
+        ((1, 3), "amplitude = 3: allowed is 0 to 2"),
+        ((0, 1), "velocity = 0: the map has none such"),
+    ):
+        with pytest.raises(ValueError, match=f"{said}; no limit of elliptic is known: .* solver"):
+            friction.at(*place)
+    answer = friction.at(0.01, 1, tolerance=1e-3)
+    assert float(answer.mu_macro) == pytest.approx(0.01 / 2.01)
+
+
+def test_static_friction_is_interpolated_along_the_amplitude(monkeypatch, tmp_path):
+    Solver(monkeypatch)
+    line = {"scene": "elliptic:phase=0", "velocity": [0, 0.1], "amplitude": [0, 0.5, 1, 1.5]}
+    built(tmp_path, **line)
+    friction = microslip.open_map("circle", tmp_path).friction
+    assert float(friction.at(0, 0.7).mu_macro) == 0
+    assert float(friction.at(0.1, 0.5).mu_macro) == pytest.approx(0.1 / 1.6)
+
+
+def test_a_dataset_under_another_pressure_has_none_of_hertzs_limits(monkeypatch, tmp_path):
+    Solver(monkeypatch)
+    built(tmp_path, scene="transverse", pressure=POWER)
+    friction = microslip.open_map("circle", tmp_path).friction
+    with pytest.raises(ValueError, match="no limit of pressure power:exponent=1 is known"):
+        friction.at(0.01, 1)

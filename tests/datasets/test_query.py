@@ -1,0 +1,446 @@
+"""Answers from finished maps: within their bounds, wherever they come from."""
+
+import errno
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import microslip
+from microslip.datasets.query import beyond
+from microslip.datasets.query.interpolation import Axis, Table
+from microslip.datasets.query.open_map import SOURCES, open_map
+from microslip.foundation.errors import InputError
+from microslip.sweeps import sealed_files
+from microslip.sweeps.sealed_files import CacheError
+from microslip.theory import paper
+
+VELOCITY = np.geomspace(1e-3, 10, 13)
+AMPLITUDE = np.linspace(0, 3, 13)
+
+
+def made_up(velocity=VELOCITY, amplitude=AMPLITUDE, error=0.0, **more):
+    """A map of Eq 6 with a stiffer amplitude: smooth, 1 at amplitude 0, rising with velocity."""
+    v, a = np.meshgrid(velocity, amplitude)
+    mu = paper.large_amplitude_transverse(v, a**1.5)
+    dims = ("amplitude", "velocity")
+    return xr.Dataset(
+        {
+            "mu_macro": (dims, mu),
+            "mu_macro_error": (dims, np.full(mu.shape, error)),
+            "converged": (dims, np.ones(mu.shape, bool)),
+        },
+        {"velocity": velocity, "amplitude": amplitude, "poisson": 0.0},
+        {"scene": "transverse"} | more,
+    )
+
+
+# Interpolation
+
+
+def test_a_node_is_itself():
+    table = Table(Axis(AMPLITUDE), Axis(VELOCITY), made_up().mu_macro.values, np.zeros((13, 13)))
+    for i, amplitude in enumerate(AMPLITUDE):
+        value, error = table.at(np.full(13, amplitude), VELOCITY)
+        assert value == pytest.approx(table.values[i], abs=1e-13)
+        assert error == pytest.approx(0.0, abs=1e-13)
+
+
+def test_a_cubic_is_met_and_known_to_be_met():
+    x, y = Axis(np.linspace(0, 1, 6)), Axis(np.linspace(2, 3, 7))
+
+    def cubic(a, b):
+        return 1 + a - 2 * a**3 + b**2 * a - b**3
+
+    table = Table(x, y, cubic(x.values[:, None], y.values), np.zeros((6, 7)))
+    a, b = np.array([0.03, 0.5, 0.97]), np.array([2.9, 2.01, 2.5])
+    value, error = table.at(a, b)
+    assert value == pytest.approx(cubic(a, b), abs=1e-12)
+    assert error == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("kink", [0.41, 0.5, 0.58])
+def test_the_bound_holds_at_a_kink(kink):
+    axis = Axis(np.linspace(0, 1, 13))
+    values = np.tile(np.abs(axis.values - kink), (3, 1))
+    table = Table(Axis(np.arange(3.0)), axis, values, np.zeros(values.shape))
+    x = np.linspace(0, 1, 1001)
+    value, error = table.at(np.ones(x.size), x)
+    miss = np.abs(value - np.abs(x - kink))
+    assert miss.max() > 5e-3  # the cubic does miss it
+    assert (miss <= error + 1e-12).mean() > 0.99
+
+
+def test_the_bound_falls_with_the_fourth_power_of_the_spacing():
+    x = np.array([0.3333])
+
+    def bound(count):
+        axis = Axis(np.linspace(0, 1, count))
+        values = np.tile(np.sin(3 * axis.values), (3, 1))
+        table = Table(Axis(np.arange(3.0)), axis, values, np.zeros(values.shape))
+        return float(table._miss[1][1].max()), table.at(np.ones(1), x)
+
+    orders = np.log2([bound(n)[0] / bound(2 * n - 1)[0] for n in (17, 33)])
+    assert orders == pytest.approx(4.0, abs=0.4)
+
+
+def test_axes_find_their_measure():
+    assert Axis(np.geomspace(0.01, 10, 7)).logarithmic
+    assert not Axis(np.linspace(0.01, 10, 7)).logarithmic
+    assert not Axis(np.array([0.0, 0.1, 1.0])).logarithmic
+
+
+# The accessor
+
+
+@pytest.fixture
+def friction():
+    return made_up().friction
+
+
+def test_the_error_covers_what_is_missed_and_what_the_nodes_are_off():
+    rng = np.random.default_rng(3)
+    v = xr.DataArray(10 ** rng.uniform(-3, 1, 500), dims="n")
+    a = xr.DataArray(rng.uniform(0, 3, 500), dims="n")
+    truth = paper.large_amplitude_transverse(v.values, a.values**1.5)
+    answer = made_up().friction.at(v, a)
+    miss = np.abs(answer.mu_macro.values - truth)
+    assert (miss <= answer.mu_macro_error.values + 1e-12).mean() >= 0.99
+    fine = made_up(np.geomspace(1e-3, 10, 25), np.linspace(0, 3, 25)).friction.at(v, a)
+    assert np.median(fine.mu_macro_error) < 0.1 * np.median(answer.mu_macro_error)
+    off = made_up(error=0.01).friction.at(v, a)
+    more = off.mu_macro_error.values - answer.mu_macro_error.values
+    assert np.median(more) == pytest.approx(0.01)  # less where the energy balance says so
+    assert more.max() < 0.01 + 1e-12
+
+
+def test_numbers_sequences_and_arrays(friction):
+    one = friction.at(0.05, 0.8)
+    assert one.mu_macro.dims == ()
+    outer = friction.at([0.05, 0.1, 1], [0.8, 2])
+    assert dict(outer.mu_macro.sizes) == {"amplitude": 2, "velocity": 3}
+    assert outer.mu_macro.dims == ("amplitude", "velocity")
+    assert float(outer.mu_macro.sel(velocity=0.05, amplitude=0.8)) == float(one.mu_macro)
+    pairs = friction.at(xr.DataArray([0.05, 1.0], dims="n"), xr.DataArray([0.8, 2.0], dims="n"))
+    assert pairs.mu_macro.dims == ("n",)
+    assert pairs.mu_macro.values == pytest.approx(np.diag(outer.mu_macro.values[:, [0, 2]]))
+
+
+def test_a_point_that_did_not_converge_is_not_interpolated_over():
+    dataset = made_up()
+    dataset["converged"][6, 6] = False
+    v, a = float(VELOCITY[6]), float(AMPLITUDE[6])
+    near = dataset.friction.at(v * 1.1, a * 1.05)
+    assert np.isnan(near.mu_macro) and np.isinf(near.mu_macro_error)
+    far = dataset.friction.at(VELOCITY[2], AMPLITUDE[2])
+    assert np.isfinite(far.mu_macro)
+
+
+def over_poisson(poissons):
+    """Maps in which Poisson's ratio takes a share nu^2 of the drop away, joined by xarray."""
+    maps = [made_up().assign_coords(poisson=nu) for nu in poissons]
+    for part, nu in zip(maps, poissons, strict=True):
+        part["mu_macro"] = 1 - (1 - part.mu_macro) * (1 - nu**2)
+    return xr.concat(maps, "poisson")
+
+
+@pytest.mark.parametrize("poissons", [(0.0, 0.5), (0.5, 0.0, 0.25), (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)])
+def test_between_poissons_ratios_the_error_covers_what_is_missed(poissons):
+    rng = np.random.default_rng(7)
+    v = xr.DataArray(10 ** rng.uniform(-3, 1, 300), dims="n")
+    a = xr.DataArray(rng.uniform(0, 3, 300), dims="n")
+    both = over_poisson(poissons)
+    for nu in (0.05, 0.2, 0.33, 0.5):
+        answer = both.friction.at(v, a, poisson=nu)
+        truth = paper.large_amplitude_transverse(v.values, a.values**1.5)
+        truth = 1 - (1 - truth) * (1 - nu**2)
+        miss = np.abs(answer.mu_macro.values - truth)
+        assert (miss <= answer.mu_macro_error.values + 1e-12).mean() >= 0.99
+        assert float(answer.poisson) == nu
+
+
+def test_more_poissons_ratios_leave_less_error():
+    few, many = (
+        over_poisson(p).friction.at(1.0, 1.5, poisson=0.15) for p in ((0, 0.5), (0, 0.1, 0.2, 0.5))
+    )
+    node = made_up().friction.at(1.0, 1.5)
+    assert float(few.mu_macro_error) > float(many.mu_macro_error) > float(node.mu_macro_error)
+
+
+def test_one_of_the_poissons_ratios_is_its_own_map_alone():
+    both = over_poisson((0.0, 0.5))
+    both["converged"][0, 6, 6] = False
+    v, a = float(VELOCITY[6]), float(AMPLITUDE[6])
+    alone = both.sel(poisson=0.5).friction.at(v * 1.1, a * 1.05)
+    xr.testing.assert_identical(both.friction.at(v * 1.1, a * 1.05, poisson=0.5), alone)
+    assert np.isfinite(alone.mu_macro)
+    for nu in (0.0, 0.2):
+        near = both.friction.at(v * 1.1, a * 1.05, poisson=nu)
+        assert np.isnan(near.mu_macro) and np.isinf(near.mu_macro_error)
+
+
+@pytest.mark.parametrize(
+    ("poisson", "message"),
+    [
+        (None, "poisson = None: allowed is 0 to 0.5: the dataset has 2 of them"),
+        (0.6, "poisson = 0.6: allowed is 0 to 0.5; microslip.solve"),
+        (-0.1, "poisson = -0.1: allowed is 0 to 0.5"),
+        (np.nan, "poisson = nan: allowed is 0 to 0.5"),
+        ([0, 0.5], r"poisson = \[0, 0.5\]: allowed is 0 to 0.5, one number"),
+    ],
+)
+def test_beyond_the_poissons_ratios_nothing_is_said(poisson, message):
+    with pytest.raises(InputError, match=message):
+        over_poisson((0.0, 0.5)).friction.at(0.1, 1, poisson=poisson)
+    with pytest.raises(InputError, match="poisson = 0.2: allowed is 0, the dataset's only one"):
+        made_up().friction.at(0.1, 1, poisson=0.2)
+
+
+def test_below_the_map_the_static_limit_is_proved_at_poissons_ratio_0():
+    with pytest.raises(ValueError, match="velocity = 0.0001: allowed for nu = 0.5"):
+        over_poisson((0.0, 0.5)).friction.at(1e-4, 1, poisson=0.5)
+
+
+# Parts of a dataset, as they come out of xarray
+
+
+PARTS = {
+    "two variables": lambda data: data[["mu_macro", "mu_macro_error"]],
+    "without converged": lambda data: data.drop_vars("converged"),
+    "a slice": lambda data: data.sel(velocity=slice(0.01, 6), amplitude=slice(0.4, 2.6)),
+    "by numbers": lambda data: data.isel(velocity=slice(3, None), amplitude=slice(1, 12)),
+    "in memory": lambda data: data.compute(),
+    "a copy": lambda data: data.copy(deep=True),
+    "lazy": lambda data: data.chunk({"velocity": 4, "amplitude": 5}),
+    "turned round": lambda data: data.isel(velocity=slice(None, None, -1)).transpose(),
+    "shuffled": lambda data: data.isel(amplitude=np.random.default_rng(1).permutation(13)),
+    "with twins": lambda data: data.isel(velocity=[0, 0, *range(13), 12]),
+    "as one ratio": lambda data: data.expand_dims("poisson"),
+}
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_a_part_of_a_dataset_answers_as_the_whole(part):
+    whole = made_up(error=1e-4, tolerance=1e-3)
+    known, answer = (data.friction.at(0.15, 1.3) for data in (whole, PARTS[part](whole)))
+    assert float(answer.mu_macro) == pytest.approx(float(known.mu_macro), abs=1e-12)
+    # the largest miss around a cell is the same, unless nodes beside it were cut away
+    assert float(answer.mu_macro_error) == pytest.approx(float(known.mu_macro_error), rel=1e-9)
+
+
+def test_a_part_that_was_saved_answers_as_the_whole(tmp_path):
+    whole = made_up(error=1e-4, tolerance=1e-3)
+    whole.isel(velocity=slice(2, None)).to_netcdf(tmp_path / "part.nc")
+    with xr.open_dataset(tmp_path / "part.nc") as part:
+        xr.testing.assert_allclose(part.friction.at(0.15, 1.3), whole.friction.at(0.15, 1.3))
+
+
+def test_one_column_of_a_map_knows_its_own_velocity():
+    whole = made_up(error=1e-4)
+    answer = whole.isel(velocity=6).friction.at(float(VELOCITY[6]), 1.3)
+    known = whole.friction.at(float(VELOCITY[6]), 1.3)
+    assert float(answer.mu_macro) == pytest.approx(float(known.mu_macro), abs=1e-12)
+    assert SOURCES[int(whole.isel(velocity=6).friction.at(1.0, 1.3).source)] != "map"
+
+
+@pytest.mark.parametrize(
+    ("broken", "message"),
+    [
+        (lambda data: data[["mu_macro"]], "mu_macro_error = None: friction.at needs it"),
+        (lambda data: data[["mu_macro_error"]], "mu_macro = None: friction.at needs it"),
+        (lambda data: data.drop_vars("converged"), "converged = None: friction.at needs it"),
+        (lambda data: data.drop_vars("poisson"), "poisson = None: friction.at needs it"),
+        (lambda data: data.isel(amplitude=3, drop=True), "amplitude = None: friction.at needs it"),
+        (lambda data: data.isel(velocity=[]), "velocity = 'no entry': friction.at needs one"),
+        (
+            lambda data: xr.concat([data, data], "made"),
+            "made = '2 entries': friction.at needs one of them: select it",
+        ),
+    ],
+)
+def test_what_a_dataset_has_lost_is_named(broken, message):
+    with pytest.raises(InputError, match=message):
+        broken(made_up()).friction.at(0.1, 1)
+
+
+def test_without_converged_the_tolerance_says_what_is_known():
+    dataset = made_up(error=1e-4, tolerance=1e-3)
+    dataset["mu_macro_error"][6, 6] = 2e-3
+    near = float(VELOCITY[6]) * 1.1, float(AMPLITUDE[6]) * 1.05
+    answer = dataset.drop_vars("converged").friction.at(*near)
+    assert np.isnan(answer.mu_macro) and np.isinf(answer.mu_macro_error)
+
+
+def test_what_is_changed_in_place_counts():
+    dataset = made_up()
+    v, a = float(VELOCITY[6]), float(AMPLITUDE[6])
+    before = dataset.friction.at(v, a)
+    dataset["converged"][6, 6] = False
+    assert np.isfinite(before.mu_macro) and np.isnan(dataset.friction.at(v, a).mu_macro)
+
+
+def test_nodes_that_a_join_has_filled_in_are_not_known():
+    wide = made_up(amplitude=np.linspace(0, 6, 25)).assign_coords(poisson=0.5)
+    both = xr.concat([made_up(), wide], "poisson", join="outer")
+    answer = both.friction.at(0.1, 5.0, poisson=0.25)
+    assert np.isnan(answer.mu_macro) and np.isinf(answer.mu_macro_error)
+    assert np.isfinite(both.friction.at(0.1, 5.0, poisson=0.5).mu_macro)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((-1, 1), "velocity = -1"),
+        ((1, -0.1), "amplitude = -0.1"),
+        ((np.nan, 1), "velocity = nan"),
+        (("fast", 1), "velocity = 'fast'"),
+        ((1,), "amplitude = None"),
+        (([[1.0]], 1), "velocity = "),
+    ],
+)
+def test_bad_points_are_refused_by_name(friction, arguments, message):
+    with pytest.raises(ValueError, match=message):
+        friction.at(*arguments)
+
+
+def test_another_dataset_has_no_friction():
+    with pytest.raises(ValueError, match="no scene"):
+        xr.Dataset().friction  # noqa: B018
+
+
+# Beyond the map
+
+
+def test_what_is_known_without_a_map(friction):
+    answer = friction.at([0.0, 0.1], [0.0, 0.5])
+    assert answer.mu_macro.sel(amplitude=0).values == pytest.approx(1.0, abs=1e-12)
+    static = answer.sel(velocity=0, amplitude=0.5)
+    assert float(static.mu_macro) == pytest.approx(paper.static_limit_transverse(0.5))
+    assert SOURCES[int(static.source)] == "static limit"
+
+
+@pytest.mark.parametrize("scene", ["transverse", "bore"])
+def test_brackets_hold_what_the_solver_says(tmp_path, scene):
+    # The map itself is made by the solver, so small that most points lie beyond it.
+    amplitude = np.linspace(0.5, 2.0, 4)
+    velocity = np.geomspace(0.05, 2.0, 5)
+    rows = [[microslip.solve(scene, v, a) for v in velocity] for a in amplitude]
+    dataset = made_up(velocity, amplitude, scene=scene)
+    for name in ("mu_macro", "mu_macro_error"):
+        dataset[name].values[:] = [[getattr(r, name) for r in row] for row in rows]
+    places = {
+        "between static limit and map": [(0.01, 1.0), (0.001, 0.6), (0.03, 2.0)],
+        "between map and fast sliding": [(3.0, 1.0), (20.0, 2.0), (5.0, 0.3)],
+        "between map and large amplitude": [(0.2, 6.0), (1.0, 3.0), (0.06, 2.5), (3.0, 20.0)],
+        "between map and no vibration": [(0.1, 0.2), (1.0, 0.4)],
+    }
+    for source, points in places.items():
+        for v, a in points:
+            answer, truth = dataset.friction.at(v, a), microslip.solve(scene, v, a)
+            off = abs(float(answer.mu_macro) - truth.mu_macro)
+            assert off <= float(answer.mu_macro_error) + truth.mu_macro_error, (v, a)
+            if not (v > 2.0 and a > 2.0):
+                assert SOURCES[int(answer.source)] == source
+            assert float(answer.mu_macro_error) < 0.5
+
+
+def test_no_error_is_larger_than_the_energy_balance_allows():
+    rng = np.random.default_rng(5)
+    v = xr.DataArray(10 ** rng.uniform(-1, 3, 300), dims="n")
+    a = xr.DataArray(10 ** rng.uniform(-1, 2, 300), dims="n")
+    answer = made_up(error=0.01).friction.at(v, a)
+    drop = 1 / ((v / a) ** 2 + 0.5)
+    assert (answer.mu_macro_error <= np.minimum(drop, 1.0) + 1e-9).all()
+    assert (answer.mu_macro >= 1 - drop - 1e-9).all()
+
+
+def test_a_bracket_is_never_left():
+    value, error = beyond.faster(
+        beyond.LIMITS["bore"], *(np.array([x]) for x in (0.999, 1e-4, 50.0, 1.0)), 10.0
+    )
+    assert 1 - 0.2 / 49**2 <= value[0] <= 1.0
+    assert value[0] + error[0] >= 1.0
+
+
+def test_the_steady_bore_is_a_closed_form_beyond_its_axis():
+    velocity = np.geomspace(0.1, 10, 9)
+    dataset = xr.Dataset(
+        {
+            "mu_macro": ("velocity", paper.bore_forward(velocity)),
+            "mu_macro_error": ("velocity", np.full(9, 1e-4)),
+            "converged": ("velocity", np.ones(9, bool)),
+        },
+        {"velocity": velocity, "poisson": 0.0},
+        {"scene": "continuous-bore"},
+    )
+    for v, source in ((0.0, "closed form"), (0.5, "map"), (40.0, "closed form")):
+        answer = dataset.friction.at(v)
+        assert abs(float(answer.mu_macro) - paper.bore_forward(v)) <= answer.mu_macro_error
+        assert SOURCES[int(answer.source)] == source
+    with pytest.raises(ValueError, match="amplitude = 1"):
+        dataset.friction.at(0.5, 1)
+
+
+# Files
+
+
+@pytest.fixture
+def results(tmp_path):
+    from microslip.datasets import sweep_dataset as dataset
+
+    made = made_up(error=1e-4)
+    made["converged"] = made.converged.astype(np.int8)
+    dataset.write(made, tmp_path / "transverse.nc")
+    return tmp_path
+
+
+def test_open_map_is_plain_xarray(results):
+    found = open_map("transverse", results, chunks={})
+    assert found.mu_macro.chunks is not None
+    row = found.mu_macro.sel(amplitude=1.5)
+    assert float(row.interp(velocity=0.1)) == pytest.approx(
+        float(found.friction.at(0.1, 1.5).mu_macro), abs=0.02
+    )
+
+
+def test_a_tolerance_asks_the_solver_and_keeps_its_answer(results):
+    found = open_map("transverse", results)
+    plain = found.friction.at(0.0123, 0.777)
+    exact = found.friction.at(0.0123, 0.777, tolerance=1e-3)
+    assert float(plain.mu_macro_error) > 1e-3 >= float(exact.mu_macro_error)
+    assert SOURCES[int(exact.source)] == "solver"
+    truth = microslip.solve("transverse", 0.0123, 0.777)
+    assert float(exact.mu_macro) == truth.mu_macro
+    (stored,) = results.glob("points/transverse/**/*.json")
+    assert json.loads(stored.read_text())["record"]["request"]["velocity"] == "0.0123"
+
+
+def test_where_nothing_can_be_written_the_solver_still_answers(results, monkeypatch):
+    found = open_map("transverse", results)
+    refused = sealed_files.check_room
+
+    def read_only(folder, *rest):
+        if Path(folder).is_relative_to(results):
+            raise OSError(errno.EROFS, "Read-only file system", str(folder))
+        refused(folder, *rest)
+
+    monkeypatch.setattr(sealed_files, "check_room", read_only)
+    before = sorted(results.rglob("*"))
+    assert np.isfinite(found.friction.at(0.0123, 0.777).mu_macro)
+    with pytest.warns(UserWarning, match="answers are not kept: .*Read-only file system"):
+        exact = found.friction.at(0.0123, 0.777, tolerance=1e-3)
+    assert float(exact.mu_macro) == microslip.solve("transverse", 0.0123, 0.777).mu_macro
+    assert sorted(results.rglob("*")) == before
+
+
+def test_what_cannot_be_opened_is_one_line(results, tmp_path):
+    with pytest.raises(ValueError, match="name = 'tranverse': allowed is transverse, bore"):
+        open_map("tranverse", results)
+    with pytest.raises(CacheError, match="bore.nc is not there"):
+        open_map("bore", results)
+    path = results / "transverse.nc"
+    path.write_bytes(path.read_bytes()[:-100])
+    with pytest.raises(CacheError, match="transverse.nc is damaged"):
+        open_map("transverse", results)

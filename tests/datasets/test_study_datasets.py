@@ -1,0 +1,290 @@
+"""Datasets of the studies: rows, references, fronts, maps, costs of a step, and outcomes."""
+
+import json
+
+import netCDF4
+import numpy as np
+import pytest
+import xarray as xr
+from stubs.studies_stub import GOOD, accuracy_result, answered, asked, configured, stability_result
+
+from microslip.datasets import netcdf, sweep_dataset
+from microslip.studies import registry
+from microslip.studies.stability.dataset import OUTCOMES, outcome
+
+
+@pytest.fixture
+def accuracy(tmp_path):
+    """The dataset of made-up answers, read back from disk."""
+    answer, _ = answered(accuracy_result)
+    data = registry.build("accuracy", configured(), answer)
+    sweep_dataset.write(data, tmp_path / "accuracy_cost.nc", registry.groups("accuracy"))
+    return netcdf.whole(tmp_path / "accuracy_cost.nc")
+
+
+@pytest.mark.parametrize(
+    ("study", "result"),
+    [
+        ("accuracy", accuracy_result),
+        ("stability", lambda request: {"mu_macro": 0.5, "mu_macro_error": 0.0, "converged": True}),
+    ],
+)
+def test_datasets_ask_for_what_jobs_have_answered_and_for_all_of_it(study, result):
+    answer, seen = answered(result)
+    registry.build(study, configured(), answer)
+    assert set(seen) == set(asked(study, configured()))
+
+
+def rows_of(data, **where):
+    """The trials with these values, as a dataset."""
+    chosen = np.ones(data.sizes["trial"], bool)
+    for name, value in where.items():
+        chosen &= data[f"trial_{name}"].values == value
+    return data.isel(trial=chosen)
+
+
+def test_trials_are_rows_with_their_errors(accuracy):
+    assert list(accuracy.point.values) == ["mid", "steady"]
+    assert list(accuracy.point_title.values) == ["half way", "steady"]
+    assert np.isnan(accuracy.point_amplitude.values[1])
+    radial = rows_of(accuracy, point="mid", model="radial", method="shipped")
+    assert list(radial.trial_cells.values) == [4, 8, 16]
+    assert radial.error.values == pytest.approx(0.1 / np.array([4, 8, 16]) ** 2)
+    assert radial.trial_steps.values.tolist() == [16, 32, 64]
+    assert radial.converged.values.all()
+    assert np.isnan(radial.claimed_error).all()
+    (paper,) = rows_of(accuracy, method="paper", point="mid").trial_model.values
+    assert paper == "cartesian"
+    assert (rows_of(accuracy, point="steady").trial_steps.values == 0).all()
+
+
+def test_the_choice_that_follows_a_tolerance_claims_an_error(accuracy):
+    auto = rows_of(accuracy, point="mid", model="auto")
+    assert set(auto.trial_method.values) == {"shipped"}
+    assert auto.trial_tolerance.values == pytest.approx([1e-2, 1e-3, 1e-4])
+    assert auto.claimed_error.values == pytest.approx([6e-3, 6e-4, 6e-5])
+    assert auto.error.values == pytest.approx([3e-3, 3e-4, 3e-5])
+    assert (auto.trial_steps.values == 64).all()
+    assert (auto.effort.values == 900).all()
+
+
+def test_what_does_not_apply_has_no_row_and_what_fails_has_no_number(accuracy):
+    assert not rows_of(accuracy, method="full-newton").sizes["trial"]
+    euler = rows_of(accuracy, method="euler", point="mid")
+    assert euler.sizes["trial"] == 3
+    assert np.isnan(euler.mu_macro).all()
+    assert not euler.converged.any()
+    assert set(euler.reason.values) == {"gave up"}
+    assert not (euler.front_seconds | euler.front_effort).any()
+
+
+def test_references_say_where_they_come_from(accuracy):
+    mid, steady = accuracy.isel(point=0), accuracy.isel(point=1)
+    assert float(mid.reference) == pytest.approx(0.1 / 1.6)
+    assert float(mid.reference_error) == 2e-4
+    assert mid.reference_source.item() == "model radial, tolerance 1e-6"
+    # Eq 21 once more, as the pure rotation that moves sideways at every point of the contact.
+    radius, angle = np.meshgrid(
+        (np.arange(1000) + 0.5) / 1000, (np.arange(1000) + 0.5) * np.pi / 1000, indexing="ij"
+    )
+    forward, lateral = 0.8 + radius * np.cos(angle), radius * np.sin(angle)
+    pressure = 1.5 / np.pi * np.sqrt(1 - radius**2) * radius
+    share = forward / np.hypot(forward, lateral)
+    mean = 2 * np.pi * np.mean(pressure * share)
+    assert float(steady.reference) == pytest.approx(mean, abs=1e-4)
+    assert float(steady.reference_error) == 0
+    assert "Eq 21" in steady.reference_source.item()
+
+
+def test_a_reference_that_did_not_converge_says_so():
+    def result(request):
+        found = accuracy_result(request)
+        if request["kind"] == "point":
+            found |= {"converged": False, "reason": "stalled"}
+        return found
+
+    data = registry.build("accuracy", configured(), answered(result)[0])
+    assert data.reference_source.values[0] == "model radial, tolerance 1e-6, not met: stalled"
+    assert data.reference.values[0] == pytest.approx(0.1 / 1.6)
+
+
+def test_fronts_count_errors_below_the_reference_as_equal(accuracy):
+    mid = rows_of(accuracy, point="mid")
+    floor = float(accuracy.reference_error[0])
+    errors = np.maximum(mid.error.values, floor)
+    for name in ("seconds", "effort"):
+        cost = mid[name].values
+        for i in range(mid.sizes["trial"]):
+            better = [
+                j
+                for j in range(mid.sizes["trial"])
+                if bool(mid.converged.values[j])
+                and cost[j] <= cost[i]
+                and errors[j] <= errors[i]
+                and (cost[j] < cost[i] or errors[j] < errors[i])
+            ]
+            expected = bool(mid.converged.values[i]) and np.isfinite(cost[i]) and not better
+            assert bool(mid[f"front_{name}"].values[i]) == expected
+    # The tightest choice is more accurate than the paper's run, but not by what can be told.
+    assert not rows_of(mid, model="auto").front_seconds.values.any()
+    assert rows_of(mid, method="paper").front_seconds.values.all()
+
+
+def test_maps_hold_the_cheapest_model_that_is_good_enough(accuracy):
+    assert list(accuracy.map_tolerance.values) == [0.01, 0.001]
+    found = accuracy.transverse_cheapest
+    assert found.dims == ("map_tolerance", "transverse_amplitude", "transverse_velocity")
+    assert (found.sel(map_tolerance=0.01) == "slider").all()
+    # Of the models with cells, errors of 0.1/cells^2 are within 1e-3 from 12 cells on.
+    tight = accuracy.sel(map_tolerance=0.001)
+    assert set(tight.transverse_cheapest.values.flat) <= {"mdr", "radial", "rigid", "cartesian"}
+    assert (tight.transverse_cheapest_cells == 16).all()
+    assert tight.transverse_cheapest_seconds.values == pytest.approx(16e-3)
+    assert (tight.bore_cheapest_cells.values <= 16).all()
+    assert accuracy.bore_cheapest.sizes["bore_amplitude"] == 2
+
+
+def test_where_no_model_is_good_enough_the_map_is_empty():
+    def result(request):
+        found = accuracy_result(request)
+        return found | {"mu_macro": 0.9} if request["kind"] == "trial" else found
+
+    data = registry.build("accuracy", configured(), answered(result)[0])
+    assert (data.bore_cheapest == "").all()
+    assert np.isnan(data.bore_cheapest_seconds).all()
+
+
+def test_the_cost_of_a_step_and_its_exponents():
+    data = registry.build("accuracy", configured({"levels": 6}), answered(accuracy_result)[0])
+    assert list(data.scaling_model.values) == ["radial", "polar", "cartesian"]
+    polar = data.sel(scaling_model="polar")
+    assert list(polar.scaling_label.values[:4]) == ["8 x 8", "16 x 16", "32 x 32", "64 x 64"]
+    assert np.isnan(polar.scaling_seconds.values[4:]).all()
+    assert data.scaling_label.values[0, 0] == "16"
+    assert data.scaling_label.values[2, 5] == "512 x 512"
+    assert data.scaling_exponent_iterations.values == pytest.approx([0.5] * 3)
+    assert data.scaling_exponent_seconds.values == pytest.approx([2.0] * 3)
+    assert data.scaling_exponent_memory.values == pytest.approx([1.0] * 3)
+    assert data.scaling_seconds.attrs["units"] == "s"
+    assert data.scaling_memory.attrs["units"] == "byte"
+
+
+# What became of probes
+
+
+STUCK = "a step was left unsolved after 2000 iterations: residual 4.5e-06"
+
+
+@pytest.mark.parametrize(
+    ("result", "expected"),
+    [
+        (None, "not_applicable"),
+        ({"applies": False, "converged": False, "reason": "not here"}, "not_applicable"),
+        (GOOD, "converged"),
+        (GOOD | {"mu_macro": 0.5019}, "converged"),  # within both errors together
+        (GOOD | {"mu_macro": 0.5021}, "wrong"),
+        (GOOD | {"mu_macro": 0.4979}, "wrong"),
+        (GOOD | {"mu_macro_error": 0.0, "mu_macro": 0.5011}, "wrong"),
+        (GOOD | {"mu_macro_error": None}, "wrong"),
+        (GOOD | {"converged": False, "reason": "no periodic state"}, "slow"),
+        (GOOD | {"converged": False, "mu_macro": 0.9, "reason": "no periodic state"}, "slow"),
+        (GOOD | {"converged": False, "reason": "diverged: tractions of 1e9"}, "diverged"),
+        (GOOD | {"converged": False, "mu_macro": None}, "diverged"),
+        (GOOD | {"converged": False, "mu_macro": None, "reason": STUCK}, "slow"),
+        ({"applies": True, "converged": False, "reason": "LinAlgError: singular"}, "diverged"),
+        (GOOD | {"converged": False, "mu_macro": None, "exhausted": "work"}, "slow"),
+    ],
+)
+def test_outcomes(result, expected):
+    assert OUTCOMES[outcome(result, 0.5, 1e-3)] == expected
+
+
+def test_a_method_is_not_to_blame_for_a_resolution_that_was_imposed():
+    """The error of so few cells is above the tolerance, whatever the method."""
+    coarse = GOOD | {"converged": False, "mu_macro_error": 0.03, "mu_macro": 0.52}
+    assert OUTCOMES[outcome(coarse, 0.5, 1e-3, imposed=True)] == "converged"
+    assert OUTCOMES[outcome(coarse | {"mu_macro": 0.6}, 0.5, 1e-3, imposed=True)] == "wrong"
+    assert OUTCOMES[outcome(coarse | {"periodic": False}, 0.5, 1e-3, imposed=True)] == "slow"
+    assert OUTCOMES[outcome(coarse, 0.5, 1e-3)] == "slow"
+
+
+@pytest.fixture
+def atlas(tmp_path):
+    """The dataset of made-up probes, read back from disk."""
+    data = registry.build("stability", configured(), answered(stability_result)[0])
+    sweep_dataset.write(data, tmp_path / "stability.nc", registry.groups("stability"))
+    return netcdf.whole(tmp_path / "stability.nc")
+
+
+def test_the_atlas_holds_what_became_of_every_method(atlas, tmp_path):
+    assert list(atlas.method.values) == ["shipped", "admm", "euler"]
+    assert list(atlas.axis.values) == ["steps", "poisson", "penalty"]
+    assert list(dict.fromkeys(atlas.case_axis.values)) == ["steps", "poisson", "penalty"]
+    penalty = atlas.case_axis.values == "penalty"
+    values = [0.01, 0.1, 0.3, 1, 3, 10, 100]
+    assert atlas.case_value.values[penalty].tolist() == values
+    assert atlas.case_label.values[penalty].tolist() == [f"{v:g}" for v in values]
+    shipped, admm, euler = atlas.outcome.values
+    assert (shipped == 1).all()
+    assert (admm == 1).all()
+    assert (euler == np.where(penalty, 0, 2)).all()
+    assert atlas.error.values[0] == pytest.approx(5e-4)
+    assert np.isnan(atlas.mu_macro.values[2][penalty]).all()
+    assert set(atlas.reason.values[2][~penalty]) == {"gave up"}
+    assert set(atlas.reason.values[2][penalty]) == {""}
+    assert (atlas.reference == 0.5).all()
+    assert all(atlas.method_summary.values)
+    with netCDF4.Dataset(tmp_path / "stability.nc") as raw:
+        assert raw["outcome"].dtype == np.int8
+        assert list(raw["outcome"].flag_values) == [0, 1, 2, 3, 4]
+        assert raw["outcome"].flag_meanings == "not_applicable converged slow wrong diverged"
+
+
+def test_reports_count(accuracy, atlas):
+    assert list(registry.report("accuracy", accuracy))[0] == (
+        f"mid: {rows_of(accuracy, point='mid').sizes['trial']} trials, 3 not converged, "
+        "reference within 2.0e-04"
+    )
+    assert list(registry.report("stability", atlas)) == [
+        "shipped: 21 converged, 0 slow, 0 wrong, 0 diverged",
+        "admm: 21 converged, 0 slow, 0 wrong, 0 diverged",
+        "euler: 0 converged, 14 slow, 0 wrong, 0 diverged",
+    ]
+
+
+@pytest.mark.parametrize("name", ["accuracy", "atlas"])
+def test_conventions_and_provenance(name, request):
+    data = request.getfixturevalue(name)
+    for variable in data.variables.values():
+        assert variable.attrs["long_name"]
+        flags = "flag_meanings" in variable.attrs or variable.dtype == bool
+        if variable.dtype.kind in "if" and not flags:
+            assert variable.attrs["units"] in ("1", "s", "byte")
+    assert data.Conventions == "CF-1.11"
+    assert len(data.source_digest) == len(data.results_digest) == 64
+    assert json.loads(data.configuration)["methods"][0] == "shipped"
+    assert data.library_versions == '{"numpy":"2.0"}'
+    if name == "accuracy":
+        assert "measured" in data.comment
+
+
+def test_the_digest_of_results_follows_what_was_asked():
+    def digest(**changes):
+        configuration = configured(stability=changes)
+        return registry.build(
+            "stability", configuration, answered(stability_result)[0]
+        ).results_digest
+
+    assert digest() == digest()
+    assert digest() != digest(methods=["shipped", "admm"])
+
+
+@pytest.mark.parametrize(
+    ("name", "study"), [("accuracy_cost", "accuracy"), ("stability", "stability")]
+)
+def test_every_part_of_a_file_is_a_table_of_its_own(name, study, tmp_path, request):
+    request.getfixturevalue({"accuracy": "accuracy", "stability": "atlas"}[study])
+    path = tmp_path / f"{name}.nc"
+    for group in (None, *netcdf.group_names(path)):
+        with xr.open_dataset(path, group=group) as part:
+            assert len(part.to_dataframe()) == max(v.size for v in part.values())

@@ -1,0 +1,417 @@
+"""Datasets: coordinates, contents, conventions, and bytes that depend on the results alone."""
+
+import json
+import subprocess
+import sys
+import time
+from types import SimpleNamespace
+
+import netCDF4
+import numpy as np
+import pytest
+import xarray as xr
+from stubs.sweep_stub import EFFORT, Solver
+
+import microslip
+from microslip.config import load
+from microslip.datasets import netcdf, point_variables, sweep_dataset
+from microslip.foundation.errors import InputError
+from microslip.sweeps import batches, sealed_files
+from microslip.sweeps.cache import Store
+from microslip.sweeps.sealed_files import CacheError
+from microslip.theory import paper
+
+GRIDS = {
+    "transverse": {"velocity": [0.1, 1, 10], "amplitude": [0, 2]},
+    "bore": {"velocity": [0.1, 1, 10], "amplitude": [0, 2]},
+    "continuous_bore": {"velocity": [0.1, 1, 10]},
+}
+NU = {"transverse": {**GRIDS["transverse"], "poisson": [0, 0.3]}}
+
+
+def write(name, folder, path, grids=GRIDS):
+    configuration = load.from_mapping({"sweeps": grids})
+    store = Store(folder)
+    grid = configuration.sweeps[name]
+    requests = batches.history_requests(configuration, name)
+    sweep_dataset.write_sweep(
+        path,
+        grid,
+        (batches.answer(request, store)[0] for request in batches.PointRequests(grid)),
+        [batches.answer(request, store)[0] for request in requests],
+        configuration.of_sweep(name),
+    )
+
+
+@pytest.fixture
+def solver(monkeypatch):
+    return Solver(monkeypatch)
+
+
+def on_disk(name, folder, grids=GRIDS):
+    write(name, folder, folder / f"{name}.nc", grids)
+    return xr.open_dataset(folder / f"{name}.nc")
+
+
+def built(name, folder):
+    """All of a dataset, with its groups."""
+    write(name, folder, folder / f"{name}.nc")
+    return netcdf.whole(folder / f"{name}.nc")
+
+
+@pytest.mark.parametrize("name", ["transverse", "bore"])
+def test_points_lie_where_their_coordinates_say(name, tmp_path, solver):
+    with on_disk(name, tmp_path) as data:
+        assert data.mu_macro.dims == ("amplitude", "velocity")
+        expected = data.velocity / (1 + data.velocity + data.amplitude)
+        xr.testing.assert_allclose(data.mu_macro, expected.transpose("amplitude", "velocity"))
+        assert float(data.mu_macro.sel(velocity=10, amplitude=2)) == pytest.approx(10 / 13)
+        between = data.interp(velocity=5.5, amplitude=1.0)
+        assert 0 < float(between.mu_macro) < 1
+        assert float(data.poisson) == 0
+
+
+def test_a_continuous_bore_has_one_dimension_and_a_torque(tmp_path, solver):
+    with on_disk("continuous_bore", tmp_path) as data:
+        assert data.mu_macro.dims == data.mu_torque.dims == ("velocity",)
+        assert data.mu_torque.values == pytest.approx(1 / (1 + data.velocity.values))
+        assert float(data.mu_macro.interp(velocity=0.5)) > 0
+
+
+def test_a_list_of_poissons_ratios_is_a_dimension(tmp_path, solver):
+    with on_disk("transverse", tmp_path, NU) as data:
+        assert data.mu_macro.dims == ("poisson", "amplitude", "velocity")
+        assert data.sel(poisson=0.3, velocity=1, amplitude=2).mu_macro.size == 1
+        assert data.mu_static.dims == ("amplitude",)
+        change = data.mu_macro - data.mu_macro.sel(poisson=0)
+        assert data.mu_macro_change.values == pytest.approx(change.values)
+        both = data.mu_macro_error + data.mu_macro_error.sel(poisson=0)
+        assert data.mu_macro_change_error.values == pytest.approx(both.values)
+
+
+def test_one_poissons_ratio_changes_nothing(tmp_path, solver):
+    with on_disk("transverse", tmp_path) as data:
+        assert "mu_macro_change" not in data
+
+
+def test_errors_convergence_and_effort_are_there(tmp_path, monkeypatch):
+    Solver(monkeypatch, fails=2.0)
+    with on_disk("transverse", tmp_path) as data:
+        assert data.converged.dtype == bool
+        assert data.converged.sel(amplitude=0).all()
+        assert not data.converged.sel(amplitude=2).any()
+        assert np.isnan(data.mu_macro.sel(amplitude=2)).all()
+        assert set(data.reason.sel(amplitude=2).values) == {"no periodic state"}
+        assert set(data.model.values.flat) == {"polar"}
+        for name, value in EFFORT.items():
+            assert data[name].dtype.kind == ("f" if name == "periods" else "i")
+            assert (data[name] == value).all()
+        assert (data.mu_macro_error == 4e-5).all()
+        assert list(sweep_dataset.report(data)) == [
+            "transverse: 6 points, 3 not converged",
+            *(
+                f"  not converged: amplitude 2, velocity {v}: no periodic state"
+                for v in (0.1, 1, 10)
+            ),
+        ]
+    with netCDF4.Dataset(tmp_path / "transverse.nc") as raw:
+        flag = raw["converged"]
+        assert flag.dtype == np.int8
+        assert list(flag.flag_values) == [0, 1]
+        assert flag.flag_meanings == "not_converged converged"
+
+
+def test_a_point_that_the_solver_failed_at_is_a_gap(tmp_path, monkeypatch, solver):
+    def fail(*_, **__):
+        raise RuntimeError("stalled")
+
+    monkeypatch.setattr("microslip.solve", fail)
+    data = built("continuous_bore", tmp_path)
+    assert np.isnan(data.mu_macro).all()
+    assert not data.converged.any()
+    assert (data.cells == 0).all()
+
+
+def test_limits_of_the_transverse_scene(tmp_path, solver):
+    data = built("transverse", tmp_path)
+    v, a = data.velocity.values, data.amplitude.values
+    assert data.mu_large_amplitude.dims == ("amplitude", "velocity")
+    assert float(data.mu_large_amplitude.sel(velocity=1, amplitude=2)) == pytest.approx(
+        float(paper.large_amplitude_transverse(1.0, 2.0))
+    )
+    assert (data.mu_large_amplitude.sel(amplitude=0) == 1).all()
+    assert data.mu_static_slider.values == pytest.approx(paper.static_slider(a))
+    assert data.mu_static_stick_zone.values == pytest.approx(paper.static_transverse(a))
+    assert data.mu_static.values == pytest.approx(paper.static_limit_transverse(a))
+    assert v.size == 3
+
+
+def test_limits_of_the_bore_scenes(tmp_path, solver):
+    data = built("bore", tmp_path)
+    v, a = data.velocity.values, data.amplitude.values
+    assert data.mu_large_amplitude.values == pytest.approx(paper.large_amplitude_bore(v))
+    assert data.mu_static_stick_zone.values == pytest.approx(paper.static_bore(a))
+    assert data.mu_static_stick_zone_printed.values == pytest.approx(paper.static_bore_printed(a))
+    assert data.mu_static.values == pytest.approx(paper.static_limit_bore(a))
+    data = built("continuous_bore", tmp_path)
+    assert data.mu_forward_theory.values == pytest.approx(paper.bore_forward(v))
+    assert data.mu_torque_theory.values == pytest.approx(paper.bore_torque(v))
+
+
+def test_single_runs_for_the_figures_are_in_the_dataset(tmp_path, solver):
+    data = built("transverse", tmp_path)
+    assert data.history_force_forward.dims == ("history_step",)
+    assert data.history_phase.attrs["units"] == "rad"
+    assert (float(data.history_velocity), float(data.history_amplitude)) == (0.1, 1.0)
+    data = built("continuous_bore", tmp_path)
+    assert list(data.start.values) == list(batches.STARTS)
+    assert data.transient_torque.dims == ("start", "transient_step")
+    assert data.transient_force_forward.sel(start="stress-free").values[-1] == 1
+    assert data.transient_force_forward.sel(start="full-slip").values[-1] == 0
+    assert float(data.transient_force_theory) == pytest.approx(float(paper.bore_forward(0.8)))
+    assert data.field_traction_forward.dims == ("cell",)
+    assert float(data.field_centre_lateral) == -0.5
+
+
+@pytest.mark.parametrize("name", GRIDS)
+def test_conventions_and_provenance(name, tmp_path, solver):
+    for variable in built(name, tmp_path).variables.values():
+        assert 0 < len(variable.attrs["long_name"]) <= 40  # they are labels of plots
+        if name == "continuous_bore" and "description" in variable.attrs:
+            assert variable.attrs["description"] != variable.attrs["long_name"]
+    with on_disk(name, tmp_path) as data:
+        for variable in data.variables.values():
+            if variable.dtype.kind in "if":
+                assert variable.attrs["units"] in ("1", "rad")
+                assert not np.isin("_FillValue", list(variable.encoding)) or variable.ndim == 0
+        assert data.Conventions == "CF-1.11"
+        assert data.microslip_version == microslip.__version__
+        assert len(data.source_digest) == 64
+        assert json.loads(data.configuration)["sweep"]["velocity"] == [0.1, 1, 10]
+        assert "numba" in data.library_versions
+        assert str(tmp_path) not in str(data.attrs)
+
+
+@pytest.mark.parametrize("name", GRIDS)
+def test_equal_results_give_equal_bytes(name, tmp_path, solver):
+    first, second = tmp_path / "first.nc", tmp_path / "elsewhere" / "second.nc"
+    write(name, tmp_path, first)
+    time.sleep(1.1)  # HDF5 can hold times, in seconds
+    write(name, tmp_path, second)
+    assert first.read_bytes() == second.read_bytes()
+
+
+def test_a_missing_or_additional_point_is_an_error(tmp_path, solver):
+    configuration = load.from_mapping({"sweeps": GRIDS})
+    grid, store = configuration.sweeps["bore"], Store(tmp_path)
+    records = [batches.answer(request, store)[0] for request in batches.PointRequests(grid)]
+    for wrong in (records[:-1], [*records, records[0]]):
+        with pytest.raises(ValueError, match="results for 6 points"):
+            sweep_dataset.write_sweep(tmp_path / "bore.nc", grid, wrong, [], {})
+        assert not list(tmp_path.glob("*.nc*"))
+
+
+def test_a_dataset_is_replaced_whole_or_not_at_all(tmp_path, monkeypatch, solver):
+    path = tmp_path / "bore.nc"
+    write("bore", tmp_path, path)
+    before = path.read_bytes()
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(sealed_files.os, "fsync", full)
+    with pytest.raises(CacheError, match="No space left"):
+        write("transverse", tmp_path, path, NU)
+    assert path.read_bytes() == before
+    assert {p.name for p in tmp_path.glob("*.nc*")} == {"bore.nc", ".bore.nc.sha256"}
+
+
+@pytest.mark.parametrize("block", [1, 2, 3, 4, 6, 7, 12])
+def test_blocks_of_any_size_give_the_same_dataset(block, tmp_path, monkeypatch, solver):
+    with on_disk("transverse", tmp_path, NU) as whole:
+        whole.load()
+    monkeypatch.setattr(point_variables, "BLOCK", block)
+    held = []
+    seen = point_variables._column
+    monkeypatch.setattr(
+        point_variables, "_column", lambda b, *rest: held.append(len(b)) or seen(b, *rest)
+    )
+    with on_disk("transverse", tmp_path, NU) as cut:
+        xr.testing.assert_identical(cut.load(), whole)
+    assert max(held) <= block
+
+
+def test_large_datasets_are_chunked_and_open_with_dask(tmp_path, monkeypatch, solver):
+    monkeypatch.setattr(point_variables, "BLOCK", 3)
+    write("transverse", tmp_path, tmp_path / "transverse.nc", NU)
+    with xr.open_dataset(tmp_path / "transverse.nc", chunks={}) as data:
+        assert data.mu_macro.chunks == ((1, 1), (1, 1), (3,))
+        assert float(data.mu_macro.mean()) == pytest.approx(float(data.mu_macro.load().mean()))
+
+
+def test_a_single_run_that_fails_is_left_out_and_listed(tmp_path, monkeypatch, solver):
+    def fail(*_, **__):
+        raise ValueError("a root finder found none")
+
+    monkeypatch.setattr("microslip.history", fail, raising=False)
+    data = built("transverse", tmp_path)
+    assert not [name for name in data.variables if name.startswith("history_")]
+    assert data.converged.all()
+    *_, last = sweep_dataset.report(data)
+    assert last == "  single runs left out: history: ValueError: a root finder found none"
+    with on_disk("continuous_bore", tmp_path) as data:
+        assert "transient_torque" not in data and "field_bound" not in data
+
+
+def test_a_sweep_at_an_imposed_resolution_counts_what_misses_its_tolerance(tmp_path):
+    """Not so without a tolerance: then its attribute is not a number."""
+    axes = {"velocity": [0.1, 0.3], "amplitude": [1], "cells": 8, "steps": 16}
+    for tolerance, count in ((1e-3, "2"), (None, "none")):
+        grids = {"transverse": {**axes, "tolerance": tolerance}}
+        with on_disk("transverse", tmp_path / str(tolerance), grids) as data:
+            summed = next(sweep_dataset.report(data))
+            assert summed == f"transverse: 2 points, {count} not converged"
+            assert (data.mu_macro_error > 1e-3).all()
+            assert np.isnan(data.tolerance) == (tolerance is None)
+            if tolerance:
+                assert all("at the imposed resolution" in str(r) for r in data.reason.values.flat)
+
+
+def test_the_static_limit_at_any_poissons_ratio_is_a_point_of_a_sweep(tmp_path, solver):
+    axes = {"velocity": [0, 0.1], "amplitude": [0.5, 1], "poisson": [0, 0.3], "model": "polar"}
+    with on_disk("transverse", tmp_path, {"transverse": axes}) as data:
+        assert data.mu_macro.dims == ("poisson", "amplitude", "velocity")
+        assert float(data.velocity[0]) == 0.0
+
+
+def test_periods_are_halves_of_full_ones_in_the_file(tmp_path, solver):
+    with on_disk("transverse", tmp_path) as data:
+        assert data.periods.dtype == float and set(data.periods.values.flat) == {2.5}
+        assert "full periods" in data.periods.long_name
+
+
+# Tables, plots and joins of a stranger's, in plain xarray
+
+
+@pytest.mark.parametrize("name", GRIDS)
+def test_every_part_of_a_file_is_a_table_of_its_own(name, tmp_path, solver):
+    """A row for each point, a column for each variable: no combinations of unrelated axes."""
+    path = tmp_path / f"{name}.nc"
+    write(name, tmp_path, path)
+    with xr.open_dataset(path) as data:
+        assert len(data.to_dataframe()) == data.mu_macro.size
+        assert set(data.dims) == set(data.mu_macro.dims)
+    groups = netcdf.group_names(path)
+    curves = {"velocity_curves"} | ({"amplitude_curves"} if name != "continuous_bore" else set())
+    assert curves <= set(groups)
+    for group in groups:
+        with xr.open_dataset(path, group=group) as part:
+            assert len(part.to_dataframe()) == max(v.size for v in part.values())
+            assert part.scene == data.scene
+
+
+def test_groups_are_opened_by_name(tmp_path, solver):
+    write("transverse", tmp_path, tmp_path / "transverse.nc")
+    history = microslip.open_map("transverse", tmp_path, group="history")
+    assert history.history_force_forward.dims == ("history_step",)
+    assert history.source_digest == microslip.open_map("transverse", tmp_path).source_digest
+    assert "Figure 1" in history.title
+    known = "velocity_curves, amplitude_curves, history"
+    with pytest.raises(InputError, match=f"group = 'field': allowed is one of {known}"):
+        microslip.open_map("transverse", tmp_path, group="field")
+
+
+def test_a_tree_of_all_groups_opens(tmp_path, solver):
+    write("continuous_bore", tmp_path, tmp_path / "continuous_bore.nc")
+    with xr.open_datatree(tmp_path / "continuous_bore.nc", engine="netcdf4") as tree:
+        assert set(tree.children) == {"velocity_curves", "field", "transients"}
+        assert tree["transients/transient_torque"].dims == ("start", "transient_step")
+
+
+def test_files_of_parts_of_an_axis_are_one_dataset(tmp_path, solver):
+    axes = {"amplitude": [0, 2]}
+    for name, velocity in (("slow", [0.1, 1]), ("fast", [10, 100])):
+        (tmp_path / name).mkdir()
+        write(
+            "bore",
+            tmp_path / name,
+            tmp_path / f"{name}.nc",
+            {"bore": axes | {"velocity": velocity}},
+        )
+    paths = [tmp_path / "fast.nc", tmp_path / "slow.nc"]
+    with xr.open_mfdataset(paths, data_vars="minimal", compat="no_conflicts") as both:
+        assert both.velocity.values.tolist() == [0.1, 1, 10, 100]
+        assert both.mu_static.dims == ("amplitude",)
+        assert both.converged.dtype == bool
+        assert float(both.mu_macro.sel(velocity=100, amplitude=2)) == pytest.approx(100 / 103)
+        assert both.scene == "bore"
+
+
+def test_files_of_several_poissons_ratios_are_one_dataset(tmp_path, solver):
+    paths = []
+    for nu in (0.3, 0):
+        (tmp_path / str(nu)).mkdir()
+        paths.append(tmp_path / f"{nu}.nc")
+        write("bore", tmp_path / str(nu), paths[-1], {"bore": {**GRIDS["bore"], "poisson": nu}})
+    joined = xr.concat([xr.open_dataset(path) for path in paths], "poisson", data_vars="minimal")
+    assert joined.mu_macro.dims == ("poisson", "amplitude", "velocity")
+    assert joined.poisson.values.tolist() == [0.3, 0]
+    with xr.open_mfdataset(
+        paths, combine="nested", concat_dim="poisson", data_vars="minimal"
+    ) as lazy:
+        xr.testing.assert_allclose(lazy.mu_macro.compute(), joined.mu_macro)
+
+
+def test_a_file_may_be_open_many_times_at_once(tmp_path, solver):
+    """Texts of variable length end Python here: HDF5 loses their type when one of two is closed."""
+    write("transverse", tmp_path, tmp_path / "transverse.nc")
+    code = (
+        "import microslip, sys\n"
+        "for _ in range(30):\n"
+        "    data = microslip.open_map(sys.argv[1])\n"
+        "    microslip.open_map(sys.argv[1]).load()\n"
+        "    microslip.open_map(sys.argv[1], group='history').load()\n"
+        "    data.load()\n"
+    )
+    command = [sys.executable, "-c", code, str(tmp_path / "transverse.nc")]
+    assert subprocess.run(command, check=False, capture_output=True).returncode == 0
+
+
+def test_texts_come_back_whole_and_long_ones_are_cut(tmp_path, monkeypatch, solver):
+    said = ["no \u03bd " + "\u03b1" * 300, "short", ""]
+    answer = solver.solve
+
+    def solve(scene, velocity, *rest, **more):
+        found = answer(scene, velocity, *rest, **more).to_dict()
+        found["reason"] = said[[0.1, 1.0, 10.0].index(velocity)]
+        return SimpleNamespace(to_dict=lambda: found)
+
+    monkeypatch.setattr("microslip.solve", solve)
+    reason = built("continuous_bore", tmp_path).reason.values.tolist()
+    assert reason[1:] == said[1:]
+    assert said[0].startswith(reason[0].removesuffix("...")) and reason[0].endswith("\u03b1...")
+    assert len(reason[0].encode()) <= point_variables.WIDTHS["reason"]
+
+
+def test_a_part_is_saved_and_read_again_and_plots_have_labels(tmp_path, solver):
+    write("transverse", tmp_path, tmp_path / "transverse.nc")
+    data = microslip.open_map("transverse", tmp_path)
+    part = data.isel(velocity=[0, 2])
+    part.to_netcdf(tmp_path / "part.nc")
+    with xr.open_dataset(tmp_path / "part.nc") as again:
+        xr.testing.assert_identical(again.load(), part.load())
+    shown = data.mu_macro.plot()
+    said = (shown.axes.get_xlabel(), shown.axes.get_ylabel(), shown.colorbar.ax.get_ylabel())
+    assert [" ".join(text.split()) for text in said] == [
+        "forward velocity, v0 / (omega u_lim) [1]",
+        "amplitude, y0 / u_lim [1]",
+        "mean forward friction force over mu F_z [1]",
+    ]
+
+
+def test_netcdf4_reads_it_without_xarray(tmp_path, solver):
+    write("transverse", tmp_path, tmp_path / "transverse.nc")
+    with netCDF4.Dataset(tmp_path / "transverse.nc") as file:
+        assert file["mu_macro"].dimensions == ("amplitude", "velocity")
+        assert file["model"][0].tolist() == ["polar"] * 3
+        assert file["history/history_phase"][:].tolist() == [0, 0.25, 0.5, 0.75, 1]

@@ -1,0 +1,379 @@
+"""The documentation: its code runs, says what it is said to say, its links lead somewhere.
+
+Blocks of a page run one after the other in a folder that looks like a clone with results in it:
+python in one namespace, sh by bash, yaml is checked as a configuration or a part of one. A block
+whose first line is a comment with the name of a file is written to it. A text block is what the
+block before it prints: the same words, and numbers as close as they are printed.
+"""
+
+import contextlib
+import io
+import json
+import math
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+from collections import namedtuple
+from html.parser import HTMLParser
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+import yaml
+
+import microslip
+from microslip.config import load
+from microslip.datasets import point_variables, sweep_dataset
+from microslip.models.registry import MODELS
+from microslip.report.figures import drawing
+from microslip.solver import method_names
+from microslip.sweeps import batches
+from microslip.sweeps.cache import Store
+
+ROOT = Path(__file__).parents[2]
+PAGES = sorted(
+    str(path.relative_to(ROOT))
+    for path in (
+        *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "config/README.md")),
+        *(ROOT / "docs").rglob("*.md"),
+    )
+)
+SHARED = ("Snakefile", "README.md", "pyproject.toml")
+SHARED_FOLDERS = ("benchmarks", "config", "docs", "profiles", "tests", "workflow")
+
+INSTALLS = "installs packages; .ci/run does this in a new environment"
+FULL = "the full sweeps take minutes; .ci/run runs the same rules on config/smoke.yaml"
+SMALL = "about a minute of computing; .ci/run makes it for config/smoke.yaml"
+BENCHMARK = "minutes to hours; nobody runs it but who wants the numbers of the page"
+CLUSTER = "needs a cluster or a cloud; not run"
+# Blocks that are not run, by page and first line: why not, and where they are.
+NOT_RUN = {
+    ("README.md", "python3 -m venv .venv && "): f"{INSTALLS}, and its sweeps are {FULL}",
+    ("README.md", ".venv/bin/pytest"): "these tests; the last line of .ci/run",
+    ("README.md", '.venv/bin/pip install -e ".[docs]"'): f"{INSTALLS}; the build is a test here",
+    ("CONTRIBUTING.md", 'python3 -m venv .venv && .venv/bin/pip install -e ".[dev]"'): INSTALLS,
+    (
+        "docs/index.md",
+        '.venv/bin/pip install -e ".[docs]"',
+    ): f"{INSTALLS}; the build is a test here",
+    ("docs/start.md", "python3 -m venv .venv && "): INSTALLS,
+    ("docs/gallery.md", ".venv/bin/snakemake -j2"): FULL,
+    ("docs/workflow.md", ".venv/bin/snakemake -j2"): FULL,
+    ("docs/tutorial.md", ".venv/bin/microslip sweep --cores 2"): (
+        "the points are computed, and the datasets written, by the fixture below, without the "
+        "processes of a workflow; a sweep is run as it stands by docs/start.md"
+    ),
+    ("docs/methods.md", ".venv/bin/snakemake -j2 accuracy stability"): FULL,
+    ("docs/claims.md", ".venv/bin/snakemake -j2 claims"): SMALL,
+    ("docs/explorer.md", ".venv/bin/snakemake -j2 explorer"): SMALL,
+    ("docs/accuracy.md", "python benchmarks/certificates.py --markdown"): BENCHMARK,
+    ("docs/accuracy.md", "python benchmarks/certificates.py --extended"): BENCHMARK,
+    ("docs/accuracy.md", "python benchmarks/static_approach.py"): BENCHMARK,
+    ("docs/accuracy.md", "python benchmarks/sweep_cost.py"): BENCHMARK,
+    ("docs/accuracy.md", "python benchmarks/paper_method.py"): BENCHMARK,
+    ("docs/accuracy.md", "python benchmarks/interpolation.py"): BENCHMARK,
+    ("docs/cluster.md", ".venv/bin/snakemake -j8"): FULL,
+    ("docs/cluster.md", ".venv/bin/pip install -e '.[slurm]'"): CLUSTER,
+    ("docs/cluster.md", "benchmarks/slurm_here.sh"): f"{CLUSTER} by a test: it installs one",
+    ("docs/cluster.md", ".venv/bin/pip install -e '.[s3]'"): CLUSTER,
+    ("docs/cluster.md", ".venv/bin/pip install snakemake-executor-plugin-kubernetes"): CLUSTER,
+}
+
+Block = namedtuple("Block", "kind text line")
+
+
+def blocks(page):
+    """Fenced blocks of a page, in their order."""
+    found, start = [], None
+    for number, line in enumerate((ROOT / page).read_text(encoding="utf-8").split("\n"), 1):
+        fence = re.match(r" {0,3}(`{3,})(.*)$", line)
+        if start is None and fence:
+            start, kind, text = fence[1], fence[2].strip(), []
+            where = number
+        elif start is not None and fence and fence[1] == start and not fence[2].strip():
+            found.append(Block(kind, "\n".join(text) + "\n", where))
+            start = None
+        elif start is not None:
+            text.append(line)
+    assert start is None, f"{page}:{where}: a block without an end"
+    return found
+
+
+def file_of(block):
+    """The file that a block is the content of, if its first line says so."""
+    named = re.match(r"# ([\w./-]+\.(?:py|yaml|smk|csv))\n", block.text)
+    return named and named[1]
+
+
+def reason_not_to_run(page, block):
+    for (where, start), reason in NOT_RUN.items():
+        if where == page and block.text.startswith(start):
+            return reason
+    return ""
+
+
+# The folder that pages run in
+
+
+def tutorial_configuration():
+    (block,) = (b for b in blocks("docs/tutorial.md") if file_of(b) == "tutorial.yaml")
+    return load.from_mapping(yaml.safe_load(block.text))
+
+
+@pytest.fixture(scope="session")
+def computed(tmp_path_factory):
+    """A folder `results` with the datasets of the sweeps that the tutorial is about.
+
+    They stand in for those of the full sweeps, too: results/transverse.nc and so on.
+    """
+    given = tutorial_configuration()
+    folder = tmp_path_factory.mktemp("docs") / "results"
+    place = folder / Path(given.results).relative_to("results")
+    store = Store(place)
+    for name, grid in given.sweeps.items():
+        points = [batches.answer(request, store)[0] for request in batches.PointRequests(grid)]
+        settings = given.of_sweep(name)
+        sweep_dataset.write_sweep(place / f"{name}.nc", grid, points, [], settings)
+        for file in (f"{name}.nc", f".{name}.nc.sha256"):
+            shutil.copy(place / file, folder)
+    return folder
+
+
+def make_place(page, folder, results):
+    """What a clone looks like from its top folder, with results in it."""
+    for name in SHARED:
+        shutil.copy(ROOT / name, folder)
+    for name in SHARED_FOLDERS:
+        (folder / name).symlink_to(ROOT / name)
+    changes_sources = any((file_of(b) or "").startswith("src/") for b in blocks(page))
+    if changes_sources:
+        # With what Numba has compiled, which belongs to the time stamps of the files.
+        shutil.copytree(ROOT / "src", folder / "src")
+    else:
+        (folder / "src").symlink_to(ROOT / "src")
+    (folder / ".venv").symlink_to(Path(sysconfig.get_path("scripts")).parent)
+    (folder / "path" / "to").mkdir(parents=True)
+    (folder / "path" / "to" / "microslip").symlink_to(ROOT)
+    shutil.copytree(results, folder / "results")
+    path = f"{sysconfig.get_path('scripts')}:/usr/local/bin:/usr/bin:/bin"
+    return os.environ | {"PATH": path} | ({"PYTHONPATH": "src"} if changes_sources else {})
+
+
+# Running a block
+
+
+def run_python(block, page, namespace, environment):
+    if environment.get("PYTHONPATH") == "src":  # a copy, which this process has not loaded
+        return run_command([sys.executable, "-c", block.text], page, block, environment)
+    said = io.StringIO()
+    code = compile("\n" * block.line + block.text, page, "exec")
+    with contextlib.redirect_stdout(said):
+        exec(code, namespace)
+    return said.getvalue()
+
+
+def run_command(command, page, block, environment):
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, env=environment)
+    assert done.returncode == 0, f"{page}:{block.line}: {done.stdout}{done.stderr}"
+    return done.stdout
+
+
+def run_snakefile(block, page, environment):
+    """A workflow that is used as a module is planned, with the configurations of the page."""
+    Path("Snakefile").unlink()
+    Path("Snakefile").write_text(block.text)
+    command = ["snakemake", "--dry-run", "--quiet", "--cores", "1", "--configfile", "outer.yaml"]
+    return run_command(command, page, block, environment)
+
+
+def check_yaml(block):
+    """A configuration, or what takes the place of the same keys in the default one."""
+    given = yaml.safe_load(block.text)
+    if "friction" in given:  # that of a module
+        given = given["friction"]
+    whole = yaml.safe_load((ROOT / "config" / "config.yaml").read_text())
+    try:
+        load.from_mapping(given, folders=[ROOT / "config"])
+    except load.ConfigError:
+        for name, part in given.items():
+            sweeps = name == "sweeps"
+            for key, value in part.items() if isinstance(part, dict) else ():
+                whole[name][key] = {**whole[name][key], **value} if sweeps else value
+            if not isinstance(part, dict):
+                whole[name] = part
+        load.from_mapping(whole, folders=[ROOT / "config"])
+
+
+NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?")
+
+
+def assert_said(said, expected, where):
+    """The same words, and numbers within 1 % or one and a half of the last digit printed."""
+    assert NUMBER.sub("#", said).split() == NUMBER.sub("#", expected).split(), f"{where}: {said}"
+    for new, old in zip(NUMBER.findall(said), NUMBER.findall(expected), strict=True):
+        digits = re.sub(r"e.*", "", old)
+        scale = 10.0 ** float(old.split("e")[1]) if "e" in old else 1.0
+        last = scale * 10.0 ** -len(digits.partition(".")[2])
+        near = max(0.01 * abs(float(old)), 1.5 * last if "." in digits else 0.0)
+        assert math.isclose(float(new), float(old), rel_tol=0, abs_tol=near), f"{where}: {said}"
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if blocks(page)])
+def test_the_code_of_a_page_runs(page, computed, tmp_path, monkeypatch):
+    environment = make_place(page, tmp_path, computed)
+    monkeypatch.chdir(tmp_path)
+    namespace, said = {"__name__": "__main__"}, None
+    for block in blocks(page):
+        where = f"{page}:{block.line}"
+        if reason_not_to_run(page, block):
+            assert block.kind == "sh", where
+            run_command(["bash", "-n", "-c", block.text], page, block, environment)
+            said = None
+            continue
+        file = file_of(block)
+        if file:
+            Path(file).parent.mkdir(parents=True, exist_ok=True)
+            Path(file).write_text(block.text, encoding="utf-8")
+        if block.kind == "yaml":
+            check_yaml(block)
+        elif block.kind == "python" and not file:
+            said = run_python(block, page, namespace, environment)
+        elif block.kind == "sh":
+            said = run_command(["bash", "-euc", block.text], page, block, environment)
+        elif block.kind == "snakemake":
+            said = run_snakefile(block, page, environment)
+        elif block.kind == "text":
+            assert said is not None, f"{where}: nothing was run that could print this"
+            assert_said(said, block.text, where)
+        else:
+            assert file or block.kind.startswith("{"), f"{where}: a block of a kind not known here"
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if page != "CONTRIBUTING.md"])
+def test_no_page_has_code_that_is_not_fenced(page):
+    """Indented blocks would go by unseen. (One page has a diagram and a formula.)"""
+    found = re.search(r"\n\n {4,}\S.*", prose(page))
+    assert not found, f"{page}: {found[0].strip()}"
+
+
+def test_what_is_not_run_is_there_and_names_what_there_is():
+    for page, start in NOT_RUN:
+        if not (ROOT / page).exists():
+            continue
+        found = [block for block in blocks(page) if block.text.startswith(start)]
+        assert len(found) == 1, f"{page}: {len(found)} blocks start with {start!r}"
+        for name in re.findall(r"\b(?:benchmarks|config|profiles|docs)/[\w./]+", found[0].text):
+            assert (ROOT / name).exists(), f"{page}: {name}"
+        script = re.search(r"benchmarks/\w+\.py", found[0].text)
+        for option in re.findall(r"--\w[\w-]*", found[0].text) if script else ():
+            assert option in (ROOT / script[0]).read_text(), f"{page}: {option}"
+
+
+# Links
+
+
+def prose(page):
+    """A page without its blocks."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    return re.sub(r"^(`{3,}).*?^\1$", "", text, flags=re.M | re.S)
+
+
+def anchors(page):
+    """Names that headings of a page can be linked by."""
+    for heading in re.findall(r"^#+ +(.*)$", prose(page), re.M):
+        yield re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_links_lead_somewhere(page):
+    for target in re.findall(r"\]\(([^)\s]+)\)", prose(page)):
+        if re.match(r"[a-z]+:", target):
+            assert target.startswith("https://doi.org/"), f"{page}: {target}"
+            continue
+        name, _, anchor = target.partition("#")
+        there = ((ROOT / page).parent / name).resolve() if name else ROOT / page
+        assert there.is_file(), f"{page}: {target}"
+        if anchor:
+            assert anchor in anchors(there.relative_to(ROOT)), f"{page}: {target}"
+
+
+# Tables and lists that the package knows, too
+
+
+def table(page, first):
+    """Rows of the table of a page whose first column has this title."""
+    lines = (ROOT / page).read_text().split("\n")
+    start = next(i for i, line in enumerate(lines) if line.startswith(f"| {first} |"))
+    rows = []
+    for line in lines[start + 2 :]:
+        if not line.startswith("|"):
+            return rows
+        rows.append([cell.strip().strip("`") for cell in line.strip("|").split("|")])
+
+
+def test_the_guide_to_the_workflow_lists_all_variables():
+    known = point_variables.POINT_VARIABLES | point_variables.TORQUE_VARIABLES
+    known |= {name: (float, long_name) for name, (*_, long_name) in point_variables.CHANGES.items()}
+    known |= {name: (known[name][0], text) for name, text in point_variables.DESCRIPTIONS.items()}
+    assert table("docs/workflow.md", "variable") == [
+        [name, text.replace("|", "\\|")] for name, (_, text) in known.items()
+    ]
+
+
+def test_every_model_every_figure_and_every_public_name_has_its_place():
+    assert sorted(row[0] for row in table("docs/physics.md", "model")) == sorted(MODELS)
+    gallery = (ROOT / "docs" / "gallery.md").read_text()
+    assert [f for f in drawing.FIGURES if f"images/{f}.png" not in gallery] == []
+    api = (ROOT / "docs" / "api.md").read_text()
+    assert [n for n in microslip.__all__ if f":: microslip.{n}\n" not in api] == []
+    assert "my-method" not in method_names.names()
+
+
+# The pages as a site
+
+
+class Loaded(HTMLParser):
+    """What a browser fetches by itself to show a page."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.addresses = []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        given = dict(attrs)
+        passive = tag == "a" or (tag == "link" and given.get("rel") in ("next", "prev", "index"))
+        for name in ("src", "srcset", "data", "poster", "href"):
+            if not passive and given.get(name):
+                self.addresses.append(given[name])
+
+
+@pytest.mark.skipif(
+    not all(map(find_spec, ("sphinx", "myst_parser", "furo"))),
+    reason="the extra docs is not installed: pip install -e '.[docs]'",
+)
+def test_the_site_is_built_without_a_warning_and_without_a_network(tmp_path):
+    refused = {f"{kind}_proxy": "http://127.0.0.1:9" for kind in ("http", "https", "all")}
+    done = subprocess.run(
+        [sys.executable, "-m", "sphinx", "-W", "-n", "-q", "docs", tmp_path / "html"],
+        cwd=ROOT,
+        env=os.environ | refused,
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert done.returncode == 0, done.stderr
+    pages = {str(p.relative_to(tmp_path / "html")): p for p in tmp_path.rglob("*.html")}
+    for page in PAGES:
+        if page.startswith("docs/"):
+            assert page.removeprefix("docs/").replace(".md", ".html") in pages
+    for name, path in pages.items():
+        far = [a for a in Loaded(path.read_text()).addresses if re.match(r"(\w+:)?//", a)]
+        assert far == [], name
+    for path in tmp_path.rglob("*.css"):
+        assert not re.search(r"(url\(|@import)\s*['\"]?(\w+:)?//", path.read_text()), path
+    search = (tmp_path / "html" / "searchindex.js").read_text()
+    assert json.loads(search[search.index("{") : search.rindex("}") + 1])["docnames"]

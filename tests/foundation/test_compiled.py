@@ -1,0 +1,124 @@
+"""Compiled code on disk: it belongs to the sources that are running, wherever it can be kept."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import microslip
+from microslip.foundation.source_digest import LOADED, Sources
+
+PACKAGE = Path(microslip.__file__).parent
+KERNELS = sorted(name for name, source in LOADED.contents.items() if b"import kernel" in source)
+FOLDER = "from microslip import compiled; print(compiled.folder())"
+
+
+@pytest.fixture
+def copy(tmp_path):
+    """A copy of the package that may be edited."""
+    place = tmp_path / "source" / "microslip"
+    shutil.copytree(PACKAGE, place, ignore=shutil.ignore_patterns("__pycache__"))
+    return place
+
+
+def run(program, package, **environment):
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env={**os.environ, "PYTHONPATH": str(package.parent), **environment},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    return done
+
+
+def of_kernels(package):
+    """What names the folder of compiled code, of the sources in a package."""
+    sources = Sources(package)
+    kernels = {
+        n for n, content in sources.contents.items() if b"microslip.foundation.compiled" in content
+    }
+    return sources.raw_digest(sources.closure(kernels))
+
+
+def test_there_are_kernels_to_speak_of():
+    assert len(KERNELS) > 10
+    assert {"friction.py", "models/ring_march.py", "models/convolution.py"} <= set(KERNELS)
+
+
+@pytest.mark.parametrize("name", KERNELS)
+def test_an_edit_of_any_kernel_file_leaves_the_old_machine_code_alone(name, copy):
+    before = of_kernels(copy)
+    file = copy / name
+    file.write_text(file.read_text() + "\nEDITED = True\n")
+    assert of_kernels(copy) != before
+
+
+def test_an_edit_of_what_a_kernel_takes_its_numbers_from_does_so_too(copy):
+    before = of_kernels(copy)
+    file = copy / "hertz.py"
+    file.write_text(file.read_text().replace("G_STAR = ", "G_STAR = 2.0 * ", 1))
+    assert of_kernels(copy) != before
+
+
+@pytest.mark.slow
+def test_an_edited_law_of_friction_is_the_one_that_runs(copy):
+    """Edited in one file, inlined into another: the code on disk of the other is as old as it."""
+    (copy / "caller.py").write_text(
+        "from microslip.foundation.compiled import kernel\n"
+        "from microslip.models.coulomb import shrink\n\n\n"
+        "@kernel\ndef called(x):\n    return x * shrink(x, 0.0, 1.0)\n"
+    )
+    program = "from microslip.caller import called; print(called(4.0))"
+    assert float(run(program, copy).stdout) == pytest.approx(1.0)
+    law = copy / "friction.py"
+    text = law.read_text()
+    law.write_text(text.replace("return min(1.0, bound /", "return min(1.0, 0.5 * bound /", 1))
+    assert law.read_text() != text
+    assert float(run(program, copy).stdout) == pytest.approx(0.5)
+    law.write_text(text)
+    assert float(run(program, copy).stdout) == pytest.approx(1.0)
+
+
+def test_the_folder_that_the_user_names_comes_first(copy, tmp_path):
+    place = tmp_path / "mine"
+    said = run(FOLDER, copy, NUMBA_CACHE_DIR=str(place)).stdout.strip()
+    assert Path(said).parent == place and Path(said).is_dir()
+
+
+def test_the_package_comes_next(copy):
+    said = run(FOLDER, copy).stdout.strip()
+    assert Path(said).parent == copy / "__pycache__"
+
+
+# A file in the place of a folder stands for one that cannot be written to: root may write anywhere.
+
+
+def test_where_neither_package_nor_home_can_be_written_it_runs_all_the_same_and_says_so(
+    copy, tmp_path
+):
+    (copy / "__pycache__").write_text("in the way")
+    (tmp_path / "home").write_text("in the way")
+    (tmp_path / "temporary").mkdir()
+    environment = {"HOME": str(tmp_path / "home"), "TMPDIR": str(tmp_path / "temporary")}
+    environment |= {"XDG_CACHE_HOME": "", "PYTHONDONTWRITEBYTECODE": "1"}
+    program = f"{FOLDER}; from microslip import friction; print(friction.shrink(4.0, 0.0, 1.0))"
+    done = run(program, copy, **environment)
+    folder, number = done.stdout.split()
+    assert Path(folder).is_relative_to(tmp_path / "temporary")
+    assert float(number) == 0.25
+    assert list(Path(folder).rglob("*.nbi"))  # it was kept
+    (line,) = done.stderr.splitlines()
+    assert folder in line and "NUMBA_CACHE_DIR" in line
+    again = run(program, copy, **environment)
+    assert again.stdout == done.stdout
+
+
+def test_the_home_is_used_where_the_package_cannot_be_written(copy, tmp_path):
+    (copy / "__pycache__").write_text("in the way")
+    done = run(FOLDER, copy, XDG_CACHE_HOME=str(tmp_path / "caches"))
+    assert Path(done.stdout.strip()).is_relative_to(tmp_path / "caches" / "microslip")
+    assert done.stderr == ""

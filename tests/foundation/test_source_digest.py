@@ -1,0 +1,345 @@
+"""Digests of sources: which files a result depends on follows from imports, as they were loaded."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import microslip
+from microslip.foundation import source_digest
+from microslip.foundation.source_digest import Sources
+from microslip.foundation.syntax_digest import digest_of_source
+from microslip.sweeps import batches, keys
+
+PACKAGE = Path(microslip.__file__).parent
+MODULE = '''
+"""Docstring."""
+import numpy as np
+
+LIMIT = 3  # a comment
+
+
+def double(x, *, factor=2.0):
+    """Docstring."""
+    return factor * x
+
+
+class Thing:
+    """Docstring."""
+
+    name: str = "thing"
+'''
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("  # a comment", ""),
+        ('"""Docstring."""', '"""Another one."""'),
+        ('    """Docstring."""\n    return', "    return"),
+        ("\n\n\n", "\n"),
+        ("factor * x", "(factor*x)"),
+    ],
+)
+def test_layout_comments_and_docstrings_do_not_change_the_digest(old, new):
+    assert old in MODULE
+    assert digest_of_source(MODULE.replace(old, new)) == digest_of_source(MODULE)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("LIMIT = 3", "LIMIT = 4"),
+        ("LIMIT = 3", "LIMIT = 3.0"),
+        ("factor=2.0", "factor=2.5"),
+        ("factor * x", "x * factor"),
+        ("factor * x", "factor + x"),
+        ("double", "triple"),
+        ('"thing"', '"thong"'),
+        ("name: str", "name: int"),
+        ("import numpy as np", "import scipy as np"),
+    ],
+)
+def test_code_changes_the_digest(old, new):
+    assert old in MODULE
+    assert digest_of_source(MODULE.replace(old, new)) != digest_of_source(MODULE)
+
+
+FILES = {
+    "__init__.py": "A = 1",
+    "sweeps/evaluate.py": "import toy.shared\ndef ask():\n    from toy.adaptive import single_run",
+    "shared.py": "",
+    "adaptive/point.py": "from toy.solver.run import solve\nif solve:\n    from .. import law",
+    "solver/run.py": "def solve():\n    from toy.models import rings",
+    "law.py": "from toy import parts",
+    "models/__init__.py": "",
+    "models/rings.py": "from ..hertz import load",
+    "models/squares.py": "",
+    "hertz.py": "",
+    "parts.py": "from toy.solver.methods import names\nimport toy.motions",
+    "adaptive/single_run.py": "from toy.adaptive import point",
+    "adaptive/stick_area.py": "",
+    "adaptive/period.py": "",
+    "sweeps/period_codec.py": "",
+    "plot/maps.py": "from toy import hertz",
+    "solver/methods/__init__.py": "",
+    "solver/methods/_shared.py": "from toy.solver.methods import _deeper",
+    "solver/methods/_deeper.py": "",
+    "solver/methods/one.py": "from toy.solver.methods._shared import D",
+    "solver/methods/other_one.py": "from . import _shared",
+    "solver/methods/alone.py": "import numpy",
+    "motions/__init__.py": "",
+    "motions/sideways.py": "from toy.motions.turns import angle",
+    "motions/turns.py": "",
+    "pressures/hertz.py": "",
+    "pressures/power.py": "from toy.pressures.record import Pressure",
+    "pressures/record.py": "",
+}
+SOLVER = {
+    "sweeps/evaluate.py",
+    "shared.py",
+    "adaptive/point.py",
+    "solver/run.py",
+    "law.py",
+    "hertz.py",
+    "parts.py",
+}
+SOLVER |= {f"{name}/__init__.py" for name in ("models", "solver/methods", "motions")}
+SOLVER |= {"models/rings.py"}
+
+
+@pytest.fixture
+def package(tmp_path):
+    """A made-up package."""
+    for name, text in FILES.items():
+        (tmp_path / "toy" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "toy" / name).write_text(text)
+    return tmp_path / "toy"
+
+
+def test_what_counts_follows_from_imports_wherever_they_stand(package):
+    assert Sources(package).of_request("point", ()) == SOLVER
+
+
+@pytest.mark.parametrize(
+    ("kind", "named", "more"),
+    [
+        ("probe", [], {"adaptive/single_run.py"}),
+        ("patches", [], {"adaptive/stick_area.py"}),
+        ("period", [], {"adaptive/period.py", "sweeps/period_codec.py"}),
+        ("point", [("solver/methods", "alone")], {"solver/methods/alone.py"}),
+        ("point", [("solver/methods", "none_of_these")], set()),
+        ("point", [("motions", "turns")], {"motions/turns.py"}),
+        ("point", [("motions", "sideways")], {"motions/sideways.py", "motions/turns.py"}),
+        ("point", [("pressures", "power")], {"pressures/power.py", "pressures/record.py"}),
+        (
+            "point",
+            [("solver/methods", "other_one")],
+            {
+                "solver/methods/_deeper.py",
+                "solver/methods/_shared.py",
+                "solver/methods/other_one.py",
+            },
+        ),
+    ],
+)
+def test_a_request_depends_on_what_it_names_and_on_nothing_else_of_its_kind(
+    kind, named, more, package
+):
+    found = Sources(package).of_request(kind, named)
+    asks = {"sweeps/evaluate.py", "shared.py"}
+    assert found - SOLVER == more - SOLVER
+    assert found >= more | asks
+
+
+def test_scratch_and_hidden_files_neither_count_nor_disturb(package):
+    names = Sources(package).contents.keys()
+    (package / ".#point.py").symlink_to("nobody@nowhere.1:2")  # as an editor marks a file
+    (package / ".ipynb_checkpoints").mkdir()
+    (package / ".ipynb_checkpoints" / "point-checkpoint.py").write_text("not Python at all (")
+    (package / "point copy.py").write_text("neither (")
+    (package / "#point.py#").write_text("(")
+    (package / "motions" / "turns-checkpoint.py").write_text("(")
+    (package / "folder.py").mkdir()
+    after = Sources(package)
+    assert after.contents.keys() == names
+    assert after.digest(after.of_request("point", ())) == Sources(package).digest(SOLVER)
+
+
+def test_a_scratch_file_is_no_motion(tmp_path):
+    """The real package, with what editors leave in its folders."""
+    copy = tmp_path / "microslip"
+    ignored = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(PACKAGE, copy, ignore=ignored)
+    for folder in ("motions", "pressures", "solver/methods"):
+        (copy / folder / ".#bore.py").symlink_to("nobody@nowhere.1:2")
+        (copy / folder / "bore-checkpoint.py").write_text("raise SystemExit('run')\n")
+        (copy / folder / "bore copy.py").write_text("raise SystemExit('run')\n")
+    program = (
+        "from microslip.motions import registry; from microslip.solver import method_names\n"
+        "print(*registry.SCENES, *method_names.names())"
+    )
+    done = python(program, tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "copy" not in done.stdout and "checkpoint" not in done.stdout
+
+
+def python(program, path, **settings):
+    environment = {"PYTHONPATH": str(path), "PATH": os.environ["PATH"]}
+    return subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, env=environment, **settings
+    )
+
+
+REQUESTS = [
+    {"kind": "point", "scene": "zigzag", "poisson": "0.3", "model": "auto", "tolerance": "0.1"},
+    {"kind": "point", "scene": "bore", "poisson": "0", "model": "auto", "tolerance": "0.1"},
+    {"kind": "point", "scene": "transverse", "poisson": "0", "model": "auto", "tolerance": "0.1"}
+    | {"pressure": "power:exponent=1"},
+    {"kind": "history", "scene": "transverse", "periods": 1, "cells": 4, "steps": 16},
+    {"kind": "field", "scene": "continuous-bore", "cells": 4},
+    {"kind": "period", "scene": "bore", "poisson": "0", "cells": 4, "angles": 4, "steps": 8},
+    {"kind": "patches", "scene": "bore", "poisson": "0", "cells": 4, "angles": 4, "steps": 8},
+    {"kind": "probe", "scene": "transverse", "poisson": "0", "model": "auto", "tolerance": "0.1"}
+    | {"method": "admm"},
+    {"kind": "run", "scene": "transverse", "poisson": "0", "model": "radial", "tolerance": "0.01"}
+    | {"method": "euler", "cells": 8, "angles": 1, "steps": 16},
+]
+LOADED_BY = """
+import json, sys
+from microslip.sweeps import evaluate as answers
+request = json.loads(sys.argv[1])
+answers.computed(request)
+print(json.dumps([m.__file__ for n, m in sys.modules.items() if n.startswith("microslip.")]))
+"""
+NAMES = ("solver/methods/", "motions/", "pressures/")
+BY_LISTING = {
+    "theory/masing.py",
+    "theory/oscillating_load.py",
+    "foundation/named_files.py",
+    *source_digest.NAMES_ONLY,
+}
+"""Loaded with other motions and pressures, when these are listed."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("request_", REQUESTS, ids=lambda r: f"{r['kind']} {r['scene']}")
+def test_all_that_answering_a_request_loads_counts_for_it(request_):
+    """What Python really loads is held against what follows from reading the imports."""
+    asked = {"velocity": "0.5", "amplitude": "0.5"} | request_
+    if request_["kind"] == "field":
+        del asked["amplitude"]
+    done = subprocess.run(
+        [sys.executable, "-c", LOADED_BY, json.dumps(asked)], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    files = {Path(file).relative_to(PACKAGE).as_posix() for file in json.loads(done.stdout)}
+    listed = {f for f in files if f.startswith(NAMES) and "__init__" not in f}
+    assert files - listed - BY_LISTING <= source_digest.files_of_request(asked)
+
+
+def test_what_reads_a_file_counts_for_its_pressure():
+    named = {"kind": "point", "scene": "bore", "pressure": "file:sha256=0123456789abcdef"}
+    files = source_digest.files_of_request(named)
+    assert {"pressures/from_file.py", "pressures/measured.py", "pressures/grid_csv.py"} <= files
+
+
+def test_every_kind_of_request_has_its_digest():
+    assert source_digest.ANSWERED_BY.keys() == batches.FOLDERS.keys()
+    for modules in source_digest.ANSWERED_BY.values():
+        assert all((PACKAGE / f"{module}.py").is_file() for module in modules)
+
+
+@pytest.mark.parametrize("name", ["sweeps/evaluate.py", "datasets/pressure_limits.py"])
+def test_modules_that_were_in_no_digest_are_in_one(name):
+    of_point = source_digest.files_of_request({"kind": "point", "scene": "bore"})
+    of_dataset = source_digest.LOADED.closure(
+        ["datasets/sweep_dataset.py", "datasets/point_variables.py", "datasets/theory_limits.py"]
+    )
+    assert name in of_point | of_dataset
+
+
+def test_other_results_stay_when_what_only_some_depend_on_is_edited():
+    of_map = source_digest.files_of_request({"kind": "point", "scene": "bore"})
+    assert not of_map & {
+        "adaptive/history.py",
+        "adaptive/period.py",
+        "adaptive/single_run.py",
+        "adaptive/stick_area.py",
+        "sweeps/period_codec.py",
+        "datasets/sweep_dataset.py",
+    }
+    assert not any(name.startswith("report/") for name in of_map)
+    assert "motions/transverse.py" not in of_map
+
+
+# A process whose sources are edited while it runs
+
+
+def test_a_digest_is_of_the_sources_as_they_were_read(package):
+    sources = Sources(package)
+    before = sources.digest(SOLVER)
+    (package / "law.py").write_text("edited = True")
+    assert sources.digest(SOLVER) == before == sources.digest(SOLVER)
+    assert sources.edited(SOLVER) == ["law.py"]
+    assert Sources(package).digest(SOLVER) != before
+
+
+def test_a_comment_is_no_edit_and_a_removed_or_half_written_file_is_one(package):
+    sources = Sources(package)
+    (package / "law.py").write_text(FILES["law.py"] + "  # why")
+    assert sources.edited(SOLVER) == []
+    (package / "hertz.py").write_text("def load(")
+    (package / "solver/run.py").unlink()
+    assert sources.edited(SOLVER) == ["hertz.py", "solver/run.py"]
+
+
+SESSION = """
+import json, sys, warnings
+from pathlib import Path
+import microslip
+from microslip.foundation import source_digest
+answers = []
+def ask():
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        answer = microslip.solve_stored("transverse", 100.0, 0.5, results=sys.argv[1])
+    said = [str(warning.message) for warning in caught]
+    return [answer.mu_macro, len(list(Path(sys.argv[1]).rglob("*.json"))), said]
+path = Path(microslip.__file__).with_name("adaptive") / "choice.py"
+answers.append(ask())
+for file in Path(sys.argv[1]).rglob("*.json"):
+    file.unlink()
+path.write_text(path.read_text() + "\\nEDITED = True\\n")
+answers.append(ask())
+print(json.dumps(answers))
+"""
+
+
+def test_a_long_session_keeps_nothing_of_code_that_was_edited_under_it(tmp_path):
+    copy = tmp_path / "source" / "microslip"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    done = subprocess.run(
+        [sys.executable, "-c", SESSION, tmp_path / "results"],
+        env={**os.environ, "PYTHONPATH": str(copy.parent)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    first, second = json.loads(done.stdout)
+    assert first[1:] == [1, []]
+    assert second[:2] == [first[0], 0]
+    assert "choice.py was edited" in second[2][0]
+
+
+def test_a_batch_that_was_planned_with_other_sources_is_refused(tmp_path, monkeypatch):
+    request = {"kind": "point", "scene": "bore", "velocity": "1", "amplitude": "1"}
+    name = batches.name_of_batch([request])
+    monkeypatch.setattr(source_digest, "of_request", lambda request: "of other sources")
+    with pytest.raises(batches.SourcesEdited, match="run again"):
+        batches.run_batch([request], store=None, name=name)
+    assert keys.result_key(request, "a") != keys.result_key(request, "b")

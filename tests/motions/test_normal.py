@@ -1,0 +1,405 @@
+"""The normal load oscillates: against springs marched one by one, closed forms and limits."""
+
+import json
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip.app import cli
+from microslip.models import varying_load
+from microslip.models.contact import energy_norm
+from microslip.models.path import EULER, make_path
+from microslip.models.reduced.mdr import mdr_contact
+from microslip.models.registry import MODELS
+from microslip.models.rings.contact import RadialContact
+from microslip.motions.registry import scene_named
+from microslip.pressures.registry import HERTZ
+from microslip.solver.problem import Motion, Resolution, build_contact
+from microslip.solver.simulate import simulate
+from microslip.theory import oscillating_load
+
+ALONE = [
+    ("normal", 0.1, 0.5),
+    ("normal", 0.003, 0.9),
+    ("normal", 0.3, 1.5),
+    ("normal", 0.63, 1.01),
+    ("normal:indentation=1", 0.3, 0.8),
+    ("normal:indentation=1", 0.01, 1.3),
+    ("normal:normal_cycles=3", 0.5, 0.7),
+]
+ALONG = [
+    ("normal:forward=1,phase=60", 0.1, 0.7),
+    ("normal:forward=0.5,phase=180,indentation=1", 0.02, 1.3),
+    ("normal:forward=0.8,forward_cycles=2,phase=30", 0.2, 0.6),
+]
+ASIDE = [
+    ("normal:lateral=1", 0.1, 0.7),
+    ("normal:lateral=0.5,phase=90,indentation=1", 0.02, 1.2),
+    ("normal:lateral=1,normal_cycles=2", 0.1, 0.8),
+]
+
+
+def marched_springs(scene, velocity, amplitude, count, periods=8):
+    """Springs with friction one by one, each stretched and let go in small steps of time.
+
+    What a spring at x can hold is the overlap with the flat, d - x^2; mean force over mean load.
+    """
+    scene = scene_named(scene)
+    widest = np.sqrt(scene.deepest(amplitude, HERTZ))
+    edges = widest * np.sqrt(np.linspace(0.0, 1.0, count + 1))
+    x, width = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
+    phase = np.linspace(-np.pi / 2, 1.5 * np.pi, 10 * count + 1)
+    ahead, _, _ = scene.displacement(phase, velocity, amplitude, 0.0)
+    overlap = np.maximum(scene.depth(phase, amplitude, HERTZ)[:, None] - x**2, 0.0)
+    stretch, force = overlap[0], np.empty(len(phase))
+    for _ in range(periods):
+        force[0] = stretch @ width
+        for k in range(1, len(phase)):
+            stretch = np.clip(stretch + ahead[k] - ahead[k - 1], -overlap[k], overlap[k])
+            force[k] = stretch @ width
+    return np.trapezoid(force, phase) / np.trapezoid(overlap @ width, phase)
+
+
+def run(scene, velocity, amplitude, model="radial", cells=32, steps=128):
+    resolution = Resolution(cells, 1, steps)
+    return simulate(scene_named(scene), velocity, amplitude, 0.0, model, resolution, 1e-7)
+
+
+@pytest.mark.parametrize("place", ALONE, ids=str)
+def test_the_closed_form_is_that_of_springs_marched_one_by_one(place):
+    scene, velocity, amplitude = place
+    exact = scene_named(scene).whole(velocity, amplitude, HERTZ)
+    coarse, fine = (marched_springs(*place, count, periods=2) for count in (100, 200))
+    assert abs(fine - exact) < 1e-3
+    assert 2.0 * fine - coarse == pytest.approx(exact, abs=1e-4)  # they err in first order
+
+
+@pytest.mark.parametrize("model", ["mdr", "radial"])
+@pytest.mark.parametrize("place", ALONE, ids=str)
+def test_springs_and_rings_agree_with_the_closed_form(place, model):
+    scene, velocity, amplitude = place
+    answer = microslip.solve(*place, model=model)
+    assert answer.converged
+    assert abs(answer.mu_macro - scene_named(scene).whole(velocity, amplitude, HERTZ)) < 1e-3
+
+
+@pytest.mark.parametrize("place", ALONG, ids=str)
+def test_rings_agree_with_springs_along_one_line(place):
+    """Springs are exact there, with both the load and the motion in the plane oscillating."""
+    coarse, fine = (marched_springs(*place, count) for count in (100, 200))
+    for model in ("mdr", "radial"):
+        answer = microslip.solve(*place, model=model)
+        assert answer.converged
+        assert answer.mu_macro == pytest.approx(2.0 * fine - coarse, abs=1.2e-3)
+
+
+@pytest.mark.parametrize("place", ASIDE, ids=str)
+def test_certificates_hold_against_finer_runs(place):
+    answer, finer = (microslip.solve(*place, tolerance=t) for t in (1e-3, 2e-4))
+    assert answer.model == "radial"
+    assert answer.converged and finer.converged
+    assert abs(answer.mu_macro - finer.mu_macro) <= answer.mu_macro_error + finer.mu_macro_error
+
+
+@pytest.mark.parametrize("scene", ["normal", "normal:forward=0.5", "normal:lateral=1"])
+def test_errors_fall_with_rings_and_steps(scene):
+    best = run(scene, 0.1, 0.7, cells=96, steps=512).mu
+    errors = [abs(run(scene, 0.1, 0.7, cells=n, steps=4 * n).mu - best) for n in (8, 32)]
+    assert errors[1] < 0.3 * errors[0] or errors[0] < 2e-4
+
+
+def test_the_mean_load_is_that_of_the_sum():
+    phase = np.linspace(0.0, 2.0 * np.pi, 200001)
+    for amplitude in (0.3, 1.0, 1.7):
+        height = np.maximum(1.0 + amplitude * np.sin(phase), 0.0)
+        for by_load, load in ((True, height), (False, height**1.5)):
+            mean = np.trapezoid(load, phase) / (2.0 * np.pi)
+            assert oscillating_load.mean_load(amplitude, by_load, HERTZ) == pytest.approx(
+                mean, abs=1e-9
+            )
+
+
+@pytest.mark.parametrize("carried", [varying_load.load_on_rings, varying_load.load_on_springs])
+def test_the_parts_of_a_contact_carry_its_load(carried):
+    edges, depths = np.linspace(0.0, 1.3, 14), np.array([0.0, 0.3, 1.0, 1.69])
+    load = carried(HERTZ, edges, depths)
+    assert load[:, 0] == pytest.approx(0.0)
+    assert load[:, -1] == pytest.approx(HERTZ.total(depths))
+    assert (np.diff(load, axis=1) >= -1e-15).all()
+    assert HERTZ.total(HERTZ.of_load(depths)) == pytest.approx(depths)
+    assert HERTZ.total(HERTZ.radius(depths) ** 2) == pytest.approx(HERTZ.total(depths))
+
+
+@pytest.mark.parametrize("contact", [RadialContact.resolved(12, 0.6), mdr_contact(12, 0.6)])
+def test_a_contact_that_grows_keeps_load_and_stiffness(contact):
+    """At the reference depth it is as it was; at another the load is Hertz's, and so is the
+    stiffness of all rings together, 2 G* times the radius."""
+    same = contact.pressed(1.0, 1.0)
+    assert same.bound == pytest.approx(contact.bound, rel=1e-9)
+    wide = contact.pressed(1.69, 0.5)
+    depths = np.linspace(0.0, 1.69, 30)
+    assert wide.bounds(depths) @ wide.weight == pytest.approx(HERTZ.total(depths), abs=1e-12)
+    assert wide.bound @ wide.weight == pytest.approx(0.5**1.5)
+    stuck = np.linalg.solve(wide.influence, np.ones(12)) @ wide.weight
+    assert stuck == pytest.approx(1.3 * HERTZ.stiffness, rel=0.03)
+
+
+def test_contact_that_is_lost_forgets():
+    """After a moment without contact it does not matter how a march began."""
+    scene = scene_named("normal:lateral=0.7,phase=40")
+    motion = Motion(scene, 0.2, 1.3, 0.0)
+    contact = build_contact(motion, "radial", Resolution(16, 1, 32))
+    path = make_path(motion.displacement, np.linspace(0.0, 2 * np.pi, 129), depth=motion.depth)
+    bound = contact.bounds(motion.depth(np.zeros(1)))[0]
+    starts = np.zeros((2, 1, 16)), np.stack([bound, 0.0 * bound])[:, None]
+    one, other = (contact.march(path, start, 1e-10) for start in starts)
+    assert energy_norm(contact, one.state - other.state) < 1e-8
+    assert not np.allclose(one.forces[1], other.forces[1])
+    away = scene.depth(path.phase, 1.3, HERTZ) == 0.0
+    assert away.any()
+    assert not one.forces[away].any()
+
+
+@pytest.mark.parametrize("velocity", [0.001, 0.5])
+@pytest.mark.parametrize("scene", ["normal:lateral=1", "normal:indentation=1,forward=0.6,phase=45"])
+def test_every_stage_keeps_within_the_bound_of_its_time(scene, velocity):
+    motion = Motion(scene_named(scene), velocity, 0.9, 0.0)
+    contact = build_contact(motion, "radial", Resolution(12, 1, 24))
+    path = motion.path(contact, 24)
+    march = contact.march(path, np.zeros((2, 1, 12)), 1e-9)
+    bounds = contact.bounds_along(path)
+    assert (np.hypot(march.stages[1:, 0], march.stages[1:, 1]) <= bounds[1:] * (1 + 1e-12)).all()
+    assert march.residual <= march.solves * 1e-9
+
+
+@pytest.mark.parametrize(
+    "scene", ["normal", "normal:indentation=1,lateral=1", "normal:forward=0.5"]
+)
+def test_sensitivity_is_that_of_finite_differences(scene):
+    motion = Motion(scene_named(scene), 0.05, 0.5, 0.0)
+    contact = build_contact(motion, "radial", Resolution(9, 1, 12))
+    path = motion.path(contact, 12)
+    state = np.stack([0.6 * contact.bound, 0.1 * contact.bound])[:, None]
+    for _ in range(2):
+        march = contact.march(path, state, 1e-14, sensitivity=True)
+        change = 1e-6 * np.random.default_rng(3).normal(size=state.shape) * contact.bound
+        ends = [contact.march(path, state + s * change, 1e-14).state for s in (1.0, -1.0)]
+        expected = 0.5 * (ends[0] - ends[1])
+        found = (march.sensitivity @ change.ravel()).reshape(change.shape)
+        assert energy_norm(contact, found - expected) < 1e-4 * energy_norm(contact, change)
+        state = 0.97 * march.state
+
+
+@pytest.mark.parametrize("place", [*ALONG, *ASIDE], ids=str)
+def test_work_is_dissipated(place):
+    """The motion's work is what is stored, what friction takes and what Euler steps lose."""
+    scene, velocity, amplitude = place
+    motion = Motion(scene_named(scene), velocity, amplitude, 0.0)
+    resolution = Resolution(16, 1, 256)
+    contact, found = build_contact(motion, "radial", resolution), run(*place, "radial", 16, 256)
+    phase = motion.path(contact, 256).phase
+    path = make_path(motion.displacement, phase, EULER, motion.depth)
+    before = found.state
+    march = contact.march(path, before, 1e-11)
+    moves = np.diff(path.positions[:, :2], axis=0)
+    work = np.sum(moves * march.forces[1:, :2])
+    tractions = march.stages
+    slip = moves[:, :, None] - np.diff(tractions, axis=0) @ contact.influence.T
+    lost = contact.weight * np.sum(tractions[1:] * slip, axis=1)
+    assert (lost >= -1e-9).all()
+    stored = 0.5 * sum(
+        sign * np.vdot(contact.weight * q, contact.displacement(q))
+        for sign, q in ((1.0, march.state), (-1.0, before))
+    )
+    changes = np.diff(tractions, axis=0)
+    numerical = 0.5 * np.sum(contact.weight * changes * (changes @ contact.influence.T))
+    assert work == pytest.approx(lost.sum() + stored + numerical, abs=1e-7)
+
+
+def test_slow_sliding_tends_to_the_least_load():
+    """The whole contact waits for the moment at which it is pressed the least."""
+    for scene, power in (("normal", 1.0), ("normal:indentation=1", 1.5)):
+        mean = scene_named(scene).mean_load(0.6, HERTZ)
+        exact = 0.4**power / mean
+        assert microslip.solve(scene, 0.0, 0.6).mu_macro == pytest.approx(exact, abs=1e-12)
+        rings = microslip.solve(scene, 0.0, 0.6, model="radial")
+        assert abs(rings.mu_macro - exact) <= rings.mu_macro_error
+        errors = [run(scene, v, 0.6).mu - exact for v in (1e-2, 1e-3)]
+        assert 0.0 < errors[1] < 0.15 * errors[0] < 0.02
+
+
+@pytest.mark.parametrize("scene", ["normal", "normal:indentation=1"])
+def test_a_contact_that_lifts_off_has_no_static_friction(scene):
+    assert microslip.solve(scene, 0.0, 1.0).mu_macro == 0.0
+    assert microslip.solve(scene, 0.0, 1.8).mu_macro == 0.0
+    assert microslip.solve(scene, 1e-4, 1.5, model="radial").mu_macro < 1e-3
+
+
+@pytest.mark.parametrize("scene", ["normal", "normal:indentation=1", "normal:lateral=1"])
+def test_fast_sliding_feels_the_mean_load(scene):
+    for amplitude in (0.5, 1.5):
+        answer = microslip.solve(scene, 50.0, amplitude, model="radial")
+        assert answer.mu_macro == pytest.approx(1.0, abs=2e-3)
+
+
+def test_without_vibration_friction_is_that_of_coulomb():
+    assert microslip.solve("normal", 0.1, 0.0).mu_macro == 1.0
+    assert microslip.solve("normal", 0.1, 1e-4).mu_macro == pytest.approx(1.0, abs=1e-3)
+
+
+def test_a_small_change_of_the_load_is_one_of_the_indentation():
+    """Load goes like the power 3/2 of the indentation, so that small shares differ by that."""
+    load = 1.0 - scene_named("normal").whole(1e-3, 0.015, HERTZ)
+    indentation = 1.0 - scene_named("normal:indentation=1").whole(1e-3, 0.01, HERTZ)
+    assert load == pytest.approx(indentation, rel=0.01)
+
+
+def test_a_small_normal_part_leaves_the_motion_in_the_plane():
+    """... whether it is lateral or forward."""
+    aside = microslip.solve("normal:load=0.0001,lateral=1", 0.1, 0.7)
+    assert aside.mu_macro == pytest.approx(
+        microslip.solve("transverse", 0.1, 0.7).mu_macro, abs=2e-3
+    )
+    along = microslip.solve("normal:load=0.0001,forward=1", 0.1, 0.7)
+    exact = microslip.solve("longitudinal", 0.1, 0.7).mu_macro
+    assert along.mu_macro == pytest.approx(exact, abs=2e-3)
+
+
+def test_half_a_period_suffices_where_it_is_mirrored():
+    """Twice as fast a load over a lateral oscillation; with phases a whole period later, too."""
+    scene = scene_named("normal:lateral=1,normal_cycles=2")
+    assert scene.half_period_mirror
+    assert not scene_named("normal:lateral=1").half_period_mirror
+    motion = Motion(scene, 0.1, 0.8, 0.0)
+    contact = build_contact(motion, "radial", Resolution(16, 1, 64))
+    phase = np.linspace(-0.25, 1.75, 513) * np.pi
+    path = make_path(motion.displacement, phase, depth=motion.depth)
+    state = np.zeros((2, 1, 16))
+    for _ in range(12):
+        march = contact.march(path, state, 1e-9)
+        state = march.state
+    half = run(scene.name, 0.1, 0.8, cells=16, steps=256)
+    assert path.mean(march.forces[:, 0]) == pytest.approx(half.mu, abs=1e-3)
+
+
+def test_friction_rises_with_velocity_and_falls_with_amplitude():
+    for scene in ("normal", "normal:indentation=1"):
+        whole = scene_named(scene).whole
+        table = np.array(
+            [[whole(v, a, HERTZ) for v in (1e-3, 0.03, 0.1, 0.4)] for a in (0.2, 0.7, 1.3)]
+        )
+        assert (np.diff(table, axis=1) > 0.0).all()
+        assert (np.diff(table, axis=0) < 0.0).all()
+
+
+def test_in_step_with_the_load_an_oscillation_drives_the_contact():
+    """Pressed harder on its way forward than back: friction resists less, or drives."""
+    scene = "normal:forward=1,phase={}"
+    ahead, back = (microslip.solve(scene.format(p), 0.02, 0.8).mu_macro for p in (180, 0))
+    assert ahead < -0.3 and back > 0.5
+
+
+@pytest.mark.parametrize(
+    ("scene", "message"),
+    [
+        ("normal:load=0", "allowed is load or indentation above 0"),
+        ("normal:load=0.5,indentation=1", "allowed is no load beside an indentation"),
+        ("normal:lateral=2", "lateral = 2: allowed is a share in 0..1"),
+        ("normal:load=-1", "load = -1: allowed is a share in 0..1"),
+        ("normal:normal_cycles=0.5", "normal_cycles = 0.5: allowed is a whole number"),
+        ("normal:depth=1", "unknown number depth"),
+    ],
+)
+def test_what_is_no_motion_is_refused(scene, message):
+    with pytest.raises(ValueError, match=message):
+        microslip.solve(scene, 0.1, 0.5)
+
+
+@pytest.mark.parametrize("model", sorted(MODELS.keys() - {"mdr", "radial", "polar"}))
+def test_models_that_know_one_load_are_refused(model):
+    with pytest.raises(ValueError, match=f"model = '{model}': .* constant normal load"):
+        microslip.solve("normal", 0.1, 0.5, model=model)
+
+
+@pytest.mark.parametrize("method", ["paper", "admm", "theta"])
+def test_methods_that_know_one_load_are_refused(method):
+    with pytest.raises(ValueError, match=f"method = '{method}'"):
+        microslip.solve("normal", 0.1, 0.5, model="radial", method=method)
+
+
+def test_a_method_with_another_integrator_finds_the_same():
+    answer = microslip.solve("normal", 0.1, 0.5, model="radial", method="euler", tolerance=1e-2)
+    assert (
+        abs(answer.mu_macro - scene_named("normal").whole(0.1, 0.5, HERTZ)) <= answer.mu_macro_error
+    )
+
+
+def test_an_imposed_resolution_is_kept():
+    answer = microslip.solve("normal:lateral=1", 0.1, 0.5, cells=12, steps=64)
+    assert (answer.cells, answer.steps_per_period) == (12, 64)
+    assert answer.periodic
+    assert answer.converged is (answer.mu_macro_error <= answer.tolerance)
+
+
+def test_the_command_line_knows_it(capsys):
+    words = ["point", "normal", "--velocity", "0.1", "--amplitude", "0.5", "--json"]
+    assert cli.main(words) == 0
+    assert json.loads(capsys.readouterr().out)["model"] == "closed-form"
+    assert cli.main([*words, "--path", "lateral=1,phase=90"]) == 0
+    assert json.loads(capsys.readouterr().out)["scene"] == "normal:lateral=1,phase=90"
+
+
+def test_a_history_follows_the_load():
+    """Sliding fast the force is the load."""
+    found = microslip.history("normal", 200.0, 0.7, start="full-slip", periods=1)
+    expected = 1.0 + 0.7 * np.sin(found.phase)
+    assert found.force_forward[1:] == pytest.approx(expected[1:], abs=1e-6)
+
+
+# Other indenters
+
+
+@pytest.mark.parametrize("pressure", ["power:exponent=1", "power:exponent=8", "punch"])
+@pytest.mark.parametrize(
+    ("scene", "velocity", "amplitude"),
+    [("normal", 0.1, 0.5), ("normal:indentation=1", 0.03, 1.4)],
+)
+def test_closed_form_springs_and_rings_agree_for_other_indenters(
+    pressure, scene, velocity, amplitude
+):
+    exact = microslip.solve(scene, velocity, amplitude, pressure=pressure)
+    assert exact.model == "closed-form"
+    for model in ("mdr", "radial"):
+        settings = {"pressure": pressure, "model": model, "tolerance": 5e-3}
+        found = microslip.solve(scene, velocity, amplitude, **settings)
+        assert found.converged
+        assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error
+
+
+@pytest.mark.parametrize("exponent", [1.0, 8.0])
+def test_static_friction_of_power_laws(exponent):
+    """The load goes like the power (n + 1)/n of the depth, and the least one is what is left."""
+    pressure = f"power:exponent={exponent:g}"
+    by_load = microslip.solve("normal", 0.0, 0.4, pressure=pressure)
+    assert by_load.mu_macro == pytest.approx(0.6, abs=1e-9)
+    by_depth = microslip.solve("normal:indentation=1", 0.0, 0.4, pressure=pressure)
+    phase = np.linspace(0.0, 2.0 * np.pi, 1001)[:-1]
+    power = (exponent + 1.0) / exponent
+    mean = np.mean((1.0 + 0.4 * np.sin(phase)) ** power)
+    assert by_depth.mu_macro == pytest.approx(0.6**power / mean, abs=1e-9)
+    assert microslip.solve("normal", 0.0, 1.0, pressure=pressure).mu_macro == 0.0
+
+
+def test_the_power_2_is_a_sphere_under_a_load_that_changes():
+    for scene in ("normal", "normal:indentation=1"):
+        one, other = (
+            microslip.solve(scene, 0.1, 1.2, pressure=name).mu_macro for name in ("hertz", "power")
+        )
+        assert other == pytest.approx(one, abs=1e-10)
+
+
+@pytest.mark.parametrize("pressure", ["ring", "ellipse"])
+def test_the_load_of_what_is_no_indenter_cannot_change(pressure):
+    with pytest.raises(ValueError, match=f"pressure = '{pressure}': does not go with normal"):
+        microslip.solve("normal", 0.1, 0.5, pressure=pressure)

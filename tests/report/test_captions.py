@@ -1,0 +1,56 @@
+"""Captions of the report, and the pictures of the pages."""
+
+from __future__ import annotations
+
+import runpy
+from pathlib import Path
+from types import SimpleNamespace
+
+import docutils.core
+import jinja2
+import pytest
+from PIL import Image
+
+from microslip.report.figures import drawing
+
+ROOT = Path(__file__).parents[2]
+TITLES = ["`x_ *b* |c|", r"$\frac{", "[1]_ :r:`z` <b>", "..", "plain"]
+
+
+def caption(figure, **settings):
+    """A caption as HTML."""
+    text = (ROOT / "workflow" / "report" / "figure.rst").read_text(encoding="utf-8")
+    wildcards, config = SimpleNamespace(figure=figure), SimpleNamespace(**settings)
+    given = SimpleNamespace(wildcards=wildcards, config=config, input=["a.nc"])
+    written = jinja2.Template(text).render(snakemake=given)
+    return docutils.core.publish_parts(written, writer="html")["body"]
+
+
+@pytest.mark.parametrize("title", TITLES)
+def test_a_caption_shows_a_title_as_it_stands(title):
+    sweep = {"title": title, "group": "g", "scene": "bore", "pressure": "hertz", "tolerance": 1}
+    shown = caption("extended_g", histories=None, extended={"a": SimpleNamespace(**sweep)})
+    assert "system-message" not in shown
+    assert title.replace("<", "&lt;").replace(">", "&gt;") in shown
+
+
+def test_figure_5_starts_from_full_forward_slip():
+    number = SimpleNamespace(velocity=0.8)
+    shown = caption("fig5_transients", histories=SimpleNamespace(transients=number))
+    assert "full forward slip" in " ".join(shown.split())
+    assert "lateral slip" not in shown
+
+
+def test_pictures_of_the_pages_are_made_from_figures_and_are_smaller(tmp_path, monkeypatch):
+    make = runpy.run_path(str(ROOT / "docs" / "make_images.py"))
+    (tmp_path / "figures").mkdir()
+    Image.effect_noise((300, 150), 60).convert("RGB").save(tmp_path / "figures" / "fig1.png")
+    monkeypatch.setitem(make["main"].__globals__, "IMAGES", tmp_path)
+    make["main"](tmp_path, "fig1")
+    with Image.open(tmp_path / "fig1.png") as image:
+        assert image.size == (200, 100)
+        assert image.mode == "RGB"  # fewer colours would take one curve for another
+    with pytest.raises(SystemExit, match="run the workflow first"):
+        make["main"](tmp_path, "fig9")
+    pictures = (ROOT / "docs" / "images").glob("*.png")
+    assert {*drawing.FIGURES} <= {path.stem for path in pictures}

@@ -1,0 +1,129 @@
+"""The page about the claims: what it names, and that it can be repeated."""
+
+import ast
+import html
+import inspect
+import re
+import shlex
+from importlib import import_module
+
+import pytest
+from stubs.claims_stub import answered, configured
+
+from microslip.app import cli
+from microslip.foundation.canonical import number
+from microslip.report import claims_page, study_page
+from microslip.studies import registry
+from microslip.studies.claims.runs import command
+from microslip.sweeps import sealed_files
+
+
+@pytest.fixture(scope="module")
+def data():
+    return registry.build("claims", configured(), answered()[0])
+
+
+@pytest.fixture(scope="module")
+def page(data):
+    return claims_page.page(data, ["a line"])
+
+
+def requests():
+    """All requests of the study."""
+    long, short = registry.pieces("claims", configured())
+    return [request for piece in long + short for request in piece]
+
+
+def test_every_verdict_is_there_with_a_run_that_shows_it(page, data):
+    top = page[: page.index('<h2 id="claim1"')]
+    rows = re.findall(r"<tr><td.*?</tr>", top, flags=re.DOTALL)
+    assert len(rows) == 9
+    for row, verdict in zip(rows, data["verdict"].values, strict=True):
+        assert claims_page.WORDS[int(verdict)] in row
+        assert re.search(r'href="#run\d+"', row)
+    sections = page.split('<h2 id="claim')[1:]
+    for section in sections:
+        assert "<code>" in section.partition("<details>")[0]
+
+
+def test_links_lead_somewhere_and_nothing_lies_outside(page):
+    links = set(re.findall(r'href="([^"]*)"', page))
+    assert links
+    for link in links:
+        assert link.startswith("#")
+        assert f'id="{link[1:]}"' in page
+    assert not re.search(r"https?://|<script|<link|<img|@import|url\(", page)
+
+
+def test_every_run_has_its_name_and_the_line_that_repeats_it(page, data):
+    text = html.unescape(page[page.index("id='runs'") :])
+    for key, line in zip(data["run"].values, data["run_command"].values, strict=True):
+        assert key in text
+        assert line in text
+
+
+def test_numbers_are_those_of_the_dataset(page, data):
+    for scene in ("transverse", "bore"):
+        for value in data[f"{scene}_paper"].values:
+            assert f"{value:.4f}" in page
+    assert f"{float(data['bore_gap_zone']):.4f}" in page
+    assert "53.3 % more than the limit" in page
+
+
+@pytest.mark.parametrize("request_", [r for r in requests() if r["kind"] == "point"][::7], ids=str)
+def test_the_line_for_a_point_asks_for_that_point(request_):
+    program, *words = shlex.split(command(request_))
+    assert program == "microslip"
+    options = cli.build_parser("point").parse_args(words)
+    assert options.scene == request_["scene"]
+    amplitude = getattr(options, "amplitude", None)
+    given = {n: number(float(getattr(options, n))) for n in ("velocity", "poisson", "tolerance")}
+    given["amplitude"] = None if amplitude is None else number(float(amplitude))
+    given["model"] = options.model
+    for name in ("cells", "steps"):
+        text = getattr(options, name)
+        given[name] = None if text is None else int(text)
+    assert given == {name: request_[name] for name in given}
+
+
+@pytest.mark.parametrize("kind", ["history", "field", "patches", "run"])
+def test_other_lines_call_what_is_there_with_what_was_asked(kind):
+    request_ = next(r for r in requests() if r["kind"] == kind)
+    python, dash, code = shlex.split(command(request_))
+    assert (python, dash) == ("python", "-c")
+    load, show = ast.parse(code).body
+    function = getattr(import_module(load.module), load.names[0].name)
+    (call,) = [
+        node
+        for node in ast.walk(show)
+        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == function.__name__
+    ]
+    values = [ast.literal_eval(a) for a in call.args]
+    named = {k.arg: ast.literal_eval(k.value) for k in call.keywords}
+    bound = inspect.signature(function).bind(*values, **named).arguments
+    for name, value in request_.items():
+        if name == "kind" or value is None:
+            continue
+        numeric = isinstance(bound[name], int | float)
+        assert bound[name] == (float(value) if numeric else value)
+
+
+def test_text_of_a_dataset_is_no_markup(data):
+    sly = data.assign(statement=("claim", ["<b>&" for _ in data["claim"]]))
+    page = claims_page.page(sly, ["<i>"])
+    assert "<b>" not in page
+    assert "<i>" not in page
+    assert "&lt;b&gt;&amp;" in page
+
+
+def test_the_page_is_written_whole_and_sealed(data, tmp_path):
+    path = tmp_path / "claims.html"
+    study_page.write("claims", path, data, ["a line"])
+    assert path.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
+    assert sealed_files.seal_of(path).exists()
+    assert not sealed_files.is_damaged(path)
+
+
+def test_pages_of_other_studies_are_as_they_were(data, tmp_path):
+    study_page.write("stability", tmp_path / "page.html", data, ["a line"])
+    assert "<pre>" in (tmp_path / "page.html").read_text(encoding="utf-8")

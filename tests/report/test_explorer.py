@@ -1,0 +1,194 @@
+"""The explorer's page: what it holds, how large it is, that it needs no network; its rule."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+from stubs import explorer_stub as stub
+from stubs.workflow_project import AXES, ROOT, TINY, Project
+
+from microslip.config import load
+from microslip.datasets import theory_limits
+from microslip.report.explorer import explorer, page, payload, requests
+from microslip.sweeps import period_codec
+from microslip.sweeps.cache import Store
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Datasets and periods by the names of maps, and what the page holds of them."""
+    folder = tmp_path_factory.mktemp("explorer")
+    datasets, records = stub.computed(folder, Store(folder))
+    return datasets, records, payload.build(datasets, records)
+
+
+def map_of(content, name):
+    (found,) = (given for given in content["maps"] if given["name"] == name)
+    return found
+
+
+@pytest.mark.parametrize("name", requests.MAPS)
+def test_points_and_limits_are_those_of_the_dataset(made, name):
+    dataset, found = made[0][name], map_of(made[2], name)
+    assert found["velocity"] == list(dataset.velocity.values)
+    for key, values in found["points"].items():
+        if dataset[key].dtype.kind == "f":
+            values = np.array(values, float)
+        assert np.array_equal(values, dataset[key].values), key
+    assert len(found["limits"]) == len(theory_limits.LIMITS[name])
+    for given, key in zip(found["limits"], theory_limits.LIMITS[name], strict=True):
+        assert np.array_equal(given["values"], dataset[key].values)
+        assert given["long_name"] == dataset[key].long_name
+        if len(given["dims"]) == 1:
+            assert np.array_equal(given["curve"][1], dataset[f"{key}_curve"].values)
+
+
+@pytest.mark.parametrize("name", requests.MAPS)
+def test_periods_come_back_within_the_steps_that_they_are_kept_in(made, name):
+    _, records, content = made
+    packed = map_of(content, name)["periods"]
+    count, shape = packed["count"], (packed["frames"] // 2, packed["angles"], packed["cells"])
+    kept = [record["result"] for record in records[name] if "tractions" in record["result"]]
+    assert count == len(kept)
+
+    def values(key, kind, *shape):
+        return period_codec.values_of(packed[key], kind).reshape(count, *shape)
+
+    shares = values("tractions", np.int8, shape[0], 2, *shape[1:]) / period_codec.SHARES
+    slips = np.unpackbits(values("slips", np.uint8, -1), axis=1, count=int(np.prod(shape)))
+    forces = packed["force_step"] * values("forces", np.int16, 2, -1)
+    phases = packed["start"] + values("phases", np.uint16, -1) * (2 * np.pi / 65535)
+    other = {"transverse": "force_lateral", "bore": "torque"}[name]
+    for k, result in enumerate(kept):
+        truth = period_codec.unpacked(result)
+        half = truth["bound"].size // 2
+        for c, way in enumerate(("forward", "lateral")):
+            share = truth[f"traction_{way}"][: shape[0], :half] / truth["bound"][:half]
+            assert shares[k, :, c].reshape(share.shape) == pytest.approx(share, abs=1e-9)
+        assert (slips[k].reshape(shape[0], -1) == truth["slips"][: shape[0], :half]).all()
+        assert forces[k, 0] == pytest.approx(truth["force_forward"], abs=packed["force_step"])
+        assert forces[k, 1] == pytest.approx(truth[other], abs=packed["force_step"])
+        assert phases[k] == pytest.approx(truth["phase"], abs=5e-5)
+        for key in ("radius", "bound"):
+            kept_in = values({"radius": "radii", "bound": "bounds"}[key], np.uint16, -1)[k]
+            assert kept_in / 65535 == pytest.approx(result[key], abs=8e-6)
+    assert packed["force_step"] < 5e-5
+
+
+def test_every_point_that_moves_and_oscillates_has_a_period_or_a_reason(made):
+    for name in requests.MAPS:
+        dataset, packed = made[0][name], map_of(made[2], name)["periods"]
+        moves = (dataset.amplitude > 0) & (dataset.velocity > 0)
+        has = np.array(packed["index"]) >= 0
+        for i, j, reason in packed["failed"]:
+            assert (name, i, j) == stub.NO_PERIOD
+            assert reason == "none to be found"
+            has[i, j] = True
+        assert (has == moves.values).all()
+
+
+def test_the_default_configuration_has_a_period_for_every_point_and_stays_small(tmp_path):
+    default = load.load(ROOT / "config" / "config.yaml")
+    datasets, records = stub.made_up(tmp_path, default)
+    for name in requests.MAPS:
+        grid = default.sweeps[name]
+        assert len(records[name]) == np.count_nonzero(grid.amplitude) * len(grid.velocity)
+    explorer.write(tmp_path / "explorer.html", datasets, records)
+    size = (tmp_path / "explorer.html").stat().st_size
+    assert size < 13e6  # of 15: a made-up number may be shorter than a computed one
+
+
+def test_a_finer_map_has_periods_for_some_points_of_both_axes():
+    fine = {"log": {"start": 0.001, "stop": 10, "count": 101}}
+    configuration = stub.configured(velocity=fine, amplitude=[0, *range(1, 51)])
+    asked = explorer.period_requests(configuration, "bore")
+    assert 300 < len(asked) <= 625
+    assert len({request["velocity"] for request in asked}) == 34
+    assert len({request["amplitude"] for request in asked}) == 17
+
+
+def test_a_map_that_has_no_room_is_refused():
+    fine = {"log": {"start": 0.001, "stop": 10, "count": 101}}
+    configuration = stub.configured(velocity=fine, amplitude=[0, *range(1, 51)])
+    assert explorer.refusal(stub.configured()) is None
+    assert explorer.refusal(configuration) == (
+        "sweeps.transverse: 5,151 points have no room in the explorer; allowed: up to 5,000"
+    )
+
+
+def test_the_page_asks_for_nothing_outside(made, monkeypatch):
+    monkeypatch.setattr(page, "get_plotlyjs", lambda: "// the library")
+    text = page.page(made[2])
+    # The addresses in it are names: of SVG, and of the paper in what made the datasets.
+    addresses = set(re.findall(r"\w+://[^\s\"'<>]+", text))
+    assert addresses == {"http://www.w3.org/2000/svg"}
+    assert not re.search(
+        r"<(link|img|iframe)|\s(src|href)=|@import|fetch\(|XMLHttp|WebSocket", text
+    )
+    assert "default-src 'none'" in text
+    assert text == page.page(made[2])
+
+
+def test_text_in_a_dataset_cannot_end_the_script(made):
+    held = json.loads(json.dumps(made[2]))
+    held["maps"][0]["made"].append(["title", "</script><script>alert(1)"])
+    assert page.page(held).count("</script>") == page.page(made[2]).count("</script>")
+
+
+def test_a_period_that_belongs_to_no_point_is_refused(made):
+    datasets, records, _ = made
+    stray = records["bore"][0] | {"request": records["bore"][0]["request"] | {"velocity": "7"}}
+    with pytest.raises(ValueError, match="a period at '7', which the map has not"):
+        payload.build({"bore": datasets["bore"]}, {"bore": [stray]})
+
+
+def test_a_dataset_without_what_is_shown_is_refused(made):
+    datasets, records, _ = made
+    with pytest.raises(ValueError, match="explorer: dataset 'bore' has no variable 'mu_static'"):
+        payload.build({"bore": datasets["bore"].drop_vars("mu_static")}, records)
+
+
+def test_the_log_names_periods_that_did_not_converge(made):
+    lines = list(explorer.report(made[1]))
+    assert lines[0] == "explorer: transverse: 6 periods, 1 not converged"
+    assert "  not converged: amplitude 1.2, velocity 0.02: none to be found" in lines
+
+
+def test_all_assets_are_there_and_short():
+    assert set(explorer.ASSETS) == {
+        path.name for path in page.FOLDER.iterdir() if path.suffix not in (".py", "")
+    }
+    for name in explorer.ASSETS:
+        assert len((page.FOLDER / name).read_text().splitlines()) <= 300, name
+
+
+# The rule
+
+
+@pytest.mark.slow
+def test_the_workflow_makes_the_page_and_makes_it_again_only_when_it_changes(tmp_path):
+    project = Project(tmp_path)
+    sweeps = dict.fromkeys(requests.MAPS, AXES)
+    project.configure(TINY | {"sweeps": sweeps, "points_per_job": 50})
+    assert "explorer" not in project.planned()
+    project.run("explorer")
+    text = (tmp_path / "results" / "explorer.html").read_text(encoding="utf-8")
+    assert '"name":"bore"' in text
+    assert len(list(tmp_path.glob("results/periods/*/*/*.json"))) == 4
+    assert "bore: 2 periods, none" in (tmp_path / "results" / "logs" / "explorer.log").read_text()
+    assert project.planned("explorer") == {}
+    project.append("src/microslip/explorer/disc.js", "\n// Another look.\n")
+    assert project.planned("explorer") == {"explorer": 1}
+
+
+@pytest.mark.slow
+def test_without_a_map_there_is_nothing_to_explore(tmp_path):
+    project = Project(tmp_path)
+    project.configure({"sweeps": {"transverse": AXES | {"amplitude": [1]}}})
+    done = project.snakemake("explorer", "-j2", "--configfile", "tiny.yaml")
+    assert done.returncode != 0
+    assert (
+        done.stderr.strip().split("\n")[-1].startswith("Error in tiny.yaml: sweeps: the explorer")
+    )
+    assert "Traceback" not in done.stderr

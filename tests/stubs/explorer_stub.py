@@ -1,0 +1,70 @@
+"""Small maps with periods behind their points, computed or made up, for tests of the explorer."""
+
+import numpy as np
+from stubs.sweep_stub import EFFORT
+
+from microslip.config import load
+from microslip.datasets import netcdf, sweep_dataset
+from microslip.report.explorer import explorer
+from microslip.sweeps import batches
+
+AXES = {"velocity": [0, 0.02, 0.1, 1], "amplitude": [0, 0.6, 1.2], "tolerance": 1e-2}
+BAD_POINT = ("transverse", 1, 3)  # a map and a place on it that is made not to have converged
+NO_PERIOD = ("transverse", 2, 3)
+BAD_PERIOD = ("bore", 2, 1)
+
+
+def configured(**axes):
+    return load.from_mapping({"sweeps": dict.fromkeys(("transverse", "bore"), AXES | axes)})
+
+
+def computed(folder, store):
+    """Datasets and periods of both maps as the workflow would make them, but for what went wrong.
+
+    Returns (datasets, periods), each by the names of maps.
+    """
+    configuration = configured()
+    datasets, periods = {}, {}
+    for name, grid in configuration.sweeps.items():
+        points = [batches.answer(request, store)[0] for request in batches.PointRequests(grid)]
+        asked = explorer.period_requests(configuration, name)
+        periods[name] = [batches.answer(request, store)[0] for request in asked]
+        if name == BAD_POINT[0]:
+            at = BAD_POINT[1] * len(grid.velocity) + BAD_POINT[2]
+            points[at]["result"] |= {"converged": False, "reason": "made up"}
+        for where, result in ((NO_PERIOD, {}), (BAD_PERIOD, None)):
+            if name == where[0]:
+                wanted = str(grid.amplitude[where[1]]), f"{grid.velocity[where[2]]:g}"
+                (record,) = (r for r in periods[name] if place(r) == wanted)
+                kept = record["result"] if result is None else {}
+                record["result"] = kept | {"converged": False, "reason": "none to be found"}
+        path = folder / f"{name}.nc"
+        sweep_dataset.write_sweep(path, grid, points, [], configuration.of_sweep(name))
+        datasets[name] = netcdf.whole(path)
+    return datasets, periods
+
+
+def place(record):
+    return record["request"]["amplitude"], record["request"]["velocity"]
+
+
+def made_up(folder, configuration):
+    """Datasets of a whole configuration with made-up points, and every period the same one."""
+    datasets, periods = {}, {}
+    for name in explorer.maps_of(configuration):
+        grid = configuration.sweeps[name]
+        result = EFFORT | {"mu_macro": 1 / 3, "mu_macro_error": 1e-4, "converged": True}
+        result |= {f"error_{part}": 1 / 7 for part in ("space", "time", "periodicity", "solver")}
+        points = [{"result": result, "versions": {}}] * len(batches.PointRequests(grid))
+        path = folder / f"{name}.nc"
+        sweep_dataset.write_sweep(path, grid, points, [], configuration.of_sweep(name))
+        datasets[name] = netcdf.whole(path)
+        asked = explorer.period_requests(configuration, name)
+        one = batches.answers.computed(asked[len(asked) // 2])
+        periods[name] = [{"request": request, "result": one} for request in asked]
+    return datasets, periods
+
+
+def mean_over(phase, values):
+    """Mean over a period of values at phases that need not be even."""
+    return np.trapezoid(values, phase) / (phase[-1] - phase[0])

@@ -1,0 +1,112 @@
+"""Small configurations of the studies, and made-up answers to what they ask."""
+
+from microslip.config import load
+from microslip.foundation import canonical
+from microslip.studies import registry
+from microslip.sweeps import keys
+from microslip.theory import paper
+
+SWEEPS = {"bore": {"velocity": [1], "amplitude": [1]}}
+ACCURACY = {
+    "methods": ["shipped", "euler", "paper", "full-newton"],
+    "points": {
+        "mid": {"scene": "transverse", "velocity": 0.1, "amplitude": 0.5, "title": "half way"},
+        "steady": {"scene": "continuous-bore", "velocity": 0.8},
+    },
+    "levels": 3,
+    "repeats": 2,
+    "map": {
+        "velocity": [0.1, 1],
+        "amplitude_transverse": [0.5, 2],
+        "amplitude_bore": [1, 2],
+        "tolerance": [0.01, 0.001],
+    },
+}
+STABILITY = {"methods": ["shipped", "admm", "euler"], "axes": ["poisson", "penalty", "steps"]}
+
+
+def configured(accuracy=(), stability=()):
+    """A configuration of both studies with some settings changed."""
+    given = {"accuracy": ACCURACY | dict(accuracy), "stability": STABILITY | dict(stability)}
+    return load.from_mapping({"sweeps": SWEEPS} | given)
+
+
+def asked(study, configuration):
+    """All requests of a study as canonical JSON, in a list."""
+    long, short = registry.pieces(study, configuration)
+    return [canonical.canonical_json(request) for piece in long + short for request in piece]
+
+
+GOOD = {
+    "applies": True,
+    "converged": True,
+    "periodic": True,
+    "mu_macro": 0.5,
+    "mu_macro_error": 1e-3,
+    "reason": "",
+}
+
+
+def answered(results):
+    """A function that answers requests by `results(request)`, and a list of what it was asked."""
+    seen = []
+
+    def answer(request):
+        seen.append(canonical.canonical_json(request))
+        key = keys.result_key(request, "d")
+        return {"key": key, "result": results(request), "versions": {"numpy": "2.0"}}
+
+    return answer, seen
+
+
+def mu_of(request):
+    amplitude = float(request["amplitude"] or 0)
+    return float(request["velocity"]) / (1 + float(request["velocity"]) + amplitude)
+
+
+def accuracy_result(request):
+    """Answers: errors of 0.1/cells^2, times of cells * 1e-3 s, work of cells^2; the slider is wrong
+    by 0.005 and takes 1e-5 s."""
+    kind = request["kind"]
+    if kind == "scaling":
+        n = request["cells"] * request["angles"]
+        return {"unknowns": 2 * n, "iterations": n**0.5, "seconds": 1e-6 * n**2, "memory": 8 * n}
+    if kind == "point":
+        return {"mu_macro": mu_of(request), "mu_macro_error": 2e-4, "converged": True} | {
+            "model": "radial",
+            "reason": "",
+        }
+    if kind == "choice":
+        error = 0.3 * float(request["tolerance"])
+        found = {"mu_macro": mu_of(request) - error, "mu_macro_error": 2 * error, "cells": 24}
+        return found | {
+            "seconds": 9.0,
+            "effort": 900,
+            "steps_per_period": 64 if request["amplitude"] else 0,
+            "converged": True,
+        }
+    if request["method"] == "full-newton":
+        return {"applies": False, "converged": False, "reason": "not here"}
+    if request["method"] == "euler":
+        return {"applies": True, "converged": False, "reason": "gave up", "seconds": 1e-9}
+    cells = request["cells"]
+    error, seconds = 0.1 / cells**2, 1e-3 * cells
+    if request["model"] == "slider":
+        error, seconds = 0.005, 1e-5
+    mu = (
+        mu_of(request)
+        if request["amplitude"]
+        else float(paper.bore_forward(float(request["velocity"])))
+    )
+    return {"mu_macro": mu + error, "converged": True, "reason": "", "seconds": seconds} | {
+        "effort": cells**2,
+        "applies": True,
+    }
+
+
+def stability_result(request):
+    if request["kind"] == "point":
+        return {"mu_macro": 0.5, "mu_macro_error": 1e-5, "converged": True}
+    if request["method"] == "euler":
+        return GOOD | {"converged": False, "periodic": False, "reason": "gave up", "work": 7}
+    return GOOD | {"mu_macro": 0.5005, "work": 12}

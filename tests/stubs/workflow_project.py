@@ -1,0 +1,76 @@
+"""A copy of the project in a folder of its own, for Snakemake to run and for tests to edit."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import yaml
+
+ROOT = Path(__file__).parents[2]
+SNAKEMAKE = Path(sys.executable).with_name("snakemake")
+RUN = ["-j2", "--configfile", "tiny.yaml"]
+
+# Closed forms and the rigid model: points that cost nothing.
+AXES = {"velocity": [0.5, 2], "amplitude": [0, 1], "model": "rigid", "tolerance": 1e-2}
+TINY = {
+    "sweeps": {
+        "transverse": AXES,
+        "bore": AXES,
+        "continuous_bore": {"velocity": [0.5, 2], "model": "rigid", "tolerance": 1e-2},
+    },
+    "histories": {
+        "transverse": {"periods": 1, "cells": 4, "steps": 16},
+        "field": {"cells": 4},
+        "transients": {"travel": 1.0, "cells": 4, "steps": 16},
+    },
+    "points_per_job": 3,
+}
+ALL_JOBS = {"warm_up": 1, "solve_batch": 8, "collect": 3, "draw_figure": 6, "all": 1}
+
+
+class Project:
+    """A copy of the project to run and to edit."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        for name in ("config", "profiles", "src", "workflow"):
+            shutil.copytree(ROOT / name, folder / name)
+        shutil.copy(ROOT / "Snakefile", folder)
+        self.configure(TINY)
+
+    def configure(self, configuration):
+        (self.folder / "tiny.yaml").write_text(yaml.safe_dump(configuration))
+
+    def snakemake(self, *arguments):
+        # Nothing of the environment is activated: only the path of the executable is known.
+        return subprocess.run(
+            [SNAKEMAKE, *arguments],
+            cwd=self.folder,
+            env={"PATH": "/usr/bin:/bin", "HOME": os.environ.get("HOME", str(self.folder))},
+            capture_output=True,
+            text=True,
+            timeout=900,
+        )
+
+    def run(self, *targets):
+        done = self.snakemake(*targets, *RUN)
+        assert done.returncode == 0, done.stderr
+        return done.stdout + done.stderr
+
+    def planned(self, *targets):
+        """Jobs that a run would do, by rule; {} if there is nothing to do."""
+        done = self.snakemake(*targets, *RUN, "--dry-run")
+        assert done.returncode == 0, done.stderr
+        table = re.search(r"^-+  -+\n(.*?)^total", done.stdout, re.MULTILINE | re.DOTALL)
+        rows = table[1].split("\n")[:-1] if table else []
+        return {name: int(count) for name, count in map(str.split, rows)}
+
+    def points(self):
+        return {p.name: p.read_bytes() for p in self.folder.glob("results/points/*/*/*.json")}
+
+    def append(self, path, text):
+        with open(self.folder / path, "a") as file:
+            file.write(text)

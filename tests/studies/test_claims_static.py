@@ -1,0 +1,156 @@
+"""Numbers of the claims against independent ones: quadrature, other models, the solver itself."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from stubs.claims_stub import configured
+
+import microslip
+from microslip.adaptive.stick_area import patches
+from microslip.studies.claims import claims, static_limits
+from microslip.sweeps import batches
+from microslip.sweeps.cache import Store
+from microslip.theory import hertz
+from microslip.theory import paper as theory
+
+
+def integral(share, stick_radius):
+    """Load inside a radius, each ring weighted by a share of its bound."""
+    value, _ = quad(
+        lambda r: 2 * math.pi * r * float(hertz.friction_bound(r)) * share(r),
+        0,
+        stick_radius,
+        limit=400,
+        epsabs=1e-10,
+    )
+    return value
+
+
+@pytest.mark.parametrize(
+    ("scene", "amplitude"),
+    [("transverse", 0.25), ("transverse", 0.75)] + [("bore", a) for a in (0.5, 1.0, 2.0)],
+)
+def test_what_is_left_of_the_bound_adds_up_to_the_limit_on_rings(scene, amplitude):
+    """The shares that the figure shows against a run that knows no closed form."""
+    radius = {"transverse": theory.stick_radius_transverse, "bore": theory.bore_stick_radius}[scene]
+    left = integral(
+        lambda r: float(static_limits.left_share(scene, r, amplitude)), float(radius(amplitude))
+    )
+    model = "radial" if scene == "transverse" else "polar"
+    rings = microslip.solve(scene, 0.0, amplitude, model=model)
+    assert left == pytest.approx(rings.mu_macro, abs=rings.mu_macro_error)
+
+
+@pytest.mark.parametrize("scene", ["transverse", "bore"])
+def test_all_is_used_in_the_slip_ring_and_less_inside(scene):
+    radius = np.linspace(0, 1, 101)
+    used = static_limits.used_share(scene, radius, 0.5)
+    left = static_limits.left_share(scene, radius, 0.5)
+    stick = {"transverse": math.sqrt(0.5), "bore": float(theory.bore_stick_radius(0.5))}[scene]
+    assert used[radius > stick] == pytest.approx(1.0)
+    assert left[radius > stick] == pytest.approx(0.0, abs=1e-6)
+    assert (np.diff(used) >= -1e-12).all()
+    assert (used[radius < stick] < 1).all()
+
+
+@pytest.mark.parametrize("amplitude", [4.0, 6.0, 9.0])
+def test_the_asymptote_is_what_the_limit_tends_to(amplitude):
+    radius = float(theory.bore_stick_radius(amplitude))
+    share = integral(lambda r: 2 / math.pi * math.acos(hertz.lubkin_share(r, radius)), radius)
+    # what is left out is of the order of c^2 ln c
+    allowed = 3 * radius**2 * abs(math.log(radius))
+    assert float(static_limits.asymptote(amplitude)) == pytest.approx(share, rel=allowed + 1e-6)
+
+
+def test_eq_33_tends_to_the_share_above_the_asymptote_that_the_dataset_says():
+    found = static_limits.variables(configured().claims, _no_runs)["static_asymptote_excess"][1]
+    ratio = float(theory.static_bore(9.0)) / float(static_limits.asymptote(9.0)) - 1
+    assert float(found) == pytest.approx(ratio, rel=1e-4)
+
+
+def _no_runs(request):
+    from microslip.studies.claims.runs import Run
+
+    return Run("name", request, {"converged": False})
+
+
+def test_gaps_are_the_largest_on_the_curves():
+    data = static_limits.variables(configured().claims, _no_runs)
+    amplitude = np.linspace(0, 1, 5001)
+    gap = theory.static_transverse(amplitude) - theory.static_limit_transverse(amplitude)
+    assert float(data["transverse_gap_zone"][1]) == pytest.approx(gap.max(), abs=1e-5)
+    at = float(data["transverse_gap_zone_at"][1])
+    assert at == pytest.approx(amplitude[gap.argmax()], abs=2e-3)
+
+
+# The two kinds of results that only this study asks for
+
+
+def test_a_single_run_is_what_the_command_line_has_and_is_timed_by_nobody(tmp_path):
+    place = {"scene": "transverse", "velocity": "0.1", "amplitude": "0.5", "poisson": "0"}
+    sizes = {"cells": 8, "angles": 1, "steps": 32, "tolerance": "0.0001"}
+    request = {"kind": "run", "model": "radial", "method": "euler"} | place | sizes
+    record, _ = batches.answer(request, Store(tmp_path))
+    answer = microslip.solve("transverse", 0.1, 0.5)
+    assert record["result"]["converged"]
+    assert record["result"]["mu_macro"] == pytest.approx(answer.mu_macro, abs=0.03)
+    assert "seconds" not in record["result"]
+    again, seconds = batches.answer(request, Store(tmp_path))
+    assert (again, seconds) == (record, 0.0)
+
+
+@pytest.mark.parametrize("error", [ValueError, ArithmeticError])
+def test_a_period_that_is_not_found_is_a_gap(error, tmp_path, monkeypatch):
+    def fails(*place, **sizes):
+        raise error("no periodic state")
+
+    monkeypatch.setattr("microslip.adaptive.stick_area.period", fails)
+    place = {"scene": "bore", "velocity": "0.1", "amplitude": "1", "poisson": "0"}
+    request = {"kind": "patches", "cells": 8, "angles": 8, "steps": 16} | place
+    record, _ = batches.answer(request, Store(tmp_path))
+    assert record["result"]["converged"] is False
+    assert "no periodic state" in record["result"]["reason"]
+
+
+@pytest.mark.parametrize("scene", ["bore", "transverse"])
+def test_patches_are_shares_of_a_period(scene):
+    sizes = {"cells": 12, "angles": 8, "steps": 32}
+    found = patches(scene, 0.01, 0.7, **sizes)
+    whole = microslip.period(scene, 0.01, 0.7, **sizes)
+    assert found["area"].sum() == pytest.approx(math.pi)
+    # the areas are those that the pressure and the forces belong to
+    assert (found["area"] * whole.bound).sum() == pytest.approx(1.0, abs=2e-3)
+    force = whole.traction_forward @ found["area"]
+    assert force == pytest.approx(whole.force_forward, abs=2e-3)
+    sticking = (~whole.slips * found["area"]).sum(axis=1) / math.pi
+    assert found["stick_right"] + found["stick_left"] == pytest.approx(sticking)
+    assert found["least_stick"] == pytest.approx(sticking[1:].min())
+    assert found["moment_share"].shape == (4, whole.bound.size)
+    least = found["moment_phase"][0]
+    assert sticking[np.argmin(np.abs(whole.phase - least))] == found["least_stick"]
+    assert found["moment_phase"][2] - least == pytest.approx(math.pi)
+
+
+def test_patches_of_the_slow_bore_lie_where_theory_has_them():
+    """At the moment of least stick: on one side, with |cos angle| above the share in use."""
+    found = patches("bore", 1e-3, 1.0, cells=24, angles=24, steps=64)
+    radius = np.hypot(found["forward_position"], found["lateral_position"])
+    stick = float(theory.bore_stick_radius(1.0))
+    used = hertz.lubkin_share(np.minimum(radius, stick), stick)
+    cosine = found["lateral_position"] / radius
+    for moment, side in ((0, -1.0), (2, 1.0)):
+        inside = (radius < stick) & (side * cosine > used)
+        sticks = found["moment_share"][moment] < 1.0
+        wrong = (inside != sticks) * found["area"]
+        assert wrong.sum() < 0.15 * (inside * found["area"]).sum()
+
+
+def test_the_study_asks_for_the_papers_run_as_the_paper_made_it():
+    from microslip.solver.methods import paper
+
+    request = claims.paper_run("bore", 1.0)
+    assert (request["cells"], request["steps"]) == (paper.CELLS, paper.STEPS_PER_PERIOD)
+    assert float(request["tolerance"]) == paper.STRESS_TOLERANCE
+    assert request["method"] == "paper"

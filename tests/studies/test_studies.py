@@ -1,0 +1,471 @@
+"""Studies: what is asked, how times are taken, what is picked, and the datasets."""
+
+import json
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from stubs.studies_stub import ACCURACY, asked, configured
+from stubs.sweep_stub import Solver
+
+import microslip
+from microslip.adaptive import single_run
+from microslip.adaptive.choice import choose_model
+from microslip.config import load, schema
+from microslip.models.registry import MODELS
+from microslip.motions.registry import SCENES
+from microslip.solver.methods import paper
+from microslip.studies import ladders, registry
+from microslip.studies import requests as study_requests
+from microslip.studies.accuracy import accuracy_cost, fronts
+from microslip.studies.stability import stability
+from microslip.sweeps import batches, evaluate, keys
+from microslip.sweeps.cache import Store
+
+# Ladders: what is run where
+
+
+@pytest.mark.parametrize("poisson", [0.0, 0.3])
+@pytest.mark.parametrize("scene", SCENES)
+def test_models_apply_here_exactly_where_the_solver_lets_them(scene, poisson):
+    known = {m for m in MODELS if not single_run.applies(scene, poisson, m, "shipped")}
+    assert set(ladders.models_of(scene, poisson)) == known
+    assert ladders.exact_model(scene, poisson) == choose_model(SCENES[scene], poisson)
+
+
+def test_every_model_has_a_ladder_and_fixed_methods_run_where_they_say():
+    assert set(ladders.LADDERS) == set(MODELS)
+    assert single_run.applies("transverse", 0.0, "cartesian", "paper") == ""
+    assert paper.METHOD.resolution == (paper.CELLS, 1, paper.STEPS_PER_PERIOD)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_ladders_climb_in_all_directions_at_once_and_tighten(model):
+    rungs = ladders.ladder(model, "shipped", 6)
+    assert [k for k, _, _ in rungs] == list(range(len(rungs)))
+    levels = np.array([level for _, level, _ in rungs])
+    assert ((np.diff(levels, axis=0) > 0) | (levels[1:] == 1)).all()
+    assert (levels[:, 2] % 2 == 0).all()
+    assert (np.diff([tolerance for *_, tolerance in rungs]) < 0).all()
+    assert ladders.ladder(model, "shipped", 2) == rungs[:2]
+
+
+def test_other_methods_climb_less_high_on_the_model_that_auto_takes():
+    for scene, model, count in (("transverse", "radial", 5), ("bore", "polar", 4)):
+        for method in ("full-newton", "admm:penalty=3"):
+            assert ladders.models_for(method, scene, 0.0) == [model]
+            assert len(ladders.ladder(model, method, 6)) == count
+    assert ladders.models_for("shipped", "bore", 0.3) == ["rigid", "polar", "cartesian"]
+    assert ladders.models_for("paper", "bore", 0.0) == ["cartesian"]
+    ((_, level, _),) = ladders.ladder("cartesian", "paper", 6)
+    assert level.cells == 32
+
+
+# Requests
+
+
+def test_trials_of_a_point():
+    study = configured().accuracy
+    found = list(accuracy_cost.trials(study, study.points["mid"]))
+    rows = [(r["kind"], r.get("model"), r.get("method"), k) for k, r in found]
+    assert rows[:3] == [("trial", "rigid", "shipped", k) for k in range(3)]
+    assert [r for r in rows if r[2] == "paper"] == [("trial", "cartesian", "paper", 0)]
+    assert [r for r in rows if r[2] == "euler"] == [
+        ("trial", "radial", "euler", k) for k in range(3)
+    ]
+    assert {m for _, m, s, _ in rows if s == "shipped"} == set(MODELS)
+    assert [r["tolerance"] for _, r in found if r["kind"] == "choice"] == [
+        "0.01",
+        "0.001",
+        "0.0001",
+    ]
+    assert {r["repeats"] for _, r in found} == {2}
+
+
+def test_a_steady_motion_has_no_amplitude_and_takes_no_steps():
+    study = configured().accuracy
+    for _, request in accuracy_cost.trials(study, study.points["steady"]):
+        assert request["amplitude"] is None
+        assert request.get("steps") is None
+    assert accuracy_cost.truth(study.points["steady"]) is None
+
+
+def test_references_are_ordinary_points_and_tight():
+    study = configured().accuracy
+    request = accuracy_cost.truth(study.points["mid"])
+    sweep_of_it = {"velocity": [0.1], "amplitude": [0.5], "tolerance": 1e-6}
+    (point,) = batches.PointRequests(
+        load.from_mapping({"sweeps": {"transverse": sweep_of_it}}).sweeps["transverse"]
+    )
+    assert request == point
+    assert accuracy_cost.truth(replace(study.points["mid"], poisson=0.5))["tolerance"] == "3e-5"
+    on_map = accuracy_cost.map_truth(study, study.points["mid"])
+    assert on_map["tolerance"] == "0.0001"
+
+
+def test_without_the_shipped_method_there_is_no_choice_of_it():
+    study = configured({"methods": ["euler"]}).accuracy
+    found = [r for _, r in accuracy_cost.trials(study, study.points["mid"])]
+    assert {r["method"] for r in found} == {"euler"}
+
+
+@pytest.mark.parametrize("study", registry.DATASETS)
+def test_requests_are_plain_and_named_apart(study):
+    found = [json.loads(text) for text in asked(study, configured())]
+    names = {keys.result_key(request, "d") for request in found}
+    assert len(names) == len({keys.canonical_json(request) for request in found})
+    for request in found:
+        assert batches.group(request).split("/")[0] in set(batches.FOLDERS.values())
+        assert batches.label(request)
+        for name in ("velocity", "tolerance"):
+            assert isinstance(request.get(name, ""), str)
+
+
+@pytest.mark.parametrize("study", ["accuracy", "stability"])
+def test_another_method_adds_jobs_and_changes_none(study):
+    def cuts(methods):
+        changed = {"methods": methods}
+        long, short = registry.pieces(study, configured(changed, changed))
+        return {keys.canonical_json(piece) for piece in long + short}
+
+    before, after = cuts(["shipped", "euler"]), cuts(["shipped", "march", "euler"])
+    assert before < after
+    assert all('"method":"march"' in piece for piece in after - before)
+
+
+def test_another_point_adds_requests_and_changes_none():
+    more = {"more": {"scene": "bore", "velocity": 0.2, "amplitude": 1}}
+    longer = configured({"points": ACCURACY["points"] | more})
+    asked = [
+        {
+            keys.canonical_json(request)
+            for part in registry.pieces("accuracy", one)
+            for piece in part
+            for request in piece
+        }
+        for one in (configured(), longer)
+    ]
+    assert asked[0] < asked[1]
+
+
+def test_what_takes_long_starts_first():
+    long, short = registry.pieces("accuracy", configured({"levels": 6}))
+    early = [request for piece in long for request in piece]
+    assert {request["kind"] for request in early} == {"point", "scaling", "trial"}
+    assert all(r["cells"] >= 64 for r in early if r["kind"] == "trial")
+    assert all(len(piece) == 1 for piece in long if piece[0]["kind"] == "point")
+    largest = [piece for piece in long if piece[0].get("cells") == 512]
+    assert len(largest) == 2 and all(len(piece) == 1 for piece in largest)
+    later = [request for piece in short for request in piece]
+    assert not [r for r in later if r.get("model") == "cartesian" and r.get("cells", 0) >= 64]
+
+
+# Blocks of the atlas
+
+
+def test_blocks_have_names_that_the_configuration_knows():
+    rule = schema.schema()["properties"]["stability"]["properties"]["axes"]
+    assert [axis.name for axis in stability.AXES] == rule["items"]["enum"]
+    study = configured(stability={"axes": ["steps", "poisson"]}).stability
+    assert [axis.name for axis in stability.axes(study)] == ["steps", "poisson"]
+    everything = configured(stability={"axes": None}).stability
+    assert stability.axes(everything) == list(stability.AXES)
+
+
+def test_cases_can_be_asked():
+    for axis, value, overrides in stability.cases(configured(stability={"axes": None}).stability):
+        request = stability.probe(configured().stability, "shipped", axis, value, overrides)
+        assert SCENES[request["scene"]].periodic
+        assert request["amplitude"] is not None
+        for name in ("cells", "steps"):
+            assert request[name] is None or request[name] % 2 == 0
+        if not axis.parameters:
+            assert value in overrides.values()
+        reference = stability.reference(configured().stability, overrides)
+        assert (reference["cells"], reference["steps"]) == (None, None)
+        assert {k: reference[k] for k in ("scene", "velocity", "amplitude", "poisson")} == {
+            k: request[k] for k in ("scene", "velocity", "amplitude", "poisson")
+        }
+
+
+def test_numbers_of_a_method_are_varied_in_that_method_only():
+    study = configured(stability={"axes": ["penalty"]}).stability
+    values = {
+        method: [
+            None if request is None else request["method"]
+            for case in stability.cases(study)
+            for request in [stability.probe(study, method, *case)]
+        ]
+        for method in ("shipped", "admm", "admm:relaxation=1.5,penalty=7", "euler")
+    }
+    assert values["shipped"] == ["shipped"] * 7
+    assert values["euler"] == [None] * 7
+    assert values["admm"][0] == "admm:penalty=0.01"
+    assert values["admm"][-1] == "admm:penalty=100"
+    assert values["admm:relaxation=1.5,penalty=7"][3] == "admm:relaxation=1.5,penalty=1"
+
+
+def test_methods_have_the_numbers_that_blocks_vary():
+    from microslip.solver.method_names import refusal
+
+    for axis in stability.AXES:
+        for method, parameter in axis.parameters:
+            assert refusal(f"{method}:{parameter}=1") == ""
+
+
+# Answers and their times
+
+
+class Clock:
+    """CPU time that passes only when something runs, so many seconds a call."""
+
+    def __init__(self, monkeypatch, *seconds):
+        self.now, self.calls, self.seconds = 0.0, 0, seconds
+        monkeypatch.setattr(evaluate.time, "process_time", lambda: self.now)
+
+    def run(self):
+        self.now += self.seconds[min(self.calls, len(self.seconds) - 1)]
+        self.calls += 1
+        return {"call": self.calls}
+
+
+def test_a_time_is_the_median_after_a_first_call(monkeypatch):
+    clock = Clock(monkeypatch, 4.0, 0.3, 0.1, 0.2, 0.1, 5.0)
+    result, seconds = evaluate.timed(clock.run, 5)
+    assert result == {"call": 1}
+    assert (clock.calls, seconds) == (6, pytest.approx(0.2))
+
+
+def test_long_runs_are_timed_less_often(monkeypatch):
+    clock = Clock(monkeypatch, 1.5)
+    assert evaluate.timed(clock.run, 5)[1] == pytest.approx(1.5)
+    assert clock.calls == 3
+    clock = Clock(monkeypatch, 60.0)
+    assert evaluate.timed(clock.run, 5)[1] == pytest.approx(60.0)
+    assert clock.calls == 1  # compiling is next to nothing of it
+
+
+@pytest.mark.parametrize("seconds", [1e-2, 1e-3, 1e-5])
+def test_short_runs_are_timed_together(monkeypatch, seconds):
+    clock = Clock(monkeypatch, seconds)
+    assert evaluate.timed(clock.run, 3)[1] == pytest.approx(seconds)
+    assert clock.now >= 3 * evaluate.SHORTEST
+    assert clock.now < 3 * evaluate.LONG_ENOUGH
+
+
+class Trials(Solver):
+    """Stands in for single_run, too. A trial errs by 1/cells^2, and march never applies."""
+
+    def __init__(self, monkeypatch, **settings):
+        super().__init__(monkeypatch, **settings)
+        self.asked = []
+        for name in ("applies", "run_trial", "measure_steps"):
+            monkeypatch.setattr(f"microslip.adaptive.single_run.{name}", getattr(self, name))
+
+    def applies(self, scene, poisson, model, method, pressure="hertz"):
+        return "not here" if method == "march" else ""
+
+    def run_trial(self, scene, velocity, amplitude, **settings):
+        self.asked.append(settings)
+        assert isinstance(settings["steps"], int)
+        mu = velocity / (1 + velocity + (amplitude or 0)) + 1 / settings["cells"] ** 2
+        work = np.int64(settings["cells"] * settings["angles"] * settings["steps"])
+        return {"mu_macro": mu, "converged": True, "reason": "", "effort": work, "unknowns": 4}
+
+    def measure_steps(self, model, cells, angles, poisson, steps):
+        n = cells * angles
+        return {"unknowns": 2 * n, "iterations": 3.0, "seconds": 1e-6 * n**2, "memory": 8 * n**3}
+
+
+def trial_request(**changes):
+    study = configured().accuracy
+    requests = [r for _, r in accuracy_cost.trials(study, study.points["mid"])]
+    (request,) = [r for r in requests if r.get("method") == "euler" and r["cells"] == 8]
+    return request | changes
+
+
+def test_a_trial_is_run_as_asked_and_timed(monkeypatch, tmp_path):
+    stub = Trials(monkeypatch)
+    record, _ = batches.answer(trial_request(), Store(tmp_path))
+    assert record["result"]["mu_macro"] == pytest.approx(0.1 / 1.6 + 1 / 64)
+    assert record["result"]["seconds"] >= 0
+    assert record["result"]["applies"] is True
+    assert stub.asked[0] == {
+        "poisson": 0.0,
+        "model": "radial",
+        "method": "euler",
+        "cells": 8,
+        "angles": 1,
+        "steps": 32,
+        "tolerance": pytest.approx(3e-5 / 2**1.5),
+    }
+    assert list(tmp_path.glob("trials/transverse/*/*.json"))
+    again, took = batches.answer(trial_request(), Store(tmp_path))
+    assert (again, took) == (record, 0.0)
+
+
+def test_what_does_not_apply_is_not_run(monkeypatch):
+    stub = Trials(monkeypatch)
+    result = evaluate.computed(trial_request(method="march"))
+    assert result == {"applies": False, "converged": False, "reason": "not here"}
+    request = stability.probe(
+        configured().stability, "march", stability.AXES[0], 8, stability.AXES[0].cases[0][1]
+    )
+    assert evaluate.computed(request)["applies"] is False
+    assert not stub.asked
+    assert not stub.calls
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        FloatingPointError("overflow"),
+        RuntimeError("no"),
+        np.linalg.LinAlgError("singular"),
+        ValueError("f(a) and f(b) must have different signs"),
+    ],
+)
+def test_a_method_that_fails_is_data(monkeypatch, error):
+    Trials(monkeypatch)
+
+    def fail(*_, **__):
+        raise error
+
+    monkeypatch.setattr("microslip.adaptive.single_run.run_trial", fail)
+    monkeypatch.setattr("microslip.solve", fail)
+    probe = stability.probe(
+        configured().stability, "admm", *stability.cases(configured().stability)[0]
+    )
+    for request in (trial_request(), probe):
+        result = evaluate.computed(request)
+        assert result["converged"] is False
+        assert result["reason"] == f"{type(error).__name__}: {error}"
+
+
+def test_probes_hand_on_the_method_and_the_resolution(monkeypatch):
+    Trials(monkeypatch)
+    seen = {}
+
+    def solve(scene, velocity, amplitude, **settings):
+        seen.update(settings)
+        return SimpleNamespace(to_dict=lambda: {"mu_macro": math.nan, "solve_time_s": 1.0})
+
+    monkeypatch.setattr("microslip.solve", solve)
+    study = configured(stability={"axes": ["steps"]}).stability
+    result = evaluate.computed(stability.probe(study, "euler", *stability.cases(study)[2]))
+    assert seen == {
+        "poisson": 0.0,
+        "model": "auto",
+        "method": "euler",
+        "tolerance": 1e-3,
+        "cells": None,
+        "steps": 32,
+        "most_work": study_requests.MOST_WORK,
+    }
+    assert result == {"applies": True, "mu_macro": None}
+
+
+# Fronts, the cheapest, exponents
+
+NUMBERS = st.sampled_from([0.0, 1.0, 2.0, 3.0, 4.0, math.nan])
+
+
+@given(st.lists(st.tuples(NUMBERS, NUMBERS), max_size=12))
+def test_a_front_is_what_nothing_beats(pairs):
+    def beaten(cost, error):
+        return any(
+            c <= cost and e <= error and (c < cost or e < error)
+            for c, e in pairs
+            if not math.isnan(c + e)
+        )
+
+    expected = [not math.isnan(c + e) and not beaten(c, e) for c, e in pairs]
+    costs, errors = [c for c, _ in pairs], [e for _, e in pairs]
+    assert list(fronts.on_front(costs, errors)) == expected
+
+
+def test_a_rung_is_as_good_as_the_worst_of_it_and_the_finer_ones():
+    models = ["mdr"] * 3 + ["radial"] * 3
+    error = [0.001, 0.02, 0.01, 0.1, 0.001, 0.01]
+    found = fronts.confirmed(models, error, "radial")
+    assert list(found) == [0.02, 0.02, math.inf, 0.1, 0.01, 0.01]
+    assert list(fronts.confirmed(["slider"], [0.0], "radial")) == [math.inf]
+
+
+def test_the_cheapest_is_within_the_tolerance():
+    cost, error = [1.0, 2.0, 3.0, math.nan], [0.1, 0.01, 0.001, 0.0]
+    assert [fronts.cheapest(cost, error, t) for t in (1.0, 0.1, 0.05, 0.01, 0.005, 1e-4)] == [
+        0,
+        0,
+        1,
+        1,
+        2,
+        None,
+    ]
+    assert fronts.cheapest([1.0], [math.nan], 1.0) is None
+    assert fronts.cheapest([1.2, 1.0, 3.0], [0.0, 0.0, 0.0], 1.0) == 0  # as cheap, and cruder
+    assert fronts.cheapest([], [], 1.0) is None
+
+
+@given(st.floats(-3, 3), st.integers(2, 9))
+def test_exponents_of_power_laws(power, count):
+    sizes = 3.0 * 2.0 ** np.arange(count)
+    assert fronts.exponent(sizes[::-1], 0.7 * sizes[::-1] ** power) == pytest.approx(
+        power, abs=1e-9
+    )
+
+
+def test_an_exponent_is_that_of_large_sizes():
+    sizes = np.array([1.0, 2, 4, 8, 16, 32, math.nan])
+    values = np.where(sizes < 8, 100.0, sizes**2)
+    assert fronts.exponent(sizes, values) == pytest.approx(2.0)
+    assert math.isnan(fronts.exponent([1.0, 2.0], [1.0, 0.0]))
+    assert math.isnan(fronts.exponent([], []))
+
+
+# Under a pressure
+
+CONE = "power:exponent=1"
+
+
+def test_a_trial_and_patches_take_the_pressure_that_is_asked_for(monkeypatch):
+    """A cone presses its middle harder than a sphere: another part of it sticks, other friction."""
+    place = {"scene": "transverse", "velocity": "0.1", "amplitude": "0.8", "poisson": "0"}
+    how = {"model": "radial", "method": "shipped", "cells": 8, "angles": 4, "steps": 16}
+    trial_of = place | how | {"kind": "run", "tolerance": "1e-4"}
+    sphere, cone = evaluate.computed(trial_of), evaluate.computed(trial_of | {"pressure": CONE})
+    assert sphere["converged"] and cone["converged"]
+    given = {"cells": 8, "steps": 16, "tolerance": None, "pressure": CONE}
+    certified = microslip.solve("transverse", 0.1, 0.8, **given)
+    assert cone["mu_macro"] == pytest.approx(certified.mu_macro, abs=1e-4)
+    assert abs(cone["mu_macro"] - sphere["mu_macro"]) > 1e-3
+    timed = evaluate.computed(trial_of | {"pressure": CONE, "kind": "trial", "repeats": 1})
+    assert timed["mu_macro"] == cone["mu_macro"]
+    sizes = {"kind": "patches", "cells": 8, "angles": 4, "steps": 16}
+    sphere, cone = (evaluate.computed(place | sizes | more) for more in ({}, {"pressure": CONE}))
+    assert cone["converged"] and cone["moment_share"] != sphere["moment_share"]
+
+
+def test_the_papers_run_is_under_the_pressure_that_is_asked_for(monkeypatch):
+    """What it presses the squares with are the loads of that pressure."""
+    from microslip.pressures.registry import pressure_named
+
+    class Seen(Exception):
+        pass
+
+    def march(contact, path, state, tolerance):
+        raise Seen(contact.bound * contact.size**2)
+
+    monkeypatch.setattr("microslip.models.squares.contact.CartesianContact.march", march)
+    for name in ("hertz", CONE):
+        with pytest.raises(Seen) as caught:
+            single_run.run_trial(
+                "transverse", 0.1, 0.8, poisson=0.0, model="cartesian", method="paper",
+                cells=32, angles=1, steps=100, tolerance=1e-3, pressure=name,
+            )  # fmt: skip
+        loads = pressure_named(name).cell_loads(paper.CELLS)
+        assert np.array_equal(caught.value.args[0], loads)

@@ -1,0 +1,237 @@
+"""The store: what is written is read back or not at all, whatever happens to the files."""
+
+import concurrent.futures
+import errno
+import logging
+import multiprocessing
+import os
+import random
+import signal
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import pytest
+
+import microslip
+from microslip.sweeps import sealed_files
+from microslip.sweeps.cache import Store
+from microslip.sweeps.sealed_files import CacheError
+
+KEY = "ab" + "0" * 62
+RECORD = {
+    "request": {"velocity": "0.1"},
+    "result": {"mu_macro": 0.1 + 0.2, "reason": "", "x": None},
+}
+SOURCE = str(Path(microslip.__file__).parent.parent)
+
+
+@pytest.fixture
+def store(tmp_path):
+    return Store(tmp_path / "results")
+
+
+def leftovers(store):
+    return [p for p in store.folder.rglob("*") if p.is_file() and p.suffix != ".json"]
+
+
+def test_a_record_comes_back_equal_to_the_last_bit(store):
+    path = store.write("points/bore", KEY, RECORD)
+    assert path == store.folder / "points" / "bore" / "ab" / f"{KEY}.json"
+    assert store.read("points/bore", KEY) == {**RECORD, "key": KEY}
+    assert not leftovers(store)
+
+
+def test_what_was_never_written_is_absent(store):
+    assert store.read("points/bore", KEY) is None
+    store.write("points/bore", KEY, RECORD)
+    assert store.read("points/transverse", KEY) is None
+
+
+def test_equal_records_give_equal_bytes(store):
+    first = store.write("a", KEY, RECORD).read_bytes()
+    second = store.write("b", KEY, dict(reversed(RECORD.items()))).read_bytes()
+    assert first == second
+
+
+def test_a_record_with_nan_is_refused(store):
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        store.write("a", KEY, {"mu_macro": float("nan")})
+    assert store.read("a", KEY) is None
+
+
+def test_a_truncated_file_is_absent_at_every_length(store):
+    path = store.write("a", KEY, RECORD)
+    whole = path.read_bytes()
+    for length in range(len(whole)):
+        path.write_bytes(whole[:length])
+        assert store.read("a", KEY) is None
+
+
+def test_a_file_with_any_flipped_bit_is_absent(store):
+    path = store.write("a", KEY, RECORD)
+    whole = path.read_bytes()
+    for index in range(len(whole)):
+        for bit in random.Random(index).sample(range(8), 2):
+            path.write_bytes(whole[:index] + bytes([whole[index] ^ 1 << bit]) + whole[index + 1 :])
+            assert store.read("a", KEY) is None
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"[]", b"null", b"{}", b'{"record": 1}', b"\xff", b"[" * 9999]
+)
+def test_a_file_with_other_content_is_absent(store, content):
+    store.write("a", KEY, RECORD).write_bytes(content)
+    assert store.read("a", KEY) is None
+
+
+def test_a_record_in_the_wrong_place_is_absent(store):
+    path = store.write("a", KEY, RECORD)
+    other = "cd" + "0" * 62
+    store.path("a", other).parent.mkdir(parents=True)
+    path.rename(store.path("a", other))
+    assert store.read("a", other) is None
+
+
+def test_a_damaged_file_is_reported_and_then_replaced(store, caplog):
+    path = store.write("a", KEY, RECORD)
+    path.write_bytes(path.read_bytes()[:-5])
+    with caplog.at_level(logging.WARNING):
+        assert store.read("a", KEY) is None
+    assert caplog.messages == [f"damaged result {path}: computed again"]
+    store.write("a", KEY, RECORD)
+    caplog.clear()
+    assert store.read("a", KEY) == {**RECORD, "key": KEY}
+    assert not caplog.messages
+
+
+@pytest.mark.parametrize("moment", ["fsync", "replace"])
+def test_killed_before_the_rename_nothing_is_lost(store, moment):
+    """Kill -9 while a result is replaced: what was there before is read back."""
+    path = store.write("a", KEY, RECORD)
+    program = f"""
+        import os, signal
+        from microslip.sweeps.cache import Store
+        os.{moment} = lambda *args: os.kill(os.getpid(), signal.SIGKILL)
+        Store({str(store.folder)!r}).write("a", {KEY!r}, {{"other": 1}})
+    """
+    done = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(program)], env={"PYTHONPATH": SOURCE}
+    )
+    assert done.returncode == -signal.SIGKILL
+    assert path.exists()
+    assert len(leftovers(store)) == 1
+    assert store.read("a", KEY) == {**RECORD, "key": KEY}
+
+
+def test_an_interrupt_leaves_nothing_behind(store, monkeypatch):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(sealed_files.os, "fsync", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        store.write("a", KEY, RECORD)
+    assert store.read("a", KEY) is None
+    assert not leftovers(store)
+
+
+def full(*_):
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+def test_a_full_disk_gives_one_message_that_says_what_to_do(store, monkeypatch):
+    monkeypatch.setattr(sealed_files.os, "fsync", full)
+    with pytest.raises(CacheError, match=r"No space left on device.*make room") as caught:
+        store.write("a", KEY, RECORD)
+    assert "\n" not in str(caught.value)
+    assert not leftovers(store)
+
+
+@pytest.mark.parametrize(
+    "said", [PermissionError(errno.EACCES, "Permission denied"), RuntimeError("NetCDF: HDF error")]
+)
+def test_what_hdf5_says_on_a_full_disk_is_put_right(store, monkeypatch, said):
+    monkeypatch.setattr(sealed_files.os, "fsync", full)
+    with (
+        pytest.raises(CacheError, match=r"cannot write .*No space left on device.*make room"),
+        sealed_files.writing_beside(store.folder / "x.nc") as beside,
+    ):
+        beside.write_text("half")
+        raise said
+    assert not leftovers(store)
+
+
+def test_what_netcdf_says_stands_where_there_is_room(store):
+    with (
+        pytest.raises(CacheError, match=r"cannot write .*x.nc: NetCDF: HDF error"),
+        sealed_files.writing_beside(store.folder / "x.nc"),
+    ):
+        raise RuntimeError("NetCDF: HDF error")
+
+
+def test_a_mistake_in_a_program_stays_one(store):
+    with (
+        pytest.raises(RuntimeError, match="^dictionary changed"),
+        sealed_files.writing_beside(store.folder / "x.nc"),
+    ):
+        raise RuntimeError("dictionary changed size during iteration")
+
+
+def test_old_halves_of_files_are_cleared_and_nothing_else(store):
+    path = store.write("a", KEY, RECORD)
+    gone = subprocess.Popen([sys.executable, "-c", ""])
+    gone.wait()
+    old, running, young = (
+        path.with_name(f".{name}.json.{number}.part")
+        for name, number in [("a", gone.pid), ("b", os.getpid()), ("c", gone.pid)]
+    )
+    for half in (old, running, young):
+        half.write_text("half")
+    for half in (path, old, running):
+        os.utime(half, (0, 0))
+    assert sealed_files.clear_abandoned(store.folder) == [old]
+    assert {p.name for p in path.parent.iterdir()} == {path.name, running.name, young.name}
+
+
+def test_a_file_in_the_place_of_a_folder_gives_the_same_message(store):
+    store.folder.write_text("not a folder")
+    with pytest.raises(CacheError, match=r"cannot write .*another folder"):
+        store.write("a", KEY, RECORD)
+    with pytest.raises(CacheError, match="cannot read"):
+        store.read("a", KEY)
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
+def test_a_read_only_folder_gives_the_same_message(store):
+    store.folder.mkdir()
+    store.folder.chmod(0o500)
+    with pytest.raises(CacheError, match=r"Permission denied.*set permissions"):
+        store.write("a", KEY, RECORD)
+
+
+def _write_many(folder, seed):
+    store = Store(folder)
+    for _ in range(50):
+        store.write("a", KEY, RECORD)
+        assert store.read("a", KEY) is not None
+    return seed
+
+
+def test_two_writers_of_one_result_do_not_disturb_each_other(store):
+    with multiprocessing.get_context("spawn").Pool(2) as pool:
+        assert pool.starmap(_write_many, [(store.folder, 1), (store.folder, 2)]) == [1, 2]
+    assert store.read("a", KEY) == {**RECORD, "key": KEY}
+    assert not leftovers(store)
+
+
+def test_many_threads_and_containers_write_one_result_without_disturbing_each_other(
+    store, monkeypatch
+):
+    """Process numbers are the same in containers, and in threads: they keep nobody apart."""
+    monkeypatch.setattr(os, "getpid", lambda: 7)
+    with concurrent.futures.ThreadPoolExecutor(8) as pool:
+        done = [pool.submit(store.write, "a", KEY, RECORD) for _ in range(400)]
+    assert {future.result() for future in done} == {store.path("a", KEY)}
+    assert store.read("a", KEY) == {**RECORD, "key": KEY}
+    assert not leftovers(store)

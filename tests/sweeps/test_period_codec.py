@@ -1,0 +1,60 @@
+"""Periods in few bytes: what comes back is what went in, by the solver's own unfolding."""
+
+import json
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip.adaptive.period import NoPeriodicState
+from microslip.foundation import source_digest
+from microslip.sweeps import batches, evaluate, period_codec
+from microslip.sweeps.cache import Store
+
+POINTS = [("transverse", "0.1", "0.6", "0"), ("transverse", "0.1", "0.6", "0.3")]
+POINTS += [("bore", "0.05", "0.7", "0.3"), ("zigzag", "0.2", "1", "0")]
+COUNTS = {"cells": 6, "angles": 4, "steps": 12}
+
+
+def asked(point):
+    place = dict(zip(("scene", "velocity", "amplitude", "poisson"), point, strict=True))
+    return {"kind": "period", **place, **COUNTS}
+
+
+@pytest.mark.parametrize("point", POINTS, ids=str)
+def test_a_stored_period_is_the_computed_one_within_half_a_step(point, tmp_path):
+    record, _ = batches.answer(asked(point), Store(tmp_path))
+    assert batches.answer(asked(point), Store(tmp_path)) == (record, 0.0)
+    found = period_codec.unpacked(record["result"])
+    scene, velocity, amplitude, poisson = point[0], *map(float, point[1:])
+    truth = microslip.period(scene, velocity, amplitude, poisson=poisson, **COUNTS)
+    for name in (*period_codec.HISTORIES, "forward_position", "lateral_position", "bound"):
+        assert found[name] == pytest.approx(getattr(truth, name), abs=1e-7), name
+    # the state repeats itself and its mirror image no better than it converged
+    for name in ("traction_forward", "traction_lateral"):
+        off = np.abs(found[name] - getattr(truth, name)) / truth.bound
+        assert off.max() < 0.5 / period_codec.SHARES + 1e-3, name
+    assert (found["slips"] == truth.slips).all()
+    assert (found["mu_macro"], found["converged"]) == (truth.mu_macro, truth.converged)
+
+
+def test_a_stored_period_takes_few_bytes():
+    unpacked = microslip.period("bore", 0.1, 1.0, **COUNTS)
+    everything = json.dumps(evaluate.plain(vars(unpacked)))
+    result = evaluate.computed(asked(("bore", "0.1", "1", "0")))
+    assert len(json.dumps(result)) < 0.1 * len(everything)
+
+
+def test_where_there_is_no_state_a_result_says_so(monkeypatch):
+    def none(**settings):
+        raise NoPeriodicState("velocity = 0.1: no periodic state")
+
+    monkeypatch.setattr("microslip.period", none, raising=False)
+    result = evaluate.computed(asked(POINTS[0]))
+    assert result == {"converged": False, "reason": "velocity = 0.1: no periodic state"}
+
+
+def test_how_periods_are_packed_counts_for_them_and_for_nothing_else():
+    requests = [{"kind": kind, "scene": "bore"} for kind in ("period", "point")]
+    of_period, of_point = map(source_digest.files_of_request, requests)
+    assert {"inside.py", "periods.py"} == of_period - of_point

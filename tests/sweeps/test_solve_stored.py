@@ -1,0 +1,105 @@
+"""Points from a folder of results: the same ones as a sweep's."""
+
+import json
+import math
+
+import pytest
+
+import microslip
+from microslip.app import cli
+from microslip.config import load
+from microslip.sweeps import batches
+from microslip.sweeps.cache import Store
+from microslip.sweeps.sealed_files import CacheError
+
+PLACE = ("bore", 0.5, 1.0)
+SETTINGS = {"poisson": 0.3, "tolerance": 1e-2}
+
+
+def without_time(result):
+    return {k: v for k, v in result.to_dict().items() if k != "solve_time_s"}
+
+
+def counting(monkeypatch):
+    calls, solve = [], microslip.solve
+
+    def counted(*place, **settings):
+        calls.append(place)
+        return solve(*place, **settings)
+
+    monkeypatch.setattr(microslip, "solve", counted)
+    return calls
+
+
+def test_an_answer_is_computed_once_and_equal(tmp_path, monkeypatch):
+    calls = counting(monkeypatch)
+    first = microslip.solve_stored(*PLACE, results=tmp_path, **SETTINGS)
+    again = microslip.solve_stored(*PLACE, results=tmp_path, **SETTINGS)
+    assert len(calls) == 1
+    assert first.to_dict().keys() == again.to_dict().keys()
+    assert without_time(first) == without_time(again)
+    assert without_time(first) == without_time(microslip.solve(*PLACE, **SETTINGS))
+    assert again.solve_time_s < 1.0
+
+
+def test_sweep_command_line_and_python_find_each_others_points(tmp_path, monkeypatch, capsys):
+    calls = counting(monkeypatch)
+    axes = {"velocity": [0.5], "amplitude": [1], "poisson": 0.3, "tolerance": 1e-2}
+    grid = load.from_mapping({"sweeps": {"bore": axes}}).sweeps["bore"]
+    batches.run_batch(batches.PointRequests(grid), Store(tmp_path))
+    assert len(calls) == 1
+    found = microslip.solve_stored(*PLACE, results=tmp_path, **SETTINGS)
+    options = ["--velocity", "0.5", "--amplitude", "1", "--poisson", "0.3", "--tolerance", "1e-2"]
+    assert cli.main(["point", "bore", *options, "--results", str(tmp_path), "--json"]) == 0
+    assert len(calls) == 1
+    said = json.loads(capsys.readouterr().out)
+    assert said["mu_macro"] == found.mu_macro
+    assert said["mu_macro_error"] == found.mu_macro_error
+
+
+def test_other_physics_tolerance_or_resolution_is_another_point(tmp_path, monkeypatch):
+    calls = counting(monkeypatch)
+    ask = {"model": "slider", "tolerance": 1e-2}
+    for changed in ({}, {"tolerance": 2e-2}, {"poisson": 0.1}, {"steps": 16}, {"model": "dahl"}):
+        microslip.solve_stored("transverse", 0.5, 1.0, results=tmp_path, **ask | changed)
+    assert len(calls) == 5
+
+
+def test_a_failure_comes_back_as_one(tmp_path, monkeypatch):
+    def fail(*_, **__):
+        raise ArithmeticError("no such contact")
+
+    monkeypatch.setattr(microslip, "solve", fail)
+    answer = microslip.solve_stored(*PLACE, results=tmp_path, **SETTINGS)
+    assert not answer.converged
+    assert "no such contact" in answer.reason
+    assert math.isnan(answer.mu_macro)
+
+
+@pytest.mark.parametrize(
+    ("changed", "named"),
+    [({"poisson": 0.7}, "poisson"), ({"tolerance": 0}, "tolerance"), ({"cells": 5}, "cells")],
+)
+def test_bad_input_is_refused_before_anything_is_written(changed, named, tmp_path):
+    with pytest.raises(ValueError, match=f"^{named} = "):
+        microslip.solve_stored(*PLACE, results=tmp_path / "new", **SETTINGS | changed)
+    assert not (tmp_path / "new").exists()
+
+
+def test_a_folder_that_is_none_is_refused(tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(CacheError, match="file"):
+        microslip.solve_stored(*PLACE, results=tmp_path / "file", **SETTINGS)
+    options = ["--velocity", "1", "--amplitude", "1", "--results", str(tmp_path / "file")]
+    assert cli.main(["point", "transverse", *options]) == 2
+    assert "--results" in capsys.readouterr().err
+
+
+def test_no_tolerance_is_kept_and_found_again(tmp_path, monkeypatch):
+    calls = counting(monkeypatch)
+    given = {"cells": 8, "steps": 16, "tolerance": None, "results": tmp_path}
+    first, again = (microslip.solve_stored("transverse", 0.3, 1.0, **given) for _ in range(2))
+    assert len(calls) == 1 and without_time(first) == without_time(again)
+    assert first.converged and first.tolerance is None
+    with pytest.raises(ValueError, match="tolerance = None"):
+        microslip.solve_stored("transverse", 0.3, 1.0, tolerance=None, results=tmp_path)

@@ -1,0 +1,173 @@
+"""Bad input to the workflow: real runs of Snakemake that end with one line, before any job."""
+
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+from bad_input.bad_configurations import EXTENDED, FILES, GOOD, KEYS, changed
+
+ROOT = Path(__file__).parents[2]
+SNAKEMAKE = Path(sys.executable).with_name("snakemake")
+pytestmark = pytest.mark.slow
+
+GIVEN = ["--configfile", "given.yaml"]
+LINKED = ("profiles", "src", "workflow", "Snakefile")
+
+
+def given(content=GOOD):
+    """Writes given.yaml, for --configfile, into the folder of a project."""
+    content = content.encode() if isinstance(content, str) else content
+    return lambda folder: (folder / "given.yaml").write_bytes(content)
+
+
+def default(case):
+    """Replaces the default configuration by a file that is none."""
+    return lambda folder: (folder / "config" / "config.yaml").write_bytes(FILES[case][0])
+
+
+def beside(make):
+    """A good given.yaml, and what `make` puts in the folder."""
+    return lambda folder: (given()(folder), make(folder))
+
+
+def key(name, value):
+    """The case of bad_configurations with this key and value, and its line."""
+    ((*_, first),) = [case[:3] for case in KEYS + EXTENDED if case[:2] == (name, value)]
+    return given(changed({name: value})), GIVEN, f"given.yaml: {name}: {first}"
+
+
+# What is prepared, arguments to Snakemake, how its line begins.
+CASES = {
+    "a misspelt key": key("sweeps.transverse.velocities", "[1]"),
+    "a misspelt sweep": key("sweeps.bores", "{}"),
+    "a negative amplitude": key("sweeps.transverse.amplitude[1]", "-1"),
+    "an exponent without a point": key("sweeps.continuous_bore.tolerance", "1e-3"),
+    "poisson": key("sweeps.continuous_bore.poisson", "0.7"),
+    "not a number": key("sweeps.transverse.velocity[1]", ".nan"),
+    "an odd number": key("sweeps.continuous_bore.cells", "7"),
+    "another model": key("sweeps.continuous_bore.model", "poler"),
+    "a misspelt motion": key("extended.circle.scene", "eliptic"),
+    "an unknown pressure": key("extended.circle.pressure", "hertzian"),
+    "a key twice": (given(FILES["a key twice"][0]), GIVEN, "given.yaml: not valid YAML: the key"),
+    "overridden": (
+        given(),
+        [*GIVEN, "--config", "points_per_job=0"],
+        "given.yaml, --config: points_per_job: 0 is not allowed; allowed: a whole number >= 1",
+    ),
+    "overridden under another name": (
+        given(),
+        [*GIVEN, "--config", "result=here"],
+        "given.yaml, --config: result: unknown key; did you mean results?",
+    ),
+    "a default with tabs": (default("tabs"), [], "config/config.yaml: not valid YAML: "),
+    "a default that is no text": (default("not UTF-8"), [], "config/config.yaml: line 1: not text"),
+    "no default": (
+        lambda folder: (folder / "config" / "config.yaml").unlink(),
+        [],
+        "config/config.yaml: cannot be read: No such file",
+    ),
+    "a file for results": (
+        beside(lambda folder: (folder / "results").write_text("kept")),
+        GIVEN,
+        "given.yaml: results: results is not a folder; allowed: ",
+    ),
+    "a file for points": (
+        beside(lambda folder: ((folder / "results").mkdir(), (folder / "results/points").touch())),
+        GIVEN,
+        "given.yaml: results: results/points is not a folder; allowed: ",
+    ),
+    "a folder for a dataset": (
+        beside(lambda folder: (folder / "results" / "bore.nc").mkdir(parents=True)),
+        GIVEN,
+        "given.yaml: results: results/bore.nc is a folder; allowed there: ",
+    ),
+    "a long name for results": (
+        given(f"results: {'x' * 300}\n{GOOD}"),
+        GIVEN,
+        "given.yaml: results: cannot use xxx",
+    ),
+}
+# Half of them as a plan, half as a run: neither may get as far as planning.
+MODES = {case: ["-n"] if index % 2 else ["-j1"] for index, case in enumerate(CASES)}
+
+
+def snakemake(folder, *arguments):
+    return subprocess.run(
+        [SNAKEMAKE, *arguments],
+        cwd=folder,
+        env={"PATH": "/usr/bin:/bin", "HOME": os.environ.get("HOME", str(folder))},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+
+
+def project(folder, prepare):
+    """A project in a new folder, of links to this one."""
+    (folder / "config").mkdir(parents=True)
+    (folder / "config" / "config.yaml").write_text(GOOD)
+    for name in LINKED:
+        (folder / name).symlink_to(ROOT / name)
+    prepare(folder)
+    return folder
+
+
+def content(folder):
+    """All files of a project but Snakemake's own, with what they hold."""
+    files = [p for p in folder.rglob("*") if ".snakemake" not in p.parts and p.name not in LINKED]
+    return {p: p.is_file() and p.read_bytes() for p in files}
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    """Every case's run, and the content of its folder before; two at a time, to save time."""
+
+    def run(case):
+        prepare, arguments, _ = CASES[case]
+        folder = project(tmp_path_factory.getbasetemp() / case.replace(" ", "_"), prepare)
+        before = content(folder)
+        return snakemake(folder, *MODES[case], *arguments), folder, before
+
+    with ThreadPoolExecutor(2) as pool:
+        return dict(zip(CASES, pool.map(run, CASES), strict=True))
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_workflow_ends_with_one_line_before_any_job(case, done):
+    ended, folder, before = done[case]
+    assert ended.returncode == 1
+    assert ended.stdout == ""
+    lines = [line for line in ended.stderr.splitlines() if "specific profile" not in line]
+    assert len(lines) == 1
+    assert lines[0].startswith(f"Error in {CASES[case][2]}")
+    assert content(folder) == before
+
+
+def test_half_of_the_cases_are_runs():
+    assert sum(mode == ["-j1"] for mode in MODES.values()) >= 8
+    assert {mode for (mode,) in MODES.values()} == {"-n", "-j1"}
+
+
+def test_results_that_cannot_be_written_end_a_run_before_its_first_job(tmp_path):
+    """This only a try can tell, so it is made once there is something to do."""
+    folder = project(tmp_path / "full", given("results: /proc/none/here\n" + GOOD))
+    ended = snakemake(folder, "-j1", *GIVEN)
+    assert ended.returncode == 1
+    line = ended.stderr.strip().splitlines()[-1]
+    assert line.startswith("Error in given.yaml: results: cannot write to /proc/none/here: ")
+    assert "rule warm_up" not in ended.stderr and "Traceback" not in ended.stderr
+    assert not list((folder / ".snakemake" / "locks").glob("*"))  # the next run may start
+
+
+def test_a_file_in_the_place_of_a_dataset_is_no_dataset_and_stays_in_a_dry_run(tmp_path):
+    folder = project(tmp_path / "foreign", given())
+    (folder / "results").mkdir()
+    (folder / "results" / "bore.nc").write_text("velocity,mu_macro\n")
+    ended = snakemake(folder, "-n", *GIVEN)
+    assert ended.returncode == 0
+    assert ended.stderr.count("results/bore.nc is made again: it is damaged") == 1
+    assert (folder / "results" / "bore.nc").read_text() == "velocity,mu_macro\n"
+    assert "collect" in ended.stdout

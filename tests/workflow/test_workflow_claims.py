@@ -1,0 +1,62 @@
+"""The claims, run by Snakemake in a copy of the project."""
+
+import pytest
+from stubs.workflow_project import Project
+
+from microslip.datasets import netcdf
+from microslip.sweeps import sealed_files
+
+pytestmark = pytest.mark.slow
+
+TINY = {
+    "sweeps": {"transverse": {"velocity": [1], "amplitude": [0]}},
+    "claims": {
+        "tolerance": 0.01,
+        "velocity": [0.1],
+        "amplitude_transverse": [1],
+        "amplitude_bore": [1],
+        "cells": 8,
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """A project after a run, and what that said. To be left as it is."""
+    project = Project(tmp_path_factory.mktemp("claims"))
+    project.configure(TINY)
+    project.said = project.run("claims")
+    return project
+
+
+def test_one_command_makes_the_dataset_the_page_and_the_figures(finished):
+    results = finished.folder / "results"
+    with netcdf.whole(results / "claims.nc") as data:
+        assert data["claim"].values.tolist() == list(range(1, 10))
+        assert {3, 4} <= set(data["claim"].values[data["verdict"].values == 1])
+        stored = {path.stem for path in results.rglob("*/*/??/*.json")}
+        assert set(data["run"].values) <= stored
+        page = (results / "summaries/claims.html").read_text(encoding="utf-8")
+        for key in data["run"].values:
+            assert str(key) in page
+    assert sealed_files.seal_of(results / "summaries/claims.html").exists()
+    for name in ("claims_static", "claims_patches"):
+        for form in ("png", "pdf"):
+            assert (results / f"figures/{name}.{form}").stat().st_size > 0
+    assert "claim 9: " in finished.said
+
+
+def test_a_second_run_has_nothing_to_do_and_a_plain_one_does_not_need_it(finished):
+    assert "Nothing to be done" in finished.run("claims")
+    assert "collect_study" not in finished.planned()
+
+
+def test_another_amplitude_computes_its_own_runs_only(finished):
+    before = {p.name for p in finished.folder.glob("results/runs/*/*/*.json")}
+    more = {**TINY["claims"], "amplitude_bore": [1, 10]}
+    finished.configure({**TINY, "claims": more})
+    planned = finished.planned("claims")
+    assert planned["solve_early_batch"] == 1
+    finished.configure(TINY)
+    assert before
+    assert finished.planned("claims") == {}

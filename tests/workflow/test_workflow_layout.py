@@ -1,0 +1,97 @@
+"""What the workflow is made of besides its rules: captions, pages about datasets, its layout."""
+
+import re
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+import yaml
+
+from microslip.config import load, schema
+from microslip.foundation import source_digest
+from microslip.report import dataset_page
+from microslip.report.figures import drawing
+
+ROOT = Path(__file__).parents[2]
+
+
+FIGURES = [*drawing.FIGURES, "extended_motions", "extended_static"]
+
+
+@pytest.mark.parametrize("figure", FIGURES)
+def test_every_figure_has_a_caption_of_its_own(figure):
+    docutils = pytest.importorskip("docutils.core")
+    caption = docutils.publish_string(
+        rendered("figure", figure=figure), settings_overrides={"halt_level": 2}
+    ).decode()
+    others = [rendered("figure", figure=name) for name in FIGURES if name != figure]
+    assert len(caption) > 200
+    assert rendered("figure", figure=figure) not in others
+
+
+@pytest.mark.parametrize(
+    "wildcards",
+    [{"sweep": "bore"}, {"sweep": "circle"}, {"dataset": "stability"}, {"dataset": "claims"}],
+)
+def test_every_dataset_has_a_caption(wildcards):
+    assert "``results/any.nc``" in rendered("dataset", **wildcards)
+
+
+def rendered(name, **wildcards):
+    """A caption as Snakemake renders it, but that nothing may be undefined."""
+    jinja2 = pytest.importorskip("jinja2")
+    environment = jinja2.Environment(undefined=jinja2.StrictUndefined, trim_blocks=True)
+    snakemake = SimpleNamespace(
+        wildcards=SimpleNamespace(**wildcards, keys=lambda: wildcards.keys()),
+        config=schema.filled(load.read_yaml(ROOT / "config" / "config.yaml")),
+        input=["results/any.nc"],
+        output=["results/any.nc"],
+    )
+    text = (ROOT / "workflow" / "report" / f"{name}.rst").read_text()
+    return environment.from_string(text).render(snakemake=snakemake)
+
+
+def test_a_page_about_a_dataset_lists_no_more_than_can_be_read():
+    class Dataset:
+        attrs, sizes = {"title": "Many", "configuration": '{"a": [1, 2]}'}, {"velocity": 3}
+
+        def __contains__(self, name):
+            return False
+
+    page = dataset_page.page(Dataset(), [f"line {i}" for i in range(100)])
+    assert page.startswith("Many\n\nline 0\n")
+    assert "line 39\n... and 60 lines more" in page
+    assert page.endswith("a: [1, 2]\n")
+
+
+# The layout that public catalogues of workflows expect
+
+
+def test_the_layout_is_that_of_the_catalogue():
+    usage = yaml.safe_load((ROOT / ".snakemake-workflow-catalog.yml").read_text())["usage"]
+    assert usage["report"] is True
+    assert usage["software-stack-deployment"]
+    assert (ROOT / "workflow" / "Snakefile").is_file()
+    assert list((ROOT / "workflow" / "rules").glob("*.smk"))
+
+
+def test_the_configuration_is_described_key_by_key():
+    text = re.sub("```.*?```", "", (ROOT / "config" / "README.md").read_text(), flags=re.DOTALL)
+    named = set(re.findall(r"\w+", " ".join(re.findall(r"`[^`]+`", text))))
+    assert keys_of(schema.schema()) <= named
+
+
+def keys_of(rule):
+    """Names of all keys that a schema knows."""
+    rule = schema._resolved(rule)
+    deeper = [*rule.get("properties", {}).values(), rule.get("additionalProperties")]
+    found = [keys_of(part) for part in deeper if isinstance(part, dict)]
+    return set(rule.get("properties", {})).union(*found)
+
+
+def test_scripts_of_the_workflow_are_no_sources_of_the_solver(tmp_path):
+    names = ("point.py", "bundle/workflow/scripts/collect.py", "launch.py", "summary.py")
+    for name in names:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("A = 1\n")
+    assert source_digest.Sources(tmp_path).of_request("point", ()) == {"point.py"}

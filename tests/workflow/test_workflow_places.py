@@ -1,0 +1,243 @@
+"""The workflow in other places: another folder, a module of another workflow, an installed copy.
+
+The datasets have to be those of an ordinary run, byte for byte. And the report of a run.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import zipfile
+
+import pytest
+import xarray as xr
+import yaml
+from stubs.workflow_project import AXES, ROOT, RUN, TINY, Project
+
+from microslip.foundation import source_digest
+
+pytestmark = pytest.mark.slow
+
+# One dataset, in as few jobs as can be: every job takes a second or two to start.
+CONFIGURATION = {**TINY, "sweeps": {"transverse": AXES}, "points_per_job": 50}
+DATASET = "results/transverse.nc"
+
+
+@pytest.fixture(scope="module")
+def ordinary(tmp_path_factory):
+    """A project after an ordinary run, to compare with. To be left as it is."""
+    project = Project(tmp_path_factory.mktemp("places") / "microslip")
+    for path in ("tiny.yaml", "config/config.yaml"):
+        (project.folder / path).write_text(yaml.safe_dump(CONFIGURATION))
+    project.run()
+    return project
+
+
+def beside(project, name, configuration=CONFIGURATION):
+    """A new folder beside a project, with a configuration in tiny.yaml."""
+    place = object.__new__(Project)
+    place.folder = project.folder.parent / name
+    place.folder.mkdir()
+    place.configure(configuration)
+    return place
+
+
+def bytes_of(place, path=DATASET):
+    return (place.folder / path).read_bytes()
+
+
+# Other folders
+
+
+def test_another_folder_gets_the_results_of_a_run_there(ordinary):
+    place = beside(ordinary, "elsewhere")
+    place.run(DATASET, "-s", "../microslip/Snakefile")
+    assert bytes_of(place) == bytes_of(ordinary)
+    # From a third folder, with the option for it, there is nothing left to do.
+    third = beside(ordinary, "third")
+    there = ("-s", "../microslip/workflow/Snakefile", "-d", "../elsewhere")
+    assert third.planned(DATASET, *there) == {}
+    assert not (third.folder / "results").exists()
+
+
+def test_the_default_configuration_is_found_from_another_folder_unless_that_has_one(ordinary):
+    place = beside(ordinary, "bare")
+    plan = ["-s", "../microslip/Snakefile", "--dry-run"]
+    assert re.search(r"collect +1\n", place.snakemake(*plan).stdout)
+    (place.folder / "config").mkdir()
+    (place.folder / "config" / "config.yaml").write_text(yaml.safe_dump(TINY))
+    assert re.search(r"collect +3\n", place.snakemake(*plan).stdout)
+
+
+def test_files_that_a_configuration_names_lie_beside_it(ordinary):
+    """Wherever the run is; one that is not there is told with the places it was looked for in."""
+    place, far = beside(ordinary, "pads"), ordinary.folder.parent / "far"
+    far.mkdir()
+    pad = {"scene": "transverse", "pressure": "file:pad.csv", "group": "pads", "tolerance": 0.1}
+    pad |= {"velocity": [20, 30], "amplitude": [0.1]}
+    (far / "mine.yaml").write_text(yaml.safe_dump(CONFIGURATION | {"extended": {"pad": pad}}))
+    there = ("-s", "../microslip/Snakefile", "--configfile", "../far/mine.yaml")
+    refused = place.snakemake("results/pad.nc", *there, "-j1")
+    assert refused.returncode == 1
+    assert "'file:pad.csv': pad.csv cannot be read: No such file; looked for" in refused.stderr
+    assert f"{far / 'pad.csv'}, {place.folder / 'pad.csv'}" in refused.stderr
+    assert "Traceback" not in refused.stderr
+    (far / "pad.csv").write_text("forward,lateral,pressure\n0,0,1\n0,1,1\n1,0,1\n1,1,1\n")
+    done = place.snakemake("results/pad.nc", *there, "-j1")
+    assert done.returncode == 0, done.stderr
+    with xr.open_dataset(place.folder / "results" / "pad.nc") as data:
+        assert data.attrs["pressure"].startswith("file:sha256=")
+        assert bool(data.converged.all())
+
+
+# Modules
+
+OUTER = """
+configfile: "tiny.yaml"
+
+rule all:
+    input:
+        "outer.txt",
+
+module friction:
+    snakefile: "../microslip/Snakefile"
+    config: config["friction"]
+    prefix: "sub"
+
+use rule * from friction as friction_*
+
+rule outer:
+    input:
+        "sub/results/transverse.nc",
+    output:
+        "outer.txt",
+    shell:
+        "ls {input} > {output}"
+"""
+# As the catalogue's tool writes it.
+DEPLOYED = """
+configfile: "tiny.yaml"
+
+module friction:
+    snakefile: "../microslip/workflow/Snakefile"
+    config: config
+
+use rule * from friction
+"""
+
+
+def test_a_module_of_another_workflow_gives_the_same_dataset(ordinary):
+    place = beside(ordinary, "outer", {"friction": CONFIGURATION, "of_another": 1})
+    (place.folder / "Snakefile").write_text(OUTER)
+    said = place.run()
+    assert "friction_collect" in said
+    assert (place.folder / "outer.txt").read_text() == f"sub/{DATASET}\n"
+    assert bytes_of(place, f"sub/{DATASET}") == bytes_of(ordinary)
+    assert [p.name for p in (place.folder / "sub").iterdir()] == ["results"]
+    assert not (place.folder / "results").exists()
+    assert place.planned() == {}
+
+
+def test_a_module_may_be_the_whole_workflow_and_says_when_its_configuration_is_bad(
+    ordinary,
+):
+    place = beside(ordinary, "deployed")
+    (place.folder / "Snakefile").write_text(DEPLOYED)
+    assert place.planned()["collect"] == 1
+    place.configure({**CONFIGURATION, "sweep": {}})
+    done = place.snakemake("--dry-run")
+    assert done.returncode != 0
+    assert "Error in configuration of friction: sweep: unknown key" in done.stderr
+
+
+# Installed copies
+
+
+@pytest.fixture(scope="module")
+def installed(ordinary):
+    """Runs `microslip` from an unpacked wheel, with no tree around it."""
+    pytest.importorskip("hatchling", reason="builds the package")
+    folder = ordinary.folder.parent / "installed"
+    build = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder)]
+    subprocess.run(build, cwd=ROOT, check=True, capture_output=True)
+    with zipfile.ZipFile(*folder.glob("*.whl")) as wheel:
+        wheel.extractall(folder)
+    _take_over_compiled(ROOT / "src" / "microslip", folder / "microslip")
+
+    def microslip(place, *arguments):
+        return subprocess.run(
+            [sys.executable, "-m", "microslip.app.cli", *arguments],
+            cwd=place.folder,
+            env={"PATH": "/usr/bin:/bin", "HOME": os.environ["HOME"], "PYTHONPATH": str(folder)},
+            capture_output=True,
+            text=True,
+            timeout=300,
+        )
+
+    return microslip
+
+
+def _take_over_compiled(package, other):
+    """Let a copy of a package find what is compiled already: its sources are the same."""
+    for folder in (package / "__pycache__").glob("compiled-*"):
+        shutil.copytree(folder, other / "__pycache__" / folder.name)
+
+
+def test_an_installed_copy_gives_the_same_dataset_and_finds_what_a_tree_made(ordinary, installed):
+    place = beside(ordinary, "empty")
+    done = installed(place, "sweep", DATASET, *RUN)
+    assert done.returncode == 0, done.stderr
+    assert bytes_of(place) == bytes_of(ordinary)
+    # The other way round, too.
+    assert place.planned(DATASET, "-s", "../microslip/Snakefile") == {}
+    copy = beside(ordinary, "copied")
+    shutil.copytree(ordinary.folder / "results", copy.folder / "results")
+    shutil.copytree(ordinary.folder / ".snakemake", copy.folder / ".snakemake")
+    done = installed(copy, "sweep", "--configfile", "tiny.yaml")
+    assert "Nothing to be done" in done.stdout + done.stderr, done.stderr
+
+
+def test_an_installed_copy_hands_on_arguments_and_exit_codes(ordinary, installed):
+    place = beside(ordinary, "refused")
+    done = installed(place, "sweep", "results/sideways.nc", *RUN)
+    assert done.returncode == 1
+    assert "sideways" in done.stderr
+    done = installed(place, "sweep", "--configfile", "missing.yaml")
+    assert done.returncode != 0
+    # Without any: the sweeps of the paper, which the package brings along.
+    plan = installed(place, "sweep", "--dry-run", "--quiet", "host")
+    assert re.search(r"draw_figure +6\n", plan.stdout)
+
+
+# The report
+
+
+def offline():
+    """Words that take the network away from a command, where the system lets them."""
+    without = ["unshare", "--map-root-user", "--net"]
+    tried = shutil.which("unshare") and subprocess.run([*without, "true"], capture_output=True)
+    return without if tried and tried.returncode == 0 else []
+
+
+def test_the_report_is_made_offline_and_holds_captions_and_what_made_the_datasets(ordinary):
+    report = ordinary.folder.parent / "report.zip"
+    command = [sys.executable, "-m", "snakemake", *RUN[1:], "--report", str(report)]
+    done = subprocess.run([*offline(), *command], cwd=ordinary.folder, capture_output=True)
+    assert done.returncode == 0, done.stderr
+    with zipfile.ZipFile(report) as files:
+        raw = sorted(name.rpartition("/")[2] for name in files.namelist() if "/raw/" in name)
+        page = files.read("report/report.html").decode()
+        about = next(files.read(n).decode() for n in files.namelist() if "transverse.html" in n)
+    assert raw == ["fig1_force_history.png", "fig2_transverse_map.png", "transverse.html"]
+    assert "Figure 1.</strong>" in page and "Figure 2.</strong>" in page
+    assert "How far friction falls" in page
+    assert "transverse: 4 points, none not converged" in about
+    assert f"source_digest: {source_digest.of_solver()}" in about
+    assert "amplitude: [0.0, 1.0]" in about
+
+
+def test_the_entry_in_the_folder_workflow_passes_snakemakes_own_checks(ordinary):
+    done = ordinary.snakemake("--lint", "-s", "workflow/Snakefile")
+    assert done.returncode == 0, done.stderr
+    assert "good condition" in done.stdout + done.stderr
