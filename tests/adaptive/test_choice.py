@@ -10,7 +10,10 @@ from hypothesis import strategies as st
 import microslip
 from microslip.adaptive.choice import choose_model, closed_form, plan
 from microslip.models.registry import MODELS
-from microslip.motions.registry import BORE, CONTINUOUS_BORE, SCENES, TRANSVERSE
+from microslip.motions.bore import SCENE as BORE
+from microslip.motions.continuous_bore import SCENE as CONTINUOUS_BORE
+from microslip.motions.registry import SCENES
+from microslip.motions.transverse import SCENE as TRANSVERSE
 from microslip.solver.problem import Resolution
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static

@@ -18,7 +18,8 @@ from microslip.models.reduced.slider import slider_contact
 from microslip.models.registry import MODELS
 from microslip.models.rings.contact import RadialContact
 from microslip.models.squares.contact import CartesianContact
-from microslip.motions.registry import BORE, TRANSVERSE
+from microslip.motions.bore import SCENE as BORE
+from microslip.motions.transverse import SCENE as TRANSVERSE
 from microslip.solver.period_map import Cycle
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.problem import Resolution

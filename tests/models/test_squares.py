@@ -10,7 +10,8 @@ from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.squares import contact as cartesian
 from microslip.models.squares.contact import CartesianContact, solve_step
 from microslip.models.squares.convolution import convolve, influence, square_convolution, workspace
-from microslip.motions.registry import BORE, TRANSVERSE
+from microslip.motions.bore import SCENE as BORE
+from microslip.motions.transverse import SCENE as TRANSVERSE
 
 NUS = [0.0, 0.4]
 

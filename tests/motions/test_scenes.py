@@ -9,7 +9,9 @@ import microslip
 from microslip import motions
 from microslip.app.cli import main
 from microslip.motions import registry
-from microslip.motions.registry import SCENES, TRANSVERSE, ZIGZAG
+from microslip.motions.registry import SCENES
+from microslip.motions.transverse import SCENE as TRANSVERSE
+from microslip.motions.zigzag import SCENE as ZIGZAG
 from microslip.solver.problem import Motion, Resolution
 from microslip.solver.static_run import simulate_static
 from microslip.theory import paper

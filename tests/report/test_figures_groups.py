@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.collections import PolyCollection
 from matplotlib.legend import Legend
 from matplotlib.text import Text
-from test_plot import artists, check_nothing_cut_off, fake_map
+from test_figures import artists, check_nothing_cut_off, fake_map
 
 from microslip.motions.registry import FAMILIES, SCENES, scene_named
 from microslip.report.figures import drawing, lines, small_maps

@@ -8,9 +8,9 @@ import re
 import matplotlib
 import numpy as np
 import pytest
-import test_plot
-import test_plot_groups as groups
-import test_plot_studies as of_studies
+import test_figures
+import test_figures_groups as groups
+import test_figures_studies as of_studies
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb

@@ -16,7 +16,8 @@ from microslip.foundation import canonical
 from microslip.models.path import EULER, make_path
 from microslip.models.registry import MODELS
 from microslip.models.squares.contact import CartesianContact
-from microslip.motions.registry import SCENES, TRANSVERSE
+from microslip.motions.registry import SCENES
+from microslip.motions.transverse import SCENE as TRANSVERSE
 from microslip.solver import method_names
 from microslip.solver.methods import aspher
 from microslip.solver.problem import Motion, Resolution

@@ -10,7 +10,8 @@ from microslip.models.contact import energy_norm, forward_slip
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.registry import MODELS
 from microslip.models.rings.contact import RadialContact
-from microslip.motions.registry import BORE, TRANSVERSE
+from microslip.motions.bore import SCENE as BORE
+from microslip.motions.transverse import SCENE as TRANSVERSE
 from microslip.solver.newton import Corrector
 from microslip.solver.period_map import Cycle
 from microslip.solver.periodic import find_periodic_state

@@ -14,7 +14,9 @@ from microslip.adaptive.choice import method_refusal
 from microslip.models.contact import forward_slip
 from microslip.models.path import EULER, half_period_phases, make_path
 from microslip.models.registry import MODELS
-from microslip.motions.registry import BORE, TRANSVERSE, scene_named
+from microslip.motions.bore import SCENE as BORE
+from microslip.motions.registry import scene_named
+from microslip.motions.transverse import SCENE as TRANSVERSE
 from microslip.pressures.registry import HERTZ
 from microslip.solver.method_names import method_named, missing
 from microslip.solver.problem import Motion, Resolution, build_contact

@@ -17,18 +17,34 @@ from microslip.solver.periodic import find_periodic_state
 class Method:
     """The parts of a method; what is left out is as shipped.
 
-    summary: in a line, for tables and figures; integrator: path.Integrator; dress(contact,
-    **parameters) -> a contact that solves its steps in another way, None: as it is;
-    parameters: numbers that ``dress`` takes, with their defaults; search(cycle, start, tolerance,
-    step_tolerance, most_laps, inverse) -> cycle.PeriodicState; prepared: start near the static
-    limit and with coarse steps, else once from full slip; extrapolated: add the difference to the
-    run with half the steps; run: replaces the whole simulation, as in methods/paper.py; model: the
-    only one that ``run`` stands for; resolution: (cells, angles, steps a period) that ``run`` keeps to
-    whatever is asked for; requires: package that it takes besides those of microslip; turns:
-    whether it knows motions that rotate.
+    In a method's file `requires`, `resolution`, `turns`, `model` and `parameters` are literals:
+    they are read without running it, see method_names.declared.
 
-    In a method's file the last four are literals: they are read without running it, see
-    methods.declared.
+    Attributes
+    ----------
+    summary : str
+        In a line, for tables and figures.
+    integrator : path.Integrator
+    dress : callable or None
+        dress(contact, **parameters) -> a contact that solves its steps in another way.
+    parameters : mapping of str to float
+        Numbers that `dress` takes, with their defaults.
+    search : callable
+        search(cycle, start, tolerance, step_tolerance, most_laps, inverse) -> PeriodicState.
+    prepared : bool
+        Whether to start near the static limit and with coarse steps, else once from full slip.
+    extrapolated : bool
+        Whether to add the difference to the run with half the steps.
+    run : callable or None
+        Replaces the whole simulation, as in methods/paper.py.
+    model : str
+        The only one that `run` stands for.
+    resolution : tuple of int or None
+        (cells, angles, steps a period) that `run` keeps to whatever is asked for.
+    requires : str
+        Package that it takes besides those of microslip.
+    turns : bool
+        Whether it knows motions that rotate.
     """
 
     summary: str
