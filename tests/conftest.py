@@ -3,9 +3,12 @@
 A file is one process's, since its tests share what is slow to make (--dist loadfile).
 """
 
+import fcntl
+import os
 import shutil
 
 import pytest
+import yaml
 from hypothesis import settings
 
 settings.register_profile("repeatable", derandomize=True, deadline=None)
@@ -20,21 +23,39 @@ def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: not item.path.name.startswith(LONG))
 
 
+def made_once(tmp_path_factory, name, make):
+    """A folder that whichever process needs it first fills, by `make(folder)`; others wait."""
+    top = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        top = top.parent  # which the processes share
+    folder = top / name
+    with open(top / f"{name}.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not (folder / "made").exists():
+            shutil.rmtree(folder, ignore_errors=True)
+            folder.mkdir()
+            make(folder)
+            (folder / "made").touch()
+    return folder
+
+
 @pytest.fixture(scope="session")
 def finished(tmp_path_factory):
-    """A project after its first run, and what that run said. To be left as it is."""
-    from stubs.workflow_project import ALL_JOBS, Project
+    """A project after its first run; `said` holds what that run said. To be left as it is."""
+    from stubs.workflow_project import TINY, Project
 
-    project = Project(tmp_path_factory.mktemp("finished"))
-    assert project.planned() == ALL_JOBS
-    project.said = project.run()
+    def run(place):
+        project = Project(place / "microslip")
+        (project.folder / "config" / "config.yaml").write_text(yaml.safe_dump(TINY))
+        (place / "said").write_text(project.run())
+
+    place = made_once(tmp_path_factory, "finished", run)
+    project = Project.at(place / "microslip")
+    project.said = (place / "said").read_text()
     return project
 
 
 @pytest.fixture
 def project(finished, tmp_path):
     """A copy of the finished project to edit."""
-    copy = object.__new__(type(finished))
-    copy.folder = tmp_path / "copy"
-    shutil.copytree(finished.folder, copy.folder)
-    return copy
+    return finished.copied(tmp_path / "copy")

@@ -3,6 +3,7 @@
 A run gives exact + Sum C_axis level^-p + mixed terms + scatter, and remembers that it was asked.
 """
 
+import math
 from dataclasses import replace
 from itertools import product
 
@@ -48,8 +49,10 @@ class FakeRun:
     def excess(self, resolution):
         at = vars(resolution)
         total = sum(
-            c * np.prod([at[a] ** -p for a, p in powers.items()]) for c, powers in self.terms
+            c * math.prod(at[a] ** -p for a, p in powers.items()) for c, powers in self.terms
         )
+        if not self.scatter:
+            return total
         seed = list(at.values())
         return total * (1.0 + self.scatter * np.random.default_rng(seed).uniform(-1.0, 1.0))
 

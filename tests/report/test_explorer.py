@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 from stubs import explorer_stub as stub
-from stubs.workflow_project import AXES, ROOT, TINY, Project
+from stubs.workflow_project import AXES, ROOT, Project, jobs_in
 
 from microslip.config import load
 from microslip.datasets import theory_limits
@@ -167,18 +167,16 @@ def test_all_assets_are_there_and_short():
 
 
 @pytest.mark.slow
-def test_the_workflow_makes_the_page_and_makes_it_again_only_when_it_changes(tmp_path):
-    project = Project(tmp_path)
-    sweeps = dict.fromkeys(requests.MAPS, AXES)
-    project.configure(TINY | {"sweeps": sweeps, "points_per_job": 50})
-    assert "explorer" not in project.planned()
-    project.run("explorer")
-    text = (tmp_path / "results" / "explorer.html").read_text(encoding="utf-8")
+def test_the_workflow_makes_the_page_and_makes_it_again_only_when_it_changes(finished, project):
+    assert "explorer" not in jobs_in(finished.said)
+    assert jobs_in(project.run("explorer")) == {"solve_batch": 2, "explorer": 1}
+    results = project.folder / "results"
+    text = (results / "explorer.html").read_text(encoding="utf-8")
     assert '"name":"bore"' in text
-    assert len(list(tmp_path.glob("results/periods/*/*/*.json"))) == 4
-    assert "bore: 2 periods, none" in (tmp_path / "results" / "logs" / "explorer.log").read_text()
+    assert len(list(results.glob("periods/*/*/*.json"))) == 4
+    assert "bore: 2 periods, none" in (results / "logs" / "explorer.log").read_text()
     assert project.planned("explorer") == {}
-    project.append("src/microslip/explorer/disc.js", "\n// Another look.\n")
+    project.append("src/microslip/report/explorer/disc.js", "\n// Another look.\n")
     assert project.planned("explorer") == {"explorer": 1}
 
 

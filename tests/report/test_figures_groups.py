@@ -94,18 +94,16 @@ def test_a_group_that_is_not_there_or_is_mixed_is_refused():
 @pytest.mark.parametrize("given", [motions(2), {"a": static("a"), "b": static("b")}])
 def test_saves_whole_and_reproducibly(given, tmp_path):
     name = drawing.figure_of(next(iter(given.values())).attrs["group"])
+    first, again = drawing.draw(name, given), drawing.draw(name, given)
     for kind in ("png", "pdf"):
-        first, again = (
-            drawing.save(drawing.draw(name, given), tmp_path / f"{i}.{kind}").read_bytes()
-            for i in range(2)
-        )
-        assert first == again
+        one = drawing.save(first, tmp_path / f"first.{kind}").read_bytes()
+        assert one == drawing.save(again, tmp_path / f"again.{kind}").read_bytes()
 
 
 # Maps
 
 
-@pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 8, 12])
+@pytest.mark.parametrize("count", [1, 2, 3, 5, 12])
 def test_any_number_of_maps_has_room(count):
     figure = drawing.draw("extended_motions", motions(count))
     size, edges = figure.get_size_inches(), figure.get_tightbbox().extents

@@ -26,9 +26,16 @@ TINY = {
         "field": {"cells": 4},
         "transients": {"travel": 1.0, "cells": 4, "steps": 16},
     },
-    "points_per_job": 3,
+    "points_per_job": 4,  # every job takes a second or two to start
 }
-ALL_JOBS = {"warm_up": 1, "solve_batch": 8, "collect": 3, "draw_figure": 6, "all": 1}
+ALL_JOBS = {"warm_up": 1, "solve_batch": 5, "collect": 3, "draw_figure": 6, "all": 1}
+
+
+def jobs_in(said):
+    """Jobs by rule, as Snakemake lists them before it starts; {} if there is nothing to do."""
+    table = re.search(r"^-+  -+\n(.*?)^total", said, re.MULTILINE | re.DOTALL)
+    rows = table[1].split("\n")[:-1] if table else []
+    return {name: int(count) for name, count in map(str.split, rows)}
 
 
 class Project:
@@ -40,6 +47,18 @@ class Project:
             shutil.copytree(ROOT / name, folder / name)
         shutil.copy(ROOT / "Snakefile", folder)
         self.configure(TINY)
+
+    @classmethod
+    def at(cls, folder):
+        """The project that a folder holds already."""
+        project = object.__new__(cls)
+        project.folder = folder
+        return project
+
+    def copied(self, folder):
+        """A copy of all that there is, what runs have left included."""
+        shutil.copytree(self.folder, folder, symlinks=True)
+        return self.at(folder)
 
     def configure(self, configuration):
         (self.folder / "tiny.yaml").write_text(yaml.safe_dump(configuration))
@@ -64,13 +83,13 @@ class Project:
         """Jobs that a run would do, by rule; {} if there is nothing to do."""
         done = self.snakemake(*targets, *RUN, "--dry-run")
         assert done.returncode == 0, done.stderr
-        table = re.search(r"^-+  -+\n(.*?)^total", done.stdout, re.MULTILINE | re.DOTALL)
-        rows = table[1].split("\n")[:-1] if table else []
-        return {name: int(count) for name, count in map(str.split, rows)}
+        return jobs_in(done.stdout)
 
     def points(self):
         return {p.name: p.read_bytes() for p in self.folder.glob("results/points/*/*/*.json")}
 
     def append(self, path, text):
-        with open(self.folder / path, "a") as file:
+        """Add to a file that is there."""
+        with open(self.folder / path, "r+") as file:
+            file.seek(0, os.SEEK_END)
             file.write(text)

@@ -3,6 +3,8 @@
 import pytest
 from stubs.workflow_project import Project
 
+from microslip.app.plan import Plan
+from microslip.config import load
 from microslip.datasets import netcdf
 from microslip.sweeps import sealed_files
 
@@ -52,11 +54,10 @@ def test_a_second_run_has_nothing_to_do_and_a_plain_one_does_not_need_it(finishe
 
 
 def test_another_amplitude_computes_its_own_runs_only(finished):
-    before = {p.name for p in finished.folder.glob("results/runs/*/*/*.json")}
-    more = {**TINY["claims"], "amplitude_bore": [1, 10]}
-    finished.configure({**TINY, "claims": more})
-    planned = finished.planned("claims")
-    assert planned["solve_early_batch"] == 1
-    finished.configure(TINY)
-    assert before
-    assert finished.planned("claims") == {}
+    more = {**TINY, "claims": {**TINY["claims"], "amplitude_bore": [1, 10]}}
+    before, after = (Plan(load.from_mapping(given)) for given in (TINY, more))
+    groups = before.groups_of("claims")
+    new = {*after.batch_files(*groups)} - {*before.batch_files(*groups)}
+    assert len([name for name in new if name.startswith("batches/claims_first/")]) == 1
+    kept = {*after.batch_files(*groups)} & {*before.batch_files(*groups)}
+    assert kept and all((finished.folder / "results" / name).exists() for name in kept)

@@ -1,0 +1,50 @@
+"""What a configuration leads to, asked without Snakemake."""
+
+from stubs.workflow_project import AXES, TINY
+
+from microslip.app.plan import Plan
+from microslip.config import load
+from microslip.foundation import source_digest
+from microslip.report.figures import drawing
+
+
+def plan(**changed):
+    return Plan(load.from_mapping({**TINY, **changed}))
+
+
+def test_a_sweep_too_small_for_a_map_has_no_map():
+    small = plan(sweeps={"transverse": {**AXES, "amplitude": [1]}})
+    assert small.figure_files(["transverse"]) == [
+        "figures/fig1_force_history.png",
+        "figures/fig1_force_history.pdf",
+    ]
+    assert "figures/fig2_transverse_map.png" in plan().figure_files(["transverse"])
+
+
+def test_a_job_may_be_a_point():
+    alone = plan(points_per_job=1)
+    assert [len(batch) for batch in alone.batches_in("transverse").values()] == [1] * 4
+    assert [len(batch) for batch in plan().batches_in("transverse").values()] == [4]
+
+
+def test_what_a_file_is_made_of_changes_with_its_own_settings_alone():
+    sweeps = {**TINY["sweeps"], "transverse": {**AXES, "amplitude": [0, 0.5, 1]}}
+    before, after = plan(), plan(sweeps=sweeps)
+    files = [*before.dataset_files(before.datasets), *before.figure_files(before.datasets)]
+    changed = {f for f in files if before.fingerprint_of(f) != after.fingerprint_of(f)}
+    assert changed == {
+        "transverse.nc",
+        "summaries/transverse.html",
+        *after.figure_files(["transverse"]),
+    }
+
+
+def test_the_look_of_figures_counts_for_all_of_them_and_a_kind_for_its_own():
+    made_of = {
+        figure: source_digest.LOADED.closure(drawing.modules_of(figure))
+        for figure in plan().figures
+    }
+    assert len(made_of) > 10
+    assert all("report/figures/style.py" in files for files in made_of.values())
+    of_field = [figure for figure, files in made_of.items() if "report/figures/field.py" in files]
+    assert of_field == ["fig3_traction_field"]
