@@ -1,10 +1,12 @@
-"""The command line as its users and checks run it: in a process of its own."""
+"""The command line: what it says and how it ends, mostly without a process of its own."""
 
 import json
+import re
 import subprocess
 import sys
 
 import pytest
+from stubs.in_process import run
 from stubs.point_contract import CONTRACT
 
 import microslip
@@ -15,7 +17,8 @@ TRANSVERSE = ("point", "transverse", "--velocity", "0.5", "--amplitude", "0.5")
 SPIN = "spin: rotation about the contact normal"
 
 
-def run(*arguments):
+def run_process(*arguments):
+    """The same in a process, as users and checks run it."""
     return subprocess.run(
         [sys.executable, "-m", "microslip", *map(str, arguments)],
         capture_output=True,
@@ -61,6 +64,20 @@ def test_json_is_the_answer_of_solve_and_nothing_else(scene, arguments):
     for answer in (fields, expected):  # equal to the last bit, the time apart
         answer.pop("solve_time_s")
     assert fields == expected
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [("continuous-bore", "--velocity", 0.5), ("bore", "--velocity=-1", "--amplitude", 1)],
+)
+def test_a_process_says_what_the_command_says(arguments):
+    alone, here = run_process("point", *arguments), run("point", *arguments)
+    assert (alone.returncode, alone.stderr) == (here.returncode, here.stderr)
+    assert without_time(alone.stdout) == without_time(here.stdout)
+
+
+def without_time(text):
+    return [line for line in text.splitlines() if not re.search(r"\d s\b|seconds", line)]
 
 
 def test_text_says_what_was_found():
@@ -150,7 +167,7 @@ def test_help_explains_the_terms(arguments, words):
 
 
 def test_version_is_that_of_the_package():
-    done = run("--version")
+    done = run_process("--version")
     assert (done.returncode, done.stdout) == (0, f"microslip {microslip.__version__}\n")
 
 

@@ -11,9 +11,10 @@ from pathlib import Path
 
 import pytest
 from bad_input.bad_configurations import FILES, GOOD
+from stubs import in_process
 
 import microslip
-from microslip.app import sweep_command
+from microslip.app import sweep_command, sweep_process
 
 ROOT = Path(__file__).parents[2]
 SOURCE = str(Path(microslip.__file__).parent.parent)
@@ -76,27 +77,63 @@ REFUSED = [
 SHOWN = ["empty", "not UTF-8", "UTF-16", "binary", "tabs", "a key twice", "nothing to merge"]
 
 
+class Here:
+    """Runs in this process what `microslip sweep` starts one for, up to where Snakemake begins."""
+
+    def __init__(self, command):
+        assert command[1:3] == ["-m", "microslip.app.sweep_process"]
+        self.code = sweep_process.main(command[3:])
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def wait(self):
+        return self.code
+
+
+@pytest.fixture
+def here(monkeypatch, tmp_path):
+    """Has the command start no process, in a folder of its own."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sweep_command.subprocess, "Popen", Here)
+    monkeypatch.setattr(sweep_command.signal, "signal", lambda *_: None)
+    monkeypatch.setattr("snakemake.cli.main", lambda *_: pytest.fail("Snakemake has started"))
+    return tmp_path
+
+
 @pytest.mark.parametrize(("arguments", "parts"), [(first, rest) for first, *rest in REFUSED])
-def test_bad_arguments_are_one_line_before_snakemake_starts(arguments, parts, tmp_path):
-    (tmp_path / "good.yaml").write_text(GOOD)
-    (tmp_path / "tabs.yaml").write_bytes(FILES["tabs"][0])
-    refused([*SWEEP, *arguments.split()], tmp_path, parts)
+def test_bad_arguments_are_one_line_before_snakemake_starts(arguments, parts, here):
+    (here / "good.yaml").write_text(GOOD)
+    (here / "tabs.yaml").write_bytes(FILES["tabs"][0])
+    refused(in_process.run("sweep", *arguments.split()), parts)
 
 
 @pytest.mark.parametrize("case", SHOWN)
-def test_a_file_that_is_no_configuration_is_one_line(case, tmp_path):
+def test_a_file_that_is_no_configuration_is_one_line(case, here):
     content, *parts = FILES[case]
-    (tmp_path / "given.yaml").write_bytes(content)
-    refused([*SWEEP, "-n", "--configfile", "given.yaml"], tmp_path, ["given.yaml: ", *parts])
+    (here / "given.yaml").write_bytes(content)
+    done = in_process.run("sweep", "-n", "--configfile", "given.yaml")
+    refused(done, ["given.yaml: ", *parts])
+    assert [path.name for path in here.iterdir()] == ["given.yaml"]
 
 
-def refused(command, folder, parts):
-    before = sorted(folder.rglob("*"))
-    done = run(command, folder)
+@pytest.mark.parametrize("row", [REFUSED[0], REFUSED[9], REFUSED[-1]], ids=str)
+def test_the_same_lines_come_from_a_process(row, tmp_path):
+    arguments, *parts = row
+    (tmp_path / "good.yaml").write_text(GOOD)
+    (tmp_path / "tabs.yaml").write_bytes(FILES["tabs"][0])
+    before = sorted(tmp_path.rglob("*"))
+    refused(run([*SWEEP, *arguments.split()], tmp_path), parts)
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def refused(done, parts):
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
     assert done.stderr.startswith("microslip sweep: ")
     assert [part for part in parts if part not in done.stderr] == []
-    assert sorted(folder.rglob("*")) == before
 
 
 def test_a_folder_that_is_gone_is_one_line(tmp_path):
@@ -106,7 +143,8 @@ def test_a_folder_that_is_gone_is_one_line(tmp_path):
     assert done.stderr == "microslip sweep: the current folder: No such file or directory\n"
 
 
-@pytest.mark.parametrize("option", ["-j0", "--cores=0", "-c -2"])
+@pytest.mark.slow
+@pytest.mark.parametrize("option", ["-j0", "-c -2"])
 def test_plain_snakemake_is_told_that_it_has_no_cores(option, tmp_path):
     done = run([*SNAKEMAKE, *option.split(), "--configfile", ROOT / "config/smoke.yaml"], tmp_path)
     assert done.returncode == 1
