@@ -132,10 +132,11 @@ def test_kernels_hold_no_lock_that_would_keep_an_interrupt_waiting():
 
 WRITING = """
 import sys, time
-from microslip import cache, terminal
+from microslip.app import terminal
+from microslip.sweeps import sealed_files
 
 def command():
-    with cache.writing_beside(sys.argv[1]) as beside:
+    with sealed_files.writing_beside(sys.argv[1]) as beside:
         beside.write_text("half")
         time.sleep(1000)
 

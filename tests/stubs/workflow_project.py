@@ -9,8 +9,16 @@ from pathlib import Path
 
 import yaml
 
+from microslip.foundation import compiled
+
 ROOT = Path(__file__).parents[2]
 SNAKEMAKE = Path(sys.executable).with_name("snakemake")
+# The compiled code of this process serves copies with the same sources, too.
+ENVIRONMENT = {
+    "PATH": "/usr/bin:/bin",
+    "HOME": os.environ.get("HOME", str(ROOT)),
+    "NUMBA_CACHE_DIR": str(compiled.folder().parent),
+}
 RUN = ["-j2", "--configfile", "tiny.yaml"]
 
 # Closed forms and the rigid model: points that cost nothing.
@@ -68,7 +76,7 @@ class Project:
         return subprocess.run(
             [SNAKEMAKE, *arguments],
             cwd=self.folder,
-            env={"PATH": "/usr/bin:/bin", "HOME": os.environ.get("HOME", str(self.folder))},
+            env=ENVIRONMENT,
             capture_output=True,
             text=True,
             timeout=900,
