@@ -18,8 +18,8 @@ from microslip.foundation import source_digest
 
 pytestmark = pytest.mark.slow
 
-CONFIGURATION = {**TINY, "sweeps": {"transverse": AXES}}
-DATASET = "results/transverse.nc"
+CONFIGURATION = {**TINY, "sweeps": {"bore": AXES}}
+DATASET = "results/bore.nc"
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +104,7 @@ use rule * from friction as friction_*
 
 rule outer:
     input:
-        "sub/results/transverse.nc",
+        "sub/results/bore.nc",
     output:
         "outer.txt",
     shell:
