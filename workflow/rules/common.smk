@@ -25,9 +25,7 @@ with refused_in_one_line(ORIGIN):
         load.read_yaml(file)  # refuses a key that occurs twice
     # Jobs parse this again, and need not pay for asking the solver what it knows.
     places = {"source": ORIGIN, "folders": FOLDERS}
-    CONFIGURATION = load.from_mapping(
-        config, ask_solver=workflow.is_main_process, **places
-    )
+    CONFIGURATION = load.from_mapping(config, ask_solver=workflow.is_main_process, **places)
     # Captions name the defaults too, and jobs find the files that were found here.
     config = load.with_files_found(config, strict=workflow.is_main_process, **places)
     RESULTS = os.path.normpath(CONFIGURATION.results)
