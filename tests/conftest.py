@@ -3,7 +3,6 @@
 A file is one process's, since its tests share what is slow to make (--dist loadfile).
 """
 
-import fcntl
 import os
 import shutil
 
@@ -15,16 +14,44 @@ settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.load_profile("repeatable")
 """Whoever runs the tests sees the same random inputs; campaigns look at others."""
 
-LONG = ("test_workflow", "test_docs", "test_explorer_browser", "test_studies", "test_claims")
-"""Files with few tests that take long: they come first, so that no process ends alone with one."""
+LONG = (
+    "test_workflow.py",  # compiles the solver, which takes a fresh clone a minute or two
+    "test_figures_studies",  # needs no solver
+    "test_workflow_",
+    "test_docs",
+    "test_figures",
+    "test_explorer",
+    "test_terminal",
+    "test_stability",
+    "test_static_loop",
+    "test_approach",
+    "test_normal_turning",
+    "test_point",
+    "test_odd_files",
+)
+"""Files that take long, by how their names begin: they come first, so that all processes end at
+about the same time."""
 
 
 def pytest_collection_modifyitems(items):
-    items.sort(key=lambda item: not item.path.name.startswith(LONG))
+    def place(item):
+        found = (i for i, start in enumerate(LONG) if item.path.name.startswith(start))
+        return next(found, len(LONG))
+
+    items.sort(key=place)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers():
+    """As many processes as there are cores for this one, though no more than there is work for."""
+    cores = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else range(os.cpu_count())
+    return min(len(cores), 16)
 
 
 def made_once(tmp_path_factory, name, make):
     """A folder that whichever process needs it first fills, by `make(folder)`; others wait."""
+    import fcntl
+
     top = tmp_path_factory.getbasetemp()
     if "PYTEST_XDIST_WORKER" in os.environ:
         top = top.parent  # which the processes share

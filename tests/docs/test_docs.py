@@ -52,7 +52,7 @@ CLUSTER = "needs a cluster or a cloud; not run"
 # Blocks that are not run, by page and first line: why not, and where they are.
 NOT_RUN = {
     ("README.md", "python3 -m venv .venv && "): f"{INSTALLS}, and its sweeps are {FULL}",
-    ("README.md", ".venv/bin/pytest"): "these tests; the last line of .ci/run",
+    ("README.md", '.venv/bin/pip install -e ".[test]"'): "these tests; the last line of .ci/run",
     ("README.md", '.venv/bin/pip install -e ".[docs]"'): f"{INSTALLS}; the build is a test here",
     ("CONTRIBUTING.md", 'python3 -m venv .venv && .venv/bin/pip install -e ".[dev]"'): INSTALLS,
     (

@@ -137,12 +137,13 @@ def test_a_contact_that_lifts_off_has_no_limit_but_what_drives_it():
 
 
 def test_poissons_ratio_and_squares_without_symmetry_are_in():
-    softer = microslip.solve("elliptic", 0.0, 0.5, poisson=0.4, tolerance=1e-2)
+    softer = microslip.solve("elliptic", 0.0, 0.5, poisson=0.4, tolerance=5e-2)
     assert softer.converged and softer.model == "polar"
-    turning = microslip.solve("transverse-bore:phase=90", 0.0, 0.5, tolerance=2e-2)
+    turning = microslip.solve("transverse-bore:phase=90", 0.0, 0.5, tolerance=5e-2)
     assert turning.converged and turning.model == "cartesian"
     alone = microslip.solve("transverse", 0.0, 0.5).mu_macro
-    assert 0.0 < turning.mu_macro < alone  # the bore beside it takes some more
+    # the bore beside it takes some more
+    assert 0.0 < turning.mu_macro < alone - turning.mu_macro_error
 
 
 def test_a_state_that_does_not_settle_is_no_number(monkeypatch):

@@ -19,6 +19,7 @@ ENVIRONMENT = {
     "HOME": os.environ.get("HOME", str(ROOT)),
     "NUMBA_CACHE_DIR": str(compiled.folder().parent),
 }
+COMPILED = shutil.ignore_patterns("compiled-*")
 RUN = ["-j2", "--configfile", "tiny.yaml"]
 
 # Closed forms and the rigid model: points that cost nothing.
@@ -52,7 +53,7 @@ class Project:
     def __init__(self, folder):
         self.folder = folder
         for name in ("config", "profiles", "src", "workflow"):
-            shutil.copytree(ROOT / name, folder / name)
+            shutil.copytree(ROOT / name, folder / name, ignore=COMPILED)
         shutil.copy(ROOT / "Snakefile", folder)
         self.configure(TINY)
 

@@ -124,9 +124,10 @@ def solve(scene, velocity, amplitude=None, **settings):
 
 
 def test_points_that_do_not_converge_are_listed_and_drawn(project):
+    target = "results/figures/fig2_transverse_map.png"
     project.append("src/microslip/adaptive/point.py", STALLING)
     axes = {**AXES, "amplitude": [1, 2]}
     project.configure({**TINY, "sweeps": {"transverse": axes}})
-    said = project.run()
+    said = project.run(target)
     assert "transverse: 4 points, 4 not converged" in said
     assert "not converged: amplitude 1, velocity 0.5: stalled" in said

@@ -3,7 +3,6 @@
 The datasets have to be those of an ordinary run, byte for byte. And the report of a run.
 """
 
-import os
 import re
 import shutil
 import subprocess
@@ -13,7 +12,7 @@ import zipfile
 import pytest
 import xarray as xr
 import yaml
-from stubs.workflow_project import AXES, ROOT, RUN, TINY, Project, jobs_in
+from stubs.workflow_project import AXES, ENVIRONMENT, ROOT, RUN, TINY, Project, jobs_in
 
 from microslip.foundation import source_digest
 
@@ -159,25 +158,18 @@ def installed(ordinary):
     subprocess.run(build, cwd=ROOT, check=True, capture_output=True)
     with zipfile.ZipFile(*folder.glob("*.whl")) as wheel:
         wheel.extractall(folder)
-    _take_over_compiled(ROOT / "src" / "microslip", folder / "microslip")
 
     def microslip(place, *arguments):
         return subprocess.run(
             [sys.executable, "-m", "microslip.app.cli", *arguments],
             cwd=place.folder,
-            env={"PATH": "/usr/bin:/bin", "HOME": os.environ["HOME"], "PYTHONPATH": str(folder)},
+            env={**ENVIRONMENT, "PYTHONPATH": str(folder)},
             capture_output=True,
             text=True,
             timeout=300,
         )
 
     return microslip
-
-
-def _take_over_compiled(package, other):
-    """Let a copy of a package find what is compiled already: its sources are the same."""
-    for folder in (package / "__pycache__").glob("compiled-*"):
-        shutil.copytree(folder, other / "__pycache__" / folder.name)
 
 
 def test_an_installed_copy_gives_the_same_dataset_and_finds_what_a_tree_made(ordinary, installed):

@@ -3,7 +3,6 @@
 It needs moto's server and Snakemake's plugin for S3; where these are not installed it is left out.
 """
 
-import os
 import shutil
 import socket
 import subprocess
@@ -12,7 +11,7 @@ import time
 
 import pytest
 import yaml
-from stubs.workflow_project import AXES, RUN, SNAKEMAKE, TINY
+from stubs.workflow_project import AXES, ENVIRONMENT, RUN, SNAKEMAKE, TINY
 
 pytest.importorskip("moto.server")
 pytest.importorskip("snakemake_storage_plugin_s3")
@@ -61,11 +60,10 @@ def run(folder, address):
         "SNAKEMAKE_STORAGE_S3_ACCESS_KEY": "a",
         "SNAKEMAKE_STORAGE_S3_SECRET_KEY": "b",
     }
-    home = {name: os.environ[name] for name in ("HOME",) if name in os.environ}
     done = subprocess.run(
         [SNAKEMAKE, *RUN, *STORAGE],
         cwd=folder,
-        env={"PATH": "/usr/bin:/bin", **home, **KEYS, **plugin},
+        env={**ENVIRONMENT, **KEYS, **plugin},
         capture_output=True,
         text=True,
         timeout=600,
