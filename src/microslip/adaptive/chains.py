@@ -52,7 +52,7 @@ class Runs:
         self.done = {}
 
     def resolution(self, **indices):
-        """The base with some indices replaced, as a motion.Resolution."""
+        """The base with some indices replaced, as a problem.Resolution."""
         at = self.base | indices
         levels = {name: self.axes[name].levels[index] for name, index in at.items()}
         tied = ((self.axes[name].tied, index) for name, index in at.items())

@@ -71,7 +71,7 @@ def certify(run, coarsest, axes, tolerance, readings=()):
     """Refine until the estimated error is within ``tolerance``.
 
     run(resolution, guess) -> simulate.Run (guess: the run at the base, or None); coarsest:
-    motion.Resolution, for what is not refined; axes: the Axis to be refined; readings: functions
+    problem.Resolution, for what is not refined; axes: the Axis to be refined; readings: functions
     like ``run`` for other pressures that the same numbers may stand for.
     Returns a Certified; converged is False, with the reason, where a run did not converge, the
     estimate over a free axis stays too large, or a run raised budget.Spent: then it is what was

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -79,14 +80,44 @@ def turning_point_grading(creep, stroke):
     return STRONGEST_GRADING * slow * short
 
 
+class LoadingPath(NamedTuple):
+    """What a compiled march follows: what is imposed on the contact, and the integrator.
+
+    Attributes
+    ----------
+    positions, stages, carry, end
+        See `Path`.
+    bounds : np.ndarray
+        Friction bound at the start and at every stage, shape (1 + steps * stages, ...), or of one
+        row where it does not change.
+    """
+
+    positions: np.ndarray
+    stages: np.ndarray
+    carry: np.ndarray
+    end: float
+    bounds: np.ndarray
+
+
 @dataclass(frozen=True, eq=False)
 class Path:
     """A stretch of rigid motion cut into steps.
 
-    phase: shape (steps + 1,); positions: displacement at every phase, shape (steps + 1, 3)
-    (forward, lateral, angle); stages: the same at every stage, shape (steps, stages, 3); carry:
-    shape (stages, stages); end: see Integrator; depth: indentation over the reference one at the
-    start and at every stage, shape (1 + steps * stages,), None where it does not change.
+    Attributes
+    ----------
+    phase : np.ndarray, shape (steps + 1,)
+        omega t.
+    positions : np.ndarray, shape (steps + 1, 3)
+        Displacement at every phase: forward, lateral, angle.
+    stages : np.ndarray, shape (steps, stages, 3)
+        The same at every stage.
+    carry : np.ndarray, shape (stages, stages)
+        See `Integrator.carry_matrix`.
+    end : float
+        See `Integrator`.
+    depth : np.ndarray or None, shape (1 + steps * stages,)
+        Indentation over the reference one at the start and at every stage, None where it does not
+        change.
     """
 
     phase: np.ndarray
@@ -99,6 +130,10 @@ class Path:
     @property
     def steps(self):
         return len(self.phase) - 1
+
+    def under(self, bounds):
+        """The LoadingPath under friction bounds, see there."""
+        return LoadingPath(self.positions, self.stages, self.carry, self.end, bounds)
 
     def mean(self, values):
         """Time average of values at the phases (first axis), by the trapezoidal rule."""

@@ -1,7 +1,7 @@
 """The contact while its normal load changes: what each part of it carries.
 
 Depth is the indentation over that of the reference state (radius a, load F_z); everything else is
-in the working units of a pressures.Pressure, that of an axisymmetric indenter.
+in the working units of a pressure.Pressure, that of an axisymmetric indenter.
 """
 
 from __future__ import annotations

@@ -23,9 +23,9 @@ FORGETFUL = 0.2
 
 
 def search(cycle, start, tolerance, step_tolerance, most_laps):
-    """Find the fixed point of a cycle.Cycle to ``tolerance`` (a force over mu F_z).
+    """Find the fixed point of a period_map.Cycle to ``tolerance`` (a force over mu F_z).
 
-    Returns a cycle.PeriodicState: the best state seen, if none is good enough.
+    Returns a period_map.PeriodicState: the best state seen, if none is good enough.
     """
     accelerate = Anderson(cycle.contact, DEPTH)
     state, best = start, None

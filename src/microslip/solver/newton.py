@@ -23,10 +23,10 @@ SKEWED = 1e-3
 
 
 def search(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
-    """Find the fixed point of a cycle.Cycle to ``tolerance`` (a force over mu F_z).
+    """Find the fixed point of a period_map.Cycle to ``tolerance`` (a force over mu F_z).
 
     inverse: known inverse of 1 - F' near the start, (start.size, start.size); without it the first
-    march gives its derivative.  Returns a cycle.PeriodicState.
+    march gives its derivative.  Returns a period_map.PeriodicState.
     """
     corrector = Corrector(cycle, start, inverse)
     state, derivative = start, inverse is None

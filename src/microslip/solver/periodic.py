@@ -13,12 +13,25 @@ MOST_LAPS = 200
 
 
 def find_periodic_state(cycle, start, tolerance, step_tolerance, most_laps=MOST_LAPS, inverse=None):
-    """March half periods until the state is periodic to ``tolerance`` (a force over mu F_z).
+    """March periods until the state repeats itself to the tolerance.
 
-    cycle: cycle.Cycle, the map over half a period; start: state, shape of the contact; inverse:
-    that of a search from a start near by, if there was one.  The returned forces belong to a march
-    from the returned start, whose distance from the periodic state is ``distance``.  Never raises
-    for want of convergence: see ``converged``.
+    Parameters
+    ----------
+    cycle : period_map.Cycle
+        The map over a (half) period.
+    start : np.ndarray
+        Tractions, of the shape of the contact's states.
+    tolerance, step_tolerance : float
+        Of the state and of a step, forces over mu F_z.
+    most_laps : int
+        Marches to try.
+    inverse : np.ndarray or None, shape (start.size, start.size)
+        That of a search from a start near by, if there was one.
+
+    Returns
+    -------
+    period_map.PeriodicState
+        Never raises for want of convergence: see `converged` there.
     """
     if cycle.contact.has_sensitivity:
         return newton.search(cycle, start, tolerance, step_tolerance, most_laps, inverse)

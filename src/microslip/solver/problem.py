@@ -12,7 +12,7 @@ from microslip.models.registry import MODELS
 from microslip.models.rings.mesh import Focus
 
 WEAKEST_FOCUS, STRONGEST_FOCUS, STATIC_FOCUS = 0.3, 1.0 - 2.0**-6, 0.9
-"""Bounds of rings.Focus.strength, and its value for the static limit."""
+"""Bounds of mesh.Focus.strength, and its value for the static limit."""
 
 
 @dataclass(frozen=True, order=True)
@@ -98,7 +98,7 @@ def _focus(motion):
 
 
 def build_contact(motion, model, resolution, focus=None):
-    """The contact, its rings gathered at a rings.Focus, by default where the slip starts."""
+    """The contact, its rings gathered at a mesh.Focus, by default where the slip starts."""
     scene = motion.scene
     focus = focus or _focus(motion)
     build = MODELS[model].build

@@ -82,7 +82,7 @@ def simulate(
 ):
     """Run ``model`` on a scene at one resolution to its periodic (or steady) state.
 
-    scene: scenes.Scene; velocity > 0, amplitude > 0 (None for steady scenes), poisson in 0..0.5:
+    scene: motion.Scene; velocity > 0, amplitude > 0 (None for steady scenes), poisson in 0..0.5:
     checked by the caller; tolerance: of the periodic state, a force over mu F_z, steps are solved
     a hundred times tighter; guess: a Run of the same point, of use if cells and angles are the
     same, too; method: method.Method; careful: solve the steps of slow motions tighter; budget: a

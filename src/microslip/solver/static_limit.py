@@ -25,7 +25,7 @@ method of second order may end a step below the bound, and the residual feels th
 
 
 def at_turning_points(scene):
-    """Whether the turning points tell the static limit of a scenes.Scene: motion on a line under a
+    """Whether the turning points tell the static limit of a motion.Scene: motion on a line under a
     load that stays."""
     return scene.straight and scene.depth is None
 

@@ -9,7 +9,7 @@ Res. 4, 2017).  A spring that came into contact at T has been stretched to
 
 since it lost what it carried above its bound at every tau.  So, with phi(t) = d(t) - v t, it lacks
 phi(t) - min phi of its bound, whatever its x, and the mean over the springs is one over T.  Exact
-for Poisson's ratio 0.  Dimensionless, in the working units of an indenter's pressures.Pressure.
+for Poisson's ratio 0.  Dimensionless, in the working units of an indenter's pressure.Pressure.
 """
 
 from __future__ import annotations

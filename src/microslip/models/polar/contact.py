@@ -118,18 +118,17 @@ class PolarContact:
             stages = previous.stages.copy()
         state, residual, iterations = unbroken(
             polar_march.march,
-            self.influence,
-            self.inverse,
-            self.penalty,
-            self.bound[None] if path.depth is None else self.bounds_along(path),
-            self.weight,
-            (self.forward_position, self.lateral_position),
-            (path.positions, path.stages, path.carry, path.end),
+            polar_march.Points(
+                self.influence,
+                self.inverse,
+                self.penalty,
+                self.weight,
+                (self.forward_position, self.lateral_position),
+            ),
+            path.under(self.bound[None] if path.depth is None else self.bounds_along(path)),
             np.ascontiguousarray(state),
             tolerance,
-            previous is not None,
-            stages[0],
-            stages[1],
+            polar_march.Stages(stages[0], stages[1], previous is not None),
             forces,
         )
         # the half disc that is not resolved cancels what symmetry forbids

@@ -1,7 +1,7 @@
 """Rings: exact for translation at nu = 0, where the traction vector depends on the radius alone.
 
-The compiled work is done in ring_factors (the linear part of a step), ring_kernels (one step) and
-ring_march (a march, and its derivative, which makes the periodic state a Newton problem).
+The compiled work is done in tangent.py (the linear part of a step), newton_step.py (one step) and
+march.py (a march, and its derivative, which makes the periodic state a Newton problem).
 """
 
 from __future__ import annotations
@@ -16,20 +16,33 @@ from microslip.models.interrupts import unbroken
 from microslip.models.rings import march as ring_march
 from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import make_rings
-from microslip.models.rings.tangent import cholesky
+from microslip.models.rings.tangent import Rings, cholesky
 from microslip.models.varying_load import Growth, load_on_rings
 from microslip.pressures.registry import HERTZ
 
 
 class RadialContact:
-    """Contact of ``cells`` rings (see models.contact.Contact); states have shape (2, 1, cells).
+    """Contact of rings (see models.contact.Contact); states have shape (2, 1, cells).
 
-    influence: (cells, cells), mean ring tractions to ring-averaged displacements, symmetric once
-    its rows are weighted; bound, weight: friction bound and area of each ring; stiffness: of the
-    whole, see there, by default that of the matrix.  ``resolved`` builds
-    the half-space's; the elastic slider is the one-ring contact of unit compliance.
-    growth: depth.Growth of the rings, without which the normal load cannot change; edges: radii
-    between them before the contact is ``pressed``, None where there are none or it has a hole.
+    `resolved` builds the half-space's; the elastic slider is the one-ring contact of unit
+    compliance.
+
+    Parameters
+    ----------
+    influence : np.ndarray, shape (cells, cells)
+        Mean ring tractions to ring-averaged displacements, symmetric once its rows are weighted.
+    bound, weight : np.ndarray, shape (cells,)
+        Friction bound and area of each ring.
+    stiffness : float or None
+        Of the whole, see models.contact.Contact; None: that of the matrix.
+    growth : varying_load.Growth or None
+        Of the rings; without it the normal load cannot change.
+
+    Attributes
+    ----------
+    edges : np.ndarray or None, shape (cells + 1,)
+        Radii between the rings before the contact is `pressed`, None where there are none or it has
+        a hole.
     """
 
     has_sensitivity = True
@@ -145,11 +158,8 @@ class RadialContact:
             known = np.empty((0, 2, 0))
         end, tractions, forces, residual, iterations, derivative = unbroken(
             ring_march.march,
-            self._stiffness,
-            self._factor,
-            self.bound[None] if path.depth is None else self.bounds_along(path),
-            self.weight,
-            (path.positions, path.stages, path.carry, path.end),
+            Rings(self._stiffness, self._factor, self.weight),
+            path.under(self.bound[None] if path.depth is None else self.bounds_along(path)),
             np.ascontiguousarray(state[:, 0]),
             known,
             tolerance,

@@ -36,7 +36,7 @@ class Rings:
 
 
 def make_rings(count, focus=None, pressure=HERTZ):
-    """Rings for ``count`` unknown radii under a round pressures.Pressure, refined around ``focus``
+    """Rings for ``count`` unknown radii under a round pressure.Pressure, refined around ``focus``
     (a Focus or just its radius; None: nowhere).
 
     An edge lies on the focus exactly: the traction has a kink at the stick radius, and a ring that

@@ -32,14 +32,42 @@ HELD = 1e30
 """Resistance of a traction to turning where the bound is 0: out of contact a ring slips freely."""
 
 
+class Rings(NamedTuple):
+    """The rings of a contact, for compiled code.
+
+    Attributes
+    ----------
+    stiffness : np.ndarray, shape (n, n)
+        B.
+    whole : np.ndarray, shape (n, n)
+        U of all rings in their order, see `cholesky`.
+    weight : np.ndarray, shape (n,)
+        Areas.
+    """
+
+    stiffness: np.ndarray
+    whole: np.ndarray
+    weight: np.ndarray
+
+
 class Factors(NamedTuple):
     """Scratch of the step solver.
 
-    order: sticking rings, then slipping ones, (n,); count: how many stick (-1: not known), and 1 if
-    what the march derives from them is up to date, (2,); upper: U in this order, and C where both
-    rings slip, (n, n), with the reciprocals of the pivots on the diagonal of U; tangent: Cholesky
-    factor of M, likewise; direction: unit tangents of the slipping rings in this order, (2, n);
-    change, trial, trial_slip: (2, n).
+    Attributes
+    ----------
+    order : np.ndarray, shape (n,)
+        Sticking rings, then slipping ones.
+    count : np.ndarray, shape (2,)
+        How many stick (-1: not known), and 1 if what the march derives from them is up to date.
+    upper : np.ndarray, shape (n, n)
+        U in this order, and C where both rings slip, with the reciprocals of the pivots on the
+        diagonal of U.
+    tangent : np.ndarray, shape (n, n)
+        Cholesky factor of M, likewise.
+    direction : np.ndarray, shape (2, n)
+        Unit tangents of the slipping rings in this order.
+    change, trial, trial_slip : np.ndarray, shape (2, n)
+        Newton step in this order; tractions and slips tried.
     """
 
     order: np.ndarray
@@ -171,8 +199,9 @@ def _split(q, slip, bound, factors):
 
 
 @kernel
-def _factorise_sticking(stiffness, whole, stick, factors):
-    """Eliminate the sticking rings: fills factors.upper.  whole: U of all rings in their order."""
+def _factorise_sticking(rings, stick, factors):
+    """Eliminate the sticking rings: fills factors.upper."""
+    stiffness, whole = rings.stiffness, rings.whole
     order, upper, scratch = factors.order, factors.upper, factors.change[0]
     n = len(order)
     inner = 0
@@ -201,13 +230,13 @@ def _factorise_sticking(stiffness, whole, stick, factors):
 
 
 @kernel
-def factorise(stiffness, whole, bound, q, slip, factors):
+def factorise(rings, bound, q, slip, factors):
     """Tangent problem at (q, slip), factorised; returns the number of sticking rings, -1 if it
     breaks down.  What belongs to the sticking rings is kept while these stay the same."""
     stick, news = _split(q, slip, bound, factors)
     if news:
         factors.count[1] = 0
-        if not _factorise_sticking(stiffness, whole, stick, factors):
+        if not _factorise_sticking(rings, stick, factors):
             factors.count[0] = -1
             return -1
     n = len(bound)

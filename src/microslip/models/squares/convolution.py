@@ -173,11 +173,11 @@ def _forward(re, im, columns, radices, roots):
             w = padded // length * j
             for a in range(j, padded, length):
                 if radix == 4:
-                    _forward_4(re, im, columns, a, part, roots, w)
+                    _forward_4((re, im), columns, a, part, roots, w)
                 elif radix == 3:
-                    _forward_3(re, im, columns, a, part, roots, w)
+                    _forward_3((re, im), columns, a, part, roots, w)
                 else:
-                    _forward_2(re, im, columns, a, part, roots, w)
+                    _forward_2((re, im), columns, a, part, roots, w)
         length = part
 
 
@@ -191,16 +191,17 @@ def _backward(re, im, columns, radices, roots):
             w = padded // length * j
             for a in range(j, padded, length):
                 if radix == 4:
-                    _backward_4(re, im, columns, a, part, roots, w)
+                    _backward_4((re, im), columns, a, part, roots, w)
                 elif radix == 3:
-                    _backward_3(re, im, columns, a, part, roots, w)
+                    _backward_3((re, im), columns, a, part, roots, w)
                 else:
-                    _backward_2(re, im, columns, a, part, roots, w)
+                    _backward_2((re, im), columns, a, part, roots, w)
         part = length
 
 
 @kernel
-def _forward_2(re, im, columns, a, part, roots, w):
+def _forward_2(values, columns, a, part, roots, w):
+    re, im = values
     c1, s1 = roots[0, w], -roots[1, w]
     b = a + part
     for k in range(columns):
@@ -211,7 +212,8 @@ def _forward_2(re, im, columns, a, part, roots, w):
 
 
 @kernel
-def _backward_2(re, im, columns, a, part, roots, w):
+def _backward_2(values, columns, a, part, roots, w):
+    re, im = values
     c1, s1 = roots[0, w], roots[1, w]
     b = a + part
     for k in range(columns):
@@ -225,7 +227,8 @@ _SIN_60 = np.sqrt(0.75)
 
 
 @kernel
-def _forward_3(re, im, columns, a, part, roots, w):
+def _forward_3(values, columns, a, part, roots, w):
+    re, im = values
     c1, s1, c2, s2 = roots[0, w], -roots[1, w], roots[0, 2 * w], -roots[1, 2 * w]
     b, c = a + part, a + 2 * part
     for k in range(columns):
@@ -241,7 +244,8 @@ def _forward_3(re, im, columns, a, part, roots, w):
 
 
 @kernel
-def _backward_3(re, im, columns, a, part, roots, w):
+def _backward_3(values, columns, a, part, roots, w):
+    re, im = values
     c1, s1, c2, s2 = roots[0, w], roots[1, w], roots[0, 2 * w], roots[1, 2 * w]
     b, c = a + part, a + 2 * part
     for k in range(columns):
@@ -256,7 +260,8 @@ def _backward_3(re, im, columns, a, part, roots, w):
 
 
 @kernel
-def _forward_4(re, im, columns, a, part, roots, w):
+def _forward_4(values, columns, a, part, roots, w):
+    re, im = values
     c1, s1, c2, s2 = roots[0, w], -roots[1, w], roots[0, 2 * w], -roots[1, 2 * w]
     c3, s3 = roots[0, 3 * w], -roots[1, 3 * w]
     b, c, d = a + part, a + 2 * part, a + 3 * part
@@ -275,7 +280,8 @@ def _forward_4(re, im, columns, a, part, roots, w):
 
 
 @kernel
-def _backward_4(re, im, columns, a, part, roots, w):
+def _backward_4(values, columns, a, part, roots, w):
+    re, im = values
     c1, s1, c2, s2 = roots[0, w], roots[1, w], roots[0, 2 * w], roots[1, 2 * w]
     c3, s3 = roots[0, 3 * w], roots[1, 3 * w]
     b, c, d = a + part, a + 2 * part, a + 3 * part

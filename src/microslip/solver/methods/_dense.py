@@ -7,7 +7,7 @@ The solver is a compiled function
 matrix: A, (2 K, 2 K), forward components first; scale: its diagonal, bound, weight: of each point,
 (K,); b: imposed displacement, (2, K); q: first guess and result, (2, K); slip: receives b - A q;
 settings: whatever ``prepare(matrix, scale, **parameters)`` returned.  The residual is that of
-friction.coulomb_residual.
+coulomb.coulomb_residual.
 """
 
 from __future__ import annotations

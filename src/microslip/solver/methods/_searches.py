@@ -1,6 +1,6 @@
 """Searches for the periodic state that people write first, on a period_map.Cycle.
 
-All return a cycle.PeriodicState.
+All return a period_map.PeriodicState.
 """
 
 from __future__ import annotations

@@ -65,7 +65,7 @@ class Solver:
 
     def step(self, forward, lateral):
         """Move on to a rigid displacement (in u_lim); returns the forward force (over mu F_z) and
-        the residual, as friction.coulomb_residual.  Takes note of steps that failed."""
+        the residual, as coulomb.coulomb_residual.  Takes note of steps that failed."""
         step = self._solver.step(delta_t=(forward, lateral), tol_kkt=math.inf)
         self.iterations += step.tangential_iters
         self.solves += 1
