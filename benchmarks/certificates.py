@@ -35,7 +35,7 @@ import numpy as np
 import microslip
 from microslip.adaptive.choice import choose_model
 from microslip.motions.registry import scene_named
-from microslip.solver.problem import Resolution
+from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
 
@@ -133,12 +133,13 @@ def reference(scene, velocity, amplitude, poisson, tolerance, certified, pressur
     stroke = min(max(kind.stroke(amplitude, poisson), 1.0), 16.0) ** 0.5
     stroke *= kind.cycles
 
+    problem = Problem(kind, velocity, amplitude, poisson)
+
     def run(resolution):
         if velocity == 0.0:
             share = PERIODICITY * tolerance
-            return simulate_static(kind, amplitude, poisson, model, resolution, share)
-        where = (kind, velocity, amplitude, poisson)
-        return simulate(*where, model, resolution, PERIODICITY * tolerance)
+            return simulate_static(problem, model, resolution, share)
+        return simulate(problem, model, resolution, PERIODICITY * tolerance)
 
     if kind.depth is not None:
         coarse, fine = (

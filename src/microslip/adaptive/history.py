@@ -13,7 +13,7 @@ from microslip.foundation.arguments import LARGEST, count, real
 from microslip.foundation.errors import InputError
 from microslip.models.contact import forward_slip, full_slip
 from microslip.models.path import make_path
-from microslip.solver.problem import Motion, Resolution, build_contact
+from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.steady import steady_state
 
 STARTS = ("stress-free", "full-slip", "full-rotation")
@@ -86,11 +86,11 @@ def history(
     if not kind.periodic and travel / velocity > LONGEST_PHASE:
         allowed = f"allowed is at least {LONGEST_PHASE:g} times less than the travel, {travel:g}"
         raise InputError("velocity", velocity, allowed)
-    motion = Motion(kind, velocity, amplitude, poisson)
-    contact = _contact(motion, model, cells)
+    problem = Problem(kind, velocity, amplitude, poisson)
+    contact = _contact(problem, model, cells)
     end = 2 * np.pi * periods if kind.periodic else travel / velocity
     total = steps * (periods if kind.periodic else 1)
-    path = make_path(motion.displacement, np.linspace(0.0, end, total + 1), depth=motion.depth)
+    path = make_path(problem.displacement, np.linspace(0.0, end, total + 1), depth=problem.depth)
     march = contact.march(path, _start(contact, start), STEP_TOLERANCE)
     return History(
         phase=path.phase,
@@ -116,9 +116,9 @@ def traction_field(scene, velocity, amplitude=None, *, poisson=0.0, cells=None):
         raise InputError("velocity", velocity, "a traction field needs velocity > 0")
     if cells is not None:
         count("cells", cells, 2, most=LARGEST["cells"])
-    motion = Motion(kind, velocity, None, poisson)
-    contact = _contact(motion, "polar", cells)
-    found = steady_state(contact, motion.displacement, velocity, 1e-6, STEP_TOLERANCE)
+    problem = Problem(kind, velocity, None, poisson)
+    contact = _contact(problem, "polar", cells)
+    found = steady_state(contact, problem.displacement, velocity, 1e-6, STEP_TOLERANCE)
     (forward,), (lateral,) = whole_disc(contact, -found.state[None])
     forward_position, lateral_position, bound, _ = points_of(contact)
     return {
@@ -131,9 +131,9 @@ def traction_field(scene, velocity, amplitude=None, *, poisson=0.0, cells=None):
     }
 
 
-def _contact(motion, model, cells):
-    name = choose_model(motion.scene, motion.poisson, model)
-    return build_contact(motion, name, Resolution(cells or CELLS, ANGLES, steps=0))
+def _contact(problem, model, cells):
+    name = choose_model(problem.scene, problem.poisson, model)
+    return build_contact(problem, name, Resolution(cells or CELLS, ANGLES, steps=0))
 
 
 def _start(contact, start):

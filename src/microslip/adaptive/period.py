@@ -13,7 +13,7 @@ from microslip.adaptive.whole_disc import points_of, whole_disc
 from microslip.foundation.arguments import LARGEST, count
 from microslip.foundation.errors import InputError
 from microslip.models.contact import FORWARD, LATERAL, TORQUE
-from microslip.solver.problem import Motion, Resolution, build_contact
+from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.simulate import simulate
 from microslip.solver.snapshots import bounds_at_phases, frames
 
@@ -105,13 +105,13 @@ def period(
         allowed = f"allowed is at most {MOST_VALUES:g} for cells x angles x steps"
         raise InputError("steps", steps, allowed)
     choose_model(kind, poisson, "polar")
-    motion = Motion(kind, velocity, amplitude, poisson)
+    problem = Problem(kind, velocity, amplitude, poisson)
     resolution = Resolution(cells, angles, steps // 2)
-    run = simulate(kind, velocity, amplitude, poisson, "polar", resolution, PERIOD_TOLERANCE)
+    run = simulate(problem, "polar", resolution, PERIOD_TOLERANCE)
     if run.state is None:
         raise NoPeriodicState(f"velocity = {velocity!r}: {run.reason}")
-    contact = build_contact(motion, "polar", resolution)
-    path = motion.path(contact, steps // 2)
+    contact = build_contact(problem, "polar", resolution)
+    path = problem.path(contact, steps // 2)
     tractions, forces = frames(contact, path, run.state, STEP_TOLERANCE)
     slip = _slip(contact, path, tractions)
     bounds = np.broadcast_to(bounds_at_phases(contact, path), tractions[:, 0].shape)
@@ -129,7 +129,7 @@ def period(
     along = forward * slip_forward + lateral * slip_lateral > 0.0
     return Period(
         phase,
-        *(np.array(part) for part in motion.displacement(phase)),
+        *(np.array(part) for part in problem.displacement(phase)),
         forces[:, FORWARD],
         forces[:, LATERAL],
         forces[:, TORQUE] / kind.pressure.torque,

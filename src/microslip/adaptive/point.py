@@ -7,16 +7,19 @@ import time
 from dataclasses import replace
 from functools import partial
 
-from microslip.adaptive.choice import choose_model, closed_form, method_refusal, no_vibration, plan
+from microslip.adaptive.choice import choose_model, method_refusal
+from microslip.adaptive.closed_forms import closed_form, no_vibration
 from microslip.adaptive.continuation import run_safely
 from microslip.adaptive.refinement import certify
+from microslip.adaptive.resolutions import plan
 from microslip.adaptive.result import Result
 from microslip.foundation.arguments import LARGEST, count, is_real, real
 from microslip.foundation.errors import InputError
 from microslip.motions.registry import read_otherwise, scene_named
 from microslip.solver.budget import Budget
 from microslip.solver.method_names import SHIPPED, method_named, refuse_missing
-from microslip.solver.simulate import simulate
+from microslip.solver.problem import Problem
+from microslip.solver.simulate import Settings, simulate
 from microslip.solver.static_run import simulate_static
 
 PERIODICITY_SHARE = 0.07
@@ -86,14 +89,14 @@ def solve(
         "tolerance": asked,
         "method": method,
     }
-    place = (velocity, amplitude, poisson)
+    problem = Problem(kind, velocity, amplitude, poisson)
     exact = no_vibration(kind, amplitude)
     if exact is None and model == "auto" and method == SHIPPED:
-        exact = _exact(kind, *place, asked, cells, steps)
+        exact = _exact(problem, asked, cells, steps)
     if exact is not None:
         used = CLOSED_FORM if model == "auto" else name
         return _exact_result(point | {"model": used}, exact, time.perf_counter() - started)
-    coarsest, axes = plan(kind, name, *place, tolerance, cells, steps)
+    coarsest, axes = plan(problem, name, tolerance, cells, steps)
     imposed, names = any(axis.imposed for axis in axes), [axis.name for axis in axes]
     if asked is None:
         _refuse_free(axes)
@@ -102,21 +105,26 @@ def solve(
         most_work = MOST_WORK.get(name, MOST_WORK_OF_OTHERS)
     budget = Budget(most_work, math.inf if time_limit is None else time_limit)
 
-    def run(resolution, guess, kind=kind):
+    settings = Settings(how, budget=budget)
+
+    def run(resolution, guess, problem=problem):
         if progress is not None:
             progress(resolution)
         if velocity == 0.0 and kind.periodic:
-            return simulate_static(kind, amplitude, poisson, name, resolution, share, how, budget)
+            return simulate_static(problem, name, resolution, share, settings)
 
         def run_at(velocity, guess, careful=False):
-            where = (kind, velocity, amplitude, poisson, name, resolution, share)
-            return simulate(*where, guess, how, careful, budget)
+            there = replace(problem, velocity=velocity)
+            how_so = replace(settings, careful=careful)
+            return simulate(there, name, resolution, share, guess, how_so)
 
         if method != SHIPPED or not kind.periodic:
             return run_at(velocity, guess)
         return run_safely(run_at, velocity, guess)
 
-    readings = [partial(run, kind=other) for other in read_otherwise(kind)]
+    readings = [
+        partial(run, problem=replace(problem, scene=other)) for other in read_otherwise(kind)
+    ]
     certified = certify(run, coarsest, axes, tolerance, readings)
     if budget.exhausted:
         certified = replace(certified, **budget.counts())
@@ -195,19 +203,20 @@ def checked_request(tolerance, cells, steps):
 def refuse_choice(kind, model, place, cells, steps):
     """Raise InputError where a resolution would have to be chosen, and there is no tolerance to do
     that; place: velocity, amplitude, poisson, and all as checked."""
-    exact = no_vibration(kind, place[1])
+    problem = Problem(kind, *place)
+    exact = no_vibration(kind, problem.amplitude)
     if exact is None and model == "auto":
-        exact = _exact(kind, *place, None, cells, steps)
+        exact = _exact(problem, None, cells, steps)
     if exact is None:
-        name = choose_model(kind, place[2], model)
-        _refuse_free(plan(kind, name, *place, TOLERANCE, cells, steps)[1])
+        name = choose_model(kind, problem.poisson, model)
+        _refuse_free(plan(problem, name, TOLERANCE, cells, steps)[1])
 
 
-def _exact(kind, velocity, amplitude, poisson, asked, cells, steps):
-    """choice.closed_form, but that an imposed resolution is to be run, if anything is marched."""
-    if velocity > 0.0 and not (cells is None and steps is None):
+def _exact(problem, asked, cells, steps):
+    """As `closed_form`, but that an imposed resolution is to be run, if anything is marched."""
+    if problem.velocity > 0.0 and not (cells is None and steps is None):
         return None
-    return closed_form(kind, velocity, amplitude, poisson, asked or 0.0)
+    return closed_form(problem, asked or 0.0)
 
 
 def _refuse_free(axes):

@@ -19,8 +19,8 @@ from microslip.motions.registry import scene_named
 from microslip.motions.transverse import SCENE as TRANSVERSE
 from microslip.pressures.registry import HERTZ
 from microslip.solver.method_names import method_named, missing
-from microslip.solver.problem import Motion, Resolution, build_contact
-from microslip.solver.simulate import simulate
+from microslip.solver.problem import Problem, Resolution, build_contact
+from microslip.solver.simulate import Settings, simulate
 
 STEP_TOLERANCE = 1e-6
 
@@ -57,9 +57,9 @@ def run_trial(
     if refusal:
         raise ValueError(f"model = {model!r}, method = {method!r}: {refusal}")
     resolution = Resolution(cells, angles, max(steps // 2, 1))
-    kind = scene_named(scene, pressure)
-    point = (kind, velocity, amplitude, poisson, model, resolution, tolerance)
-    run = simulate(*point, method=method_named(method))
+    problem = Problem(scene_named(scene, pressure), velocity, amplitude, poisson)
+    settings = Settings(method_named(method))
+    run = simulate(problem, model, resolution, tolerance, settings=settings)
     unknowns = run.work // run.solves if run.solves else 0
     return {
         "mu_macro": float(run.mu),
@@ -83,11 +83,11 @@ def measure_steps(model, cells, angles, poisson, steps):
     compiles.
     """
     scene = TRANSVERSE if model == "radial" else BORE
-    motion = Motion(scene, 0.1, 1.0, poisson)
-    contact = build_contact(motion, model, Resolution(cells, angles, steps))
-    path = make_path(motion.displacement, half_period_phases(steps), EULER)
+    problem = Problem(scene, 0.1, 1.0, poisson)
+    contact = build_contact(problem, model, Resolution(cells, angles, steps))
+    path = make_path(problem.displacement, half_period_phases(steps), EULER)
     start = forward_slip(contact)
-    contact.march(make_path(motion.displacement, path.phase[:2], EULER), start, STEP_TOLERANCE)
+    contact.march(make_path(problem.displacement, path.phase[:2], EULER), start, STEP_TOLERANCE)
     times = []
     for _ in range(3):
         began = time.process_time()

@@ -26,7 +26,7 @@ class Resolution:
 
 
 @dataclass(frozen=True)
-class Motion:
+class Problem:
     """A scene at one point of its parameters."""
 
     scene: object
@@ -70,10 +70,10 @@ class Motion:
 
 
 @lru_cache(maxsize=32)
-def _path(motion, steps, grading, integrator):
-    turns = motion.scene.turns(motion.velocity, motion.amplitude)
+def _path(problem, steps, grading, integrator):
+    turns = problem.scene.turns(problem.velocity, problem.amplitude)
     phases = phases_between(turns, steps, grading)
-    return make_path(motion.displacement, phases, integrator, motion.depth)
+    return make_path(problem.displacement, phases, integrator, problem.depth)
 
 
 def _focus_strength(creep):
@@ -87,24 +87,24 @@ def _focus_strength(creep):
     return float(np.clip(1.0 - layer, WEAKEST_FOCUS, STRONGEST_FOCUS))
 
 
-def _focus(motion):
+def _focus(problem):
     """Where the slip starts: rings gather there, the closer, the slower the creep."""
-    scene = motion.scene
-    radius = scene.focus(motion.velocity, motion.amplitude, scene.pressure)
+    scene = problem.scene
+    radius = scene.focus(problem.velocity, problem.amplitude, scene.pressure)
     if radius is None or not scene.periodic:
         return radius
-    creep = motion.creep
+    creep = problem.creep
     return Focus(radius, _focus_strength(creep) if creep > 0.0 else STATIC_FOCUS)
 
 
-def build_contact(motion, model, resolution, focus=None):
+def build_contact(problem, model, resolution, focus=None):
     """The contact, its rings gathered at a mesh.Focus, by default where the slip starts."""
-    scene = motion.scene
-    focus = focus or _focus(motion)
+    scene = problem.scene
+    focus = focus or _focus(problem)
     build = MODELS[model].build
-    contact = build(scene, motion.poisson, resolution.cells, resolution.angles, focus)
+    contact = build(scene, problem.poisson, resolution.cells, resolution.angles, focus)
     if scene.depth is None:
         return contact
-    start = scene.turns(motion.velocity, motion.amplitude)[0]
-    deepest = scene.deepest(motion.amplitude, scene.pressure)
-    return contact.pressed(deepest, float(motion.depth(np.array(start))))
+    start = scene.turns(problem.velocity, problem.amplitude)[0]
+    deepest = scene.deepest(problem.amplitude, scene.pressure)
+    return contact.pressed(deepest, float(problem.depth(np.array(start))))

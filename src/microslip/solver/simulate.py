@@ -9,10 +9,10 @@ import numpy as np
 from microslip.models.contact import FORWARD, StepFailure, forces, forward_slip
 from microslip.models.coulomb import project
 from microslip.solver.budget import Budget
-from microslip.solver.method import SHIPPED
+from microslip.solver.method import SHIPPED, Method
 from microslip.solver.period_map import Cycle, Pace
 from microslip.solver.periodic import MOST_LAPS
-from microslip.solver.problem import Motion, build_contact
+from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.static_limit import static_state
 from microslip.solver.steady import steady_state
 
@@ -24,6 +24,7 @@ CAREFUL = 0.1
 """The floor of these tolerances in a second attempt, over that in a first one."""
 MARCH_SHARE = 0.16
 """Bound of the sum over the steps of half a period, two stages each: a third of the tolerance."""
+
 SLOW_PUSH, LARGEST_PUSH = 4.0, 0.6
 """Forward traction added to the static limit's, as a share of the bound, for a start: it grows as
 the friction itself does with the creep in a radian, so that every point slips forward too much.
@@ -36,18 +37,62 @@ no fewer are left than these, and no tighter than this."""
 
 
 @dataclass(frozen=True)
+class Settings:
+    """How a run is done, whatever it is a run of.
+
+    Attributes
+    ----------
+    method : method.Method
+        How steps are solved and the periodic state is searched for.
+    careful : bool
+        Whether to solve the steps of slow motions tighter.
+    budget : budget.Budget or None
+        What the marches may take, None: whatever they do.
+    """
+
+    method: Method = SHIPPED
+    careful: bool = False
+    budget: Budget | None = None
+
+    def contact(self, problem, model, resolution, focus=None):
+        """The contact of a problem with the method's steps, whose marches count."""
+        contact = self.method.dressed(build_contact(problem, model, resolution, focus))
+        return contact if self.budget is None else self.budget.metered(contact)
+
+
+AS_SHIPPED = Settings()
+
+
+@dataclass(frozen=True)
 class Run:
-    """Outcome of one run: forward friction and torque over their full-slip values, and the effort.
+    """Outcome of one run: forces over their full-slip values, and the effort.
 
     Where the normal load changes, forces are over mu times its mean.
 
-    distance: estimated distance from the periodic (steady) state; solver_residual: summed over the
-    last period; both forces over mu F_z.  periods: full ones that were marched in search of a state
-    that repeats itself, 0 for a steady motion; iterations, solves: of all searches together;
-    work: step solves x unknowns; effort: iterations x unknowns; retried: 1 if the run is a second
-    attempt, see continuation.run_safely.  For other runs of the point:
-    state, the periodic tractions; inverse: see period_map.PeriodicState; static_force: mean forward
-    force of the static limit.
+    Attributes
+    ----------
+    mu, torque : float
+        Mean forward friction and torque.
+    distance : float
+        Estimated distance from the periodic (steady) state, a force over mu F_z.
+    solver_residual : float
+        Summed over the last period, a force over mu F_z.
+    periods : float
+        Full ones that were marched in search of a state that repeats itself, 0 for a steady motion.
+    iterations, solves : int
+        Of all searches together.
+    work, effort : int
+        Step solves x unknowns, iterations x unknowns.
+    converged : bool
+        Whether the state repeats itself and every step was solved.
+    reason : str
+        Why it is not converged, else empty.
+    state, inverse : np.ndarray or None
+        For other runs of the point: the periodic tractions, and period_map.PeriodicState.inverse.
+    static_force : float
+        Mean forward force of the static limit, also for other runs.
+    retried : int
+        1 if the run is a second attempt, see continuation.run_safely.
     """
 
     mu: float
@@ -68,41 +113,52 @@ class Run:
 
 
 def simulate(
-    scene,
-    velocity,
-    amplitude,
-    poisson,
-    model,
-    resolution,
-    tolerance,
-    guess=None,
-    method=SHIPPED,
-    careful=False,
-    budget=None,
-):
-    """Run ``model`` on a scene at one resolution to its periodic (or steady) state.
+    problem: Problem,
+    model: str,
+    resolution: Resolution,
+    tolerance: float,
+    guess: Run | None = None,
+    settings: Settings = AS_SHIPPED,
+) -> Run:
+    """Run a model on a problem at one resolution to its periodic (or steady) state.
 
-    scene: motion.Scene; velocity > 0, amplitude > 0 (None for steady scenes), poisson in 0..0.5:
-    checked by the caller; tolerance: of the periodic state, a force over mu F_z, steps are solved
-    a hundred times tighter; guess: a Run of the same point, of use if cells and angles are the
-    same, too; method: method.Method; careful: solve the steps of slow motions tighter; budget: a
-    budget.Budget, None: without bounds.  Returns a Run; never raises for want of convergence, but
-    budget.Spent where the budget is.
+    Parameters
+    ----------
+    problem : problem.Problem
+        Velocity and amplitude above 0 (amplitude None for steady motions), checked by the caller.
+    model : str
+        Name in models.registry.MODELS.
+    resolution : problem.Resolution
+        Of the model.
+    tolerance : float
+        Of the periodic state, a force over mu F_z; steps are solved a hundred times tighter.
+    guess : Run or None
+        Of the same point; of use if cells and angles are the same, too.
+    settings : Settings
+        How it is done.
+
+    Returns
+    -------
+    Run
+        Never raises for want of convergence.
+
+    Raises
+    ------
+    budget.Spent
+        Where the budget is.
     """
-    motion = Motion(scene, velocity, amplitude, poisson)
-    left = tolerance * motion.mean_load  # inside of a run forces are over mu F_z
+    method = settings.method
+    absolute = tolerance * problem.mean_load  # inside of a run forces are over mu F_z
     if method.run is not None:
-        return method.run(motion, model, resolution, left)
-    budget = Budget() if budget is None else budget
+        return method.run(problem, model, resolution, absolute)
     try:
-        run = _run(motion, model, resolution, left, guess, method, careful, budget)
+        run = _run(problem, model, resolution, absolute, guess, settings)
     except (StepFailure, ArithmeticError, np.linalg.LinAlgError) as failure:
         return failed_run(str(failure))
     if method.extrapolated and run.converged:
         half = replace(resolution, steps=max(resolution.steps // 2, 1))
-        other = replace(method, extrapolated=False)
-        point = (scene, velocity, amplitude, poisson, model, half, tolerance, run, other)
-        return _extrapolated(run, simulate(*point, budget=budget))
+        plain = replace(settings, method=replace(method, extrapolated=False), careful=False)
+        return _extrapolated(run, simulate(problem, model, half, tolerance, run, plain))
     return run
 
 
@@ -111,17 +167,25 @@ def failed_run(reason):
     return Run(np.nan, np.nan, np.inf, np.inf, 0.0, 0, 0, 0, 0, False, reason)
 
 
-def _run(motion, model, resolution, tolerance, guess, method, careful, budget):
-    contact = budget.metered(method.dressed(build_contact(motion, model, resolution)))
-    step_tolerance = STEP_SHARE * tolerance
-    if not motion.scene.periodic:
-        return _steady_run(contact, motion, tolerance, step_tolerance)
-    slow_share = contact.stiffness * motion.creep * np.pi * STEP_SHARE
-    floor = CAREFUL * SLOW_STEP_SHARE if careful else SLOW_STEP_SHARE
-    share = min(max(slow_share, floor), STEP_SHARE, MARCH_SHARE / resolution.steps)
+def _run(problem, model, resolution, tolerance, guess, settings):
+    """As `simulate`, but that the tolerance is that of a force over mu F_z, and failures raise."""
+    contact = settings.contact(problem, model, resolution)
+    if not problem.scene.periodic:
+        return _steady_run(contact, problem, tolerance, STEP_SHARE * tolerance)
+    share = _step_share(contact.stiffness * problem.creep, resolution.steps, settings.careful)
     step_tolerance = share * tolerance
-    search = _Search(contact, motion, method, resolution.steps, tolerance, step_tolerance)
+    search = _Search(contact, problem, settings.method, resolution.steps, tolerance, step_tolerance)
     return search.run(guess)
+
+
+def _step_share(force_rate, steps, careful):
+    """Tolerance of a step over that of the periodic state.
+
+    force_rate: force over mu F_z that a contact without slip gains in a radian.
+    """
+    slow_share = force_rate * np.pi * STEP_SHARE
+    floor = CAREFUL * SLOW_STEP_SHARE if careful else SLOW_STEP_SHARE
+    return min(max(slow_share, floor), STEP_SHARE, MARCH_SHARE / steps)
 
 
 def _extrapolated(fine, coarse):
@@ -145,16 +209,16 @@ def _extrapolated(fine, coarse):
 class _Search:
     """The search for the periodic state of one run, from one start after the other."""
 
-    def __init__(self, contact, motion, method, steps, tolerance, step_tolerance):
-        self.contact, self.motion, self.method, self.steps = contact, motion, method, steps
+    def __init__(self, contact, problem, method, steps, tolerance, step_tolerance):
+        self.contact, self.problem, self.method, self.steps = contact, problem, method, steps
         self.tolerance, self.step_tolerance = tolerance, step_tolerance
-        lap = np.pi if motion.scene.half_period_mirror else 2.0 * np.pi
-        self.pace = Pace(0.0, contact.stiffness * motion.creep * lap)
+        lap = np.pi if problem.scene.half_period_mirror else 2.0 * np.pi
+        self.pace = Pace(0.0, contact.stiffness * problem.creep * lap)
         self.path = self._path(steps)
         self.done = []
 
     def _path(self, steps):
-        return self.motion.path(self.contact, steps, self.method.integrator)
+        return self.problem.path(self.contact, steps, self.method.integrator)
 
     def run(self, guess=None):
         """The Run; guess: see simulate."""
@@ -182,10 +246,10 @@ class _Search:
 
     def _start_near_the_limit(self, slipping):
         """The static limit with all points pushed forward; also takes note of its force."""
-        contact, creep = self.contact, self.motion.creep
-        if not (contact.sticks and self.motion.scene.straight):
+        contact, creep = self.contact, self.problem.creep
+        if not (contact.sticks and self.problem.scene.straight):
             return slipping
-        residual, oscillating = static_state(contact, self.motion.oscillation, self.step_tolerance)
+        residual, oscillating = static_state(contact, self.problem.oscillation, self.step_tolerance)
         force = float(forces(contact, residual)[FORWARD])
         self.pace = replace(self.pace, static_force=force)
         push = min(SLOW_PUSH * creep ** (2.0 / 3.0), LARGEST_PUSH)
@@ -207,17 +271,17 @@ class _Search:
 
     def _find(self, path, start, inverse, tolerance=None):
         looser = (tolerance or self.tolerance) / self.tolerance
-        cycle = Cycle(self.contact, path, self.pace, self.motion.scene.half_period_mirror)
+        cycle = Cycle(self.contact, path, self.pace, self.problem.scene.half_period_mirror)
         tolerances = looser * self.tolerance, looser * self.step_tolerance
         self.done.append(self.method.search(cycle, start, *tolerances, MOST_LAPS, inverse))
         return self.done[-1]
 
     def _summary(self, found):
-        full = self.motion.mean_load
-        forward, _, torque = mean_forces(self.contact, self.motion, self.path, found.forces)
+        full = self.problem.mean_load
+        forward, _, torque = mean_forces(self.contact, self.problem, self.path, found.forces)
         solves = sum(one.solves for one in self.done)
         solved = found.solver_residual <= _solved_sum(self.path, self.step_tolerance)
-        periods = periods_of(sum(one.laps for one in self.done), self.motion.scene)
+        periods = periods_of(sum(one.laps for one in self.done), self.problem.scene)
         reason = ""
         if not found.converged:
             reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
@@ -225,7 +289,7 @@ class _Search:
             reason = f"a step was left unsolved: residual {found.solver_residual:.1e}"
         return Run(
             mu=float(forward) / full,
-            torque=float(torque) / self.motion.scene.pressure.torque,
+            torque=float(torque) / self.problem.scene.pressure.torque,
             distance=found.distance / full,
             solver_residual=found.solver_residual / full,
             periods=periods,
@@ -247,15 +311,15 @@ def periods_of(laps, scene):
     return 0.5 * laps if scene.half_period_mirror else float(laps)
 
 
-def mean_forces(contact, motion, path, forces):
+def mean_forces(contact, problem, path, forces):
     """Means over a lap of the forces at its phases, shape (3,)."""
-    if motion.depth is None:
+    if problem.depth is None:
         return path.mean(forces)
     # by what they lack of full slip, whose mean is known: less is left to the trapezoidal rule,
     # and to how the rings in contact follow its edge
-    bounds = contact.bounds(motion.depth(path.phase))
+    bounds = contact.bounds(problem.depth(path.phase))
     full = contact.angles * (bounds @ contact.weight)[:, None] * [1.0, 0.0, 0.0]
-    return [motion.mean_load, 0.0, 0.0] - path.mean(full - forces)
+    return [problem.mean_load, 0.0, 0.0] - path.mean(full - forces)
 
 
 def _solved_sum(path, step_tolerance):
@@ -263,11 +327,11 @@ def _solved_sum(path, step_tolerance):
     return path.stages.shape[0] * path.stages.shape[1] * step_tolerance
 
 
-def _steady_run(contact, motion, tolerance, step_tolerance):
-    found = steady_state(contact, motion.displacement, motion.velocity, tolerance, step_tolerance)
+def _steady_run(contact, problem, tolerance, step_tolerance):
+    found = steady_state(contact, problem.displacement, problem.velocity, tolerance, step_tolerance)
     return Run(
         mu=float(found.forces[0]),
-        torque=float(found.forces[2]) / motion.scene.pressure.torque,
+        torque=float(found.forces[2]) / problem.scene.pressure.torque,
         distance=found.distance,
         solver_residual=found.solver_residual,
         periods=0.0,

@@ -87,11 +87,11 @@ def half_period(solver, path, number):
     return found[:, 0], float(found[:, 1].sum())
 
 
-def _run(motion, model, resolution, tolerance):
-    solver = Solver(resolution.cells, motion.poisson)
+def _run(problem, model, resolution, tolerance):
+    solver = Solver(resolution.cells, problem.poisson)
     if not solver.loaded:
         return failed_run("the normal contact was left unsolved")
-    path = motion.path(solver, resolution.steps, EULER)
+    path = problem.path(solver, resolution.steps, EULER)
     force, means, residuals, change = 0.0, [], [], math.inf
     for number in range(2 * MOST_PERIODS):
         forces, residual = half_period(solver, path, number)
