@@ -126,17 +126,15 @@ def _sample_of(cases, points, seed, velocities=EXTENDED_VELOCITIES, amplitudes=E
     return out
 
 
-def reference(scene, velocity, amplitude, poisson, tolerance, certified, pressure="hertz"):
+def reference(problem, tolerance, certified):
     """(mu, uncertainty) four times as fine as the ``certified`` Result."""
-    kind = scene_named(scene, pressure)
-    model = choose_model(kind, poisson)
-    stroke = min(max(kind.stroke(amplitude, poisson), 1.0), 16.0) ** 0.5
+    kind = problem.scene
+    model = choose_model(kind, problem.poisson)
+    stroke = min(max(kind.stroke(problem.amplitude, problem.poisson), 1.0), 16.0) ** 0.5
     stroke *= kind.cycles
 
-    problem = Problem(kind, velocity, amplitude, poisson)
-
     def run(resolution):
-        if velocity == 0.0:
+        if problem.velocity == 0.0:
             share = PERIODICITY * tolerance
             return simulate_static(problem, model, resolution, share)
         return simulate(problem, model, resolution, PERIODICITY * tolerance)
@@ -182,7 +180,8 @@ def examine(point):
     settings = {"poisson": poisson, "tolerance": tolerance}
     settings |= {"pressure": pressure[0]} if pressure else {}
     result = microslip.solve(scene, velocity, amplitude, **settings)
-    mu, uncertainty = reference(*point[:5], result, *pressure)
+    problem = Problem(scene_named(scene, *pressure), velocity, amplitude, poisson)
+    mu, uncertainty = reference(problem, tolerance, result)
     error = abs(result.mu_macro - mu)
     return {
         "point": list(point),

@@ -42,6 +42,7 @@ DEFAULTS = {
 
 def scene(
     name,
+    *,
     load,
     indentation,
     lateral,

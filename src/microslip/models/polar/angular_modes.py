@@ -30,10 +30,16 @@ EVEN_FORWARD, ODD_LATERAL, ODD_FORWARD, EVEN_LATERAL = range(4)
 class Sectors(NamedTuple):
     """An operator on folded tractions (4, M/2, N), for compiled code.
 
-    dense: transposed sector matrices (sectors, n, n), or no sectors where the modes are used;
-    to_modes, to_points: (sectors, Z, Z) between the folded angles of a sector and its modes;
-    members: modes that a block couples, (sectors, blocks, 2), second -1 if single, first -1 if
-    there is no such block; blocks: transposed, (sectors, blocks, b N, b N).
+    Attributes
+    ----------
+    dense : np.ndarray, shape (sectors, n, n)
+        Transposed sector matrices, or no sectors where the modes are used.
+    to_modes, to_points : np.ndarray, shape (sectors, Z, Z)
+        Between the folded angles of a sector and its modes.
+    members : np.ndarray, shape (sectors, blocks, 2)
+        Modes that a block couples; second -1 if single, first -1 if there is no such block.
+    blocks : np.ndarray, shape (sectors, blocks, b N, b N)
+        Transposed.
     """
 
     dense: np.ndarray
@@ -151,40 +157,63 @@ def _waves(angles, rotates, coupled):
     """
     half = angles // 2
     theta = (np.arange(half) + 0.5) * np.pi / angles
-    groups = [[] for _ in range(2 if coupled else 4)]
-
-    def add(key, wave, parts):
-        out = np.zeros((4, half))
-        for part in parts:
-            out[part] = (wave.real, -wave.imag, wave.real, -wave.imag)[part]
-        groups[parts[0] // 2 if coupled else parts[0]].append((key, out))
-
     if not coupled:
-        for m in range(0, angles, 1 if rotates else 2):
-            cosine = np.exp(1j * m * theta)
-            add((m, 0), cosine.real, [EVEN_FORWARD if m % 2 == 0 else ODD_FORWARD])
-            m = m + 1 if rotates else m + 2
-            sine = np.sin(m * theta)
-            add((m, 1), -1j * sine, [EVEN_LATERAL if m % 2 else ODD_LATERAL])
-            if not rotates:
-                add((m, 1), sine + 0j, [ODD_FORWARD])
-                add((m - 2, 0), -1j * cosine.real, [EVEN_LATERAL])
-        return groups
-    even, odd = [EVEN_FORWARD, ODD_LATERAL], [ODD_FORWARD, EVEN_LATERAL]
-    if rotates:
-        for m in range(1 - angles, angles):
-            add((m, 0), np.exp(1j * m * theta), even if m % 2 == 0 else odd)
-        add((angles, 2), 1j * np.sin(angles * theta), even if angles % 2 == 0 else odd)
-        return groups
-    first = -(angles // 2) + (1 - angles % 2)
-    for k in range(first, first + angles):
-        for part in (0, 1):
-            add((2 * k, part), np.exp(2j * k * theta) * (1, 1j)[part], odd if part else even)
+        waves = _single_waves(theta, angles, rotates)
+    elif rotates:
+        waves = _rotating_waves(theta, angles)
+    else:
+        waves = _translating_waves(theta, angles)
+    groups = [[] for _ in range(2 if coupled else 4)]
+    for key, parts in waves:
+        folded = np.zeros((4, half))
+        for part, values in parts.items():
+            folded[part] = values
+        first = next(iter(parts))
+        groups[first // 2 if coupled else first].append((key, folded))
     return groups
 
 
+def _single_waves(theta, angles, rotates):
+    """At nu = 0: each folded part by itself; yields (key, {part: values}).
+
+    Where the contact rotates, forward tractions are cosines and lateral ones sines; translations
+    have both of each, but even modes only.
+    """
+    step = 1 if rotates else 2
+    for m in range(0, angles, step):
+        cosine = np.exp(1j * m * theta).real
+        yield (m, 0), {EVEN_FORWARD if m % 2 == 0 else ODD_FORWARD: cosine}
+        sine = np.sin((m + step) * theta)
+        yield (m + step, 1), {EVEN_LATERAL if (m + step) % 2 else ODD_LATERAL: sine}
+        if not rotates:
+            yield (m + step, 1), {ODD_FORWARD: sine}
+            yield (m, 0), {EVEN_LATERAL: cosine}
+
+
+def _rotating_waves(theta, angles):
+    """At nu > 0 where the mirror theta -> -theta leaves real amplitudes, as `_single_waves`."""
+    for m in range(1 - angles, angles):
+        yield (m, 0), _of_wave(np.exp(1j * m * theta), m % 2 == 0)
+    yield (angles, 2), _of_wave(1j * np.sin(angles * theta), angles % 2 == 0)
+
+
+def _translating_waves(theta, angles):
+    """At nu > 0 where the symmetry about the centre leaves even modes, as `_single_waves`."""
+    first = -(angles // 2) + (1 - angles % 2)
+    for k in range(first, first + angles):
+        wave = np.exp(2j * k * theta)
+        yield (2 * k, 0), _of_wave(wave, True)
+        yield (2 * k, 1), _of_wave(wave * 1j, False)
+
+
+def _of_wave(wave, even):
+    """Folded parts of a wave of forward - i lateral whose forward part is even or odd."""
+    forward, lateral = (EVEN_FORWARD, ODD_LATERAL) if even else (ODD_FORWARD, EVEN_LATERAL)
+    return {forward: wave.real, lateral: -wave.imag}
+
+
 def _mode_blocks(keys, near, far, kappa, ratio):
-    """Members and influence blocks of the modes ``keys`` (nu > 0: m and 2 - m together)."""
+    """Members and influence blocks of the modes `keys` (nu > 0: m and 2 - m together)."""
     index = {key: k for k, key in enumerate(keys)}
     members, blocks = [], []
     for k, (m, part) in enumerate(keys):

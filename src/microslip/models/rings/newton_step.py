@@ -65,21 +65,43 @@ def _sweep(stiffness, bound, q, slip, relaxation):
 
 @kernel
 def _newton_step(slip, stick, factors):
-    """Fill factors.change (in the order of the factors) with the Newton step against ``slip``."""
-    upper, matrix, change = factors.upper, factors.tangent, factors.change
-    order, direction = factors.order, factors.direction
+    """Fill factors.change (in the order of the factors) with the Newton step against ``slip``.
+
+    Sticking rings are eliminated from both components, the angles of the slipping ones are solved
+    for, both of their components follow, and then what sticks.
+    """
+    change, order, direction = factors.change, factors.order, factors.direction
     n = len(order)
     for c in range(2):
         for p in range(n):
             change[c, p] = slip[c, order[p]]
+    _eliminate_sticking(stick, factors)
+    for p in range(stick, n):
+        change[0, p] = direction[0, p] * change[0, p] + direction[1, p] * change[1, p]
+    _solve_angles(stick, factors)
+    for p in range(stick, n):
+        change[1, p] = direction[1, p] * change[0, p]
+        change[0, p] *= direction[0, p]
+    _substitute_sticking(stick, factors)
+
+
+@kernel
+def _eliminate_sticking(stick, factors):
+    """Forward substitution with U^T over the sticking rings."""
+    upper, change = factors.upper, factors.change
+    for c in range(2):
         for j in range(stick):
             change[c, j] *= upper[j, j]
             x = change[c, j]
-            for p in range(j + 1, n):
+            for p in range(j + 1, len(upper)):
                 change[c, p] -= x * upper[j, p]
-    # the angle's part; both components follow from it
-    for p in range(stick, n):
-        change[0, p] = direction[0, p] * change[0, p] + direction[1, p] * change[1, p]
+
+
+@kernel
+def _solve_angles(stick, factors):
+    """Solve with the tangent matrix for the angles of the slipping rings, in change[0]."""
+    matrix, change = factors.tangent, factors.change
+    n = len(matrix)
     for j in range(stick, n):
         change[0, j] *= matrix[j - stick, j - stick]
         x = change[0, j]
@@ -90,12 +112,15 @@ def _newton_step(slip, stick, factors):
         for s in range(j + 1, n):
             x -= matrix[j - stick, s - stick] * change[0, s]
         change[0, j] = x * matrix[j - stick, j - stick]
-    for p in range(stick, n):
-        change[1, p] = direction[1, p] * change[0, p]
-        change[0, p] *= direction[0, p]
+
+
+@kernel
+def _substitute_sticking(stick, factors):
+    """Back substitution with U over the sticking rings."""
+    upper, change = factors.upper, factors.change
     for j in range(stick - 1, -1, -1):
         x, y = change[0, j], change[1, j]
-        for p in range(j + 1, n):
+        for p in range(j + 1, len(upper)):
             x -= upper[j, p] * change[0, p]
             y -= upper[j, p] * change[1, p]
         change[0, j], change[1, j] = x * upper[j, j], y * upper[j, j]

@@ -131,9 +131,11 @@ def combine(y, factors, rows, count):
 
 @kernel
 def _eliminate(matrix, first, last, scratch):
-    """Cholesky in place on the upper triangle: pivots before ``last``, the rest is left as Schur
-    complement; rows before ``first`` are done already.  Reciprocals of the pivots go on the
-    diagonal.  scratch: (n,).  False if it breaks down."""
+    """Cholesky in place on the upper triangle; returns False if it breaks down.
+
+    Rows before ``first`` are done already, pivots are those before ``last``, and what is left
+    beyond is the Schur complement.  Reciprocals of the pivots go on the diagonal.  scratch: (n,).
+    """
     for j in range(first, len(matrix)):
         count = min(j, last)
         for k in range(count):
@@ -165,27 +167,35 @@ def turning(slip_forward, slip_lateral, bound):
     return size / bound if bound > 0.0 else HELD
 
 
+@kernel(inline="always")
+def _slips(x, y, slip_forward, slip_lateral, bound):
+    """Whether a ring with the traction (x, y) slips: on its bound, and dragged along its slip."""
+    limit = bound * ON_BOUND
+    along = x * slip_forward + y * slip_lateral
+    return x * x + y * y >= limit * limit and (along > 0.0 or limit == 0.0)
+
+
 @kernel
 def _split(q, slip, bound, factors):
-    """Put sticking rings before slipping ones; returns (how many stick, whether that is news)."""
-    order, flags = factors.order, factors.change[0]
+    """Put sticking rings before slipping ones, whose unit tangents are filled in.
+
+    Returns how many stick, and whether these are others than before.
+    """
+    order, slips = factors.order, factors.change[0]  # scratch: 1 where a ring slips
     n = len(bound)
     stick, news = 0, False
     for i in range(n):
-        x, y = q[0, i], q[1, i]
-        limit = bound[i] * ON_BOUND
-        slips = x * x + y * y >= limit * limit and (
-            x * slip[0, i] + y * slip[1, i] > 0.0 or limit == 0.0
-        )
-        flags[i] = 1.0 if slips else 0.0
-        if not slips:
+        if _slips(q[0, i], q[1, i], slip[0, i], slip[1, i], bound[i]):
+            slips[i] = 1.0
+        else:
+            slips[i] = 0.0
             news = news or order[stick] != i
             order[stick] = i
             stick += 1
     news = news or factors.count[0] != stick
     at = stick
     for i in range(n):
-        if flags[i] == 1.0:
+        if slips[i] == 1.0:
             order[at] = i
             if bound[i] > 0.0:
                 size = 1.0 / np.sqrt(q[0, i] * q[0, i] + q[1, i] * q[1, i])
@@ -200,33 +210,42 @@ def _split(q, slip, bound, factors):
 
 @kernel
 def _factorise_sticking(rings, stick, factors):
-    """Eliminate the sticking rings: fills factors.upper."""
+    """Eliminate the sticking rings: fills factors.upper.  Returns False if it breaks down.
+
+    Rows of the innermost rings that stick are those of the known factor, their columns reordered.
+    """
     stiffness, whole = rings.stiffness, rings.whole
     order, upper, scratch = factors.order, factors.upper, factors.change[0]
     n = len(order)
-    inner = 0
-    while inner < stick and order[inner] == inner:
-        inner += 1
-    for p in range(inner):
+    known = 0
+    while known < stick and order[known] == known:
+        known += 1
+    for p in range(known):
         for s in range(p, n):
             upper[p, s] = whole[p, order[s]]
-    slipping = n - stick
-    if inner == stick and slipping <= stick:
-        # the rest of the known factor is the factor of the Schur complement
-        for p in range(stick, n):
-            row = upper[p, p:]
-            row[:] = 0.0
-            for k in range(stick, p):
-                scratch[k] = -whole[k, p]
-            combine(row, scratch[stick:], whole[stick:, p:], p - stick)
-            pivot = 1.0 / whole[p, p]
-            row[0] += pivot * pivot
-            subtract(row[1:], -pivot, whole[p, p + 1 :])
+    if known == stick and n - stick <= stick:
+        _schur_of_outer(whole, stick, upper, scratch)
         return True
-    for p in range(inner, n):
+    for p in range(known, n):
         for s in range(p, n):
             upper[p, s] = stiffness[order[p], order[s]]
-    return _eliminate(upper, inner, stick, scratch)
+    return _eliminate(upper, known, stick, scratch)
+
+
+@kernel
+def _schur_of_outer(whole, stick, upper, scratch):
+    """Schur complement where all rings from ``stick`` on slip: the rest of the known factor is the
+    factor of it, so that a product of what is left does, and nothing is eliminated."""
+    n = len(whole)
+    for p in range(stick, n):
+        row = upper[p, p:]
+        row[:] = 0.0
+        for k in range(stick, p):
+            scratch[k] = -whole[k, p]
+        combine(row, scratch[stick:], whole[stick:, p:], p - stick)
+        pivot = 1.0 / whole[p, p]
+        row[0] += pivot * pivot
+        subtract(row[1:], -pivot, whole[p, p + 1 :])
 
 
 @kernel
