@@ -19,13 +19,27 @@ between the points of a grid shows in none of them in full."""
 class Axis:
     """One axis of refinement.
 
-    levels: resolutions, increasing; base: index of the one that the chains of other axes are run
-    at; first: indices of the runs to start with, as many as the error is estimated from, at least
-    three.
-    regular: the error falls smoothly, with the second power of the levels, so that it can be
-    extrapolated; imposed: the last level is what was asked for, and its error, the spread of the
-    last three again, is only reported; caution: errors of irregular axes over their spread; tied:
-    name and levels of what is refined together with it, where neither converges without the other.
+    Attributes
+    ----------
+    name : str
+        "cells", "angles" or "steps".
+    levels : tuple of int
+        Resolutions, increasing.
+    base : int
+        Index of the one that the chains of other axes are run at.
+    first : tuple of int
+        Indices of the runs to start with, as many as the error is estimated from, at least three.
+    regular : bool
+        The error falls smoothly, with the second power of the levels, so that it can be
+        extrapolated.
+    imposed : bool
+        The last level is what was asked for, and its error, the spread of the last three again, is
+        only reported.
+    caution : float
+        Errors of irregular axes over their spread.
+    tied : tuple or None
+        Name and levels of what is refined together with it, where neither converges without the
+        other.
     """
 
     name: str

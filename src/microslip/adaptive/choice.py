@@ -12,13 +12,26 @@ STEPLESS = ("rigid", "dahl")
 
 
 def choose_model(scene, poisson, model="auto"):
-    """The model to use: the cheapest that is exact for the scene, or the one asked for.
+    """The model to use: the cheapest that is exact for the motion, or the one asked for.
 
     Rings where the traction depends on the radius alone (translation at nu = 0), angular modes
-    where half of the contact tells the other half: squares are never cheaper then.  The slider
-    and the rigid contact are never chosen: what they leave out can only be bounded by running the
-    rings, which then are the answer.  Raises InputError for an unknown model or one that does not
-    apply.
+    where half of the contact tells the other half: squares are never cheaper then.  The slider and
+    the rigid contact are never chosen: what they leave out can only be bounded by running the
+    rings, which then are the answer.
+
+    Parameters
+    ----------
+    scene : motion.Scene
+        What moves.
+    poisson : float
+        Poisson's ratio.
+    model : str
+        "auto", or a name in models.registry.MODELS.
+
+    Raises
+    ------
+    InputError
+        For an unknown model or one that does not apply.
     """
     if model == "auto":
         if not (scene.pressure.is_round and scene.half_disc):

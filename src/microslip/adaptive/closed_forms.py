@@ -31,11 +31,23 @@ def no_vibration(scene, amplitude):
 
 
 def closed_form(problem, tolerance):
-    """(mu, torque, error) where nothing has to be computed, else None.
+    """What is known where nothing has to be computed, else None.
 
     The steady state of a motion that does not oscillate, where every point slips along its rigid
     velocity; the limit of vanishing velocity; motion along one line, nu = 0; and sliding so fast
     that the bracket of bounds.py is within the tolerance.
+
+    Parameters
+    ----------
+    problem : problem.Problem
+        As checked by the caller.
+    tolerance : float
+        Absolute, on the friction.
+
+    Returns
+    -------
+    tuple or None
+        mu, torque (None where there is none to tell) and the error.
     """
     scene, velocity, amplitude = problem.scene, problem.velocity, problem.amplitude
     if not scene.periodic:

@@ -18,11 +18,21 @@ MOST_STEPS = 12
 
 
 def run_safely(run_at, velocity, guess):
-    """The simulate.Run at a velocity; where it does not converge, one by safer steps.
+    """The run at a velocity; where it does not converge, one by safer steps.
 
-    run_at(velocity, guess, careful) -> Run; guess: a Run to start near, or None; careful: solve the
-    steps tighter.  The Run counts the effort of all that was tried; ``retried`` is 1 if there was
-    more than one.
+    Parameters
+    ----------
+    run_at : callable
+        run_at(velocity, guess, careful) -> simulate.Run; careful: solve the steps tighter.
+    velocity : float
+        Dimensionless.
+    guess : simulate.Run or None
+        One to start near.
+
+    Returns
+    -------
+    simulate.Run
+        It counts the effort of all that was tried; `retried` is 1 if there was more than one.
     """
     first = run_at(velocity, guess, False)
     if first.converged:

@@ -33,9 +33,16 @@ MOST_STEPS = 10 * LARGEST["steps"]
 class History:
     """Forces along a path, arrays of shape (steps + 1,), dimensionless.
 
-    phase: omega t (steady scenes: turned angle in u_lim / a); displacement_forward: travel in
-    u_lim; force_forward, force_lateral: over mu F_z, in the direction of the motion they resist;
-    torque: over its full-slip value.
+    Attributes
+    ----------
+    phase : np.ndarray
+        omega t (steady motions: turned angle in u_lim / a).
+    displacement_forward : np.ndarray
+        Travel in u_lim.
+    force_forward, force_lateral : np.ndarray
+        Over mu F_z, in the direction of the motion they resist.
+    torque : np.ndarray
+        Over its full-slip value.
     """
 
     phase: np.ndarray
@@ -59,12 +66,33 @@ def history(
     periods=3,
     travel=5.0,
 ):
-    """Forces from an initial state on: ``periods`` periods, or ``travel`` u_lim of a steady motion.
+    """Forces from an initial state on: over periods, or over the travel of a steady motion.
 
-    scene, velocity, amplitude, pressure, poisson, model: as for ``microslip.solve``; cells: rings
-    or squares; steps: per period (steady scenes: over the whole travel); start: "stress-free" (full
-    stick), "full-slip" (forward slip everywhere) or "full-rotation" (rotational slip everywhere).
-    Returns a History.  Raises InputError naming the argument for bad input.
+    Parameters
+    ----------
+    scene, velocity, amplitude, pressure, poisson, model
+        As for `microslip.solve`; velocity above 0.
+    cells : int or None
+        Rings or squares.
+    steps : int or None
+        Per period (steady motions: over the whole travel).
+    start : str
+        "stress-free" (full stick), "full-slip" (forward slip everywhere) or "full-rotation"
+        (rotational slip everywhere).
+    periods : int
+        Of an oscillation.
+    travel : float
+        Of a steady motion, in u_lim.
+
+    Returns
+    -------
+    History
+        From the start on.
+
+    Raises
+    ------
+    InputError
+        For bad input; it names the argument.
     """
     kind, velocity, amplitude, poisson = checked_point(
         scene, velocity, amplitude, poisson, pressure
@@ -104,10 +132,25 @@ def history(
 def traction_field(scene, velocity, amplitude=None, *, poisson=0.0, cells=None):
     """Steady tractions of the continuous bore on the whole disc, computed by the polar model.
 
-    Returns a dict of 1-D arrays over points (lateral_position, forward_position over a;
-    traction_lateral, traction_forward, bound over mu F_z / a^2; the tractions are those on the
-    indenter, which oppose its motion, as in Eq 15) and centre_lateral, where the instantaneous
-    centre of rotation lies (Eq 14).  Raises InputError for bad input or another scene.
+    Parameters
+    ----------
+    scene, velocity, amplitude, poisson
+        As for `microslip.solve`; scene: "continuous-bore".
+    cells : int or None
+        Rings.
+
+    Returns
+    -------
+    dict
+        Arrays over points: lateral_position, forward_position (over a); traction_lateral,
+        traction_forward, bound (over mu F_z / a^2), the tractions those on the indenter, which
+        oppose its motion, as in Eq 15.  And centre_lateral, where the instantaneous centre of
+        rotation lies (Eq 14).
+
+    Raises
+    ------
+    InputError
+        For bad input, or another motion.
     """
     kind, velocity, _, poisson = checked_point(scene, velocity, amplitude, poisson)
     if kind.periodic:

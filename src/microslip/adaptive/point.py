@@ -12,14 +12,15 @@ from microslip.adaptive.closed_forms import closed_form, no_vibration
 from microslip.adaptive.continuation import run_safely
 from microslip.adaptive.refinement import certify
 from microslip.adaptive.resolutions import plan
-from microslip.adaptive.result import Result
+from microslip.adaptive.result import Result, of_closed_form
 from microslip.foundation.arguments import LARGEST, count, is_real, real
 from microslip.foundation.errors import InputError
 from microslip.motions.registry import read_otherwise, scene_named
 from microslip.solver.budget import Budget
 from microslip.solver.method_names import SHIPPED, method_named, refuse_missing
 from microslip.solver.problem import Problem
-from microslip.solver.simulate import Settings, simulate
+from microslip.solver.run import Settings
+from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
 
 PERIODICITY_SHARE = 0.07
@@ -53,21 +54,47 @@ def solve(
 ):
     """Macroscopic friction of a vibrated contact at one point.
 
-    scene: "transverse", "bore" or "continuous-bore"; velocity, amplitude: the paper's dimensionless
-    groups (amplitude: None for continuous-bore; velocity 0: the limit v -> 0), in units of the
-    pressure's own u_lim; pressure: "hertz", "power:exponent=1", "file:measured.csv", see
-    microslip.pressures.registry; poisson: nu;
-    model: "auto" or a name in models.MODELS; tolerance: absolute, on mu_macro, None where cells and
-    steps are imposed and the error is only to be told; cells, steps (in a full period): impose a
-    resolution instead of letting the tolerance choose; method: one of methods.names(), to be
-    compared with what ships; most_work: step solves x unknowns, over all runs, beyond which a point
-    is given up, None: MOST_WORK; time_limit: seconds by the wall clock after which it is given up,
-    looked at between marches, None: never; progress: called with the Resolution of every run before
-    it starts.
-    Returns a Result; ``converged`` is False, with the reason, where the tolerance was not met, be
-    it that of an imposed resolution.  Without a tolerance it says that every run found its periodic
-    state, searched for as strictly as at the tolerance 1e-3.
-    Raises InputError, naming the argument, for input out of range or a model that does not apply.
+    Parameters
+    ----------
+    scene : str
+        What moves: "transverse", "bore", "continuous-bore" or another, with the numbers that its
+        name takes.
+    velocity : float
+        The paper's dimensionless group, in units of the pressure's own u_lim; 0: the limit v -> 0.
+    amplitude : float or None
+        The paper's dimensionless group likewise; None for continuous-bore.
+    pressure : str
+        "hertz", "power:exponent=1", "file:measured.csv", see microslip.pressures.registry.
+    poisson : float
+        Poisson's ratio, 0 to 0.5.
+    model : str
+        "auto" or a name in models.registry.MODELS.
+    tolerance : float or None
+        Absolute, on mu_macro; None where cells and steps are imposed and the error is only to be
+        told.
+    cells, steps : int or None
+        Impose a resolution instead of letting the tolerance choose; steps in a full period.
+    method : str
+        One of solver.method_names.names(), to be compared with what ships.
+    most_work : float or None
+        Step solves x unknowns, over all runs, beyond which a point is given up; None: MOST_WORK.
+    time_limit : float or None
+        Seconds by the wall clock after which it is given up, looked at between marches; None:
+        never.
+    progress : callable or None
+        Called with the Resolution of every run before it starts.
+
+    Returns
+    -------
+    Result
+        `converged` is False, with the reason, where the tolerance was not met, be it that of an
+        imposed resolution.  Without a tolerance it says that every run found its periodic state,
+        searched for as strictly as at the tolerance 1e-3.
+
+    Raises
+    ------
+    InputError
+        For input out of range or a model that does not apply; it names the argument.
     """
     kind, velocity, amplitude, poisson = checked_point(
         scene, velocity, amplitude, poisson, pressure
@@ -95,7 +122,7 @@ def solve(
         exact = _exact(problem, asked, cells, steps)
     if exact is not None:
         used = CLOSED_FORM if model == "auto" else name
-        return _exact_result(point | {"model": used}, exact, time.perf_counter() - started)
+        return of_closed_form(point | {"model": used}, exact, time.perf_counter() - started)
     coarsest, axes = plan(problem, name, tolerance, cells, steps)
     imposed, names = any(axis.imposed for axis in axes), [axis.name for axis in axes]
     if asked is None:
@@ -193,7 +220,7 @@ def checked_accuracy(tolerance, cells, steps):
 
 
 def checked_request(tolerance, cells, steps):
-    """As ``checked_accuracy``, but that no tolerance, None, may be asked for."""
+    """As `checked_accuracy`, but that no tolerance, None, may be asked for."""
     _, cells, steps = checked_accuracy(TOLERANCE, cells, steps)
     if tolerance is not None:
         tolerance, _, _ = checked_accuracy(tolerance, None, None)
@@ -251,36 +278,6 @@ def _refuse_method(kind, model, method, how):
 
 def _count(name, value, low):
     return None if value is None else count(name, value, low, most=LARGEST[name], even=True)
-
-
-def _exact_result(point, values, seconds):
-    (mu, torque, error), asked = values, point["tolerance"]
-    within = asked is None or error <= asked
-    return Result(
-        **point,
-        mu_macro=mu,
-        mu_macro_error=error,
-        error_space=0.0,
-        error_time=0.0,
-        error_periodicity=0.0,
-        error_solver=0.0,
-        error_model=error,
-        mu_torque=torque,
-        mu_torque_error=None if torque is None else error,
-        converged=within,
-        periodic=True,
-        reason="" if within else f"the error is {error:.1e}, above the tolerance of {asked:g}",
-        cells=0,
-        angles=0,
-        steps_per_period=0,
-        periods=0.0,
-        iterations=0,
-        work=0,
-        effort=0,
-        retried=0,
-        exhausted="",
-        solve_time_s=seconds,
-    )
 
 
 def warm_up():

@@ -29,7 +29,7 @@ import numpy as np
 from microslip.adaptive.chains import Axis, Chain, Readings, Runs, mixed_difference, refines_cells
 from microslip.solver.budget import Spent
 from microslip.solver.problem import Resolution
-from microslip.solver.simulate import Run
+from microslip.solver.run import Run
 
 RESOLVED = 0.125
 """Share of the tolerance below which no axis claims its error to be: nothing was run to see it."""

@@ -20,7 +20,8 @@ from microslip.motions.transverse import SCENE as TRANSVERSE
 from microslip.pressures.registry import HERTZ
 from microslip.solver.method_names import method_named, missing
 from microslip.solver.problem import Problem, Resolution, build_contact
-from microslip.solver.simulate import Settings, simulate
+from microslip.solver.run import Settings
+from microslip.solver.simulate import simulate
 
 STEP_TOLERANCE = 1e-6
 
@@ -46,12 +47,32 @@ def run_trial(
     tolerance,
     pressure=HERTZ.name,
 ):
-    """One run: a dict of mu_macro (nan if there is none), converged, reason, periods (full ones, of
-    all searches together), iterations, solves, unknowns, work = solves x unknowns and effort =
-    iterations x unknowns; nothing in it depends on the machine.
+    """One run; nothing in it depends on the machine.
 
-    Arguments as for ``microslip.solve``, steps in a full period, tolerance on the periodic state (a
-    force over mu F_z); angles: on half the disc.  Raises ValueError where ``applies`` says why.
+    Parameters
+    ----------
+    scene, velocity, amplitude, poisson, model, method, pressure
+        As for `microslip.solve`.
+    cells : int
+        Rings, or squares along a side.
+    angles : int
+        On half the disc.
+    steps : int
+        In a full period.
+    tolerance : float
+        On the periodic state, a force over mu F_z.
+
+    Returns
+    -------
+    dict
+        mu_macro (nan if there is none), converged, reason, periods (full ones, of all searches
+        together), iterations, solves, unknowns, work = solves x unknowns and effort = iterations x
+        unknowns.
+
+    Raises
+    ------
+    ValueError
+        Where `applies` says why.
     """
     refusal = applies(scene, poisson, model, method, pressure)
     if refusal:
@@ -75,12 +96,25 @@ def run_trial(
 
 
 def measure_steps(model, cells, angles, poisson, steps):
-    """What a backward Euler step costs: a dict of unknowns, iterations and seconds (CPU) a step,
-    and memory, the bytes that the arrays of the contact take.
+    """What a backward Euler step costs.
 
-    The path is half a period in ``steps`` steps from full slip, transverse for rings, else bore,
-    each step solved to 1e-6 of mu F_z.  Times are the median of three marches, after one that
-    compiles.
+    The path is half a period from full slip, transverse for rings, else bore, each step solved to
+    1e-6 of mu F_z.  Times are the median of three marches, after one that compiles.
+
+    Parameters
+    ----------
+    model : str
+        Name in models.registry.MODELS.
+    cells, angles, steps : int
+        Of the model, and of half a period.
+    poisson : float
+        Poisson's ratio.
+
+    Returns
+    -------
+    dict
+        unknowns; iterations and seconds (CPU) a step; memory, the bytes that the arrays of the
+        contact take.
     """
     scene = TRANSVERSE if model == "radial" else BORE
     problem = Problem(scene, 0.1, 1.0, poisson)

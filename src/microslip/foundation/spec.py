@@ -45,8 +45,8 @@ def read(argument: str, text: str, whole: bool = False) -> float | int:
 
 
 def split(text, what, names):
-    """Name and numbers (dict) in a text; raises InputError about ``what`` if the name is none of
-    ``names`` or the numbers cannot be read."""
+    """Name and numbers (dict) in a text; raises InputError about `what` if the name is none of
+    `names` or the numbers cannot be read."""
     name, colon, rest = text.partition(":")
     if name not in names:
         near = difflib.get_close_matches(name, names, n=1)
@@ -67,7 +67,7 @@ def split(text, what, names):
 
 
 def refuse_unknown(text, what, numbers, known):
-    """Raise InputError about ``what`` for a number that a name does not take."""
+    """Raise InputError about `what` for a number that a name does not take."""
     strange = sorted(numbers.keys() - set(known))
     if strange:
         allowed = ", ".join(known) or "none"
@@ -75,14 +75,14 @@ def refuse_unknown(text, what, numbers, known):
 
 
 def refuse_shares(text, what, shares):
-    """Raise InputError about ``what`` for a share outside 0..1; shares: dict."""
+    """Raise InputError about `what` for a share outside 0..1; shares: dict."""
     for key, share in shares.items():
         if not 0.0 <= share <= 1.0:
             raise InputError(what, text, f"{key} = {share:g}: allowed is a share in 0..1")
 
 
 def refuse_counts(text, what, counts, most):
-    """... for what is no whole number from 1 to ``most``; counts: dict."""
+    """... for what is no whole number from 1 to `most`; counts: dict."""
     for key, count in counts.items():
         if count != round(count) or not 1 <= count <= most:
             raise InputError(

@@ -26,10 +26,21 @@ _GAMMA = 1.0 - np.sqrt(0.5)
 
 @dataclass(frozen=True)
 class Integrator:
-    """A DIRK method: stage times c and the carried slips a_ij / gamma (j < i).
+    """A diagonally implicit Runge-Kutta method.
 
-    end: where in the step the last stage sits; below 1 (a single stage then) the rest of the step
-    is extrapolated, and tractions at its end may leave the bound.
+    Attributes
+    ----------
+    name : str
+        As it is spoken of.
+    order : int
+        Of convergence.
+    times : tuple of float
+        Stage times c, over the step.
+    carried : tuple of tuple of float
+        Carried slips a_ij / gamma (j < i), a row a stage.
+    end : float
+        Where in the step the last stage sits; below 1 (a single stage then) the rest of the step is
+        extrapolated, and tractions at its end may leave the bound.
     """
 
     name: str
@@ -54,7 +65,7 @@ INTEGRATORS = {method.name: method for method in (EULER, SDIRK2)}
 
 
 def theta_method(theta):
-    """One stage at the share ``theta`` of the step, 0.5 (midpoint rule) to 1 (backward Euler).
+    """One stage at the share `theta` of the step, 0.5 (midpoint rule) to 1 (backward Euler).
 
     Second order at 0.5 alone.  Raises ValueError for another theta.
     """
@@ -141,8 +152,19 @@ class Path:
 
 
 def make_path(displacement, phase, integrator=SDIRK2, depth=None):
-    """Path through the given phases; displacement(phase) -> (forward, lateral, angle); depth(phase)
-    -> indentation over the reference one, None: it does not change."""
+    """Path through the given phases.
+
+    Parameters
+    ----------
+    displacement : callable
+        displacement(phase) -> (forward, lateral, angle).
+    phase : array_like, shape (steps + 1,)
+        Increasing.
+    integrator : Integrator
+        Where the stages sit.
+    depth : callable or None
+        depth(phase) -> indentation over the reference one; None: it does not change.
+    """
     phase = np.asarray(phase, dtype=float)
     times = phase[:-1, None] + np.asarray(integrator.times) * np.diff(phase)[:, None]
     stages = np.stack(displacement(times), axis=-1)
@@ -165,7 +187,7 @@ def half_period_phases(steps, grading=0.0):
 
 
 def phases_between(turns, steps, grading=0.0):
-    """Phases from the first turning point to the last, ``steps`` steps from each to the next, finer
+    """Phases from the first turning point to the last, `steps` steps from each to the next, finer
     at both; shape ((len(turns) - 1) steps + 1,)."""
     t = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
     t = t + 0.5 * grading * np.sin(2 * t)

@@ -15,7 +15,7 @@ from microslip.pressures.registry import Pressure
 
 
 def load_on_rings(pressure, edges, depth):
-    """Load within each radius in ``edges`` (n + 1,) at each depth (k,), shape (k, n + 1)."""
+    """Load within each radius in `edges` (n + 1,) at each depth (k,), shape (k, n + 1)."""
     return pressure.load(edges, pressure.radius(depth)[:, None])
 
 
@@ -33,9 +33,16 @@ def load_on_springs(pressure, edges, depth):
 class Growth(NamedTuple):
     """How a row of rings or springs that fills the reference contact fills one of another size.
 
-    pressure: of an axisymmetric indenter; edges: (n + 1,) from 0 to 1; carried(pressure, edges,
-    depth) -> load within each edge, (k, n + 1); powers of the contact radius by which influence and
-    weights grow.
+    Attributes
+    ----------
+    pressure : pressure.Pressure
+        Of an axisymmetric indenter.
+    edges : np.ndarray, shape (n + 1,)
+        From 0 to 1.
+    carried : callable
+        carried(pressure, edges, depth) -> load within each edge, (k, n + 1).
+    influence_power, weight_power : int
+        Powers of the contact radius by which influence and weights grow.
     """
 
     pressure: Pressure

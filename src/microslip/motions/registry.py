@@ -1,7 +1,7 @@
 """Every motion by its name, under the pressure asked for.
 
-A scene is one ``Scene`` record (see motion.py for it and for the names of directions).  A motion is
-a file in the folder ``motions``, "a_motion.py" for the name "a-motion", and nothing else in the
+A scene is one `Scene` record (see motion.py for it and for the names of directions).  A motion is
+a file in the folder `motions`, "a_motion.py" for the name "a-motion", and nothing else in the
 package has to name it; closed forms that hold for it alone have their place in
 adaptive/closed_forms.py.
 """

@@ -13,7 +13,7 @@ _HALVINGS = 100
 
 
 def pressure(name, flat):
-    """The Pressure of a punch whose flat end reaches up to ``flat`` contact radii.
+    """The Pressure of a punch whose flat end reaches up to `flat` contact radii.
 
     Equivalent plane profile (Ciavarella 1999): D(c) ~ c (sqrt(c^2 - b^2) - b arccos(b/c)) for c
     above b.  Raises InputError for a flat end outside 0..0.99.

@@ -23,9 +23,23 @@ FORGETFUL = 0.2
 
 
 def search(cycle, start, tolerance, step_tolerance, most_laps):
-    """Find the fixed point of a period_map.Cycle to ``tolerance`` (a force over mu F_z).
+    """Find the fixed point of a map by Anderson acceleration.
 
-    Returns a period_map.PeriodicState: the best state seen, if none is good enough.
+    Parameters
+    ----------
+    cycle : period_map.Cycle
+        The map.
+    start : np.ndarray
+        Tractions.
+    tolerance, step_tolerance : float
+        Of the state and of a step, forces over mu F_z.
+    most_laps : int
+        Marches to try.
+
+    Returns
+    -------
+    period_map.PeriodicState
+        The best state seen, if none is good enough.
     """
     accelerate = Anderson(cycle.contact, DEPTH)
     state, best = start, None

@@ -1,6 +1,6 @@
 """A method: how a contact is marched and how its periodic state is found.  What ships is SHIPPED.
 
-Others exist to be compared with it (see the package ``methods``).  Each replaces a part: the
+Others exist to be compared with it (see the package `methods`).  Each replaces a part: the
 integrator, the solver of a step, the search for the periodic state, or its start.
 """
 

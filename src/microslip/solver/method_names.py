@@ -1,7 +1,7 @@
 """Methods to compare with the one that ships: one file a method.
 
-A method is the file ``name_of_it.py`` in the folder ``methods``, which holds METHOD, a
-``method.Method``; it is then known as ``name-of-it``, to ``microslip.solve`` as well as in a
+A method is the file `name_of_it.py` in the folder `methods`, which holds METHOD, a
+`method.Method`; it is then known as `name-of-it`, to `microslip.solve` as well as in a
 configuration.  Files whose name starts with an underscore are shared by methods.  Numbers that a
 method takes may follow its name: "admm:penalty=0.1,relaxation=1.5".  A method may require a package
 that is not one of microslip's: where that is not installed, nothing asks for it.
@@ -58,7 +58,7 @@ def check(text):
 def missing(text):
     """Why a method cannot run here, as one line: the package that it requires is not installed.
 
-    "" if it can.  Imports neither the solver nor the package.  Raises InputError as ``split``.
+    "" if it can.  Imports neither the solver nor the package.  Raises InputError as `split`.
     """
     try:
         refuse_missing(text)

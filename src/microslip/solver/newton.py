@@ -23,10 +23,25 @@ SKEWED = 1e-3
 
 
 def search(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
-    """Find the fixed point of a period_map.Cycle to ``tolerance`` (a force over mu F_z).
+    """Find the fixed point of a map by Newton's method.
 
-    inverse: known inverse of 1 - F' near the start, (start.size, start.size); without it the first
-    march gives its derivative.  Returns a period_map.PeriodicState.
+    Parameters
+    ----------
+    cycle : period_map.Cycle
+        The map, of a contact whose marches give derivatives.
+    start : np.ndarray
+        Tractions.
+    tolerance, step_tolerance : float
+        Of the state and of a step, forces over mu F_z.
+    most_laps : int
+        Marches to try.
+    inverse : np.ndarray or None, shape (start.size, start.size)
+        Known inverse of 1 - F' near the start; without it the first march gives its derivative.
+
+    Returns
+    -------
+    period_map.PeriodicState
+        The last state that was no worse than the one before.
     """
     corrector = Corrector(cycle, start, inverse)
     state, derivative = start, inverse is None
@@ -98,7 +113,7 @@ class Corrector:
         self.inverse = np.linalg.inv(damped)
 
     def _update(self, moved, changed):
-        """Broyden's update: the inverse turns ``changed`` into ``moved`` from now on."""
+        """Broyden's update: the inverse turns `changed` into `moved` from now on."""
         predicted = self.inverse @ changed
         weighted = self._metric * moved
         share = weighted @ predicted

@@ -19,11 +19,26 @@ from microslip.models.coulomb import project
 class PeriodicState:
     """Result of the search.
 
-    forces: (steps + 1, 3) over the last (half) period marched; start: tractions at its beginning;
-    residual: what the plain map still changed, distance: estimated distance from the fixed point
-    (both bounds on a force over mu F_z); solver_residual: sum over the stages of the last period;
-    laps: maps marched; iterations, solves: of the step solver, over all of them; inverse: what
-    turned residuals into corrections, (start.size, start.size), if anything did.
+    Attributes
+    ----------
+    forces : np.ndarray, shape (steps + 1, 3)
+        Over the last (half) period marched.
+    start : np.ndarray
+        Tractions at its beginning.
+    residual : float
+        What the plain map still changed, a bound on a force over mu F_z.
+    distance : float
+        Estimated distance from the fixed point, likewise.
+    solver_residual : float
+        Sum over the stages of the last period.
+    laps : int
+        Maps marched.
+    iterations, solves : int
+        Of the step solver, over all of them.
+    converged : bool
+        Whether the distance is within the tolerance.
+    inverse : np.ndarray or None, shape (start.size, start.size)
+        What turned residuals into corrections, if anything did.
     """
 
     forces: np.ndarray
@@ -42,10 +57,16 @@ class PeriodicState:
 class Pace:
     """How slowly a state can go wrong.
 
-    static_force: mean forward force of the static limit; gain: force that a contact which does not
-    slip gains in half a period.  A state whose plain map still changes a share of ``gain`` moves
-    forward at a velocity wrong by that share, and as the force depends on the velocity only through
-    its excess over the static limit, at most the same share of the excess is in doubt.
+    A state whose plain map still changes a share of the gain moves forward at a velocity wrong by
+    that share, and as the force depends on the velocity only through its excess over the static
+    limit, at most the same share of the excess is in doubt.
+
+    Attributes
+    ----------
+    static_force : float
+        Mean forward force of the static limit, over mu F_z.
+    gain : float
+        Force that a contact which does not slip gains in a march over a (half) period.
     """
 
     static_force: float
@@ -58,10 +79,21 @@ class Pace:
 
 @dataclass(frozen=True, eq=False)
 class Lap:
-    """One march over a lap from ``state`` to ``image``, where the next lap begins: the end of the
-    period, or the mirror image of its middle.
+    """One march over a (half) period.
 
-    change: image - state; residual: its size, as a force over mu F_z.
+    Attributes
+    ----------
+    state : np.ndarray
+        Tractions at its beginning.
+    image : np.ndarray
+        Those where the next one begins: at the end of the period, or the mirror image of its
+        middle.
+    change : np.ndarray
+        image - state.
+    residual : float
+        Its size, as a force over mu F_z.
+    march : contact.March
+        What it gave.
     """
 
     state: np.ndarray
@@ -74,8 +106,17 @@ class Lap:
 class Cycle:
     """The map of a contact over a path, which counts the marches: Cycle(...)(state) -> Lap.
 
-    path: half a period, from turning point to turning point, whose second half is its lateral
-    mirror image, or without ``mirror`` a whole one; pace: if the motion may be slow, see Pace.
+    Parameters
+    ----------
+    contact : contact.Contact
+        What is marched.
+    path : path.Path
+        Half a period, from turning point to turning point, whose second half is its lateral mirror
+        image, or without `mirror` a whole one.
+    pace : Pace or None
+        Given where the motion may be slow.
+    mirror : bool
+        See `path`.
     """
 
     def __init__(self, contact, path, pace=None, mirror=True):
@@ -85,7 +126,7 @@ class Cycle:
         self._share = np.diff(path.phase) / (path.phase[-1] - path.phase[0])  # of each step
 
     def __call__(self, state, step_tolerance, sensitivity=False):
-        """March once from ``state``; steps are solved to ``step_tolerance``.
+        """March once from `state`; steps are solved to `step_tolerance`.
 
         Raises StepFailure where the tractions blow up.
         """

@@ -17,8 +17,17 @@ WEAKEST_FOCUS, STRONGEST_FOCUS, STATIC_FOCUS = 0.3, 1.0 - 2.0**-6, 0.9
 
 @dataclass(frozen=True, order=True)
 class Resolution:
-    """Cells (rings, or squares along a side), angular points on half the disc, steps a half period
-    (steady motion: not used)."""
+    """How finely a problem is resolved.
+
+    Attributes
+    ----------
+    cells : int
+        Rings, or squares along a side.
+    angles : int
+        Angular points on half the disc.
+    steps : int
+        In half a period (steady motion: not used).
+    """
 
     cells: int
     angles: int
@@ -27,7 +36,17 @@ class Resolution:
 
 @dataclass(frozen=True)
 class Problem:
-    """A scene at one point of its parameters."""
+    """A motion at one point of its parameters.
+
+    Attributes
+    ----------
+    scene : motion.Scene
+        What moves, and the pressure that it is under.
+    velocity, amplitude : float
+        The dimensionless groups of the motion; amplitude None where it is steady.
+    poisson : float
+        Poisson's ratio, 0 to 0.5.
+    """
 
     scene: object
     velocity: float
@@ -98,7 +117,19 @@ def _focus(problem):
 
 
 def build_contact(problem, model, resolution, focus=None):
-    """The contact, its rings gathered at a mesh.Focus, by default where the slip starts."""
+    """The contact of a problem.
+
+    Parameters
+    ----------
+    problem : Problem
+        Where the normal load changes, the contact is that of the start of a period.
+    model : str
+        Name in models.registry.MODELS.
+    resolution : Resolution
+        Of the model.
+    focus : mesh.Focus or None
+        Where rings gather; None: where the slip starts.
+    """
     scene = problem.scene
     focus = focus or _focus(problem)
     build = MODELS[model].build

@@ -8,9 +8,25 @@ import numpy as np
 
 
 def frames(contact, path, state, tolerance):
-    """Tractions at every phase of a path, (steps + 1, 2, ...), and the forces, (steps + 1, 3).
+    """Tractions and forces at every phase of a path.
 
-    contact: models.contact.Contact; state: tractions at the first phase; tolerance: of the steps.
+    Parameters
+    ----------
+    contact : contact.Contact
+        What is marched.
+    path : path.Path
+        From where `state` is.
+    state : np.ndarray
+        Tractions at the first phase.
+    tolerance : float
+        Of a step, a force over mu F_z.
+
+    Returns
+    -------
+    tractions : np.ndarray, shape (steps + 1, 2, ...)
+        Forward and lateral.
+    forces : np.ndarray, shape (steps + 1, 3)
+        See contact.March.
     """
     if path.depth is not None:  # bounds belong to the lap as a whole
         march = contact.march(path, state, tolerance)

@@ -23,11 +23,22 @@ HALVINGS = 50
 
 
 def largest_shift(tractions, bounds):
-    """Forward component of the furthest s with |q + s| <= g at all phases, shape (...).
+    """Forward component of the furthest s with |q + s| <= g at all phases.
 
-    tractions: q, (phases, 2, ...), forward first; bounds: g, broadcast to (phases, ...), where no q
-    is beyond it by more than rounding.  Where s = 0 fits, so does every smaller shift than the
-    largest one: the discs |q + s| <= g are convex, and so is what they share.
+    Where s = 0 fits, so does every smaller shift than the largest one: the discs |q + s| <= g are
+    convex, and so is what they share.
+
+    Parameters
+    ----------
+    tractions : np.ndarray, shape (phases, 2, ...)
+        q, forward first.
+    bounds : np.ndarray, shape (phases, ...) or broadcast to it
+        g, where no q is beyond it by more than rounding.
+
+    Returns
+    -------
+    np.ndarray, shape (...)
+        At every point.
     """
     forward, lateral = tractions[:, 0], tractions[:, 1]
     bounds = np.maximum(bounds, np.hypot(forward, lateral))  # s = 0 does fit

@@ -11,15 +11,8 @@ from microslip.models.rings.mesh import Focus
 from microslip.solver import anderson
 from microslip.solver.period_map import Cycle
 from microslip.solver.problem import STRONGEST_FOCUS, Problem, Resolution
-from microslip.solver.simulate import (
-    AS_SHIPPED,
-    STEP_SHARE,
-    Run,
-    Settings,
-    failed_run,
-    mean_forces,
-    periods_of,
-)
+from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run
+from microslip.solver.simulate import STEP_SHARE, mean_forces, periods_of
 from microslip.solver.snapshots import bounds_at_phases, frames
 from microslip.solver.static_limit import STEPS, at_turning_points, static_state
 from microslip.solver.static_loop import largest_shift
@@ -93,7 +86,7 @@ def _on_a_loop(problem, model, resolution, tolerance, settings):
 
 
 def _stick_radius(contact, left):
-    """Outer edge of the last ring of which more than half has something ``left``, or None: there is
+    """Outer edge of the last ring of which more than half has something `left`, or None: there is
     none, or the contact tells no edges."""
     edges = getattr(contact, "edges", None)
     if left is None or edges is None:

@@ -78,7 +78,15 @@ class Unknowns(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Room for two folded arrays, (4, M/2, N), and a full one, (2, M, N)."""
+    """Room for folded tractions and for full ones.
+
+    Attributes
+    ----------
+    folded, image : np.ndarray, shape (4, M/2, N)
+        See `angular_modes.fold`.
+    free : np.ndarray, shape (2, M, N)
+        Tractions before they are projected.
+    """
 
     folded: np.ndarray
     image: np.ndarray
@@ -99,7 +107,7 @@ def _slip(influence, b, q, scratch, slip):
 
 @kernel
 def _project(free, bound, q, dual):
-    """Over-relaxed projection on the friction bound, the remainder kept in ``dual``; in place."""
+    """Over-relaxed projection on the friction bound, the remainder kept in `dual`; in place."""
     for j in range(q.shape[1]):
         for i in range(q.shape[2]):
             forward = RELAXATION * free[0, j, i] + (1 - RELAXATION) * q[0, j, i] + dual[0, j, i]
@@ -276,18 +284,16 @@ def march(points, path, state, tolerance, known, forces):
             spent += count * 8.0 * angles * n * n
             if count < 0 or (spent > BETWEEN_LOOKS and interrupted()):
                 return held, total, iterations, True
-            if spent > BETWEEN_LOOKS:
-                spent = 0.0
+            spent = 0.0 if spent > BETWEEN_LOOKS else spent
             _copy(known.added[k, s], q)
             _add(known.added[k, s], -1.0, before)
             _copy(known.duals[k, s], unknowns.dual)
             iterations += count
             total += residual
-        slip = slips[stages - 1]
         for c in range(2):
             for j in range(angles):
                 for i in range(n):
-                    now = b[c, j, i] - (slip[c, j, i] + rigid[c, j, i])
+                    now = b[c, j, i] - (slips[stages - 1, c, j, i] + rigid[c, j, i])
                     z[c, j, i] = extended(z[c, j, i], now, path.end)
                     held[c, j, i] = extended(held[c, j, i], q[c, j, i], path.end)
         sum_forces(held, weight, positions, forces[k + 1])

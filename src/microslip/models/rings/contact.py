@@ -16,7 +16,7 @@ from microslip.models.interrupts import unbroken
 from microslip.models.rings import march as ring_march
 from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import make_rings
-from microslip.models.rings.tangent import Rings, cholesky
+from microslip.models.rings.tangent import RingSystem, cholesky
 from microslip.models.varying_load import Growth, load_on_rings
 from microslip.pressures.registry import HERTZ
 
@@ -67,11 +67,11 @@ class RadialContact:
 
     @staticmethod
     def resolved(cells, focus=None, pressure=HERTZ):
-        """The half-space on ``cells`` rings refined around the radius ``focus``."""
+        """The half-space on `cells` rings refined around the radius `focus`."""
         return _resolved(cells, focus, pressure)
 
     def pressed(self, deepest, start):
-        """The same rings spread over the contact at its ``deepest``, with the bound at ``start``.
+        """The same rings spread over the contact at its `deepest`, with the bound at `start`.
 
         Both are depths (see varying_load.py), deepest > 0.
         """
@@ -134,7 +134,7 @@ class RadialContact:
         return self.bounds(path.depth, np.append(seen[:1], edge))
 
     def at_phases(self, march, start):
-        """Tractions at every phase of a march from ``start``, (steps + 1, 2, 1, cells)."""
+        """Tractions at every phase of a march from `start`, (steps + 1, 2, 1, cells)."""
         stages = march.solves // (len(march.forces) - 1)
         return march.stages[::stages, :, None]
 
@@ -147,9 +147,9 @@ class RadialContact:
         return state * contact.MIRROR
 
     def march(self, path, state, tolerance, sensitivity=False, previous=None):
-        """March along ``path`` (translations only); see models.contact.Contact.
+        """March along `path` (translations only); see models.contact.Contact.
 
-        The stages of the result, and of ``previous``, are the tractions at the start and after
+        The stages of the result, and of `previous`, are the tractions at the start and after
         every stage, (1 + steps stages, 2, cells).
         """
         stages = path.stages.shape[0] * path.stages.shape[1]
@@ -158,7 +158,7 @@ class RadialContact:
             known = np.empty((0, 2, 0))
         end, tractions, forces, residual, iterations, derivative = unbroken(
             ring_march.march,
-            Rings(self._stiffness, self._factor, self.weight),
+            RingSystem(self._stiffness, self._factor, self.weight),
             path.under(self.bound[None] if path.depth is None else self.bounds_along(path)),
             np.ascontiguousarray(state[:, 0]),
             known,

@@ -193,7 +193,7 @@ def start_derivative(rings, dz):
 
 @kernel
 def carry_derivative(derivative, stage, share):
-    """Less ``share`` of the slips of a stage, where rings slipped in it; these count as touched."""
+    """Less `share` of the slips of a stage, where rings slipped in it; these count as touched."""
     slid, dslip, dz = derivative.slid[stage], derivative.slips[stage], derivative.displacement
     for i in range(len(slid)):
         if slid[i]:

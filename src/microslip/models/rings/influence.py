@@ -1,7 +1,7 @@
 """Influence coefficients of the elastic half-space under in-plane traction.
 
 The surface displacement u = u_x + i u_y that a traction q = q_x + i q_y causes is (dimensionless
-working units, contact radius 1, reduced shear modulus ``G_STAR``)
+working units, contact radius 1, reduced shear modulus `G_STAR`)
 
     u(z) = 1/(pi G*) Integral [ q(z') / |z-z'| + kappa e^{2 i alpha} conj(q(z')) / |z-z'| ] dA'
 

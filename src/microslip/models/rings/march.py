@@ -73,7 +73,7 @@ def march(rings, path, state, known, tolerance, tangent):
 
     Parameters
     ----------
-    rings : tangent.Rings
+    rings : tangent.RingSystem
         The contact.
     path : models.path.LoadingPath
         What is imposed; bounds (1 + steps stages, n) or (1, n).
@@ -89,7 +89,7 @@ def march(rings, path, state, known, tolerance, tangent):
     Returns
     -------
     tuple
-        End state, the tractions of this march as in ``known``, forces (steps + 1, 3), residual sum,
+        End state, the tractions of this march as in `known`, forces (steps + 1, 3), residual sum,
         iterations, derivative of the end state (2 n, 2 n) or empty, whether it was interrupted,
         which makes the rest worthless.
     """

@@ -63,7 +63,7 @@ def toroidal_kernels(r, s, out):
 def coupling_kernels(r, s, toroidal, out):
     """Fill out[j] = C_{j+1}(r, s) = Integral J_{j+1}(k r) J_{j-1}(k s) dk, j = 0 .. len(out) - 1.
 
-    ``toroidal`` holds G_m(r, s) for m = 0 .. len(toroidal) - 1 with len(toroidal) > len(out).
+    `toroidal` holds G_m(r, s) for m = 0 .. len(toroidal) - 1 with len(toroidal) > len(out).
     Multiplying e^{2 i alpha}/|z-z'| by conj(z - z') gives r C_m - s C_{m-1} = r G_{m-2} - s G_{m-1}
     and C_1 = -G_1: stable upward for s < r; for s > r it is run downward from an index where C has
     died out, or upward where (s/r)^m stays of order one.  Modes below 1 follow from

@@ -65,7 +65,7 @@ def _sweep(stiffness, bound, q, slip, relaxation):
 
 @kernel
 def _newton_step(slip, stick, factors):
-    """Fill factors.change (in the order of the factors) with the Newton step against ``slip``.
+    """Fill factors.change (in the order of the factors) with the Newton step against `slip`.
 
     Sticking rings are eliminated from both components, the angles of the slipping ones are solved
     for, both of their components follow, and then what sticks.
@@ -172,7 +172,7 @@ def solve_step(rings, step, q, slip, factors):
 
     Parameters
     ----------
-    rings : tangent.Rings
+    rings : tangent.RingSystem
         The contact.
     step : Step
         What is asked for.

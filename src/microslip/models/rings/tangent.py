@@ -32,7 +32,7 @@ HELD = 1e30
 """Resistance of a traction to turning where the bound is 0: out of contact a ring slips freely."""
 
 
-class Rings(NamedTuple):
+class RingSystem(NamedTuple):
     """The rings of a contact, for compiled code.
 
     Attributes
@@ -133,7 +133,7 @@ def combine(y, factors, rows, count):
 def _eliminate(matrix, first, last, scratch):
     """Cholesky in place on the upper triangle; returns False if it breaks down.
 
-    Rows before ``first`` are done already, pivots are those before ``last``, and what is left
+    Rows before `first` are done already, pivots are those before `last`, and what is left
     beyond is the Schur complement.  Reciprocals of the pivots go on the diagonal.  scratch: (n,).
     """
     for j in range(first, len(matrix)):
@@ -234,7 +234,7 @@ def _factorise_sticking(rings, stick, factors):
 
 @kernel
 def _schur_of_outer(whole, stick, upper, scratch):
-    """Schur complement where all rings from ``stick`` on slip: the rest of the known factor is the
+    """Schur complement where all rings from `stick` on slip: the rest of the known factor is the
     factor of it, so that a product of what is left does, and nothing is eliminated."""
     n = len(whole)
     for p in range(stick, n):

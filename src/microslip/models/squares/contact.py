@@ -16,10 +16,24 @@ MAX_REMEMBERED = 4_000_000
 
 
 class CartesianContact:
-    """``cells`` x ``cells`` squares over the circumscribed square of the contact.
+    """Squares over the circumscribed square of the contact (see models.contact.Contact).
 
     States: (2, cells, cells), axis 1 along the forward axis, axis 2 along the lateral one.  Cells
     that the edge cuts carry the load of their part inside.
+
+    Parameters
+    ----------
+    cells : int
+        Along a side.
+    poisson : float
+        Poisson's ratio.
+    pressure : pressure.Pressure
+        Any.
+
+    Raises
+    ------
+    ValueError
+        For fewer than 2 cells.
     """
 
     has_sensitivity = False
@@ -57,7 +71,7 @@ class CartesianContact:
         return state[:, :, ::-1] * contact.MIRROR
 
     def march(self, path, state, tolerance, sensitivity=False, previous=None):
-        """March along ``path``; see models.contact.Contact."""
+        """March along `path`; see models.contact.Contact."""
         steps, n_stages, _ = path.stages.shape
         guided = previous is not None and previous.stages is not None
         remembers = steps * n_stages * state.size <= MAX_REMEMBERED

@@ -56,7 +56,7 @@ class Guide(NamedTuple):
     Attributes
     ----------
     known : np.ndarray, shape (steps, stages, 2, n, n)
-        Of the march near by, read if ``given``.
+        Of the march near by, read if `given`.
     given : bool
         Whether there is one.
     found : np.ndarray, shape (steps or 1, stages, 2, n, n)

@@ -49,7 +49,7 @@ def nothing(matrix, scale):
 
 
 class DenseContact:
-    """A contact (see models.contact.Contact) whose steps are solved by ``solve``."""
+    """A contact (see models.contact.Contact) whose steps are solved by `solve`."""
 
     has_sensitivity = False
 
@@ -67,7 +67,7 @@ class DenseContact:
         return getattr(self.contact, name)
 
     def march(self, path, state, tolerance, sensitivity=False, previous=None):
-        """March along ``path``; raises StepFailure at the first step that stays unsolved."""
+        """March along `path`; raises StepFailure at the first step that stays unsolved."""
         q = state.reshape(2, -1).copy()
         held, z = q.copy(), self._elastic(q) - self._rigid(path.positions[0])
         found = np.empty((path.steps + 1, 3))
@@ -150,7 +150,7 @@ def project_in_place(q, bound):
 
 @kernel
 def descend(points, b, q, slip, tolerance, length):
-    """Solve a step by projected gradient steps of fixed length, that of each point in ``length``,
+    """Solve a step by projected gradient steps of fixed length, that of each point in `length`,
     (K,); see the module's docstring."""
     residual = judge(points, b, q, slip)
     for iteration in range(MAX_DESCENTS):

@@ -27,7 +27,7 @@ from microslip.models.coulomb import project
 from microslip.models.path import EULER
 from microslip.models.squares.convolution import square_convolution
 from microslip.solver.method import Method
-from microslip.solver.simulate import Run, failed_run
+from microslip.solver.run import Run, failed_run
 from microslip.theory.hertz import G_STAR
 
 MOST_PERIODS = 6
@@ -37,7 +37,7 @@ largest bound."""
 
 
 class Solver:
-    """A sphere under load on ``cells`` x ``cells`` squares over [-1, 1]^2, to be moved step by
+    """A sphere under load on `cells` x `cells` squares over [-1, 1]^2, to be moved step by
     step; working units, mu = 1."""
 
     def __init__(self, cells, poisson):

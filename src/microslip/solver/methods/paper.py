@@ -13,7 +13,7 @@ from microslip.models.contact import FORWARD, forward_slip
 from microslip.models.path import EULER, make_path
 from microslip.models.squares.contact import CartesianContact
 from microslip.solver.method import Method
-from microslip.solver.simulate import Run
+from microslip.solver.run import Run
 
 CELLS, STEPS_PER_PERIOD = 32, 100
 STEPS = 8000
