@@ -14,7 +14,7 @@ from microslip.foundation.compiled import kernel
 
 @kernel
 def forward(re, im, columns, radices, roots):
-    """Transform the first `columns` columns in place; frequencies end up in `convolution._order`."""
+    """Transform the first `columns` columns in place; for the order see `convolution._order`."""
     length = padded = re.shape[0]
     for radix in radices:
         part = length // radix
