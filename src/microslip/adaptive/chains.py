@@ -152,12 +152,12 @@ def _extrapolation(values, levels):
     return (values[-1] - values[-2]) / ((levels[-1] / levels[-2]) ** 2 - 1.0)
 
 
-def refines_cells(chains):
+def refines_cells(chains: dict[str, Chain]) -> str | None:
     """Name of the axis that refines the cells, or None."""
     return next((name for name, chain in chains.items() if "cells" in chain.axis.refines), None)
 
 
-def mixed_difference(runs, chains, name):
+def mixed_difference(runs: Runs, chains: dict[str, Chain], name: str) -> float:
     """How far the corrections along cells and angles fail to add up: their mixed difference.
 
     It is taken next to the finest angles, since few of them may hide what cells are worth.

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from microslip.foundation.errors import InputError
 from microslip.models.registry import MODELS
+from microslip.motions.motion import Scene
 from microslip.pressures.registry import HERTZ
-from microslip.solver.method import SHIPPED
+from microslip.solver.method import SHIPPED, Method
 
 STEPLESS = ("rigid", "dahl")
 """Models whose march is an evaluation: no step of theirs is solved."""
 
 
-def choose_model(scene, poisson, model="auto"):
+def choose_model(scene: Scene, poisson: float, model: str = "auto") -> str:
     """The model to use: the cheapest that is exact for the motion, or the one asked for.
 
     Rings where the traction depends on the radius alone (translation at nu = 0), angular modes
@@ -56,7 +57,7 @@ def choose_model(scene, poisson, model="auto"):
     return model
 
 
-def method_refusal(scene, model, method):
+def method_refusal(scene: Scene, model: str, method: Method) -> str:
     """Why a method.Method has no part in how a model (by name) computes a scene, as one line; "" if
     it has."""
     if method.run is not None:

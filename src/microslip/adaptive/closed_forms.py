@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from microslip.motions.motion import Scene
 from microslip.pressures.registry import HERTZ
+from microslip.solver.problem import Problem
 from microslip.theory import bounds, hertz, paper
 
 STATIC_LIMITS = {
@@ -25,12 +27,12 @@ LARGEST_DROPS = {
 ROUNDING = 1e-12
 
 
-def no_vibration(scene, amplitude):
+def no_vibration(scene: Scene, amplitude: float | None) -> tuple | None:
     """(mu, torque, error) where nothing oscillates, whatever the model, else None."""
     return (1.0, None, ROUNDING) if scene.periodic and amplitude == 0.0 else None
 
 
-def closed_form(problem, tolerance):
+def closed_form(problem: Problem, tolerance: float) -> tuple | None:
     """What is known where nothing has to be computed, else None.
 
     The steady state of a motion that does not oscillate, where every point slips along its rigid

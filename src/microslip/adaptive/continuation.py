@@ -8,7 +8,10 @@ same point is easier, and from there on the velocity is lowered from state to st
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+
+from microslip.solver.run import Run
 
 FACTOR, SMALLEST_FACTOR = 4.0, 1.15
 """From one velocity to the next: where a search fails the factor is replaced by its root, until it
@@ -17,7 +20,7 @@ MOST_STEPS = 12
 """Times that the velocity is raised at most."""
 
 
-def run_safely(run_at, velocity, guess):
+def run_safely(run_at: Callable, velocity: float, guess: Run | None) -> Run:
     """The run at a velocity; where it does not converge, one by safer steps.
 
     Parameters

@@ -53,19 +53,19 @@ class History:
 
 
 def history(
-    scene,
-    velocity,
-    amplitude=None,
+    scene: str,
+    velocity: float,
+    amplitude: float | None = None,
     *,
-    pressure="hertz",
-    poisson=0.0,
-    model="auto",
-    cells=None,
-    steps=None,
-    start="stress-free",
-    periods=3,
-    travel=5.0,
-):
+    pressure: str = "hertz",
+    poisson: float = 0.0,
+    model: str = "auto",
+    cells: int | None = None,
+    steps: int | None = None,
+    start: str = "stress-free",
+    periods: int = 3,
+    travel: float = 5.0,
+) -> History:
     """Forces from an initial state on: over periods, or over the travel of a steady motion.
 
     Parameters
@@ -129,7 +129,14 @@ def history(
     )
 
 
-def traction_field(scene, velocity, amplitude=None, *, poisson=0.0, cells=None):
+def traction_field(
+    scene: str,
+    velocity: float,
+    amplitude: float | None = None,
+    *,
+    poisson: float = 0.0,
+    cells: int | None = None,
+) -> dict:
     """Steady tractions of the continuous bore on the whole disc, computed by the polar model.
 
     Parameters

@@ -90,16 +90,16 @@ class Period:
 
 
 def period(
-    scene,
-    velocity,
-    amplitude,
+    scene: str,
+    velocity: float,
+    amplitude: float,
     *,
-    pressure="hertz",
-    poisson=0.0,
-    cells=PERIOD_CELLS,
-    angles=ANGLES,
-    steps=PERIOD_STEPS,
-):
+    pressure: str = "hertz",
+    poisson: float = 0.0,
+    cells: int = PERIOD_CELLS,
+    angles: int = ANGLES,
+    steps: int = PERIOD_STEPS,
+) -> Period:
     """Forces, tractions and slip over one period of the periodic state, at one resolution.
 
     Parameters

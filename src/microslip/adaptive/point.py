@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
@@ -15,6 +16,7 @@ from microslip.adaptive.resolutions import plan
 from microslip.adaptive.result import Result, of_closed_form
 from microslip.foundation.arguments import LARGEST, count, is_real, real
 from microslip.foundation.errors import InputError
+from microslip.motions.motion import Scene
 from microslip.motions.registry import read_otherwise, scene_named
 from microslip.solver.budget import Budget
 from microslip.solver.method_names import SHIPPED, method_named, refuse_missing
@@ -37,21 +39,21 @@ each of them takes longer."""
 
 
 def solve(
-    scene,
-    velocity,
-    amplitude=None,
+    scene: str,
+    velocity: float,
+    amplitude: float | None = None,
     *,
-    pressure="hertz",
-    poisson=0.0,
-    model="auto",
-    tolerance=TOLERANCE,
-    cells=None,
-    steps=None,
-    method=SHIPPED,
-    most_work=None,
-    time_limit=None,
-    progress=None,
-):
+    pressure: str = "hertz",
+    poisson: float = 0.0,
+    model: str = "auto",
+    tolerance: float | None = TOLERANCE,
+    cells: int | None = None,
+    steps: int | None = None,
+    method: str = SHIPPED,
+    most_work: float | None = None,
+    time_limit: float | None = None,
+    progress: Callable | None = None,
+) -> Result:
     """Macroscopic friction of a vibrated contact at one point.
 
     Parameters
@@ -199,7 +201,9 @@ def _within(kind, mu):
     return min(max(mu, least), 1.0) if math.isfinite(mu) else math.nan
 
 
-def checked_point(scene, velocity, amplitude, poisson, pressure="hertz"):
+def checked_point(
+    scene: str, velocity: float, amplitude: float | None, poisson: float, pressure: str = "hertz"
+) -> tuple[Scene, float, float | None, float]:
     """Scene record and numbers of a point; raises InputError naming the argument at fault."""
     kind = scene_named(scene, pressure)
     velocity = real("velocity", velocity, 0.0, LARGEST["velocity"])
@@ -213,13 +217,17 @@ def checked_point(scene, velocity, amplitude, poisson, pressure="hertz"):
     return kind, velocity, amplitude, poisson
 
 
-def checked_accuracy(tolerance, cells, steps):
+def checked_accuracy(
+    tolerance: float, cells: int | None, steps: int | None
+) -> tuple[float, int | None, int | None]:
     """Tolerance and imposed resolution; raises InputError naming the argument at fault."""
     tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
     return tolerance, _count("cells", cells, 4), _count("steps", steps, 8)
 
 
-def checked_request(tolerance, cells, steps):
+def checked_request(
+    tolerance: float | None, cells: int | None, steps: int | None
+) -> tuple[float | None, int | None, int | None]:
     """As `checked_accuracy`, but that no tolerance, None, may be asked for."""
     _, cells, steps = checked_accuracy(TOLERANCE, cells, steps)
     if tolerance is not None:
@@ -280,7 +288,7 @@ def _count(name, value, low):
     return None if value is None else count(name, value, low, most=LARGEST[name], even=True)
 
 
-def warm_up():
+def warm_up() -> None:
     """Compile the kernels of the automatic models (and leave them in Numba's cache).
 
     Takes a while the first time; squares are compiled when they are first used.

@@ -110,7 +110,7 @@ class Result:
         return {k: v for k, v in fields.items() if v is not None or k == "tolerance"}
 
 
-def of_closed_form(point, values, seconds):
+def of_closed_form(point: dict, values: tuple, seconds: float) -> Result:
     """The Result of a point, a dict of its fields, where (mu, torque, error) are known."""
     (mu, torque, error), asked = values, point["tolerance"]
     within = asked is None or error <= asked

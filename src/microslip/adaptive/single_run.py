@@ -26,7 +26,7 @@ from microslip.solver.simulate import simulate
 STEP_TOLERANCE = 1e-6
 
 
-def applies(scene, poisson, model, method, pressure=HERTZ.name):
+def applies(scene: str, poisson: float, model: str, method: str, pressure: str = HERTZ.name) -> str:
     """Why a model or a method, by name, cannot be tried on a scene, as one line; "" if it can."""
     kind = scene_named(scene, pressure)
     refusal = MODELS[model].refuses(kind, poisson) or missing(method)
@@ -34,19 +34,19 @@ def applies(scene, poisson, model, method, pressure=HERTZ.name):
 
 
 def run_trial(
-    scene,
-    velocity,
-    amplitude,
+    scene: str,
+    velocity: float,
+    amplitude: float,
     *,
-    poisson,
-    model,
-    method,
-    cells,
-    angles,
-    steps,
-    tolerance,
-    pressure=HERTZ.name,
-):
+    poisson: float,
+    model: str,
+    method: str,
+    cells: int,
+    angles: int,
+    steps: int,
+    tolerance: float,
+    pressure: str = HERTZ.name,
+) -> dict:
     """One run; nothing in it depends on the machine.
 
     Parameters
@@ -95,7 +95,7 @@ def run_trial(
     }
 
 
-def measure_steps(model, cells, angles, poisson, steps):
+def measure_steps(model: str, cells: int, angles: int, poisson: float, steps: int) -> dict:
     """What a backward Euler step costs.
 
     The path is half a period from full slip, transverse for rings, else bore, each step solved to
@@ -135,7 +135,7 @@ def measure_steps(model, cells, angles, poisson, steps):
     }
 
 
-def held_bytes(thing):
+def held_bytes(thing: object) -> int:
     """Bytes in the arrays that an object holds, whatever holds them, each counted once."""
     sizes, stack = {}, [thing]
     while stack:

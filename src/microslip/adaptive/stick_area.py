@@ -9,8 +9,16 @@ from microslip.pressures.registry import HERTZ
 
 
 def patches(
-    scene, velocity, amplitude, *, pressure=HERTZ.name, poisson=0.0, cells=16, angles=16, steps=64
-):
+    scene: str,
+    velocity: float,
+    amplitude: float,
+    *,
+    pressure: str = HERTZ.name,
+    poisson: float = 0.0,
+    cells: int = 16,
+    angles: int = 16,
+    steps: int = 64,
+) -> dict:
     """Stick and slip over a period of the periodic state, reduced to what figures and checks need.
 
     Parameters

@@ -95,14 +95,14 @@ class Contact(Protocol):
         """
 
 
-def energy_norm(contact, change):
+def energy_norm(contact: Contact, change: np.ndarray) -> float:
     """Bound on the force (over mu F_z) that a change of tractions carries, from its energy:
     |dF| <= sqrt(stiffness <dq, A dq>)."""
     energy = np.vdot(contact.weight * change, contact.displacement(change))
     return float(np.sqrt(contact.stiffness * max(energy, 0.0)))
 
 
-def full_slip(contact, forward, lateral):
+def full_slip(contact: Contact, forward: np.ndarray, lateral: np.ndarray) -> np.ndarray:
     """Tractions on the bound along the field (forward, lateral); zero field: no traction."""
     size = np.hypot(forward, lateral)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -110,13 +110,13 @@ def full_slip(contact, forward, lateral):
     return unit * contact.bound
 
 
-def forward_slip(contact):
+def forward_slip(contact: Contact) -> np.ndarray:
     """Every point on its bound, forward: the state of a contact that only ever slid forward."""
     ones = np.ones_like(contact.forward_position)
     return full_slip(contact, ones, 0.0 * ones)
 
 
-def forces(contact, state):
+def forces(contact: Contact, state: np.ndarray) -> np.ndarray:
     """Forward force, lateral force (mu F_z) and torque (mu F_z a) of tractions, shape (3,)."""
     forward, lateral = contact.weight * state
     torque = contact.lateral_position * forward - contact.forward_position * lateral

@@ -50,7 +50,9 @@ def coulomb_residual(q, slip, bound, weight, scale):
     return rows.sum()
 
 
-def dissipation_gap(q, slip, bound, weight):
+def dissipation_gap(
+    q: np.ndarray, slip: np.ndarray, bound: np.ndarray, weight: np.ndarray
+) -> float:
     """Bound on the energy error of an approximate step: Sum weight (g |s| - q . s) >= 0.
 
     The step minimises a convex energy whose gradient is -s; convexity makes the energy of
@@ -62,7 +64,7 @@ def dissipation_gap(q, slip, bound, weight):
     return float(np.sum(weight * rate))
 
 
-def project(q, bound):
+def project(q: np.ndarray, bound: np.ndarray) -> np.ndarray:
     """Tractions shrunk onto |q| <= bound; q has shape (2, ...), bound broadcasts to q[0]."""
     size = np.hypot(q[0], q[1])
     return q * np.where(size > bound, bound / np.maximum(size, 1e-300), 1.0)

@@ -13,6 +13,7 @@ theirs before the end of the step and extrapolate to it, bound or no bound.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
@@ -64,7 +65,7 @@ SDIRK2 = Integrator("sdirk2", 2, (_GAMMA, 1.0), ((), ((1.0 - _GAMMA) / _GAMMA,))
 INTEGRATORS = {method.name: method for method in (EULER, SDIRK2)}
 
 
-def theta_method(theta):
+def theta_method(theta: float) -> Integrator:
     """One stage at the share `theta` of the step, 0.5 (midpoint rule) to 1 (backward Euler).
 
     Second order at 0.5 alone.  Raises ValueError for another theta.
@@ -79,7 +80,7 @@ GRADED_CREEP = 0.02
 GRADED_STROKE = 2.0
 
 
-def turning_point_grading(creep, stroke):
+def turning_point_grading(creep: float, stroke: float) -> float:
     """How much shorter steps are at the turning points than in the mean, 0 to 0.8 of it.
 
     creep: forward displacement in a radian of phase; stroke: amplitude of the oscillation, both in
@@ -151,7 +152,12 @@ class Path:
         return np.trapezoid(values, self.phase, axis=0) / (self.phase[-1] - self.phase[0])
 
 
-def make_path(displacement, phase, integrator=SDIRK2, depth=None):
+def make_path(
+    displacement: Callable,
+    phase: np.ndarray,
+    integrator: Integrator = SDIRK2,
+    depth: Callable | None = None,
+) -> Path:
     """Path through the given phases.
 
     Parameters
@@ -181,12 +187,12 @@ def make_path(displacement, phase, integrator=SDIRK2, depth=None):
     return Path(phase, positions, stages, integrator.carry_matrix(), integrator.end, depths)
 
 
-def half_period_phases(steps, grading=0.0):
+def half_period_phases(steps: int, grading: float = 0.0) -> np.ndarray:
     """Phases from one turning point (-pi/2) to the next, shape (steps + 1,), finer at both."""
     return phases_between(HALF_PERIOD, steps, grading)
 
 
-def phases_between(turns, steps, grading=0.0):
+def phases_between(turns: Sequence[float], steps: int, grading: float = 0.0) -> np.ndarray:
     """Phases from the first turning point to the last, `steps` steps from each to the next, finer
     at both; shape ((len(turns) - 1) steps + 1,)."""
     t = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)

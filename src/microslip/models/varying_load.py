@@ -14,12 +14,12 @@ import numpy as np
 from microslip.pressures.registry import Pressure
 
 
-def load_on_rings(pressure, edges, depth):
+def load_on_rings(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> np.ndarray:
     """Load within each radius in `edges` (n + 1,) at each depth (k,), shape (k, n + 1)."""
     return pressure.load(edges, pressure.radius(depth)[:, None])
 
 
-def load_on_springs(pressure, edges, depth):
+def load_on_springs(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> np.ndarray:
     """Load of the springs of dimensionality reduction within |x| < edges, as load_on_rings.
 
     The spring at x carries G* (d - h(x)) per length, h(x) the depth at which the contact radius

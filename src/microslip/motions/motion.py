@@ -112,12 +112,12 @@ class Scene:
         return 0.5 * max(float(abs(part[1] - part[0])) for part in ends)
 
 
-def within_rings(radius):
+def within_rings(radius: float) -> float:
     """The radius, kept off the centre and the edge so that no ring degenerates."""
     return float(np.clip(radius, *FOCUS_RANGE))
 
 
-def stick_focus(reach, pressure):
+def stick_focus(reach: float, pressure: Pressure) -> float | None:
     """Where the contact would stick if it went so far (u_lim) along a line and back (Eq 8 for a
     sphere); nowhere once all of it slides, or if that is not a circle."""
     radius = pressure.stick_radius(reach) if reach < 1.0 else None

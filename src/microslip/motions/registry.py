@@ -18,6 +18,7 @@ import numpy as np
 from microslip import motions
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
+from microslip.motions.motion import Scene
 from microslip.pressures.registry import HERTZ, pressure_named
 
 _FIRST = ("transverse", "longitudinal", "zigzag", "bore", "continuous_bore")
@@ -53,7 +54,7 @@ for _folder in list(motions.__path__):
     find(_folder)
 
 
-def scene_named(name, pressure=HERTZ.name):
+def scene_named(name: str, pressure: str = HERTZ.name) -> Scene:
     """The scene of this name, or of a family for the numbers that follow its name, such as
     "elliptic:forward=0.5,phase=90", under the pressure of this name (see pressures.registry).
     Raises InputError saying what is allowed."""
@@ -61,7 +62,7 @@ def scene_named(name, pressure=HERTZ.name):
     return scene if pressure == HERTZ.name else _under(scene, pressure_named(pressure))
 
 
-def read_otherwise(scene):
+def read_otherwise(scene: Scene) -> list[Scene]:
     """The scene under each of the other pressures that its own may stand for, see Pressure."""
     return [replace(scene, pressure=other) for other in scene.pressure.readings]
 

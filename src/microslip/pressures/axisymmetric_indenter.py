@@ -13,6 +13,8 @@ With x = r cosh(eta) these integrals are smooth.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from microslip.pressures.cell_loads import round_loads
@@ -28,7 +30,16 @@ _GRID = np.linspace(0.0, 1.0, 257)
 _CORRECTIONS = 6
 
 
-def indenter(name, summary, depth, slope, radius, *, flat=0.0, of_load=None):
+def indenter(
+    name: str,
+    summary: str,
+    depth: Callable,
+    slope: Callable,
+    radius: Callable,
+    *,
+    flat: float = 0.0,
+    of_load: Callable | None = None,
+) -> Pressure:
     """The Pressure of an axisymmetric indenter; all functions are of arrays.
 
     Parameters

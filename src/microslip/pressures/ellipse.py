@@ -14,7 +14,7 @@ DEFAULTS = {"ratio": 0.5, "across": 0.0}
 SMALLEST_RATIO = 0.05
 
 
-def pressure(name, ratio, across):
+def pressure(name: str, ratio: float, across: float) -> Pressure:
     """The Pressure of an elliptic Hertz contact of semi-axes a and ratio a.
 
     across: 0 if the long axis is the forward one, 1 if it is the lateral one.  u_lim is the

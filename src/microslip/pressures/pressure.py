@@ -114,7 +114,9 @@ class Pressure:
         return float(self.radius(1.0 - displacement))
 
 
-def of_radii(ring_loads, ring_moments, psi):
+def of_radii(
+    ring_loads: Callable, ring_moments: Callable, psi: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """ring_means from loads and first moments of the bound between the radii r = sin(psi)."""
     loads, moments = ring_loads(psi), ring_moments(psi)
     area = np.pi * np.diff(np.sin(psi) ** 2)

@@ -49,7 +49,7 @@ for _folder in list(pressures.__path__):
     find(_folder)
 
 
-def pressure_named(name):
+def pressure_named(name: str) -> Pressure:
     """The Pressure of this name, of a family for the numbers that follow its name, such as
     "power:exponent=1", or from a source, as in "file:measured.csv".  Raises InputError saying what
     is allowed."""

@@ -11,6 +11,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from microslip.solver.period_map import Cycle, PeriodicState
+
 FORCING = 1e-3
 LOOSEST = 1e-4
 """While the state is still far from periodic, steps are solved to this share of what the last
@@ -22,7 +24,9 @@ FORGETFUL = 0.2
 """Contraction of the plain map from the start on below which it is left alone."""
 
 
-def search(cycle, start, tolerance, step_tolerance, most_laps):
+def search(
+    cycle: Cycle, start: np.ndarray, tolerance: float, step_tolerance: float, most_laps: int
+) -> PeriodicState:
     """Find the fixed point of a map by Anderson acceleration.
 
     Parameters

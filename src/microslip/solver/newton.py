@@ -12,6 +12,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from microslip.solver.period_map import Cycle, PeriodicState
+
 NEUTRAL = 1e-10
 """Damping of every correction: keeps directions in which nothing ever slips where they are."""
 FIRST_DAMPING, DAMPING_FACTOR = 1e-2, 10.0
@@ -22,7 +24,14 @@ SKEWED = 1e-3
 """Broyden updates that divide by less than this share of a move's square are left out."""
 
 
-def search(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
+def search(
+    cycle: Cycle,
+    start: np.ndarray,
+    tolerance: float,
+    step_tolerance: float,
+    most_laps: int,
+    inverse: np.ndarray | None = None,
+) -> PeriodicState:
     """Find the fixed point of a map by Newton's method.
 
     Parameters

@@ -7,12 +7,22 @@ the derivative of its march, else by Anderson acceleration.
 
 from __future__ import annotations
 
+import numpy as np
+
 from microslip.solver import anderson, newton
+from microslip.solver.period_map import Cycle, PeriodicState
 
 MOST_LAPS = 200
 
 
-def find_periodic_state(cycle, start, tolerance, step_tolerance, most_laps=MOST_LAPS, inverse=None):
+def find_periodic_state(
+    cycle: Cycle,
+    start: np.ndarray,
+    tolerance: float,
+    step_tolerance: float,
+    most_laps: int = MOST_LAPS,
+    inverse: np.ndarray | None = None,
+) -> PeriodicState:
     """March periods until the state repeats itself to the tolerance.
 
     Parameters

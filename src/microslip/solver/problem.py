@@ -7,6 +7,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
+from microslip.models.contact import Contact
 from microslip.models.path import SDIRK2, make_path, phases_between, turning_point_grading
 from microslip.models.registry import MODELS
 from microslip.models.rings.mesh import Focus
@@ -116,7 +117,9 @@ def _focus(problem):
     return Focus(radius, _focus_strength(creep) if creep > 0.0 else STATIC_FOCUS)
 
 
-def build_contact(problem, model, resolution, focus=None):
+def build_contact(
+    problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
+) -> Contact:
     """The contact of a problem.
 
     Parameters

@@ -87,6 +87,6 @@ class Run:
     retried: int = 0
 
 
-def failed_run(reason):
+def failed_run(reason: str) -> Run:
     """The Run of a march that could not go on: no number, and why."""
     return Run(np.nan, np.nan, np.inf, np.inf, 0.0, 0, 0, 0, 0, False, reason)

@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from microslip.models.contact import FORWARD, StepFailure, forces, forward_slip
+from microslip.models.contact import FORWARD, Contact, StepFailure, forces, forward_slip
 from microslip.models.coulomb import project
+from microslip.models.path import Path
+from microslip.motions.motion import Scene
 from microslip.solver.period_map import Cycle, Pace
 from microslip.solver.periodic import MOST_LAPS
 from microslip.solver.problem import Problem, Resolution
@@ -223,13 +225,13 @@ class _Search:
         )
 
 
-def periods_of(laps, scene):
+def periods_of(laps: int, scene: Scene) -> float:
     """Full periods in so many laps of a scene.Scene, a float: a lap is half of one where its
     second half is the mirror image of the first."""
     return 0.5 * laps if scene.half_period_mirror else float(laps)
 
 
-def mean_forces(contact, problem, path, forces):
+def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarray) -> np.ndarray:
     """Means over a lap of the forces at its phases, shape (3,)."""
     if problem.depth is None:
         return path.mean(forces)

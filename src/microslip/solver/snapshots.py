@@ -6,8 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from microslip.models.contact import Contact
+from microslip.models.path import Path
 
-def frames(contact, path, state, tolerance):
+
+def frames(
+    contact: Contact, path: Path, state: np.ndarray, tolerance: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Tractions and forces at every phase of a path.
 
     Parameters
@@ -45,7 +50,7 @@ def frames(contact, path, state, tolerance):
     return np.array(tractions), np.array(forces)
 
 
-def bounds_at_phases(contact, path):
+def bounds_at_phases(contact: Contact, path: Path) -> np.ndarray:
     """Friction bounds at every phase, (steps + 1, 1, n), or those that stay, (1, ...)."""
     if path.depth is None:
         return contact.bound[None]

@@ -22,7 +22,7 @@ HALVINGS = 50
 """Of the interval in which the largest shift is looked for: to rounding."""
 
 
-def largest_shift(tractions, bounds):
+def largest_shift(tractions: np.ndarray, bounds: np.ndarray) -> np.ndarray:
     """Forward component of the furthest s with |q + s| <= g at all phases.
 
     Where s = 0 fits, so does every smaller shift than the largest one: the discs |q + s| <= g are

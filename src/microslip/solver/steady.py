@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.models.contact import energy_norm, forward_slip
+from microslip.models.contact import Contact, energy_norm, forward_slip
 from microslip.models.path import EULER, make_path
 
 STEADY_STRETCH = 8
@@ -46,7 +47,13 @@ class SteadyState:
     converged: bool
 
 
-def steady_state(contact, displacement, velocity, tolerance, step_tolerance):
+def steady_state(
+    contact: Contact,
+    displacement: Callable,
+    velocity: float,
+    tolerance: float,
+    step_tolerance: float,
+) -> SteadyState:
     """March a steady motion until its tractions stand still.
 
     Parameters

@@ -15,16 +15,16 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.foundation.compiled import kernel
+from microslip.models.polar.symmetry import waves
 from microslip.models.rings.influence import ring_influence
-from microslip.models.rings.mesh import make_rings
+from microslip.models.rings.mesh import Focus, make_rings
+from microslip.pressures.pressure import Pressure
 from microslip.pressures.registry import HERTZ
 
 FUSED = {"fastmath": {"contract"}}
 """Allows fused multiply-add, which keeps the order of operations."""
 LARGEST_DENSE = 96
 """Unknowns in a sector up to which its dense matrix is faster than its modes."""
-EVEN_FORWARD, ODD_LATERAL, ODD_FORWARD, EVEN_LATERAL = range(4)
-"""Order of the folded parts: sectors are neighbours in memory."""
 
 
 class Sectors(NamedTuple):
@@ -148,70 +148,6 @@ def _add_pairs(members, blocks, modes, images):
                 images[second, i] += image[n + i]
 
 
-def _waves(angles, rotates, coupled):
-    """Angular functions, each as (key, folded parts (4, M/2)), grouped by sector.
-
-    key (m, part) names the mode: at nu > 0 the complex wave e^{i m theta} of forward - i lateral
-    times 1 (part 0) or i (part 1); at nu = 0 a cosine (part 0) or sine (part 1) of one component.
-    Part 2: the shortest sine, which has no cosine beside it.
-    """
-    half = angles // 2
-    theta = (np.arange(half) + 0.5) * np.pi / angles
-    if not coupled:
-        waves = _single_waves(theta, angles, rotates)
-    elif rotates:
-        waves = _rotating_waves(theta, angles)
-    else:
-        waves = _translating_waves(theta, angles)
-    groups = [[] for _ in range(2 if coupled else 4)]
-    for key, parts in waves:
-        folded = np.zeros((4, half))
-        for part, values in parts.items():
-            folded[part] = values
-        first = next(iter(parts))
-        groups[first // 2 if coupled else first].append((key, folded))
-    return groups
-
-
-def _single_waves(theta, angles, rotates):
-    """At nu = 0: each folded part by itself; yields (key, {part: values}).
-
-    Where the contact rotates, forward tractions are cosines and lateral ones sines; translations
-    have both of each, but even modes only.
-    """
-    step = 1 if rotates else 2
-    for m in range(0, angles, step):
-        cosine = np.exp(1j * m * theta).real
-        yield (m, 0), {EVEN_FORWARD if m % 2 == 0 else ODD_FORWARD: cosine}
-        sine = np.sin((m + step) * theta)
-        yield (m + step, 1), {EVEN_LATERAL if (m + step) % 2 else ODD_LATERAL: sine}
-        if not rotates:
-            yield (m + step, 1), {ODD_FORWARD: sine}
-            yield (m, 0), {EVEN_LATERAL: cosine}
-
-
-def _rotating_waves(theta, angles):
-    """At nu > 0 where the mirror theta -> -theta leaves real amplitudes, as `_single_waves`."""
-    for m in range(1 - angles, angles):
-        yield (m, 0), _of_wave(np.exp(1j * m * theta), m % 2 == 0)
-    yield (angles, 2), _of_wave(1j * np.sin(angles * theta), angles % 2 == 0)
-
-
-def _translating_waves(theta, angles):
-    """At nu > 0 where the symmetry about the centre leaves even modes, as `_single_waves`."""
-    first = -(angles // 2) + (1 - angles % 2)
-    for k in range(first, first + angles):
-        wave = np.exp(2j * k * theta)
-        yield (2 * k, 0), _of_wave(wave, True)
-        yield (2 * k, 1), _of_wave(wave * 1j, False)
-
-
-def _of_wave(wave, even):
-    """Folded parts of a wave of forward - i lateral whose forward part is even or odd."""
-    forward, lateral = (EVEN_FORWARD, ODD_LATERAL) if even else (ODD_FORWARD, EVEN_LATERAL)
-    return {forward: wave.real, lateral: -wave.imag}
-
-
 def _mode_blocks(keys, near, far, kappa, ratio):
     """Members and influence blocks of the modes `keys` (nu > 0: m and 2 - m together)."""
     index = {key: k for k, key in enumerate(keys)}
@@ -233,13 +169,20 @@ def _mode_blocks(keys, near, far, kappa, ratio):
 
 
 @lru_cache(maxsize=32)
-def influence_sectors(cells, angles, rotates, poisson, focus, pressure=HERTZ):
+def influence_sectors(
+    cells: int,
+    angles: int,
+    rotates: bool,
+    poisson: float,
+    focus: Focus | float | None,
+    pressure: Pressure = HERTZ,
+) -> tuple[Sectors, np.ndarray]:
     """The operator (a Sectors that keeps its modes) and the self-influence of each ring (N,)."""
     kappa = poisson / (2.0 - poisson)
     rings = make_rings(cells, focus, pressure)
     near, far = ring_influence(rings.psi, angles + 1, poisson > 0.0, modulus=pressure.G_star)
     ratio = rings.area[:, None] / rings.area[None, :]  # the transpose in the area-weighted product
-    groups = _waves(angles, rotates, poisson > 0.0)
+    groups = waves(angles, rotates, poisson > 0.0)
     z = len(groups[0])
     to_points = np.zeros((len(groups), z, z))
     found = []
@@ -260,7 +203,7 @@ def influence_sectors(cells, angles, rotates, poisson, focus, pressure=HERTZ):
     return operator, np.ascontiguousarray(np.diag(near[0]))
 
 
-def shifted_inverse(operator, shift):
+def shifted_inverse(operator: Sectors, shift: np.ndarray) -> Sectors:
     """(A + shift)^-1 of an operator that keeps its modes; shift: one number for each ring, (N,)."""
     blocks, n = np.zeros_like(operator.blocks), len(shift)
     for s, pairs in enumerate(operator.members):
@@ -271,12 +214,12 @@ def shifted_inverse(operator, shift):
     return operator._replace(blocks=blocks)
 
 
-def scaled(operator, factor):
+def scaled(operator: Sectors, factor: float) -> Sectors:
     """The operator times a number."""
     return operator._replace(dense=operator.dense * factor, blocks=operator.blocks * factor)
 
 
-def quickest(operator):
+def quickest(operator: Sectors) -> Sectors:
     """The same operator in the form that is applied fastest at its size."""
     sectors, z = operator.to_modes.shape[:2]
     rings = operator.blocks.shape[2] // (1 if (operator.members[:, :, 1] < 0).all() else 2)

@@ -175,7 +175,9 @@ def _smooth_ends_gauss(n):
     return t * t * (3.0 - 2.0 * t), w * 6.0 * t * (1.0 - t)
 
 
-def ring_influence(psi, n_modes, coupled, hertz=True, modulus=G_STAR):
+def ring_influence(
+    psi: np.ndarray, n_modes: int, coupled: bool, hertz: bool = True, modulus: float = G_STAR
+) -> tuple[np.ndarray, np.ndarray]:
     """Mode matrices of a half-space under ring tractions.
 
     Averages are Galerkin averages, so that near is symmetric after weighting with ring areas.

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from microslip.pressures.pressure import Pressure
 from microslip.pressures.registry import HERTZ
 
 
@@ -51,7 +52,7 @@ class Rings:
     radius: np.ndarray
 
 
-def make_rings(count, focus=None, pressure=HERTZ):
+def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ) -> Rings:
     """Rings that are refined around a focus.
 
     An edge lies on the focus exactly: the traction has a kink at the stick radius, and a ring that

@@ -47,7 +47,9 @@ class Convolution(NamedTuple):
 
 
 @lru_cache(maxsize=8)
-def square_convolution(cells, poisson, modulus=G_STAR):
+def square_convolution(
+    cells: int, poisson: float, modulus: float = G_STAR
+) -> tuple[Convolution, float, float]:
     """Convolution of `cells` x `cells` squares over [-1, 1]^2, their self-influence, and an
     upper bound on the eigenvalues (u_lim per unit traction); modulus: G* in working units."""
     padded = _padded(cells)
@@ -70,7 +72,9 @@ def square_convolution(cells, poisson, modulus=G_STAR):
     return operator, float(coefficients[0][0, 0]), float(largest)
 
 
-def influence(cells, padded, poisson, modulus=G_STAR):
+def influence(
+    cells: int, padded: int, poisson: float, modulus: float = G_STAR
+) -> tuple[np.ndarray, np.ndarray]:
     """Influence coefficients on the traction and on its conjugate, (P, P) each; u_lim per unit
     traction, first axis forward, second lateral offset, negative offsets wrapped around.
 
@@ -123,7 +127,7 @@ def _order(radices):
     return np.concatenate([k + radices[0] * rest for k in range(radices[0])])
 
 
-def workspace(operator):
+def workspace(operator: Convolution) -> tuple[np.ndarray, np.ndarray]:
     """Scratch arrays of `convolve`: reusable, not shared between threads."""
     padded = len(operator.opposite)
     return np.zeros((2, padded, padded)), np.zeros((2, padded, padded))

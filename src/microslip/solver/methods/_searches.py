@@ -5,14 +5,24 @@ All return a period_map.PeriodicState.
 
 from __future__ import annotations
 
+import numpy as np
+
 from microslip.solver import anderson
 from microslip.solver.anderson import DEPTH, Anderson
+from microslip.solver.period_map import Cycle, PeriodicState
 
 SLOWEST = 1.0 - 1e-6
 """Largest ratio of two changes that is believed: rounding alone makes it 1."""
 
 
-def accelerated(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
+def accelerated(
+    cycle: Cycle,
+    start: np.ndarray,
+    tolerance: float,
+    step_tolerance: float,
+    most_laps: int,
+    inverse: np.ndarray | None = None,
+) -> PeriodicState:
     """Anderson acceleration, whether or not marches give a derivative.
 
     Newton's method has nothing to invert where the map keeps what rings in it for ever.
@@ -20,7 +30,14 @@ def accelerated(cycle, start, tolerance, step_tolerance, most_laps, inverse=None
     return anderson.search(cycle, start, tolerance, step_tolerance, most_laps)
 
 
-def march(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
+def march(
+    cycle: Cycle,
+    start: np.ndarray,
+    tolerance: float,
+    step_tolerance: float,
+    most_laps: int,
+    inverse: np.ndarray | None = None,
+) -> PeriodicState:
     """March on until the plain map stands still, as strictly as the shipped search judges it.
 
     What is left is the geometric tail of the changes, in the ratio of the last two.
@@ -37,7 +54,14 @@ def march(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
     return cycle.result(lap, distance, distance <= tolerance)
 
 
-def equal_means(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
+def equal_means(
+    cycle: Cycle,
+    start: np.ndarray,
+    tolerance: float,
+    step_tolerance: float,
+    most_laps: int,
+    inverse: np.ndarray | None = None,
+) -> PeriodicState:
     """March on until the mean force of two half periods is the same to the tolerance."""
     state, last = start, float("inf")
     for _ in range(most_laps):
@@ -50,7 +74,14 @@ def equal_means(cycle, start, tolerance, step_tolerance, most_laps, inverse=None
     return cycle.result(lap, change, change <= tolerance)
 
 
-def residual_alone(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
+def residual_alone(
+    cycle: Cycle,
+    start: np.ndarray,
+    tolerance: float,
+    step_tolerance: float,
+    most_laps: int,
+    inverse: np.ndarray | None = None,
+) -> PeriodicState:
     """Anderson acceleration, believed as soon as the plain map changes less than the tolerance."""
     accelerate, state = Anderson(cycle.contact, DEPTH), start
     for _ in range(most_laps):
