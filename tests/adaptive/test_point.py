@@ -443,13 +443,13 @@ def test_periods_are_full_ones_whatever_a_lap_is(monkeypatch):
     from microslip.solver import period_map
 
     laps = []
-    march = period_map.Cycle.__call__
+    march = period_map.PeriodMap.__call__
 
     def counted(self, *arguments, **settings):
         laps.append(self.path.phase[-1] - self.path.phase[0])
         return march(self, *arguments, **settings)
 
-    monkeypatch.setattr(period_map.Cycle, "__call__", counted)
+    monkeypatch.setattr(period_map.PeriodMap, "__call__", counted)
     for scene, lap in (("transverse", np.pi), ("elliptic:forward=0.5,phase=30", 2 * np.pi)):
         laps.clear()
         problem = Problem(scene_named(scene), 0.3, 1.0, 0.0)

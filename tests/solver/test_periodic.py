@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import microslip.solver.simulate
 from microslip.models.contact import energy_norm, forward_slip
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.registry import MODELS
@@ -13,7 +12,7 @@ from microslip.models.rings.contact import RadialContact
 from microslip.motions.bore import SCENE as BORE
 from microslip.motions.transverse import SCENE as TRANSVERSE
 from microslip.solver.newton import Corrector
-from microslip.solver.period_map import Cycle
+from microslip.solver.period_map import PeriodMap
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.simulate import simulate
@@ -112,7 +111,7 @@ def test_second_half_of_the_period_mirrors_the_first(name, integrator):
     """A march over the whole period from the found state, which knows nothing of the symmetry."""
     scene, point = CASES[name][1], POINTS[name][1]
     contact, path = contact_of(name, *point), path_of(name, *point, integrator)
-    cycle = Cycle(contact, path)
+    cycle = PeriodMap(contact, path)
     found = find_periodic_state(cycle, forward_slip(contact), TOLERANCE, STEP_TOLERANCE)
     assert found.converged
     whole = path_of(name, *point, integrator, whole=True)
@@ -130,13 +129,13 @@ def test_second_half_of_the_period_mirrors_the_first(name, integrator):
 def test_verdict_is_that_of_the_plain_map(name):
     contact, path = contact_of(name, *POINTS[name][1]), path_of(name, *POINTS[name][1])
     start = forward_slip(contact)
-    enough = find_periodic_state(Cycle(contact, path), start, TOLERANCE, STEP_TOLERANCE)
+    enough = find_periodic_state(PeriodMap(contact, path), start, TOLERANCE, STEP_TOLERANCE)
     assert enough.converged and enough.residual <= enough.distance <= TOLERANCE
     few = find_periodic_state(
-        Cycle(contact, path), start, TOLERANCE, STEP_TOLERANCE, most_laps=enough.laps - 1
+        PeriodMap(contact, path), start, TOLERANCE, STEP_TOLERANCE, most_marches=enough.marches - 1
     )
     assert not few.converged
-    assert few.laps < enough.laps
+    assert few.marches < enough.marches
     assert few.distance > TOLERANCE or few.solver_residual > enough.solver_residual
     for found in (enough, few):
         # whatever the search did, what it hands back is one march of the plain map
@@ -148,7 +147,7 @@ def test_verdict_is_that_of_the_plain_map(name):
 
 
 def test_run_reports_what_was_not_reached(monkeypatch):
-    monkeypatch.setattr(microslip.simulate, "MOST_LAPS", 2)
+    monkeypatch.setattr("microslip.solver.simulate.MOST_MARCHES", 2)
     for scene, model, angles in ((BORE, "polar", 4), (TRANSVERSE, "radial", 1)):
         problem = Problem(scene, 0.1, 1.0, 0.0)
         run = simulate(problem, model, Resolution(6, angles, 8), TOLERANCE)
@@ -253,7 +252,7 @@ def test_equal_runs_give_equal_bits():
 def test_broyden_update_maps_the_change_it_has_seen():
     contact = contact_of("radial", 0.1, 1.0)
     path, start = path_of("radial", 0.1, 1.0), forward_slip(contact)
-    cycle = Cycle(contact, path)
+    cycle = PeriodMap(contact, path)
     first = cycle(start, 1e-10, sensitivity=True)
     corrector = Corrector(cycle, start)
     corrector.learn(first, None)

@@ -121,7 +121,7 @@ def test_slow_marches_end_there(scene):
 
 @pytest.mark.parametrize("amplitude", [0.3, 0.8])
 def test_a_load_that_oscillates_leaves_its_least(amplitude):
-    """The closed form of the load alone, by the same problem over the whole lap; rings join and
+    """The closed form of the load alone, by the same problem over the whole period; rings join and
     leave the contact, and what oscillates beside the load tends to nothing."""
     exact = microslip.solve("normal", 0.0, amplitude).mu_macro
     assert exact == pytest.approx(1.0 - amplitude, abs=1e-12)
@@ -146,7 +146,7 @@ def test_poissons_ratio_and_squares_without_symmetry_are_in():
 
 
 def test_a_state_that_does_not_settle_is_no_number(monkeypatch):
-    monkeypatch.setattr("microslip.solver.static_run.LAPS", 1)
+    monkeypatch.setattr("microslip.solver.static_run.MARCHES", 1)
     monkeypatch.setattr("microslip.solver.static_run.MOST_ROUNDS", 1)
     found = microslip.solve(NARROW, 0.0, 0.5)
     assert not found.converged and "no periodic state" in found.reason

@@ -182,7 +182,7 @@ def make_path(
     depths = None
     if depth is not None:
         if integrator.end == 1.0:
-            times[:, -1] = phase[1:]  # to the last bit: the end of a lap is where the next begins
+            times[:, -1] = phase[1:]  # to the last bit: the end is where the next march begins
         depths = depth(np.concatenate([phase[:1], times.ravel()]))
     return Path(phase, positions, stages, integrator.carry_matrix(), integrator.end, depths)
 

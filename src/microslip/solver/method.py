@@ -30,7 +30,7 @@ class Method:
     parameters : mapping of str to float
         Numbers that `dress` takes, with their defaults.
     search : callable
-        search(cycle, start, tolerance, step_tolerance, most_laps, inverse) -> PeriodicState.
+        As periodic.find_periodic_state.
     prepared : bool
         Whether to start near the static limit and with coarse steps, else once from full slip.
     extrapolated : bool

@@ -84,8 +84,10 @@ class Problem:
         return turning_point_grading(self.creep, self.scene.stroke(self.amplitude, self.poisson))
 
     def path(self, contact, steps, integrator=SDIRK2):
-        """A lap in steps that suit the motion, or the contact if it has a say in it: half a period,
-        where the second half is the mirror image of the first one, else the whole."""
+        """The path to march, in steps that suit the motion, or the contact if it has a say in it.
+
+        It is half a period where the second half is the mirror image of the first, else the whole.
+        """
         return _path(self, steps, getattr(contact, "grading", self.grading), integrator)
 
 

@@ -10,8 +10,8 @@ from microslip.models.contact import FORWARD, Contact, StepFailure, forces, forw
 from microslip.models.coulomb import project
 from microslip.models.path import Path
 from microslip.motions.motion import Scene
-from microslip.solver.period_map import Cycle, Pace
-from microslip.solver.periodic import MOST_LAPS
+from microslip.solver.period_map import CreepRate, PeriodMap
+from microslip.solver.periodic import MOST_MARCHES
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run
 from microslip.solver.static_limit import static_state
@@ -132,8 +132,8 @@ class _Search:
     def __init__(self, contact, problem, method, steps, tolerance, step_tolerance):
         self.contact, self.problem, self.method, self.steps = contact, problem, method, steps
         self.tolerance, self.step_tolerance = tolerance, step_tolerance
-        lap = np.pi if problem.scene.half_period_mirror else 2.0 * np.pi
-        self.pace = Pace(0.0, contact.stiffness * problem.creep * lap)
+        interval = np.pi if problem.scene.half_period_mirror else 2.0 * np.pi
+        self.creep_rate = CreepRate(0.0, contact.stiffness * problem.creep * interval)
         self.path = self._path(steps)
         self.done = []
 
@@ -144,7 +144,7 @@ class _Search:
         """The Run; guess: see simulate."""
         found = None
         if guess is not None and self._fits(guess):
-            self.pace = replace(self.pace, static_force=guess.static_force)
+            self.creep_rate = replace(self.creep_rate, static_force=guess.static_force)
             found = self._find(self.path, guess.state, guess.inverse)
         if found is None or not found.converged:
             found = self._search_afresh()
@@ -171,7 +171,7 @@ class _Search:
             return slipping
         residual, oscillating = static_state(contact, self.problem.oscillation, self.step_tolerance)
         force = float(forces(contact, residual)[FORWARD])
-        self.pace = replace(self.pace, static_force=force)
+        self.creep_rate = replace(self.creep_rate, static_force=force)
         push = min(SLOW_PUSH * creep ** (2.0 / 3.0), LARGEST_PUSH)
         return project(residual + oscillating + push * slipping, contact.bound)
 
@@ -191,9 +191,11 @@ class _Search:
 
     def _find(self, path, start, inverse, tolerance=None):
         looser = (tolerance or self.tolerance) / self.tolerance
-        cycle = Cycle(self.contact, path, self.pace, self.problem.scene.half_period_mirror)
+        period_map = PeriodMap(
+            self.contact, path, self.creep_rate, self.problem.scene.half_period_mirror
+        )
         tolerances = looser * self.tolerance, looser * self.step_tolerance
-        self.done.append(self.method.search(cycle, start, *tolerances, MOST_LAPS, inverse))
+        self.done.append(self.method.search(period_map, start, *tolerances, MOST_MARCHES, inverse))
         return self.done[-1]
 
     def _summary(self, found):
@@ -201,7 +203,7 @@ class _Search:
         forward, _, torque = mean_forces(self.contact, self.problem, self.path, found.forces)
         solves = sum(one.solves for one in self.done)
         solved = found.solver_residual <= _solved_sum(self.path, self.step_tolerance)
-        periods = periods_of(sum(one.laps for one in self.done), self.problem.scene)
+        periods = periods_of(sum(one.marches for one in self.done), self.problem.scene)
         reason = ""
         if not found.converged:
             reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
@@ -221,18 +223,18 @@ class _Search:
             reason=reason,
             state=found.start,
             inverse=found.inverse,
-            static_force=self.pace.static_force,
+            static_force=self.creep_rate.static_force,
         )
 
 
-def periods_of(laps: int, scene: Scene) -> float:
-    """Full periods in so many laps of a scene.Scene, a float: a lap is half of one where its
+def periods_of(marches: int, scene: Scene) -> float:
+    """Full periods in so many marches of a motion.Scene, a float: each is half of one where its
     second half is the mirror image of the first."""
-    return 0.5 * laps if scene.half_period_mirror else float(laps)
+    return 0.5 * marches if scene.half_period_mirror else float(marches)
 
 
 def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarray) -> np.ndarray:
-    """Means over a lap of the forces at its phases, shape (3,)."""
+    """Means over a march of the forces at its phases, shape (3,)."""
     if problem.depth is None:
         return path.mean(forces)
     # by what they lack of full slip, whose mean is known: less is left to the trapezoidal rule,

@@ -33,7 +33,7 @@ def frames(
     forces : np.ndarray, shape (steps + 1, 3)
         See contact.March.
     """
-    if path.depth is not None:  # bounds belong to the lap as a whole
+    if path.depth is not None:  # bounds belong to the path as a whole
         march = contact.march(path, state, tolerance)
         return contact.at_phases(march, state), march.forces
     tractions, forces = [state], []

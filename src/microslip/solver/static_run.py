@@ -9,7 +9,7 @@ import numpy as np
 from microslip.models.contact import FORWARD, StepFailure, forces
 from microslip.models.rings.mesh import Focus
 from microslip.solver import anderson
-from microslip.solver.period_map import Cycle
+from microslip.solver.period_map import PeriodMap
 from microslip.solver.problem import STRONGEST_FOCUS, Problem, Resolution
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run
 from microslip.solver.simulate import STEP_SHARE, mean_forces, periods_of
@@ -20,7 +20,7 @@ from microslip.solver.static_loop import largest_shift
 SMALLEST_DISTANCE = 1e-10
 """From the periodic state of the oscillation alone: what is left of the bound there, the force in
 the limit feels by its square root, so that the tolerance is squared, down to this."""
-LAPS, MOST_ROUNDS = 120, 3
+MARCHES, MOST_ROUNDS = 120, 3
 """Of a search for it, and how often it starts again: rounding may stall an accelerated one."""
 ENOUGH = 64.0
 """Squared share of the tolerance that does where rounding leaves no more to be had."""
@@ -100,10 +100,10 @@ def _on_these_points(contact, problem, path, tolerance):
     mirror = problem.scene.half_period_mirror
     distance = max(tolerance**2, SMALLEST_DISTANCE)
     shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
-    cycle = Cycle(contact, path, mirror=mirror)
+    period_map = PeriodMap(contact, path, mirror=mirror)
     start, inner = np.zeros((2, *shape)), STEP_SHARE * distance
     for _ in range(MOST_ROUNDS):  # not Newton's method: what never slips keeps what it began with
-        found = anderson.search(cycle, start, distance, inner, cycle.laps + LAPS)
+        found = anderson.search(period_map, start, distance, inner, period_map.marches + MARCHES)
         start = found.start
         if found.converged:
             break
@@ -118,7 +118,7 @@ def _on_these_points(contact, problem, path, tolerance):
         force += float(np.sum(contact.weight * shift))
         left = shift > NOTHING_LEFT * bounds.max()
     near = found.converged or found.distance <= ENOUGH * tolerance**2  # and its error is told
-    periods, reason = periods_of(found.laps, problem.scene), ""
+    periods, reason = periods_of(found.marches, problem.scene), ""
     if not near:
         reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
     run = Run(

@@ -120,15 +120,15 @@ class RadialContact:
         """Bounds at the start and at every stage of a path, (1 + steps stages, cells).
 
         Rings join or leave at the last stage of a step only: what jumps at an earlier one would be
-        carried on by the integrator.  At steady pace a ring that joins there has been stretched for
-        the share 1 / (1 + carried) of the step, where it should be half of it in the mean: the edge
-        of the contact is seen as early as makes up for it.
+        carried on by the integrator.  At a steady rate a ring that joins there has been stretched
+        for the share 1 / (1 + carried) of the step, where it should be half of it in the mean: the
+        edge of the contact is seen as early as makes up for it.
         """
         stages = path.stages.shape[1]
         ends = self.growth.pressure.radius(path.depth[::stages])
         shift = 0.5 - 1.0 / (1.0 + path.carry[-1].sum())
         seen = ends.copy()
-        seen[:-1] += shift * np.diff(ends)  # the last as it is: there the next lap begins
+        seen[:-1] += shift * np.diff(ends)  # the last as it is: there the next march begins
         edge = np.repeat(seen[:-1, None], stages, axis=1)
         edge[:, -1] = seen[1:]
         return self.bounds(path.depth, np.append(seen[:1], edge))
