@@ -35,7 +35,7 @@ import numpy as np
 import microslip
 from microslip.adaptive.choice import choose_model
 from microslip.motions.registry import scene_named
-from microslip.solver.problem import Resolution
+from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
 
@@ -126,19 +126,18 @@ def _sample_of(cases, points, seed, velocities=EXTENDED_VELOCITIES, amplitudes=E
     return out
 
 
-def reference(scene, velocity, amplitude, poisson, tolerance, certified, pressure="hertz"):
+def reference(problem, tolerance, certified):
     """(mu, uncertainty) four times as fine as the ``certified`` Result."""
-    kind = scene_named(scene, pressure)
-    model = choose_model(kind, poisson)
-    stroke = min(max(kind.stroke(amplitude, poisson), 1.0), 16.0) ** 0.5
+    kind = problem.scene
+    model = choose_model(kind, problem.poisson)
+    stroke = min(max(kind.stroke(problem.amplitude, problem.poisson), 1.0), 16.0) ** 0.5
     stroke *= kind.cycles
 
     def run(resolution):
-        if velocity == 0.0:
+        if problem.velocity == 0.0:
             share = PERIODICITY * tolerance
-            return simulate_static(kind, amplitude, poisson, model, resolution, share)
-        where = (kind, velocity, amplitude, poisson)
-        return simulate(*where, model, resolution, PERIODICITY * tolerance)
+            return simulate_static(problem, model, resolution, share)
+        return simulate(problem, model, resolution, PERIODICITY * tolerance)
 
     if kind.depth is not None:
         coarse, fine = (
@@ -181,7 +180,8 @@ def examine(point):
     settings = {"poisson": poisson, "tolerance": tolerance}
     settings |= {"pressure": pressure[0]} if pressure else {}
     result = microslip.solve(scene, velocity, amplitude, **settings)
-    mu, uncertainty = reference(*point[:5], result, *pressure)
+    problem = Problem(scene_named(scene, *pressure), velocity, amplitude, poisson)
+    mu, uncertainty = reference(problem, tolerance, result)
     error = abs(result.mu_macro - mu)
     return {
         "point": list(point),

@@ -32,7 +32,7 @@ from microslip.solver.methods.paper import (
     last_means,
     path_of,
 )
-from microslip.solver.problem import Motion
+from microslip.solver.problem import Problem
 
 POINTS = [("transverse", 0.5), ("bore", 1.0)]
 """Scene and amplitude."""
@@ -51,7 +51,7 @@ def timed(function):
 def compare(scene, amplitude, steps, repeats):
     """One row of the table: the two methods in turns, ``repeats`` times."""
     contact = CartesianContact(CELLS)
-    motion = Motion(SCENES[scene], VELOCITY, amplitude, 0.0)
+    motion = Problem(SCENES[scene], VELOCITY, amplitude, 0.0)
     path, start = path_of(motion, steps), forward_slip(contact)
 
     def paper():

@@ -14,8 +14,8 @@ from microslip.models.contact import forward_slip
 from microslip.models.registry import MODELS
 from microslip.motions.registry import scene_named
 from microslip.solver.budget import Budget, Spent
-from microslip.solver.problem import Motion, Resolution, build_contact
-from microslip.solver.simulate import simulate
+from microslip.solver.problem import Problem, Resolution, build_contact
+from microslip.solver.simulate import Settings, simulate
 from microslip.solver.static_run import simulate_static
 
 SLOW = ("transverse", 1e-9, 0.5)
@@ -60,17 +60,18 @@ def test_every_point_has_a_bound(monkeypatch, model):
 
 def test_every_march_counts():
     """Those of searches, and those of the static limit."""
-    scene, resolution = scene_named("transverse"), Resolution(8, 1, 16)
+    problem, resolution = Problem(scene_named("transverse"), 0.01, 0.5, 0.0), Resolution(8, 1, 16)
     budget = Budget()
-    run = simulate(scene, 0.01, 0.5, 0.0, "radial", resolution, 1e-6, budget=budget)
+    run = simulate(problem, "radial", resolution, 1e-6, settings=Settings(budget=budget))
     assert budget.work >= run.work > 0 and budget.effort >= run.effort
-    loop = scene_named("elliptic")
+    loop = Problem(scene_named("elliptic"), 0.0, 0.5, 0.0)
     for spent_at in (0, 100):
         with pytest.raises(Spent):
-            simulate_static(loop, 0.5, 0.0, "radial", resolution, 1e-3, budget=Budget(spent_at))
+            bounded = Settings(budget=Budget(spent_at))
+            simulate_static(loop, "radial", resolution, 1e-3, bounded)
     with pytest.raises(Spent):
-        where = (scene_named("continuous-bore"), 0.5, None, 0.0, "polar", Resolution(4, 4, 1))
-        simulate(*where, 1e-3, budget=Budget(10))
+        steady, bounded = Problem(scene_named("continuous-bore"), 0.5, None, 0.0), Budget(10)
+        simulate(steady, "polar", Resolution(4, 4, 1), 1e-3, settings=Settings(budget=bounded))
 
 
 def test_the_time_limit_ends_a_point_and_says_so():
@@ -106,7 +107,7 @@ MARCHES = {
 def test_ctrl_c_ends_a_march_that_would_take_minutes(name):
     """One call of a compiled function; the test would hang for its whole length without that."""
     scene, model, resolution = MARCHES[name]
-    motion = Motion(scene_named(scene), 0.01, 0.5, 0.0)
+    motion = Problem(scene_named(scene), 0.01, 0.5, 0.0)
     contact = build_contact(motion, model, Resolution(4, 4, 2))
     contact.march(motion.path(contact, 2), forward_slip(contact), 1e-3)  # compiles
     contact = build_contact(motion, model, resolution)

@@ -8,13 +8,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import microslip
-from microslip.adaptive.choice import choose_model, closed_form, plan
+from microslip.adaptive.choice import choose_model
+from microslip.adaptive.closed_forms import closed_form
+from microslip.adaptive.resolutions import plan
 from microslip.models.registry import MODELS
 from microslip.motions.bore import SCENE as BORE
 from microslip.motions.continuous_bore import SCENE as CONTINUOUS_BORE
 from microslip.motions.registry import SCENES
 from microslip.motions.transverse import SCENE as TRANSVERSE
-from microslip.solver.problem import Resolution
+from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
 from microslip.theory import paper
@@ -85,16 +87,16 @@ def test_vanishing_velocity_needs_no_run(scene, amplitude, poisson):
     result = microslip.solve(scene, 0.0, amplitude, poisson=poisson)
     assert result.model == "closed-form" and result.cells == 0
     model = "polar" if scene == "bore" else "radial"
+    problem = Problem(SCENES[scene], 0.0, amplitude, poisson)
     coarse, fine = (
-        simulate_static(SCENES[scene], amplitude, poisson, model, Resolution(cells, 24, 0), 1e-8).mu
-        for cells in (24, 48)
+        simulate_static(problem, model, Resolution(cells, 24, 0), 1e-8).mu for cells in (24, 48)
     )
     expected = fine + (fine - coarse) / 3.0
     assert result.mu_macro == pytest.approx(expected, abs=max(1e-5, abs(fine - coarse)))
 
 
 def test_vanishing_velocity_is_computed_where_no_form_is_known():
-    assert closed_form(TRANSVERSE, 0.0, 0.5, 0.3, 1e-2) is None
+    assert closed_form(Problem(TRANSVERSE, 0.0, 0.5, 0.3), 1e-2) is None
     result = microslip.solve("transverse", 0.0, 0.5, poisson=0.3, tolerance=1e-2)
     assert result.model == "polar" and result.cells > 0
     # nu changes the tractions, but not what Mindlin's theory makes of them by much
@@ -114,7 +116,7 @@ def test_the_steady_bore_is_eqs_21_and_22_which_the_resolved_contact_confirms(ve
 
 
 def test_pure_rotation_needs_no_run():
-    assert closed_form(CONTINUOUS_BORE, 0.0, None, 0.3, 1e-6)[:2] == (0.0, 1.0)
+    assert closed_form(Problem(CONTINUOUS_BORE, 0.0, None, 0.3), 1e-6)[:2] == (0.0, 1.0)
     result = microslip.solve("continuous-bore", 0.0, model="polar", tolerance=1e-2)
     assert result.model == "polar" and result.cells > 0
     assert result.mu_macro == pytest.approx(0.0, abs=1e-2)
@@ -133,9 +135,10 @@ def fast(scene, amplitude, tolerance):
 def test_fast_sliding_needs_no_run_and_not_before(scene, tolerance):
     for amplitude, poisson in ((1e-6, 0.0), (0.4, 0.3), (1e3, 0.5)):
         velocity = fast(scene, amplitude, tolerance)
-        assert closed_form(scene, velocity * (1 - 1e-6), amplitude, poisson, tolerance) is None
-        known = closed_form(scene, velocity * (1 + 1e-5), amplitude, poisson, tolerance)
-        mu, torque, error = known
+        slower = Problem(scene, velocity * (1 - 1e-6), amplitude, poisson)
+        assert closed_form(slower, tolerance) is None
+        faster = Problem(scene, velocity * (1 + 1e-5), amplitude, poisson)
+        mu, torque, error = closed_form(faster, tolerance)
         assert torque is None and error == pytest.approx(tolerance, rel=1e-4)
         assert error <= tolerance
         # the middle of the bracket whose upper end is full friction
@@ -196,7 +199,8 @@ def planned(point, **imposed):
     except ValueError:
         return None
     amplitude = amplitude if scene.periodic else None
-    coarsest, axes = plan(scene, name, velocity, amplitude, poisson, tolerance, **imposed)
+    problem = Problem(scene, velocity, amplitude, poisson)
+    coarsest, axes = plan(problem, name, tolerance, **imposed)
     assert len({axis.name for axis in axes}) == len(axes)
     return coarsest, {axis.name: axis for axis in axes}
 
@@ -265,8 +269,9 @@ def test_imposed_resolutions_are_run_beside_coarser_ones(point, cells, steps):
 
 def test_imposed_resolution_is_that_of_one_run():
     result = microslip.solve("transverse", 0.01, 0.6, cells=8, steps=24, tolerance=1e-3)
-    finer = simulate(TRANSVERSE, 0.01, 0.6, 0.0, "radial", Resolution(64, 1, 96), 1e-6)
-    run = simulate(TRANSVERSE, 0.01, 0.6, 0.0, "radial", Resolution(8, 1, 12), 1e-6)
+    problem = Problem(TRANSVERSE, 0.01, 0.6, 0.0)
+    finer = simulate(problem, "radial", Resolution(64, 1, 96), 1e-6)
+    run = simulate(problem, "radial", Resolution(8, 1, 12), 1e-6)
     assert (result.cells, result.steps_per_period) == (8, 24)
     assert result.mu_macro == pytest.approx(run.mu, abs=1.5e-4)
     assert abs(finer.mu - run.mu) > 5e-4  # which is not what the tolerance would have chosen

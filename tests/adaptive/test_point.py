@@ -10,7 +10,7 @@ from stubs.point_contract import CONTRACT
 
 import microslip
 from microslip.motions.registry import SCENES, scene_named
-from microslip.solver.problem import Resolution
+from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
 from microslip.theory import paper
 
@@ -25,7 +25,8 @@ def reference(scene, velocity, amplitude, nu):
     cells, angles, steps = (24, 1, 128) if model == "radial" else (16, 8, 32)
 
     def mean(*resolution):
-        run = simulate(kind, velocity, amplitude, nu, model, Resolution(*resolution), 3e-6)
+        problem = Problem(kind, velocity, amplitude, nu)
+        run = simulate(problem, model, Resolution(*resolution), 3e-6)
         assert run.converged
         return run.mu
 
@@ -83,8 +84,8 @@ def test_certificate_sees_rings_and_angles_together():
 
 @pytest.mark.parametrize(("velocity", "amplitude"), [(0.3, 0.8), (0.05, 2.0), (2.0, 4.0)])
 def test_tighter_tolerances_come_closer(velocity, amplitude):
-    scene, fine = SCENES["transverse"], Resolution(48, 1, 384)
-    expected = simulate(scene, velocity, amplitude, 0.0, "radial", fine, 1e-6).mu
+    problem = Problem(SCENES["transverse"], velocity, amplitude, 0.0)
+    expected = simulate(problem, "radial", Resolution(48, 1, 384), 1e-6).mu
     for tolerance in (1e-2, 1e-3, 2e-4):
         result = microslip.solve("transverse", velocity, amplitude, tolerance=tolerance)
         assert result.converged and result.mu_macro_error <= tolerance
@@ -269,10 +270,10 @@ def test_imposed_resolution_is_what_runs(scene, model, nu, cells, steps):
     )
     assert result.periodic and (result.cells, result.steps_per_period) == (cells, steps)
     if model != "polar":  # whose angles are still chosen, and corrected for
-        kind, share = SCENES[scene], 1e-5
+        problem, share = Problem(SCENES[scene], 0.3, 1.2, nu), 1e-5
 
         def mean(c, s):
-            return simulate(kind, 0.3, 1.2, nu, model, Resolution(c, 1, s), share).mu
+            return simulate(problem, model, Resolution(c, 1, s), share).mu
 
         fine = mean(cells, steps // 2)
         coarser = [round(part * cells) for part in (0.5, 0.75)]
@@ -442,16 +443,17 @@ def test_periods_are_full_ones_whatever_a_lap_is(monkeypatch):
     from microslip.solver import period_map
 
     laps = []
-    march = period_map.Cycle.__call__
+    march = period_map.PeriodMap.__call__
 
     def counted(self, *arguments, **settings):
         laps.append(self.path.phase[-1] - self.path.phase[0])
         return march(self, *arguments, **settings)
 
-    monkeypatch.setattr(period_map.Cycle, "__call__", counted)
+    monkeypatch.setattr(period_map.PeriodMap, "__call__", counted)
     for scene, lap in (("transverse", np.pi), ("elliptic:forward=0.5,phase=30", 2 * np.pi)):
         laps.clear()
-        run = simulate(scene_named(scene), 0.3, 1.0, 0.0, "radial", Resolution(8, 1, 16), 1e-5)
+        problem = Problem(scene_named(scene), 0.3, 1.0, 0.0)
+        run = simulate(problem, "radial", Resolution(8, 1, 16), 1e-5)
         assert laps and np.allclose(laps, lap)
         assert run.periods == pytest.approx(sum(laps) / (2 * np.pi))
     half = microslip.solve("transverse", 0.3, 1.0)
@@ -486,7 +488,7 @@ def test_an_extrapolated_run_scales_its_tolerance_once(monkeypatch):
 
     monkeypatch.setattr(module, "_run", noted)
     method = replace(SHIPPED, extrapolated=True)
-    scene = scene_named("normal")
-    simulate(scene, 0.3, 0.9, 0.0, "radial", Resolution(8, 1, 16), 1e-4, None, method)
+    problem = Problem(scene_named("normal"), 0.3, 0.9, 0.0)
+    simulate(problem, "radial", Resolution(8, 1, 16), 1e-4, settings=module.Settings(method))
     assert [steps for steps, _ in seen] == [16, 8]
     assert [tolerance for _, tolerance in seen] == pytest.approx([1e-4, 1e-4])

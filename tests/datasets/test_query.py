@@ -357,8 +357,9 @@ def test_no_error_is_larger_than_the_energy_balance_allows():
 
 
 def test_a_bracket_is_never_left():
+    edge = beyond.Edge(np.array([0.999]), np.array([1e-4]))
     value, error = beyond.faster(
-        beyond.LIMITS["bore"], *(np.array([x]) for x in (0.999, 1e-4, 50.0, 1.0)), 10.0
+        beyond.LIMITS["bore"], edge, np.array([50.0]), np.array([1.0]), 10.0
     )
     assert 1 - 0.2 / 49**2 <= value[0] <= 1.0
     assert value[0] + error[0] >= 1.0

@@ -12,8 +12,9 @@ from scipy.integrate import quad
 from microslip.models.contact import forces
 from microslip.models.polar.contact import PolarContact
 from microslip.models.rings.contact import RadialContact
-from microslip.models.rings.influence import coupling_kernels, ring_influence, toroidal_kernels
+from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import make_rings
+from microslip.models.rings.mode_kernels import coupling_kernels, toroidal_kernels
 from microslip.models.squares.contact import CartesianContact
 from microslip.theory import hertz
 

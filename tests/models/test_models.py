@@ -20,9 +20,9 @@ from microslip.models.rings.contact import RadialContact
 from microslip.models.squares.contact import CartesianContact
 from microslip.motions.bore import SCENE as BORE
 from microslip.motions.transverse import SCENE as TRANSVERSE
-from microslip.solver.period_map import Cycle
+from microslip.solver.period_map import PeriodMap
 from microslip.solver.periodic import find_periodic_state
-from microslip.solver.problem import Resolution
+from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
 from microslip.theory import hertz, paper
 
@@ -169,7 +169,8 @@ def test_slider_has_the_static_friction_of_eq_7(amplitude):
     """... and approaches it in proportion to the velocity."""
     excess = []
     for velocity in (1e-4, 1e-5):
-        run = simulate(TRANSVERSE, velocity, amplitude, 0.0, "slider", Resolution(1, 1, 192), 1e-7)
+        problem = Problem(TRANSVERSE, velocity, amplitude, 0.0)
+        run = simulate(problem, "slider", Resolution(1, 1, 192), 1e-7)
         assert run.converged
         excess.append(run.mu - paper.static_slider(amplitude))
     assert abs(excess[1]) < 2e-4
@@ -193,11 +194,8 @@ def test_slider_is_the_closed_return_mapping():
 def test_rigid_translation_is_eq_6(velocity, amplitude):
     expected = paper.large_amplitude_transverse(velocity, amplitude)
     steps = [32, 64, 128]
-    errors = [
-        simulate(TRANSVERSE, velocity, amplitude, 0.0, "rigid", Resolution(1, 1, n), 1e-6).mu
-        - expected
-        for n in steps
-    ]
+    problem = Problem(TRANSVERSE, velocity, amplitude, 0.0)
+    errors = [simulate(problem, "rigid", Resolution(1, 1, n), 1e-6).mu - expected for n in steps]
     assert abs(errors[-1]) < 2e-4
     assert fitted_order(steps, errors) == pytest.approx(2.0, abs=0.2)
 
@@ -206,7 +204,7 @@ def test_rigid_translation_is_eq_6(velocity, amplitude):
 def test_rigid_rotation_is_eq_29(velocity):
     resolution = Resolution(32, 32, 128)
     for amplitude in (0.3, 4.0):  # which does not matter
-        run = simulate(BORE, velocity, amplitude, 0.3, "rigid", resolution, 1e-6)
+        run = simulate(Problem(BORE, velocity, amplitude, 0.3), "rigid", resolution, 1e-6)
         assert run.mu == pytest.approx(paper.large_amplitude_bore(velocity), abs=5e-4)
 
 
@@ -239,7 +237,8 @@ def test_cartesian_converges_to_polar(scene, velocity, amplitude, nu):
     """At equal steps, so that only the discretisation in space differs."""
 
     def mean(model, *resolution):
-        run = simulate(scene, velocity, amplitude, nu, model, Resolution(*resolution), 1e-4)
+        problem = Problem(scene, velocity, amplitude, nu)
+        run = simulate(problem, model, Resolution(*resolution), 1e-4)
         assert run.converged
         return run.mu
 
@@ -483,7 +482,7 @@ def test_order_of_the_integrators_in_the_periodic_mean(name):
 
     def mean(steps, integrator):
         path = half_period(scene, velocity, amplitude, 0.3, steps, integrator)
-        found = find_periodic_state(Cycle(contact, path), forward_slip(contact), 1e-7, 1e-9)
+        found = find_periodic_state(PeriodMap(contact, path), forward_slip(contact), 1e-7, 1e-9)
         assert found.converged
         return path.mean(found.forces)[0]
 

@@ -7,9 +7,10 @@ from scipy.integrate import dblquad
 from microslip.models.contact import forward_slip
 from microslip.models.coulomb import coulomb_residual, project
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
-from microslip.models.squares import contact as cartesian
-from microslip.models.squares.contact import CartesianContact, solve_step
+from microslip.models.squares import march as square_march
+from microslip.models.squares.contact import CartesianContact
 from microslip.models.squares.convolution import convolve, influence, square_convolution, workspace
+from microslip.models.squares.march import solve_step
 from microslip.motions.bore import SCENE as BORE
 from microslip.motions.transverse import SCENE as TRANSVERSE
 
@@ -111,18 +112,8 @@ def plain_gradient(contact, nu, b):
 def solved(contact, b, start, tolerance, solver=solve_step):
     """(tractions, slip, residual, iterations) of one step."""
     q, slip = start.copy(), np.empty_like(start)
-    iterations, residual, _ = solver(
-        contact.operator,
-        workspace(contact.operator),
-        (contact.scale, contact.largest),
-        contact.bound,
-        contact.size**2,
-        b,
-        q,
-        slip,
-        1.0 / contact.scale,
-        tolerance,
-    )
+    first = 1.0 / contact.scale
+    iterations, residual, _ = solver(contact.squares(), b, q, slip, first, tolerance)
     return q, slip, residual, iterations
 
 
@@ -167,7 +158,7 @@ def test_short_steps_converge_where_the_long_ones_have_failed(monkeypatch, rng):
     contact = CartesianContact(6, 0.4)
     b = rng.normal(size=(2, 6, 6))
     expected, _, _, few = solved(contact, b, np.zeros_like(b), 1e-11)
-    monkeypatch.setattr(cartesian, "PATIENCE", -1)
+    monkeypatch.setattr(square_march, "PATIENCE", -1)
     q, _, residual, many = solved(contact, b, np.zeros_like(b), 1e-11, solve_step.py_func)
     assert residual <= 1e-11 and many > few
     assert q == pytest.approx(expected, abs=1e-9)
@@ -177,7 +168,7 @@ def test_the_worst_that_can_be_asked_ends(rng):
     contact = CartesianContact(4)
     b = rng.normal(size=(2, 4, 4))
     _, _, residual, iterations = solved(contact, b, np.zeros_like(b), 0.0)
-    assert iterations <= cartesian.MAX_ITERATIONS and residual < 1e-14
+    assert iterations <= square_march.MAX_ITERATIONS and residual < 1e-14
 
 
 # Marches
@@ -229,7 +220,7 @@ def test_marches_too_long_to_remember_do_without(monkeypatch):
     contact, path = CartesianContact(6), path_of(BORE, 8)
     kept = contact.march(path, forward_slip(contact), 1e-9)
     assert kept.stages.shape == (8, 2, 2, 6, 6)
-    monkeypatch.setattr(cartesian, "MAX_REMEMBERED", 100)
+    monkeypatch.setattr("microslip.models.squares.contact.MAX_REMEMBERED", 100)
     march = contact.march(path, forward_slip(contact), 1e-9)
     assert march.stages is None
     assert np.array_equal(march.forces, kept.forces)

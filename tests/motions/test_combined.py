@@ -5,7 +5,7 @@ import pytest
 
 import microslip
 from microslip.motions.registry import scene_named
-from microslip.solver.problem import Motion
+from microslip.solver.problem import Problem
 from microslip.theory import hertz
 
 
@@ -46,7 +46,7 @@ def test_turning_the_phase_by_half_a_period_is_looking_in_a_mirror():
 
 
 def test_the_motion_is_its_own_mirror_image_half_a_period_later():
-    motion = Motion(scene_named("transverse-bore:phase=40"), 0.3, 0.7, 0.2)
+    motion = Problem(scene_named("transverse-bore:phase=40"), 0.3, 0.7, 0.2)
     phase = np.linspace(-3.0, 3.0, 41)
     now, later = motion.displacement(phase), motion.displacement(phase + np.pi)
     for one, other, sign, way in zip(now, later, (1, -1, -1), (0.3 * np.pi, 0, 0), strict=True):

@@ -15,7 +15,7 @@ from microslip.models.registry import MODELS
 from microslip.models.rings.contact import RadialContact
 from microslip.motions.registry import scene_named
 from microslip.pressures.registry import HERTZ
-from microslip.solver.problem import Motion, Resolution, build_contact
+from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.simulate import simulate
 from microslip.theory import oscillating_load
 
@@ -62,8 +62,8 @@ def marched_springs(scene, velocity, amplitude, count, periods=8):
 
 
 def run(scene, velocity, amplitude, model="radial", cells=32, steps=128):
-    resolution = Resolution(cells, 1, steps)
-    return simulate(scene_named(scene), velocity, amplitude, 0.0, model, resolution, 1e-7)
+    problem = Problem(scene_named(scene), velocity, amplitude, 0.0)
+    return simulate(problem, model, Resolution(cells, 1, steps), 1e-7)
 
 
 @pytest.mark.parametrize("place", ALONE, ids=str)
@@ -148,7 +148,7 @@ def test_a_contact_that_grows_keeps_load_and_stiffness(contact):
 def test_contact_that_is_lost_forgets():
     """After a moment without contact it does not matter how a march began."""
     scene = scene_named("normal:lateral=0.7,phase=40")
-    motion = Motion(scene, 0.2, 1.3, 0.0)
+    motion = Problem(scene, 0.2, 1.3, 0.0)
     contact = build_contact(motion, "radial", Resolution(16, 1, 32))
     path = make_path(motion.displacement, np.linspace(0.0, 2 * np.pi, 129), depth=motion.depth)
     bound = contact.bounds(motion.depth(np.zeros(1)))[0]
@@ -164,7 +164,7 @@ def test_contact_that_is_lost_forgets():
 @pytest.mark.parametrize("velocity", [0.001, 0.5])
 @pytest.mark.parametrize("scene", ["normal:lateral=1", "normal:indentation=1,forward=0.6,phase=45"])
 def test_every_stage_keeps_within_the_bound_of_its_time(scene, velocity):
-    motion = Motion(scene_named(scene), velocity, 0.9, 0.0)
+    motion = Problem(scene_named(scene), velocity, 0.9, 0.0)
     contact = build_contact(motion, "radial", Resolution(12, 1, 24))
     path = motion.path(contact, 24)
     march = contact.march(path, np.zeros((2, 1, 12)), 1e-9)
@@ -177,7 +177,7 @@ def test_every_stage_keeps_within_the_bound_of_its_time(scene, velocity):
     "scene", ["normal", "normal:indentation=1,lateral=1", "normal:forward=0.5"]
 )
 def test_sensitivity_is_that_of_finite_differences(scene):
-    motion = Motion(scene_named(scene), 0.05, 0.5, 0.0)
+    motion = Problem(scene_named(scene), 0.05, 0.5, 0.0)
     contact = build_contact(motion, "radial", Resolution(9, 1, 12))
     path = motion.path(contact, 12)
     state = np.stack([0.6 * contact.bound, 0.1 * contact.bound])[:, None]
@@ -195,7 +195,7 @@ def test_sensitivity_is_that_of_finite_differences(scene):
 def test_work_is_dissipated(place):
     """The motion's work is what is stored, what friction takes and what Euler steps lose."""
     scene, velocity, amplitude = place
-    motion = Motion(scene_named(scene), velocity, amplitude, 0.0)
+    motion = Problem(scene_named(scene), velocity, amplitude, 0.0)
     resolution = Resolution(16, 1, 256)
     contact, found = build_contact(motion, "radial", resolution), run(*place, "radial", 16, 256)
     phase = motion.path(contact, 256).phase
@@ -271,7 +271,7 @@ def test_half_a_period_suffices_where_it_is_mirrored():
     scene = scene_named("normal:lateral=1,normal_cycles=2")
     assert scene.half_period_mirror
     assert not scene_named("normal:lateral=1").half_period_mirror
-    motion = Motion(scene, 0.1, 0.8, 0.0)
+    motion = Problem(scene, 0.1, 0.8, 0.0)
     contact = build_contact(motion, "radial", Resolution(16, 1, 64))
     phase = np.linspace(-0.25, 1.75, 513) * np.pi
     path = make_path(motion.displacement, phase, depth=motion.depth)

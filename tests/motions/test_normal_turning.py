@@ -7,7 +7,7 @@ import microslip
 from microslip.models.path import make_path
 from microslip.motions.registry import scene_named
 from microslip.pressures.registry import HERTZ
-from microslip.solver.problem import Motion, Resolution, build_contact
+from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.simulate import simulate
 from microslip.theory import hertz, paper
 
@@ -15,8 +15,8 @@ TURNING = "normal:angle=1"
 
 
 def run(scene, velocity, amplitude, model="polar", poisson=0.0, resolution=(24, 8, 96)):
-    where = (scene_named(scene), velocity, amplitude, poisson, model)
-    return simulate(*where, Resolution(*resolution), 1e-6)
+    problem = Problem(scene_named(scene), velocity, amplitude, poisson)
+    return simulate(problem, model, Resolution(*resolution), 1e-6)
 
 
 def within(found, other, slack=0.0):
@@ -79,7 +79,7 @@ def test_half_a_period_suffices_where_it_is_mirrored():
     scene = scene_named("normal:angle=1,normal_cycles=2")
     assert scene.half_period_mirror and scene.half_disc
     assert not scene_named(TURNING).half_period_mirror
-    motion = Motion(scene, 0.1, 0.8, 0.2)
+    motion = Problem(scene, 0.1, 0.8, 0.2)
     contact = build_contact(motion, "polar", Resolution(12, 8, 64))
     path = make_path(motion.displacement, np.linspace(-0.25, 1.75, 257) * np.pi, depth=motion.depth)
     state = np.zeros((2, 8, 12))

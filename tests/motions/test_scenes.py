@@ -12,7 +12,7 @@ from microslip.motions import registry
 from microslip.motions.registry import SCENES
 from microslip.motions.transverse import SCENE as TRANSVERSE
 from microslip.motions.zigzag import SCENE as ZIGZAG
-from microslip.solver.problem import Motion, Resolution
+from microslip.solver.problem import Problem, Resolution
 from microslip.solver.static_run import simulate_static
 from microslip.theory import paper
 
@@ -24,7 +24,7 @@ PHASE = np.linspace(-3.0, 3.0, 101)
 @pytest.mark.parametrize("scene", MIRRORED, ids=lambda scene: scene.name)
 def test_half_a_period_later_a_motion_is_its_own_mirror_image(scene):
     """... moved on forward: the search for the periodic state stands on it."""
-    motion = Motion(scene, 0.3, 0.7, 0.2)
+    motion = Problem(scene, 0.3, 0.7, 0.2)
     now, later = motion.displacement(PHASE), motion.displacement(PHASE + np.pi)
     moved = np.pi * motion.creep
     for one, other, sign, way in zip(now, later, (1, -1, -1), (moved, 0.0, 0.0), strict=True):
@@ -72,7 +72,7 @@ def test_the_static_limit_knows_the_turning_points_alone():
     """So it is that of the sine, for which it is known in closed form."""
     resolution = Resolution(64, 1, 0)
     one, other = (
-        simulate_static(scene, 0.5, 0.0, "radial", resolution, 1e-8).mu
+        simulate_static(Problem(scene, 0.0, 0.5, 0.0), "radial", resolution, 1e-8).mu
         for scene in (ZIGZAG, TRANSVERSE)
     )
     assert one == pytest.approx(other, abs=1e-9)

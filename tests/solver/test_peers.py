@@ -20,7 +20,7 @@ from microslip.motions.registry import SCENES
 from microslip.motions.transverse import SCENE as TRANSVERSE
 from microslip.solver import method_names
 from microslip.solver.methods import aspher
-from microslip.solver.problem import Motion, Resolution
+from microslip.solver.problem import Problem, Resolution
 from microslip.studies import ladders
 from microslip.studies.accuracy import accuracy_cost
 
@@ -137,7 +137,7 @@ def marched(monkeypatch, tolerance, velocity=0.5, amplitude=1.0, steps=16, **set
         return used[-1]
 
     monkeypatch.setattr(aspher, "Solver", build)
-    motion = Motion(TRANSVERSE, velocity, amplitude, 0.0)
+    motion = Problem(TRANSVERSE, velocity, amplitude, 0.0)
     resolution = Resolution(8, 1, steps)
     return aspher.METHOD.run(motion, "cartesian", resolution, tolerance), used[0], motion
 

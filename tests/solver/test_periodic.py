@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import microslip.solver.simulate
 from microslip.models.contact import energy_norm, forward_slip
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.registry import MODELS
@@ -13,9 +12,9 @@ from microslip.models.rings.contact import RadialContact
 from microslip.motions.bore import SCENE as BORE
 from microslip.motions.transverse import SCENE as TRANSVERSE
 from microslip.solver.newton import Corrector
-from microslip.solver.period_map import Cycle
+from microslip.solver.period_map import PeriodMap
 from microslip.solver.periodic import find_periodic_state
-from microslip.solver.problem import Motion, Resolution, build_contact
+from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.simulate import simulate
 from microslip.theory import paper
 
@@ -95,9 +94,9 @@ def test_found_state_is_that_of_the_plain_march(name, velocity, amplitude):
     """... from another start: the stress-free contact."""
     model, scene, nu, cells, angles = CASES[name]
     resolution = Resolution(cells, angles, STEPS)
-    run = simulate(scene, velocity, amplitude, nu, model, resolution, TOLERANCE)
+    motion = Problem(scene, velocity, amplitude, nu)
+    run = simulate(motion, model, resolution, TOLERANCE)
     assert run.converged and run.distance <= TOLERANCE
-    motion = Motion(scene, velocity, amplitude, nu)
     contact = build_contact(motion, model, resolution)
     path = motion.path(contact, STEPS)
     stands_still = 1e-7 if model == "cartesian" else 1e-9  # its steps are solved no further
@@ -112,7 +111,7 @@ def test_second_half_of_the_period_mirrors_the_first(name, integrator):
     """A march over the whole period from the found state, which knows nothing of the symmetry."""
     scene, point = CASES[name][1], POINTS[name][1]
     contact, path = contact_of(name, *point), path_of(name, *point, integrator)
-    cycle = Cycle(contact, path)
+    cycle = PeriodMap(contact, path)
     found = find_periodic_state(cycle, forward_slip(contact), TOLERANCE, STEP_TOLERANCE)
     assert found.converged
     whole = path_of(name, *point, integrator, whole=True)
@@ -130,13 +129,13 @@ def test_second_half_of_the_period_mirrors_the_first(name, integrator):
 def test_verdict_is_that_of_the_plain_map(name):
     contact, path = contact_of(name, *POINTS[name][1]), path_of(name, *POINTS[name][1])
     start = forward_slip(contact)
-    enough = find_periodic_state(Cycle(contact, path), start, TOLERANCE, STEP_TOLERANCE)
+    enough = find_periodic_state(PeriodMap(contact, path), start, TOLERANCE, STEP_TOLERANCE)
     assert enough.converged and enough.residual <= enough.distance <= TOLERANCE
     few = find_periodic_state(
-        Cycle(contact, path), start, TOLERANCE, STEP_TOLERANCE, most_laps=enough.laps - 1
+        PeriodMap(contact, path), start, TOLERANCE, STEP_TOLERANCE, most_marches=enough.marches - 1
     )
     assert not few.converged
-    assert few.laps < enough.laps
+    assert few.marches < enough.marches
     assert few.distance > TOLERANCE or few.solver_residual > enough.solver_residual
     for found in (enough, few):
         # whatever the search did, what it hands back is one march of the plain map
@@ -148,9 +147,10 @@ def test_verdict_is_that_of_the_plain_map(name):
 
 
 def test_run_reports_what_was_not_reached(monkeypatch):
-    monkeypatch.setattr(microslip.simulate, "MOST_LAPS", 2)
+    monkeypatch.setattr("microslip.solver.simulate.MOST_MARCHES", 2)
     for scene, model, angles in ((BORE, "polar", 4), (TRANSVERSE, "radial", 1)):
-        run = simulate(scene, 0.1, 1.0, 0.0, model, Resolution(6, angles, 8), TOLERANCE)
+        problem = Problem(scene, 0.1, 1.0, 0.0)
+        run = simulate(problem, model, Resolution(6, angles, 8), TOLERANCE)
         assert not run.converged
         assert "no periodic state" in run.reason and run.distance > TOLERANCE
 
@@ -160,8 +160,8 @@ def test_rings_converge_down_to_very_small_velocities(amplitude):
     """Towards the static limit, from above, and a state that the plain map leaves alone."""
     means = []
     for velocity in (1e-3, 1e-4, 1e-5):
-        resolution = Resolution(24, 1, 24)
-        run = simulate(TRANSVERSE, velocity, amplitude, 0.0, "radial", resolution, TOLERANCE)
+        problem = Problem(TRANSVERSE, velocity, amplitude, 0.0)
+        run = simulate(problem, "radial", Resolution(24, 1, 24), TOLERANCE)
         assert run.converged and run.periods < 20
         means.append(run.mu)
     assert means[0] > means[1] > means[2]
@@ -171,9 +171,9 @@ def test_rings_converge_down_to_very_small_velocities(amplitude):
 @pytest.mark.parametrize(("velocity", "amplitude"), [(1e-3, 0.05), (3e-4, 0.5)])
 def test_slow_motions_of_small_amplitude_are_not_taken_for_periodic_too_early(velocity, amplitude):
     """A state changes so little in a slow period that a small residual alone proves nothing."""
+    problem = Problem(BORE, velocity, amplitude, 0.0)
     runs = [
-        simulate(BORE, velocity, amplitude, 0.0, "polar", Resolution(6, 4, 12), tolerance)
-        for tolerance in (3e-5, 3e-7)
+        simulate(problem, "polar", Resolution(6, 4, 12), tolerance) for tolerance in (3e-5, 3e-7)
     ]
     assert all(run.converged for run in runs)
     assert runs[0].mu == pytest.approx(runs[1].mu, abs=1e-4)
@@ -196,9 +196,9 @@ def test_slow_motions_of_small_amplitude_are_not_taken_for_periodic_too_early(ve
     ],
 )
 def test_rings_converge_at_the_ends_of_the_parameters(velocity, amplitude, rings, steps):
-    resolution = Resolution(rings, 1, steps)
+    problem = Problem(TRANSVERSE, velocity, amplitude, 0.0)
     runs = [
-        simulate(TRANSVERSE, velocity, amplitude, 0.0, "radial", resolution, tolerance)
+        simulate(problem, "radial", Resolution(rings, 1, steps), tolerance)
         for tolerance in (1e-4, 1e-7)
     ]
     assert all(run.converged and run.periods < 40 for run in runs)
@@ -206,8 +206,8 @@ def test_rings_converge_at_the_ends_of_the_parameters(velocity, amplitude, rings
 
 
 def radial_run(velocity, amplitude, rings, steps, tolerance=1e-6, guess=None):
-    resolution = Resolution(rings, 1, steps)
-    return simulate(TRANSVERSE, velocity, amplitude, 0.0, "radial", resolution, tolerance, guess)
+    problem = Problem(TRANSVERSE, velocity, amplitude, 0.0)
+    return simulate(problem, "radial", Resolution(rings, 1, steps), tolerance, guess)
 
 
 def test_run_in_other_steps_spares_derivatives_and_marches(marches):
@@ -252,7 +252,7 @@ def test_equal_runs_give_equal_bits():
 def test_broyden_update_maps_the_change_it_has_seen():
     contact = contact_of("radial", 0.1, 1.0)
     path, start = path_of("radial", 0.1, 1.0), forward_slip(contact)
-    cycle = Cycle(contact, path)
+    cycle = PeriodMap(contact, path)
     first = cycle(start, 1e-10, sensitivity=True)
     corrector = Corrector(cycle, start)
     corrector.learn(first, None)
@@ -263,5 +263,6 @@ def test_broyden_update_maps_the_change_it_has_seen():
 
 
 def test_vibration_much_slower_than_the_sliding_leaves_the_friction_as_it_is():
-    run = simulate(TRANSVERSE, 50.0, 0.5, 0.0, "radial", Resolution(6, 1, 12), 1e-6)
+    problem = Problem(TRANSVERSE, 50.0, 0.5, 0.0)
+    run = simulate(problem, "radial", Resolution(6, 1, 12), 1e-6)
     assert run.converged and run.mu == pytest.approx(1.0, abs=1e-4) and run.mu <= 1.0

@@ -6,7 +6,7 @@ from scipy.integrate import quad
 
 import microslip
 from microslip.motions.registry import scene_named
-from microslip.solver.problem import Resolution
+from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
 from microslip.solver.static_loop import largest_shift
 from microslip.solver.static_run import simulate_static
@@ -56,10 +56,10 @@ def test_a_loop_of_no_width_has_the_limit_of_its_line(amplitude):
 
 def test_on_a_line_the_whole_lap_says_what_the_turning_points_say():
     scene, resolution = scene_named("transverse"), Resolution(16, 1, 64)
-    line = simulate_static(scene, 0.5, 0.0, "radial", resolution, 1e-5).mu
+    line = simulate_static(Problem(scene, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
     loop = scene_named("elliptic:forward=0,phase=0,forward_cycles=2")  # not called a line
     assert not loop.straight
-    found = simulate_static(loop, 0.5, 0.0, "radial", resolution, 1e-5).mu
+    found = simulate_static(Problem(loop, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
     assert found == pytest.approx(line, abs=2e-3)
 
 
@@ -100,17 +100,17 @@ def test_other_models_find_the_same_limit():
     within(modes, rings.mu_macro, rings.mu_macro_error)
     # squares, too, and an elliptic contact, whose stick zones are ellipses of its own shape
     for pressure in ("hertz", "ellipse:ratio=0.7"):
-        scene, resolution = scene_named("elliptic", pressure), Resolution(32, 1, 24)
-        squares = simulate_static(scene, 0.5, 0.0, "cartesian", resolution, 1e-3)
+        problem = Problem(scene_named("elliptic", pressure), 0.0, 0.5, 0.0)
+        squares = simulate_static(problem, "cartesian", Resolution(32, 1, 24), 1e-3)
         assert squares.converged
         assert squares.mu == pytest.approx(rings.mu_macro, abs=8e-3)
 
 
 @pytest.mark.parametrize("scene", [NARROW, EIGHT, "elliptic", ACROSS, "normal:forward=1,phase=90"])
 def test_slow_marches_end_there(scene):
-    limit = microslip.solve(scene, 0.0, 0.5).mu_macro
+    limit, kind = microslip.solve(scene, 0.0, 0.5).mu_macro, scene_named(scene)
     slow = [
-        simulate(scene_named(scene), v, 0.5, 0.0, "radial", Resolution(64, 1, 256), 1e-5)
+        simulate(Problem(kind, v, 0.5, 0.0), "radial", Resolution(64, 1, 256), 1e-5)
         for v in (8e-3, 1e-3)
     ]
     assert slow[0].converged and slow[1].converged
@@ -121,7 +121,7 @@ def test_slow_marches_end_there(scene):
 
 @pytest.mark.parametrize("amplitude", [0.3, 0.8])
 def test_a_load_that_oscillates_leaves_its_least(amplitude):
-    """The closed form of the load alone, by the same problem over the whole lap; rings join and
+    """The closed form of the load alone, by the same problem over the whole period; rings join and
     leave the contact, and what oscillates beside the load tends to nothing."""
     exact = microslip.solve("normal", 0.0, amplitude).mu_macro
     assert exact == pytest.approx(1.0 - amplitude, abs=1e-12)
@@ -147,7 +147,7 @@ def test_poissons_ratio_and_squares_without_symmetry_are_in():
 
 
 def test_a_state_that_does_not_settle_is_no_number(monkeypatch):
-    monkeypatch.setattr("microslip.solver.static_run.LAPS", 1)
+    monkeypatch.setattr("microslip.solver.static_run.MARCHES", 1)
     monkeypatch.setattr("microslip.solver.static_run.MOST_ROUNDS", 1)
     found = microslip.solve(NARROW, 0.0, 0.5)
     assert not found.converged and "no periodic state" in found.reason

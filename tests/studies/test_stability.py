@@ -12,9 +12,9 @@ from microslip.motions.bore import SCENE as BORE
 from microslip.motions.transverse import SCENE as TRANSVERSE
 from microslip.solver.method_names import method_named
 from microslip.solver.methods import _searches
-from microslip.solver.period_map import Cycle
+from microslip.solver.period_map import PeriodMap
 from microslip.solver.periodic import find_periodic_state
-from microslip.solver.problem import Motion, Resolution, build_contact
+from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.static_limit import static_state
 from microslip.theory import hertz
 
@@ -66,7 +66,7 @@ def test_theta_method_rings_and_forgets():
 
 @pytest.mark.parametrize("model", ["radial", "polar", "cartesian"])
 def test_midpoint_tractions_leave_the_bound_and_shipped_ones_never_do(model):
-    motion = Motion(TRANSVERSE, 0.1, 1.0, 0.0)
+    motion = Problem(TRANSVERSE, 0.1, 1.0, 0.0)
     contact = build_contact(motion, model, Resolution(8, 4, 16))
     beyond = {}
     for name in ("midpoint", "shipped"):
@@ -81,7 +81,7 @@ def test_midpoint_tractions_leave_the_bound_and_shipped_ones_never_do(model):
 
 
 def iterations_a_step(method, cells):
-    motion = Motion(TRANSVERSE, 0.1, 0.5, 0.0)
+    motion = Problem(TRANSVERSE, 0.1, 0.5, 0.0)
     contact = method_named(method).dressed(
         build_contact(motion, "radial", Resolution(cells, 1, 16))
     )
@@ -117,7 +117,7 @@ def test_undamped_jacobi_never_gets_there():
 
 
 def test_switching_is_right_in_one_direction_and_lost_where_slip_turns():
-    motion = Motion(TRANSVERSE, 0.1, 0.5, 0.0)
+    motion = Problem(TRANSVERSE, 0.1, 0.5, 0.0)
     rings = build_contact(motion, "radial", Resolution(32, 1, 16))
     contact = method_named("switching").dressed(rings)
     march = contact.march(straight(0.8, 16), np.zeros((2, 1, 32)), 1e-10)
@@ -161,11 +161,11 @@ SHARES = (0.0, 0.5, 1.0)
 def periodic_force(velocity, share, search):
     """Mean forward force of the periodic state found from the oscillation's own tractions plus a
     share of all the forward traction that they leave room for."""
-    motion = Motion(TRANSVERSE, velocity, 0.5, 0.0)
+    motion = Problem(TRANSVERSE, velocity, 0.5, 0.0)
     contact = RadialContact.resolved(16, TRANSVERSE.focus(velocity, 0.5, TRANSVERSE.pressure))
     path = motion.path(contact, 32)
     room, oscillating = static_state(contact, motion.oscillation, 1e-12)
-    found = search(Cycle(contact, path), oscillating + share * room, 1e-6, 1e-9, 200)
+    found = search(PeriodMap(contact, path), oscillating + share * room, 1e-6, 1e-9, 200)
     assert found.converged
     return path.mean(found.forces)[FORWARD]
 
@@ -210,7 +210,7 @@ def test_methods_agree_with_what_ships(method):
 @pytest.mark.parametrize("method", ["admm", "gauss-seidel", "spectral-gradient", "full-newton"])
 def test_step_solvers_find_the_one_solution_of_a_step(method):
     """Each step is a convex problem: whoever solves it finds the same tractions."""
-    motion = Motion(BORE, 0.2, 1.0, 0.3)
+    motion = Problem(BORE, 0.2, 1.0, 0.3)
     contact = build_contact(motion, "polar", Resolution(6, 4, 8))
     path = motion.path(contact, 8)
     start = forward_slip(contact)

@@ -25,15 +25,14 @@ with refused_in_one_line(ORIGIN):
         load.read_yaml(file)  # refuses a key that occurs twice
     # Jobs parse this again, and need not pay for asking the solver what it knows.
     places = {"source": ORIGIN, "folders": FOLDERS}
-    CONFIGURATION = load.from_mapping(
-        config, ask_solver=workflow.is_main_process, **places
-    )
+    CONFIGURATION = load.from_mapping(config, ask_solver=workflow.is_main_process, **places)
     # Captions name the defaults too, and jobs find the files that were found here.
     config = load.with_files_found(config, strict=workflow.is_main_process, **places)
     RESULTS = os.path.normpath(CONFIGURATION.results)
     # RESULTS with the prefix that a module may have; Snakemake adds it to the paths of rules itself.
     PLACE = str(workflow.modifier.modify_path(RESULTS))
 
+STORED_ELSEWHERE = workflow.storage_settings.default_storage_provider is not None
 PLAN = Plan(CONFIGURATION)
 COUNTER = f"{PLACE}/logs/points_done"
 STUDIES = PLAN.studies
@@ -42,6 +41,15 @@ EARLY = PLAN.early_groups
 FIGURES = PLAN.figures
 NAMES = PLAN.datasets
 PAGE = f"{RESULTS}/{plan.PAGE}"
+
+
+def kept(file):
+    """An output whose former state stays until the new one is whole.
+
+    In a bucket it does anyway, since what is new is uploaded when it is whole. Snakemake would look
+    for it on this machine.
+    """
+    return file if STORED_ELSEWHERE else update(file)
 
 
 def in_results(files):
@@ -130,7 +138,6 @@ def datasets_for(figure):
 
 # Rules that seal what they make.
 SEALING = ("collect", "collect_study", "draw_figure", "explorer")
-STORED_ELSEWHERE = workflow.storage_settings.default_storage_provider is not None
 GROUPS = {"batches", "figures", "logs", "warm_up", *batches.FOLDERS.values()}
 # Where another run may be writing, what looks damaged may be about to be whole.
 ASKING = workflow.is_main_process and not glob(".snakemake/locks/*")

@@ -7,9 +7,9 @@ rule collect:
         histories=lambda wildcards: histories_for(wildcards.sweep),
     output:
         # The old one stays until the new one is whole, whatever happens to the job.
-        update(f"{RESULTS}/{{sweep}}.nc"),
+        kept(f"{RESULTS}/{{sweep}}.nc"),
         summary=report(
-            update(f"{RESULTS}/summaries/{{sweep}}.html"),
+            kept(f"{RESULTS}/summaries/{{sweep}}.html"),
             caption="../report/dataset.rst",
             category="Datasets",
             labels={"dataset": "{sweep}.nc"},
@@ -34,9 +34,9 @@ rule collect_study:
         batches=lambda wildcards: batches_for(wildcards.dataset),
     output:
         # The old one stays until the new one is whole, whatever happens to the job.
-        update(f"{RESULTS}/{{dataset}}.nc"),
+        kept(f"{RESULTS}/{{dataset}}.nc"),
         summary=report(
-            update(f"{RESULTS}/summaries/{{dataset}}.html"),
+            kept(f"{RESULTS}/summaries/{{dataset}}.html"),
             caption="../report/dataset.rst",
             category="Datasets",
             labels={"dataset": "{dataset}.nc"},

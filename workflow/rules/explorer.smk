@@ -7,7 +7,7 @@ rule explorer:
         batches=lambda wildcards: whole_batches(*(f"{name}_periods" for name in EXPLORED)),
     output:
         report(
-            update(PAGE),
+            kept(PAGE),
             caption="../report/explorer.rst",
             category="Explorer",
             labels={"page": "explorer.html"},

@@ -6,7 +6,7 @@ rule draw_figure:
         lambda wildcards: datasets_for(wildcards.figure),
     output:
         report(
-            update(f"{RESULTS}/figures/{{figure}}.png"),
+            kept(f"{RESULTS}/figures/{{figure}}.png"),
             caption="../report/figure.rst",
             category=lambda wildcards: {
                 "claims": "The paper's claims",
@@ -15,7 +15,7 @@ rule draw_figure:
             }.get(FIGURES[wildcards.figure][0], "Methods"),
             labels={"figure": "{figure}"},
         ),
-        update(f"{RESULTS}/figures/{{figure}}.pdf"),
+        kept(f"{RESULTS}/figures/{{figure}}.pdf"),
     log:
         f"{RESULTS}/logs/draw_figure/{{figure}}.log",
     conda:

@@ -19,13 +19,27 @@ between the points of a grid shows in none of them in full."""
 class Axis:
     """One axis of refinement.
 
-    levels: resolutions, increasing; base: index of the one that the chains of other axes are run
-    at; first: indices of the runs to start with, as many as the error is estimated from, at least
-    three.
-    regular: the error falls smoothly, with the second power of the levels, so that it can be
-    extrapolated; imposed: the last level is what was asked for, and its error, the spread of the
-    last three again, is only reported; caution: errors of irregular axes over their spread; tied:
-    name and levels of what is refined together with it, where neither converges without the other.
+    Attributes
+    ----------
+    name : str
+        "cells", "angles" or "steps".
+    levels : tuple of int
+        Resolutions, increasing.
+    base : int
+        Index of the one that the chains of other axes are run at.
+    first : tuple of int
+        Indices of the runs to start with, as many as the error is estimated from, at least three.
+    regular : bool
+        The error falls smoothly, with the second power of the levels, so that it can be
+        extrapolated.
+    imposed : bool
+        The last level is what was asked for, and its error, the spread of the last three again, is
+        only reported.
+    caution : float
+        Errors of irregular axes over their spread.
+    tied : tuple or None
+        Name and levels of what is refined together with it, where neither converges without the
+        other.
     """
 
     name: str
@@ -52,7 +66,7 @@ class Runs:
         self.done = {}
 
     def resolution(self, **indices):
-        """The base with some indices replaced, as a motion.Resolution."""
+        """The base with some indices replaced, as a problem.Resolution."""
         at = self.base | indices
         levels = {name: self.axes[name].levels[index] for name, index in at.items()}
         tied = ((self.axes[name].tied, index) for name, index in at.items())
@@ -138,12 +152,12 @@ def _extrapolation(values, levels):
     return (values[-1] - values[-2]) / ((levels[-1] / levels[-2]) ** 2 - 1.0)
 
 
-def refines_cells(chains):
+def refines_cells(chains: dict[str, Chain]) -> str | None:
     """Name of the axis that refines the cells, or None."""
     return next((name for name, chain in chains.items() if "cells" in chain.axis.refines), None)
 
 
-def mixed_difference(runs, chains, name):
+def mixed_difference(runs: Runs, chains: dict[str, Chain], name: str) -> float:
     """How far the corrections along cells and angles fail to add up: their mixed difference.
 
     It is taken next to the finest angles, since few of them may hide what cells are worth.

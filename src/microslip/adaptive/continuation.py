@@ -8,7 +8,10 @@ same point is easier, and from there on the velocity is lowered from state to st
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+
+from microslip.solver.run import Run
 
 FACTOR, SMALLEST_FACTOR = 4.0, 1.15
 """From one velocity to the next: where a search fails the factor is replaced by its root, until it
@@ -17,12 +20,22 @@ MOST_STEPS = 12
 """Times that the velocity is raised at most."""
 
 
-def run_safely(run_at, velocity, guess):
-    """The simulate.Run at a velocity; where it does not converge, one by safer steps.
+def run_safely(run_at: Callable, velocity: float, guess: Run | None) -> Run:
+    """The run at a velocity; where it does not converge, one by safer steps.
 
-    run_at(velocity, guess, careful) -> Run; guess: a Run to start near, or None; careful: solve the
-    steps tighter.  The Run counts the effort of all that was tried; ``retried`` is 1 if there was
-    more than one.
+    Parameters
+    ----------
+    run_at : callable
+        run_at(velocity, guess, careful) -> simulate.Run; careful: solve the steps tighter.
+    velocity : float
+        Dimensionless.
+    guess : simulate.Run or None
+        One to start near.
+
+    Returns
+    -------
+    simulate.Run
+        It counts the effort of all that was tried; `retried` is 1 if there was more than one.
     """
     first = run_at(velocity, guess, False)
     if first.converged:

@@ -13,7 +13,7 @@ from microslip.foundation.arguments import LARGEST, count, real
 from microslip.foundation.errors import InputError
 from microslip.models.contact import forward_slip, full_slip
 from microslip.models.path import make_path
-from microslip.solver.problem import Motion, Resolution, build_contact
+from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.steady import steady_state
 
 STARTS = ("stress-free", "full-slip", "full-rotation")
@@ -33,9 +33,16 @@ MOST_STEPS = 10 * LARGEST["steps"]
 class History:
     """Forces along a path, arrays of shape (steps + 1,), dimensionless.
 
-    phase: omega t (steady scenes: turned angle in u_lim / a); displacement_forward: travel in
-    u_lim; force_forward, force_lateral: over mu F_z, in the direction of the motion they resist;
-    torque: over its full-slip value.
+    Attributes
+    ----------
+    phase : np.ndarray
+        omega t (steady motions: turned angle in u_lim / a).
+    displacement_forward : np.ndarray
+        Travel in u_lim.
+    force_forward, force_lateral : np.ndarray
+        Over mu F_z, in the direction of the motion they resist.
+    torque : np.ndarray
+        Over its full-slip value.
     """
 
     phase: np.ndarray
@@ -46,25 +53,46 @@ class History:
 
 
 def history(
-    scene,
-    velocity,
-    amplitude=None,
+    scene: str,
+    velocity: float,
+    amplitude: float | None = None,
     *,
-    pressure="hertz",
-    poisson=0.0,
-    model="auto",
-    cells=None,
-    steps=None,
-    start="stress-free",
-    periods=3,
-    travel=5.0,
-):
-    """Forces from an initial state on: ``periods`` periods, or ``travel`` u_lim of a steady motion.
+    pressure: str = "hertz",
+    poisson: float = 0.0,
+    model: str = "auto",
+    cells: int | None = None,
+    steps: int | None = None,
+    start: str = "stress-free",
+    periods: int = 3,
+    travel: float = 5.0,
+) -> History:
+    """Forces from an initial state on: over periods, or over the travel of a steady motion.
 
-    scene, velocity, amplitude, pressure, poisson, model: as for ``microslip.solve``; cells: rings
-    or squares; steps: per period (steady scenes: over the whole travel); start: "stress-free" (full
-    stick), "full-slip" (forward slip everywhere) or "full-rotation" (rotational slip everywhere).
-    Returns a History.  Raises InputError naming the argument for bad input.
+    Parameters
+    ----------
+    scene, velocity, amplitude, pressure, poisson, model
+        As for `microslip.solve`; velocity above 0.
+    cells : int or None
+        Rings or squares.
+    steps : int or None
+        Per period (steady motions: over the whole travel).
+    start : str
+        "stress-free" (full stick), "full-slip" (forward slip everywhere) or "full-rotation"
+        (rotational slip everywhere).
+    periods : int
+        Of an oscillation.
+    travel : float
+        Of a steady motion, in u_lim.
+
+    Returns
+    -------
+    History
+        From the start on.
+
+    Raises
+    ------
+    InputError
+        For bad input; it names the argument.
     """
     kind, velocity, amplitude, poisson = checked_point(
         scene, velocity, amplitude, poisson, pressure
@@ -86,11 +114,11 @@ def history(
     if not kind.periodic and travel / velocity > LONGEST_PHASE:
         allowed = f"allowed is at least {LONGEST_PHASE:g} times less than the travel, {travel:g}"
         raise InputError("velocity", velocity, allowed)
-    motion = Motion(kind, velocity, amplitude, poisson)
-    contact = _contact(motion, model, cells)
+    problem = Problem(kind, velocity, amplitude, poisson)
+    contact = _contact(problem, model, cells)
     end = 2 * np.pi * periods if kind.periodic else travel / velocity
     total = steps * (periods if kind.periodic else 1)
-    path = make_path(motion.displacement, np.linspace(0.0, end, total + 1), depth=motion.depth)
+    path = make_path(problem.displacement, np.linspace(0.0, end, total + 1), depth=problem.depth)
     march = contact.march(path, _start(contact, start), STEP_TOLERANCE)
     return History(
         phase=path.phase,
@@ -101,13 +129,35 @@ def history(
     )
 
 
-def traction_field(scene, velocity, amplitude=None, *, poisson=0.0, cells=None):
+def traction_field(
+    scene: str,
+    velocity: float,
+    amplitude: float | None = None,
+    *,
+    poisson: float = 0.0,
+    cells: int | None = None,
+) -> dict:
     """Steady tractions of the continuous bore on the whole disc, computed by the polar model.
 
-    Returns a dict of 1-D arrays over points (lateral_position, forward_position over a;
-    traction_lateral, traction_forward, bound over mu F_z / a^2; the tractions are those on the
-    indenter, which oppose its motion, as in Eq 15) and centre_lateral, where the instantaneous
-    centre of rotation lies (Eq 14).  Raises InputError for bad input or another scene.
+    Parameters
+    ----------
+    scene, velocity, amplitude, poisson
+        As for `microslip.solve`; scene: "continuous-bore".
+    cells : int or None
+        Rings.
+
+    Returns
+    -------
+    dict
+        Arrays over points: lateral_position, forward_position (over a); traction_lateral,
+        traction_forward, bound (over mu F_z / a^2), the tractions those on the indenter, which
+        oppose its motion, as in Eq 15.  And centre_lateral, where the instantaneous centre of
+        rotation lies (Eq 14).
+
+    Raises
+    ------
+    InputError
+        For bad input, or another motion.
     """
     kind, velocity, _, poisson = checked_point(scene, velocity, amplitude, poisson)
     if kind.periodic:
@@ -116,9 +166,9 @@ def traction_field(scene, velocity, amplitude=None, *, poisson=0.0, cells=None):
         raise InputError("velocity", velocity, "a traction field needs velocity > 0")
     if cells is not None:
         count("cells", cells, 2, most=LARGEST["cells"])
-    motion = Motion(kind, velocity, None, poisson)
-    contact = _contact(motion, "polar", cells)
-    found = steady_state(contact, motion.displacement, velocity, 1e-6, STEP_TOLERANCE)
+    problem = Problem(kind, velocity, None, poisson)
+    contact = _contact(problem, "polar", cells)
+    found = steady_state(contact, problem.displacement, velocity, 1e-6, STEP_TOLERANCE)
     (forward,), (lateral,) = whole_disc(contact, -found.state[None])
     forward_position, lateral_position, bound, _ = points_of(contact)
     return {
@@ -131,9 +181,9 @@ def traction_field(scene, velocity, amplitude=None, *, poisson=0.0, cells=None):
     }
 
 
-def _contact(motion, model, cells):
-    name = choose_model(motion.scene, motion.poisson, model)
-    return build_contact(motion, name, Resolution(cells or CELLS, ANGLES, steps=0))
+def _contact(problem, model, cells):
+    name = choose_model(problem.scene, problem.poisson, model)
+    return build_contact(problem, name, Resolution(cells or CELLS, ANGLES, steps=0))
 
 
 def _start(contact, start):

@@ -13,7 +13,7 @@ from microslip.adaptive.whole_disc import points_of, whole_disc
 from microslip.foundation.arguments import LARGEST, count
 from microslip.foundation.errors import InputError
 from microslip.models.contact import FORWARD, LATERAL, TORQUE
-from microslip.solver.problem import Motion, Resolution, build_contact
+from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.simulate import simulate
 from microslip.solver.snapshots import bounds_at_phases, frames
 
@@ -36,19 +36,36 @@ class NoPeriodicState(ValueError):
 class Period:
     """A period of the state that repeats itself, on the whole disc; dimensionless.
 
-    phase: omega t, from turning point to turning point and back, shape (steps + 1,); forward,
-    lateral: rigid displacement in u_lim, angle: in u_lim / a, same shape; force_forward,
-    force_lateral: over mu F_z, torque: over its full-slip value, same shape.
-    forward_position, lateral_position: points, over a, shape (points,); bound: over mu F_z / a^2,
-    and area, over a^2 and pi in all, same shape.  traction_forward, traction_lateral: on the flat,
-    in the direction of the motion that they resist, over mu F_z / a^2, shape (steps + 1, points);
-    slip_forward, slip_lateral: in the step that ends at this phase (first row: in the last step),
-    in u_lim, and slips: whether a point slips when the step ends, same shape.  mu_macro: mean of
-    force_forward over that of the load; converged, reason: whether this is the periodic state of
-    this resolution, else why not.
-    Where the normal load changes, F_z and a are those of the reference state, points fill the
-    contact at its largest, and bound is one at each phase, shape (steps + 1, points), 0 for a point
-    out of contact.
+    Where the normal load changes, F_z and a are those of the reference state, and points fill the
+    contact at its largest.
+
+    Attributes
+    ----------
+    phase : np.ndarray, shape (steps + 1,)
+        omega t, from turning point to turning point and back.
+    forward, lateral, angle : np.ndarray, shape (steps + 1,)
+        Rigid displacement in u_lim, and in u_lim / a.
+    force_forward, force_lateral, torque : np.ndarray, shape (steps + 1,)
+        Over mu F_z, and over the full-slip value of the torque.
+    forward_position, lateral_position : np.ndarray, shape (points,)
+        Over a.
+    bound : np.ndarray, shape (points,)
+        Over mu F_z / a^2; where the normal load changes one at each phase, shape (steps + 1,
+        points), 0 for a point out of contact.
+    area : np.ndarray, shape (points,)
+        Over a^2, pi in all.
+    traction_forward, traction_lateral : np.ndarray, shape (steps + 1, points)
+        On the flat, in the direction of the motion that they resist, over mu F_z / a^2.
+    slip_forward, slip_lateral : np.ndarray, shape (steps + 1, points)
+        In the step that ends at this phase (first row: in the last step), in u_lim.
+    slips : np.ndarray of bool, shape (steps + 1, points)
+        Whether a point slips when the step ends.
+    mu_macro : float
+        Mean of force_forward over that of the load.
+    converged : bool
+        Whether this is the periodic state of this resolution.
+    reason : str
+        Why it is not, else empty.
     """
 
     phase: np.ndarray
@@ -73,22 +90,41 @@ class Period:
 
 
 def period(
-    scene,
-    velocity,
-    amplitude,
+    scene: str,
+    velocity: float,
+    amplitude: float,
     *,
-    pressure="hertz",
-    poisson=0.0,
-    cells=PERIOD_CELLS,
-    angles=ANGLES,
-    steps=PERIOD_STEPS,
-):
+    pressure: str = "hertz",
+    poisson: float = 0.0,
+    cells: int = PERIOD_CELLS,
+    angles: int = ANGLES,
+    steps: int = PERIOD_STEPS,
+) -> Period:
     """Forces, tractions and slip over one period of the periodic state, at one resolution.
 
-    scene: one that oscillates; velocity > 0, amplitude > 0, pressure (one that depends on the
-    radius alone), poisson: as for ``microslip.solve``; cells: rings; angles: points on half a ring;
-    steps: in a period; both even numbers.  Returns a Period.  Raises InputError naming the argument
-    for bad input.
+    Parameters
+    ----------
+    scene, velocity, amplitude, pressure, poisson
+        As for `microslip.solve`: a motion that oscillates, velocity and amplitude above 0, a
+        pressure that depends on the radius alone.
+    cells : int
+        Rings, an even number.
+    angles : int
+        Points on half a ring, an even number.
+    steps : int
+        In a period, an even number.
+
+    Returns
+    -------
+    Period
+        On the whole disc.
+
+    Raises
+    ------
+    InputError
+        For bad input; it names the argument.
+    NoPeriodicState
+        Where the march broke off.
     """
     kind, velocity, amplitude, poisson = checked_point(
         scene, velocity, amplitude, poisson, pressure
@@ -105,13 +141,13 @@ def period(
         allowed = f"allowed is at most {MOST_VALUES:g} for cells x angles x steps"
         raise InputError("steps", steps, allowed)
     choose_model(kind, poisson, "polar")
-    motion = Motion(kind, velocity, amplitude, poisson)
+    problem = Problem(kind, velocity, amplitude, poisson)
     resolution = Resolution(cells, angles, steps // 2)
-    run = simulate(kind, velocity, amplitude, poisson, "polar", resolution, PERIOD_TOLERANCE)
+    run = simulate(problem, "polar", resolution, PERIOD_TOLERANCE)
     if run.state is None:
         raise NoPeriodicState(f"velocity = {velocity!r}: {run.reason}")
-    contact = build_contact(motion, "polar", resolution)
-    path = motion.path(contact, steps // 2)
+    contact = build_contact(problem, "polar", resolution)
+    path = problem.path(contact, steps // 2)
     tractions, forces = frames(contact, path, run.state, STEP_TOLERANCE)
     slip = _slip(contact, path, tractions)
     bounds = np.broadcast_to(bounds_at_phases(contact, path), tractions[:, 0].shape)
@@ -129,7 +165,7 @@ def period(
     along = forward * slip_forward + lateral * slip_lateral > 0.0
     return Period(
         phase,
-        *(np.array(part) for part in motion.displacement(phase)),
+        *(np.array(part) for part in problem.displacement(phase)),
         forces[:, FORWARD],
         forces[:, LATERAL],
         forces[:, TORQUE] / kind.pressure.torque,

@@ -4,18 +4,24 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-from microslip.adaptive.choice import choose_model, closed_form, method_refusal, no_vibration, plan
+from microslip.adaptive.choice import choose_model, method_refusal
+from microslip.adaptive.closed_forms import closed_form, no_vibration
 from microslip.adaptive.continuation import run_safely
 from microslip.adaptive.refinement import certify
-from microslip.adaptive.result import Result
+from microslip.adaptive.resolutions import plan
+from microslip.adaptive.result import Result, of_closed_form
 from microslip.foundation.arguments import LARGEST, count, is_real, real
 from microslip.foundation.errors import InputError
+from microslip.motions.motion import Scene
 from microslip.motions.registry import read_otherwise, scene_named
 from microslip.solver.budget import Budget
 from microslip.solver.method_names import SHIPPED, method_named, refuse_missing
+from microslip.solver.problem import Problem
+from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
 
@@ -33,38 +39,64 @@ each of them takes longer."""
 
 
 def solve(
-    scene,
-    velocity,
-    amplitude=None,
+    scene: str,
+    velocity: float,
+    amplitude: float | None = None,
     *,
-    pressure="hertz",
-    poisson=0.0,
-    model="auto",
-    tolerance=TOLERANCE,
-    cells=None,
-    steps=None,
-    method=SHIPPED,
-    most_work=None,
-    time_limit=None,
-    progress=None,
-):
+    pressure: str = "hertz",
+    poisson: float = 0.0,
+    model: str = "auto",
+    tolerance: float | None = TOLERANCE,
+    cells: int | None = None,
+    steps: int | None = None,
+    method: str = SHIPPED,
+    most_work: float | None = None,
+    time_limit: float | None = None,
+    progress: Callable | None = None,
+) -> Result:
     """Macroscopic friction of a vibrated contact at one point.
 
-    scene: "transverse", "bore" or "continuous-bore"; velocity, amplitude: the paper's dimensionless
-    groups (amplitude: None for continuous-bore; velocity 0: the limit v -> 0), in units of the
-    pressure's own u_lim; pressure: "hertz", "power:exponent=1", "file:measured.csv", see
-    microslip.pressures.registry; poisson: nu;
-    model: "auto" or a name in models.MODELS; tolerance: absolute, on mu_macro, None where cells and
-    steps are imposed and the error is only to be told; cells, steps (in a full period): impose a
-    resolution instead of letting the tolerance choose; method: one of methods.names(), to be
-    compared with what ships; most_work: step solves x unknowns, over all runs, beyond which a point
-    is given up, None: MOST_WORK; time_limit: seconds by the wall clock after which it is given up,
-    looked at between marches, None: never; progress: called with the Resolution of every run before
-    it starts.
-    Returns a Result; ``converged`` is False, with the reason, where the tolerance was not met, be
-    it that of an imposed resolution.  Without a tolerance it says that every run found its periodic
-    state, searched for as strictly as at the tolerance 1e-3.
-    Raises InputError, naming the argument, for input out of range or a model that does not apply.
+    Parameters
+    ----------
+    scene : str
+        What moves: "transverse", "bore", "continuous-bore" or another, with the numbers that its
+        name takes.
+    velocity : float
+        The paper's dimensionless group, in units of the pressure's own u_lim; 0: the limit v -> 0.
+    amplitude : float or None
+        The paper's dimensionless group likewise; None for continuous-bore.
+    pressure : str
+        "hertz", "power:exponent=1", "file:measured.csv", see microslip.pressures.registry.
+    poisson : float
+        Poisson's ratio, 0 to 0.5.
+    model : str
+        "auto" or a name in models.registry.MODELS.
+    tolerance : float or None
+        Absolute, on mu_macro; None where cells and steps are imposed and the error is only to be
+        told.
+    cells, steps : int or None
+        Impose a resolution instead of letting the tolerance choose; steps in a full period.
+    method : str
+        One of solver.method_names.names(), to be compared with what ships.
+    most_work : float or None
+        Step solves x unknowns, over all runs, beyond which a point is given up; None: MOST_WORK.
+    time_limit : float or None
+        Seconds by the wall clock after which it is given up, looked at between marches; None:
+        never.
+    progress : callable or None
+        Called with the Resolution of every run before it starts.
+
+    Returns
+    -------
+    Result
+        `converged` is False, with the reason, where the tolerance was not met, be it that of an
+        imposed resolution.  Without a tolerance it says that every run found its periodic state,
+        searched for as strictly as at the tolerance 1e-3.
+
+    Raises
+    ------
+    InputError
+        For input out of range or a model that does not apply; it names the argument.
     """
     kind, velocity, amplitude, poisson = checked_point(
         scene, velocity, amplitude, poisson, pressure
@@ -86,14 +118,14 @@ def solve(
         "tolerance": asked,
         "method": method,
     }
-    place = (velocity, amplitude, poisson)
+    problem = Problem(kind, velocity, amplitude, poisson)
     exact = no_vibration(kind, amplitude)
     if exact is None and model == "auto" and method == SHIPPED:
-        exact = _exact(kind, *place, asked, cells, steps)
+        exact = _exact(problem, asked, cells, steps)
     if exact is not None:
         used = CLOSED_FORM if model == "auto" else name
-        return _exact_result(point | {"model": used}, exact, time.perf_counter() - started)
-    coarsest, axes = plan(kind, name, *place, tolerance, cells, steps)
+        return of_closed_form(point | {"model": used}, exact, time.perf_counter() - started)
+    coarsest, axes = plan(problem, name, tolerance, cells, steps)
     imposed, names = any(axis.imposed for axis in axes), [axis.name for axis in axes]
     if asked is None:
         _refuse_free(axes)
@@ -102,21 +134,26 @@ def solve(
         most_work = MOST_WORK.get(name, MOST_WORK_OF_OTHERS)
     budget = Budget(most_work, math.inf if time_limit is None else time_limit)
 
-    def run(resolution, guess, kind=kind):
+    settings = Settings(how, budget=budget)
+
+    def run(resolution, guess, problem=problem):
         if progress is not None:
             progress(resolution)
         if velocity == 0.0 and kind.periodic:
-            return simulate_static(kind, amplitude, poisson, name, resolution, share, how, budget)
+            return simulate_static(problem, name, resolution, share, settings)
 
         def run_at(velocity, guess, careful=False):
-            where = (kind, velocity, amplitude, poisson, name, resolution, share)
-            return simulate(*where, guess, how, careful, budget)
+            there = replace(problem, velocity=velocity)
+            how_so = replace(settings, careful=careful)
+            return simulate(there, name, resolution, share, guess, how_so)
 
         if method != SHIPPED or not kind.periodic:
             return run_at(velocity, guess)
         return run_safely(run_at, velocity, guess)
 
-    readings = [partial(run, kind=other) for other in read_otherwise(kind)]
+    readings = [
+        partial(run, problem=replace(problem, scene=other)) for other in read_otherwise(kind)
+    ]
     certified = certify(run, coarsest, axes, tolerance, readings)
     if budget.exhausted:
         certified = replace(certified, **budget.counts())
@@ -164,7 +201,9 @@ def _within(kind, mu):
     return min(max(mu, least), 1.0) if math.isfinite(mu) else math.nan
 
 
-def checked_point(scene, velocity, amplitude, poisson, pressure="hertz"):
+def checked_point(
+    scene: str, velocity: float, amplitude: float | None, poisson: float, pressure: str = "hertz"
+) -> tuple[Scene, float, float | None, float]:
     """Scene record and numbers of a point; raises InputError naming the argument at fault."""
     kind = scene_named(scene, pressure)
     velocity = real("velocity", velocity, 0.0, LARGEST["velocity"])
@@ -178,14 +217,18 @@ def checked_point(scene, velocity, amplitude, poisson, pressure="hertz"):
     return kind, velocity, amplitude, poisson
 
 
-def checked_accuracy(tolerance, cells, steps):
+def checked_accuracy(
+    tolerance: float, cells: int | None, steps: int | None
+) -> tuple[float, int | None, int | None]:
     """Tolerance and imposed resolution; raises InputError naming the argument at fault."""
     tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
     return tolerance, _count("cells", cells, 4), _count("steps", steps, 8)
 
 
-def checked_request(tolerance, cells, steps):
-    """As ``checked_accuracy``, but that no tolerance, None, may be asked for."""
+def checked_request(
+    tolerance: float | None, cells: int | None, steps: int | None
+) -> tuple[float | None, int | None, int | None]:
+    """As `checked_accuracy`, but that no tolerance, None, may be asked for."""
     _, cells, steps = checked_accuracy(TOLERANCE, cells, steps)
     if tolerance is not None:
         tolerance, _, _ = checked_accuracy(tolerance, None, None)
@@ -195,19 +238,20 @@ def checked_request(tolerance, cells, steps):
 def refuse_choice(kind, model, place, cells, steps):
     """Raise InputError where a resolution would have to be chosen, and there is no tolerance to do
     that; place: velocity, amplitude, poisson, and all as checked."""
-    exact = no_vibration(kind, place[1])
+    problem = Problem(kind, *place)
+    exact = no_vibration(kind, problem.amplitude)
     if exact is None and model == "auto":
-        exact = _exact(kind, *place, None, cells, steps)
+        exact = _exact(problem, None, cells, steps)
     if exact is None:
-        name = choose_model(kind, place[2], model)
-        _refuse_free(plan(kind, name, *place, TOLERANCE, cells, steps)[1])
+        name = choose_model(kind, problem.poisson, model)
+        _refuse_free(plan(problem, name, TOLERANCE, cells, steps)[1])
 
 
-def _exact(kind, velocity, amplitude, poisson, asked, cells, steps):
-    """choice.closed_form, but that an imposed resolution is to be run, if anything is marched."""
-    if velocity > 0.0 and not (cells is None and steps is None):
+def _exact(problem, asked, cells, steps):
+    """As `closed_form`, but that an imposed resolution is to be run, if anything is marched."""
+    if problem.velocity > 0.0 and not (cells is None and steps is None):
         return None
-    return closed_form(kind, velocity, amplitude, poisson, asked or 0.0)
+    return closed_form(problem, asked or 0.0)
 
 
 def _refuse_free(axes):
@@ -244,37 +288,7 @@ def _count(name, value, low):
     return None if value is None else count(name, value, low, most=LARGEST[name], even=True)
 
 
-def _exact_result(point, values, seconds):
-    (mu, torque, error), asked = values, point["tolerance"]
-    within = asked is None or error <= asked
-    return Result(
-        **point,
-        mu_macro=mu,
-        mu_macro_error=error,
-        error_space=0.0,
-        error_time=0.0,
-        error_periodicity=0.0,
-        error_solver=0.0,
-        error_model=error,
-        mu_torque=torque,
-        mu_torque_error=None if torque is None else error,
-        converged=within,
-        periodic=True,
-        reason="" if within else f"the error is {error:.1e}, above the tolerance of {asked:g}",
-        cells=0,
-        angles=0,
-        steps_per_period=0,
-        periods=0.0,
-        iterations=0,
-        work=0,
-        effort=0,
-        retried=0,
-        exhausted="",
-        solve_time_s=seconds,
-    )
-
-
-def warm_up():
+def warm_up() -> None:
     """Compile the kernels of the automatic models (and leave them in Numba's cache).
 
     Takes a while the first time; squares are compiled when they are first used.

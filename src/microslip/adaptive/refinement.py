@@ -20,12 +20,16 @@ one the base itself is refined.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
-from microslip.adaptive.chains import Chain, Readings, Runs, mixed_difference, refines_cells
+from microslip.adaptive.chains import Axis, Chain, Readings, Runs, mixed_difference, refines_cells
 from microslip.solver.budget import Spent
+from microslip.solver.problem import Resolution
+from microslip.solver.run import Run
 
 RESOLVED = 0.125
 """Share of the tolerance below which no axis claims its error to be: nothing was run to see it."""
@@ -41,11 +45,26 @@ SOURCES = {"cells": "space", "angles": "space", "steps": "time"}
 class Certified:
     """A number and what is wrong with it at most; forces over mu F_z.
 
-    mu, torque: corrected means; errors: of mu by source (space, time, periodicity, solver; model,
-    where there are readings); torque_error: of the torque in space, and over the readings; finest:
-    largest resolution used along each axis; periods: of the longest run; iterations, work, effort,
-    retried: of all runs; converged: whether every run found its periodic state and nothing kept the
-    refinement from going on, else reason says what; periodic: the first of these alone.
+    Attributes
+    ----------
+    mu, torque : float
+        Corrected means.
+    errors : dict of float
+        Of mu by source: space, time, periodicity, solver; model, where there are readings.
+    torque_error : float
+        Of the torque in space, and over the readings.
+    finest : problem.Resolution
+        Largest resolution used along each axis.
+    periods : float
+        Of the longest run.
+    iterations, work, effort, retried : int
+        Of all runs.
+    converged : bool
+        Whether every run found its periodic state and nothing kept the refinement from going on.
+    reason : str
+        What is to blame else.
+    periodic : bool
+        Whether every run found its periodic state.
     """
 
     mu: float
@@ -67,67 +86,156 @@ class Certified:
         return sum(self.errors.values())
 
 
-def certify(run, coarsest, axes, tolerance, readings=()):
-    """Refine until the estimated error is within ``tolerance``.
+def certify(
+    run: Callable[[Resolution, Run | None], Run],
+    coarsest: Resolution,
+    axes: Sequence[Axis],
+    tolerance: float,
+    readings: Sequence[Callable] = (),
+) -> Certified:
+    """Refine until the estimated error is within the tolerance.
 
-    run(resolution, guess) -> simulate.Run (guess: the run at the base, or None); coarsest:
-    motion.Resolution, for what is not refined; axes: the Axis to be refined; readings: functions
-    like ``run`` for other pressures that the same numbers may stand for.
-    Returns a Certified; converged is False, with the reason, where a run did not converge, the
-    estimate over a free axis stays too large, or a run raised budget.Spent: then it is what was
-    known before that run, NaN if that was nothing yet.
+    Parameters
+    ----------
+    run : callable
+        run(resolution, guess) -> simulate.Run; guess: the run at the base, or None.
+    coarsest : problem.Resolution
+        For what is not refined.
+    axes : sequence of chains.Axis
+        To be refined.
+    tolerance : float
+        Absolute, on mu.
+    readings : sequence of callable
+        Like `run`, for other pressures that the same numbers may stand for.
+
+    Returns
+    -------
+    Certified
+        Not converged, with the reason, where a run did not converge, the estimate over a free axis
+        stays too large, or a run raised budget.Spent: then it is what was known before that run,
+        NaN if that was nothing yet.
     """
-    runs = Runs(run, coarsest, axes)
+    refinement = _Refinement(Runs(run, coarsest, axes), axes, tolerance, readings)
     known = None
     try:
-        for found in _refined(runs, axes, tolerance, readings):
-            known = found
+        while True:
+            estimate = refinement.estimate()
+            if estimate.reason or refinement.is_enough(estimate):
+                return refinement.summary(estimate, estimate.reason)
+            known = refinement.summary(estimate, "not refined any further", readings=False)
+            stopped = refinement.refine(estimate)
+            if stopped is not None:
+                return refinement.summary(estimate, stopped)
     except Spent as spent:
         still = "no error is known yet"
         if known is not None:
             still = f"the error is still {known.error:.1e}"
         return replace(known or _nothing(coarsest), converged=False, reason=f"{spent}: {still}")
-    return known
 
 
-def _refined(runs, axes, tolerance, readings):
-    """Yield a Certified whenever something is known, the last one when no more is to be done."""
-    chains = {axis.name: Chain(runs, axis) for axis in axes}
-    others, none = Readings(runs, readings), Readings(runs, ())
-    rebased, goal = 0, tolerance
-    while True:
+class Estimate(NamedTuple):
+    """What the runs so far say of mu; forces over mu F_z.
+
+    Attributes
+    ----------
+    errors : dict of float
+        By source.
+    left : dict of float
+        Errors over the axes that may be refined, by their names.
+    hidden : dict of float
+        What corrections that do not add up may hide, by the axis whose base would cure it.
+    reason : str
+        Why a run did not converge, empty if all did.
+    """
+
+    errors: dict
+    left: dict
+    hidden: dict
+    reason: str
+
+
+class _Refinement:
+    """The chains of a point while they are refined."""
+
+    def __init__(self, runs, axes, tolerance, readings):
+        self.runs, self.tolerance = runs, tolerance
+        self.chains = {axis.name: Chain(runs, axis) for axis in axes}
+        self.readings = Readings(runs, readings)
+        self.goal = tolerance
+        self.rebased = 0
+
+    def estimate(self):
+        """An Estimate from the chains as they are; does the runs that they lack."""
+        runs, chains = self.runs, self.chains
         runs()  # the base first: its state is a guess for others
         left = {name: c.error("mu") for name, c in chains.items() if not c.axis.imposed}
         hidden = {"steps": 0.0, "angles": abs(mixed_difference(runs, chains, "mu"))}
         if "steps" in chains and len(chains) > 1:
             hidden["steps"] = SCATTER * abs(chains["steps"].correction("mu"))
-        errors = _errors(runs, chains, hidden, tolerance)
+        errors = _errors(runs, chains, hidden, self.tolerance)
         reason = next((r.reason for r in runs.done.values() if not r.converged), "")
-        if reason:
-            break
-        if sum(errors.values()) <= goal:
-            left_open = others.open(chains, "mu") if goal == tolerance else np.inf
-            within = sum(errors.values()) + left_open <= tolerance
-            if within or left_open > LARGEST_OPEN * tolerance:
-                break
-            goal = tolerance - left_open  # runs that are finer still can make room for it
-            continue
-        yield _summary(runs, chains, errors, none, "not refined any further")
+        return Estimate(errors, left, hidden, reason)
+
+    def is_enough(self, estimate):
+        """Whether finer runs are of no need, or of no use since the readings are too far apart.
+
+        What these leave open is asked for once, and from then on runs have to make room for it.
+        """
+        error = sum(estimate.errors.values())
+        if error > self.goal:
+            return False
+        if self.goal == self.tolerance:
+            left_open = self.readings.open(self.chains, "mu")
+            if error + left_open > self.tolerance and left_open <= LARGEST_OPEN * self.tolerance:
+                self.goal = self.tolerance - left_open
+                return error <= self.goal
+        return True
+
+    def refine(self, estimate):
+        """Refine what the largest error comes from.
+
+        Returns None where something was refined, else why not, which is empty where finer runs
+        would not help.
+        """
+        left, hidden = estimate.left, estimate.hidden
         worst = max(left, key=left.get, default=None)
         cause = max(hidden, key=hidden.get)
-        if hidden[cause] > left.get(worst, 0.0) and _can_rebase(chains, cause, rebased):
-            for name in _rebased_together(chains, cause):
-                runs.base[name] += 1
-            rebased += 1
-            for chain in chains.values():
-                chain.rebase()
-        elif worst is None or sum(left.values()) + sum(hidden.values()) < 0.5 * goal:
-            break  # finer runs would not help
-        elif not chains[worst].refine():
-            reason = f"the error over {worst} is still {left[worst]:.1e}"
-            reason += f" at {chains[worst].levels[-1]}"
-            break
-    yield _summary(runs, chains, errors, others, reason)
+        if hidden[cause] > left.get(worst, 0.0) and self._can_rebase(cause):
+            self._rebase(cause)
+            return None
+        if worst is None or sum(left.values()) + sum(hidden.values()) < 0.5 * self.goal:
+            return ""
+        if self.chains[worst].refine():
+            return None
+        finest = self.chains[worst].levels[-1]
+        return f"the error over {worst} is still {left[worst]:.1e} at {finest}"
+
+    def _can_rebase(self, cause):
+        """Whether the axes whose base would cure it are there and have a finer level."""
+        chains = self.chains
+        return self.rebased < MOST_REBASED and all(
+            name in chains
+            and not chains[name].axis.imposed
+            and self.runs.base[name] + 1 < len(chains[name].axis.levels)
+            for name in self._rebased_together(cause)
+        )
+
+    def _rebase(self, cause):
+        """Refine the common base, and go on from there."""
+        for name in self._rebased_together(cause):
+            self.runs.base[name] += 1
+        self.rebased += 1
+        for chain in self.chains.values():
+            chain.rebase()
+
+    def _rebased_together(self, cause):
+        """Axes whose base is refined where corrections do not add up, by the cause."""
+        return ("steps",) if cause == "steps" else (refines_cells(self.chains), "angles")
+
+    def summary(self, estimate, reason, readings=True):
+        """The Certified of the chains as they are; readings: whether their error is part of it."""
+        others = self.readings if readings else Readings(self.runs, ())
+        return _summary(self.runs, self.chains, estimate.errors, others, reason)
 
 
 def _nothing(coarsest):
@@ -135,23 +243,6 @@ def _nothing(coarsest):
     errors = dict.fromkeys((*SOURCES.values(), "periodicity", "solver"), np.inf)
     none = replace(coarsest, cells=0, angles=0, steps=0)
     return Certified(np.nan, np.nan, errors, np.inf, none, 0.0, 0, 0, 0, 0, False, "", False)
-
-
-def _can_rebase(chains, cause, rebased):
-    """Whether the axes whose base would cure ``cause`` are there and have a finer level."""
-    if rebased == MOST_REBASED:
-        return False
-    return all(
-        name in chains
-        and not chains[name].axis.imposed
-        and chains[name].runs.base[name] + 1 < len(chains[name].axis.levels)
-        for name in _rebased_together(chains, cause)
-    )
-
-
-def _rebased_together(chains, cause):
-    """Axes whose base is refined where corrections do not add up, by the cause."""
-    return ("steps",) if cause == "steps" else (refines_cells(chains), "angles")
 
 
 def _errors(runs, chains, hidden, tolerance):

@@ -108,3 +108,34 @@ class Result:
         """Fields as a plain dict, without those that the scene does not have."""
         fields = asdict(self)
         return {k: v for k, v in fields.items() if v is not None or k == "tolerance"}
+
+
+def of_closed_form(point: dict, values: tuple, seconds: float) -> Result:
+    """The Result of a point, a dict of its fields, where (mu, torque, error) are known."""
+    (mu, torque, error), asked = values, point["tolerance"]
+    within = asked is None or error <= asked
+    return Result(
+        **point,
+        mu_macro=mu,
+        mu_macro_error=error,
+        error_space=0.0,
+        error_time=0.0,
+        error_periodicity=0.0,
+        error_solver=0.0,
+        error_model=error,
+        mu_torque=torque,
+        mu_torque_error=None if torque is None else error,
+        converged=within,
+        periodic=True,
+        reason="" if within else f"the error is {error:.1e}, above the tolerance of {asked:g}",
+        cells=0,
+        angles=0,
+        steps_per_period=0,
+        periods=0.0,
+        iterations=0,
+        work=0,
+        effort=0,
+        retried=0,
+        exhausted="",
+        solve_time_s=seconds,
+    )

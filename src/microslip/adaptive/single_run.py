@@ -19,13 +19,14 @@ from microslip.motions.registry import scene_named
 from microslip.motions.transverse import SCENE as TRANSVERSE
 from microslip.pressures.registry import HERTZ
 from microslip.solver.method_names import method_named, missing
-from microslip.solver.problem import Motion, Resolution, build_contact
+from microslip.solver.problem import Problem, Resolution, build_contact
+from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 
 STEP_TOLERANCE = 1e-6
 
 
-def applies(scene, poisson, model, method, pressure=HERTZ.name):
+def applies(scene: str, poisson: float, model: str, method: str, pressure: str = HERTZ.name) -> str:
     """Why a model or a method, by name, cannot be tried on a scene, as one line; "" if it can."""
     kind = scene_named(scene, pressure)
     refusal = MODELS[model].refuses(kind, poisson) or missing(method)
@@ -33,33 +34,53 @@ def applies(scene, poisson, model, method, pressure=HERTZ.name):
 
 
 def run_trial(
-    scene,
-    velocity,
-    amplitude,
+    scene: str,
+    velocity: float,
+    amplitude: float,
     *,
-    poisson,
-    model,
-    method,
-    cells,
-    angles,
-    steps,
-    tolerance,
-    pressure=HERTZ.name,
-):
-    """One run: a dict of mu_macro (nan if there is none), converged, reason, periods (full ones, of
-    all searches together), iterations, solves, unknowns, work = solves x unknowns and effort =
-    iterations x unknowns; nothing in it depends on the machine.
+    poisson: float,
+    model: str,
+    method: str,
+    cells: int,
+    angles: int,
+    steps: int,
+    tolerance: float,
+    pressure: str = HERTZ.name,
+) -> dict:
+    """One run; nothing in it depends on the machine.
 
-    Arguments as for ``microslip.solve``, steps in a full period, tolerance on the periodic state (a
-    force over mu F_z); angles: on half the disc.  Raises ValueError where ``applies`` says why.
+    Parameters
+    ----------
+    scene, velocity, amplitude, poisson, model, method, pressure
+        As for `microslip.solve`.
+    cells : int
+        Rings, or squares along a side.
+    angles : int
+        On half the disc.
+    steps : int
+        In a full period.
+    tolerance : float
+        On the periodic state, a force over mu F_z.
+
+    Returns
+    -------
+    dict
+        mu_macro (nan if there is none), converged, reason, periods (full ones, of all searches
+        together), iterations, solves, unknowns, work = solves x unknowns and effort = iterations x
+        unknowns.
+
+    Raises
+    ------
+    ValueError
+        Where `applies` says why.
     """
     refusal = applies(scene, poisson, model, method, pressure)
     if refusal:
         raise ValueError(f"model = {model!r}, method = {method!r}: {refusal}")
     resolution = Resolution(cells, angles, max(steps // 2, 1))
-    kind = scene_named(scene, pressure)
-    point = (kind, velocity, amplitude, poisson, model, resolution, tolerance)
-    run = simulate(*point, method=method_named(method))
+    problem = Problem(scene_named(scene, pressure), velocity, amplitude, poisson)
+    settings = Settings(method_named(method))
+    run = simulate(problem, model, resolution, tolerance, settings=settings)
     unknowns = run.work // run.solves if run.solves else 0
     return {
         "mu_macro": float(run.mu),
@@ -74,20 +95,33 @@ def run_trial(
     }
 
 
-def measure_steps(model, cells, angles, poisson, steps):
-    """What a backward Euler step costs: a dict of unknowns, iterations and seconds (CPU) a step,
-    and memory, the bytes that the arrays of the contact take.
+def measure_steps(model: str, cells: int, angles: int, poisson: float, steps: int) -> dict:
+    """What a backward Euler step costs.
 
-    The path is half a period in ``steps`` steps from full slip, transverse for rings, else bore,
-    each step solved to 1e-6 of mu F_z.  Times are the median of three marches, after one that
-    compiles.
+    The path is half a period from full slip, transverse for rings, else bore, each step solved to
+    1e-6 of mu F_z.  Times are the median of three marches, after one that compiles.
+
+    Parameters
+    ----------
+    model : str
+        Name in models.registry.MODELS.
+    cells, angles, steps : int
+        Of the model, and of half a period.
+    poisson : float
+        Poisson's ratio.
+
+    Returns
+    -------
+    dict
+        unknowns; iterations and seconds (CPU) a step; memory, the bytes that the arrays of the
+        contact take.
     """
     scene = TRANSVERSE if model == "radial" else BORE
-    motion = Motion(scene, 0.1, 1.0, poisson)
-    contact = build_contact(motion, model, Resolution(cells, angles, steps))
-    path = make_path(motion.displacement, half_period_phases(steps), EULER)
+    problem = Problem(scene, 0.1, 1.0, poisson)
+    contact = build_contact(problem, model, Resolution(cells, angles, steps))
+    path = make_path(problem.displacement, half_period_phases(steps), EULER)
     start = forward_slip(contact)
-    contact.march(make_path(motion.displacement, path.phase[:2], EULER), start, STEP_TOLERANCE)
+    contact.march(make_path(problem.displacement, path.phase[:2], EULER), start, STEP_TOLERANCE)
     times = []
     for _ in range(3):
         began = time.process_time()
@@ -101,7 +135,7 @@ def measure_steps(model, cells, angles, poisson, steps):
     }
 
 
-def held_bytes(thing):
+def held_bytes(thing: object) -> int:
     """Bytes in the arrays that an object holds, whatever holds them, each counted once."""
     sizes, stack = {}, [thing]
     while stack:

@@ -9,18 +9,38 @@ from microslip.pressures.registry import HERTZ
 
 
 def patches(
-    scene, velocity, amplitude, *, pressure=HERTZ.name, poisson=0.0, cells=16, angles=16, steps=64
-):
+    scene: str,
+    velocity: float,
+    amplitude: float,
+    *,
+    pressure: str = HERTZ.name,
+    poisson: float = 0.0,
+    cells: int = 16,
+    angles: int = 16,
+    steps: int = 64,
+) -> dict:
     """Stick and slip over a period of the periodic state, reduced to what figures and checks need.
 
-    Arguments and errors as for ``microslip.period``; a scene whose second half of a period mirrors
-    the first.  Returns a dict: mu_macro, converged, reason;
-    phase, stick_right, stick_left: lists over the steps, the last two the shares of the contact's
-    area that stick at positive and at negative lateral positions; least_stick: of both together;
-    forward_position, lateral_position, area: of the points (units a and a^2, the areas add up to
-    pi); moment_phase: phases of single moments, and moment_share, shape (moments, points): size of
-    the traction over the bound there, 1 where a point slips.  The moments are: when least of the
-    contact sticks in a stroke, the middle of the stroke, and the same of the stroke back.
+    Parameters
+    ----------
+    scene, velocity, amplitude, pressure, poisson, cells, angles, steps
+        As for `microslip.period`; a motion whose second half of a period mirrors the first.
+
+    Returns
+    -------
+    dict
+        mu_macro, converged, reason; phase, stick_right, stick_left: over the steps, the last two
+        the shares of the contact's area that stick at positive and at negative lateral positions;
+        least_stick: of both together; forward_position, lateral_position, area: of the points
+        (units a and a^2, the areas add up to pi); moment_phase: phases of single moments, and
+        moment_share, shape (moments, points): size of the traction over the bound there, 1 where a
+        point slips.  The moments are: when least of the contact sticks in a stroke, the middle of
+        the stroke, and the same of the stroke back.
+
+    Raises
+    ------
+    InputError
+        As for `microslip.period`.
     """
     sizes = {"cells": cells, "angles": angles, "steps": steps}
     found = period(scene, velocity, amplitude, pressure=pressure, poisson=poisson, **sizes)

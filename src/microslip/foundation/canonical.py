@@ -8,7 +8,7 @@ import json
 import math
 
 
-def number(value):
+def number(value: float) -> str:
     """Canonical decimal string of a finite number: 1 for 1.0, 0.001, 1e-8.
 
     Rounded to 12 significant digits, so that 0.1 + 0.2 and 0.3 are the same coordinate.
@@ -26,16 +26,16 @@ def number(value):
     return text.removesuffix(".0")
 
 
-def canonical_json(value):
+def canonical_json(value: object) -> str:
     """JSON with sorted keys and no white space. Raises ValueError for NaN and infinities."""
     return json.dumps(value, sort_keys=True, separators=(",", ":"), allow_nan=False)
 
 
-def sha256(text):
+def sha256(text: str) -> str:
     """SHA-256 of a string, in hexadecimal."""
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def fingerprint(*parts):
+def fingerprint(*parts) -> str:
     """Short name of what something is made of; parts: what JSON can hold."""
     return sha256(canonical_json(parts))[:32]

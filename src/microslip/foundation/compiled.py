@@ -29,7 +29,7 @@ FOLDER_NAME = "compiled-"
 def kernel(function=None, **options):
     """Decorator of functions that Numba compiles when they are first called.
 
-    options: of numba.njit, besides OPTIONS, as in ``@kernel(inline="always")``.
+    options: of numba.njit, besides OPTIONS, as in `@kernel(inline="always")`.
     """
     if function is None:
         return lambda function: kernel(function, **options)

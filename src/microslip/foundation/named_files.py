@@ -2,7 +2,7 @@
 
 A result belongs to what a file holds and not to where it lies, so that the name of its pressure has
 the digest of the content and no path: "file:sha256=0123456789abcdef,grid=samples".  This process
-remembers where it found what; another one is told by ``remember``.
+remembers where it found what; another one is told by `remember`.
 
 Imports nothing heavy, since the workflow reads it whenever it is parsed.
 """

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
+from collections.abc import Iterable
 
 from microslip.foundation.errors import InputError
 
@@ -44,9 +45,9 @@ def read(argument: str, text: str, whole: bool = False) -> float | int:
     raise InputError(argument, text, f"allowed is a {'whole ' if whole else ''}number")
 
 
-def split(text, what, names):
-    """Name and numbers (dict) in a text; raises InputError about ``what`` if the name is none of
-    ``names`` or the numbers cannot be read."""
+def split(text: str, what: str, names: Iterable[str]) -> tuple[str, dict[str, float]]:
+    """Name and numbers (dict) in a text; raises InputError about `what` if the name is none of
+    `names` or the numbers cannot be read."""
     name, colon, rest = text.partition(":")
     if name not in names:
         near = difflib.get_close_matches(name, names, n=1)
@@ -66,23 +67,23 @@ def split(text, what, names):
     return name, numbers
 
 
-def refuse_unknown(text, what, numbers, known):
-    """Raise InputError about ``what`` for a number that a name does not take."""
+def refuse_unknown(text: str, what: str, numbers: dict[str, float], known: Iterable[str]) -> None:
+    """Raise InputError about `what` for a number that a name does not take."""
     strange = sorted(numbers.keys() - set(known))
     if strange:
         allowed = ", ".join(known) or "none"
         raise InputError(what, text, f"unknown number {strange[0]}; allowed: {allowed}")
 
 
-def refuse_shares(text, what, shares):
-    """Raise InputError about ``what`` for a share outside 0..1; shares: dict."""
+def refuse_shares(text: str, what: str, shares: dict[str, float]) -> None:
+    """Raise InputError about `what` for a share outside 0..1; shares: dict."""
     for key, share in shares.items():
         if not 0.0 <= share <= 1.0:
             raise InputError(what, text, f"{key} = {share:g}: allowed is a share in 0..1")
 
 
-def refuse_counts(text, what, counts, most):
-    """... for what is no whole number from 1 to ``most``; counts: dict."""
+def refuse_counts(text: str, what: str, counts: dict[str, float], most: int) -> None:
+    """... for what is no whole number from 1 to `most`; counts: dict."""
     for key, count in counts.items():
         if count != round(count) or not 1 <= count <= most:
             raise InputError(

@@ -18,12 +18,20 @@ MIRROR = np.array([1.0, -1.0])[:, None, None]
 class March:
     """What one march along a path gives.
 
-    state: tractions at the end, shape (2, n_angles, n_radii) or (2, n, n), forward and lateral;
-    forces: forward force, lateral force, torque at each phase, shape (steps + 1, 3), over mu F_z
-    and mu F_z a; residual: sum over the stages of what the step solver left (force over mu F_z);
-    iterations, solves: step-solver iterations and stages; sensitivity: derivative of the end state
-    with respect to the start, shape (state.size, state.size), or None if it was not asked for;
-    stages: what the model wants to find again when it marches the same path from a start near by.
+    Attributes
+    ----------
+    state : np.ndarray, shape (2, n_angles, n_radii) or (2, n, n)
+        Forward and lateral tractions at the end.
+    forces : np.ndarray, shape (steps + 1, 3)
+        Forward force, lateral force, torque at each phase, over mu F_z and mu F_z a.
+    residual : float
+        Sum over the stages of what the step solver left (force over mu F_z).
+    iterations, solves : int
+        Step-solver iterations and stages.
+    sensitivity : np.ndarray or None, shape (state.size, state.size)
+        Derivative of the end state with respect to the start, or None if it was not asked for.
+    stages : np.ndarray or None
+        What the model wants to find again when it marches the same path from a start near by.
     """
 
     state: np.ndarray
@@ -43,17 +51,26 @@ class StepFailure(ArithmeticError):
 class Contact(Protocol):
     """A discretised contact under given pressure.
 
-    bound, weight: friction bound and area of each point, broadcast to state[0];
-    compliance: displacement of a point under unit traction on itself, broadcast likewise;
-    forward_position, lateral_position: where the points are (units a), same shape;
-    has_sensitivity: whether ``march(..., sensitivity=True)`` is to be had cheaply;
-    stiffness: force over mu F_z per uniform displacement u_lim without slip, at least;
-    sticks: whether points may stick, so that something is left of it in the static limit;
-    radius: of the contact at its largest, over the reference one, where the normal load changes: 1
-    if it is not there, and ``bound`` is that at the start of a lap then.
-
     A contact whose normal load may change also has pressed, bounds, bounds_along and at_phases; one
     of rings may tell its edges, for rings to be gathered at one of them: see RadialContact.
+
+    Attributes
+    ----------
+    bound, weight : np.ndarray
+        Friction bound and area of each point, broadcast to state[0].
+    compliance : np.ndarray
+        Displacement of a point under unit traction on itself, broadcast likewise.
+    forward_position, lateral_position : np.ndarray
+        Where the points are (units a), same shape.
+    has_sensitivity : bool
+        Whether `march(..., sensitivity=True)` is to be had cheaply.
+    stiffness : float
+        Force over mu F_z per uniform displacement u_lim without slip, at least.
+    sticks : bool
+        Whether points may stick, so that something is left of it in the static limit.
+    radius : float
+        Of the contact at its largest, over the reference one, where the normal load changes: 1 if
+        it is not there, and `bound` is that at the start of a period then.
     """
 
     bound: np.ndarray
@@ -72,20 +89,20 @@ class Contact(Protocol):
         """The state after lateral -> -lateral (lateral traction negated)."""
 
     def march(self, path, state, tolerance, sensitivity=False, previous=None) -> March:
-        """March along a path from a state; every stage is solved to ``tolerance`` (a force).
+        """March along a path from a state; every stage is solved to `tolerance` (a force).
 
         previous: a March of the same path from a start near by, whose tractions are first guesses.
         """
 
 
-def energy_norm(contact, change):
+def energy_norm(contact: Contact, change: np.ndarray) -> float:
     """Bound on the force (over mu F_z) that a change of tractions carries, from its energy:
     |dF| <= sqrt(stiffness <dq, A dq>)."""
     energy = np.vdot(contact.weight * change, contact.displacement(change))
     return float(np.sqrt(contact.stiffness * max(energy, 0.0)))
 
 
-def full_slip(contact, forward, lateral):
+def full_slip(contact: Contact, forward: np.ndarray, lateral: np.ndarray) -> np.ndarray:
     """Tractions on the bound along the field (forward, lateral); zero field: no traction."""
     size = np.hypot(forward, lateral)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -93,13 +110,13 @@ def full_slip(contact, forward, lateral):
     return unit * contact.bound
 
 
-def forward_slip(contact):
+def forward_slip(contact: Contact) -> np.ndarray:
     """Every point on its bound, forward: the state of a contact that only ever slid forward."""
     ones = np.ones_like(contact.forward_position)
     return full_slip(contact, ones, 0.0 * ones)
 
 
-def forces(contact, state):
+def forces(contact: Contact, state: np.ndarray) -> np.ndarray:
     """Forward force, lateral force (mu F_z) and torque (mu F_z a) of tractions, shape (3,)."""
     forward, lateral = contact.weight * state
     torque = contact.lateral_position * forward - contact.forward_position * lateral

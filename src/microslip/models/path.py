@@ -13,8 +13,10 @@ theirs before the end of the step and extrapolate to it, bound or no bound.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,10 +27,21 @@ _GAMMA = 1.0 - np.sqrt(0.5)
 
 @dataclass(frozen=True)
 class Integrator:
-    """A DIRK method: stage times c and the carried slips a_ij / gamma (j < i).
+    """A diagonally implicit Runge-Kutta method.
 
-    end: where in the step the last stage sits; below 1 (a single stage then) the rest of the step
-    is extrapolated, and tractions at its end may leave the bound.
+    Attributes
+    ----------
+    name : str
+        As it is spoken of.
+    order : int
+        Of convergence.
+    times : tuple of float
+        Stage times c, over the step.
+    carried : tuple of tuple of float
+        Carried slips a_ij / gamma (j < i), a row a stage.
+    end : float
+        Where in the step the last stage sits; below 1 (a single stage then) the rest of the step is
+        extrapolated, and tractions at its end may leave the bound.
     """
 
     name: str
@@ -52,8 +65,8 @@ SDIRK2 = Integrator("sdirk2", 2, (_GAMMA, 1.0), ((), ((1.0 - _GAMMA) / _GAMMA,))
 INTEGRATORS = {method.name: method for method in (EULER, SDIRK2)}
 
 
-def theta_method(theta):
-    """One stage at the share ``theta`` of the step, 0.5 (midpoint rule) to 1 (backward Euler).
+def theta_method(theta: float) -> Integrator:
+    """One stage at the share `theta` of the step, 0.5 (midpoint rule) to 1 (backward Euler).
 
     Second order at 0.5 alone.  Raises ValueError for another theta.
     """
@@ -67,7 +80,7 @@ GRADED_CREEP = 0.02
 GRADED_STROKE = 2.0
 
 
-def turning_point_grading(creep, stroke):
+def turning_point_grading(creep: float, stroke: float) -> float:
     """How much shorter steps are at the turning points than in the mean, 0 to 0.8 of it.
 
     creep: forward displacement in a radian of phase; stroke: amplitude of the oscillation, both in
@@ -79,14 +92,44 @@ def turning_point_grading(creep, stroke):
     return STRONGEST_GRADING * slow * short
 
 
+class LoadingPath(NamedTuple):
+    """What a compiled march follows: what is imposed on the contact, and the integrator.
+
+    Attributes
+    ----------
+    positions, stages, carry, end
+        See `Path`.
+    bounds : np.ndarray
+        Friction bound at the start and at every stage, shape (1 + steps * stages, ...), or of one
+        row where it does not change.
+    """
+
+    positions: np.ndarray
+    stages: np.ndarray
+    carry: np.ndarray
+    end: float
+    bounds: np.ndarray
+
+
 @dataclass(frozen=True, eq=False)
 class Path:
     """A stretch of rigid motion cut into steps.
 
-    phase: shape (steps + 1,); positions: displacement at every phase, shape (steps + 1, 3)
-    (forward, lateral, angle); stages: the same at every stage, shape (steps, stages, 3); carry:
-    shape (stages, stages); end: see Integrator; depth: indentation over the reference one at the
-    start and at every stage, shape (1 + steps * stages,), None where it does not change.
+    Attributes
+    ----------
+    phase : np.ndarray, shape (steps + 1,)
+        omega t.
+    positions : np.ndarray, shape (steps + 1, 3)
+        Displacement at every phase: forward, lateral, angle.
+    stages : np.ndarray, shape (steps, stages, 3)
+        The same at every stage.
+    carry : np.ndarray, shape (stages, stages)
+        See `Integrator.carry_matrix`.
+    end : float
+        See `Integrator`.
+    depth : np.ndarray or None, shape (1 + steps * stages,)
+        Indentation over the reference one at the start and at every stage, None where it does not
+        change.
     """
 
     phase: np.ndarray
@@ -100,14 +143,34 @@ class Path:
     def steps(self):
         return len(self.phase) - 1
 
+    def under(self, bounds):
+        """The LoadingPath under friction bounds, see there."""
+        return LoadingPath(self.positions, self.stages, self.carry, self.end, bounds)
+
     def mean(self, values):
         """Time average of values at the phases (first axis), by the trapezoidal rule."""
         return np.trapezoid(values, self.phase, axis=0) / (self.phase[-1] - self.phase[0])
 
 
-def make_path(displacement, phase, integrator=SDIRK2, depth=None):
-    """Path through the given phases; displacement(phase) -> (forward, lateral, angle); depth(phase)
-    -> indentation over the reference one, None: it does not change."""
+def make_path(
+    displacement: Callable,
+    phase: np.ndarray,
+    integrator: Integrator = SDIRK2,
+    depth: Callable | None = None,
+) -> Path:
+    """Path through the given phases.
+
+    Parameters
+    ----------
+    displacement : callable
+        displacement(phase) -> (forward, lateral, angle).
+    phase : array_like, shape (steps + 1,)
+        Increasing.
+    integrator : Integrator
+        Where the stages sit.
+    depth : callable or None
+        depth(phase) -> indentation over the reference one; None: it does not change.
+    """
     phase = np.asarray(phase, dtype=float)
     times = phase[:-1, None] + np.asarray(integrator.times) * np.diff(phase)[:, None]
     stages = np.stack(displacement(times), axis=-1)
@@ -119,18 +182,18 @@ def make_path(displacement, phase, integrator=SDIRK2, depth=None):
     depths = None
     if depth is not None:
         if integrator.end == 1.0:
-            times[:, -1] = phase[1:]  # to the last bit: the end of a lap is where the next begins
+            times[:, -1] = phase[1:]  # to the last bit: the end is where the next march begins
         depths = depth(np.concatenate([phase[:1], times.ravel()]))
     return Path(phase, positions, stages, integrator.carry_matrix(), integrator.end, depths)
 
 
-def half_period_phases(steps, grading=0.0):
+def half_period_phases(steps: int, grading: float = 0.0) -> np.ndarray:
     """Phases from one turning point (-pi/2) to the next, shape (steps + 1,), finer at both."""
     return phases_between(HALF_PERIOD, steps, grading)
 
 
-def phases_between(turns, steps, grading=0.0):
-    """Phases from the first turning point to the last, ``steps`` steps from each to the next, finer
+def phases_between(turns: Sequence[float], steps: int, grading: float = 0.0) -> np.ndarray:
+    """Phases from the first turning point to the last, `steps` steps from each to the next, finer
     at both; shape ((len(turns) - 1) steps + 1,)."""
     t = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
     t = t + 0.5 * grading * np.sin(2 * t)

@@ -17,8 +17,8 @@ exact then, too.
 "approximate": leaves out elasticity, partial slip or how points of the contact act on each other,
 and no refinement brings it back.
 
-Every model that marches keeps the contract of ``models.contact.Contact``.  A new one is a file
-beside these and a row in ``MODELS``.
+Every model that marches keeps the contract of `models.contact.Contact`.  A new one is a file
+beside these and a row in `MODELS`.
 """
 
 from __future__ import annotations
@@ -39,9 +39,16 @@ from microslip.models.squares.contact import CartesianContact
 class Model:
     """How a model is built and where it applies.
 
-    build(scene, poisson, cells, angles, focus) -> Contact; refuses(scene, poisson) -> reason or "";
-    exact(scene) -> whether refinement converges to the truth; axes(scene) -> what of its space can
-    be refined: "cells", "angles".
+    Attributes
+    ----------
+    build : callable
+        build(scene, poisson, cells, angles, focus) -> Contact.
+    refuses : callable
+        refuses(scene, poisson) -> why it does not apply, or "".
+    exact : callable
+        exact(scene) -> whether refinement converges to the truth.
+    axes : callable
+        axes(scene) -> what of its space can be refined: "cells", "angles".
     """
 
     build: Callable

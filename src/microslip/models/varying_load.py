@@ -1,7 +1,7 @@
 """The contact while its normal load changes: what each part of it carries.
 
 Depth is the indentation over that of the reference state (radius a, load F_z); everything else is
-in the working units of a pressures.Pressure, that of an axisymmetric indenter.
+in the working units of a pressure.Pressure, that of an axisymmetric indenter.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ import numpy as np
 from microslip.pressures.registry import Pressure
 
 
-def load_on_rings(pressure, edges, depth):
-    """Load within each radius in ``edges`` (n + 1,) at each depth (k,), shape (k, n + 1)."""
+def load_on_rings(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> np.ndarray:
+    """Load within each radius in `edges` (n + 1,) at each depth (k,), shape (k, n + 1)."""
     return pressure.load(edges, pressure.radius(depth)[:, None])
 
 
-def load_on_springs(pressure, edges, depth):
+def load_on_springs(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> np.ndarray:
     """Load of the springs of dimensionality reduction within |x| < edges, as load_on_rings.
 
     The spring at x carries G* (d - h(x)) per length, h(x) the depth at which the contact radius
@@ -33,9 +33,16 @@ def load_on_springs(pressure, edges, depth):
 class Growth(NamedTuple):
     """How a row of rings or springs that fills the reference contact fills one of another size.
 
-    pressure: of an axisymmetric indenter; edges: (n + 1,) from 0 to 1; carried(pressure, edges,
-    depth) -> load within each edge, (k, n + 1); powers of the contact radius by which influence and
-    weights grow.
+    Attributes
+    ----------
+    pressure : pressure.Pressure
+        Of an axisymmetric indenter.
+    edges : np.ndarray, shape (n + 1,)
+        From 0 to 1.
+    carried : callable
+        carried(pressure, edges, depth) -> load within each edge, (k, n + 1).
+    influence_power, weight_power : int
+        Powers of the contact radius by which influence and weights grow.
     """
 
     pressure: Pressure

@@ -31,7 +31,14 @@ WHOLE_PERIOD = (*HALF_PERIOD, 1.5 * np.pi)
 _LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
 
 
-def scene(name, forward, lateral, phase, forward_cycles, lateral_cycles):
+def scene(
+    name: str,
+    forward: float,
+    lateral: float,
+    phase: float,
+    forward_cycles: float,
+    lateral_cycles: float,
+) -> Scene:
     """The Scene of these numbers; raises InputError for shares below 0, none at all, and cycles
     that are no whole numbers."""
     spec.refuse_shares(name, "scene", {"forward": forward, "lateral": lateral})

@@ -26,30 +26,50 @@ HALF_PERIOD = (-np.pi / 2, np.pi / 2)
 class Scene:
     """One kind of motion.
 
-    displacement(phase, velocity, amplitude, poisson) -> (forward, lateral, angle), arrays of the
-    shape of ``phase``.
-    periodic: the motion oscillates with period 2 pi and needs an amplitude; otherwise it is steady.
-    rotates: the angle is not zero, so tractions depend on the angle around the contact.
-    half_disc: half of a round contact tells the other half: where the motion rotates by mirror
-    symmetry across the lateral axis, else by point symmetry.  A rotation together with a lateral
-    motion has neither.
-    half_period_mirror: half a period later the motion is its own image under lateral -> -lateral.
-    Without it a whole period is marched.
-    straight: the oscillation alone goes to and fro on a line, from the phase -pi/2 to pi/2.
-    drives: the oscillation alone may drive the contact forward, so that friction may be negative;
-    without it the mean force resists, see theory/bounds.py.
-    cycles: of the oscillation in a period, along the direction that has more.
-    depth(phase, amplitude, pressure): indentation over that of the reference state, >= 0 (0: no
-    contact), of the shape of ``phase``; None: it does not change.
-    deepest, mean_load(amplitude, pressure): its largest value, and the mean of the normal load over
-    that of the reference state.
-    whole(velocity, amplitude, pressure): mean friction in closed form at nu = 0, velocity 0 as its
-    limit, or None if there is none; None: there never is.
-    turns(velocity, amplitude): phases at which the motion turns, from where a lap begins to where
-    it ends, half a period later or a whole one.
-    focus(velocity, amplitude, pressure): radius where the traction has its kink (None: nowhere
-    special).
-    pressure: how the load is spread; it does not change while the contact moves.
+    Attributes
+    ----------
+    name, summary : str
+        As it is asked for, and in a line.
+    displacement : callable
+        displacement(phase, velocity, amplitude, poisson) -> (forward, lateral, angle), arrays of
+        the shape of the phase.
+    periodic : bool
+        The motion oscillates with period 2 pi and needs an amplitude; otherwise it is steady.
+    rotates : bool
+        The angle is not zero, so tractions depend on the angle around the contact.
+    half_period_mirror : bool
+        Half a period later the motion is its own image under lateral -> -lateral.  Without it a
+        whole period is marched.
+    focus : callable
+        focus(velocity, amplitude, pressure): radius where the traction has its kink (None: nowhere
+        special).
+    velocity_label, amplitude_label : str
+        Formulas of the dimensionless groups.
+    turns : callable
+        turns(velocity, amplitude): phases at which the motion turns, from where a march begins to
+        where it ends, half a period later or a whole one.
+    straight : bool
+        The oscillation alone goes to and fro on a line, from the phase -pi/2 to pi/2.
+    drives : bool
+        The oscillation alone may drive the contact forward, so that friction may be negative;
+        without it the mean force resists, see theory/bounds.py.
+    cycles : int
+        Of the oscillation in a period, along the direction that has more.
+    half_disc : bool
+        Half of a round contact tells the other half: where the motion rotates by mirror symmetry
+        across the lateral axis, else by point symmetry.  A rotation together with a lateral motion
+        has neither.
+    pressure : pressure.Pressure
+        How the load is spread; it does not change while the contact moves.
+    depth : callable or None
+        depth(phase, amplitude, pressure): indentation over that of the reference state, >= 0 (0: no
+        contact), of the shape of the phase; None: it does not change.
+    deepest, mean_load : callable
+        Of (amplitude, pressure): its largest value, and the mean of the normal load over that of
+        the reference state.
+    whole : callable or None
+        whole(velocity, amplitude, pressure): mean friction in closed form at nu = 0, velocity 0 as
+        its limit, or None if there is none; None: there never is.
     """
 
     name: str
@@ -92,12 +112,12 @@ class Scene:
         return 0.5 * max(float(abs(part[1] - part[0])) for part in ends)
 
 
-def within_rings(radius):
+def within_rings(radius: float) -> float:
     """The radius, kept off the centre and the edge so that no ring degenerates."""
     return float(np.clip(radius, *FOCUS_RANGE))
 
 
-def stick_focus(reach, pressure):
+def stick_focus(reach: float, pressure: Pressure) -> float | None:
     """Where the contact would stick if it went so far (u_lim) along a line and back (Eq 8 for a
     sphere); nowhere once all of it slides, or if that is not a circle."""
     radius = pressure.stick_radius(reach) if reach < 1.0 else None

@@ -41,18 +41,19 @@ DEFAULTS = {
 
 
 def scene(
-    name,
-    load,
-    indentation,
-    lateral,
-    forward,
-    angle,
-    phase,
-    normal_cycles,
-    lateral_cycles,
-    forward_cycles,
-    angle_cycles,
-):
+    name: str,
+    *,
+    load: float,
+    indentation: float,
+    lateral: float,
+    forward: float,
+    angle: float,
+    phase: float,
+    normal_cycles: float,
+    lateral_cycles: float,
+    forward_cycles: float,
+    angle_cycles: float,
+) -> Scene:
     """The Scene of these numbers; raises InputError for shares out of 0..1, where neither or both
     of load and indentation oscillate, and for cycles that are no whole numbers."""
     cycles = {

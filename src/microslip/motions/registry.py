@@ -1,8 +1,9 @@
 """Every motion by its name, under the pressure asked for.
 
-A scene is one ``Scene`` record (see motion.py for it and for the names of directions).  A motion is
-a file in the folder ``motions``, "a_motion.py" for the name "a-motion", and nothing else in the
-package has to name it; closed forms that hold for it alone have their place in adaptive/choice.py.
+A scene is one `Scene` record (see motion.py for it and for the names of directions).  A motion is
+a file in the folder `motions`, "a_motion.py" for the name "a-motion", and nothing else in the
+package has to name it; closed forms that hold for it alone have their place in
+adaptive/closed_forms.py.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy as np
 from microslip import motions
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
+from microslip.motions.motion import Scene
 from microslip.pressures.registry import HERTZ, pressure_named
 
 _FIRST = ("transverse", "longitudinal", "zigzag", "bore", "continuous_bore")
@@ -52,7 +54,7 @@ for _folder in list(motions.__path__):
     find(_folder)
 
 
-def scene_named(name, pressure=HERTZ.name):
+def scene_named(name: str, pressure: str = HERTZ.name) -> Scene:
     """The scene of this name, or of a family for the numbers that follow its name, such as
     "elliptic:forward=0.5,phase=90", under the pressure of this name (see pressures.registry).
     Raises InputError saying what is allowed."""
@@ -60,7 +62,7 @@ def scene_named(name, pressure=HERTZ.name):
     return scene if pressure == HERTZ.name else _under(scene, pressure_named(pressure))
 
 
-def read_otherwise(scene):
+def read_otherwise(scene: Scene) -> list[Scene]:
     """The scene under each of the other pressures that its own may stand for, see Pressure."""
     return [replace(scene, pressure=other) for other in scene.pressure.readings]
 

@@ -23,7 +23,7 @@ HELP = (
 DEFAULTS = {"lateral": 1.0, "angle": 1.0, "phase": 0.0}
 
 
-def scene(name, lateral, angle, phase):
+def scene(name: str, lateral: float, angle: float, phase: float) -> Scene:
     """The Scene of these numbers; raises InputError for shares below 0, and none at all."""
     spec.refuse_shares(name, "scene", {"lateral": lateral, "angle": angle})
     if max(lateral, angle) == 0.0:

@@ -13,6 +13,8 @@ With x = r cosh(eta) these integrals are smooth.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from microslip.pressures.cell_loads import round_loads
@@ -28,12 +30,37 @@ _GRID = np.linspace(0.0, 1.0, 257)
 _CORRECTIONS = 6
 
 
-def indenter(name, summary, depth, slope, radius, flat=0.0, of_load=None):
-    """The Pressure of an axisymmetric indenter.
+def indenter(
+    name: str,
+    summary: str,
+    depth: Callable,
+    slope: Callable,
+    radius: Callable,
+    *,
+    flat: float = 0.0,
+    of_load: Callable | None = None,
+) -> Pressure:
+    """The Pressure of an axisymmetric indenter; all functions are of arrays.
 
-    depth(c): indentation that makes the contact radius c, 1 at 1; slope(c): its derivative, 0 below
-    the radius ``flat`` of a flat end; radius(depth): inverse of depth; of_load(share): depth of
-    a share of the load, searched for if it is not given.  Functions of arrays.
+    Parameters
+    ----------
+    name, summary : str
+        Of the pressure.
+    depth : callable
+        depth(c): indentation that makes the contact radius c, 1 at 1.
+    slope : callable
+        slope(c): its derivative, 0 below the radius of a flat end.
+    radius : callable
+        radius(depth): inverse of depth.
+    flat : float
+        Radius of a flat end, over the contact radius.
+    of_load : callable or None
+        of_load(share): depth of a share of the load; None: it is searched for.
+
+    Returns
+    -------
+    pressure.Pressure
+        In its own working units.
     """
     # x = flat + (1 - flat) s^2 takes the square root out of slopes that begin at a flat end
     x = flat + (1.0 - flat) * _NODES**2

@@ -14,13 +14,13 @@ DEFAULTS = {"ratio": 0.5, "across": 0.0}
 SMALLEST_RATIO = 0.05
 
 
-def pressure(name, ratio, across):
+def pressure(name: str, ratio: float, across: float) -> Pressure:
     """The Pressure of an elliptic Hertz contact of semi-axes a and ratio a.
 
     across: 0 if the long axis is the forward one, 1 if it is the lateral one.  u_lim is the
     displacement under full slip at the centre, so that G* = 3 K / (2 pi), K the complete elliptic
     integral of the eccentricity: 3/4 for a circle.  Raises InputError for a ratio outside 0.05..1
-    and another ``across``.
+    and another `across`.
     """
     if not SMALLEST_RATIO <= ratio <= 1.0:
         raise InputError(

@@ -1,7 +1,7 @@
 """Pressures from files, "file:measured.csv": a grid of them, see measured.
 
 CSV: a line that names the columns forward, lateral and pressure, then one line a point; netCDF: a
-variable ``pressure`` with the coordinates ``forward`` and ``lateral``.  The points fill a regular
+variable `pressure` with the coordinates `forward` and `lateral`.  The points fill a regular
 grid.  ",grid=samples" after the path says that the values hold at the points, with bilinear ones
 between them; without it they are means over cells of the grid's own step around the points, which
 is what sensors give, and what makes the load the sum of values times areas whatever the grid.

@@ -1,4 +1,4 @@
-"""A grid of pressures as netCDF: a variable ``pressure`` over ``forward`` and ``lateral``."""
+"""A grid of pressures as netCDF: a variable `pressure` over `forward` and `lateral`."""
 
 from __future__ import annotations
 

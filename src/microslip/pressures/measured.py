@@ -28,7 +28,7 @@ def of_grid(
     """The Pressure of values on a regular grid.
 
     a is half the longer side of the rectangle that holds all pressure, and its centre is the one
-    that rotations turn about.  What such numbers leave open shows in the ``readings`` of the
+    that rotations turn about.  What such numbers leave open shows in the `readings` of the
     record: the same numbers read in the other way, and at half of the resolution.
 
     Parameters

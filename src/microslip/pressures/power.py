@@ -6,12 +6,13 @@ import numpy as np
 
 from microslip.foundation.errors import InputError
 from microslip.pressures.axisymmetric_indenter import indenter
+from microslip.pressures.pressure import Pressure
 
 DEFAULTS = {"exponent": 2.0}
 SMALLEST, LARGEST = 1.0, 100.0
 
 
-def pressure(name, exponent):
+def pressure(name: str, exponent: float) -> Pressure:
     """The Pressure of an indenter r^exponent; raises InputError for one below 1 or above 100."""
     if not SMALLEST <= exponent <= LARGEST:
         raise InputError(

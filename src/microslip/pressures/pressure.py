@@ -21,29 +21,48 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Pressure:
-    """One distribution of the load over the contact.
+    """One distribution of the load over the contact; dimensionless, in the working units above.
 
-    G_star: reduced shear modulus 4G/(2 - nu) in working units; torque: of a contact that slips
-    everywhere about its centre, in mu F_z a;
-    cell_loads(cells): load on each of cells x cells squares over [-1, 1]^2, forward axis first,
-    sum 1; mirrored: whether it is its own image under lateral -> -lateral.
-
-    Of contacts whose pressure depends on the radius alone, else None:
-    ring_means(psi) -> (bound, lever): mean friction bound of the rings between r = sin(psi), and
-    mean lever arm of a traction shaped like it, (n,) each, from shape (n + 1,);
-    bound(r): friction bound mu p, of arrays; inner: radius of the hole in the middle.
-
-    Of axisymmetric indenters, which touch a full circle and whose contact grows with the load (else
-    None); c is a contact radius, other than 1 if the load is not the mean one:
-    depth(c): indentation; radius(depth): its inverse, 0 for no contact;
-    of_load(share): the depth at which the load is that share of the mean one;
-    load(r, c): load within r; both it and bound(r, c) are functions of arrays that broadcast;
-    loading(u): tangential force over mu F_z after a displacement u_lim >= 0 in one direction from
-    rest, nu = 0, of any shape; also of elliptic Hertz contacts (hertzian), whose stick zones are
-    ellipses of the same shape (Vermeulen and Johnson), so that they share it with the sphere.
-
-    readings: of a pressure that is known on a grid alone, other Pressures that the same numbers may
-    stand for; how far friction differs under them is what the grid leaves open.
+    Attributes
+    ----------
+    name, summary : str
+        As it is asked for, and in a line.
+    G_star : float
+        Reduced shear modulus 4G/(2 - nu).
+    torque : float
+        Of a contact that slips everywhere about its centre, in mu F_z a.
+    cell_loads : callable
+        cell_loads(cells): load on each of cells x cells squares over [-1, 1]^2, forward axis first,
+        sum 1.
+    mirrored : bool
+        Whether it is its own image under lateral -> -lateral.
+    ring_means : callable or None
+        ring_means(psi) -> (bound, lever): mean friction bound of the rings between r = sin(psi),
+        and mean lever arm of a traction shaped like it, shape (n,) each, from (n + 1,).  This and
+        the next two: of contacts whose pressure depends on the radius alone.
+    bound : callable or None
+        bound(r): friction bound mu p, of arrays; of an indenter bound(r, c), too.
+    inner : float
+        Radius of the hole in the middle.
+    depth : callable or None
+        depth(c): indentation that makes the contact radius c, other than 1 if the load is not the
+        mean one.  This and the next four: of axisymmetric indenters, which touch a full circle and
+        whose contact grows with the load.
+    radius : callable or None
+        radius(depth): its inverse, 0 for no contact.
+    of_load : callable or None
+        of_load(share): the depth at which the load is that share of the mean one.
+    load : callable or None
+        load(r, c): load within r; of arrays that broadcast.
+    loading : callable or None
+        loading(u): tangential force over mu F_z after a displacement u_lim >= 0 in one direction
+        from rest, nu = 0, of any shape; also of elliptic Hertz contacts.
+    hertzian : bool
+        Whether it is that of an elliptic Hertz contact, whose stick zones are ellipses of the same
+        shape (Vermeulen and Johnson), so that it shares `loading` with the sphere.
+    readings : tuple of Pressure
+        Of a pressure that is known on a grid alone, others that the same numbers may stand for; how
+        far friction differs under them is what the grid leaves open.
     """
 
     name: str
@@ -95,7 +114,9 @@ class Pressure:
         return float(self.radius(1.0 - displacement))
 
 
-def of_radii(ring_loads, ring_moments, psi):
+def of_radii(
+    ring_loads: Callable, ring_moments: Callable, psi: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """ring_means from loads and first moments of the bound between the radii r = sin(psi)."""
     loads, moments = ring_loads(psi), ring_moments(psi)
     area = np.pi * np.diff(np.sin(psi) ** 2)

@@ -6,14 +6,15 @@ import numpy as np
 
 from microslip.foundation.errors import InputError
 from microslip.pressures.axisymmetric_indenter import indenter
+from microslip.pressures.pressure import Pressure
 
 DEFAULTS = {"flat": 0.8}
 LARGEST_FLAT = 0.99
 _HALVINGS = 100
 
 
-def pressure(name, flat):
-    """The Pressure of a punch whose flat end reaches up to ``flat`` contact radii.
+def pressure(name: str, flat: float) -> Pressure:
+    """The Pressure of a punch whose flat end reaches up to `flat` contact radii.
 
     Equivalent plane profile (Ciavarella 1999): D(c) ~ c (sqrt(c^2 - b^2) - b arccos(b/c)) for c
     above b.  Raises InputError for a flat end outside 0..0.99.

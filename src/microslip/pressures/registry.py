@@ -1,6 +1,6 @@
 """Pressures: how the load is spread over the contact, and so what every point can take.
 
-A pressure is one ``Pressure`` record (see pressure.py for it and for the working units), in a file
+A pressure is one `Pressure` record (see pressure.py for it and for the working units), in a file
 of its name, as PRESSURE.  A family gives one for numbers that follow its name: its file holds
 DEFAULTS, the numbers and their values if they are not given, and pressure(name, **numbers), which
 raises InputError for numbers out of range.  A source gives one for a text of its own that follows
@@ -49,7 +49,7 @@ for _folder in list(pressures.__path__):
     find(_folder)
 
 
-def pressure_named(name):
+def pressure_named(name: str) -> Pressure:
     """The Pressure of this name, of a family for the numbers that follow its name, such as
     "power:exponent=1", or from a source, as in "file:measured.csv".  Raises InputError saying what
     is allowed."""

@@ -18,8 +18,8 @@ SMALLEST, LARGEST = 0.05, 0.95
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
-def pressure(name, inner):
-    """The Pressure sqrt((r - b)(1 - r)) on the ring from b = ``inner`` to 1.
+def pressure(name: str, inner: float) -> Pressure:
+    """The Pressure sqrt((r - b)(1 - r)) on the ring from b = `inner` to 1.
 
     That is Hertz's pressure of a line contact laid around a circle, which a slender torus comes
     close to; of a wide ring it is an assumption.  Raises InputError for b outside 0.05..0.95.

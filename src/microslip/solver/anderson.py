@@ -11,6 +11,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from microslip.solver.period_map import PeriodicState, PeriodMap
+
 FORCING = 1e-3
 LOOSEST = 1e-4
 """While the state is still far from periodic, steps are solved to this share of what the last
@@ -22,36 +24,56 @@ FORGETFUL = 0.2
 """Contraction of the plain map from the start on below which it is left alone."""
 
 
-def search(cycle, start, tolerance, step_tolerance, most_laps):
-    """Find the fixed point of a cycle.Cycle to ``tolerance`` (a force over mu F_z).
+def search(
+    period_map: PeriodMap,
+    start: np.ndarray,
+    tolerance: float,
+    step_tolerance: float,
+    most_marches: int,
+) -> PeriodicState:
+    """Find the fixed point of a map by Anderson acceleration.
 
-    Returns a cycle.PeriodicState: the best state seen, if none is good enough.
+    Parameters
+    ----------
+    period_map : period_map.PeriodMap
+        The map.
+    start : np.ndarray
+        Tractions.
+    tolerance, step_tolerance : float
+        Of the state and of a step, forces over mu F_z.
+    most_marches : int
+        Marches to try.
+
+    Returns
+    -------
+    period_map.PeriodicState
+        The best state seen, if none is good enough.
     """
-    accelerate = Anderson(cycle.contact, DEPTH)
+    accelerate = Anderson(period_map.contact, DEPTH)
     state, best = start, None
     inner = max(step_tolerance, LOOSEST)
     forgets, last_residual = True, np.inf
-    while cycle.laps < most_laps:
-        lap = cycle(state, inner)
+    while period_map.marches < most_marches:
+        interval = period_map(state, inner)
         solved = inner <= step_tolerance
-        noisy = not solved and lap.march.residual > NOISE * lap.residual
+        noisy = not solved and interval.march.residual > NOISE * interval.residual
         ceiling = NOISE * inner if noisy else LOOSEST
-        inner = max(step_tolerance, min(FORCING * lap.residual, ceiling))
+        inner = max(step_tolerance, min(FORCING * interval.residual, ceiling))
         if noisy:
             continue  # what is left of the steps hides what the period changed
-        forgets = forgets and lap.residual <= FORGETFUL * last_residual
-        last_residual = lap.residual
-        proposal = accelerate(state, lap.image)
+        forgets = forgets and interval.residual <= FORGETFUL * last_residual
+        last_residual = interval.residual
+        proposal = accelerate(state, interval.image)
         if forgets:
-            proposal = lap.image
-        state = cycle.admissible(proposal)
-        distance = cycle.distance(lap, state)
+            proposal = interval.image
+        state = period_map.admissible(proposal)
+        distance = period_map.distance(interval, state)
         converged = solved and distance <= tolerance
         if best is None or distance < best.distance or converged:
-            best = cycle.result(lap, distance, converged)
+            best = period_map.result(interval, distance, converged)
         if converged:
             break
-    return best or cycle.result(lap, lap.residual, False)
+    return best or period_map.result(interval, interval.residual, False)
 
 
 class Anderson:

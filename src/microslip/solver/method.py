@@ -1,6 +1,6 @@
 """A method: how a contact is marched and how its periodic state is found.  What ships is SHIPPED.
 
-Others exist to be compared with it (see the package ``methods``).  Each replaces a part: the
+Others exist to be compared with it (see the package `methods`).  Each replaces a part: the
 integrator, the solver of a step, the search for the periodic state, or its start.
 """
 
@@ -30,7 +30,7 @@ class Method:
     parameters : mapping of str to float
         Numbers that `dress` takes, with their defaults.
     search : callable
-        search(cycle, start, tolerance, step_tolerance, most_laps, inverse) -> PeriodicState.
+        As periodic.find_periodic_state.
     prepared : bool
         Whether to start near the static limit and with coarse steps, else once from full slip.
     extrapolated : bool

@@ -1,7 +1,7 @@
 """Methods to compare with the one that ships: one file a method.
 
-A method is the file ``name_of_it.py`` in the folder ``methods``, which holds METHOD, a
-``method.Method``; it is then known as ``name-of-it``, to ``microslip.solve`` as well as in a
+A method is the file `name_of_it.py` in the folder `methods`, which holds METHOD, a
+`method.Method`; it is then known as `name-of-it`, to `microslip.solve` as well as in a
 configuration.  Files whose name starts with an underscore are shared by methods.  Numbers that a
 method takes may follow its name: "admm:penalty=0.1,relaxation=1.5".  A method may require a package
 that is not one of microslip's: where that is not installed, nothing asks for it.
@@ -26,21 +26,21 @@ METHODS = Path(methods.__file__).parent
 
 
 @cache
-def names():
+def names() -> tuple[str, ...]:
     """Names of all methods, the one that ships first."""
     stems = (file.stem for file in METHODS.glob("[!_]*.py"))
     # not a copy or a checkpoint of one, which nobody means
     return (SHIPPED, *sorted(stem.replace("_", "-") for stem in stems if stem.isidentifier()))
 
 
-def split(text):
+def split(text: str) -> tuple[str, dict[str, float]]:
     """Name and numbers (dict) of a method; raises InputError if the text cannot be read."""
     if not isinstance(text, str):
         raise InputError("method", text, f"allowed is one of {', '.join(names())}")
     return spec.split(text, "method", names())
 
 
-def refusal(text):
+def refusal(text: str) -> str:
     """Why a text names no method, as one line; "" if it does.  Imports no solver."""
     try:
         check(text)
@@ -49,16 +49,16 @@ def refusal(text):
     return ""
 
 
-def check(text):
+def check(text: str) -> None:
     """Raise InputError where a text names no method.  Imports no solver."""
     name, numbers = split(text)
     spec.refuse_unknown(text, "method", numbers, _parameters(name))
 
 
-def missing(text):
+def missing(text: str) -> str:
     """Why a method cannot run here, as one line: the package that it requires is not installed.
 
-    "" if it can.  Imports neither the solver nor the package.  Raises InputError as ``split``.
+    "" if it can.  Imports neither the solver nor the package.  Raises InputError as `split`.
     """
     try:
         refuse_missing(text)
@@ -67,7 +67,7 @@ def missing(text):
     return ""
 
 
-def refuse_missing(text):
+def refuse_missing(text: str) -> None:
     """Raise InputError where the package that a method requires is not installed, see above."""
     name, _ = split(text)
     package = declared(name, "requires")
@@ -93,7 +93,7 @@ def _parameters(name):
 
 
 @cache
-def declared(name, field):
+def declared(name: str, field: str) -> object:
     """What a method's file gives for a field of METHOD, read without running it; None: nothing.
 
     name: without numbers; the value has to be a literal.

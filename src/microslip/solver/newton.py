@@ -12,6 +12,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from microslip.solver.period_map import PeriodicState, PeriodMap
+
 NEUTRAL = 1e-10
 """Damping of every correction: keeps directions in which nothing ever slips where they are."""
 FIRST_DAMPING, DAMPING_FACTOR = 1e-2, 10.0
@@ -22,18 +24,40 @@ SKEWED = 1e-3
 """Broyden updates that divide by less than this share of a move's square are left out."""
 
 
-def search(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
-    """Find the fixed point of a cycle.Cycle to ``tolerance`` (a force over mu F_z).
+def search(
+    period_map: PeriodMap,
+    start: np.ndarray,
+    tolerance: float,
+    step_tolerance: float,
+    most_marches: int,
+    inverse: np.ndarray | None = None,
+) -> PeriodicState:
+    """Find the fixed point of a map by Newton's method.
 
-    inverse: known inverse of 1 - F' near the start, (start.size, start.size); without it the first
-    march gives its derivative.  Returns a cycle.PeriodicState.
+    Parameters
+    ----------
+    period_map : period_map.PeriodMap
+        The map, of a contact whose marches give derivatives.
+    start : np.ndarray
+        Tractions.
+    tolerance, step_tolerance : float
+        Of the state and of a step, forces over mu F_z.
+    most_marches : int
+        Marches to try.
+    inverse : np.ndarray or None, shape (start.size, start.size)
+        Known inverse of 1 - F' near the start; without it the first march gives its derivative.
+
+    Returns
+    -------
+    period_map.PeriodicState
+        The last state that was no worse than the one before.
     """
-    corrector = Corrector(cycle, start, inverse)
+    corrector = Corrector(period_map, start, inverse)
     state, derivative = start, inverse is None
     best, found, last_step, rejected = None, None, np.inf, 0
-    while cycle.laps < most_laps:
-        lap = cycle(state, step_tolerance, derivative)
-        if best is not None and not lap.residual <= best.residual:
+    while period_map.marches < most_marches:
+        interval = period_map(state, step_tolerance, derivative)
+        if best is not None and not interval.residual <= best.residual:
             rejected += 1
             derivative = True
             if best.march.sensitivity is not None and rejected <= MOST_DAMPINGS:
@@ -44,48 +68,50 @@ def search(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
                 corrector.damping = 0.0
             continue
         rejected = 0
-        corrector.learn(lap, best)
-        state = corrector(lap)
-        distance = cycle.distance(lap, state)
+        corrector.learn(interval, best)
+        state = corrector(interval)
+        distance = period_map.distance(interval, state)
         converged = distance <= tolerance and not corrector.damping
-        found = cycle.result(lap, distance, converged, corrector.inverse)
+        found = period_map.result(interval, distance, converged, corrector.inverse)
         if converged:
             break
         derivative = corrector.damping > 0.0 or corrector.step > SLOW * last_step
-        best, last_step = lap, corrector.step
+        best, last_step = interval, corrector.step
     return found
 
 
 class Corrector:
-    """Next states from laps, by the inverse of damping + 1 - F' (F: the mirrored march).
+    """Next states from march intervals, by the inverse of damping + 1 - F' (F: the mirrored march).
 
     step: size of the last correction before it was projected, in the metric of Broyden's updates.
     """
 
-    def __init__(self, cycle, state, inverse=None):
-        self.cycle, self.inverse = cycle, inverse
-        contact = cycle.contact
+    def __init__(self, period_map, state, inverse=None):
+        self.period_map, self.inverse = period_map, inverse
+        contact = period_map.contact
         self.damping, self.step = 0.0, np.inf
-        self._signs = cycle.image(np.ones_like(state)).reshape(-1, 1)  # points stay in place
+        self._signs = period_map.image(np.ones_like(state)).reshape(-1, 1)  # points stay in place
         self._metric = np.broadcast_to(contact.weight * contact.compliance, state.shape).ravel()
         self._system = None
 
-    def __call__(self, lap):
-        """The corrected state of a lap."""
-        correction = self.inverse @ lap.change.ravel()
+    def __call__(self, interval):
+        """The corrected state of an interval."""
+        correction = self.inverse @ interval.change.ravel()
         self.step = float(np.sqrt(self._metric @ correction**2))
-        return self.cycle.admissible(lap.state + correction.reshape(lap.state.shape))
+        return self.period_map.admissible(interval.state + correction.reshape(interval.state.shape))
 
-    def learn(self, lap, before):
-        """Take the derivative from a lap that has one, else update it from the lap before."""
-        if lap.march.sensitivity is not None:
-            self._system = -self._signs * lap.march.sensitivity
+    def learn(self, interval, before):
+        """Take the derivative from an interval that has one, else update it from the one before."""
+        if interval.march.sensitivity is not None:
+            self._system = -self._signs * interval.march.sensitivity
             self.damping /= DAMPING_FACTOR
             if self.damping < FIRST_DAMPING:
                 self.damping = 0.0
             self._invert()
         elif before is not None:
-            self._update((lap.state - before.state).ravel(), (before.change - lap.change).ravel())
+            self._update(
+                (interval.state - before.state).ravel(), (before.change - interval.change).ravel()
+            )
 
     def damp(self):
         """Damp corrections by the last derivative more than before."""
@@ -98,7 +124,7 @@ class Corrector:
         self.inverse = np.linalg.inv(damped)
 
     def _update(self, moved, changed):
-        """Broyden's update: the inverse turns ``changed`` into ``moved`` from now on."""
+        """Broyden's update: the inverse turns `changed` into `moved` from now on."""
         predicted = self.inverse @ changed
         weighted = self._metric * moved
         share = weighted @ predicted

@@ -7,19 +7,42 @@ the derivative of its march, else by Anderson acceleration.
 
 from __future__ import annotations
 
+import numpy as np
+
 from microslip.solver import anderson, newton
+from microslip.solver.period_map import PeriodicState, PeriodMap
 
-MOST_LAPS = 200
+MOST_MARCHES = 200
 
 
-def find_periodic_state(cycle, start, tolerance, step_tolerance, most_laps=MOST_LAPS, inverse=None):
-    """March half periods until the state is periodic to ``tolerance`` (a force over mu F_z).
+def find_periodic_state(
+    period_map: PeriodMap,
+    start: np.ndarray,
+    tolerance: float,
+    step_tolerance: float,
+    most_marches: int = MOST_MARCHES,
+    inverse: np.ndarray | None = None,
+) -> PeriodicState:
+    """March periods until the state repeats itself to the tolerance.
 
-    cycle: cycle.Cycle, the map over half a period; start: state, shape of the contact; inverse:
-    that of a search from a start near by, if there was one.  The returned forces belong to a march
-    from the returned start, whose distance from the periodic state is ``distance``.  Never raises
-    for want of convergence: see ``converged``.
+    Parameters
+    ----------
+    period_map : period_map.PeriodMap
+        The map over a (half) period.
+    start : np.ndarray
+        Tractions, of the shape of the contact's states.
+    tolerance, step_tolerance : float
+        Of the state and of a step, forces over mu F_z.
+    most_marches : int
+        Marches to try.
+    inverse : np.ndarray or None, shape (start.size, start.size)
+        That of a search from a start near by, if there was one.
+
+    Returns
+    -------
+    period_map.PeriodicState
+        Never raises for want of convergence: see `converged` there.
     """
-    if cycle.contact.has_sensitivity:
-        return newton.search(cycle, start, tolerance, step_tolerance, most_laps, inverse)
-    return anderson.search(cycle, start, tolerance, step_tolerance, most_laps)
+    if period_map.contact.has_sensitivity:
+        return newton.search(period_map, start, tolerance, step_tolerance, most_marches, inverse)
+    return anderson.search(period_map, start, tolerance, step_tolerance, most_marches)

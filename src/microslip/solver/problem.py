@@ -7,18 +7,28 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
+from microslip.models.contact import Contact
 from microslip.models.path import SDIRK2, make_path, phases_between, turning_point_grading
 from microslip.models.registry import MODELS
 from microslip.models.rings.mesh import Focus
 
 WEAKEST_FOCUS, STRONGEST_FOCUS, STATIC_FOCUS = 0.3, 1.0 - 2.0**-6, 0.9
-"""Bounds of rings.Focus.strength, and its value for the static limit."""
+"""Bounds of mesh.Focus.strength, and its value for the static limit."""
 
 
 @dataclass(frozen=True, order=True)
 class Resolution:
-    """Cells (rings, or squares along a side), angular points on half the disc, steps a half period
-    (steady motion: not used)."""
+    """How finely a problem is resolved.
+
+    Attributes
+    ----------
+    cells : int
+        Rings, or squares along a side.
+    angles : int
+        Angular points on half the disc.
+    steps : int
+        In half a period (steady motion: not used).
+    """
 
     cells: int
     angles: int
@@ -26,8 +36,18 @@ class Resolution:
 
 
 @dataclass(frozen=True)
-class Motion:
-    """A scene at one point of its parameters."""
+class Problem:
+    """A motion at one point of its parameters.
+
+    Attributes
+    ----------
+    scene : motion.Scene
+        What moves, and the pressure that it is under.
+    velocity, amplitude : float
+        The dimensionless groups of the motion; amplitude None where it is steady.
+    poisson : float
+        Poisson's ratio, 0 to 0.5.
+    """
 
     scene: object
     velocity: float
@@ -64,16 +84,18 @@ class Motion:
         return turning_point_grading(self.creep, self.scene.stroke(self.amplitude, self.poisson))
 
     def path(self, contact, steps, integrator=SDIRK2):
-        """A lap in steps that suit the motion, or the contact if it has a say in it: half a period,
-        where the second half is the mirror image of the first one, else the whole."""
+        """The path to march, in steps that suit the motion, or the contact if it has a say in it.
+
+        It is half a period where the second half is the mirror image of the first, else the whole.
+        """
         return _path(self, steps, getattr(contact, "grading", self.grading), integrator)
 
 
 @lru_cache(maxsize=32)
-def _path(motion, steps, grading, integrator):
-    turns = motion.scene.turns(motion.velocity, motion.amplitude)
+def _path(problem, steps, grading, integrator):
+    turns = problem.scene.turns(problem.velocity, problem.amplitude)
     phases = phases_between(turns, steps, grading)
-    return make_path(motion.displacement, phases, integrator, motion.depth)
+    return make_path(problem.displacement, phases, integrator, problem.depth)
 
 
 def _focus_strength(creep):
@@ -87,24 +109,38 @@ def _focus_strength(creep):
     return float(np.clip(1.0 - layer, WEAKEST_FOCUS, STRONGEST_FOCUS))
 
 
-def _focus(motion):
+def _focus(problem):
     """Where the slip starts: rings gather there, the closer, the slower the creep."""
-    scene = motion.scene
-    radius = scene.focus(motion.velocity, motion.amplitude, scene.pressure)
+    scene = problem.scene
+    radius = scene.focus(problem.velocity, problem.amplitude, scene.pressure)
     if radius is None or not scene.periodic:
         return radius
-    creep = motion.creep
+    creep = problem.creep
     return Focus(radius, _focus_strength(creep) if creep > 0.0 else STATIC_FOCUS)
 
 
-def build_contact(motion, model, resolution, focus=None):
-    """The contact, its rings gathered at a rings.Focus, by default where the slip starts."""
-    scene = motion.scene
-    focus = focus or _focus(motion)
+def build_contact(
+    problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
+) -> Contact:
+    """The contact of a problem.
+
+    Parameters
+    ----------
+    problem : Problem
+        Where the normal load changes, the contact is that of the start of a period.
+    model : str
+        Name in models.registry.MODELS.
+    resolution : Resolution
+        Of the model.
+    focus : mesh.Focus or None
+        Where rings gather; None: where the slip starts.
+    """
+    scene = problem.scene
+    focus = focus or _focus(problem)
     build = MODELS[model].build
-    contact = build(scene, motion.poisson, resolution.cells, resolution.angles, focus)
+    contact = build(scene, problem.poisson, resolution.cells, resolution.angles, focus)
     if scene.depth is None:
         return contact
-    start = scene.turns(motion.velocity, motion.amplitude)[0]
-    deepest = scene.deepest(motion.amplitude, scene.pressure)
-    return contact.pressed(deepest, float(motion.depth(np.array(start))))
+    start = scene.turns(problem.velocity, problem.amplitude)[0]
+    deepest = scene.deepest(problem.amplitude, scene.pressure)
+    return contact.pressed(deepest, float(problem.depth(np.array(start))))

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from microslip.models.contact import FORWARD, StepFailure, forces, forward_slip
+from microslip.models.contact import FORWARD, Contact, StepFailure, forces, forward_slip
 from microslip.models.coulomb import project
-from microslip.solver.budget import Budget
-from microslip.solver.method import SHIPPED
-from microslip.solver.period_map import Cycle, Pace
-from microslip.solver.periodic import MOST_LAPS
-from microslip.solver.problem import Motion, build_contact
+from microslip.models.path import Path
+from microslip.motions.motion import Scene
+from microslip.solver.period_map import CreepRate, PeriodMap
+from microslip.solver.periodic import MOST_MARCHES
+from microslip.solver.problem import Problem, Resolution
+from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run
 from microslip.solver.static_limit import static_state
 from microslip.solver.steady import steady_state
 
@@ -24,6 +25,7 @@ CAREFUL = 0.1
 """The floor of these tolerances in a second attempt, over that in a first one."""
 MARCH_SHARE = 0.16
 """Bound of the sum over the steps of half a period, two stages each: a third of the tolerance."""
+
 SLOW_PUSH, LARGEST_PUSH = 4.0, 0.6
 """Forward traction added to the static limit's, as a share of the bound, for a start: it grows as
 the friction itself does with the creep in a radian, so that every point slips forward too much.
@@ -35,93 +37,75 @@ COARSE_TOLERANCE = 1e-5
 no fewer are left than these, and no tighter than this."""
 
 
-@dataclass(frozen=True)
-class Run:
-    """Outcome of one run: forward friction and torque over their full-slip values, and the effort.
-
-    Where the normal load changes, forces are over mu times its mean.
-
-    distance: estimated distance from the periodic (steady) state; solver_residual: summed over the
-    last period; both forces over mu F_z.  periods: full ones that were marched in search of a state
-    that repeats itself, 0 for a steady motion; iterations, solves: of all searches together;
-    work: step solves x unknowns; effort: iterations x unknowns; retried: 1 if the run is a second
-    attempt, see continuation.run_safely.  For other runs of the point:
-    state, the periodic tractions; inverse: see period_map.PeriodicState; static_force: mean forward
-    force of the static limit.
-    """
-
-    mu: float
-    torque: float
-    distance: float
-    solver_residual: float
-    periods: float
-    iterations: int
-    solves: int
-    work: int
-    effort: int
-    converged: bool
-    reason: str
-    state: np.ndarray | None = None
-    inverse: np.ndarray | None = None
-    static_force: float = 0.0
-    retried: int = 0
-
-
 def simulate(
-    scene,
-    velocity,
-    amplitude,
-    poisson,
-    model,
-    resolution,
-    tolerance,
-    guess=None,
-    method=SHIPPED,
-    careful=False,
-    budget=None,
-):
-    """Run ``model`` on a scene at one resolution to its periodic (or steady) state.
+    problem: Problem,
+    model: str,
+    resolution: Resolution,
+    tolerance: float,
+    guess: Run | None = None,
+    settings: Settings = AS_SHIPPED,
+) -> Run:
+    """Run a model on a problem at one resolution to its periodic (or steady) state.
 
-    scene: scenes.Scene; velocity > 0, amplitude > 0 (None for steady scenes), poisson in 0..0.5:
-    checked by the caller; tolerance: of the periodic state, a force over mu F_z, steps are solved
-    a hundred times tighter; guess: a Run of the same point, of use if cells and angles are the
-    same, too; method: method.Method; careful: solve the steps of slow motions tighter; budget: a
-    budget.Budget, None: without bounds.  Returns a Run; never raises for want of convergence, but
-    budget.Spent where the budget is.
+    Parameters
+    ----------
+    problem : problem.Problem
+        Velocity and amplitude above 0 (amplitude None for steady motions), checked by the caller.
+    model : str
+        Name in models.registry.MODELS.
+    resolution : problem.Resolution
+        Of the model.
+    tolerance : float
+        Of the periodic state, a force over mu F_z; steps are solved a hundred times tighter.
+    guess : Run or None
+        Of the same point; of use if cells and angles are the same, too.
+    settings : Settings
+        How it is done.
+
+    Returns
+    -------
+    Run
+        Never raises for want of convergence.
+
+    Raises
+    ------
+    budget.Spent
+        Where the budget is.
     """
-    motion = Motion(scene, velocity, amplitude, poisson)
-    left = tolerance * motion.mean_load  # inside of a run forces are over mu F_z
+    method = settings.method
+    absolute = tolerance * problem.mean_load  # inside of a run forces are over mu F_z
     if method.run is not None:
-        return method.run(motion, model, resolution, left)
-    budget = Budget() if budget is None else budget
+        return method.run(problem, model, resolution, absolute)
     try:
-        run = _run(motion, model, resolution, left, guess, method, careful, budget)
+        run = _run(problem, model, resolution, absolute, guess, settings)
     except (StepFailure, ArithmeticError, np.linalg.LinAlgError) as failure:
         return failed_run(str(failure))
     if method.extrapolated and run.converged:
         half = replace(resolution, steps=max(resolution.steps // 2, 1))
-        other = replace(method, extrapolated=False)
-        point = (scene, velocity, amplitude, poisson, model, half, tolerance, run, other)
-        return _extrapolated(run, simulate(*point, budget=budget))
+        plain = replace(settings, method=replace(method, extrapolated=False), careful=False)
+        return _extrapolated(run, simulate(problem, model, half, tolerance, run, plain))
     return run
 
 
-def failed_run(reason):
-    """The Run of a march that could not go on: no number, and why."""
-    return Run(np.nan, np.nan, np.inf, np.inf, 0.0, 0, 0, 0, 0, False, reason)
-
-
-def _run(motion, model, resolution, tolerance, guess, method, careful, budget):
-    contact = budget.metered(method.dressed(build_contact(motion, model, resolution)))
-    step_tolerance = STEP_SHARE * tolerance
-    if not motion.scene.periodic:
-        return _steady_run(contact, motion, tolerance, step_tolerance)
-    slow_share = contact.stiffness * motion.creep * np.pi * STEP_SHARE
-    floor = CAREFUL * SLOW_STEP_SHARE if careful else SLOW_STEP_SHARE
-    share = min(max(slow_share, floor), STEP_SHARE, MARCH_SHARE / resolution.steps)
+def _run(problem, model, resolution, tolerance, guess, settings):
+    """As `simulate`, but that the tolerance is that of a force over mu F_z, and failures raise."""
+    contact = settings.contact(problem, model, resolution)
+    if not problem.scene.periodic:
+        return _steady_run(contact, problem, tolerance, STEP_SHARE * tolerance)
+    share = _step_share(contact.stiffness * problem.creep, resolution.steps, settings.careful)
     step_tolerance = share * tolerance
-    search = _Search(contact, motion, method, resolution.steps, tolerance, step_tolerance)
+    search = _Search(contact, problem, settings.method, resolution.steps, tolerance, step_tolerance)
     return search.run(guess)
+
+
+def _step_share(force_rate, steps, careful):
+    """Tolerance of a step over that of the periodic state.
+
+    force_rate: force over mu F_z that a contact without slip gains in a radian.
+    """
+    slow_share = force_rate * np.pi * STEP_SHARE
+    floor = CAREFUL * SLOW_STEP_SHARE if careful else SLOW_STEP_SHARE
+    return min(max(slow_share, floor), STEP_SHARE, MARCH_SHARE / steps)
 
 
 def _extrapolated(fine, coarse):
@@ -145,22 +129,22 @@ def _extrapolated(fine, coarse):
 class _Search:
     """The search for the periodic state of one run, from one start after the other."""
 
-    def __init__(self, contact, motion, method, steps, tolerance, step_tolerance):
-        self.contact, self.motion, self.method, self.steps = contact, motion, method, steps
+    def __init__(self, contact, problem, method, steps, tolerance, step_tolerance):
+        self.contact, self.problem, self.method, self.steps = contact, problem, method, steps
         self.tolerance, self.step_tolerance = tolerance, step_tolerance
-        lap = np.pi if motion.scene.half_period_mirror else 2.0 * np.pi
-        self.pace = Pace(0.0, contact.stiffness * motion.creep * lap)
+        interval = np.pi if problem.scene.half_period_mirror else 2.0 * np.pi
+        self.creep_rate = CreepRate(0.0, contact.stiffness * problem.creep * interval)
         self.path = self._path(steps)
         self.done = []
 
     def _path(self, steps):
-        return self.motion.path(self.contact, steps, self.method.integrator)
+        return self.problem.path(self.contact, steps, self.method.integrator)
 
     def run(self, guess=None):
         """The Run; guess: see simulate."""
         found = None
         if guess is not None and self._fits(guess):
-            self.pace = replace(self.pace, static_force=guess.static_force)
+            self.creep_rate = replace(self.creep_rate, static_force=guess.static_force)
             found = self._find(self.path, guess.state, guess.inverse)
         if found is None or not found.converged:
             found = self._search_afresh()
@@ -182,12 +166,12 @@ class _Search:
 
     def _start_near_the_limit(self, slipping):
         """The static limit with all points pushed forward; also takes note of its force."""
-        contact, creep = self.contact, self.motion.creep
-        if not (contact.sticks and self.motion.scene.straight):
+        contact, creep = self.contact, self.problem.creep
+        if not (contact.sticks and self.problem.scene.straight):
             return slipping
-        residual, oscillating = static_state(contact, self.motion.oscillation, self.step_tolerance)
+        residual, oscillating = static_state(contact, self.problem.oscillation, self.step_tolerance)
         force = float(forces(contact, residual)[FORWARD])
-        self.pace = replace(self.pace, static_force=force)
+        self.creep_rate = replace(self.creep_rate, static_force=force)
         push = min(SLOW_PUSH * creep ** (2.0 / 3.0), LARGEST_PUSH)
         return project(residual + oscillating + push * slipping, contact.bound)
 
@@ -207,17 +191,19 @@ class _Search:
 
     def _find(self, path, start, inverse, tolerance=None):
         looser = (tolerance or self.tolerance) / self.tolerance
-        cycle = Cycle(self.contact, path, self.pace, self.motion.scene.half_period_mirror)
+        period_map = PeriodMap(
+            self.contact, path, self.creep_rate, self.problem.scene.half_period_mirror
+        )
         tolerances = looser * self.tolerance, looser * self.step_tolerance
-        self.done.append(self.method.search(cycle, start, *tolerances, MOST_LAPS, inverse))
+        self.done.append(self.method.search(period_map, start, *tolerances, MOST_MARCHES, inverse))
         return self.done[-1]
 
     def _summary(self, found):
-        full = self.motion.mean_load
-        forward, _, torque = mean_forces(self.contact, self.motion, self.path, found.forces)
+        full = self.problem.mean_load
+        forward, _, torque = mean_forces(self.contact, self.problem, self.path, found.forces)
         solves = sum(one.solves for one in self.done)
         solved = found.solver_residual <= _solved_sum(self.path, self.step_tolerance)
-        periods = periods_of(sum(one.laps for one in self.done), self.motion.scene)
+        periods = periods_of(sum(one.marches for one in self.done), self.problem.scene)
         reason = ""
         if not found.converged:
             reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
@@ -225,7 +211,7 @@ class _Search:
             reason = f"a step was left unsolved: residual {found.solver_residual:.1e}"
         return Run(
             mu=float(forward) / full,
-            torque=float(torque) / self.motion.scene.pressure.torque,
+            torque=float(torque) / self.problem.scene.pressure.torque,
             distance=found.distance / full,
             solver_residual=found.solver_residual / full,
             periods=periods,
@@ -237,37 +223,37 @@ class _Search:
             reason=reason,
             state=found.start,
             inverse=found.inverse,
-            static_force=self.pace.static_force,
+            static_force=self.creep_rate.static_force,
         )
 
 
-def periods_of(laps, scene):
-    """Full periods in so many laps of a scene.Scene, a float: a lap is half of one where its
+def periods_of(marches: int, scene: Scene) -> float:
+    """Full periods in so many marches of a motion.Scene, a float: each is half of one where its
     second half is the mirror image of the first."""
-    return 0.5 * laps if scene.half_period_mirror else float(laps)
+    return 0.5 * marches if scene.half_period_mirror else float(marches)
 
 
-def mean_forces(contact, motion, path, forces):
-    """Means over a lap of the forces at its phases, shape (3,)."""
-    if motion.depth is None:
+def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarray) -> np.ndarray:
+    """Means over a march of the forces at its phases, shape (3,)."""
+    if problem.depth is None:
         return path.mean(forces)
     # by what they lack of full slip, whose mean is known: less is left to the trapezoidal rule,
     # and to how the rings in contact follow its edge
-    bounds = contact.bounds(motion.depth(path.phase))
+    bounds = contact.bounds(problem.depth(path.phase))
     full = contact.angles * (bounds @ contact.weight)[:, None] * [1.0, 0.0, 0.0]
-    return [motion.mean_load, 0.0, 0.0] - path.mean(full - forces)
+    return [problem.mean_load, 0.0, 0.0] - path.mean(full - forces)
 
 
 def _solved_sum(path, step_tolerance):
-    """Largest sum of residuals that a march solved to ``step_tolerance`` can leave."""
+    """Largest sum of residuals that a march solved to `step_tolerance` can leave."""
     return path.stages.shape[0] * path.stages.shape[1] * step_tolerance
 
 
-def _steady_run(contact, motion, tolerance, step_tolerance):
-    found = steady_state(contact, motion.displacement, motion.velocity, tolerance, step_tolerance)
+def _steady_run(contact, problem, tolerance, step_tolerance):
+    found = steady_state(contact, problem.displacement, problem.velocity, tolerance, step_tolerance)
     return Run(
         mu=float(found.forces[0]),
-        torque=float(found.forces[2]) / motion.scene.pressure.torque,
+        torque=float(found.forces[2]) / problem.scene.pressure.torque,
         distance=found.distance,
         solver_residual=found.solver_residual,
         periods=0.0,

@@ -6,13 +6,34 @@ from dataclasses import replace
 
 import numpy as np
 
+from microslip.models.contact import Contact
+from microslip.models.path import Path
 
-def frames(contact, path, state, tolerance):
-    """Tractions at every phase of a path, (steps + 1, 2, ...), and the forces, (steps + 1, 3).
 
-    contact: models.contact.Contact; state: tractions at the first phase; tolerance: of the steps.
+def frames(
+    contact: Contact, path: Path, state: np.ndarray, tolerance: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Tractions and forces at every phase of a path.
+
+    Parameters
+    ----------
+    contact : contact.Contact
+        What is marched.
+    path : path.Path
+        From where `state` is.
+    state : np.ndarray
+        Tractions at the first phase.
+    tolerance : float
+        Of a step, a force over mu F_z.
+
+    Returns
+    -------
+    tractions : np.ndarray, shape (steps + 1, 2, ...)
+        Forward and lateral.
+    forces : np.ndarray, shape (steps + 1, 3)
+        See contact.March.
     """
-    if path.depth is not None:  # bounds belong to the lap as a whole
+    if path.depth is not None:  # bounds belong to the path as a whole
         march = contact.march(path, state, tolerance)
         return contact.at_phases(march, state), march.forces
     tractions, forces = [state], []
@@ -29,7 +50,7 @@ def frames(contact, path, state, tolerance):
     return np.array(tractions), np.array(forces)
 
 
-def bounds_at_phases(contact, path):
+def bounds_at_phases(contact: Contact, path: Path) -> np.ndarray:
     """Friction bounds at every phase, (steps + 1, 1, n), or those that stay, (1, ...)."""
     if path.depth is None:
         return contact.bound[None]

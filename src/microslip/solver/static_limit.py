@@ -2,7 +2,7 @@
 
 Let +-q_osc be the tractions at the two turning points of the oscillation alone, their mean removed.
 As the forward velocity vanishes, every point that still sticks at times has to creep forward by a
-little in each cycle, at instants when |R + q_osc| reaches the bound, R being the constant part of
+little in each period, at instants when |R + q_osc| reaches the bound, R being the constant part of
 its traction.  Creep so slow does not change q_osc, and the flow rule makes R the best there is:
 
     maximise  R . e_forward   subject to   |R + q_osc| <= g  and  |R - q_osc| <= g   at every point,
@@ -14,9 +14,13 @@ a loop, and a load that oscillates, are in static_loop.py.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
+from microslip.models.contact import Contact
 from microslip.models.path import EULER, make_path
+from microslip.motions.motion import Scene
 
 STEPS = 4
 """Steps from one turning point to the next.  Between them the slip of each point keeps its
@@ -24,13 +28,13 @@ direction and only grows, so that backward Euler steps of any size end in the sa
 method of second order may end a step below the bound, and the residual feels the square root.)"""
 
 
-def at_turning_points(scene):
-    """Whether the turning points tell the static limit of a scenes.Scene: motion on a line under a
+def at_turning_points(scene: Scene) -> bool:
+    """Whether the turning points tell the static limit of a motion.Scene: motion on a line under a
     load that stays."""
     return scene.straight and scene.depth is None
 
 
-def oscillating_part(contact, oscillation, step_tolerance):
+def oscillating_part(contact: Contact, oscillation: Callable, step_tolerance: float) -> np.ndarray:
     """Tractions at the first turning point under the oscillation alone, mean removed.
 
     oscillation(phase) -> rigid displacement without forward motion; the phase -pi/2 is the turning
@@ -43,7 +47,7 @@ def oscillating_part(contact, oscillation, step_tolerance):
     return -contact.march(quarter, np.zeros((2, *shape)), step_tolerance).state
 
 
-def residual_part(oscillating, bound):
+def residual_part(oscillating: np.ndarray, bound: np.ndarray) -> np.ndarray:
     """The constant tractions R, point by point; arrays (2, ...), forward component first.
 
     The two discs |R +- q| <= g intersect in a lens.  Its point furthest forward is the forward tip
@@ -64,7 +68,9 @@ def residual_part(oscillating, bound):
     return np.where(size < bound, residual, 0.0)
 
 
-def static_state(contact, oscillation, step_tolerance):
+def static_state(
+    contact: Contact, oscillation: Callable, step_tolerance: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Residual and oscillating tractions of the static limit (see the module's docstring)."""
     oscillating = oscillating_part(contact, oscillation, step_tolerance)
     return residual_part(oscillating, contact.bound), oscillating

@@ -9,11 +9,10 @@ import numpy as np
 from microslip.models.contact import FORWARD, StepFailure, forces
 from microslip.models.rings.mesh import Focus
 from microslip.solver import anderson
-from microslip.solver.budget import Budget
-from microslip.solver.method import SHIPPED
-from microslip.solver.period_map import Cycle
-from microslip.solver.problem import STRONGEST_FOCUS, Motion, build_contact
-from microslip.solver.simulate import STEP_SHARE, Run, failed_run, mean_forces, periods_of
+from microslip.solver.period_map import PeriodMap
+from microslip.solver.problem import STRONGEST_FOCUS, Problem, Resolution
+from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run
+from microslip.solver.simulate import STEP_SHARE, mean_forces, periods_of
 from microslip.solver.snapshots import bounds_at_phases, frames
 from microslip.solver.static_limit import STEPS, at_turning_points, static_state
 from microslip.solver.static_loop import largest_shift
@@ -21,7 +20,7 @@ from microslip.solver.static_loop import largest_shift
 SMALLEST_DISTANCE = 1e-10
 """From the periodic state of the oscillation alone: what is left of the bound there, the force in
 the limit feels by its square root, so that the tolerance is squared, down to this."""
-LAPS, MOST_ROUNDS = 120, 3
+MARCHES, MOST_ROUNDS = 120, 3
 """Of a search for it, and how often it starts again: rounding may stall an accelerated one."""
 ENOUGH = 64.0
 """Squared share of the tolerance that does where rounding leaves no more to be had."""
@@ -31,30 +30,32 @@ NOTHING_LEFT = 1e-2
 
 
 def simulate_static(
-    scene, amplitude, poisson, model, resolution, tolerance, method=SHIPPED, budget=None
-):
+    problem: Problem,
+    model: str,
+    resolution: Resolution,
+    tolerance: float,
+    settings: Settings = AS_SHIPPED,
+) -> Run:
     """The limit of vanishing velocity at one resolution: arguments and Run as simulate.simulate.
 
-    The rigid contact keeps no residual traction: 0 where the oscillation is on a line.
+    The velocity of the problem is 0.  The rigid contact keeps no residual traction: 0 where the
+    oscillation is on a line.
     """
-    motion = Motion(scene, 0.0, amplitude, poisson)
-    budget = Budget() if budget is None else budget
     try:
-        if at_turning_points(scene):
-            contact = budget.metered(method.dressed(build_contact(motion, model, resolution)))
-            return _on_a_line(contact, motion, tolerance)
-        return _on_a_loop(motion, model, resolution, tolerance, method, budget)
+        if at_turning_points(problem.scene):
+            return _on_a_line(settings.contact(problem, model, resolution), problem, tolerance)
+        return _on_a_loop(problem, model, resolution, tolerance, settings)
     except (StepFailure, ArithmeticError, np.linalg.LinAlgError) as failure:
         return failed_run(str(failure))
 
 
-def _on_a_line(contact, motion, tolerance):
+def _on_a_line(contact, problem, tolerance):
     force, solves = 0.0, 0
     if contact.sticks:
-        residual, _ = static_state(contact, motion.displacement, STEP_SHARE * tolerance)
+        residual, _ = static_state(contact, problem.displacement, STEP_SHARE * tolerance)
         force, solves = float(forces(contact, residual)[FORWARD]), STEPS // 2
     return Run(
-        mu=force / motion.mean_load,
+        mu=force / problem.mean_load,
         torque=0.0,
         distance=0.0,
         solver_residual=STEP_SHARE * tolerance * solves,
@@ -68,13 +69,13 @@ def _on_a_line(contact, motion, tolerance):
     )
 
 
-def _on_a_loop(motion, model, resolution, tolerance, method, budget):
+def _on_a_loop(problem, model, resolution, tolerance, settings):
     """Rings are gathered at the edge of what never slips, which no formula tells, in passes."""
     done, focus = [], None
     while len(done) < MOST_PASSES:
-        contact = build_contact(motion, model, resolution, focus)
-        contact = budget.metered(method.dressed(contact))
-        run, left = _on_these_points(contact, motion, resolution.steps, tolerance, method)
+        contact = settings.contact(problem, model, resolution, focus)
+        path = problem.path(contact, resolution.steps, settings.method.integrator)
+        run, left = _on_these_points(contact, problem, path, tolerance)
         done.append(run)
         radius = _stick_radius(contact, left)
         if not run.converged or radius is None or (focus is not None and radius == focus.radius):
@@ -85,7 +86,7 @@ def _on_a_loop(motion, model, resolution, tolerance, method, budget):
 
 
 def _stick_radius(contact, left):
-    """Outer edge of the last ring of which more than half has something ``left``, or None: there is
+    """Outer edge of the last ring of which more than half has something `left`, or None: there is
     none, or the contact tells no edges."""
     edges = getattr(contact, "edges", None)
     if left is None or edges is None:
@@ -94,19 +95,19 @@ def _stick_radius(contact, left):
     return float(edges[rings[-1] + 1]) if rings.size and rings[-1] + 2 < len(edges) else None
 
 
-def _on_these_points(contact, motion, steps, tolerance, method):
+def _on_these_points(contact, problem, path, tolerance):
     """The Run on one contact, and which points have something left to resist with, if any has."""
-    path, mirror = motion.path(contact, steps, method.integrator), motion.scene.half_period_mirror
+    mirror = problem.scene.half_period_mirror
     distance = max(tolerance**2, SMALLEST_DISTANCE)
     shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
-    cycle = Cycle(contact, path, mirror=mirror)
+    period_map = PeriodMap(contact, path, mirror=mirror)
     start, inner = np.zeros((2, *shape)), STEP_SHARE * distance
     for _ in range(MOST_ROUNDS):  # not Newton's method: what never slips keeps what it began with
-        found = anderson.search(cycle, start, distance, inner, cycle.laps + LAPS)
+        found = anderson.search(period_map, start, distance, inner, period_map.marches + MARCHES)
         start = found.start
         if found.converged:
             break
-    force, left = mean_forces(contact, motion, path, found.forces)[FORWARD], None
+    force, left = mean_forces(contact, problem, path, found.forces)[FORWARD], None
     if contact.sticks:
         tractions, _ = frames(contact, path, found.start, inner)
         bounds = np.broadcast_to(bounds_at_phases(contact, path), tractions[:, 0].shape)
@@ -117,14 +118,14 @@ def _on_these_points(contact, motion, steps, tolerance, method):
         force += float(np.sum(contact.weight * shift))
         left = shift > NOTHING_LEFT * bounds.max()
     near = found.converged or found.distance <= ENOUGH * tolerance**2  # and its error is told
-    periods, reason = periods_of(found.laps, motion.scene), ""
+    periods, reason = periods_of(found.marches, problem.scene), ""
     if not near:
         reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
     run = Run(
-        mu=float(force) / motion.mean_load,
+        mu=float(force) / problem.mean_load,
         torque=0.0,
-        distance=float(np.sqrt(found.distance)) / motion.mean_load,
-        solver_residual=found.solver_residual / motion.mean_load,
+        distance=float(np.sqrt(found.distance)) / problem.mean_load,
+        solver_residual=found.solver_residual / problem.mean_load,
         periods=periods,
         iterations=found.iterations,
         solves=found.solves,

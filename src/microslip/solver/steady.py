@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.models.contact import energy_norm, forward_slip
+from microslip.models.contact import Contact, energy_norm, forward_slip
 from microslip.models.path import EULER, make_path
 
 STEADY_STRETCH = 8
@@ -18,7 +19,23 @@ MAX_STRETCHES = 200
 
 @dataclass(frozen=True, eq=False)
 class SteadyState:
-    """Where a steady motion settles: tractions, forces (3,), and the effort (see Run)."""
+    """Where a steady motion settles.
+
+    Attributes
+    ----------
+    state : np.ndarray
+        Tractions.
+    forces : np.ndarray, shape (3,)
+        Forward, lateral, torque.
+    distance : float
+        Estimated distance from the steady state, a force over mu F_z.
+    solver_residual : float
+        Summed over the last stretch.
+    stretches, iterations, solves : int
+        Marched, and the effort (see simulate.Run).
+    converged : bool
+        Whether the distance is within the tolerance and every step was solved.
+    """
 
     state: np.ndarray
     forces: np.ndarray
@@ -30,8 +47,31 @@ class SteadyState:
     converged: bool
 
 
-def steady_state(contact, displacement, velocity, tolerance, step_tolerance):
-    """March a steady motion until its tractions stand still to ``tolerance`` (a force)."""
+def steady_state(
+    contact: Contact,
+    displacement: Callable,
+    velocity: float,
+    tolerance: float,
+    step_tolerance: float,
+) -> SteadyState:
+    """March a steady motion until its tractions stand still.
+
+    Parameters
+    ----------
+    contact : contact.Contact
+        In full forward slip at the start.
+    displacement : callable
+        displacement(phase) -> (forward, lateral, angle).
+    velocity : float
+        Dimensionless, for the length of a step.
+    tolerance, step_tolerance : float
+        Of the state and of a step, forces over mu F_z.
+
+    Returns
+    -------
+    SteadyState
+        Not converged where it does not settle in time.
+    """
     step = STEADY_TRAVEL / max(1.0, velocity)
     state, iterations, solves = forward_slip(contact), 0, 0
     previous = distance = np.inf

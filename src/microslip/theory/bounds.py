@@ -23,7 +23,7 @@ velocity, and so it is never negative for v > 0.  Other paths may drive the cont
 from __future__ import annotations
 
 
-def largest_drop_transverse(velocity, amplitude):
+def largest_drop_transverse(velocity: float, amplitude: float) -> float:
     """Upper bound of 1 - mu_macro (dimensionless) for velocity >= 0, amplitude >= 0."""
     if amplitude == 0.0:
         return 0.0
@@ -31,7 +31,7 @@ def largest_drop_transverse(velocity, amplitude):
     return 1.0 / (ratio * ratio + 0.5)
 
 
-def largest_drop_bore(velocity, amplitude):
+def largest_drop_bore(velocity: float, amplitude: float) -> float:
     """Upper bound of 1 - mu_macro (dimensionless) for velocity >= 0, whatever the amplitude."""
     if amplitude == 0.0:
         return 0.0
@@ -41,6 +41,6 @@ def largest_drop_bore(velocity, amplitude):
     return min(1.0, 0.2 / (excess * excess))
 
 
-def largest_drop_longitudinal(velocity, amplitude):
+def largest_drop_longitudinal(velocity: float, amplitude: float) -> float:
     """Upper bound of 1 - mu_macro (dimensionless) for velocity >= 0, amplitude >= 0: 0 or 1."""
     return 0.0 if velocity >= amplitude else 1.0

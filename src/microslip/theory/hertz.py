@@ -35,7 +35,7 @@ def checked(name, values, low=0.0, high=np.inf, low_open=False):
     return array
 
 
-def friction_bound(r):
+def friction_bound(r: np.ndarray | float) -> np.ndarray | float:
     """Largest shear traction the contact can carry, g(r) = mu p(r) = 3/(2 pi) sqrt(1 - r^2).
 
     r >= 0: distance from the centre (any shape), else ValueError. Dimensionless, 0 outside the
@@ -45,7 +45,7 @@ def friction_bound(r):
     return 1.5 / np.pi * np.sqrt(np.maximum((1 - r) * (1 + r), 0.0))
 
 
-def load_inside(r):
+def load_inside(r: np.ndarray | float) -> np.ndarray | float:
     """Fraction of the normal load carried within radius r, 1 - (1 - r^2)^(3/2).
 
     r >= 0 (any shape), else ValueError; 1 from the edge outwards. Dimensionless. Integral of
@@ -54,7 +54,7 @@ def load_inside(r):
     return mindlin_force(np.minimum(checked("r", r), 1.0) ** 2)
 
 
-def ring_bounds(edges):
+def ring_bounds(edges: np.ndarray) -> np.ndarray:
     """Mean friction bound of each ring between consecutive radii.
 
     edges: n + 1 radii, strictly increasing in 0..1. Returns n values, dimensionless; times the
@@ -71,7 +71,7 @@ def ring_bounds(edges):
     return (inner**2 + inner * outer + outer**2) / (np.pi * (inner + outer))
 
 
-def D(c):
+def D(c: np.ndarray | float) -> np.ndarray | float:
     """Complete elliptic integrals K(k) - E(k) at the modulus k = sqrt(1 - c^2) (Eqs 25, 26).
 
     0 < c <= 1 (any shape), else ValueError. Dimensionless; falls from infinity (as ln(4/c) - 1) to
@@ -91,7 +91,7 @@ D_HALF = float(D(0.5))
 """D(1/2), the unit of the bore amplitude."""
 
 
-def lubkin_angle(stick_radius, poisson=0.0):
+def lubkin_angle(stick_radius: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
     """Angle of pure torsion, from rest, that leaves a stick circle of this radius (Eq 24).
 
     0 < stick_radius <= 1, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns u_lim/a.
@@ -100,7 +100,7 @@ def lubkin_angle(stick_radius, poisson=0.0):
     return _twist_unit(poisson) * D(stick_radius)
 
 
-def lubkin_stick_radius(angle, poisson=0.0):
+def lubkin_stick_radius(angle: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
     """Stick radius left by pure torsion through `angle` from rest (inverse of Eq 24).
 
     angle >= 0 in u_lim/a, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns 0 < c <= 1:
@@ -120,7 +120,7 @@ def lubkin_stick_radius(angle, poisson=0.0):
     return np.maximum(np.exp(log_c), np.finfo(float).tiny)
 
 
-def bore_angle(amplitude, poisson=0.0):
+def bore_angle(amplitude: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
     """Angle of a bore amplitude, phi0 = phi~ phi_lk(1/2) (Eq 27).
 
     amplitude >= 0, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns u_lim/a.
@@ -128,7 +128,7 @@ def bore_angle(amplitude, poisson=0.0):
     return checked("amplitude", amplitude) * _twist_unit(poisson) * D_HALF
 
 
-def bore_amplitude(angle, poisson=0.0):
+def bore_amplitude(angle: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
     """Bore amplitude of an angle, phi~ = phi0 / phi_lk(1/2) (Eq 27, inverse of bore_angle).
 
     angle >= 0 in u_lim/a, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns a
@@ -142,7 +142,7 @@ def _twist_unit(poisson):
     return 4 / (np.pi * (2 - checked("poisson", poisson, high=0.5)))
 
 
-def mindlin_force(u):
+def mindlin_force(u: np.ndarray | float) -> np.ndarray | float:
     """Tangential force over mu*F_z after the displacement u from rest, 1 - (1 - u)^(3/2).
 
     u >= 0 in u_lim (any shape), else ValueError; 1 from u = 1 on. Dimensionless. Cattaneo and
@@ -153,7 +153,7 @@ def mindlin_force(u):
         return -np.expm1(1.5 * np.log1p(-u))
 
 
-def mindlin_stick_radius(u):
+def mindlin_stick_radius(u: np.ndarray | float) -> np.ndarray | float:
     """Stick radius after the displacement u from rest, sqrt(1 - u) (Eq 8).
 
     u >= 0 in u_lim (any shape), else ValueError; 0 from u = 1 on. Dimensionless (in a).
@@ -161,7 +161,7 @@ def mindlin_stick_radius(u):
     return np.sqrt(1 - np.minimum(checked("u", u), 1.0))
 
 
-def mindlin_traction(r, u):
+def mindlin_traction(r: np.ndarray | float, u: np.ndarray | float) -> np.ndarray | float:
     """Shear traction at radius r after the displacement u from rest: g, less g_c in the stick zone.
 
     r >= 0, u >= 0 in u_lim (broadcast), else ValueError. Dimensionless. The bound of the inner
@@ -176,7 +176,7 @@ def mindlin_traction(r, u):
     return np.where(sticks, 1.5 / np.pi * u / roots, friction_bound(r))[()]
 
 
-def lubkin_share(r, stick_radius):
+def lubkin_share(r: np.ndarray | float, stick_radius: np.ndarray | float) -> np.ndarray | float:
     """Share tau/g of the friction bound that pure torsion from rest uses at radius r.
 
     r >= 0, 0 <= stick_radius <= 1 (broadcast; 0: slip everywhere), else ValueError. In 0..1, 1
@@ -199,7 +199,7 @@ def lubkin_share(r, stick_radius):
     return np.where(sticks, np.clip(share, 0.0, 1.0), 1.0)[()]
 
 
-def lubkin_traction(r, stick_radius):
+def lubkin_traction(r: np.ndarray | float, stick_radius: np.ndarray | float) -> np.ndarray | float:
     """Circumferential traction of pure torsion from rest with this stick radius.
 
     r >= 0, 0 <= stick_radius <= 1 (broadcast), else ValueError. Dimensionless; the friction bound
@@ -208,7 +208,7 @@ def lubkin_traction(r, stick_radius):
     return lubkin_share(r, stick_radius) * friction_bound(r)
 
 
-def lubkin_torque(stick_radius):
+def lubkin_torque(stick_radius: np.ndarray | float) -> np.ndarray | float:
     """Torque of pure torsion from rest with this stick radius (integral of lubkin_traction).
 
     0 <= stick_radius <= 1 (any shape), else ValueError. Returns mu*F_z*a: 0 at 1, TORQUE_FULL_SLIP

@@ -2,7 +2,7 @@
 under an oscillation, and torsion.
 
 For a sphere they are those of paper.py, which are quicker and better tested; here they are
-integrals over the record of a pressures.Pressure, to about 1e-8.  Dimensionless as there.
+integrals over the record of a pressure.Pressure, to about 1e-8.  Dimensionless as there.
 """
 
 from __future__ import annotations

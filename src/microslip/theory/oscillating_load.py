@@ -9,7 +9,7 @@ Res. 4, 2017).  A spring that came into contact at T has been stretched to
 
 since it lost what it carried above its bound at every tau.  So, with phi(t) = d(t) - v t, it lacks
 phi(t) - min phi of its bound, whatever its x, and the mean over the springs is one over T.  Exact
-for Poisson's ratio 0.  Dimensionless, in the working units of an indenter's pressures.Pressure.
+for Poisson's ratio 0.  Dimensionless, in the working units of an indenter's pressure.Pressure.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _LOOKED_AT = 2001
 
 def mean_load(amplitude, by_load, pressure):
     """Mean normal load over that of the reference state, for a change of the load (by_load), or of
-    the indentation, by ``amplitude`` >= 0 of its mean."""
+    the indentation, by `amplitude` >= 0 of its mean."""
     motion = _Motion(0.0, amplitude, by_load, pressure)
     loss = np.pi - motion.touch
     if by_load:
@@ -117,9 +117,9 @@ class _Motion:
                 yield float(self.pressure.radius(self.depth(at))[0])
 
     def lack(self, start, high, later):
-        """Integral over time of phi - min phi from ``start`` (n,) on.
+        """Integral over time of phi - min phi from `start` (n,) on.
 
-        phi rises until ``high``, and in the intervals ``later``.
+        phi rises until `high`, and in the intervals `later`.
         """
         level = self.phi(start)
         last = later[-1][1] if later else high
@@ -136,7 +136,7 @@ class _Motion:
 
 
 def _first_not(holds, low, high):
-    """Where a condition that holds at ``low`` ceases to before ``high``, shape (n,)."""
+    """Where a condition that holds at `low` ceases to before `high`, shape (n,)."""
     low, high = low.copy(), high.copy()
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)

@@ -20,7 +20,9 @@ _NODES, _WEIGHTS = (_NODES + 1) / 2, _WEIGHTS / 2  # on 0..1
 
 
 # Transverse oscillation
-def large_amplitude_transverse(velocity, amplitude):
+def large_amplitude_transverse(
+    velocity: np.ndarray | float, amplitude: np.ndarray | float
+) -> np.ndarray | float:
     """Friction of a rigid slider under transverse oscillation, the large-amplitude limit (Eq 6).
 
     velocity >= 0, amplitude >= 0 (broadcast), else ValueError. It depends on amplitude/velocity
@@ -35,7 +37,7 @@ def large_amplitude_transverse(velocity, amplitude):
     return (2 / np.pi * q * elliptic)[()]
 
 
-def static_slider(amplitude):
+def static_slider(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Static friction of one slider on a spring, sqrt(1 - amplitude^2) (Eq 7).
 
     amplitude >= 0 (any shape), else ValueError; 0 from amplitude 1 on.
@@ -44,7 +46,7 @@ def static_slider(amplitude):
     return np.sqrt((1 - amplitude) * (1 + amplitude))
 
 
-def stick_radius_transverse(amplitude):
+def stick_radius_transverse(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Stick radius that a transverse oscillation alone leaves, sqrt(1 - amplitude) (Eq 8).
 
     amplitude >= 0 (any shape), else ValueError; 0 from amplitude 1 on.
@@ -52,7 +54,7 @@ def stick_radius_transverse(amplitude):
     return hertz.mindlin_stick_radius(checked("amplitude", amplitude))
 
 
-def static_stick_zone(stick_radius):
+def static_stick_zone(stick_radius: np.ndarray | float) -> np.ndarray | float:
     """Share of Hertz's load inside the stick radius, 1 - (1 - c^2)^(3/2) (Eq 10).
 
     0 <= stick_radius <= 1 (any shape), else ValueError.
@@ -60,7 +62,7 @@ def static_stick_zone(stick_radius):
     return hertz.load_inside(checked("stick_radius", stick_radius, high=1.0))
 
 
-def static_transverse(amplitude):
+def static_transverse(amplitude: np.ndarray | float) -> np.ndarray | float:
     """The paper's static friction under transverse oscillation, 1 - amplitude^(3/2) (Eq 11).
 
     amplitude >= 0 (any shape), else ValueError; 0 from amplitude 1 on. See
@@ -96,7 +98,7 @@ def steady_bore_traction(lateral, forward, velocity):
     return scale * forward, -scale * arm
 
 
-def forward_kernel(ratio):
+def forward_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
     """Q_Y: forward friction of a ring of radius ratio*velocity, over its bound (Eq 19).
 
     ratio >= 0 (any shape), else ValueError. Falls from 2 pi at 0 through 4 at 1 to pi/ratio. It
@@ -106,7 +108,7 @@ def forward_kernel(ratio):
     return np.where(inside, even, odd)[()]
 
 
-def torque_kernel(ratio):
+def torque_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
     """Q_M: torque of a ring of radius ratio*velocity, over bound and radius (Eq 20).
 
     ratio >= 0 (any shape), else ValueError. Rises from pi*ratio through 4 at 1 to 2 pi. It equals
@@ -124,7 +126,7 @@ def _ring_integrals(ratio):
     return ratio <= 1, 4 * ellipe(k * k), 4 / 3 * k * rest * elliprd(0.0, 1.0, rest)
 
 
-def bore_forward(velocity):
+def bore_forward(velocity: np.ndarray | float) -> np.ndarray | float:
     """Forward friction of the steady continuous bore under Hertz's pressure (Eq 21).
 
     velocity >= 0 (any shape), else ValueError. It is (3 pi/8)(v - v^3/4) up to v = 1 and the
@@ -141,7 +143,7 @@ def _fast_forward(inverse):
     return hyp2f1(-0.5, 0.5, 2.5, inverse**2)
 
 
-def bore_torque(velocity):
+def bore_torque(velocity: np.ndarray | float) -> np.ndarray | float:
     """Torque of the steady continuous bore over its value at rest, Hertz's pressure (Eq 22).
 
     velocity >= 0 (any shape), else ValueError. It is 1 - v^2 + (3/8) v^4 up to v = 1 and 16/(15 pi
@@ -155,7 +157,7 @@ def bore_torque(velocity):
 
 
 # Oscillating bore
-def large_amplitude_bore(velocity):
+def large_amplitude_bore(velocity: np.ndarray | float) -> np.ndarray | float:
     """Forward friction under oscillating bore, steady at each instant (Eq 29).
 
     velocity >= 0 (any shape), else ValueError. The mean of bore_forward(velocity/cos(tau)), for
@@ -190,7 +192,7 @@ def _slow_mean(velocity):
     return 2 / np.pi * (rotating + sliding)
 
 
-def bore_amplitude_at(stick_radius):
+def bore_amplitude_at(stick_radius: np.ndarray | float) -> np.ndarray | float:
     """Bore amplitude that leaves this stick radius, D(c)/D(1/2) (Eqs 30, 31).
 
     0 < stick_radius <= 1 (any shape), else ValueError.
@@ -199,7 +201,7 @@ def bore_amplitude_at(stick_radius):
     return hertz.D(stick_radius) / hertz.D_HALF
 
 
-def bore_stick_radius(amplitude):
+def bore_stick_radius(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Stick radius that an oscillating bore alone leaves (Eq 32, inverse of bore_amplitude_at).
 
     amplitude >= 0 (any shape), else ValueError. In 0..1, never 0.
@@ -207,7 +209,7 @@ def bore_stick_radius(amplitude):
     return hertz.lubkin_stick_radius(hertz.bore_angle(amplitude))
 
 
-def static_bore(amplitude):
+def static_bore(amplitude: np.ndarray | float) -> np.ndarray | float:
     """The paper's static friction under oscillating bore, 1 - (1 - c^2)^(3/2) (Eq 33, corrected).
 
     amplitude >= 0 (any shape), else ValueError. This is Eq 10 at the radius of Eq 32; see
@@ -216,7 +218,7 @@ def static_bore(amplitude):
     return static_stick_zone(bore_stick_radius(amplitude))
 
 
-def static_bore_printed(amplitude):
+def static_bore_printed(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Eq 33 as printed, 1 - (1 - c)^(3/2), without the square that Eq 10 demands.
 
     amplitude >= 0 (any shape), else ValueError. For comparison only.
@@ -226,7 +228,7 @@ def static_bore_printed(amplitude):
 
 # The exact limits for v -> 0: at each point of the oscillation's stick zone the largest constant
 # forward traction that stays within the friction bound together with the oscillation's own.
-def static_limit_transverse(amplitude):
+def static_limit_transverse(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Static friction under transverse oscillation, v -> 0 (exact for Poisson's ratio 0).
 
     amplitude >= 0 (any shape), else ValueError; 0 from amplitude 1 on. Integral over the stick
@@ -239,7 +241,7 @@ def static_limit_transverse(amplitude):
     return np.minimum(3 * np.sum(step * inner * bound * left, axis=-1), 1.0)
 
 
-def static_limit_longitudinal(amplitude):
+def static_limit_longitudinal(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Static friction under oscillation along the forward direction, (1 - amplitude)^(3/2).
 
     amplitude >= 0 in u_lim (any shape), else ValueError; 0 from amplitude 1 on. What is left is
@@ -248,7 +250,7 @@ def static_limit_longitudinal(amplitude):
     return (1 - np.minimum(checked("amplitude", amplitude), 1.0)) ** 1.5
 
 
-def static_limit_bore(amplitude):
+def static_limit_bore(amplitude: np.ndarray | float) -> np.ndarray | float:
     """Static friction under oscillating bore, v -> 0.
 
     amplitude >= 0 (any shape), else ValueError. Poisson's ratio drops out: at a given phi~ neither

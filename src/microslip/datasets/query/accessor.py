@@ -179,8 +179,8 @@ class Friction:
             np.clip(amplitude, narrowest, widest), np.clip(below, slowest, fastest)
         )
         source = np.full(len(value), MAP)
-        edge = (part[-1] for part in (table.values, table.errors))
-        far = beyond.distances(limits, table.columns.values, *edge, below, widest)
+        last = (part[-1] for part in (table.values, table.errors))
+        far = beyond.distances(limits, table.columns.values, *last, below, widest)
         for where, code, rule, coordinates, end in (
             (amplitude < narrowest, NARROWER, beyond.narrower, (amplitude,), narrowest),
             (below < slowest, SLOWER, beyond.slower, (below, np.fmin(amplitude, widest)), slowest),
@@ -188,8 +188,9 @@ class Friction:
             (wide, WIDER, beyond.wider, (far, velocity, amplitude), widest),
         ):
             if where.any():
-                at = (part[where] for part in (value, error, *coordinates))
-                value[where], error[where] = rule(limits, *at, end)
+                edge = beyond.Edge(value[where], error[where])
+                at = (part[where] for part in coordinates)
+                value[where], error[where] = rule(limits, edge, *at, end)
                 source[where] = code
         value, error = beyond.within_the_balance(limits, value, error, velocity, amplitude)
         for where, code, known in (

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -64,34 +65,46 @@ def is_known(scene, pressure):
     return pressure == "hertz" and (scene in LIMITS or scene == "continuous-bore")
 
 
-def slower(limits, edge, edge_error, velocity, amplitude, slowest):
+class Edge(NamedTuple):
+    """What is known at the edge of a map.
+
+    Attributes
+    ----------
+    value, error : np.ndarray, shape (n,)
+        Friction there, dimensionless.
+    """
+
+    value: np.ndarray
+    error: np.ndarray
+
+
+def slower(limits, edge, velocity, amplitude, slowest):
     """Value and error for velocities from 0 to the slowest of a map, shape (n,) each.
 
-    edge, edge_error: friction at the slowest velocity and the same amplitudes.
+    edge: at the slowest velocity and the same amplitudes.
     """
     static = limits.static(amplitude)
-    high = np.maximum(edge + edge_error, static)
+    high = np.maximum(edge.value + edge.error, static)
     share = (velocity / slowest) ** SLOW_EXPONENT
-    return _within(static, high, static + share * (edge - static))
+    return _within(static, high, static + share * (edge.value - static))
 
 
-def faster(limits, edge, edge_error, velocity, amplitude, fastest):
-    """... for velocities above the fastest of a map; edge may be NaN where nothing is known."""
+def faster(limits, edge, velocity, amplitude, fastest):
+    """... for velocities above the fastest of a map; the edge is NaN where nothing is known."""
     low = 1.0 - limits.drop(velocity, amplitude)
-    low = np.clip(np.fmax(low, edge - edge_error), 0.0, 1.0)
-    far = 1.0 - (1.0 - edge) * (fastest / velocity) ** 2
+    low = np.clip(np.fmax(low, edge.value - edge.error), 0.0, 1.0)
+    far = 1.0 - (1.0 - edge.value) * (fastest / velocity) ** 2
     return _within(low, np.ones_like(low), np.where(np.isnan(far), low, far))
 
 
-def wider(limits, edge, edge_error, distance, velocity, amplitude, widest):
+def wider(limits, edge, distance, velocity, amplitude, widest):
     """... for amplitudes above the largest of a map.
 
-    edge, edge_error: friction at the largest amplitude, at the velocity with the same limit;
-    distance: see `distances`.
+    edge: at the largest amplitude, at the velocity with the same limit; distance: see `distances`.
     """
     end = limits.large(velocity, amplitude)
-    left = (edge - end) * widest / amplitude
-    return np.clip(end + left, 0.0, 1.0), distance + np.abs(left) + edge_error
+    left = (edge.value - end) * widest / amplitude
+    return np.clip(end + left, 0.0, 1.0), distance + np.abs(left) + edge.error
 
 
 def distances(limits, nodes, values, errors, velocity, widest):
@@ -105,10 +118,10 @@ def distances(limits, nodes, values, errors, velocity, widest):
     return np.where(near, off, 0.0).max(axis=1)
 
 
-def narrower(limits, edge, edge_error, amplitude, narrowest):
+def narrower(limits, edge, amplitude, narrowest):
     """... for amplitudes from 0 to the smallest of a map."""
-    low = np.clip(edge - edge_error, 0.0, 1.0)
-    guess = 1.0 - (1.0 - edge) * amplitude / narrowest
+    low = np.clip(edge.value - edge.error, 0.0, 1.0)
+    guess = 1.0 - (1.0 - edge.value) * amplitude / narrowest
     return _within(low, np.ones_like(low), guess)
 
 

@@ -15,25 +15,31 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.foundation.compiled import kernel
+from microslip.models.polar.symmetry import waves
 from microslip.models.rings.influence import ring_influence
-from microslip.models.rings.mesh import make_rings
+from microslip.models.rings.mesh import Focus, make_rings
+from microslip.pressures.pressure import Pressure
 from microslip.pressures.registry import HERTZ
 
 FUSED = {"fastmath": {"contract"}}
 """Allows fused multiply-add, which keeps the order of operations."""
 LARGEST_DENSE = 96
 """Unknowns in a sector up to which its dense matrix is faster than its modes."""
-EVEN_FORWARD, ODD_LATERAL, ODD_FORWARD, EVEN_LATERAL = range(4)
-"""Order of the folded parts: sectors are neighbours in memory."""
 
 
 class Sectors(NamedTuple):
     """An operator on folded tractions (4, M/2, N), for compiled code.
 
-    dense: transposed sector matrices (sectors, n, n), or no sectors where the modes are used;
-    to_modes, to_points: (sectors, Z, Z) between the folded angles of a sector and its modes;
-    members: modes that a block couples, (sectors, blocks, 2), second -1 if single, first -1 if
-    there is no such block; blocks: transposed, (sectors, blocks, b N, b N).
+    Attributes
+    ----------
+    dense : np.ndarray, shape (sectors, n, n)
+        Transposed sector matrices, or no sectors where the modes are used.
+    to_modes, to_points : np.ndarray, shape (sectors, Z, Z)
+        Between the folded angles of a sector and its modes.
+    members : np.ndarray, shape (sectors, blocks, 2)
+        Modes that a block couples; second -1 if single, first -1 if there is no such block.
+    blocks : np.ndarray, shape (sectors, blocks, b N, b N)
+        Transposed.
     """
 
     dense: np.ndarray
@@ -142,49 +148,8 @@ def _add_pairs(members, blocks, modes, images):
                 images[second, i] += image[n + i]
 
 
-def _waves(angles, rotates, coupled):
-    """Angular functions, each as (key, folded parts (4, M/2)), grouped by sector.
-
-    key (m, part) names the mode: at nu > 0 the complex wave e^{i m theta} of forward - i lateral
-    times 1 (part 0) or i (part 1); at nu = 0 a cosine (part 0) or sine (part 1) of one component.
-    Part 2: the shortest sine, which has no cosine beside it.
-    """
-    half = angles // 2
-    theta = (np.arange(half) + 0.5) * np.pi / angles
-    groups = [[] for _ in range(2 if coupled else 4)]
-
-    def add(key, wave, parts):
-        out = np.zeros((4, half))
-        for part in parts:
-            out[part] = (wave.real, -wave.imag, wave.real, -wave.imag)[part]
-        groups[parts[0] // 2 if coupled else parts[0]].append((key, out))
-
-    if not coupled:
-        for m in range(0, angles, 1 if rotates else 2):
-            cosine = np.exp(1j * m * theta)
-            add((m, 0), cosine.real, [EVEN_FORWARD if m % 2 == 0 else ODD_FORWARD])
-            m = m + 1 if rotates else m + 2
-            sine = np.sin(m * theta)
-            add((m, 1), -1j * sine, [EVEN_LATERAL if m % 2 else ODD_LATERAL])
-            if not rotates:
-                add((m, 1), sine + 0j, [ODD_FORWARD])
-                add((m - 2, 0), -1j * cosine.real, [EVEN_LATERAL])
-        return groups
-    even, odd = [EVEN_FORWARD, ODD_LATERAL], [ODD_FORWARD, EVEN_LATERAL]
-    if rotates:
-        for m in range(1 - angles, angles):
-            add((m, 0), np.exp(1j * m * theta), even if m % 2 == 0 else odd)
-        add((angles, 2), 1j * np.sin(angles * theta), even if angles % 2 == 0 else odd)
-        return groups
-    first = -(angles // 2) + (1 - angles % 2)
-    for k in range(first, first + angles):
-        for part in (0, 1):
-            add((2 * k, part), np.exp(2j * k * theta) * (1, 1j)[part], odd if part else even)
-    return groups
-
-
 def _mode_blocks(keys, near, far, kappa, ratio):
-    """Members and influence blocks of the modes ``keys`` (nu > 0: m and 2 - m together)."""
+    """Members and influence blocks of the modes `keys` (nu > 0: m and 2 - m together)."""
     index = {key: k for k, key in enumerate(keys)}
     members, blocks = [], []
     for k, (m, part) in enumerate(keys):
@@ -204,13 +169,20 @@ def _mode_blocks(keys, near, far, kappa, ratio):
 
 
 @lru_cache(maxsize=32)
-def influence_sectors(cells, angles, rotates, poisson, focus, pressure=HERTZ):
+def influence_sectors(
+    cells: int,
+    angles: int,
+    rotates: bool,
+    poisson: float,
+    focus: Focus | float | None,
+    pressure: Pressure = HERTZ,
+) -> tuple[Sectors, np.ndarray]:
     """The operator (a Sectors that keeps its modes) and the self-influence of each ring (N,)."""
     kappa = poisson / (2.0 - poisson)
     rings = make_rings(cells, focus, pressure)
     near, far = ring_influence(rings.psi, angles + 1, poisson > 0.0, modulus=pressure.G_star)
     ratio = rings.area[:, None] / rings.area[None, :]  # the transpose in the area-weighted product
-    groups = _waves(angles, rotates, poisson > 0.0)
+    groups = waves(angles, rotates, poisson > 0.0)
     z = len(groups[0])
     to_points = np.zeros((len(groups), z, z))
     found = []
@@ -231,7 +203,7 @@ def influence_sectors(cells, angles, rotates, poisson, focus, pressure=HERTZ):
     return operator, np.ascontiguousarray(np.diag(near[0]))
 
 
-def shifted_inverse(operator, shift):
+def shifted_inverse(operator: Sectors, shift: np.ndarray) -> Sectors:
     """(A + shift)^-1 of an operator that keeps its modes; shift: one number for each ring, (N,)."""
     blocks, n = np.zeros_like(operator.blocks), len(shift)
     for s, pairs in enumerate(operator.members):
@@ -242,12 +214,12 @@ def shifted_inverse(operator, shift):
     return operator._replace(blocks=blocks)
 
 
-def scaled(operator, factor):
+def scaled(operator: Sectors, factor: float) -> Sectors:
     """The operator times a number."""
     return operator._replace(dense=operator.dense * factor, blocks=operator.blocks * factor)
 
 
-def quickest(operator):
+def quickest(operator: Sectors) -> Sectors:
     """The same operator in the form that is applied fastest at its size."""
     sectors, z = operator.to_modes.shape[:2]
     rings = operator.blocks.shape[2] // (1 if (operator.members[:, :, 1] < 0).all() else 2)

@@ -39,10 +39,25 @@ PENALTY = 1.0
 
 
 class PolarContact:
-    """``cells`` rings x ``angles`` points on half the disc (see models.contact.Contact).
+    """Rings times points on half the disc (see models.contact.Contact); states: (2, angles, cells).
 
-    rotates: mirror symmetry of rotating scenes, else point symmetry of translations; states:
-    (2, angles, cells).  Raises ValueError where the half disc cannot be filled.
+    Parameters
+    ----------
+    cells, angles : int
+        Rings, and points of each on half the disc.
+    rotates : bool
+        Mirror symmetry of rotating motions, else point symmetry of translations.
+    poisson : float
+        Poisson's ratio.
+    focus : mesh.Focus, float or None
+        Where the rings gather.
+    pressure : pressure.Pressure
+        One that depends on the radius alone.
+
+    Raises
+    ------
+    ValueError
+        Where the half disc cannot be filled.
     """
 
     has_sensitivity = False
@@ -68,7 +83,7 @@ class PolarContact:
         self._made_of = cells, focus, pressure
 
     def pressed(self, deepest, start):
-        """The same points spread over the contact at its ``deepest``, with the bound at ``start``;
+        """The same points spread over the contact at its `deepest`, with the bound at `start`;
         see RadialContact.pressed."""
         out = copy(self)
         out.loaded = RadialContact.resolved(*self._made_of).pressed(deepest, start)
@@ -91,7 +106,7 @@ class PolarContact:
         return self.loaded.bounds_along(path)
 
     def at_phases(self, march, start):
-        """Tractions at every phase of a march from ``start``, (steps + 1, 2, angles, cells)."""
+        """Tractions at every phase of a march from `start`, (steps + 1, 2, angles, cells)."""
         return start + np.concatenate(
             [np.zeros((1, *start.shape)), np.cumsum(march.stages[0].sum(axis=1), axis=0)]
         )
@@ -110,7 +125,7 @@ class PolarContact:
         return state[:, ::-1, :] * contact.MIRROR
 
     def march(self, path, state, tolerance, sensitivity=False, previous=None):
-        """March along ``path``; see models.contact.Contact."""
+        """March along `path`; see models.contact.Contact."""
         forces = np.zeros((path.steps + 1, 3))
         if previous is None:
             stages = np.empty((2, *path.stages.shape[:2], *state.shape))
@@ -118,18 +133,17 @@ class PolarContact:
             stages = previous.stages.copy()
         state, residual, iterations = unbroken(
             polar_march.march,
-            self.influence,
-            self.inverse,
-            self.penalty,
-            self.bound[None] if path.depth is None else self.bounds_along(path),
-            self.weight,
-            (self.forward_position, self.lateral_position),
-            (path.positions, path.stages, path.carry, path.end),
+            polar_march.Points(
+                self.influence,
+                self.inverse,
+                self.penalty,
+                self.weight,
+                (self.forward_position, self.lateral_position),
+            ),
+            path.under(self.bound[None] if path.depth is None else self.bounds_along(path)),
             np.ascontiguousarray(state),
             tolerance,
-            previous is not None,
-            stages[0],
-            stages[1],
+            polar_march.Stages(stages[0], stages[1], previous is not None),
             forces,
         )
         # the half disc that is not resolved cancels what symmetry forbids

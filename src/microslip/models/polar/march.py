@@ -6,26 +6,99 @@ once; the friction bound is kept to point by point.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from microslip.foundation.compiled import kernel
 from microslip.models.coulomb import coulomb_residual, extended, shrink
 from microslip.models.interrupts import BETWEEN_LOOKS, interrupted
 from microslip.models.point_fields import rigid_displacement, sum_forces
-from microslip.models.polar.angular_modes import apply_sectors, fold, unfold
+from microslip.models.polar.angular_modes import Sectors, apply_sectors, fold, unfold
 
 MAX_ITERATIONS = 4000
 RELAXATION = 1.7
 FEWEST_BETWEEN, MOST_BETWEEN = 2, 12
 """Iterations between two looks at the residual, which costs more than an iteration."""
+SLOWEST_RATE = -0.05
+"""Of the logarithm of the residual in an iteration: as if it fell at least so fast."""
+
+
+class Points(NamedTuple):
+    """The points of a contact, N rings times M angles on half the disc, for compiled code.
+
+    Attributes
+    ----------
+    influence, inverse : angular_modes.Sectors
+        A and (A + penalty)^-1.
+    penalty : np.ndarray, shape (N,)
+        Of ADMM, which is also the scale of the residual.
+    weight : np.ndarray, shape (N,)
+        Area of a point of each ring.
+    positions : tuple of np.ndarray, shape (M, N) each
+        Forward and lateral.
+    """
+
+    influence: Sectors
+    inverse: Sectors
+    penalty: np.ndarray
+    weight: np.ndarray
+    positions: tuple
+
+
+class Stages(NamedTuple):
+    """What every stage of a march adds to the tractions, and its dual: for the next march.
+
+    Attributes
+    ----------
+    added, duals : np.ndarray, shape (steps, stages, 2, M, N)
+        Filled by a march.
+    known : bool
+        Whether they are those of another march already, and to be read as first guesses.
+    """
+
+    added: np.ndarray
+    duals: np.ndarray
+    known: bool
+
+
+class Unknowns(NamedTuple):
+    """What a step changes.
+
+    Attributes
+    ----------
+    q : np.ndarray, shape (2, M, N)
+        Tractions, start and result; within the bound.
+    dual : np.ndarray, shape (2, M, N)
+        Slip over penalty, kept from step to step.
+    """
+
+    q: np.ndarray
+    dual: np.ndarray
+
+
+class Scratch(NamedTuple):
+    """Room for folded tractions and for full ones.
+
+    Attributes
+    ----------
+    folded, image : np.ndarray, shape (4, M/2, N)
+        See `angular_modes.fold`.
+    free : np.ndarray, shape (2, M, N)
+        Tractions before they are projected.
+    """
+
+    folded: np.ndarray
+    image: np.ndarray
+    free: np.ndarray
 
 
 @kernel
-def _slip(influence, b, q, folded, image, slip):
-    """slip = b - A q; folded, image: room for folded tractions."""
-    fold(q, folded)
-    apply_sectors(influence, folded, image)
-    unfold(image, slip)
+def _slip(influence, b, q, scratch, slip):
+    """slip = b - A q."""
+    fold(q, scratch.folded)
+    apply_sectors(influence, scratch.folded, scratch.image)
+    unfold(scratch.image, slip)
     for c in range(2):
         for j in range(q.shape[1]):
             for i in range(q.shape[2]):
@@ -34,7 +107,7 @@ def _slip(influence, b, q, folded, image, slip):
 
 @kernel
 def _project(free, bound, q, dual):
-    """Over-relaxed projection on the friction bound, the remainder kept in ``dual``; in place."""
+    """Over-relaxed projection on the friction bound, the remainder kept in `dual`; in place."""
     for j in range(q.shape[1]):
         for i in range(q.shape[2]):
             forward = RELAXATION * free[0, j, i] + (1 - RELAXATION) * q[0, j, i] + dual[0, j, i]
@@ -64,42 +137,81 @@ def _add(out, factor, values):
                 out[c, j, i] += factor * values[c, j, i]
 
 
+class Step(NamedTuple):
+    """A Coulomb step to be solved.
+
+    Attributes
+    ----------
+    b : np.ndarray, shape (2, M, N)
+        Imposed displacement.
+    bound : np.ndarray, shape (N,)
+        Friction bound of each ring.
+    tolerance : float
+        Of the residual, a force over mu F_z.
+    """
+
+    b: np.ndarray
+    bound: np.ndarray
+    tolerance: float
+
+
 @kernel
-def solve_step(influence, inverse, penalty, bound, weight, b, q, dual, slip, room, tolerance):
+def _iterate(points, step, unknowns, scratch):
+    """One iteration of over-relaxed ADMM, in place; the friction bound is that of the step."""
+    q, dual, free = unknowns.q, unknowns.dual, scratch.free
+    for c in range(2):
+        for j in range(q.shape[1]):
+            for i in range(q.shape[2]):
+                kept = q[c, j, i] - dual[c, j, i]
+                free[c, j, i] = step.b[c, j, i] + points.penalty[i] * kept
+    fold(free, scratch.folded)
+    apply_sectors(points.inverse, scratch.folded, scratch.image)
+    unfold(scratch.image, free)
+    _project(free, step.bound, q, dual)
+
+
+@kernel
+def solve_step(points, step, unknowns, slip, scratch):
     """Solve one Coulomb step by over-relaxed ADMM, in place.
 
-    influence: sectors.Sectors of A; inverse: of (A + penalty)^-1; penalty: (N,), also the scale of
-    the residual; b: the imposed displacement (2, M, N); q: start and result, within the bound;
-    dual: slip over penalty, kept from step to step; slip: receives b - A q; room: two folded
-    arrays and a full one.  Returns (iterations, residual); -1 iterations: interrupted.
+    Parameters
+    ----------
+    points : Points
+        The contact.
+    step : Step
+        What is asked for.
+    unknowns : Unknowns
+        Start and result.
+    slip : np.ndarray, shape (2, M, N)
+        Receives b - A q.
+    scratch : Scratch
+        Room.
+
+    Returns
+    -------
+    tuple
+        Iterations and residual; -1 iterations: interrupted.
     """
-    folded, image, free = room
+    b, bound, tolerance = step.b, step.bound, step.tolerance
+    q, weight, penalty = unknowns.q, points.weight, points.penalty
     angles, n = q.shape[1], q.shape[2]
-    _slip(influence, b, q, folded, image, slip)
+    _slip(points.influence, b, q, scratch, slip)
     residual = coulomb_residual(q, slip, bound, weight, penalty)
     iterations, between, spent = 0, FEWEST_BETWEEN, 0.0
     while residual > tolerance and iterations < MAX_ITERATIONS:
         for _ in range(between):
-            for c in range(2):
-                for j in range(angles):
-                    for i in range(n):
-                        kept = q[c, j, i] - dual[c, j, i]
-                        free[c, j, i] = b[c, j, i] + penalty[i] * kept
-            fold(free, folded)
-            apply_sectors(inverse, folded, image)
-            unfold(image, free)
-            _project(free, bound, q, dual)
+            _iterate(points, step, unknowns, scratch)
         iterations += between
         spent += between * 8.0 * angles * n * n
         if spent > BETWEEN_LOOKS:
             spent = 0.0
             if interrupted():
                 return -1, residual
-        _slip(influence, b, q, folded, image, slip)
+        _slip(points.influence, b, q, scratch, slip)
         before, residual = residual, coulomb_residual(q, slip, bound, weight, penalty)
         # the residual falls geometrically: the next look is due where it should be small enough
-        pace = np.log(max(residual, 1e-300) / before) / between
-        due = np.log(tolerance / max(residual, 1e-300)) / min(pace, -0.05)
+        rate = np.log(max(residual, 1e-300) / before) / between
+        due = np.log(tolerance / max(residual, 1e-300)) / min(rate, SLOWEST_RATE)
         between = int(min(max(np.ceil(due), FEWEST_BETWEEN), MOST_BETWEEN))
     return iterations, residual
 
@@ -115,87 +227,74 @@ def _shrink(q, bound):
 
 
 @kernel
-def march(
-    influence,
-    inverse,
-    penalty,
-    bounds,
-    weight,
-    positions,
-    path,
-    state,
-    tolerance,
-    warm,
-    added,
-    duals,
-    forces,
-):
-    """March along a path; returns (state, residual sum, iterations, whether it was interrupted).
+def march(points, path, state, tolerance, known, forces):
+    """March along a path.
 
-    path: (positions, stages, carry, end), see path.Path; bounds: at the start and at every stage,
-    (1 + steps stages, N), or one that stays, (1, N); added, duals: (steps, stages, 2, M, N), what
-    every stage adds to the tractions, and its dual; filled, and read as first guesses if ``warm``.
+    Parameters
+    ----------
+    points : Points
+        The contact.
+    path : models.path.LoadingPath
+        What is imposed; bounds (1 + steps stages, N) or (1, N).
+    state : np.ndarray, shape (2, M, N)
+        Tractions at the start.
+    tolerance : float
+        Of every stage, a force over mu F_z.
+    known : Stages
+        First guesses, and filled with what this march finds.
+    forces : np.ndarray, shape (steps + 1, 3)
+        Filled.
+
+    Returns
+    -------
+    tuple
+        State at the end, residual sum, iterations, whether it was interrupted.
     """
-    way, stages, carry, end = path
+    weight, positions, bounds = points.weight, points.positions, path.bounds
     angles, n = state.shape[1], state.shape[2]
-    n_stages = stages.shape[1]
-    q, held = state.copy(), state.copy()
-    rigid = np.empty_like(q)
-    slips = np.empty((n_stages, 2, angles, n))
-    dual, before = np.zeros_like(q), np.empty_like(q)
+    stages = path.stages.shape[1]
+    q, held, before = state.copy(), state.copy(), np.empty_like(state)
+    rigid, z, b = np.empty_like(q), np.empty_like(q), np.empty_like(q)
+    slips = np.empty((stages, 2, angles, n))
+    unknowns = Unknowns(q, np.zeros_like(q))
     folded = np.empty((4, angles // 2, n))
-    room = (folded, np.empty_like(folded), np.empty_like(q))
-    rigid_displacement(way[0], positions, rigid)
-    z = np.empty_like(q)
-    _slip(influence, rigid, q, folded, room[1], z)
+    scratch = Scratch(folded, np.empty_like(folded), np.empty_like(q))
+    rigid_displacement(path.positions[0], positions, rigid)
+    _slip(points.influence, rigid, q, scratch, z)
     _add(z, -2.0, z)
     sum_forces(q, weight, positions, forces[0])
     total, iterations, spent = 0.0, 0, 0.0
-    b = np.empty_like(q)
-    for k in range(stages.shape[0]):
-        for s in range(n_stages):
-            bound = bounds[min(1 + k * n_stages + s, len(bounds) - 1)]
-            rigid_displacement(stages[k, s], positions, rigid)
+    for k in range(path.stages.shape[0]):
+        for s in range(stages):
+            rigid_displacement(path.stages[k, s], positions, rigid)
             _copy(b, z)
             _add(b, 1.0, rigid)
             for j in range(s):
-                _add(b, -carry[s, j], slips[j])
+                _add(b, -path.carry[s, j], slips[j])
             _copy(before, q)
-            if warm:
-                _add(q, 1.0, added[k, s])
-                _copy(dual, duals[k, s])
+            if known.known:
+                _add(q, 1.0, known.added[k, s])
+                _copy(unknowns.dual, known.duals[k, s])
             elif k > 0:
-                _copy(dual, duals[k - 1, s])
+                _copy(unknowns.dual, known.duals[k - 1, s])
+            bound = bounds[min(1 + k * stages + s, len(bounds) - 1)]
             _shrink(q, bound)
-            count, residual = solve_step(
-                influence,
-                inverse,
-                penalty,
-                bound,
-                weight,
-                b,
-                q,
-                dual,
-                slips[s],
-                room,
-                tolerance,
-            )
+            step = Step(b, bound, tolerance)
+            count, residual = solve_step(points, step, unknowns, slips[s], scratch)
             spent += count * 8.0 * angles * n * n
             if count < 0 or (spent > BETWEEN_LOOKS and interrupted()):
                 return held, total, iterations, True
-            if spent > BETWEEN_LOOKS:
-                spent = 0.0
-            _copy(added[k, s], q)
-            _add(added[k, s], -1.0, before)
-            _copy(duals[k, s], dual)
+            spent = 0.0 if spent > BETWEEN_LOOKS else spent
+            _copy(known.added[k, s], q)
+            _add(known.added[k, s], -1.0, before)
+            _copy(known.duals[k, s], unknowns.dual)
             iterations += count
             total += residual
-        slip = slips[n_stages - 1]
         for c in range(2):
             for j in range(angles):
                 for i in range(n):
-                    now = b[c, j, i] - (slip[c, j, i] + rigid[c, j, i])
-                    z[c, j, i] = extended(z[c, j, i], now, end)
-                    held[c, j, i] = extended(held[c, j, i], q[c, j, i], end)
+                    now = b[c, j, i] - (slips[stages - 1, c, j, i] + rigid[c, j, i])
+                    z[c, j, i] = extended(z[c, j, i], now, path.end)
+                    held[c, j, i] = extended(held[c, j, i], q[c, j, i], path.end)
         sum_forces(held, weight, positions, forces[k + 1])
     return held, total, iterations, False

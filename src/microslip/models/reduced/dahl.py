@@ -37,7 +37,7 @@ class DahlContact:
         return state * contact.MIRROR
 
     def march(self, path, state, tolerance, sensitivity=False, previous=None):
-        """Solve along ``path``, straight from phase to phase (translations only)."""
+        """Solve along `path`, straight from phase to phase (translations only)."""
         moves = np.diff(path.positions[:, :2], axis=0)
         lengths = np.hypot(*moves.T)
         forces = np.zeros((path.steps + 1, 3))

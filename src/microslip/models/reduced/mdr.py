@@ -19,8 +19,8 @@ from microslip.pressures.registry import HERTZ
 
 
 def mdr_contact(cells, focus=None, pressure=HERTZ):
-    """``cells`` springs under an indenter's Pressure on 0 < x < 1 with their mirror images,
-    gathered around x = ``focus``.
+    """`cells` springs under an indenter's Pressure on 0 < x < 1 with their mirror images,
+    gathered around x = `focus`.
 
     The spring at x stands for both halves of a ring: what a spring carries is force over length.
     """

@@ -1,7 +1,7 @@
 """Rings: exact for translation at nu = 0, where the traction vector depends on the radius alone.
 
-The compiled work is done in ring_factors (the linear part of a step), ring_kernels (one step) and
-ring_march (a march, and its derivative, which makes the periodic state a Newton problem).
+The compiled work is done in tangent.py (the linear part of a step), newton_step.py (one step) and
+march.py (a march, and its derivative, which makes the periodic state a Newton problem).
 """
 
 from __future__ import annotations
@@ -16,20 +16,33 @@ from microslip.models.interrupts import unbroken
 from microslip.models.rings import march as ring_march
 from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import make_rings
-from microslip.models.rings.tangent import cholesky
+from microslip.models.rings.tangent import RingSystem, cholesky
 from microslip.models.varying_load import Growth, load_on_rings
 from microslip.pressures.registry import HERTZ
 
 
 class RadialContact:
-    """Contact of ``cells`` rings (see models.contact.Contact); states have shape (2, 1, cells).
+    """Contact of rings (see models.contact.Contact); states have shape (2, 1, cells).
 
-    influence: (cells, cells), mean ring tractions to ring-averaged displacements, symmetric once
-    its rows are weighted; bound, weight: friction bound and area of each ring; stiffness: of the
-    whole, see there, by default that of the matrix.  ``resolved`` builds
-    the half-space's; the elastic slider is the one-ring contact of unit compliance.
-    growth: depth.Growth of the rings, without which the normal load cannot change; edges: radii
-    between them before the contact is ``pressed``, None where there are none or it has a hole.
+    `resolved` builds the half-space's; the elastic slider is the one-ring contact of unit
+    compliance.
+
+    Parameters
+    ----------
+    influence : np.ndarray, shape (cells, cells)
+        Mean ring tractions to ring-averaged displacements, symmetric once its rows are weighted.
+    bound, weight : np.ndarray, shape (cells,)
+        Friction bound and area of each ring.
+    stiffness : float or None
+        Of the whole, see models.contact.Contact; None: that of the matrix.
+    growth : varying_load.Growth or None
+        Of the rings; without it the normal load cannot change.
+
+    Attributes
+    ----------
+    edges : np.ndarray or None, shape (cells + 1,)
+        Radii between the rings before the contact is `pressed`, None where there are none or it has
+        a hole.
     """
 
     has_sensitivity = True
@@ -54,11 +67,11 @@ class RadialContact:
 
     @staticmethod
     def resolved(cells, focus=None, pressure=HERTZ):
-        """The half-space on ``cells`` rings refined around the radius ``focus``."""
+        """The half-space on `cells` rings refined around the radius `focus`."""
         return _resolved(cells, focus, pressure)
 
     def pressed(self, deepest, start):
-        """The same rings spread over the contact at its ``deepest``, with the bound at ``start``.
+        """The same rings spread over the contact at its `deepest`, with the bound at `start`.
 
         Both are depths (see varying_load.py), deepest > 0.
         """
@@ -107,21 +120,21 @@ class RadialContact:
         """Bounds at the start and at every stage of a path, (1 + steps stages, cells).
 
         Rings join or leave at the last stage of a step only: what jumps at an earlier one would be
-        carried on by the integrator.  At steady pace a ring that joins there has been stretched for
-        the share 1 / (1 + carried) of the step, where it should be half of it in the mean: the edge
-        of the contact is seen as early as makes up for it.
+        carried on by the integrator.  At a steady rate a ring that joins there has been stretched
+        for the share 1 / (1 + carried) of the step, where it should be half of it in the mean: the
+        edge of the contact is seen as early as makes up for it.
         """
         stages = path.stages.shape[1]
         ends = self.growth.pressure.radius(path.depth[::stages])
         shift = 0.5 - 1.0 / (1.0 + path.carry[-1].sum())
         seen = ends.copy()
-        seen[:-1] += shift * np.diff(ends)  # the last as it is: there the next lap begins
+        seen[:-1] += shift * np.diff(ends)  # the last as it is: there the next march begins
         edge = np.repeat(seen[:-1, None], stages, axis=1)
         edge[:, -1] = seen[1:]
         return self.bounds(path.depth, np.append(seen[:1], edge))
 
     def at_phases(self, march, start):
-        """Tractions at every phase of a march from ``start``, (steps + 1, 2, 1, cells)."""
+        """Tractions at every phase of a march from `start`, (steps + 1, 2, 1, cells)."""
         stages = march.solves // (len(march.forces) - 1)
         return march.stages[::stages, :, None]
 
@@ -134,9 +147,9 @@ class RadialContact:
         return state * contact.MIRROR
 
     def march(self, path, state, tolerance, sensitivity=False, previous=None):
-        """March along ``path`` (translations only); see models.contact.Contact.
+        """March along `path` (translations only); see models.contact.Contact.
 
-        The stages of the result, and of ``previous``, are the tractions at the start and after
+        The stages of the result, and of `previous`, are the tractions at the start and after
         every stage, (1 + steps stages, 2, cells).
         """
         stages = path.stages.shape[0] * path.stages.shape[1]
@@ -145,11 +158,8 @@ class RadialContact:
             known = np.empty((0, 2, 0))
         end, tractions, forces, residual, iterations, derivative = unbroken(
             ring_march.march,
-            self._stiffness,
-            self._factor,
-            self.bound[None] if path.depth is None else self.bounds_along(path),
-            self.weight,
-            (path.positions, path.stages, path.carry, path.end),
+            RingSystem(self._stiffness, self._factor, self.weight),
+            path.under(self.bound[None] if path.depth is None else self.bounds_along(path)),
             np.ascontiguousarray(state[:, 0]),
             known,
             tolerance,

@@ -31,7 +31,7 @@ def follow(q, bound, now, before):
 
 @kernel
 def extrapolate(q, last, bound, before, ratio):
-    """First guess: go on as from ``before`` to q, ``ratio`` times as far; slip stays slip.
+    """First guess: go on as from `before` to q, `ratio` times as far; slip stays slip.
 
     last, bound: those that q obeys, and that the guess shall.
     """
@@ -49,7 +49,7 @@ def extrapolate(q, last, bound, before, ratio):
 
 @kernel
 def stretch(way, at):
-    """Length of the stage that ends at ``at`` over that of the stage before, at most 3."""
+    """Length of the stage that ends at `at` over that of the stage before, at most 3."""
     before = np.hypot(way[at - 1, 0] - way[at - 2, 0], way[at - 1, 1] - way[at - 2, 1])
     length = np.hypot(way[at, 0] - way[at - 1, 0], way[at, 1] - way[at - 1, 1])
     return length / before if length < LONGEST_STRETCH * before else LONGEST_STRETCH

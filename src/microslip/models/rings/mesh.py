@@ -11,11 +11,20 @@ from typing import NamedTuple
 
 import numpy as np
 
+from microslip.pressures.pressure import Pressure
 from microslip.pressures.registry import HERTZ
 
 
 class Focus(NamedTuple):
-    """A radius that rings gather at: their width there is 1 - strength of the mean."""
+    """A radius that rings gather at.
+
+    Attributes
+    ----------
+    radius : float
+        Over the contact radius, 0 to 1.
+    strength : float
+        The width of the rings there is 1 - strength of the mean.
+    """
 
     radius: float
     strength: float = 0.6
@@ -23,10 +32,18 @@ class Focus(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Rings:
-    """n rings up to psi = pi/2; arrays of shape (n,) but psi, shape (n + 1,).
+    """n rings up to psi = pi/2.
 
-    area: ring areas (units a^2); bound: mean friction bound, area-weighted sum 1; radius: mean
-    lever arm of a traction shaped like the bound, so that full slip has the exact torque.
+    Attributes
+    ----------
+    psi : np.ndarray, shape (n + 1,)
+        Edges, r = sin(psi).
+    area : np.ndarray, shape (n,)
+        Ring areas (units a^2).
+    bound : np.ndarray, shape (n,)
+        Mean friction bound, area-weighted sum 1.
+    radius : np.ndarray, shape (n,)
+        Mean lever arm of a traction shaped like the bound, so that full slip has the exact torque.
     """
 
     psi: np.ndarray
@@ -35,12 +52,25 @@ class Rings:
     radius: np.ndarray
 
 
-def make_rings(count, focus=None, pressure=HERTZ):
-    """Rings for ``count`` unknown radii under a round pressures.Pressure, refined around ``focus``
-    (a Focus or just its radius; None: nowhere).
+def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ) -> Rings:
+    """Rings that are refined around a focus.
 
     An edge lies on the focus exactly: the traction has a kink at the stick radius, and a ring that
-    straddles it costs an order of accuracy.  Raises ValueError for count < 2 or focus outside 0..1.
+    straddles it costs an order of accuracy.
+
+    Parameters
+    ----------
+    count : int
+        Unknown radii.
+    focus : Focus, float or None
+        A Focus or just its radius; None: nowhere.
+    pressure : pressure.Pressure
+        One that depends on the radius alone.
+
+    Raises
+    ------
+    ValueError
+        For count < 2 or a focus outside 0..1.
     """
     if count < 2:
         raise ValueError(f"cells = {count}: allowed is a whole number of at least 2 rings")

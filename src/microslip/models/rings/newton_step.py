@@ -1,4 +1,4 @@
-"""One Coulomb step on rings, solved by a semismooth Newton method (ring_factors: the linear part).
+"""One Coulomb step on rings, solved by a semismooth Newton method (tangent.py: the linear part).
 
 A step starts from a guess whose slipping rings are mostly right, so Newton steps come first.  Where
 one helps little a projected Gauss-Seidel sweep settles which rings slip; where one does not help at
@@ -6,6 +6,8 @@ all over-relaxed sweeps take over, and these always converge.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,7 +37,7 @@ def weighted_slip(stiffness, imposed, q, out):
 
 @kernel
 def step_residual(stiffness, q, slip, bound, weight):
-    """friction.coulomb_residual for weighted slips on rings."""
+    """coulomb.coulomb_residual for weighted slips on rings."""
     total = 0.0
     for i in range(q.shape[1]):
         scale = 1.0 / stiffness[i, i]
@@ -63,21 +65,43 @@ def _sweep(stiffness, bound, q, slip, relaxation):
 
 @kernel
 def _newton_step(slip, stick, factors):
-    """Fill factors.change (in the order of the factors) with the Newton step against ``slip``."""
-    upper, matrix, change = factors.upper, factors.tangent, factors.change
-    order, direction = factors.order, factors.direction
+    """Fill factors.change (in the order of the factors) with the Newton step against `slip`.
+
+    Sticking rings are eliminated from both components, the angles of the slipping ones are solved
+    for, both of their components follow, and then what sticks.
+    """
+    change, order, direction = factors.change, factors.order, factors.direction
     n = len(order)
     for c in range(2):
         for p in range(n):
             change[c, p] = slip[c, order[p]]
+    _eliminate_sticking(stick, factors)
+    for p in range(stick, n):
+        change[0, p] = direction[0, p] * change[0, p] + direction[1, p] * change[1, p]
+    _solve_angles(stick, factors)
+    for p in range(stick, n):
+        change[1, p] = direction[1, p] * change[0, p]
+        change[0, p] *= direction[0, p]
+    _substitute_sticking(stick, factors)
+
+
+@kernel
+def _eliminate_sticking(stick, factors):
+    """Forward substitution with U^T over the sticking rings."""
+    upper, change = factors.upper, factors.change
+    for c in range(2):
         for j in range(stick):
             change[c, j] *= upper[j, j]
             x = change[c, j]
-            for p in range(j + 1, n):
+            for p in range(j + 1, len(upper)):
                 change[c, p] -= x * upper[j, p]
-    # the angle's part; both components follow from it
-    for p in range(stick, n):
-        change[0, p] = direction[0, p] * change[0, p] + direction[1, p] * change[1, p]
+
+
+@kernel
+def _solve_angles(stick, factors):
+    """Solve with the tangent matrix for the angles of the slipping rings, in change[0]."""
+    matrix, change = factors.tangent, factors.change
+    n = len(matrix)
     for j in range(stick, n):
         change[0, j] *= matrix[j - stick, j - stick]
         x = change[0, j]
@@ -88,50 +112,94 @@ def _newton_step(slip, stick, factors):
         for s in range(j + 1, n):
             x -= matrix[j - stick, s - stick] * change[0, s]
         change[0, j] = x * matrix[j - stick, j - stick]
-    for p in range(stick, n):
-        change[1, p] = direction[1, p] * change[0, p]
-        change[0, p] *= direction[0, p]
+
+
+@kernel
+def _substitute_sticking(stick, factors):
+    """Back substitution with U over the sticking rings."""
+    upper, change = factors.upper, factors.change
     for j in range(stick - 1, -1, -1):
         x, y = change[0, j], change[1, j]
-        for p in range(j + 1, n):
+        for p in range(j + 1, len(upper)):
             x -= upper[j, p] * change[0, p]
             y -= upper[j, p] * change[1, p]
         change[0, j], change[1, j] = x * upper[j, j], y * upper[j, j]
 
 
+class Step(NamedTuple):
+    """A Coulomb step to be solved.
+
+    Attributes
+    ----------
+    imposed : np.ndarray, shape (2, n)
+        Weighted displacement.
+    bound : np.ndarray, shape (n,)
+        Friction bound of each ring.
+    tolerance : float
+        Of the residual, a force over mu F_z.
+    """
+
+    imposed: np.ndarray
+    bound: np.ndarray
+    tolerance: float
+
+
 @kernel
-def solve_step(stiffness, whole, imposed, bound, weight, q, slip, tolerance, factors):
+def _try_newton(rings, step, q, slip, factors):
+    """Fill factors.trial and trial_slip with what a Newton step from q leads to.
+
+    Returns the residual there, infinite where the tangent problem breaks down.
+    """
+    bound, trial, trial_slip = step.bound, factors.trial, factors.trial_slip
+    stick = factorise(rings, bound, q, slip, factors)
+    if stick < 0:
+        return np.inf
+    _newton_step(slip, stick, factors)
+    for p in range(len(bound)):
+        i = factors.order[p]
+        x, y = q[0, i] + factors.change[0, p], q[1, i] + factors.change[1, p]
+        f = shrink(x, y, bound[i])
+        if p >= stick and bound[i] > 0.0:  # a slipping traction ends on the bound
+            f = bound[i] / np.sqrt(x * x + y * y)
+        trial[0, i], trial[1, i] = x * f, y * f
+    weighted_slip(rings.stiffness, step.imposed, trial, trial_slip)
+    return step_residual(rings.stiffness, trial, trial_slip, bound, rings.weight)
+
+
+@kernel
+def solve_step(rings, step, q, slip, factors):
     """Solve one Coulomb step on rings in place.
 
-    stiffness: B, (n, n); whole: its Cholesky factor; imposed: weighted displacement, (2, n); q:
-    start and result, (2, n), within the bound; slip: receives imposed - B q.  Returns (iterations,
-    residual); the caller compares the residual with the tolerance.
+    Parameters
+    ----------
+    rings : tangent.RingSystem
+        The contact.
+    step : Step
+        What is asked for.
+    q : np.ndarray, shape (2, n)
+        Tractions, start and result; within the bound.
+    slip : np.ndarray, shape (2, n)
+        Receives imposed - B q.
+    factors : tangent.Factors
+        Scratch.
+
+    Returns
+    -------
+    tuple
+        Iterations and residual; the caller compares the latter with the tolerance.
     """
-    n = len(bound)
-    trial, trial_slip = factors.trial, factors.trial_slip
-    weighted_slip(stiffness, imposed, q, slip)
-    residual = step_residual(stiffness, q, slip, bound, weight)
+    stiffness, bound, tolerance = rings.stiffness, step.bound, step.tolerance
+    weighted_slip(stiffness, step.imposed, q, slip)
+    residual = step_residual(stiffness, q, slip, bound, rings.weight)
     failures = 0
     for iteration in range(MAX_ITERATIONS):
         if residual <= tolerance:
             return iteration, residual
-        trial_residual = np.inf
-        stick = factorise(stiffness, whole, bound, q, slip, factors)
-        if stick >= 0:
-            _newton_step(slip, stick, factors)
-            for p in range(n):
-                i = factors.order[p]
-                x, y = q[0, i] + factors.change[0, p], q[1, i] + factors.change[1, p]
-                f = shrink(x, y, bound[i])
-                if p >= stick and bound[i] > 0.0:  # a slipping traction ends on the bound
-                    f = bound[i] / np.sqrt(x * x + y * y)
-                trial[0, i], trial[1, i] = x * f, y * f
-            weighted_slip(stiffness, imposed, trial, trial_slip)
-            trial_residual = step_residual(stiffness, trial, trial_slip, bound, weight)
+        trial_residual = _try_newton(rings, step, q, slip, factors)
         good = trial_residual <= max(GOOD_STEP * residual, tolerance)
         if trial_residual < residual:
-            copy(q, trial)
-            copy(slip, trial_slip)
+            copy(q, factors.trial)
+            copy(slip, factors.trial_slip)
             residual = trial_residual
         else:
             failures += 1
@@ -139,6 +207,6 @@ def solve_step(stiffness, whole, imposed, bound, weight, q, slip, tolerance, fac
             sweeps = RESCUE_SWEEPS if failures > 1 else 1
             for _ in range(sweeps):
                 _sweep(stiffness, bound, q, slip, RESCUE_RELAXATION if sweeps > 1 else 1.0)
-            weighted_slip(stiffness, imposed, q, slip)
-            residual = step_residual(stiffness, q, slip, bound, weight)
+            weighted_slip(stiffness, step.imposed, q, slip)
+            residual = step_residual(stiffness, q, slip, bound, rings.weight)
     return MAX_ITERATIONS, residual

@@ -32,14 +32,42 @@ HELD = 1e30
 """Resistance of a traction to turning where the bound is 0: out of contact a ring slips freely."""
 
 
+class RingSystem(NamedTuple):
+    """The rings of a contact, for compiled code.
+
+    Attributes
+    ----------
+    stiffness : np.ndarray, shape (n, n)
+        B.
+    whole : np.ndarray, shape (n, n)
+        U of all rings in their order, see `cholesky`.
+    weight : np.ndarray, shape (n,)
+        Areas.
+    """
+
+    stiffness: np.ndarray
+    whole: np.ndarray
+    weight: np.ndarray
+
+
 class Factors(NamedTuple):
     """Scratch of the step solver.
 
-    order: sticking rings, then slipping ones, (n,); count: how many stick (-1: not known), and 1 if
-    what the march derives from them is up to date, (2,); upper: U in this order, and C where both
-    rings slip, (n, n), with the reciprocals of the pivots on the diagonal of U; tangent: Cholesky
-    factor of M, likewise; direction: unit tangents of the slipping rings in this order, (2, n);
-    change, trial, trial_slip: (2, n).
+    Attributes
+    ----------
+    order : np.ndarray, shape (n,)
+        Sticking rings, then slipping ones.
+    count : np.ndarray, shape (2,)
+        How many stick (-1: not known), and 1 if what the march derives from them is up to date.
+    upper : np.ndarray, shape (n, n)
+        U in this order, and C where both rings slip, with the reciprocals of the pivots on the
+        diagonal of U.
+    tangent : np.ndarray, shape (n, n)
+        Cholesky factor of M, likewise.
+    direction : np.ndarray, shape (2, n)
+        Unit tangents of the slipping rings in this order.
+    change, trial, trial_slip : np.ndarray, shape (2, n)
+        Newton step in this order; tractions and slips tried.
     """
 
     order: np.ndarray
@@ -103,9 +131,11 @@ def combine(y, factors, rows, count):
 
 @kernel
 def _eliminate(matrix, first, last, scratch):
-    """Cholesky in place on the upper triangle: pivots before ``last``, the rest is left as Schur
-    complement; rows before ``first`` are done already.  Reciprocals of the pivots go on the
-    diagonal.  scratch: (n,).  False if it breaks down."""
+    """Cholesky in place on the upper triangle; returns False if it breaks down.
+
+    Rows before `first` are done already, pivots are those before `last`, and what is left
+    beyond is the Schur complement.  Reciprocals of the pivots go on the diagonal.  scratch: (n,).
+    """
     for j in range(first, len(matrix)):
         count = min(j, last)
         for k in range(count):
@@ -137,27 +167,35 @@ def turning(slip_forward, slip_lateral, bound):
     return size / bound if bound > 0.0 else HELD
 
 
+@kernel(inline="always")
+def _slips(x, y, slip_forward, slip_lateral, bound):
+    """Whether a ring with the traction (x, y) slips: on its bound, and dragged along its slip."""
+    limit = bound * ON_BOUND
+    along = x * slip_forward + y * slip_lateral
+    return x * x + y * y >= limit * limit and (along > 0.0 or limit == 0.0)
+
+
 @kernel
 def _split(q, slip, bound, factors):
-    """Put sticking rings before slipping ones; returns (how many stick, whether that is news)."""
-    order, flags = factors.order, factors.change[0]
+    """Put sticking rings before slipping ones, whose unit tangents are filled in.
+
+    Returns how many stick, and whether these are others than before.
+    """
+    order, slips = factors.order, factors.change[0]  # scratch: 1 where a ring slips
     n = len(bound)
     stick, news = 0, False
     for i in range(n):
-        x, y = q[0, i], q[1, i]
-        limit = bound[i] * ON_BOUND
-        slips = x * x + y * y >= limit * limit and (
-            x * slip[0, i] + y * slip[1, i] > 0.0 or limit == 0.0
-        )
-        flags[i] = 1.0 if slips else 0.0
-        if not slips:
+        if _slips(q[0, i], q[1, i], slip[0, i], slip[1, i], bound[i]):
+            slips[i] = 1.0
+        else:
+            slips[i] = 0.0
             news = news or order[stick] != i
             order[stick] = i
             stick += 1
     news = news or factors.count[0] != stick
     at = stick
     for i in range(n):
-        if flags[i] == 1.0:
+        if slips[i] == 1.0:
             order[at] = i
             if bound[i] > 0.0:
                 size = 1.0 / np.sqrt(q[0, i] * q[0, i] + q[1, i] * q[1, i])
@@ -171,43 +209,53 @@ def _split(q, slip, bound, factors):
 
 
 @kernel
-def _factorise_sticking(stiffness, whole, stick, factors):
-    """Eliminate the sticking rings: fills factors.upper.  whole: U of all rings in their order."""
+def _factorise_sticking(rings, stick, factors):
+    """Eliminate the sticking rings: fills factors.upper.  Returns False if it breaks down.
+
+    Rows of the innermost rings that stick are those of the known factor, their columns reordered.
+    """
+    stiffness, whole = rings.stiffness, rings.whole
     order, upper, scratch = factors.order, factors.upper, factors.change[0]
     n = len(order)
-    inner = 0
-    while inner < stick and order[inner] == inner:
-        inner += 1
-    for p in range(inner):
+    known = 0
+    while known < stick and order[known] == known:
+        known += 1
+    for p in range(known):
         for s in range(p, n):
             upper[p, s] = whole[p, order[s]]
-    slipping = n - stick
-    if inner == stick and slipping <= stick:
-        # the rest of the known factor is the factor of the Schur complement
-        for p in range(stick, n):
-            row = upper[p, p:]
-            row[:] = 0.0
-            for k in range(stick, p):
-                scratch[k] = -whole[k, p]
-            combine(row, scratch[stick:], whole[stick:, p:], p - stick)
-            pivot = 1.0 / whole[p, p]
-            row[0] += pivot * pivot
-            subtract(row[1:], -pivot, whole[p, p + 1 :])
+    if known == stick and n - stick <= stick:
+        _schur_of_outer(whole, stick, upper, scratch)
         return True
-    for p in range(inner, n):
+    for p in range(known, n):
         for s in range(p, n):
             upper[p, s] = stiffness[order[p], order[s]]
-    return _eliminate(upper, inner, stick, scratch)
+    return _eliminate(upper, known, stick, scratch)
 
 
 @kernel
-def factorise(stiffness, whole, bound, q, slip, factors):
+def _schur_of_outer(whole, stick, upper, scratch):
+    """Schur complement where all rings from `stick` on slip: the rest of the known factor is the
+    factor of it, so that a product of what is left does, and nothing is eliminated."""
+    n = len(whole)
+    for p in range(stick, n):
+        row = upper[p, p:]
+        row[:] = 0.0
+        for k in range(stick, p):
+            scratch[k] = -whole[k, p]
+        combine(row, scratch[stick:], whole[stick:, p:], p - stick)
+        pivot = 1.0 / whole[p, p]
+        row[0] += pivot * pivot
+        subtract(row[1:], -pivot, whole[p, p + 1 :])
+
+
+@kernel
+def factorise(rings, bound, q, slip, factors):
     """Tangent problem at (q, slip), factorised; returns the number of sticking rings, -1 if it
     breaks down.  What belongs to the sticking rings is kept while these stay the same."""
     stick, news = _split(q, slip, bound, factors)
     if news:
         factors.count[1] = 0
-        if not _factorise_sticking(stiffness, whole, stick, factors):
+        if not _factorise_sticking(rings, stick, factors):
             factors.count[0] = -1
             return -1
     n = len(bound)

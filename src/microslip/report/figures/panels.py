@@ -130,6 +130,7 @@ def label_beside(
     points: np.ndarray,
     index: int,
     taken: list[Bbox],
+    *,
     away: float = 5.0,
     always: bool = False,
 ) -> None:

@@ -2,15 +2,16 @@
 
 The solver is a compiled function
 
-    solve(matrix, scale, bound, weight, b, q, slip, tolerance, settings) -> (iterations, residual)
+    solve(points, b, q, slip, tolerance, settings) -> (iterations, residual)
 
-matrix: A, (2 K, 2 K), forward components first; scale: its diagonal, bound, weight: of each point,
-(K,); b: imposed displacement, (2, K); q: first guess and result, (2, K); slip: receives b - A q;
-settings: whatever ``prepare(matrix, scale, **parameters)`` returned.  The residual is that of
-friction.coulomb_residual.
+points: Points; b: imposed displacement, (2, K); q: first guess and result, (2, K); slip: receives
+b - A q; settings: what `prepare(matrix, scale, **parameters)` returned.  The residual is that of
+coulomb.coulomb_residual.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,32 +24,50 @@ FAR_FROM_SOLVED = 1e-2
 MAX_DESCENTS = 3000
 
 
+class Points(NamedTuple):
+    """The K points of a contact, for compiled code.
+
+    Attributes
+    ----------
+    matrix : np.ndarray, shape (2 K, 2 K)
+        A, forward components first.
+    scale : np.ndarray, shape (K,)
+        Its diagonal.
+    bound, weight : np.ndarray, shape (K,)
+        Friction bound and area of each point.
+    """
+
+    matrix: np.ndarray
+    scale: np.ndarray
+    bound: np.ndarray
+    weight: np.ndarray
+
+
 def nothing(matrix, scale):
     """Settings of a solver that has none."""
     return 0.0
 
 
 class DenseContact:
-    """A contact (see models.contact.Contact) whose steps are solved by ``solve``."""
+    """A contact (see models.contact.Contact) whose steps are solved by `solve`."""
 
     has_sensitivity = False
 
     def __init__(self, contact, solve, prepare=nothing, **parameters):
         self.contact, self.solve = contact, solve
         self.shape = (2, *contact.forward_position.shape)
-        points = self.shape[1:]
-        self.matrix = _matrix(contact, self.shape)
-        self.scale, self.flat_bound, self.flat_weight = (
-            np.broadcast_to(values, points).ravel().astype(float)
+        flat = (
+            np.broadcast_to(values, self.shape[1:]).ravel().astype(float)
             for values in (contact.compliance, contact.bound, contact.weight)
         )
-        self.settings = prepare(self.matrix, self.scale, **parameters)
+        self.points = Points(_matrix(contact, self.shape), *flat)
+        self.settings = prepare(self.points.matrix, self.points.scale, **parameters)
 
     def __getattr__(self, name):
         return getattr(self.contact, name)
 
     def march(self, path, state, tolerance, sensitivity=False, previous=None):
-        """March along ``path``; raises StepFailure at the first step that stays unsolved."""
+        """March along `path`; raises StepFailure at the first step that stays unsolved."""
         q = state.reshape(2, -1).copy()
         held, z = q.copy(), self._elastic(q) - self._rigid(path.positions[0])
         found = np.empty((path.steps + 1, 3))
@@ -56,8 +75,8 @@ class DenseContact:
         slips = np.empty((path.stages.shape[1], *q.shape))
         total, iterations = 0.0, 0
         for k, stages in enumerate(path.stages):
-            for s, motion in enumerate(stages):
-                rigid = self._rigid(motion)
+            for s, position in enumerate(stages):
+                rigid = self._rigid(position)
                 b = z + rigid - np.tensordot(path.carry[s, :s], slips[:s], 1)
                 count, residual = self._solved(b, q, slips[s], tolerance)
                 iterations, total = iterations + count, total + residual
@@ -69,9 +88,8 @@ class DenseContact:
         return March(held.reshape(self.shape), found, total, iterations, solves)
 
     def _solved(self, b, q, slip, tolerance):
-        point = (self.matrix, self.scale, self.flat_bound, self.flat_weight, b, q, slip)
         try:
-            count, residual = self.solve(*point, tolerance, self.settings)
+            count, residual = self.solve(self.points, b, q, slip, tolerance, self.settings)
         except np.linalg.LinAlgError as error:
             raise StepFailure(f"diverged: {error}") from error
         if not residual <= tolerance:  # NaN is not, either
@@ -85,8 +103,8 @@ class DenseContact:
     def _elastic(self, q):
         return self.contact.displacement(q.reshape(self.shape)).reshape(2, -1)
 
-    def _rigid(self, motion):
-        forward, lateral, angle = motion
+    def _rigid(self, position):
+        forward, lateral, angle = position
         return np.stack(
             [
                 forward + angle * self.contact.lateral_position.ravel(),
@@ -113,11 +131,12 @@ def _matrix(contact, shape):
 
 
 @kernel
-def judge(matrix, scale, bound, weight, b, q, slip):
+def judge(points, b, q, slip):
     """Fill slip = b - A q, all (2, K), and return the residual of the step."""
-    slip[:] = b - (matrix @ q.ravel()).reshape(q.shape)
-    points = (2, 1, q.shape[1])
-    return coulomb_residual(q.reshape(points), slip.reshape(points), bound, weight, scale)
+    slip[:] = b - (points.matrix @ q.ravel()).reshape(q.shape)
+    shape = (2, 1, q.shape[1])
+    rows = q.reshape(shape), slip.reshape(shape)
+    return coulomb_residual(rows[0], rows[1], points.bound, points.weight, points.scale)
 
 
 @kernel
@@ -130,14 +149,14 @@ def project_in_place(q, bound):
 
 
 @kernel
-def descend(matrix, scale, bound, weight, b, q, slip, tolerance, length):
-    """Solve a step by projected gradient steps of fixed length, that of each point in ``length``,
+def descend(points, b, q, slip, tolerance, length):
+    """Solve a step by projected gradient steps of fixed length, that of each point in `length`,
     (K,); see the module's docstring."""
-    residual = judge(matrix, scale, bound, weight, b, q, slip)
+    residual = judge(points, b, q, slip)
     for iteration in range(MAX_DESCENTS):
         if residual <= tolerance:
             return iteration, residual
         q += length * slip
-        project_in_place(q, bound)
-        residual = judge(matrix, scale, bound, weight, b, q, slip)
+        project_in_place(q, points.bound)
+        residual = judge(points, b, q, slip)
     return MAX_DESCENTS, residual

@@ -1,61 +1,94 @@
-"""Searches for the periodic state that people write first, on a period_map.Cycle.
+"""Searches for the periodic state that people write first, on a period_map.PeriodMap.
 
-All return a cycle.PeriodicState.
+All return a period_map.PeriodicState.
 """
 
 from __future__ import annotations
 
+import numpy as np
+
 from microslip.solver import anderson
 from microslip.solver.anderson import DEPTH, Anderson
+from microslip.solver.period_map import PeriodicState, PeriodMap
 
 SLOWEST = 1.0 - 1e-6
 """Largest ratio of two changes that is believed: rounding alone makes it 1."""
 
 
-def accelerated(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
+def accelerated(
+    period_map: PeriodMap,
+    start: np.ndarray,
+    tolerance: float,
+    step_tolerance: float,
+    most_marches: int,
+    inverse: np.ndarray | None = None,
+) -> PeriodicState:
     """Anderson acceleration, whether or not marches give a derivative.
 
     Newton's method has nothing to invert where the map keeps what rings in it for ever.
     """
-    return anderson.search(cycle, start, tolerance, step_tolerance, most_laps)
+    return anderson.search(period_map, start, tolerance, step_tolerance, most_marches)
 
 
-def march(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
+def march(
+    period_map: PeriodMap,
+    start: np.ndarray,
+    tolerance: float,
+    step_tolerance: float,
+    most_marches: int,
+    inverse: np.ndarray | None = None,
+) -> PeriodicState:
     """March on until the plain map stands still, as strictly as the shipped search judges it.
 
     What is left is the geometric tail of the changes, in the ratio of the last two.
     """
     state, last, distance = start, None, float("inf")
-    for _ in range(most_laps):
-        lap = cycle(state, step_tolerance)
+    for _ in range(most_marches):
+        interval = period_map(state, step_tolerance)
         if last is not None:
-            ratio = min(lap.residual / last, SLOWEST) if last > 0.0 else 0.0
-            distance = max(lap.residual / (1.0 - ratio), cycle.distance(lap, lap.image))
+            ratio = min(interval.residual / last, SLOWEST) if last > 0.0 else 0.0
+            distance = max(
+                interval.residual / (1.0 - ratio), period_map.distance(interval, interval.image)
+            )
         if distance <= tolerance:
             break
-        state, last = lap.image, lap.residual
-    return cycle.result(lap, distance, distance <= tolerance)
+        state, last = interval.image, interval.residual
+    return period_map.result(interval, distance, distance <= tolerance)
 
 
-def equal_means(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
+def equal_means(
+    period_map: PeriodMap,
+    start: np.ndarray,
+    tolerance: float,
+    step_tolerance: float,
+    most_marches: int,
+    inverse: np.ndarray | None = None,
+) -> PeriodicState:
     """March on until the mean force of two half periods is the same to the tolerance."""
     state, last = start, float("inf")
-    for _ in range(most_laps):
-        lap = cycle(state, step_tolerance)
-        mean = cycle.path.mean(lap.march.forces)[0]
+    for _ in range(most_marches):
+        interval = period_map(state, step_tolerance)
+        mean = period_map.path.mean(interval.march.forces)[0]
         change = abs(mean - last)
         if change <= tolerance:
             break
-        state, last = lap.image, mean
-    return cycle.result(lap, change, change <= tolerance)
+        state, last = interval.image, mean
+    return period_map.result(interval, change, change <= tolerance)
 
 
-def residual_alone(cycle, start, tolerance, step_tolerance, most_laps, inverse=None):
+def residual_alone(
+    period_map: PeriodMap,
+    start: np.ndarray,
+    tolerance: float,
+    step_tolerance: float,
+    most_marches: int,
+    inverse: np.ndarray | None = None,
+) -> PeriodicState:
     """Anderson acceleration, believed as soon as the plain map changes less than the tolerance."""
-    accelerate, state = Anderson(cycle.contact, DEPTH), start
-    for _ in range(most_laps):
-        lap = cycle(state, step_tolerance)
-        if lap.residual <= tolerance:
+    accelerate, state = Anderson(period_map.contact, DEPTH), start
+    for _ in range(most_marches):
+        interval = period_map(state, step_tolerance)
+        if interval.residual <= tolerance:
             break
-        state = cycle.admissible(accelerate(state, lap.image))
-    return cycle.result(lap, lap.residual, lap.residual <= tolerance)
+        state = period_map.admissible(accelerate(state, interval.image))
+    return period_map.result(interval, interval.residual, interval.residual <= tolerance)

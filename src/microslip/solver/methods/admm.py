@@ -22,9 +22,9 @@ def _inverse(matrix, scale, penalty, relaxation):
 
 
 @kernel
-def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, settings):
+def _solve(points, b, q, slip, tolerance, settings):
     inverse, penalty, relaxation = settings
-    residual = judge(matrix, scale, bound, weight, b, q, slip)
+    residual = judge(points, b, q, slip)
     dual = slip / penalty
     for iteration in range(MAX_ITERATIONS):
         if residual <= tolerance:
@@ -32,9 +32,9 @@ def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, settings):
         free = (inverse @ (b + penalty * (q - dual)).ravel()).reshape(q.shape)
         dual += relaxation * free + (1.0 - relaxation) * q
         q[:] = dual
-        project_in_place(q, bound)
+        project_in_place(q, points.bound)
         dual -= q
-        residual = judge(matrix, scale, bound, weight, b, q, slip)
+        residual = judge(points, b, q, slip)
     return MAX_ITERATIONS, residual
 
 

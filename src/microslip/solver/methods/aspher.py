@@ -27,7 +27,7 @@ from microslip.models.coulomb import project
 from microslip.models.path import EULER
 from microslip.models.squares.convolution import square_convolution
 from microslip.solver.method import Method
-from microslip.solver.simulate import Run, failed_run
+from microslip.solver.run import Run, failed_run
 from microslip.theory.hertz import G_STAR
 
 MOST_PERIODS = 6
@@ -37,7 +37,7 @@ largest bound."""
 
 
 class Solver:
-    """A sphere under load on ``cells`` x ``cells`` squares over [-1, 1]^2, to be moved step by
+    """A sphere under load on `cells` x `cells` squares over [-1, 1]^2, to be moved step by
     step; working units, mu = 1."""
 
     def __init__(self, cells, poisson):
@@ -65,7 +65,7 @@ class Solver:
 
     def step(self, forward, lateral):
         """Move on to a rigid displacement (in u_lim); returns the forward force (over mu F_z) and
-        the residual, as friction.coulomb_residual.  Takes note of steps that failed."""
+        the residual, as coulomb.coulomb_residual.  Takes note of steps that failed."""
         step = self._solver.step(delta_t=(forward, lateral), tol_kkt=math.inf)
         self.iterations += step.tangential_iters
         self.solves += 1
@@ -87,11 +87,11 @@ def half_period(solver, path, number):
     return found[:, 0], float(found[:, 1].sum())
 
 
-def _run(motion, model, resolution, tolerance):
-    solver = Solver(resolution.cells, motion.poisson)
+def _run(problem, model, resolution, tolerance):
+    solver = Solver(resolution.cells, problem.poisson)
     if not solver.loaded:
         return failed_run("the normal contact was left unsolved")
-    path = motion.path(solver, resolution.steps, EULER)
+    path = problem.path(solver, resolution.steps, EULER)
     force, means, residuals, change = 0.0, [], [], math.inf
     for number in range(2 * MOST_PERIODS):
         forces, residual = half_period(solver, path, number)

@@ -16,11 +16,12 @@ MAX_ITERATIONS = 60
 
 
 @kernel
-def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, settings):
+def _solve(points, b, q, slip, tolerance, settings):
+    matrix, scale, bound = points.matrix, points.scale, points.bound
     n = q.shape[1]
     system, right = np.empty_like(matrix), np.empty(2 * n)
     trial, trial_slip = q.copy(), np.empty_like(q)
-    residual = judge(matrix, scale, bound, weight, b, trial, trial_slip)
+    residual = judge(points, b, trial, trial_slip)
     for iteration in range(MAX_ITERATIONS):
         if residual <= tolerance:
             q[:] = trial
@@ -49,10 +50,10 @@ def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, settings):
                 right[row] += (d[c][0] * (b[0, i] - trial_slip[0, i])) / scale[i]
                 right[row] += (d[c][1] * (b[1, i] - trial_slip[1, i])) / scale[i]
         trial = np.linalg.solve(system, right).reshape((2, n))
-        residual = judge(matrix, scale, bound, weight, b, trial, trial_slip)
+        residual = judge(points, b, trial, trial_slip)
     project_in_place(trial, bound)
     q[:] = trial
-    return MAX_ITERATIONS, judge(matrix, scale, bound, weight, b, q, slip)
+    return MAX_ITERATIONS, judge(points, b, q, slip)
 
 
 def _dress(contact):

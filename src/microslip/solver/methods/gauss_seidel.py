@@ -21,10 +21,11 @@ def _columns(matrix, scale, relaxation):
 
 
 @kernel
-def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, settings):
+def _solve(points, b, q, slip, tolerance, settings):
     columns, relaxation = settings
+    scale, bound = points.scale, points.bound
     n = q.shape[1]
-    residual = judge(matrix, scale, bound, weight, b, q, slip)
+    residual = judge(points, b, q, slip)
     for iteration in range(MAX_ITERATIONS):
         if residual <= tolerance:
             return iteration, residual
@@ -40,7 +41,7 @@ def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, settings):
                     for j in range(n):
                         k = c * n + j
                         slip[c, j] -= columns[i, k] * dx + columns[n + i, k] * dy
-        residual = judge(matrix, scale, bound, weight, b, q, slip)
+        residual = judge(points, b, q, slip)
     return MAX_ITERATIONS, residual
 
 

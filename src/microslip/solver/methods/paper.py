@@ -13,17 +13,17 @@ from microslip.models.contact import FORWARD, forward_slip
 from microslip.models.path import EULER, make_path
 from microslip.models.squares.contact import CartesianContact
 from microslip.solver.method import Method
-from microslip.solver.simulate import Run
+from microslip.solver.run import Run
 
 CELLS, STEPS_PER_PERIOD = 32, 100
 STEPS = 8000
 STRESS_TOLERANCE = 1e-3
 
 
-def path_of(motion, steps=STEPS):
+def path_of(problem, steps=STEPS):
     """Path of so many steps from the middle of a stroke."""
     phase = 2.0 * np.pi / STEPS_PER_PERIOD * np.arange(steps + 1)
-    return make_path(motion.displacement, phase, EULER)
+    return make_path(problem.displacement, phase, EULER)
 
 
 def last_means(march):
@@ -33,9 +33,9 @@ def last_means(march):
     return float(last.mean()), float(before.mean())
 
 
-def _run(motion, model, resolution, tolerance):
-    contact = CartesianContact(CELLS, motion.poisson, motion.scene.pressure)
-    march = contact.march(path_of(motion), forward_slip(contact), STRESS_TOLERANCE)
+def _run(problem, model, resolution, tolerance):
+    contact = CartesianContact(CELLS, problem.poisson, problem.scene.pressure)
+    march = contact.march(path_of(problem), forward_slip(contact), STRESS_TOLERANCE)
     mean, before = last_means(march)
     return Run(
         mu=mean,

@@ -12,7 +12,7 @@ from microslip.solver.methods._dense import DenseContact, descend, safe_length
 
 
 def _lengths(matrix, scale, step):
-    """``step`` in units of the reciprocal of the largest eigenvalue, for every point."""
+    """`step` in units of the reciprocal of the largest eigenvalue, for every point."""
     return np.full_like(scale, step * safe_length(matrix))
 
 

@@ -19,8 +19,9 @@ def _shortest(matrix, scale):
 
 
 @kernel
-def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, shortest):
-    residual = judge(matrix, scale, bound, weight, b, q, slip)
+def _solve(points, b, q, slip, tolerance, shortest):
+    bound, weight = points.bound, points.weight
+    residual = judge(points, b, q, slip)
     length, best, best_at = shortest, residual, 0
     for iteration in range(MAX_ITERATIONS):
         if residual <= tolerance:
@@ -28,7 +29,7 @@ def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, shortest):
         moved, changed = -q, slip.copy()
         q += length * slip
         project_in_place(q, bound)
-        residual = judge(matrix, scale, bound, weight, b, q, slip)
+        residual = judge(points, b, q, slip)
         moved += q
         changed -= slip
         share = (weight * moved * changed).sum()

@@ -17,9 +17,10 @@ MAX_ITERATIONS = 200
 
 
 @kernel
-def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, settings):
+def _solve(points, b, q, slip, tolerance, settings):
+    matrix, bound = points.matrix, points.bound
     n = q.shape[1]
-    residual = judge(matrix, scale, bound, weight, b, q, slip)
+    residual = judge(points, b, q, slip)
     sticks = np.zeros(n, np.bool_)
     for i in range(n):
         sticks[i] = q[0, i] ** 2 + q[1, i] ** 2 < (bound[i] * (1.0 - 1e-12)) ** 2
@@ -45,7 +46,7 @@ def _solve(matrix, scale, bound, weight, b, q, slip, tolerance, settings):
             inner = matrix[both][:, both]
             flat[both] = np.linalg.solve(inner, right[both])
             q[:] = flat.reshape(q.shape)
-        residual = judge(matrix, scale, bound, weight, b, q, slip)
+        residual = judge(points, b, q, slip)
         for i in range(n):
             if sticks[i]:
                 size = np.sqrt(q[0, i] ** 2 + q[1, i] ** 2)

@@ -5,6 +5,8 @@ point and a tolerance; a competitor's cost there is the least among its runs tha
 tolerance, and its ratio that cost over the least of all competitors of its contest.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from microslip.solver.method_names import SHIPPED, method_named
@@ -38,7 +40,34 @@ def contest_of(method):
     return "searches"
 
 
-def ratios(points, names, costs, tolerance, errors, levels, models):
+class Trial(NamedTuple):
+    """A run of a contest.
+
+    Attributes
+    ----------
+    point, name, model : str
+        Point, competitor and contact model.
+    level : int
+        The finer, the larger.
+    cost : float
+        Seconds.
+    error : float
+        Distance from the reference, dimensionless; NaN where there is no result.
+    """
+
+    point: str
+    name: str
+    model: str
+    level: int
+    cost: float
+    error: float
+
+    def is_finer_than(self, other):
+        """Whether it is of the same series of runs, and as fine as another or finer."""
+        return self[:3] == other[:3] and self.level >= other.level
+
+
+def ratios(trials, tolerance):
     """Least cost of every competitor at every point over the least of all.
 
     A run counts if it and all finer ones of its model and competitor are within the tolerance,
@@ -46,12 +75,8 @@ def ratios(points, names, costs, tolerance, errors, levels, models):
 
     Parameters
     ----------
-    points, names, models : sequence of str, shape (n,)
-        Point, competitor and contact model of each run.
-    costs, errors : sequence of float, shape (n,)
-        Seconds, and distances from the reference (dimensionless); NaN where there is no result.
-    levels : sequence of int, shape (n,)
-        The finer, the larger.
+    trials : sequence of Trial
+        The runs of a contest.
     tolerance : float
         Dimensionless.
 
@@ -61,15 +86,15 @@ def ratios(points, names, costs, tolerance, errors, levels, models):
         Names of the competitors in the order in which they appear, names of the points, and ratios
         of shape (competitors, points), infinite where no run counts.
     """
-    of_point, of_name = list(dict.fromkeys(points)), list(dict.fromkeys(names))
+    of_point = list(dict.fromkeys(trial.point for trial in trials))
+    of_name = list(dict.fromkeys(trial.name for trial in trials))
     least = np.full((len(of_name), len(of_point)), np.inf)
-    runs = list(zip(points, names, models, levels, costs, errors, strict=True))
-    for point, name, model, level, cost, error in runs:
-        finer = [run[5] for run in runs if run[:3] == (point, name, model) and run[3] >= level]
-        known = [other for other in finer if np.isfinite(other)]
-        if np.isfinite(error) and np.isfinite(cost) and max(known) <= tolerance:
-            place = of_name.index(name), of_point.index(point)
-            least[place] = min(least[place], cost)
+    for trial in trials:
+        finer = [other.error for other in trials if other.is_finer_than(trial)]
+        known = [error for error in finer if np.isfinite(error)]
+        if np.isfinite(trial.error) and np.isfinite(trial.cost) and max(known) <= tolerance:
+            place = of_name.index(trial.name), of_point.index(trial.point)
+            least[place] = min(least[place], trial.cost)
     best = least.min(axis=0, initial=np.inf)
     solved = np.isfinite(least)
     return of_name, of_point, np.divide(least, best, out=np.full_like(least, np.inf), where=solved)
@@ -97,16 +122,19 @@ def variables(columns, points, tolerances):
     contests, names, table = [], [], []
     for contest, entries in _entries(rows).items():
         found = []
-        for tolerance in tolerances:
-            known, at, values = ratios(
-                [row["trial_point"] for row, _ in entries],
-                [name for _, name in entries],
-                [row["seconds"] for row, _ in entries],
-                tolerance=tolerance,
-                errors=[row["error"] if row["converged"] else np.nan for row, _ in entries],
-                levels=[row["trial_level"] for row, _ in entries],
-                models=[row["trial_model"] for row, _ in entries],
+        trials = [
+            Trial(
+                row["trial_point"],
+                name,
+                row["trial_model"],
+                row["trial_level"],
+                row["seconds"],
+                row["error"] if row["converged"] else np.nan,
             )
+            for row, name in entries
+        ]
+        for tolerance in tolerances:
+            known, at, values = ratios(trials, tolerance)
             every = np.full((len(known), len(points)), np.inf)
             every[:, [points.index(point) for point in at]] = values
             found.append(every)

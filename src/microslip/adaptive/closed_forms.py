@@ -1,0 +1,101 @@
+"""Points where nothing has to be computed: what is known of them in closed form."""
+
+from __future__ import annotations
+
+from microslip.motions.motion import Scene
+from microslip.pressures.registry import HERTZ
+from microslip.solver.problem import Problem
+from microslip.theory import bounds, hertz, paper
+
+STATIC_LIMITS = {
+    "transverse": paper.static_limit_transverse,  # nu = 0
+    "zigzag": paper.static_limit_transverse,  # it knows the turning points alone
+    "bore": paper.static_limit_bore,  # any nu: it only scales the angle
+}
+STEADY_STATES = {"continuous-bore": (paper.bore_forward, paper.bore_torque)}  # Eqs 21 and 22
+QUADRATURE = 1e-7
+"""Error of Eqs 17 and 18 for another pressure, which may have kinks."""
+WHOLE_ROUNDING = 1e-9
+OF_RECORD = 1e-8
+"""Error of closed forms by quadrature: of a whole motion, and of what follows from the record of an
+indenter's pressure."""
+LARGEST_DROPS = {
+    "longitudinal": bounds.largest_drop_longitudinal,
+    "transverse": bounds.largest_drop_transverse,
+    "bore": bounds.largest_drop_bore,
+}
+ROUNDING = 1e-12
+
+
+def no_vibration(scene: Scene, amplitude: float | None) -> tuple | None:
+    """(mu, torque, error) where nothing oscillates, whatever the model, else None."""
+    return (1.0, None, ROUNDING) if scene.periodic and amplitude == 0.0 else None
+
+
+def closed_form(problem: Problem, tolerance: float) -> tuple | None:
+    """What is known where nothing has to be computed, else None.
+
+    The steady state of a motion that does not oscillate, where every point slips along its rigid
+    velocity; the limit of vanishing velocity; motion along one line, nu = 0; and sliding so fast
+    that the bracket of bounds.py is within the tolerance.
+
+    Parameters
+    ----------
+    problem : problem.Problem
+        As checked by the caller.
+    tolerance : float
+        Absolute, on the friction.
+
+    Returns
+    -------
+    tuple or None
+        mu, torque (None where there is none to tell) and the error.
+    """
+    scene, velocity, amplitude = problem.scene, problem.velocity, problem.amplitude
+    if not scene.periodic:
+        return _steady(scene, velocity)
+    if scene.whole is not None and problem.poisson == 0.0:
+        whole = scene.whole(velocity, amplitude, scene.pressure)
+        if whole is not None:
+            error = WHOLE_ROUNDING if velocity > 0.0 else ROUNDING
+            return float(whole), None, error if scene.pressure.hertzian else OF_RECORD
+    if velocity == 0.0:
+        known = STATIC_LIMITS.get(scene.name)
+        if known is None or (problem.poisson > 0.0 and not scene.rotates):
+            return None
+        return _static(scene, known, amplitude, problem.poisson)
+    largest_drop = LARGEST_DROPS.get(scene.name)
+    if largest_drop is not None and not (scene.rotates and scene.pressure is not HERTZ):
+        drop = largest_drop(velocity, amplitude)
+        if 0.5 * drop + ROUNDING <= tolerance:
+            return 1.0 - 0.5 * drop, None, 0.5 * drop + ROUNDING
+    return None
+
+
+def _steady(scene, velocity):
+    """Eqs 17 and 18; 21 and 22 for a sphere."""
+    if scene.pressure is HERTZ:
+        forward, torque = STEADY_STATES[scene.name]
+        return float(forward(velocity)), float(torque(velocity)), ROUNDING
+    if not scene.pressure.is_round:
+        return None
+    from microslip.theory import axisymmetric  # only now: integration takes a while to load
+
+    forward, torque = axisymmetric.bore_of(scene.pressure.bound, velocity)
+    return float(forward), float(torque), QUADRATURE
+
+
+def _static(scene, of_sphere, amplitude, poisson):
+    """The limit of vanishing velocity, if it has a closed form under this pressure."""
+    pressure = scene.pressure
+    if pressure is HERTZ or (pressure.hertzian and not scene.rotates):
+        return float(of_sphere(amplitude)), None, ROUNDING
+    if not pressure.is_indenter:
+        return None
+    from microslip.theory import indenters as limits  # only now, as above
+
+    if scene.rotates:
+        mu = limits.static_bore(pressure, float(hertz.bore_angle(amplitude, poisson)), poisson)
+    else:
+        mu = limits.static_transverse(pressure, amplitude)
+    return mu, None, OF_RECORD

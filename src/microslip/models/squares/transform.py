@@ -1,0 +1,148 @@
+"""The compiled Fourier transform of convolution.py, along the first axis of two real arrays.
+
+Butterflies of 2, 3 and 4 rows run over whole rows, which the compiler turns into vector
+instructions.  They take the first of their rows, a, which are `part` rows apart, and the index of
+their first root, w.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.foundation.compiled import kernel
+
+
+@kernel
+def forward(re, im, columns, radices, roots):
+    """Transform the first `columns` columns in place; for the order see `convolution._order`."""
+    length = padded = re.shape[0]
+    for radix in radices:
+        part = length // radix
+        for j in range(part):
+            w = padded // length * j
+            for a in range(j, padded, length):
+                if radix == 4:
+                    _forward_4((re, im), columns, a, part, roots, w)
+                elif radix == 3:
+                    _forward_3((re, im), columns, a, part, roots, w)
+                else:
+                    _forward_2((re, im), columns, a, part, roots, w)
+        length = part
+
+
+@kernel
+def backward(re, im, columns, radices, roots):
+    """Undo `forward`, up to the factor P."""
+    part, padded = 1, re.shape[0]
+    for radix in radices[::-1]:
+        length = part * radix
+        for j in range(part):
+            w = padded // length * j
+            for a in range(j, padded, length):
+                if radix == 4:
+                    _backward_4((re, im), columns, a, part, roots, w)
+                elif radix == 3:
+                    _backward_3((re, im), columns, a, part, roots, w)
+                else:
+                    _backward_2((re, im), columns, a, part, roots, w)
+        part = length
+
+
+@kernel
+def _forward_2(values, columns, a, part, roots, w):
+    re, im = values
+    c1, s1 = roots[0, w], -roots[1, w]
+    b = a + part
+    for k in range(columns):
+        x, y = re[a, k] - re[b, k], im[a, k] - im[b, k]
+        re[a, k] += re[b, k]
+        im[a, k] += im[b, k]
+        re[b, k], im[b, k] = x * c1 - y * s1, x * s1 + y * c1
+
+
+@kernel
+def _backward_2(values, columns, a, part, roots, w):
+    re, im = values
+    c1, s1 = roots[0, w], roots[1, w]
+    b = a + part
+    for k in range(columns):
+        x, y = re[b, k] * c1 - im[b, k] * s1, re[b, k] * s1 + im[b, k] * c1
+        re[b, k], im[b, k] = re[a, k] - x, im[a, k] - y
+        re[a, k] += x
+        im[a, k] += y
+
+
+_SIN_60 = np.sqrt(0.75)
+
+
+@kernel
+def _forward_3(values, columns, a, part, roots, w):
+    re, im = values
+    c1, s1, c2, s2 = roots[0, w], -roots[1, w], roots[0, 2 * w], -roots[1, 2 * w]
+    b, c = a + part, a + 2 * part
+    for k in range(columns):
+        xr, xi = re[b, k] + re[c, k], im[b, k] + im[c, k]
+        yr, yi = _SIN_60 * (im[b, k] - im[c, k]), _SIN_60 * (re[c, k] - re[b, k])
+        zr, zi = re[a, k] - 0.5 * xr, im[a, k] - 0.5 * xi
+        re[a, k] += xr
+        im[a, k] += xi
+        re[b, k] = (zr + yr) * c1 - (zi + yi) * s1
+        im[b, k] = (zr + yr) * s1 + (zi + yi) * c1
+        re[c, k] = (zr - yr) * c2 - (zi - yi) * s2
+        im[c, k] = (zr - yr) * s2 + (zi - yi) * c2
+
+
+@kernel
+def _backward_3(values, columns, a, part, roots, w):
+    re, im = values
+    c1, s1, c2, s2 = roots[0, w], roots[1, w], roots[0, 2 * w], roots[1, 2 * w]
+    b, c = a + part, a + 2 * part
+    for k in range(columns):
+        br, bi = re[b, k] * c1 - im[b, k] * s1, re[b, k] * s1 + im[b, k] * c1
+        cr, ci = re[c, k] * c2 - im[c, k] * s2, re[c, k] * s2 + im[c, k] * c2
+        yr, yi = _SIN_60 * (ci - bi), _SIN_60 * (br - cr)
+        zr, zi = re[a, k] - 0.5 * (br + cr), im[a, k] - 0.5 * (bi + ci)
+        re[a, k] += br + cr
+        im[a, k] += bi + ci
+        re[b, k], im[b, k] = zr + yr, zi + yi
+        re[c, k], im[c, k] = zr - yr, zi - yi
+
+
+@kernel
+def _forward_4(values, columns, a, part, roots, w):
+    re, im = values
+    c1, s1, c2, s2 = roots[0, w], -roots[1, w], roots[0, 2 * w], -roots[1, 2 * w]
+    c3, s3 = roots[0, 3 * w], -roots[1, 3 * w]
+    b, c, d = a + part, a + 2 * part, a + 3 * part
+    for k in range(columns):
+        er, ei = re[a, k] + re[c, k], im[a, k] + im[c, k]
+        fr, fi = re[a, k] - re[c, k], im[a, k] - im[c, k]
+        gr, gi = re[b, k] + re[d, k], im[b, k] + im[d, k]
+        hr, hi = im[b, k] - im[d, k], re[d, k] - re[b, k]
+        re[a, k], im[a, k] = er + gr, ei + gi
+        re[b, k] = (fr + hr) * c1 - (fi + hi) * s1
+        im[b, k] = (fr + hr) * s1 + (fi + hi) * c1
+        re[c, k] = (er - gr) * c2 - (ei - gi) * s2
+        im[c, k] = (er - gr) * s2 + (ei - gi) * c2
+        re[d, k] = (fr - hr) * c3 - (fi - hi) * s3
+        im[d, k] = (fr - hr) * s3 + (fi - hi) * c3
+
+
+@kernel
+def _backward_4(values, columns, a, part, roots, w):
+    re, im = values
+    c1, s1, c2, s2 = roots[0, w], roots[1, w], roots[0, 2 * w], roots[1, 2 * w]
+    c3, s3 = roots[0, 3 * w], roots[1, 3 * w]
+    b, c, d = a + part, a + 2 * part, a + 3 * part
+    for k in range(columns):
+        br, bi = re[b, k] * c1 - im[b, k] * s1, re[b, k] * s1 + im[b, k] * c1
+        cr, ci = re[c, k] * c2 - im[c, k] * s2, re[c, k] * s2 + im[c, k] * c2
+        dr, di = re[d, k] * c3 - im[d, k] * s3, re[d, k] * s3 + im[d, k] * c3
+        er, ei = re[a, k] + cr, im[a, k] + ci
+        fr, fi = re[a, k] - cr, im[a, k] - ci
+        gr, gi = br + dr, bi + di
+        hr, hi = di - bi, br - dr
+        re[a, k], im[a, k] = er + gr, ei + gi
+        re[b, k], im[b, k] = fr + hr, fi + hi
+        re[c, k], im[c, k] = er - gr, ei - gi
+        re[d, k], im[d, k] = fr - hr, fi - hi

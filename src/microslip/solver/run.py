@@ -1,0 +1,92 @@
+"""What a run is done with, and what it comes to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from microslip.solver.budget import Budget
+from microslip.solver.method import SHIPPED, Method
+from microslip.solver.problem import build_contact
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a run is done, whatever it is a run of.
+
+    Attributes
+    ----------
+    method : method.Method
+        How steps are solved and the periodic state is searched for.
+    careful : bool
+        Whether to solve the steps of slow motions tighter.
+    budget : budget.Budget or None
+        What the marches may take, None: whatever they do.
+    """
+
+    method: Method = SHIPPED
+    careful: bool = False
+    budget: Budget | None = None
+
+    def contact(self, problem, model, resolution, focus=None):
+        """The contact of a problem with the method's steps, whose marches count."""
+        contact = self.method.dressed(build_contact(problem, model, resolution, focus))
+        return contact if self.budget is None else self.budget.metered(contact)
+
+
+AS_SHIPPED = Settings()
+
+
+@dataclass(frozen=True)
+class Run:
+    """Outcome of one run: forces over their full-slip values, and the effort.
+
+    Where the normal load changes, forces are over mu times its mean.
+
+    Attributes
+    ----------
+    mu, torque : float
+        Mean forward friction and torque.
+    distance : float
+        Estimated distance from the periodic (steady) state, a force over mu F_z.
+    solver_residual : float
+        Summed over the last period, a force over mu F_z.
+    periods : float
+        Full ones that were marched in search of a state that repeats itself, 0 for a steady motion.
+    iterations, solves : int
+        Of all searches together.
+    work, effort : int
+        Step solves x unknowns, iterations x unknowns.
+    converged : bool
+        Whether the state repeats itself and every step was solved.
+    reason : str
+        Why it is not converged, else empty.
+    state, inverse : np.ndarray or None
+        For other runs of the point: the periodic tractions, and period_map.PeriodicState.inverse.
+    static_force : float
+        Mean forward force of the static limit, also for other runs.
+    retried : int
+        1 if the run is a second attempt, see continuation.run_safely.
+    """
+
+    mu: float
+    torque: float
+    distance: float
+    solver_residual: float
+    periods: float
+    iterations: int
+    solves: int
+    work: int
+    effort: int
+    converged: bool
+    reason: str
+    state: np.ndarray | None = None
+    inverse: np.ndarray | None = None
+    static_force: float = 0.0
+    retried: int = 0
+
+
+def failed_run(reason: str) -> Run:
+    """The Run of a march that could not go on: no number, and why."""
+    return Run(np.nan, np.nan, np.inf, np.inf, 0.0, 0, 0, 0, 0, False, reason)
