@@ -65,6 +65,7 @@ def exponents(velocities, excess):
     return np.diff(np.log(excess)) / np.diff(np.log(velocities))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("amplitude", [0.25, 0.5, 0.75])
 def test_transverse_marches_fall_to_the_closed_form(amplitude):
     mu, error = marched("transverse", amplitude, SLOW)
@@ -81,6 +82,7 @@ def test_transverse_marches_fall_to_the_closed_form(amplitude):
     assert abs(free_limit(mu) - float(paper.static_transverse(amplitude))) > 100 * error.max()
 
 
+@pytest.mark.slow
 def test_bore_marches_fall_to_the_closed_form():
     velocities = tuple(10.0 ** -np.array([2.0, 2.5, 3.0, 3.5, 4.0]))
     mu, error = marched("bore", 1.0, velocities)
@@ -94,6 +96,7 @@ def test_bore_marches_fall_to_the_closed_form():
     assert abs(free_limit(mu) - float(paper.static_bore(1.0))) > 100 * error.max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scene", "model", "amplitude", "tolerance", "velocities"),
     [
@@ -121,6 +124,7 @@ def test_certified_points_fall_towards_the_closed_form(
     assert np.all(ratio * (1 + doubt) > 10**0.5) and np.all(ratio * (1 - doubt) < 10**0.85)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("amplitude", "velocity", "tolerance"),
     [

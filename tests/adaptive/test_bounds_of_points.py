@@ -103,6 +103,7 @@ MARCHES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MARCHES)
 def test_ctrl_c_ends_a_march_that_would_take_minutes(name):
     """One call of a compiled function; the test would hang for its whole length without that."""

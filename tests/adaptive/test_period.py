@@ -24,6 +24,7 @@ def given(request):
     return request.param, microslip.period(scene, velocity, amplitude, poisson=poisson)
 
 
+@pytest.mark.slow
 def test_the_mean_force_is_the_certified_one(given):
     (scene, velocity, amplitude, poisson), found = given
     answer = microslip.solve(scene, velocity, amplitude, poisson=poisson)

@@ -59,6 +59,7 @@ POINTS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("scene", "velocity", "amplitude", "nu"), POINTS)
 def test_certificate_covers_a_much_finer_reference(scene, velocity, amplitude, nu):
     result = microslip.solve(scene, velocity, amplitude, poisson=nu)
@@ -72,6 +73,7 @@ def test_certificate_covers_a_much_finer_reference(scene, velocity, amplitude, n
     assert min(shares) >= 0.0
 
 
+@pytest.mark.slow
 def test_certificate_sees_rings_and_angles_together():
     """The centre of rotation moves through the contact, and few angles hide what rings are worth:
     with the mixed difference taken next to the base this point missed by twice its certificate."""
@@ -196,6 +198,7 @@ def test_friction_falls_with_amplitude(scene, velocity, nu):
     assert np.all(np.diff([result.mu_macro for result in results]) < 0)
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None, derandomize=True)
 @given(
     st.sampled_from(["transverse", "bore", "continuous-bore"]),
@@ -387,6 +390,7 @@ def test_converged_means_within_the_tolerance_at_an_imposed_resolution_too(scene
     assert result.periodic
 
 
+@pytest.mark.slow
 @settings(max_examples=20, deadline=None)
 @given(
     st.sampled_from(["transverse", "longitudinal"]),

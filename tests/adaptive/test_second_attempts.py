@@ -73,6 +73,7 @@ HARD = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("scene", "poisson", "velocity", "amplitude", "tolerance"), HARD)
 def test_slowest_motions_get_their_answer_in_a_second_attempt(
     scene, poisson, velocity, amplitude, tolerance

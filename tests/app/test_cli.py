@@ -66,6 +66,7 @@ def test_json_is_the_answer_of_solve_and_nothing_else(scene, arguments):
     assert fields == expected
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "arguments",
     [("continuous-bore", "--velocity", 0.5), ("bore", "--velocity=-1", "--amplitude", 1)],
@@ -223,6 +224,7 @@ def test_public_names_are_listed_before_they_are_used():
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
+@pytest.mark.slow
 def test_names_are_completed_as_a_shell_of_python_does_it():
     code = (
         "import rlcompleter, microslip\n"

@@ -98,6 +98,7 @@ for path in sys.argv[1:]:
 """
 
 
+@pytest.mark.slow
 def test_damaged_pressures_are_refused_and_do_not_hang(tmp_path):
     paths = [tmp_path / f"{case}.nc" for case in odd.DAMAGES]
     for path, damaged in zip(paths, odd.DAMAGES.values(), strict=True):
@@ -162,6 +163,7 @@ def test_odd_arguments_of_gc(arguments, word, tmp_path, monkeypatch, capsys):
     assert word in line
 
 
+@pytest.mark.slow
 def test_gc_forgets_no_configuration_that_is_given_apart(results, tmp_path, capsys):  # noqa: F811
     files = [str(tmp_path / "first.yaml"), str(tmp_path / "second.yaml")]
     apart = ["--configfile", files[0], "--configfile", files[1]]
@@ -170,6 +172,7 @@ def test_gc_forgets_no_configuration_that_is_given_apart(results, tmp_path, caps
     assert len([name for name in names(results) if name.startswith("points/")]) == before
 
 
+@pytest.mark.slow
 def test_gc_knows_a_folder_by_any_path(results, tmp_path, monkeypatch, capsys):  # noqa: F811
     monkeypatch.chdir(tmp_path)
     (tmp_path / "link").symlink_to(results)
@@ -207,12 +210,14 @@ def sweep(folder, *arguments, **environment):
     )
 
 
+@pytest.mark.slow
 def test_sweep_forgets_no_configuration_that_is_given_apart(tmp_path):
     done = sweep(tmp_path, "tiny.yaml", "--configfile", "tiny.yaml")
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
     assert "--configfile" in done.stderr and "--configfile A B" in done.stderr
 
 
+@pytest.mark.slow
 def test_sweep_runs_where_the_home_takes_no_files(tmp_path):
     (tmp_path / "home").write_text("no folder")
     more = {"HOME": str(tmp_path / "home"), "XDG_CACHE_HOME": "", "NUMBA_CACHE_DIR": ""}

@@ -120,6 +120,7 @@ def test_a_file_that_is_no_configuration_is_one_line(case, here):
     assert [path.name for path in here.iterdir()] == ["given.yaml"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("row", [REFUSED[0], REFUSED[9], REFUSED[-1]], ids=str)
 def test_the_same_lines_come_from_a_process(row, tmp_path):
     arguments, *parts = row

@@ -76,6 +76,7 @@ HARD = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="needs Linux")
 @pytest.mark.parametrize(
     ("case", "moment"),
@@ -211,6 +212,7 @@ ENDINGS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("line", "code", "said"), ENDINGS)
 def test_a_stream_that_is_closed_or_full_is_one_line_at_most(line, code, said):
     done = shell(f"{line}; exit ${{PIPESTATUS[{int(line.startswith('sleep'))}]}}")
@@ -218,6 +220,7 @@ def test_a_stream_that_is_closed_or_full_is_one_line_at_most(line, code, said):
     assert done.stderr.startswith(said) and done.stderr.count("\n") == bool(said)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "line",
     [
@@ -236,6 +239,7 @@ def test_an_answer_needs_no_more_than_its_output(line, tmp_path):
     assert done.stdout.startswith("mu_macro = 0.883573 +- ")  # Eq 21 at 1: 0.88357
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("columns", ["1", "10", "-5", "x", "100000"])
 @pytest.mark.parametrize("words", ["", "point", "point bore", "predict", "sweep"])
 def test_help_fits_into_any_width(words, columns, monkeypatch):

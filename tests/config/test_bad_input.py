@@ -69,6 +69,7 @@ def test_every_option_is_given_a_bad_value():
     assert options - given == {"--help"}
 
 
+@pytest.mark.slow
 def test_the_same_lines_come_from_a_process(there):
     for arguments, *parts in (NUMBERS[0], NAMES[0], RESULTS[3]):
         done = subprocess.run(
@@ -120,6 +121,7 @@ def test_a_bad_setting_is_one_line_that_begins_with_its_key(settings, named, par
     assert re.search("allowed|required|write |no amplitude|does not apply", message)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", FILES)
 def test_a_file_that_is_no_configuration_is_one_line(case, tmp_path):
     content, *parts = FILES[case]

@@ -17,6 +17,7 @@ def value(scene, name, row, *at):
     return theory_limits.formulas(scene, name)[row][1](*(np.array(x) for x in at))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", ["transverse", "bore"])
 def test_under_the_power_2_they_are_the_papers(scene):
     for row in ("mu_static_stick_zone", "mu_static"):

@@ -362,6 +362,7 @@ def test_files_of_several_poissons_ratios_are_one_dataset(tmp_path, solver):
         xr.testing.assert_allclose(lazy.mu_macro.compute(), joined.mu_macro)
 
 
+@pytest.mark.slow
 def test_a_file_may_be_open_many_times_at_once(tmp_path, solver):
     """Texts of variable length end Python here: HDF5 loses their type when one of two is closed."""
     write("transverse", tmp_path, tmp_path / "transverse.nc")
@@ -393,6 +394,7 @@ def test_texts_come_back_whole_and_long_ones_are_cut(tmp_path, monkeypatch, solv
     assert len(reason[0].encode()) <= point_variables.WIDTHS["reason"]
 
 
+@pytest.mark.slow
 def test_a_part_is_saved_and_read_again_and_plots_have_labels(tmp_path, solver):
     write("transverse", tmp_path, tmp_path / "transverse.nc")
     data = microslip.open_map("transverse", tmp_path)

@@ -221,6 +221,7 @@ def assert_said(said, expected, where):
         assert math.isclose(float(new), float(old), rel_tol=0, abs_tol=near), f"{where}: {said}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", [page for page in PAGES if blocks(page)])
 def test_the_code_of_a_page_runs(page, computed, tmp_path, monkeypatch):
     environment = make_place(page, tmp_path, computed)
@@ -351,6 +352,7 @@ class Loaded(HTMLParser):
                 self.addresses.append(given[name])
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(
     not all(map(find_spec, ("sphinx", "myst_parser", "furo"))),
     reason="the extra docs is not installed: pip install -e '.[docs]'",

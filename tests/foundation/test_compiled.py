@@ -98,6 +98,7 @@ def test_the_package_comes_next(copy):
 # A file in the place of a folder stands for one that cannot be written to: root may write anywhere.
 
 
+@pytest.mark.slow
 def test_where_neither_package_nor_home_can_be_written_it_runs_all_the_same_and_says_so(
     copy, tmp_path
 ):

@@ -320,6 +320,7 @@ print(json.dumps(answers))
 """
 
 
+@pytest.mark.slow
 def test_a_long_session_keeps_nothing_of_code_that_was_edited_under_it(tmp_path):
     copy = tmp_path / "source" / "microslip"
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))

@@ -120,6 +120,7 @@ def test_operator_is_the_plain_sum_over_modes(cells, angles, rotates, nu, focus,
     assert compliance == pytest.approx(np.diag(near(0)), rel=1e-12)
 
 
+@pytest.mark.slow
 @cases
 def test_operator_is_symmetric_and_positive_in_the_energy(cells, angles, rotates, nu, focus):
     operator, _ = influence_sectors(cells, angles, rotates, nu, focus)

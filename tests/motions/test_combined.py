@@ -35,6 +35,7 @@ def test_a_small_part_changes_little(phase):
     assert abs(one.mu_macro - other.mu_macro) <= allowed
 
 
+@pytest.mark.slow
 def test_turning_the_phase_by_half_a_period_is_looking_in_a_mirror():
     """lateral -> -lateral at the same rotation is a mirror image across the forward axis, with the
     motion forward reversed; friction resists the same."""
@@ -53,6 +54,7 @@ def test_the_motion_is_its_own_mirror_image_half_a_period_later():
         assert other == pytest.approx(sign * one + way, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_the_static_limit_is_approached_by_marches():
     limit = microslip.solve("transverse-bore", 0.0, 0.5, tolerance=3e-3)
     above = [

@@ -34,6 +34,7 @@ def test_without_a_lateral_part_it_is_the_longitudinal_one(phase):
     assert abs(answer.mu_macro - longitudinal(0.1, 0.7)) <= answer.mu_macro_error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "scene",
     [CIRCLE, "elliptic:phase=0", "elliptic:forward=0.5,phase=30", "elliptic:forward_cycles=2"],
@@ -45,6 +46,7 @@ def test_rings_and_squares_agree(scene):
     assert abs(rings.mu_macro - squares.mu_macro) <= rings.mu_macro_error + squares.mu_macro_error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("velocity", "amplitude"), [(0.05, 0.4), (0.5, 2.0), (0.01, 0.8)])
 def test_certificates_hold_against_finer_runs(velocity, amplitude):
     answer = microslip.solve(CIRCLE, velocity, amplitude)

@@ -84,6 +84,7 @@ def test_springs_and_rings_agree_with_the_closed_form(place, model):
     assert abs(answer.mu_macro - scene_named(scene).whole(velocity, amplitude, HERTZ)) < 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", ALONG, ids=str)
 def test_rings_agree_with_springs_along_one_line(place):
     """Springs are exact there, with both the load and the motion in the plane oscillating."""
@@ -94,6 +95,7 @@ def test_rings_agree_with_springs_along_one_line(place):
         assert answer.mu_macro == pytest.approx(2.0 * fine - coarse, abs=1.2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", ASIDE, ids=str)
 def test_certificates_hold_against_finer_runs(place):
     answer, finer = (microslip.solve(*place, tolerance=t) for t in (1e-3, 2e-4))
@@ -102,6 +104,7 @@ def test_certificates_hold_against_finer_runs(place):
     assert abs(answer.mu_macro - finer.mu_macro) <= answer.mu_macro_error + finer.mu_macro_error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", ["normal", "normal:forward=0.5", "normal:lateral=1"])
 def test_errors_fall_with_rings_and_steps(scene):
     best = run(scene, 0.1, 0.7, cells=96, steps=512).mu
@@ -360,6 +363,7 @@ def test_a_history_follows_the_load():
 # Other indenters
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("pressure", ["power:exponent=1", "power:exponent=8", "punch"])
 @pytest.mark.parametrize(
     ("scene", "velocity", "amplitude"),

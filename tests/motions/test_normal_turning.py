@@ -34,6 +34,7 @@ def test_modes_find_what_rings_find(scene):
         assert modes.mu == pytest.approx(rings.mu, abs=2e-6)
 
 
+@pytest.mark.slow
 def test_the_static_limit_is_that_of_rings_too():
     scene = "normal:lateral=1"
     rings, modes = (
@@ -43,6 +44,7 @@ def test_the_static_limit_is_that_of_rings_too():
     within(modes, rings)
 
 
+@pytest.mark.slow
 def test_a_small_part_changes_little():
     """Next to no load beside a bore, next to no bore beside a load."""
     bore = microslip.solve("transverse-bore:lateral=0", 0.1, 0.7)
@@ -68,6 +70,7 @@ def test_where_all_slides_every_moment_is_a_steady_bore(velocity):
     assert found.mu_macro == pytest.approx(np.mean(load * steady), abs=0.015)
 
 
+@pytest.mark.slow
 def test_which_way_it_turns_does_not_matter():
     one, other = (
         microslip.solve(f"normal:angle=1,phase={p}", 0.1, 0.6, tolerance=3e-3) for p in (40, 220)
@@ -102,12 +105,14 @@ def test_a_turning_contact_that_lifts_off_has_no_static_friction():
     assert found.converged and found.mu_macro <= found.mu_macro_error
 
 
+@pytest.mark.slow
 def test_slow_marches_end_in_the_limit():
     limit = microslip.solve(TURNING, 0.0, 0.5, tolerance=5e-3).mu_macro
     above = [run(TURNING, v, 0.5, resolution=(48, 8, 192)).mu - limit for v in (2e-2, 2.5e-3)]
     assert -5e-3 < above[1] < 0.36 * above[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", ["normal", "normal:lateral=1", TURNING])
 def test_certificates_hold_against_finer_runs(scene):
     loose, tight = (
@@ -118,6 +123,7 @@ def test_certificates_hold_against_finer_runs(scene):
     assert loose.mu_macro_error <= 1e-2 and tight.mu_macro_error <= 1e-3
 
 
+@pytest.mark.slow
 def test_another_indenter_may_turn_under_its_load():
     cone = {"pressure": "power:exponent=1", "tolerance": 5e-3}
     bore = microslip.solve("transverse-bore:lateral=0", 0.1, 0.7, **cone)

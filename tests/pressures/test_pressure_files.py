@@ -74,6 +74,7 @@ def test_a_uniform_square_is_one_pressure_at_any_resolution(reading):
             assert other.torque == pytest.approx(square.torque, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", ["transverse", "bore"])
 def test_friction_of_a_uniform_square_does_not_depend_on_its_grid(tmp_path, scene):
     found = []
@@ -158,6 +159,7 @@ TRUTHS = [("hertz", sphere, count) for count in (8, 16, 32, 64)]
 TRUTHS += [("power:exponent=1", cone, 16)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("reading", ["cells", "samples"])
 @pytest.mark.parametrize(("name", "shape", "count"), TRUTHS)
 def test_the_error_holds_what_the_resolution_of_a_file_leaves_open(
@@ -187,6 +189,7 @@ def test_so_it_does_where_the_edge_lies_between_the_points(tmp_path, count, shif
     assert abs(found.mu_macro - truth.mu_macro) <= found.mu_macro_error + truth.mu_macro_error
 
 
+@pytest.mark.slow
 def test_a_file_too_coarse_for_the_tolerance_is_not_converged(tmp_path):
     axis = np.linspace(-0.75, 0.75, 4)
     file = csv(tmp_path / "p.csv", axis, axis, sphere(axis[:, None], axis[None, :]))
@@ -212,6 +215,7 @@ def test_sliding_fast_needs_no_resolution(tmp_path):
 # Any file
 
 
+@pytest.mark.slow
 def test_units_and_formats_do_not_matter(tmp_path):
     one = pressure_named(csv(tmp_path / "p.csv"))
     other = pressure_named(netcdf(tmp_path / "p.nc", 1e-3 * AXIS, 1e-3 * AXIS, 2e9 * HERTZIAN))
@@ -220,6 +224,7 @@ def test_units_and_formats_do_not_matter(tmp_path):
     assert one.cell_loads(20) == pytest.approx(other.cell_loads(20), abs=1e-8)
 
 
+@pytest.mark.slow
 def test_a_pressure_that_is_not_symmetric_is_marched_over_the_whole_period(tmp_path):
     values = HERTZIAN * (1.0 + 0.5 * AXIS)
     name = csv(tmp_path / "p.csv", values=values)
@@ -342,6 +347,7 @@ def test_netcdf_is_read_with_its_units_whatever_its_name(tmp_path):
     assert loads == pytest.approx(values / 10.0, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_what_netcdf_must_not_hold_is_told_in_one_line(tmp_path):
     axis, one = [0.0, 1.0], np.ones((2, 2))
 
@@ -371,6 +377,7 @@ def test_what_netcdf_must_not_hold_is_told_in_one_line(tmp_path):
 # Names and places
 
 
+@pytest.mark.slow
 def test_a_file_is_found_without_any_other_import(tmp_path):
     """By the module that solves alone, in a fresh process."""
     name = csv(tmp_path / "p.csv", *2 * [np.array([0.0, 1.0])], np.ones((2, 2)))

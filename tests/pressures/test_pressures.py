@@ -6,6 +6,7 @@ from scipy.integrate import quad
 from scipy.signal import fftconvolve
 
 import microslip
+from microslip import pressures
 from microslip.models.contact import forward_slip
 from microslip.models.path import EULER, make_path
 from microslip.models.registry import MODELS
@@ -195,6 +196,7 @@ def test_integrals_over_the_record_are_the_closed_forms_of_a_sphere(name):
     assert found == pytest.approx(hertz.lubkin_traction(r, 0.4), rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["power:exponent=1", "power:exponent=8", "punch"])
 @pytest.mark.parametrize(
     ("scene", "amplitude", "model"),
@@ -264,6 +266,7 @@ def test_the_power_2_is_a_sphere_in_motion():
         assert other.mu_macro == pytest.approx(one.mu_macro, abs=1e-7)
 
 
+@pytest.mark.slow
 def test_translation_at_poissons_ratio_0_cannot_tell_how_an_ellipse_lies():
     """Directions of traction and places of points meet nowhere but in nu and in rotation."""
     settings = {"tolerance": 5e-3}
@@ -364,13 +367,13 @@ def pressure(name, share):
 @pytest.fixture
 def blunt(tmp_path):
     """A pressure in one file of one's own; what it changes in the registry is undone."""
-    known, path = dict(FAMILIES), list(registry.__path__)
+    known, path = dict(FAMILIES), list(pressures.__path__)
     (tmp_path / "blunt.py").write_text(BLUNT)
     registry.find(tmp_path)
     yield "blunt:share=0.4"
     FAMILIES.clear()
     FAMILIES.update(known)
-    registry.__path__[:] = path
+    pressures.__path__[:] = path
 
 
 def test_a_pressure_is_one_file(blunt):

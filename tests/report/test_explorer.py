@@ -28,6 +28,7 @@ def map_of(content, name):
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", requests.MAPS)
 def test_points_and_limits_are_those_of_the_dataset(made, name):
     dataset, found = made[0][name], map_of(made[2], name)

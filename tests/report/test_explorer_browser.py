@@ -119,6 +119,7 @@ def record_at(records, name, velocity, amplitude):
 PLACES = [("transverse", 0.02, 0.6), ("transverse", 0.1, 1.2), ("bore", 0.1, 0.6), ("bore", 1, 1.2)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "velocity", "amplitude"), PLACES)
 def test_a_click_shows_the_points_value_and_its_loop(made, page, name, velocity, amplitude):
     _, datasets, records = made
@@ -320,6 +321,7 @@ def test_turning_the_phone_lays_it_out_again(phone):
     assert phone.evaluate("element('along-velocity')._fullLayout.dragmode") == "zoom"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", [800, 1280])
 def test_buttons_of_the_charts_cover_no_data(page, width):
     page.set_viewport_size({"width": width, "height": 800})

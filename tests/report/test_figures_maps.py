@@ -73,6 +73,7 @@ def test_negative_friction_is_even_and_another_hue_for_all_kinds_of_colour_visio
         assert away.min() > 10, seen  # 2 or 3 can just be told apart
 
 
+@pytest.mark.slow
 def test_a_map_with_negative_friction_is_drawn_in_these_colours():
     given = {"a": groups.spanning("a", shift=-0.234), "b": groups.spanning("b")}
     figure = drawing.draw("extended_motions", given)

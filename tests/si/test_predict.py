@@ -37,6 +37,7 @@ def assert_same(one, other):
         assert value == expected, name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "frequency",
     [

@@ -132,6 +132,7 @@ def test_two_balls_are_one_ball_of_half_the_radius():
     assert hollow.contact_radius_m == pytest.approx(both.contact_radius_m * 4 ** (1 / 3))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scene", "motion"),
     [
@@ -151,6 +152,7 @@ def test_the_amplitude_that_halves_friction_does(scene, motion):
         assert sign * (near.mu_macro - 0.5) > 0.01
 
 
+@pytest.mark.slow
 def test_a_reduction_that_no_amplitude_gives_is_refused():
     with pytest.raises(ValueError, match=r"^reduction = 1\.0: no amplitude"):
         microslip.predict("transverse", reduction=1.0, material="steel", frequency="20 kHz", **BALL)
@@ -253,6 +255,7 @@ WARNED = {
 }
 
 
+@pytest.mark.slow
 def test_nothing_is_warned_of_without_reason():
     assert microslip.predict("transverse", **MILD).warnings == ()
     sure = microslip.predict("transverse", **MILD | {"hardness": "7 GPa", "density": "7850 kg/m^3"})
@@ -271,6 +274,7 @@ def test_a_rigid_counterbody_has_no_hardness():
         microslip.predict("transverse", **given)
 
 
+@pytest.mark.slow
 def test_what_was_not_checked_is_said():
     assert len(microslip.predict("transverse", **MILD).not_checked) == 2
     both = {"hardness": "7 GPa", "counter_hardness": "6 GPa"}

@@ -86,6 +86,7 @@ def plain_march(contact, path, state, change, most=20_000):
     raise AssertionError("the plain march did not come to rest")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "velocity", "amplitude"),
     [(name, *point) for name, points in POINTS.items() for point in points],

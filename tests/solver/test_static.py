@@ -39,6 +39,7 @@ def test_oscillating_tractions_are_those_of_mindlin_and_lubkin():
     assert np.sum(polar.weight * torque) == pytest.approx(-hertz.lubkin_torque(0.5), abs=3e-4)
 
 
+@pytest.mark.slow
 def test_residual_is_the_furthest_point_of_the_lens():
     # brute force over a fine grid of candidate tractions
     rng = np.random.default_rng(3)

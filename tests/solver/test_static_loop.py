@@ -45,6 +45,7 @@ def test_nothing_is_left_where_slip_goes_both_ways():
     assert largest_shift(tractions, np.array([[1.0], [2.0]])) > 0.05
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("amplitude", [0.2, 0.5, 0.8])
 def test_a_loop_of_no_width_has_the_limit_of_its_line(amplitude):
     """A loop as narrow as this is within 2e-4 of the line, for which there are closed forms."""
@@ -84,6 +85,7 @@ def test_where_all_slides_the_mean_of_the_directions_is_left():
     assert microslip.solve("elliptic", 0.0, 3.0).mu_macro == pytest.approx(0.0, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_mirror_images_have_the_same_limit_or_the_opposite_one():
     one, other = (microslip.solve(f"elliptic:forward=0.5,phase={p}", 0.0, 0.5) for p in (30, 210))
     within(one, other.mu_macro, other.mu_macro_error)
@@ -94,6 +96,7 @@ def test_mirror_images_have_the_same_limit_or_the_opposite_one():
     within(drags, -drives.mu_macro, drives.mu_macro_error)  # all of it slides
 
 
+@pytest.mark.slow
 def test_other_models_find_the_same_limit():
     rings = microslip.solve("elliptic", 0.0, 0.5)
     modes = microslip.solve("elliptic", 0.0, 0.5, model="polar", tolerance=1e-2)
@@ -106,6 +109,7 @@ def test_other_models_find_the_same_limit():
         assert squares.mu == pytest.approx(rings.mu_macro, abs=8e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", [NARROW, EIGHT, "elliptic", ACROSS, "normal:forward=1,phase=90"])
 def test_slow_marches_end_there(scene):
     limit, kind = microslip.solve(scene, 0.0, 0.5).mu_macro, scene_named(scene)
@@ -136,6 +140,7 @@ def test_a_contact_that_lifts_off_has_no_limit_but_what_drives_it():
     assert along.converged and along.mu_macro < -0.4  # under load it only goes back
 
 
+@pytest.mark.slow
 def test_poissons_ratio_and_squares_without_symmetry_are_in():
     softer = microslip.solve("elliptic", 0.0, 0.5, poisson=0.4, tolerance=5e-2)
     assert softer.converged and softer.model == "polar"

@@ -6,7 +6,7 @@ from stubs.sweep_stub import EFFORT
 from microslip.config import load
 from microslip.datasets import netcdf, sweep_dataset
 from microslip.report.explorer import explorer
-from microslip.sweeps import batches
+from microslip.sweeps import batches, evaluate
 
 AXES = {"velocity": [0, 0.02, 0.1, 1], "amplitude": [0, 0.6, 1.2], "tolerance": 1e-2}
 BAD_POINT = ("transverse", 1, 3)  # a map and a place on it that is made not to have converged
@@ -60,7 +60,7 @@ def made_up(folder, configuration):
         sweep_dataset.write_sweep(path, grid, points, [], configuration.of_sweep(name))
         datasets[name] = netcdf.whole(path)
         asked = explorer.period_requests(configuration, name)
-        one = batches.answers.computed(asked[len(asked) // 2])
+        one = evaluate.computed(asked[len(asked) // 2])
         periods[name] = [{"request": request, "result": one} for request in asked]
     return datasets, periods
 

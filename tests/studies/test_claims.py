@@ -70,6 +70,7 @@ def test_every_part_has_its_own_checks_and_every_statement_parts():
 # Verdicts, and what flips them
 
 
+@pytest.mark.slow
 def test_verdicts_on_made_up_results(claims):
     assert words(claims) == {
         1: PARTLY,  # far above Eq 6 at amplitude 0.5
@@ -276,6 +277,7 @@ def test_conventions_and_provenance(claims, tmp_path):
         assert raw["checks/check_outcome"].dtype == np.int8
 
 
+@pytest.mark.slow
 def test_every_part_of_the_file_is_a_table_of_its_own(tmp_path):
     path = tmp_path / "claims.nc"
     sweep_dataset.write(judged(), path, registry.groups("claims"))
@@ -285,6 +287,7 @@ def test_every_part_of_the_file_is_a_table_of_its_own(tmp_path):
             assert len(part.to_dataframe()) == max(v.size for v in part.values()), group
 
 
+@pytest.mark.slow
 def test_the_same_results_give_the_same_bytes(tmp_path):
     for name in ("one.nc", "two.nc"):
         sweep_dataset.write(judged(), tmp_path / name, registry.groups("claims"))

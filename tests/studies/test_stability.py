@@ -89,6 +89,7 @@ def iterations_a_step(method, cells):
     return march.iterations / march.solves
 
 
+@pytest.mark.slow
 def test_stagnation_of_the_projected_gradient():
     """A step short enough to be safe for rough tractions is too short for smooth ones; the shipped
     solver takes the smooth ones in one stride, whatever the number of rings."""
@@ -116,6 +117,7 @@ def test_undamped_jacobi_never_gets_there():
     )
 
 
+@pytest.mark.slow
 def test_switching_is_right_in_one_direction_and_lost_where_slip_turns():
     motion = Problem(TRANSVERSE, 0.1, 0.5, 0.0)
     rings = build_contact(motion, "radial", Resolution(32, 1, 16))
@@ -193,6 +195,7 @@ def test_the_shipped_answer_at_velocity_zero_is_the_limit_and_not_a_start():
 # Methods and what ships agree where both converge
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "method",
     ["euler", "extrapolated", "march", "full-newton", "admm", "gauss-seidel", "spectral-gradient"],
