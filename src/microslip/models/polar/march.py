@@ -94,11 +94,11 @@ class Scratch(NamedTuple):
 
 
 @kernel
-def _slip(influence, b, q, scratch, slip):
-    """slip = b - A q."""
-    fold(q, scratch.folded)
-    apply_sectors(influence, scratch.folded, scratch.image)
-    unfold(scratch.image, slip)
+def _slip(influence, b, q, folded, image, slip):
+    """slip = b - A q; folded, image: room for folded tractions."""
+    fold(q, folded)
+    apply_sectors(influence, folded, image)
+    unfold(image, slip)
     for c in range(2):
         for j in range(q.shape[1]):
             for i in range(q.shape[2]):
@@ -156,21 +156,6 @@ class Step(NamedTuple):
 
 
 @kernel
-def _iterate(points, step, unknowns, scratch):
-    """One iteration of over-relaxed ADMM, in place; the friction bound is that of the step."""
-    q, dual, free = unknowns.q, unknowns.dual, scratch.free
-    for c in range(2):
-        for j in range(q.shape[1]):
-            for i in range(q.shape[2]):
-                kept = q[c, j, i] - dual[c, j, i]
-                free[c, j, i] = step.b[c, j, i] + points.penalty[i] * kept
-    fold(free, scratch.folded)
-    apply_sectors(points.inverse, scratch.folded, scratch.image)
-    unfold(scratch.image, free)
-    _project(free, step.bound, q, dual)
-
-
-@kernel
 def solve_step(points, step, unknowns, slip, scratch):
     """Solve one Coulomb step by over-relaxed ADMM, in place.
 
@@ -193,21 +178,30 @@ def solve_step(points, step, unknowns, slip, scratch):
         Iterations and residual; -1 iterations: interrupted.
     """
     b, bound, tolerance = step.b, step.bound, step.tolerance
-    q, weight, penalty = unknowns.q, points.weight, points.penalty
+    q, dual, weight, penalty = unknowns.q, unknowns.dual, points.weight, points.penalty
+    folded, image, free = scratch
     angles, n = q.shape[1], q.shape[2]
-    _slip(points.influence, b, q, scratch, slip)
+    _slip(points.influence, b, q, folded, image, slip)
     residual = coulomb_residual(q, slip, bound, weight, penalty)
     iterations, between, spent = 0, FEWEST_BETWEEN, 0.0
     while residual > tolerance and iterations < MAX_ITERATIONS:
         for _ in range(between):
-            _iterate(points, step, unknowns, scratch)
+            for c in range(2):
+                for j in range(angles):
+                    for i in range(n):
+                        kept = q[c, j, i] - dual[c, j, i]
+                        free[c, j, i] = b[c, j, i] + penalty[i] * kept
+            fold(free, folded)
+            apply_sectors(points.inverse, folded, image)
+            unfold(image, free)
+            _project(free, bound, q, dual)
         iterations += between
         spent += between * 8.0 * angles * n * n
         if spent > BETWEEN_LOOKS:
             spent = 0.0
             if interrupted():
                 return -1, residual
-        _slip(points.influence, b, q, scratch, slip)
+        _slip(points.influence, b, q, folded, image, slip)
         before, residual = residual, coulomb_residual(q, slip, bound, weight, penalty)
         # the residual falls geometrically: the next look is due where it should be small enough
         rate = np.log(max(residual, 1e-300) / before) / between
@@ -260,7 +254,7 @@ def march(points, path, state, tolerance, known, forces):
     folded = np.empty((4, angles // 2, n))
     scratch = Scratch(folded, np.empty_like(folded), np.empty_like(q))
     rigid_displacement(path.positions[0], positions, rigid)
-    _slip(points.influence, rigid, q, scratch, z)
+    _slip(points.influence, rigid, q, folded, scratch.image, z)
     _add(z, -2.0, z)
     sum_forces(q, weight, positions, forces[0])
     total, iterations, spent = 0.0, 0, 0.0

@@ -61,6 +61,7 @@ class RadialContact:
         weighted = weight[:, None] * self.influence
         self._stiffness = 0.5 * (weighted + weighted.T)
         self._factor = cholesky(self._stiffness)
+        self._system = RingSystem(self._stiffness, self._factor, self.weight)
         if stiffness is None:  # the force that moves all points by one
             stiffness = weight @ np.linalg.solve(self._stiffness, weight)
         self.stiffness = float(stiffness)
@@ -158,7 +159,7 @@ class RadialContact:
             known = np.empty((0, 2, 0))
         end, tractions, forces, residual, iterations, derivative = unbroken(
             ring_march.march,
-            RingSystem(self._stiffness, self._factor, self.weight),
+            self._system,
             path.under(self.bound[None] if path.depth is None else self.bounds_along(path)),
             np.ascontiguousarray(state[:, 0]),
             known,

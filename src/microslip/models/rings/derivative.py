@@ -97,31 +97,32 @@ def _transfer(factors, stick, out):
 
 
 @kernel
-def _felt(own, passed, order, moved, rows, out):
-    """out = R of a slipping ring, one component: its own row less what the sticking rings pass on.
+def _subtract_passed(out, transfer, p, moved, order, rows):
+    """out -= what sticking rings that have slipped before pass on to slipping ring p.
 
-    passed: its column of the transfer; moved: positions in the order of the sticking rings that
-    have slipped before; rows: derivative of the displacement, (n, columns), identity rows skipped.
+    moved: positions of these in the order; rows: derivative of the displacement, (n, columns).
     """
-    for column in range(len(out)):
-        out[column] = own[column]
     k, count = 0, len(moved)
     while k + 4 <= count:
         e, f, g, h = moved[k], moved[k + 1], moved[k + 2], moved[k + 3]
-        a, b, c, d = passed[e], passed[f], passed[g], passed[h]
+        a, b, c, d = transfer[e, p], transfer[f, p], transfer[g, p], transfer[h, p]
         u, v, w, x = rows[order[e]], rows[order[f]], rows[order[g]], rows[order[h]]
         for j in range(len(out)):
             out[j] -= (a * u[j] + b * v[j]) + (c * w[j] + d * x[j])
         k += 4
     while k < count:
-        subtract(out, passed[moved[k]], rows[order[moved[k]]])
+        subtract(out, transfer[moved[k], p], rows[order[moved[k]]])
         k += 1
 
 
-@kernel
+@kernel(inline="always")
 def _fill_felt(order, stick, derivative):
-    """derivative.work[c, p] = R of every slipping ring p, see the module's docstring."""
+    """derivative.work[c, p] = R of every slipping ring p, see the module's docstring.
+
+    It is its own row less what the sticking rings pass on.
+    """
     touched, transfer = derivative.touched, derivative.transfer
+    dz, work = derivative.displacement, derivative.work
     n = len(order)
     moved = np.empty(stick, np.int64)
     count = 0
@@ -130,10 +131,11 @@ def _fill_felt(order, stick, derivative):
             moved[count] = k
             count += 1
     for c in range(2):
-        rows = derivative.displacement[c]
         for p in range(n - stick):
-            out = derivative.work[c, p]
-            _felt(rows[order[stick + p]], transfer[:, p], order, moved[:count], rows, out)
+            own, out = dz[c, order[stick + p]], work[c, p]
+            for column in range(len(out)):
+                out[column] = own[column]
+            _subtract_passed(out, transfer, p, moved[:count], order, dz[c])
             for k in range(stick):  # the identity rows, each of one entry
                 if not touched[order[k]]:
                     out[c * n + order[k]] -= transfer[k, p]
@@ -191,7 +193,7 @@ def start_derivative(rings, dz):
     return out
 
 
-@kernel
+@kernel(inline="always")
 def carry_derivative(derivative, stage, share):
     """Less `share` of the slips of a stage, where rings slipped in it; these count as touched."""
     slid, dslip, dz = derivative.slid[stage], derivative.slips[stage], derivative.displacement
@@ -202,7 +204,7 @@ def carry_derivative(derivative, stage, share):
             subtract(dz[1, i], share, dslip[1, i])
 
 
-@kernel
+@kernel(inline="always")
 def carry_to_stage(derivative, carry, stage):
     """The displacement imposed on a stage, from that of the stage before."""
     for j in range(stage):

@@ -45,26 +45,26 @@ def _remembered(rings, position, q, b):
     return z
 
 
-@kernel
-def _bound_at(path, at):
+@kernel(inline="always")
+def _bound_at(bounds, at):
     """Friction bound at the start (0) and at the stages (from 1 on), (n,)."""
-    return path.bounds[at if len(path.bounds) > 1 else 0]
+    return bounds[at if len(bounds) > 1 else 0]
 
 
-@kernel
-def _guess(q, path, way, at, known, tractions):
+@kernel(inline="always")
+def _guess(q, bounds, way, at, known, tractions):
     """Move q, the tractions at the end of a stage, to the first guess of those of the next one.
 
     at: number of that stage from 1 on; known, tractions: of another march, or nothing, and of this
     one.
     """
-    bound = _bound_at(path, at)
-    if at == 1 and len(path.bounds) > 1:
+    bound = _bound_at(bounds, at)
+    if at == 1 and len(bounds) > 1:
         within(q, bound)
     if len(known) > 0:
         follow(q, bound, known[at], known[at - 1])
     elif at > 1:
-        extrapolate(q, _bound_at(path, at - 1), bound, tractions[at - 2], stretch(way, at))
+        extrapolate(q, _bound_at(bounds, at - 1), bound, tractions[at - 2], stretch(way, at))
 
 
 @kernel
@@ -94,8 +94,8 @@ def march(rings, path, state, known, tolerance, tangent):
         which makes the rest worthless.
     """
     n, steps, stages = len(rings.weight), path.stages.shape[0], path.stages.shape[1]
-    weight, carry = rings.weight, path.carry
-    factors, way = make_factors(n), _displacements(path)
+    weight, carry, end = rings.weight, path.carry, path.end
+    factors, way, bounds = make_factors(n), _displacements(path), path.bounds
     derivative = make_derivative(n, stages, 2 * n if tangent else 0)
     tractions, forces = np.empty((1 + steps * stages, 2, n)), np.zeros((steps + 1, 3))
     slips, b = np.empty((stages, 2, n)), np.empty((2, n))
@@ -114,8 +114,8 @@ def march(rings, path, state, known, tolerance, tangent):
                     b[c, i] = z[c, i] + weight[i] * way[at, c]
                 for j in range(s):
                     subtract(b[c], carry[s, j], slips[j, c])
-            bound = _bound_at(path, at)
-            _guess(q, path, way, at, known, tractions)
+            bound = _bound_at(bounds, at)
+            _guess(q, bounds, way, at, known, tractions)
             step = Step(b, bound, tolerance)
             count, residual = solve_step(rings, step, q, slips[s], factors)
             copy(tractions[at], q)
@@ -136,10 +136,10 @@ def march(rings, path, state, known, tolerance, tangent):
         for c in range(2):
             for i in range(n):
                 now = b[c, i] - slips[stages - 1, c, i] - weight[i] * way[at, c]
-                z[c, i] = extended(z[c, i], now, path.end)
-                held[c, i] = extended(held[c, i], q[c, i], path.end)
+                z[c, i] = extended(z[c, i], now, end)
+                held[c, i] = extended(held[c, i], q[c, i], end)
                 forces[k + 1, c] += weight[i] * held[c, i]
         if tangent:
-            carry_derivative(derivative, stages - 1, 1.0 / path.end)
-    end = start_derivative(rings, derivative.displacement) if tangent else np.empty((0, 0))
-    return held, tractions, forces, total, iterations, end, False
+            carry_derivative(derivative, stages - 1, 1.0 / end)
+    found = start_derivative(rings, derivative.displacement) if tangent else np.empty((0, 0))
+    return held, tractions, forces, total, iterations, found, False

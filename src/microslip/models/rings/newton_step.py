@@ -63,32 +63,9 @@ def _sweep(stiffness, bound, q, slip, relaxation):
             subtract(slip[1], dy, stiffness[i])
 
 
-@kernel
-def _newton_step(slip, stick, factors):
-    """Fill factors.change (in the order of the factors) with the Newton step against `slip`.
-
-    Sticking rings are eliminated from both components, the angles of the slipping ones are solved
-    for, both of their components follow, and then what sticks.
-    """
-    change, order, direction = factors.change, factors.order, factors.direction
-    n = len(order)
-    for c in range(2):
-        for p in range(n):
-            change[c, p] = slip[c, order[p]]
-    _eliminate_sticking(stick, factors)
-    for p in range(stick, n):
-        change[0, p] = direction[0, p] * change[0, p] + direction[1, p] * change[1, p]
-    _solve_angles(stick, factors)
-    for p in range(stick, n):
-        change[1, p] = direction[1, p] * change[0, p]
-        change[0, p] *= direction[0, p]
-    _substitute_sticking(stick, factors)
-
-
-@kernel
-def _eliminate_sticking(stick, factors):
+@kernel(inline="always")
+def _eliminate_sticking(upper, change, stick):
     """Forward substitution with U^T over the sticking rings."""
-    upper, change = factors.upper, factors.change
     for c in range(2):
         for j in range(stick):
             change[c, j] *= upper[j, j]
@@ -97,10 +74,9 @@ def _eliminate_sticking(stick, factors):
                 change[c, p] -= x * upper[j, p]
 
 
-@kernel
-def _solve_angles(stick, factors):
+@kernel(inline="always")
+def _solve_angles(matrix, change, stick):
     """Solve with the tangent matrix for the angles of the slipping rings, in change[0]."""
-    matrix, change = factors.tangent, factors.change
     n = len(matrix)
     for j in range(stick, n):
         change[0, j] *= matrix[j - stick, j - stick]
@@ -114,16 +90,37 @@ def _solve_angles(stick, factors):
         change[0, j] = x * matrix[j - stick, j - stick]
 
 
-@kernel
-def _substitute_sticking(stick, factors):
+@kernel(inline="always")
+def _substitute_sticking(upper, change, stick):
     """Back substitution with U over the sticking rings."""
-    upper, change = factors.upper, factors.change
     for j in range(stick - 1, -1, -1):
         x, y = change[0, j], change[1, j]
         for p in range(j + 1, len(upper)):
             x -= upper[j, p] * change[0, p]
             y -= upper[j, p] * change[1, p]
         change[0, j], change[1, j] = x * upper[j, j], y * upper[j, j]
+
+
+@kernel
+def _newton_step(slip, stick, factors):
+    """Fill factors.change (in the order of the factors) with the Newton step against `slip`.
+
+    Sticking rings are eliminated from both components, the angles of the slipping ones are solved
+    for, both of their components follow, and then what sticks.
+    """
+    change, order, direction = factors.change, factors.order, factors.direction
+    n = len(order)
+    for c in range(2):
+        for p in range(n):
+            change[c, p] = slip[c, order[p]]
+    _eliminate_sticking(factors.upper, change, stick)
+    for p in range(stick, n):
+        change[0, p] = direction[0, p] * change[0, p] + direction[1, p] * change[1, p]
+    _solve_angles(factors.tangent, change, stick)
+    for p in range(stick, n):
+        change[1, p] = direction[1, p] * change[0, p]
+        change[0, p] *= direction[0, p]
+    _substitute_sticking(factors.upper, change, stick)
 
 
 class Step(NamedTuple):
@@ -144,26 +141,17 @@ class Step(NamedTuple):
     tolerance: float
 
 
-@kernel
-def _try_newton(rings, step, q, slip, factors):
-    """Fill factors.trial and trial_slip with what a Newton step from q leads to.
-
-    Returns the residual there, infinite where the tangent problem breaks down.
-    """
-    bound, trial, trial_slip = step.bound, factors.trial, factors.trial_slip
-    stick = factorise(rings, bound, q, slip, factors)
-    if stick < 0:
-        return np.inf
-    _newton_step(slip, stick, factors)
+@kernel(inline="always")
+def _move(q, bound, stick, factors):
+    """Fill factors.trial with q moved by factors.change, within the bound."""
+    order, change, trial = factors.order, factors.change, factors.trial
     for p in range(len(bound)):
-        i = factors.order[p]
-        x, y = q[0, i] + factors.change[0, p], q[1, i] + factors.change[1, p]
+        i = order[p]
+        x, y = q[0, i] + change[0, p], q[1, i] + change[1, p]
         f = shrink(x, y, bound[i])
         if p >= stick and bound[i] > 0.0:  # a slipping traction ends on the bound
             f = bound[i] / np.sqrt(x * x + y * y)
         trial[0, i], trial[1, i] = x * f, y * f
-    weighted_slip(rings.stiffness, step.imposed, trial, trial_slip)
-    return step_residual(rings.stiffness, trial, trial_slip, bound, rings.weight)
 
 
 @kernel
@@ -188,18 +176,26 @@ def solve_step(rings, step, q, slip, factors):
     tuple
         Iterations and residual; the caller compares the latter with the tolerance.
     """
-    stiffness, bound, tolerance = rings.stiffness, step.bound, step.tolerance
-    weighted_slip(stiffness, step.imposed, q, slip)
-    residual = step_residual(stiffness, q, slip, bound, rings.weight)
+    stiffness, weight = rings.stiffness, rings.weight
+    imposed, bound, tolerance = step
+    trial, trial_slip = factors.trial, factors.trial_slip
+    weighted_slip(stiffness, imposed, q, slip)
+    residual = step_residual(stiffness, q, slip, bound, weight)
     failures = 0
     for iteration in range(MAX_ITERATIONS):
         if residual <= tolerance:
             return iteration, residual
-        trial_residual = _try_newton(rings, step, q, slip, factors)
+        trial_residual = np.inf
+        stick = factorise(rings, bound, q, slip, factors)
+        if stick >= 0:
+            _newton_step(slip, stick, factors)
+            _move(q, bound, stick, factors)
+            weighted_slip(stiffness, imposed, trial, trial_slip)
+            trial_residual = step_residual(stiffness, trial, trial_slip, bound, weight)
         good = trial_residual <= max(GOOD_STEP * residual, tolerance)
         if trial_residual < residual:
-            copy(q, factors.trial)
-            copy(slip, factors.trial_slip)
+            copy(q, trial)
+            copy(slip, trial_slip)
             residual = trial_residual
         else:
             failures += 1
@@ -207,6 +203,6 @@ def solve_step(rings, step, q, slip, factors):
             sweeps = RESCUE_SWEEPS if failures > 1 else 1
             for _ in range(sweeps):
                 _sweep(stiffness, bound, q, slip, RESCUE_RELAXATION if sweeps > 1 else 1.0)
-            weighted_slip(stiffness, step.imposed, q, slip)
-            residual = step_residual(stiffness, q, slip, bound, rings.weight)
+            weighted_slip(stiffness, imposed, q, slip)
+            residual = step_residual(stiffness, q, slip, bound, weight)
     return MAX_ITERATIONS, residual

@@ -48,7 +48,7 @@ def backward(re, im, columns, radices, roots):
         part = length
 
 
-@kernel
+@kernel(inline="always")
 def _forward_2(values, columns, a, part, roots, w):
     re, im = values
     c1, s1 = roots[0, w], -roots[1, w]
@@ -60,7 +60,7 @@ def _forward_2(values, columns, a, part, roots, w):
         re[b, k], im[b, k] = x * c1 - y * s1, x * s1 + y * c1
 
 
-@kernel
+@kernel(inline="always")
 def _backward_2(values, columns, a, part, roots, w):
     re, im = values
     c1, s1 = roots[0, w], roots[1, w]
@@ -75,7 +75,7 @@ def _backward_2(values, columns, a, part, roots, w):
 _SIN_60 = np.sqrt(0.75)
 
 
-@kernel
+@kernel(inline="always")
 def _forward_3(values, columns, a, part, roots, w):
     re, im = values
     c1, s1, c2, s2 = roots[0, w], -roots[1, w], roots[0, 2 * w], -roots[1, 2 * w]
@@ -92,7 +92,7 @@ def _forward_3(values, columns, a, part, roots, w):
         im[c, k] = (zr - yr) * s2 + (zi - yi) * c2
 
 
-@kernel
+@kernel(inline="always")
 def _backward_3(values, columns, a, part, roots, w):
     re, im = values
     c1, s1, c2, s2 = roots[0, w], roots[1, w], roots[0, 2 * w], roots[1, 2 * w]
@@ -108,7 +108,7 @@ def _backward_3(values, columns, a, part, roots, w):
         re[c, k], im[c, k] = zr - yr, zi - yi
 
 
-@kernel
+@kernel(inline="always")
 def _forward_4(values, columns, a, part, roots, w):
     re, im = values
     c1, s1, c2, s2 = roots[0, w], -roots[1, w], roots[0, 2 * w], -roots[1, 2 * w]
@@ -128,7 +128,7 @@ def _forward_4(values, columns, a, part, roots, w):
         im[d, k] = (fr - hr) * s3 + (fi - hi) * c3
 
 
-@kernel
+@kernel(inline="always")
 def _backward_4(values, columns, a, part, roots, w):
     re, im = values
     c1, s1, c2, s2 = roots[0, w], roots[1, w], roots[0, 2 * w], roots[1, 2 * w]
