@@ -80,7 +80,7 @@ def test_a_map_with_negative_friction_is_drawn_in_these_colours():
     middles = (bands.levels[1:] + bands.levels[:-1]) / 2
     drawn = bands.get_facecolor()[:, :3]
     np.testing.assert_allclose(drawn, shown(middles), atol=0.03)
-    (lines,) = test_plot.artists(figure.axes[0], "contours")
+    (lines,) = test_figures.artists(figure.axes[0], "contours")
     assert lines.get_linestyle()[0][1] is not None  # dashed below 0 ...
     assert lines.get_linestyle()[-1][1] is None  # ... and not above
 
@@ -93,7 +93,7 @@ def mapped(velocities=9, amplitudes=7):
     velocity, amplitude = np.geomspace(1e-2, 10, velocities), np.linspace(0.2, 3, amplitudes)
     mu = paper.large_amplitude_transverse(velocity, amplitude[:, None])
     return xr.Dataset(
-        test_plot.fake_map(mu),
+        test_figures.fake_map(mu),
         coords={"amplitude": amplitude, "velocity": velocity, "poisson": 0.0},
         attrs={"scene": "longitudinal"},
     )
@@ -144,8 +144,8 @@ def test_numbers_are_inside_the_frame_and_off_other_lines(velocities, amplitudes
     figure = drawing.draw("extended_motions", given)
     figure.draw_without_rendering()
     found = 0
-    for axes in test_plot.artists(figure, "map"):
-        (lines,) = test_plot.artists(axes, "contours")
+    for axes in test_figures.artists(figure, "map"):
+        (lines,) = test_figures.artists(axes, "contours")
         frame = axes.get_window_extent()
         numbers = [text for text in axes.texts if re.fullmatch(r"-?\d\.\d", text.get_text())]
         found += len(numbers)
@@ -174,12 +174,12 @@ def test_numbers_are_inside_the_frame_and_off_other_lines(velocities, amplitudes
 @pytest.fixture(scope="module")
 def figures():
     """Every figure there is, small."""
-    scenes = {"transverse": test_plot.fake_transverse(5), "bore": test_plot.fake_bore(5)}
-    given = scenes | {"continuous_bore": test_plot.fake_continuous_bore()}
+    scenes = {"transverse": test_figures.fake_transverse(5), "bore": test_plot.fake_bore(5)}
+    given = scenes | {"continuous_bore": test_figures.fake_continuous_bore()}
     given |= {"accuracy_cost": of_studies.fake_accuracy(3), "claims": of_studies.claims()}
     given["stability"] = of_studies.fake_stability(axes=3, cases=3)
     drawn = {name: drawing.draw(name, given) for name in drawing.FIGURES if name != "poisson"}
-    two = {name: test_plot.at_ratios(dataset, 0.0, 0.5) for name, dataset in scenes.items()}
+    two = {name: test_figures.at_ratios(dataset, 0.0, 0.5) for name, dataset in scenes.items()}
     for dataset in two.values():
         dataset["velocity"].attrs["formula"] = "v0 / (omega u_lim)"
         dataset["amplitude"].attrs["formula"] = "y0 / u_lim"

@@ -10,7 +10,8 @@ rule warm_up:
     conda:
         "../envs/microslip.yaml"
     threads: 1
-    # What a job takes where a scheduler starts it, Snakemake within it included: docs/cluster.md.
+    # What a job takes where a scheduler starts it, Snakemake within it included: see
+    # docs/how-to/cluster.md.
     resources:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 10 * attempt,
