@@ -20,11 +20,10 @@ import sys
 from pathlib import Path
 
 import microslip
-from microslip.theory import paper
+from microslip.theory.catalogue import FORMS, STATIC
 
 VELOCITIES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 AMPLITUDES = {"transverse": (0.25, 0.5, 0.75), "bore": (0.5, 1.0, 2.0)}
-LIMITS = {"transverse": paper.static_limit_transverse, "bore": paper.static_limit_bore}
 CERTAIN = 5.0
 """Excess over certificate from which an exponent is worth printing."""
 
@@ -45,7 +44,7 @@ def exponent(points, limit):
 
 def table(scene, amplitude, tolerance):
     """Markdown lines for one scene and amplitude."""
-    limit = float(LIMITS[scene](amplitude))
+    limit = float(FORMS[scene][STATIC].function(amplitude))
     lines = [f"{scene}, amplitude {amplitude:g}: closed form of the limit {limit:.6f}", ""]
     lines += ["| velocity | mu_macro | certificate | excess | exponent |", "|---|---|---|---|---|"]
     points = []

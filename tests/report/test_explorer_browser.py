@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from stubs import explorer_stub as stub
 
-from microslip.report.explorer import explorer
+from microslip.report.explorer.page import write
 from microslip.report.explorer.requests import MAPS
 from microslip.sweeps import period_codec
 from microslip.sweeps.cache import Store
@@ -26,7 +26,7 @@ def made(tmp_path_factory):
     """The page's path, and the datasets and periods that it was made from."""
     folder = tmp_path_factory.mktemp("explorer")
     datasets, records = stub.computed(folder, Store(folder))
-    explorer.write(folder / "explorer.html", datasets, records)
+    write(folder / "explorer.html", datasets, records)
     return folder / "explorer.html", datasets, records
 
 

@@ -174,7 +174,7 @@ def test_numbers_are_inside_the_frame_and_off_other_lines(velocities, amplitudes
 @pytest.fixture(scope="module")
 def figures():
     """Every figure there is, small."""
-    scenes = {"transverse": test_figures.fake_transverse(5), "bore": test_plot.fake_bore(5)}
+    scenes = {"transverse": test_figures.fake_transverse(5), "bore": test_figures.fake_bore(5)}
     given = scenes | {"continuous_bore": test_figures.fake_continuous_bore()}
     given |= {"accuracy_cost": of_studies.fake_accuracy(3), "claims": of_studies.claims()}
     given["stability"] = of_studies.fake_stability(axes=3, cases=3)

@@ -17,7 +17,7 @@ from microslip.foundation import named_files, source_digest
 from microslip.foundation.canonical import canonical_json
 from microslip.motions.registry import scene_named
 from microslip.sweeps.sealed_files import writing_beside
-from microslip.theory import paper
+from microslip.theory.catalogue import FORMS
 
 CONVENTIONS = "CF-1.11"
 PAPER = "R. Pohrt, Front. Mech. Eng. 6:566440 (2020), doi:10.3389/fmech.2020.566440"
@@ -212,6 +212,7 @@ def _transients(records):
         for name in ("displacement_forward", "force_forward", "torque")
     }
     force, torque = "forward friction force over mu F_z", point_variables.TORQUE
+    steady = FORMS["continuous-bore"]
     return {
         "start": ("start", starts, {"long_name": "initial state of the transient"}),
         "transient_displacement": _variable(
@@ -224,13 +225,13 @@ def _transients(records):
         "transient_velocity": _variable((), velocity, "forward velocity of the transients"),
         "transient_force_theory": _variable(
             (),
-            paper.bore_forward(velocity),
+            steady["mu_forward_theory"].function(velocity),
             "steady forward force (Eq 21)",
             description=f"steady {force} (Eq 21)",
         ),
         "transient_torque_theory": _variable(
             (),
-            paper.bore_torque(velocity),
+            steady["mu_torque_theory"].function(velocity),
             "steady torque (Eq 22)",
             description=f"steady {point_variables.DESCRIPTIONS['mu_torque']} (Eq 22)",
         ),

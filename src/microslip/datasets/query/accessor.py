@@ -19,7 +19,7 @@ from microslip.foundation.errors import InputError
 from microslip.motions.registry import scene_named
 from microslip.sweeps.sealed_files import CacheError
 from microslip.sweeps.solve_stored import solve_stored
-from microslip.theory import paper
+from microslip.theory.catalogue import FORMS
 
 SOURCES = (
     "map",
@@ -153,8 +153,8 @@ class Friction:
     def _steady(self, nodes, velocity, nu):
         table = self._table(nodes, nu)
         inside = table.columns.holds(velocity)
-        value, error = paper.bore_forward(velocity), np.full(velocity.shape, beyond.ROUNDING)
-        value = np.array(value, float)
+        exact = FORMS[self._scene]["mu_forward_theory"].function
+        value, error = np.array(exact(velocity), float), np.full(len(velocity), beyond.ROUNDING)
         value[inside], error[inside] = table.at(np.zeros(inside.sum()), velocity[inside])
         return value, error, np.where(inside, MAP, EXACT)
 

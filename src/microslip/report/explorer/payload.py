@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.datasets import theory_limits
 from microslip.foundation.canonical import number
 from microslip.report.figures import drawing, maps, style
 from microslip.report.figures.data import limit, require, sweep
 from microslip.sweeps.evaluate import plain
 from microslip.sweeps.period_codec import SHARES, text_of, unpacked_half
+from microslip.theory.catalogue import FORMS
 
 UNSIGNED, SIGNED = 65535, 32767
 
@@ -78,7 +78,7 @@ def build(datasets, periods):
 
 
 def _map(name, dataset, records):
-    names = theory_limits.LIMITS[name]
+    names = FORMS[name]
     require("explorer", name, dataset, ["amplitude", "velocity", *POINTS, *names])
     shown, poisson = sweep(dataset, ("amplitude", "velocity"))
     shown = shown.transpose("amplitude", "velocity", ...)
@@ -107,7 +107,7 @@ def _limit(dataset, name, key):
     """
     plan = maps.MAPS[FIGURES[name]]
     looks = {overlay.variable: overlay for overlay in (*plan.static, plan.large)}
-    spare = list(theory_limits.LIMITS[name]).index(key) % len(SPARE_COLOURS)
+    spare = list(FORMS[name]).index(key) % len(SPARE_COLOURS)
     look = looks.get(key, maps.Overlay(key, key, SPARE_COLOURS[spare], style.DOTTED))
     values = dataset[key]
     found = {

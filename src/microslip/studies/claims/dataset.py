@@ -23,7 +23,7 @@ GROUPS = {
     "patches": ("What sticks where, at moments of that period", ("patch_moment", "patch_point")),
     "patch_edges": ("Theory's edges of what sticks", ("patch_moment", "patch_edge")),
 }
-for _scene in static_limits.LIMITS:
+for _scene in static_limits.FORMULAS:
     GROUPS |= {
         f"{_scene}_static": (f"Static limit, scene {_scene}", (f"{_scene}_amplitude",)),
         f"{_scene}_curves": (
