@@ -217,11 +217,12 @@ def test_a_dataset_that_cannot_be_read_is_one_line(spoil, sealed):
 FULL_DISK = """
 import resource, sys
 import numpy, xarray
-from microslip import cache, dataset
+from microslip.datasets import sweep_dataset
+from microslip.sweeps import sealed_files
 data = xarray.Dataset({"a": ("x", numpy.random.default_rng(1).random(99999))})
 resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
 try:
-    dataset.write(data, sys.argv[1])
+    sweep_dataset.write(data, sys.argv[1])
 except sealed_files.CacheError as error:
     print(error)
 """

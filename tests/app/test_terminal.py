@@ -86,7 +86,7 @@ def test_an_interrupt_is_one_line_also_while_the_solver_is_loaded(case, moment):
 # Compiled code that holds no lock and lets no handler of Python run, as a long kernel.
 KERNEL = """
 import hashlib
-from microslip import terminal
+from microslip.app import terminal
 
 def command():
     open({ready!r}, "w").close()
@@ -123,10 +123,11 @@ def test_kernels_hold_no_lock_that_would_keep_an_interrupt_waiting():
 
 WRITING = """
 import sys, time
-from microslip import cache, terminal
+from microslip.app import terminal
+from microslip.sweeps import sealed_files
 
 def command():
-    with cache.writing_beside(sys.argv[1]) as beside:
+    with sealed_files.writing_beside(sys.argv[1]) as beside:
         beside.write_text("half")
         time.sleep(1000)
 
@@ -142,7 +143,7 @@ def test_an_interrupt_leaves_no_file_half_written(tmp_path):
 
 SWALLOWING = """
 import time
-from microslip import terminal
+from microslip.app import terminal
 
 class Deaf:
     def __del__(self):

@@ -94,11 +94,12 @@ def test_jobs_do_not_ask_the_solver(monkeypatch):
 
 ALONE = """
 import sys
-from microslip import config, sweep
+from microslip.config import load
+from microslip.sweeps import batches
 given = {"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}, "extended": {"ellipse": {
     "scene": "elliptic:phase=30", "group": "g", "velocity": [1], "amplitude": [1]}}}
-found = config.from_mapping(given, ask_solver=False)
-list(sweep.PointRequests(found.sweeps["bore"]))
+found = load.from_mapping(given, ask_solver=False)
+list(batches.PointRequests(found.sweeps["bore"]))
 print("numpy" in sys.modules)
 """
 

@@ -13,7 +13,7 @@ from microslip.foundation.source_digest import LOADED, Sources
 
 PACKAGE = Path(microslip.__file__).parent
 KERNELS = sorted(name for name, source in LOADED.contents.items() if b"import kernel" in source)
-FOLDER = "from microslip import compiled; print(compiled.folder())"
+FOLDER = "from microslip.foundation import compiled; print(compiled.folder())"
 
 
 @pytest.fixture
@@ -105,7 +105,7 @@ def test_where_neither_package_nor_home_can_be_written_it_runs_all_the_same_and_
     (tmp_path / "temporary").mkdir()
     environment = {"HOME": str(tmp_path / "home"), "TMPDIR": str(tmp_path / "temporary")}
     environment |= {"XDG_CACHE_HOME": "", "PYTHONDONTWRITEBYTECODE": "1"}
-    program = f"{FOLDER}; from microslip import friction; print(friction.shrink(4.0, 0.0, 1.0))"
+    program = f"{FOLDER}; from microslip.models import coulomb; print(coulomb.shrink(4.0, 0.0, 1.0))"
     done = run(program, copy, **environment)
     folder, number = done.stdout.split()
     assert Path(folder).is_relative_to(tmp_path / "temporary")

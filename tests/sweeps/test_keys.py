@@ -78,7 +78,8 @@ def test_batches_are_named_by_their_keys_in_order():
 def test_the_workflow_reads_this_without_loading_anything_heavy():
     heavy = ("numpy", "scipy", "numba", "xarray", "matplotlib")
     program = (
-        "import sys; from microslip import config, plan, plot, source_digest, studies, sweep;"
+        "import sys; from microslip.app import plan; from microslip.config import load;"
+        "from microslip.foundation import source_digest;"
         "source_digest.of_solver();"
         f"print([m for m in {heavy} if m in sys.modules])"
     )

@@ -90,8 +90,8 @@ def keys_of(rule):
 
 
 def test_scripts_of_the_workflow_are_no_sources_of_the_solver(tmp_path):
-    names = ("point.py", "bundle/workflow/scripts/collect.py", "launch.py", "summary.py")
+    names = ("adaptive/point.py", "bundle/workflow/scripts/collect.py", "app/sweep_command.py")
     for name in names:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("A = 1\n")
-    assert source_digest.Sources(tmp_path).of_request("point", ()) == {"point.py"}
+    assert source_digest.Sources(tmp_path).of_request("point", ()) == {"adaptive/point.py"}

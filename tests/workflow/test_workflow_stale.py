@@ -180,7 +180,7 @@ _solve = solve
 
 
 def solve(scene, velocity, amplitude=None, **settings):
-    _file = _Path(__file__).with_name("theory.py")
+    _file = _Path(__file__).parents[1] / "theory" / "paper.py"
     if "EDITED" not in _file.read_text():
         _file.write_text(_file.read_text() + "\\nEDITED = True\\n")
     return _solve(scene, velocity, amplitude, **settings)

@@ -52,7 +52,7 @@ class Studies(Project):
         self.write_method("my_method")
 
     def write_method(self, stem):
-        (self.folder / f"src/microslip/methods/{stem}.py").write_text(METHOD)
+        (self.folder / f"src/microslip/solver/methods/{stem}.py").write_text(METHOD)
 
     def stored(self, folder):
         return {p.name: p.read_bytes() for p in self.folder.glob(f"results/{folder}/*/*/*.json")}
@@ -149,9 +149,9 @@ def test_a_second_method_computes_its_own_trials_only(project):
 
 def test_editing_a_method_computes_its_trials_again_but_a_comment_does_not(project):
     plain = project.planned()
-    project.append("src/microslip/methods/my_method.py", "\n# More to read.\n")
+    project.append("src/microslip/solver/methods/my_method.py", "\n# More to read.\n")
     assert project.planned("accuracy", "stability") == {}
-    project.append("src/microslip/methods/my_method.py", "\nSPARE = 1\n")
+    project.append("src/microslip/solver/methods/my_method.py", "\nSPARE = 1\n")
     assert project.planned() == plain
     planned = project.planned("accuracy", "stability")
     assert planned["solve_batch"] == 2

@@ -10,7 +10,7 @@ from microslip.app.progress import Watch
 from microslip.config import schema
 from microslip.foundation import canonical, source_digest
 from microslip.report.explorer import explorer
-from microslip.sweeps import batch_files, batches
+from microslip.sweeps import batch_files, batches, cache
 
 # In a module the files are those of another workflow, which may hold more than this one knows.
 FILES = [os.path.relpath(file) for file in workflow.configfiles] if MAIN else []
@@ -78,9 +78,9 @@ def look_after(*files):
     for file in files:
         there = placed(file)
         if ASKING and os.path.lexists(there):
-            if cache.is_damaged(there):
+            if sealed_files.is_damaged(there):
                 make_again(there, "it is damaged")
-            elif not cache.is_made_of(there, PLAN.fingerprint_of(file)):
+            elif not sealed_files.is_made_of(there, PLAN.fingerprint_of(file)):
                 make_again(there)
 
 
@@ -138,7 +138,7 @@ ASKING = workflow.is_main_process and not glob(".snakemake/locks/*")
 with refused_in_one_line(ORIGIN):
     if workflow.is_main_process:
         folders = [placed(group) for group in sorted(GROUPS)]
-        cache.refuse_unusable(folders, map(placed, PLAN.made_files()))
+        sealed_files.refuse_unusable(folders, map(placed, PLAN.made_files()))
 
 snakemake_log.addFilter(job_log.plain_words(PLACE))
 WATCH = Watch(COUNTER)
@@ -148,7 +148,7 @@ def make_ready():
     """Before the first job: see that results can be written, clear what killed runs left."""
     with refused_in_one_line(ORIGIN):
         cache.Store(PLACE).try_writing()
-    for path in cache.clear_abandoned(PLACE):
+    for path in sealed_files.clear_abandoned(PLACE):
         print(f"{path} was left by a run that was killed: removed", file=sys.stderr)
     WATCH.start(points_to_do())
 
