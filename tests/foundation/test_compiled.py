@@ -105,7 +105,9 @@ def test_where_neither_package_nor_home_can_be_written_it_runs_all_the_same_and_
     (tmp_path / "temporary").mkdir()
     environment = {"HOME": str(tmp_path / "home"), "TMPDIR": str(tmp_path / "temporary")}
     environment |= {"XDG_CACHE_HOME": "", "PYTHONDONTWRITEBYTECODE": "1"}
-    program = f"{FOLDER}; from microslip.models import coulomb; print(coulomb.shrink(4.0, 0.0, 1.0))"
+    program = (
+        f"{FOLDER}; from microslip.models import coulomb; print(coulomb.shrink(4.0, 0.0, 1.0))"
+    )
     done = run(program, copy, **environment)
     folder, number = done.stdout.split()
     assert Path(folder).is_relative_to(tmp_path / "temporary")

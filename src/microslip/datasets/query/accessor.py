@@ -10,6 +10,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import xarray as xr
 
+from microslip.config.quantities import MU_MACRO
 from microslip.datasets.query import beyond
 from microslip.datasets.query.coordinates import labelled
 from microslip.datasets.query.nodes import SAME, nodes_of, refuse_negative
@@ -225,7 +226,7 @@ class Friction:
 
         answer = xr.Dataset(
             {
-                "mu_macro": variable(value, "mean forward friction force over mu F_z", units="1"),
+                "mu_macro": variable(value, MU_MACRO.description, units="1"),
                 "mu_macro_error": variable(error, "bound of its error", units="1"),
                 "source": variable(
                     source.astype(np.int8),

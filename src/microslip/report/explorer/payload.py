@@ -12,9 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from microslip.config.quantities import AMPLITUDE, VELOCITY
 from microslip.foundation.canonical import number
 from microslip.report.figures import drawing, maps, style
 from microslip.report.figures.data import limit, require, sweep
+from microslip.report.figures.formulas import html
 from microslip.sweeps.evaluate import plain
 from microslip.sweeps.period_codec import SHARES, text_of, unpacked_half
 from microslip.theory.catalogue import FORMS
@@ -27,26 +29,16 @@ class Labels:
     """Names of a map, in the markup that plotly knows, and of the other component of its force."""
 
     title: str
-    velocity: str
-    amplitude: str
     other: str
     force: str  # what of a period it is
 
 
 LABELS = {
     "transverse": Labels(
-        "Transverse oscillation",
-        "forward velocity  <i>v</i><sub>0</sub>/(<i>ω u</i><sub>lim</sub>)",
-        "amplitude  <i>y</i><sub>0</sub>/<i>u</i><sub>lim</sub>",
-        "lateral force / (<i>μF<sub>z</sub></i>)",
-        "force_lateral",
+        "Transverse oscillation", "lateral force / (<i>μF<sub>z</sub></i>)", "force_lateral"
     ),
     "bore": Labels(
-        "Oscillating bore",
-        "forward velocity  <i>v</i><sub>0</sub>/(<i>Ω φ</i><sub>0</sub><i>a</i>)",
-        "amplitude  <i>φ</i><sub>0</sub>/<i>φ</i><sub>lk</sub>(<i>a</i>/2)",
-        "torque  <i>M<sub>z</sub></i>/<i>M</i><sub><i>z</i>,0</sub>",
-        "torque",
+        "Oscillating bore", "torque  <i>M<sub>z</sub></i>/<i>M</i><sub><i>z</i>,0</sub>", "torque"
     ),
 }
 FIGURES = {"transverse": "fig2_transverse_map", "bore": "fig6_bore_map"}
@@ -86,7 +78,10 @@ def _map(name, dataset, records):
     return {
         "name": name,
         "title": labels.title,
-        "labels": [labels.velocity, labels.amplitude, labels.other],
+        "labels": [
+            *(f"{q.text}  {html(q.unit)}" for q in (VELOCITY[name], AMPLITUDE[name])),
+            labels.other,
+        ],
         "poisson": poisson,
         "other_poissons": [
             float(ratio) for ratio in np.atleast_1d(dataset["poisson"]) if ratio != poisson

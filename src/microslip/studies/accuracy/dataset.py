@@ -4,6 +4,7 @@ from dataclasses import asdict
 
 import numpy as np
 
+from microslip.config.quantities import MU_MACRO
 from microslip.studies.accuracy import accuracy_cost as study
 from microslip.studies.accuracy import profiles
 from microslip.studies.accuracy.fronts import cheapest, confirmed, exponent, on_front
@@ -43,7 +44,7 @@ TRIAL_VARIABLES = {
     "trial_angles": (np.int32, "1", "angular points on half a ring"),
     "trial_steps": (np.int32, "1", "time steps in a period"),
     "trial_tolerance": (float, "1", "tolerance that was asked for"),
-    "mu_macro": (float, "1", "mean forward friction force over mu F_z"),
+    "mu_macro": (float, "1", MU_MACRO.description),
     "error": (float, "1", "distance of mu_macro from the reference"),
     "seconds": (float, "s", "median CPU time of a run, compiled"),
     "effort": (float, "1", "iterations of the step solver times unknowns"),

@@ -4,6 +4,7 @@ from dataclasses import asdict
 
 import numpy as np
 
+from microslip.config.quantities import MU_MACRO
 from microslip.solver import method_names
 from microslip.studies.stability import stability as study
 from microslip.studies.tables import Answers, finished, value_of, variable
@@ -15,7 +16,7 @@ GROUPS = {"axes": ("What is varied in the blocks of cases", ("axis",))}
 """What is not over methods and cases."""
 
 NUMBERS = {
-    "mu_macro": ("mu_macro", "mean forward friction force over mu F_z"),
+    "mu_macro": ("mu_macro", MU_MACRO.description),
     "claimed_error": ("mu_macro_error", "error of mu_macro that the method claims"),
     "work": ("work", "step solves times unknowns, summed over all runs"),
 }
