@@ -17,7 +17,8 @@ import one_thread  # noqa: F401
 import argparse
 import math
 import sys
-from pathlib import Path
+
+import tables
 
 import microslip
 from microslip.theory.catalogue import FORMS, STATIC
@@ -67,16 +68,13 @@ def table(scene, amplitude, tolerance):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--tolerance", type=float, default=1e-4)
-    parser.add_argument("--markdown", type=Path)
+    tables.add_markdown(parser)
     options = parser.parse_args()
     lines = []
     for scene, amplitudes in AMPLITUDES.items():
         for amplitude in amplitudes:
             lines += [*table(scene, amplitude, options.tolerance), ""]
-    text = "\n".join(lines)
-    print(text, end="")
-    if options.markdown:
-        options.markdown.write_text(text)
+    tables.publish("\n".join(lines), options)
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pytest
 from stubs import explorer_stub as stub
+from stubs.unpacked_period import unpacked
 from stubs.workflow_project import AXES, ROOT, TINY, Project
 
 from microslip.config import load
@@ -61,7 +62,7 @@ def test_periods_come_back_within_the_steps_that_they_are_kept_in(made, name):
     phases = packed["start"] + values("phases", np.uint16, -1) * (2 * np.pi / 65535)
     other = {"transverse": "force_lateral", "bore": "torque"}[name]
     for k, result in enumerate(kept):
-        truth = period_codec.unpacked(result)
+        truth = unpacked(result)
         half = truth["bound"].size // 2
         for c, way in enumerate(("forward", "lateral")):
             share = truth[f"traction_{way}"][: shape[0], :half] / truth["bound"][:half]

@@ -8,7 +8,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
 
 from microslip.config.quantities import AMPLITUDE, VELOCITY
 from microslip.report.figures import style as look
@@ -182,8 +181,7 @@ def _large_cut(axes: Axes, shown: list[tuple[xr.Dataset, float]], plan: Map, let
     velocity = shown[0][0]["velocity"].values
     axes.set_xscale("log")
     axes.set(xlabel=look.axis(VELOCITY[plan.key]), xlim=(velocity[velocity > 0][0], velocity[-1]))
-    axes.xaxis.set_major_locator(LogLocator(numticks=12))
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    look.logarithmic(axes.xaxis)
 
 
 def _overlay(axes: Axes, dataset: xr.Dataset, overlay: Overlay, **at: float) -> None:

@@ -8,7 +8,6 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from matplotlib.ticker import LogLocator, NullFormatter
 from matplotlib.transforms import Transform
 from scipy import ndimage
 
@@ -76,8 +75,7 @@ def _panel(axes: Axes, dataset: xr.Dataset, scene: str, models: list[str]) -> No
         _name_regions(axes, x, y, codes == code, look.model(name)[2])
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
     for axis in (axes.xaxis, axes.yaxis) if logarithmic else (axes.xaxis,):
-        axis.set_major_locator(LogLocator(numticks=12))
-        axis.set_minor_formatter(NullFormatter())
+        look.logarithmic(axis)
     axes.tick_params(which="both", direction="out", top=False, right=False)
 
 

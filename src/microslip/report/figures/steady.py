@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import xarray as xr
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
 
 from microslip.config.quantities import FORCE_FORWARD, TORQUE, VELOCITY
 from microslip.report.figures import style as look
@@ -43,8 +42,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         )
     if velocity[0] > 0 and velocity[-1] >= 20 * velocity[0]:
         axes.set_xscale("log")
-        axes.xaxis.set_major_locator(LogLocator(numticks=12))
-        axes.xaxis.set_minor_formatter(NullFormatter())
+        look.logarithmic(axes.xaxis)
     axes.set_xlim(velocity[0], velocity[-1])
     axes.set_xlabel(look.axis(VELOCITY["continuous-bore"]))
     axes.set_ylabel(f"force  {FORCE_FORWARD.math}\ntorque  {TORQUE.math}")

@@ -7,7 +7,7 @@ import numpy as np
 from microslip.config.quantities import MU_MACRO
 from microslip.solver import method_names
 from microslip.studies.stability import stability as study
-from microslip.studies.tables import Answers, finished, value_of, variable
+from microslip.studies.tables import Answers, finished, flags, value_of, variable
 
 OUTCOMES = ("not_applicable", "converged", "slow", "wrong", "diverged")
 NOT_APPLICABLE, CONVERGED, SLOW, WRONG, DIVERGED = range(len(OUTCOMES))
@@ -70,7 +70,7 @@ def build(settings, answer):
         [outcome(*four) for four in zip(row, reference, reference_error, imposed, strict=True)]
         for row in results
     ]
-    variables = {"outcome": _flags(both, outcomes)}
+    variables = {"outcome": flags(both, outcomes, "what became of the method", OUTCOMES)}
     for name, (key, long_name) in NUMBERS.items():
         values = [[value_of(result or {}, key) for result in row] for row in results]
         variables[name] = variable(both, values, long_name)
@@ -107,13 +107,3 @@ def report(dataset):
 
 def _asked(answers, request):
     return None if request is None else answers(request)
-
-
-def _flags(dims, values):
-    name, values, attributes = variable(dims, values, "what became of the method", np.int8)
-    del attributes["units"]
-    flags = {
-        "flag_values": np.arange(len(OUTCOMES), dtype=np.int8),
-        "flag_meanings": " ".join(OUTCOMES),
-    }
-    return name, values, attributes | flags
