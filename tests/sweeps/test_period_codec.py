@@ -58,4 +58,5 @@ def test_where_there_is_no_state_a_result_says_so(monkeypatch):
 def test_how_periods_are_packed_counts_for_them_and_for_nothing_else():
     requests = [{"kind": kind, "scene": "bore"} for kind in ("period", "point")]
     of_period, of_point = map(source_digest.files_of_request, requests)
-    assert {"inside.py", "periods.py"} == of_period - of_point
+    inside = {f"adaptive/{name}.py" for name in ("history", "period", "whole_disc")}
+    assert inside | {"sweeps/period_codec.py"} == of_period - of_point
