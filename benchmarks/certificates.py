@@ -31,6 +31,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import tables
 
 import microslip
 from microslip.adaptive.choice import choose_model
@@ -224,31 +225,20 @@ def summary(lines):
     return "\n".join(out) + "\n"
 
 
-def parsed(text):
-    """Results of an earlier run; what an interruption cut short is left out."""
-    found = []
-    for line in text.splitlines():
-        try:
-            found.append(json.loads(line))
-        except json.JSONDecodeError:
-            print("a line that is cut short is computed again")
-    return found
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--points", type=int, default=300)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--output", type=Path, default=Path("results/certificates.jsonl"))
-    parser.add_argument("--markdown", type=Path)
+    tables.add_markdown(parser)
     parser.add_argument("--extended", action="store_true")
     options = parser.parse_args()
     options.output.parent.mkdir(parents=True, exist_ok=True)
     draw = sample_extended if options.extended else sample
     wanted = draw(options.points, options.seed)
     known = options.output.read_text() if options.output.exists() else ""
-    lines = {tuple(line["point"]): line for line in parsed(known)}
+    lines = {tuple(line["point"]): line for line in tables.parsed(options.output)}
     with ProcessPoolExecutor(options.workers) as pool, options.output.open("a") as file:
         if known and not known.endswith("\n"):
             file.write("\n")
@@ -259,10 +249,8 @@ def main():
             file.write(json.dumps(line) + "\n")
             file.flush()
             print(f"\r{done} of {len(jobs)} points", end="", flush=True)
-    table = summary([lines[point] for point in wanted])
-    print("\n" + table)
-    if options.markdown:
-        options.markdown.write_text(table)
+    print()
+    tables.publish(summary([lines[point] for point in wanted]), options)
 
 
 if __name__ == "__main__":

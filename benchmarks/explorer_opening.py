@@ -13,6 +13,7 @@ import tempfile
 import time
 from pathlib import Path
 
+import tables
 from playwright.sync_api import sync_playwright
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -41,7 +42,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("page", type=Path)
     parser.add_argument("--times", type=int, default=9)
-    parser.add_argument("--markdown", type=Path)
+    tables.add_markdown(parser)
     given = parser.parse_args()
     with sync_playwright() as playwright:
         wall, cpu = zip(
@@ -58,10 +59,7 @@ def main():
     head = (
         f"The explorer, opened {given.times} times in Chromium by `benchmarks/explorer_opening.py`."
     )
-    lines = [head, "", "| what | measured |", "|---|---|", *(f"| {a} | {b} |" for a, b in rows)]
-    print("\n".join(lines))
-    if given.markdown:
-        given.markdown.write_text("\n".join(lines) + "\n")
+    tables.publish(f"{head}\n\n{tables.measured(rows)}", given)
 
 
 if __name__ == "__main__":

@@ -35,6 +35,7 @@ from collections import Counter
 from pathlib import Path
 
 import fault_rounds
+import tables
 from fault_project import Project, Run, group_of
 from tqdm import tqdm
 
@@ -175,18 +176,6 @@ def summary(lines, rooted):
     return "\n".join(out) + "\n"
 
 
-def parsed(path):
-    """Rounds of an earlier campaign; what an interruption cut short is left out."""
-    found = []
-    lines = path.read_text("utf-8").splitlines() if path.exists() else []
-    for line in filter(None, lines):
-        try:
-            found.append(json.loads(line))
-        except json.JSONDecodeError:
-            print("a line that is cut short is done again")
-    return found
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--kills", type=int, default=100)
@@ -195,7 +184,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="a few of each")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--output", type=Path, default=Path("results/faults.jsonl"))
-    parser.add_argument("--markdown", type=Path, help="file to write the summary to")
+    tables.add_markdown(parser)
     options = parser.parse_args()
     wanted = dict.fromkeys(ROUNDS, options.others)
     wanted |= {"kills": options.kills, "corruption": options.corruptions}
@@ -206,7 +195,7 @@ def main():
         print("full and read-only disks are left out: mounting one takes root")
         wanted = {kind: n for kind, n in wanted.items() if kind not in NEEDS_ROOT}
     options.output.parent.mkdir(parents=True, exist_ok=True)
-    lines = parsed(options.output)
+    lines = tables.parsed(options.output)
     if not complete(wanted, lines) or not any(line["kind"] == "compared" for line in lines):
         with tempfile.TemporaryDirectory(prefix="faults-") as folder:
             try:
@@ -218,10 +207,7 @@ def main():
                     campaign(bench, wanted, options.seed, lines, out)
             finally:
                 Run.end()
-    text = summary(lines, rooted)
-    print(text)
-    if options.markdown:
-        options.markdown.write_text(text, encoding="utf-8")
+    tables.publish(summary(lines, rooted), options)
     return int(any(line.get("findings") for line in lines))
 
 

@@ -14,6 +14,7 @@ import tempfile
 import time
 from pathlib import Path
 
+import tables
 import xarray as xr
 import yaml
 
@@ -97,19 +98,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--points", type=int, default=100_000)
     parser.add_argument("--per-job", type=int, default=500)
-    parser.add_argument("--markdown", metavar="FILE")
+    tables.add_markdown(parser)
     options = parser.parse_args()
     rows = measure(options.points, options.per_job)
-    lines = ["# A sweep of many points", "", "Made by `benchmarks/growth.py`.", ""]
-    lines += [
-        "| what | measured |",
-        "|---|---|",
-        *(f"| {what} | {value} |" for what, value in rows),
-    ]
-    text = "\n".join(lines) + "\n"
-    print(text)
-    if options.markdown:
-        Path(options.markdown).write_text(text, encoding="utf-8")
+    head = "# A sweep of many points\n\nMade by `benchmarks/growth.py`.\n\n"
+    tables.publish(head + tables.measured(rows), options)
 
 
 if __name__ == "__main__":

@@ -87,7 +87,7 @@ def main():
     parser.add_argument("--results", type=Path, default=Path("results"))
     parser.add_argument("--points", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--markdown", type=Path, help="file to write the table to")
+    tables.add_markdown(parser)
     options = parser.parse_args()
     rng, rows = np.random.default_rng(options.seed), []
     for scene in ("transverse", "bore"):
@@ -95,10 +95,7 @@ def main():
         rows.append(row(scene, "lines left out", *left_out(dataset)))
         for where, place in places(dataset, options.points, rng).items():
             rows.append(row(scene, where, *solved(dataset, *place, f"{scene}, {where}")))
-    table = tables.markdown(rows)
-    print(table)
-    if options.markdown:
-        options.markdown.write_text(f"{table}\n", encoding="utf-8")
+    tables.publish(tables.markdown(rows), options)
 
 
 if __name__ == "__main__":

@@ -20,6 +20,8 @@ import time
 from pathlib import Path
 from statistics import median
 
+import tables
+
 import microslip
 from microslip.models.contact import forward_slip
 from microslip.models.squares.contact import CartesianContact
@@ -101,7 +103,7 @@ def main():
     parser.add_argument("--steps", type=int, default=STEPS, help="steps to march and time")
     parser.add_argument("--repeats", type=int, default=7)
     parser.add_argument("--json", type=Path, help="file to write the table to")
-    parser.add_argument("--markdown", type=Path, help="file to write the table to")
+    tables.add_markdown(parser)
     args = parser.parse_args()
     if args.steps < STEPS_PER_PERIOD or args.repeats < 1:
         parser.error(f"at least {STEPS_PER_PERIOD} steps (one period) and one repeat")
@@ -113,9 +115,7 @@ def main():
             f"\n\nOnly {args.steps:,} steps were marched; the time for {STEPS:,} is scaled from"
             " them, and the friction need not be periodic yet."
         )
-    print(table)
-    if args.markdown:
-        args.markdown.write_text(table + "\n", encoding="utf-8")
+    tables.publish(table, args)
     if args.json:
         args.json.write_text(json.dumps(rows, indent=2) + "\n", encoding="utf-8")
 

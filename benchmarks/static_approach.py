@@ -17,14 +17,14 @@ import one_thread  # noqa: F401
 import argparse
 import math
 import sys
-from pathlib import Path
+
+import tables
 
 import microslip
-from microslip.theory import paper
+from microslip.theory.catalogue import FORMS, STATIC
 
 VELOCITIES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 AMPLITUDES = {"transverse": (0.25, 0.5, 0.75), "bore": (0.5, 1.0, 2.0)}
-LIMITS = {"transverse": paper.static_limit_transverse, "bore": paper.static_limit_bore}
 CERTAIN = 5.0
 """Excess over certificate from which an exponent is worth printing."""
 
@@ -45,7 +45,7 @@ def exponent(points, limit):
 
 def table(scene, amplitude, tolerance):
     """Markdown lines for one scene and amplitude."""
-    limit = float(LIMITS[scene](amplitude))
+    limit = float(FORMS[scene][STATIC].function(amplitude))
     lines = [f"{scene}, amplitude {amplitude:g}: closed form of the limit {limit:.6f}", ""]
     lines += ["| velocity | mu_macro | certificate | excess | exponent |", "|---|---|---|---|---|"]
     points = []
@@ -68,16 +68,13 @@ def table(scene, amplitude, tolerance):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--tolerance", type=float, default=1e-4)
-    parser.add_argument("--markdown", type=Path)
+    tables.add_markdown(parser)
     options = parser.parse_args()
     lines = []
     for scene, amplitudes in AMPLITUDES.items():
         for amplitude in amplitudes:
             lines += [*table(scene, amplitude, options.tolerance), ""]
-    text = "\n".join(lines)
-    print(text, end="")
-    if options.markdown:
-        options.markdown.write_text(text)
+    tables.publish("\n".join(lines), options)
 
 
 if __name__ == "__main__":

@@ -57,14 +57,11 @@ def cost(sweep):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--config", type=Path, default=Path("config/config.yaml"))
-    parser.add_argument("--markdown", type=Path, help="file to write the table to")
+    tables.add_markdown(parser)
     options = parser.parse_args()
     microslip.warm_up()
     rows = [cost(sweep) for sweep in load.load(options.config).sweeps.values()]
-    table = tables.markdown(rows)
-    print(table)
-    if options.markdown:
-        options.markdown.write_text(table + "\n", encoding="utf-8")
+    tables.publish(tables.markdown(rows), options)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """How the documentation is built: sphinx-build -W -n docs build/docs. It needs no network."""
 
+import os
 import sys
 from pathlib import Path
 
@@ -13,6 +14,7 @@ author = "the developers of microslip"
 version = release = microslip.__version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "offline_math", "plain_docstrings"]
+extensions += ["sphinx.ext.napoleon"]  # after plain_docstrings, which leaves sections to it
 root_doc = "index"
 exclude_patterns = ["_ext"]
 nitpicky = True
@@ -22,6 +24,11 @@ myst_heading_anchors = 3
 myst_update_mathjax = False
 html_math_renderer = "mathml"
 
+napoleon_google_docstring = False
+napoleon_use_param = napoleon_use_rtype = False
+napoleon_use_ivar = True
+# Types are words as well: "callable or None".
+nitpick_ignore_regex = [("py:class", r"(?!microslip).*")]
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 
@@ -37,16 +44,18 @@ html_css_files = ["microslip.css"]
 # stand are for readers of the plain files.
 INCLUDED = {
     "../README.md": "index.md",
-    "../CONTRIBUTING.md": "contributing.md",
-    "../config/README.md": "configuration.md",
+    "../CONTRIBUTING.md": "how-to/contributing.md",
+    "../config/README.md": "reference/configuration.md",
 }
 
 
 def _adapt(app, name, source):
     if name.startswith("measured/"):  # what benchmarks write has no title
         source[0] = f"# Measured: {name.split('/')[1].replace('_', ' ')}\n\n" + source[0]
+    folder = Path(name).parent
     for file, page in INCLUDED.items():
-        source[0] = source[0].replace(f"]({file}", f"]({page}")
+        away, here = os.path.relpath(file, folder), os.path.relpath(page, folder)
+        source[0] = source[0].replace(f"]({away}", f"]({here}")
 
 
 def setup(app):

@@ -49,9 +49,8 @@ def _process(app, what, name, obj, options, lines):
     names, out = _names(what, obj), []
     for text, plain in _paragraphs(lines):
         # Single backticks stand for code; a bar and two stars for themselves.
-        if plain:
-            text = re.sub(r"(?<!`)`([^`]+)`(?!`)", r"``\1``", text)
-            text = re.sub(r"\||\*\*(?=\w)", r"\\\g<0>", text)
+        text = re.sub(r"(?<!`)`([^`]+)`(?!`)", r"``\1``", text)
+        text = re.sub(r"\||\*\*(?=\w)" if plain else r"\*\*(?=\w)", r"\\\g<0>", text)
         out += _as_list(text, names) if plain else [*text.split("\n"), ""]
     lines[:] = out
 

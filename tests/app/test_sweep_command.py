@@ -44,7 +44,7 @@ def test_the_targets_are_those_of_the_workflow():
 
 def test_help_and_pages_name_every_target():
     head = (ROOT / "Snakefile").read_text().partition("\nimport ")[0]
-    table = (ROOT / "docs" / "workflow.md").read_text()
+    table = (ROOT / "docs" / "how-to" / "workflow.md").read_text()
     for target in sweep_command.TARGETS:
         assert f"    {target} " in sweep_command.HELP
         assert f"`{target}`" in table

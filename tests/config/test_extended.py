@@ -19,6 +19,7 @@ from microslip.studies import registry
 from microslip.sweeps import batches as sweep
 from microslip.sweeps.cache import Store
 from microslip.theory import masing, paper
+from microslip.theory.catalogue import FORMS
 
 PAPER = {"bore": {"velocity": [1], "amplitude": [1]}}
 CIRCLE = {"scene": "elliptic", "group": "loops", "velocity": [0.1, 1], "amplitude": [0, 1]}
@@ -285,8 +286,8 @@ def test_limits_stand_beside_the_points_of_motions_that_have_some(monkeypatch, t
 
 
 def test_limits_are_those_of_the_paper_under_its_pressure_alone():
-    assert theory_limits.LIMITS.keys() <= SCENES.keys()
-    assert "(Eq 9)" in theory_limits.formulas("transverse", POWER)["mu_static_stick_zone"][2]
+    assert FORMS.keys() <= SCENES.keys()
+    assert "(Eq 9)" in theory_limits.formulas("transverse", POWER)["mu_static_stick_zone"].long_name
     assert theory_limits.formulas("elliptic") == {}
     assert "mu_static" in theory_limits.formulas("bore")
 

@@ -9,19 +9,20 @@ from microslip.config import load as config
 from microslip.datasets import theory_limits
 from microslip.pressures.registry import pressure_named
 from microslip.theory import axisymmetric, hertz, indenters, paper
+from microslip.theory.catalogue import FORMS
 
 AMPLITUDE = np.array([0.0, 0.2, 0.6, 0.9, 1.0, 1.5])
 
 
 def value(scene, name, row, *at):
-    return theory_limits.formulas(scene, name)[row][1](*(np.array(x) for x in at))
+    return theory_limits.formulas(scene, name)[row].function(*(np.array(x) for x in at))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", ["transverse", "bore"])
 def test_under_the_power_2_they_are_the_papers(scene):
     for row in ("mu_static_stick_zone", "mu_static"):
-        sphere = theory_limits.LIMITS[scene][row][1](AMPLITUDE)
+        sphere = FORMS[scene][row].function(AMPLITUDE)
         assert value(scene, "power", row, AMPLITUDE) == pytest.approx(sphere, abs=1e-8)
 
 
@@ -51,7 +52,7 @@ def test_the_whole_stick_zone_is_more_than_what_is_left(name):
 @pytest.mark.parametrize("name", ["power:exponent=1", "ellipse"])
 def test_the_closed_form_along_a_line_has_both_of_its_limits(name):
     rows = theory_limits.formulas("longitudinal", name)
-    whole, static = rows["mu_closed_form"][1], rows["mu_static"][1]
+    whole, static = rows["mu_closed_form"].function, rows["mu_static"].function
     # springs that all yield at once would give the rigid limit (2/pi) arcsin(v/x)
     rigid = 2.0 / np.pi * np.arcsin(0.3)
     assert whole(np.array(300.0), np.array(1000.0)) == pytest.approx(rigid, abs=2e-3)

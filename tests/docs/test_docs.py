@@ -59,27 +59,30 @@ NOT_RUN = {
         "docs/index.md",
         '.venv/bin/pip install -e ".[docs]"',
     ): f"{INSTALLS}; the build is a test here",
-    ("docs/start.md", "python3 -m venv .venv && "): INSTALLS,
-    ("docs/gallery.md", ".venv/bin/snakemake -j2"): FULL,
-    ("docs/workflow.md", ".venv/bin/snakemake -j2"): FULL,
-    ("docs/tutorial.md", ".venv/bin/microslip sweep --cores 2"): (
+    ("docs/tutorials/start.md", "python3 -m venv .venv && "): INSTALLS,
+    ("docs/reference/gallery.md", ".venv/bin/snakemake -j2"): FULL,
+    ("docs/how-to/workflow.md", ".venv/bin/snakemake -j2"): FULL,
+    ("docs/tutorials/tutorial.md", ".venv/bin/microslip sweep --cores 2"): (
         "the points are computed, and the datasets written, by the fixture below, without the "
-        "processes of a workflow; a sweep is run as it stands by docs/start.md"
+        "processes of a workflow; a sweep is run as it stands by docs/tutorials/start.md"
     ),
-    ("docs/methods.md", ".venv/bin/snakemake -j2 accuracy stability"): FULL,
-    ("docs/claims.md", ".venv/bin/snakemake -j2 claims"): SMALL,
-    ("docs/explorer.md", ".venv/bin/snakemake -j2 explorer"): SMALL,
-    ("docs/accuracy.md", "python benchmarks/certificates.py --markdown"): BENCHMARK,
-    ("docs/accuracy.md", "python benchmarks/certificates.py --extended"): BENCHMARK,
-    ("docs/accuracy.md", "python benchmarks/static_approach.py"): BENCHMARK,
-    ("docs/accuracy.md", "python benchmarks/sweep_cost.py"): BENCHMARK,
-    ("docs/accuracy.md", "python benchmarks/paper_method.py"): BENCHMARK,
-    ("docs/accuracy.md", "python benchmarks/interpolation.py"): BENCHMARK,
-    ("docs/cluster.md", ".venv/bin/snakemake -j8"): FULL,
-    ("docs/cluster.md", ".venv/bin/pip install -e '.[slurm]'"): CLUSTER,
-    ("docs/cluster.md", "benchmarks/slurm_here.sh"): f"{CLUSTER} by a test: it installs one",
-    ("docs/cluster.md", ".venv/bin/pip install -e '.[s3]'"): CLUSTER,
-    ("docs/cluster.md", ".venv/bin/pip install snakemake-executor-plugin-kubernetes"): CLUSTER,
+    ("docs/explanation/methods.md", ".venv/bin/snakemake -j2 accuracy stability"): FULL,
+    ("docs/explanation/claims.md", ".venv/bin/snakemake -j2 claims"): SMALL,
+    ("docs/how-to/explorer.md", ".venv/bin/snakemake -j2 explorer"): SMALL,
+    ("docs/explanation/accuracy.md", "python benchmarks/certificates.py --markdown"): BENCHMARK,
+    ("docs/explanation/accuracy.md", "python benchmarks/certificates.py --extended"): BENCHMARK,
+    ("docs/explanation/accuracy.md", "python benchmarks/static_approach.py"): BENCHMARK,
+    ("docs/explanation/accuracy.md", "python benchmarks/sweep_cost.py"): BENCHMARK,
+    ("docs/explanation/accuracy.md", "python benchmarks/paper_method.py"): BENCHMARK,
+    ("docs/explanation/accuracy.md", "python benchmarks/interpolation.py"): BENCHMARK,
+    ("docs/how-to/cluster.md", ".venv/bin/snakemake -j8"): FULL,
+    ("docs/how-to/cluster.md", ".venv/bin/pip install -e '.[slurm]'"): CLUSTER,
+    ("docs/how-to/cluster.md", "benchmarks/slurm_here.sh"): f"{CLUSTER} by a test: it installs one",
+    ("docs/how-to/cluster.md", ".venv/bin/pip install -e '.[s3]'"): CLUSTER,
+    (
+        "docs/how-to/cluster.md",
+        ".venv/bin/pip install snakemake-executor-plugin-kubernetes",
+    ): CLUSTER,
 }
 
 Block = namedtuple("Block", "kind text line")
@@ -119,7 +122,7 @@ def reason_not_to_run(page, block):
 
 
 def tutorial_configuration():
-    (block,) = (b for b in blocks("docs/tutorial.md") if file_of(b) == "tutorial.yaml")
+    (block,) = (b for b in blocks("docs/tutorials/tutorial.md") if file_of(b) == "tutorial.yaml")
     return load.from_mapping(yaml.safe_load(block.text))
 
 
@@ -319,16 +322,16 @@ def test_the_guide_to_the_workflow_lists_all_variables():
     known = point_variables.POINT_VARIABLES | point_variables.TORQUE_VARIABLES
     known |= {name: (float, long_name) for name, (*_, long_name) in point_variables.CHANGES.items()}
     known |= {name: (known[name][0], text) for name, text in point_variables.DESCRIPTIONS.items()}
-    assert table("docs/workflow.md", "variable") == [
+    assert table("docs/how-to/workflow.md", "variable") == [
         [name, text.replace("|", "\\|")] for name, (_, text) in known.items()
     ]
 
 
 def test_every_model_every_figure_and_every_public_name_has_its_place():
-    assert sorted(row[0] for row in table("docs/physics.md", "model")) == sorted(MODELS)
-    gallery = (ROOT / "docs" / "gallery.md").read_text()
+    assert sorted(row[0] for row in table("docs/explanation/physics.md", "model")) == sorted(MODELS)
+    gallery = (ROOT / "docs" / "reference" / "gallery.md").read_text()
     assert [f for f in drawing.FIGURES if f"images/{f}.png" not in gallery] == []
-    api = (ROOT / "docs" / "api.md").read_text()
+    api = (ROOT / "docs" / "reference" / "api.md").read_text()
     assert [n for n in microslip.__all__ if f":: microslip.{n}\n" not in api] == []
     assert "my-method" not in method_names.names()
 

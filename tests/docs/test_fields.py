@@ -16,7 +16,7 @@ from microslip.studies import registry
 from microslip.sweeps import batches
 from microslip.sweeps.cache import Store
 
-PAGE = (Path(__file__).parents[2] / "docs" / "fields.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "fields.md").read_text(encoding="utf-8")
 GRIDS = {
     "transverse": {"velocity": [0.1, 1], "amplitude": [0.5, 2], "poisson": [0, 0.3]},
     "bore": {"velocity": [0.1, 1], "amplitude": [0.5, 2]},

@@ -6,13 +6,14 @@ import re
 import numpy as np
 import pytest
 from stubs import explorer_stub as stub
+from stubs.unpacked_period import unpacked
 from stubs.workflow_project import AXES, ROOT, Project, jobs_in
 
 from microslip.config import load
-from microslip.datasets import theory_limits
 from microslip.report.explorer import explorer, page, payload, requests
 from microslip.sweeps import period_codec
 from microslip.sweeps.cache import Store
+from microslip.theory.catalogue import FORMS
 
 
 @pytest.fixture(scope="module")
@@ -37,8 +38,8 @@ def test_points_and_limits_are_those_of_the_dataset(made, name):
         if dataset[key].dtype.kind == "f":
             values = np.array(values, float)
         assert np.array_equal(values, dataset[key].values), key
-    assert len(found["limits"]) == len(theory_limits.LIMITS[name])
-    for given, key in zip(found["limits"], theory_limits.LIMITS[name], strict=True):
+    assert len(found["limits"]) == len(FORMS[name])
+    for given, key in zip(found["limits"], FORMS[name], strict=True):
         assert np.array_equal(given["values"], dataset[key].values)
         assert given["long_name"] == dataset[key].long_name
         if len(given["dims"]) == 1:
@@ -62,7 +63,7 @@ def test_periods_come_back_within_the_steps_that_they_are_kept_in(made, name):
     phases = packed["start"] + values("phases", np.uint16, -1) * (2 * np.pi / 65535)
     other = {"transverse": "force_lateral", "bore": "torque"}[name]
     for k, result in enumerate(kept):
-        truth = period_codec.unpacked(result)
+        truth = unpacked(result)
         half = truth["bound"].size // 2
         for c, way in enumerate(("forward", "lateral")):
             share = truth[f"traction_{way}"][: shape[0], :half] / truth["bound"][:half]
@@ -95,7 +96,7 @@ def test_the_default_configuration_has_a_period_for_every_point_and_stays_small(
     for name in requests.MAPS:
         grid = default.sweeps[name]
         assert len(records[name]) == np.count_nonzero(grid.amplitude) * len(grid.velocity)
-    explorer.write(tmp_path / "explorer.html", datasets, records)
+    page.write(tmp_path / "explorer.html", datasets, records)
     size = (tmp_path / "explorer.html").stat().st_size
     assert size < 13e6  # of 15: a made-up number may be shorter than a computed one
 

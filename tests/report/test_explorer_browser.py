@@ -6,10 +6,10 @@ import shutil
 import numpy as np
 import pytest
 from stubs import explorer_stub as stub
+from stubs.unpacked_period import unpacked
 
-from microslip.report.explorer import explorer
+from microslip.report.explorer.page import write
 from microslip.report.explorer.requests import MAPS
-from microslip.sweeps import period_codec
 from microslip.sweeps.cache import Store
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
@@ -26,7 +26,7 @@ def made(tmp_path_factory):
     """The page's path, and the datasets and periods that it was made from."""
     folder = tmp_path_factory.mktemp("explorer")
     datasets, records = stub.computed(folder, Store(folder))
-    explorer.write(folder / "explorer.html", datasets, records)
+    write(folder / "explorer.html", datasets, records)
     return folder / "explorer.html", datasets, records
 
 
@@ -149,7 +149,7 @@ def test_a_click_shows_the_points_value_and_its_loop(made, page, name, velocity,
 def test_every_frame_of_the_contact_is_the_stored_one(made, page, name):
     select(page, name)
     click_on_map(page, 0.02, 0.6)
-    truth = period_codec.unpacked(record_at(made[2], name, 0.02, 0.6))
+    truth = unpacked(record_at(made[2], name, 0.02, 0.6))
     frames = len(truth["phase"])
     angle = np.array(page.evaluate("sectorAngles(STATE.map)"))
     radius = np.array(page.evaluate("STATE.period.radius"))
@@ -169,7 +169,7 @@ def test_every_frame_of_the_contact_is_the_stored_one(made, page, name):
 def test_the_phase_slider_and_the_animation_move_the_contact(made, page):
     select(page, "bore")
     click_on_map(page, 0.02, 0.6)
-    truth = period_codec.unpacked(record_at(made[2], "bore", 0.02, 0.6))
+    truth = unpacked(record_at(made[2], "bore", 0.02, 0.6))
     drawn = "(k) => element('disc').data[k].x.filter((x) => x === null).length"
     page.locator("#phase").focus()
     for frame in range(1, 9):

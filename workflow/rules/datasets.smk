@@ -18,7 +18,6 @@ rule collect:
         f"{RESULTS}/logs/collect/{{sweep}}.log",
     conda:
         "../envs/microslip.yaml"
-    threads: 1
     resources:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 10 * attempt,
@@ -45,7 +44,6 @@ rule collect_study:
         f"{RESULTS}/logs/collect/{{dataset}}.log",
     conda:
         "../envs/microslip.yaml"
-    threads: 1
     resources:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 10 * attempt,

@@ -16,7 +16,6 @@ rule explorer:
         f"{RESULTS}/logs/explorer.log",
     conda:
         "../envs/microslip.yaml"
-    threads: 1
     resources:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 10 * attempt,

@@ -20,7 +20,6 @@ rule draw_figure:
         f"{RESULTS}/logs/draw_figure/{{figure}}.log",
     conda:
         "../envs/microslip.yaml"
-    threads: 1
     resources:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 10 * attempt,

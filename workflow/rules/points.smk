@@ -9,8 +9,8 @@ rule warm_up:
         f"{RESULTS}/logs/warm_up.log",
     conda:
         "../envs/microslip.yaml"
-    threads: 1
-    # What a job takes where a scheduler starts it, Snakemake within it included: docs/cluster.md.
+    # What a job takes where a scheduler starts it, Snakemake within it included: see
+    # docs/how-to/cluster.md.
     resources:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 10 * attempt,
@@ -30,7 +30,6 @@ rule solve_batch:
         group="|".join(group for group in PLAN.groups if group not in EARLY),
     conda:
         "../envs/microslip.yaml"
-    threads: 1
     resources:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 60 * attempt,

@@ -6,7 +6,7 @@ Output: HTML, one file that needs no network; the numbers in it are dimensionles
 from microslip.app import plan
 from microslip.app.job_log import job_log
 from microslip.config import load
-from microslip.report.explorer import explorer
+from microslip.report.explorer import explorer, page
 from microslip.report.figures.data import loaded
 from microslip.sweeps import batches, sealed_files
 
@@ -20,7 +20,7 @@ with job_log(snakemake.log[0]) as log:
         for name in names
     }
     datasets = {name: loaded(p) for name, p in zip(names, snakemake.input.datasets, strict=True)}
-    explorer.write(snakemake.output[0], datasets, periods)
+    page.write(snakemake.output[0], datasets, periods)
     for line in explorer.report(periods):
         log.info(line)
     sealed_files.mark(snakemake.output, snakemake.params.made_of)

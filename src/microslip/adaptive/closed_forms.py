@@ -5,25 +5,15 @@ from __future__ import annotations
 from microslip.motions.motion import Scene
 from microslip.pressures.registry import HERTZ
 from microslip.solver.problem import Problem
-from microslip.theory import bounds, hertz, paper
+from microslip.theory import hertz
+from microslip.theory.catalogue import FORMS, LARGEST_DROPS, STATIC
 
-STATIC_LIMITS = {
-    "transverse": paper.static_limit_transverse,  # nu = 0
-    "zigzag": paper.static_limit_transverse,  # it knows the turning points alone
-    "bore": paper.static_limit_bore,  # any nu: it only scales the angle
-}
-STEADY_STATES = {"continuous-bore": (paper.bore_forward, paper.bore_torque)}  # Eqs 21 and 22
 QUADRATURE = 1e-7
 """Error of Eqs 17 and 18 for another pressure, which may have kinks."""
 WHOLE_ROUNDING = 1e-9
 OF_RECORD = 1e-8
 """Error of closed forms by quadrature: of a whole motion, and of what follows from the record of an
 indenter's pressure."""
-LARGEST_DROPS = {
-    "longitudinal": bounds.largest_drop_longitudinal,
-    "transverse": bounds.largest_drop_transverse,
-    "bore": bounds.largest_drop_bore,
-}
 ROUNDING = 1e-12
 
 
@@ -60,10 +50,10 @@ def closed_form(problem: Problem, tolerance: float) -> tuple | None:
             error = WHOLE_ROUNDING if velocity > 0.0 else ROUNDING
             return float(whole), None, error if scene.pressure.hertzian else OF_RECORD
     if velocity == 0.0:
-        known = STATIC_LIMITS.get(scene.name)
-        if known is None or (problem.poisson > 0.0 and not scene.rotates):
+        known = None if scene.whole is not None else FORMS.get(scene.name, {}).get(STATIC)
+        if known is None or (problem.poisson > 0.0 and not known.any_poisson):
             return None
-        return _static(scene, known, amplitude, problem.poisson)
+        return _static(scene, known.function, amplitude, problem.poisson)
     largest_drop = LARGEST_DROPS.get(scene.name)
     if largest_drop is not None and not (scene.rotates and scene.pressure is not HERTZ):
         drop = largest_drop(velocity, amplitude)
@@ -75,8 +65,8 @@ def closed_form(problem: Problem, tolerance: float) -> tuple | None:
 def _steady(scene, velocity):
     """Eqs 17 and 18; 21 and 22 for a sphere."""
     if scene.pressure is HERTZ:
-        forward, torque = STEADY_STATES[scene.name]
-        return float(forward(velocity)), float(torque(velocity)), ROUNDING
+        forward, torque = (form.function(velocity) for form in FORMS[scene.name].values())
+        return float(forward), float(torque), ROUNDING
     if not scene.pressure.is_round:
         return None
     from microslip.theory import axisymmetric  # only now: integration takes a while to load

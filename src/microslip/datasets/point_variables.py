@@ -7,13 +7,15 @@ from itertools import islice
 
 import numpy as np
 
+from microslip.config.quantities import MU_MACRO
+from microslip.config.quantities import TORQUE as TORQUE_OF
 from microslip.datasets.netcdf import characters_of
 from microslip.foundation.canonical import canonical_json
 
 # Variables over the sweep: name -> (type, long_name). 0 stands where a count does not apply. A
 # long_name is short enough for the axis of a plot; what else there is to say is in DESCRIPTIONS.
 POINT_VARIABLES = {
-    "mu_macro": (float, "mean forward friction force over mu F_z"),
+    "mu_macro": (float, MU_MACRO.description),
     "mu_macro_error": (float, "estimated error of mu_macro"),
     "error_space": (float, "error of mu_macro from the cells"),
     "error_time": (float, "error of mu_macro from the time steps"),
@@ -55,7 +57,7 @@ DESCRIPTIONS = {
     "effort": "iterations of the step solver times unknowns, summed over all runs",
     "retried": "runs done again by safer steps, since they had not converged",
     "reason": "why the point did not converge, empty if it did",
-    "mu_torque": "torque about the normal over its value at zero forward velocity",
+    "mu_torque": TORQUE_OF.description,
     "mu_macro_change": "mu_macro less that at the smallest Poisson's ratio",
 }
 """All of what a variable is, where its long_name does not say that: the attribute `description`."""

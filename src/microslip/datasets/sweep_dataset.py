@@ -12,25 +12,16 @@ import xarray as xr
 
 import microslip
 from microslip.config.extended import solver_names
+from microslip.config.quantities import AMPLITUDE, VELOCITY
 from microslip.datasets import netcdf, point_variables, theory_limits
 from microslip.foundation import named_files, source_digest
 from microslip.foundation.canonical import canonical_json
 from microslip.motions.registry import scene_named
 from microslip.sweeps.sealed_files import writing_beside
-from microslip.theory import paper
+from microslip.theory.catalogue import FORMS
 
 CONVENTIONS = "CF-1.11"
 PAPER = "R. Pohrt, Front. Mech. Eng. 6:566440 (2020), doi:10.3389/fmech.2020.566440"
-
-VELOCITY = {
-    "transverse": "forward velocity over angular frequency and u_lim (Eq 4)",
-    "bore": "forward velocity over largest rotational velocity of the contact's edge (Eq 28)",
-    "continuous-bore": "forward velocity over rotational velocity of the contact's edge (Eq 13)",
-}
-AMPLITUDE = {
-    "transverse": "amplitude of the transverse oscillation over u_lim (Eq 2)",
-    "bore": "amplitude of the rotation over the one that leaves the stick radius a/2 (Eq 27)",
-}
 
 
 def write_sweep(path, sweep, points, histories, settings):
@@ -147,14 +138,15 @@ def _axes(sweep):
 def _describe_axes(dataset, sweep):
     """Name the axes; `formula` is what a coordinate is, in the words of the scene."""
     scene = scene_named(sweep.scene)
-    names = {"velocity": (VELOCITY, "forward velocity", scene.velocity_label)}
+    axes = [(VELOCITY, scene.velocity_label)]
     if sweep.amplitude is not None:
-        names["amplitude"] = (AMPLITUDE, "amplitude", scene.amplitude_label)
-    for name, (of_paper, quantity, formula) in names.items():
-        said = {"long_name": f"{quantity}, {formula}", "units": "1", "formula": formula}
+        axes.append((AMPLITUDE, scene.amplitude_label))
+    for of_paper, formula in axes:
+        quantity = of_paper["transverse"]  # all have the same name and words
+        said = {"long_name": f"{quantity.text}, {formula}", "units": "1", "formula": formula}
         if scene.name in of_paper:
-            said["description"] = of_paper[scene.name]
-        dataset[name].attrs = said
+            said["description"] = of_paper[scene.name].description
+        dataset[quantity.name].attrs = said
     dataset["poisson"].attrs = {"long_name": "Poisson's ratio", "units": "1"}
 
 
@@ -212,6 +204,7 @@ def _transients(records):
         for name in ("displacement_forward", "force_forward", "torque")
     }
     force, torque = "forward friction force over mu F_z", point_variables.TORQUE
+    steady = FORMS["continuous-bore"]
     return {
         "start": ("start", starts, {"long_name": "initial state of the transient"}),
         "transient_displacement": _variable(
@@ -224,13 +217,13 @@ def _transients(records):
         "transient_velocity": _variable((), velocity, "forward velocity of the transients"),
         "transient_force_theory": _variable(
             (),
-            paper.bore_forward(velocity),
+            steady["mu_forward_theory"].function(velocity),
             "steady forward force (Eq 21)",
             description=f"steady {force} (Eq 21)",
         ),
         "transient_torque_theory": _variable(
             (),
-            paper.bore_torque(velocity),
+            steady["mu_torque_theory"].function(velocity),
             "steady torque (Eq 22)",
             description=f"steady {point_variables.DESCRIPTIONS['mu_torque']} (Eq 22)",
         ),

@@ -12,6 +12,7 @@ import yaml
 from microslip.studies.claims.static_limits import FORMULAS, SPLIT
 from microslip.studies.claims.verdicts import OUTCOMES, WORDS
 from microslip.sweeps.sealed_files import writing_beside
+from microslip.theory.catalogue import FORMS
 
 STYLE = """
 body { font: 15px/1.45 sans-serif; max-width: 76em; margin: 2em auto; padding: 0 1em; }
@@ -23,8 +24,6 @@ code { font-size: 12px; overflow-wrap: anywhere; }
 .v0, .aside { color: #555; } h2 { margin-top: 1.8em; }
 """
 COUNTED = {"holds": "for it", "fails": "against", "open": "open"}
-NAMES = {"slider": "Eq 7", "zone_printed": "Eq 33 as printed"}
-ZONES = {"transverse": "Eq 11", "bore": "Eq 33"}
 PARTS_OF_SHIFT = ("from_velocity", "from_resolution")
 SCENES = {"transverse": "Transverse oscillation", "bore": "Oscillating bore"}
 
@@ -178,11 +177,11 @@ def _checks(data, part):
 
 def _static(data, scene):
     """A table over the amplitudes, and where the paper's formulas are off most."""
-    names = {name: NAMES.get(name, ZONES[scene]) for name in FORMULAS[scene]}
+    names = {name: FORMS[scene][form].equation for name, (form, _) in FORMULAS[scene].items()}
     slow, slowest = (float(data[f"claims_{n}"]) for n in ("paper_velocity", "slowest"))
     head = ["amplitude", "limit", f"at velocity {slowest:g}"]
     head += [f"{name} (less limit)" for name in names.values()]
-    head += [f"of the bound inside, {ZONES[scene]} less limit"]
+    head += [f"of the bound inside, {names['zone']} less limit"]
     head += [f"paper's run at {slow:g} (less limit)", "of it from velocity"]
     head += ["of it from resolution", "squares alone, velocity to 0"]
     of = {name: data[f"{scene}_{name}"] for name in (*SPLIT, *names, "lost", "amplitude")}

@@ -62,7 +62,7 @@ class TwoBodies:
 
     @property
     def G(self):
-        """1/G = sum 1/G_i, Pa: what torsion feels."""
+        """1/G = sum 1/G_i, Pa; what torsion feels."""
         return 1.0 / sum(1.0 / body.shear_modulus for body in self.bodies)
 
     @property
@@ -104,7 +104,7 @@ class TwoBodies:
 
     @property
     def mismatch(self):
-        """Dundurs' constant beta: how far pressure moves the surfaces apart sideways, 0 if equal.
+        """Dundurs' constant beta, how far pressure moves the surfaces apart sideways, 0 if equal.
 
         Half of the difference of (1 - 2 nu)/G over the sum of (1 - nu)/G.
         """

@@ -37,6 +37,20 @@ def variable(dims, values, long_name, kind=float, units="1"):
     return dims, values, point_variables.attributes(kind, long_name, units)
 
 
+def flags(dims, values, long_name, meanings):
+    """A variable of small numbers that stand for words."""
+    dims, values, about = variable(dims, values, long_name, np.int8)
+    del about["units"]
+    numbers = np.arange(len(meanings), dtype=np.int8)
+    return dims, values, about | {"flag_values": numbers, "flag_meanings": " ".join(meanings)}
+
+
+def columns(dims, table):
+    """Variables over the same dims; table: name -> (values, long_name, kind, units), the last two
+    as far as they are not those of `variable`."""
+    return {name: variable(dims, *row) for name, row in table.items()}
+
+
 def finished(variables, coords, title, answers, settings, **attributes):
     """A Dataset with what says where it comes from; settings: dict, kept as JSON."""
     # The names of all results: they depend on the sources of the methods, too.

@@ -10,6 +10,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import xarray as xr
 
+from microslip.config.quantities import MU_MACRO
 from microslip.datasets.query import beyond
 from microslip.datasets.query.coordinates import labelled
 from microslip.datasets.query.nodes import SAME, nodes_of, refuse_negative
@@ -19,7 +20,7 @@ from microslip.foundation.errors import InputError
 from microslip.motions.registry import scene_named
 from microslip.sweeps.sealed_files import CacheError
 from microslip.sweeps.solve_stored import solve_stored
-from microslip.theory import paper
+from microslip.theory.catalogue import FORMS
 
 SOURCES = (
     "map",
@@ -153,8 +154,8 @@ class Friction:
     def _steady(self, nodes, velocity, nu):
         table = self._table(nodes, nu)
         inside = table.columns.holds(velocity)
-        value, error = paper.bore_forward(velocity), np.full(velocity.shape, beyond.ROUNDING)
-        value = np.array(value, float)
+        exact = FORMS[self._scene]["mu_forward_theory"].function
+        value, error = np.array(exact(velocity), float), np.full(len(velocity), beyond.ROUNDING)
         value[inside], error[inside] = table.at(np.zeros(inside.sum()), velocity[inside])
         return value, error, np.where(inside, MAP, EXACT)
 
@@ -226,7 +227,7 @@ class Friction:
 
         answer = xr.Dataset(
             {
-                "mu_macro": variable(value, "mean forward friction force over mu F_z", units="1"),
+                "mu_macro": variable(value, MU_MACRO.description, units="1"),
                 "mu_macro_error": variable(error, "bound of its error", units="1"),
                 "source": variable(
                     source.astype(np.int8),

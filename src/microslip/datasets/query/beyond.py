@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from microslip.theory import bounds, paper
+from microslip.theory.catalogue import FORMS, LARGEST_DROPS, STATIC
 
 ROUNDING = 1e-12
 SLOW_EXPONENT = 2.0 / 3.0
@@ -29,10 +29,18 @@ SLOW_EXPONENT = 2.0 / 3.0
 class Limits:
     """What is proved about a scene, functions of arrays of velocity and amplitude.
 
-    static: limit for vanishing velocity, of the amplitude; static_needs_nu_0: whether it is proved
-    for that Poisson's ratio alone; large: limit for large amplitudes; same_limit: velocity at which
-    another amplitude has the same one (velocity, amplitude, other amplitude); drop: upper bound of
-    1 - mu_macro.
+    Attributes
+    ----------
+    static : callable
+        Limit for vanishing velocity, of the amplitude.
+    static_needs_nu_0 : bool
+        Whether that is proved for Poisson's ratio 0 alone.
+    large : callable
+        Limit for large amplitudes.
+    same_limit : callable
+        Velocity at which another amplitude has the same one (velocity, amplitude, other amplitude).
+    drop : callable
+        Upper bound of 1 - mu_macro.
     """
 
     static: Callable
@@ -42,21 +50,22 @@ class Limits:
     drop: Callable
 
 
+def _limits(motion, same_limit):
+    static, large = FORMS[motion][STATIC], FORMS[motion]["mu_large_amplitude"]
+    return Limits(
+        static.function,
+        not static.any_poisson,
+        lambda *point: large.function(*point[: len(large.arguments)]),
+        same_limit,
+        np.vectorize(LARGEST_DROPS[motion], otypes=[float]),
+    )
+
+
 LIMITS = {
-    "transverse": Limits(
-        paper.static_limit_transverse,
-        True,
-        paper.large_amplitude_transverse,
-        lambda velocity, amplitude, other: velocity * other / amplitude,
-        np.vectorize(bounds.largest_drop_transverse, otypes=[float]),
+    "transverse": _limits(
+        "transverse", lambda velocity, amplitude, other: velocity * other / amplitude
     ),
-    "bore": Limits(
-        paper.static_limit_bore,
-        False,
-        lambda velocity, amplitude: paper.large_amplitude_bore(velocity),
-        lambda velocity, amplitude, other: velocity,
-        np.vectorize(bounds.largest_drop_bore, otypes=[float]),
-    ),
+    "bore": _limits("bore", lambda velocity, amplitude, other: velocity),
 }
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from microslip.foundation import source_digest
 from microslip.report.explorer.requests import maps_of, period_requests, refusal
 
-__all__ = ["ASSETS", "digest", "maps_of", "period_requests", "refusal", "report", "write"]
+__all__ = ["ASSETS", "digest", "maps_of", "period_requests", "refusal", "report"]
 
 #: What the page is made of besides numbers and plotly.js, in the order in which scripts run.
 ASSETS = ("page.html", "style.css", "data.js", "charts.js", "disc.js", "page.js")
@@ -26,13 +26,6 @@ def digest() -> str:
     parts = [Path(__file__).with_name(name).read_bytes() for name in ASSETS]
     parts.append(source_digest.of_modules("report/explorer", "sweeps/period_codec.py").encode())
     return hashlib.sha256(b"\0".join(parts)).hexdigest()
-
-
-def write(path, datasets, periods):
-    """Write the page to `path`, whole or not at all; see `page.write`."""
-    from microslip.report.explorer import page
-
-    page.write(path, datasets, periods)
 
 
 def report(periods):

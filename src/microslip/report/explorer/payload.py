@@ -12,12 +12,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.datasets import theory_limits
+from microslip.config.quantities import AMPLITUDE, VELOCITY
 from microslip.foundation.canonical import number
 from microslip.report.figures import drawing, maps, style
 from microslip.report.figures.data import limit, require, sweep
+from microslip.report.figures.formulas import html
 from microslip.sweeps.evaluate import plain
 from microslip.sweeps.period_codec import SHARES, text_of, unpacked_half
+from microslip.theory.catalogue import FORMS
 
 UNSIGNED, SIGNED = 65535, 32767
 
@@ -27,26 +29,16 @@ class Labels:
     """Names of a map, in the markup that plotly knows, and of the other component of its force."""
 
     title: str
-    velocity: str
-    amplitude: str
     other: str
     force: str  # what of a period it is
 
 
 LABELS = {
     "transverse": Labels(
-        "Transverse oscillation",
-        "forward velocity  <i>v</i><sub>0</sub>/(<i>ω u</i><sub>lim</sub>)",
-        "amplitude  <i>y</i><sub>0</sub>/<i>u</i><sub>lim</sub>",
-        "lateral force / (<i>μF<sub>z</sub></i>)",
-        "force_lateral",
+        "Transverse oscillation", "lateral force / (<i>μF<sub>z</sub></i>)", "force_lateral"
     ),
     "bore": Labels(
-        "Oscillating bore",
-        "forward velocity  <i>v</i><sub>0</sub>/(<i>Ω φ</i><sub>0</sub><i>a</i>)",
-        "amplitude  <i>φ</i><sub>0</sub>/<i>φ</i><sub>lk</sub>(<i>a</i>/2)",
-        "torque  <i>M<sub>z</sub></i>/<i>M</i><sub><i>z</i>,0</sub>",
-        "torque",
+        "Oscillating bore", "torque  <i>M<sub>z</sub></i>/<i>M</i><sub><i>z</i>,0</sub>", "torque"
     ),
 }
 FIGURES = {"transverse": "fig2_transverse_map", "bore": "fig6_bore_map"}
@@ -78,7 +70,7 @@ def build(datasets, periods):
 
 
 def _map(name, dataset, records):
-    names = theory_limits.LIMITS[name]
+    names = FORMS[name]
     require("explorer", name, dataset, ["amplitude", "velocity", *POINTS, *names])
     shown, poisson = sweep(dataset, ("amplitude", "velocity"))
     shown = shown.transpose("amplitude", "velocity", ...)
@@ -86,7 +78,10 @@ def _map(name, dataset, records):
     return {
         "name": name,
         "title": labels.title,
-        "labels": [labels.velocity, labels.amplitude, labels.other],
+        "labels": [
+            *(f"{q.text}  {html(q.unit)}" for q in (VELOCITY[name], AMPLITUDE[name])),
+            labels.other,
+        ],
         "poisson": poisson,
         "other_poissons": [
             float(ratio) for ratio in np.atleast_1d(dataset["poisson"]) if ratio != poisson
@@ -107,7 +102,7 @@ def _limit(dataset, name, key):
     """
     plan = maps.MAPS[FIGURES[name]]
     looks = {overlay.variable: overlay for overlay in (*plan.static, plan.large)}
-    spare = list(theory_limits.LIMITS[name]).index(key) % len(SPARE_COLOURS)
+    spare = list(FORMS[name]).index(key) % len(SPARE_COLOURS)
     look = looks.get(key, maps.Overlay(key, key, SPARE_COLOURS[spare], style.DOTTED))
     values = dataset[key]
     found = {

@@ -9,7 +9,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from scipy.spatial import cKDTree
 
+from microslip.config.quantities import FORWARD, LATERAL, VELOCITY
 from microslip.report.figures import style as look
+from microslip.report.figures.claims_static import BORE_AMPLITUDE
 from microslip.report.figures.data import require
 
 VARIABLES = (
@@ -46,7 +48,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     for axes, which, (moment, note) in zip(panels, "abc", MOMENTS, strict=True):
         shade = _contact(axes, dataset.isel(patch_moment=moment))
         look.letter(axes, which, note)
-    panels[0].set_ylabel(look.FORWARD)
+    panels[0].set_ylabel(look.axis(FORWARD))
     bar = figure.colorbar(shade, ax=panels, shrink=0.8, pad=0.015, aspect=24)
     bar.set_label("traction over bound  $|q|/(\\mu p)$\nwhere it sticks")
     _areas(figure.add_subplot(grid[1, :]), dataset)
@@ -77,7 +79,7 @@ def _contact(axes: Axes, at: xr.Dataset) -> object:
     phase = float(at["patch_moment_phase"]) / np.pi
     text = rf"{look.number(phase)}\,\pi" if abs(phase) > 1e-9 else "0"
     axes.text(0.5, 0.04, rf"$\Omega t = {text}$", transform=axes.transAxes, ha="center")
-    axes.set(xlim=(-1.08, 1.08), ylim=(-1.32, 1.08), xlabel=look.LATERAL)
+    axes.set(xlim=(-1.08, 1.08), ylim=(-1.32, 1.08), xlabel=look.axis(LATERAL))
     axes.set(xticks=(-1, 0, 1), yticks=(-1, 0, 1))
     return shade
 
@@ -90,10 +92,9 @@ def _areas(axes: Axes, dataset: xr.Dataset) -> None:
         axes.plot(phase, values, color=color, linestyle=linestyle, label=label, gid=variable)
     for moment in dataset["patch_moment_phase"].values[[index for index, _ in MOMENTS]] / np.pi:
         axes.axvline(moment, color=look.GREY, linewidth=0.7, linestyle=look.DOTTED, zorder=0)
-    place = (
-        rf"$\tilde{{\varphi}} = {look.number(float(dataset['patch_amplitude']))}$, "
-        rf"$\tilde{{v}} = {look.number(float(dataset['patch_velocity']))}$"
-    )
+    symbols = BORE_AMPLITUDE.latex, VELOCITY["bore"].latex
+    values = (float(dataset[f"patch_{n}"]) for n in ("amplitude", "velocity"))
+    place = look.conditions(zip(symbols, values, strict=True))
     look.legend_above(axes, "d", f"area that sticks, {place}", ncols=3)
     axes.set(xlim=(phase[0], phase[-1]), xlabel=r"phase  $\Omega t/\pi$")
     axes.set(ylabel="share of the contact  (dimensionless)")

@@ -2,41 +2,41 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import matplotlib
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from microslip.config.quantities import AMPLITUDE, Quantity
 from microslip.report.figures import style as look
 from microslip.report.figures.cuts import computed
 from microslip.report.figures.data import require
+from microslip.theory.catalogue import FORMS, STATIC
 
-#: Each column: the scene, its name, the label of its amplitude, and its curves: variable, label,
-#: colour and line style.
+BORE_AMPLITUDE = replace(AMPLITUDE["bore"], latex=r"\tilde{\varphi}")
+#: Each column: the motion, its name, its amplitude, and its curves: variable, closed form, colour
+#: and line style.
 SCENES = (
     (
-        "transverse",
-        "transverse oscillation",
-        r"amplitude  $\tilde{y}_0 = y_0/u_\mathrm{lim}$",
+        *("transverse", "transverse oscillation", AMPLITUDE["transverse"]),
         (
-            ("limit", "exact limit", look.BLUE, look.SOLID),
-            ("zone", "Eq 11", look.GREEN, look.DASHED),
-            ("slider", "Eq 7", look.ORANGE, look.DASHDOT),
+            ("limit", STATIC, look.BLUE, look.SOLID),
+            ("zone", "mu_static_stick_zone", look.GREEN, look.DASHED),
+            ("slider", "mu_static_slider", look.ORANGE, look.DASHDOT),
         ),
     ),
     (
-        "bore",
-        "oscillating bore",
-        r"amplitude  $\tilde{\varphi} = \varphi_0/\varphi_\mathrm{lk}(a/2)$",
+        *("bore", "oscillating bore", BORE_AMPLITUDE),
         (
-            ("limit", "exact limit", look.BLUE, look.SOLID),
-            ("zone", "Eq 33", look.GREEN, look.DASHED),
-            ("zone_printed", "Eq 33 as printed", look.ORANGE, look.DOTTED),
+            ("limit", STATIC, look.BLUE, look.SOLID),
+            ("zone", "mu_static_stick_zone", look.GREEN, look.DASHED),
+            ("zone_printed", "mu_static_stick_zone_printed", look.ORANGE, look.DOTTED),
         ),
     ),
 )
-SYMBOLS = {"transverse": r"\tilde{y}_0", "bore": r"\tilde{\varphi}"}
 POINTS = ("slow", "slow_error", "paper", "march", "march_error")
 #: Shades for curves of one kind, from dark to light; the lightest are too pale for lines.
 LIGHTEST = 0.82
@@ -53,21 +53,21 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     figure = look.new_figure(look.DOUBLE, 6.4)
     grid = figure.subplots(2, 2)
     for axes, below, upper, lower, scene in zip(*grid, "ab", "cd", SCENES, strict=True):
-        _friction(axes, dataset, *scene)
+        _friction(axes, dataset, scene)
         look.legend_above(axes, upper, scene[1])
-        _shares(below, dataset, scene[0])
+        _shares(below, dataset, scene[0], scene[2])
         look.legend_above(below, lower, "share of the friction bound")
     return figure
 
 
-def _friction(axes: Axes, dataset: xr.Dataset, scene: str, _: str, label: str, curves: tuple):
+def _friction(axes: Axes, dataset: xr.Dataset, column: tuple) -> None:
     """The limit and formulas for it as lines; certified points and the paper's run as marks."""
+    scene, _, quantity, curves = column
     amplitude = dataset[f"{scene}_curve_amplitude"].values
-    for variable, text, color, linestyle in curves:
-        values = dataset[f"{scene}_curve_{variable}"].values
-        axes.plot(
-            amplitude, values, color=color, linestyle=linestyle, label=text, gid=variable, zorder=3
-        )
+    for variable, name, color, linestyle in curves:
+        values, form = dataset[f"{scene}_curve_{variable}"].values, FORMS[scene][name]
+        ink = {"color": color, "linestyle": linestyle, "label": form.equation or form.label}
+        axes.plot(amplitude, values, gid=variable, zorder=3, **ink)
     at = dataset[f"{scene}_amplitude"].values
     paper, slowest = (float(dataset[f"claims_{n}"]) for n in ("paper_velocity", "slowest"))
     for variable, velocity, marker in (("slow", paper, "o"), ("march", slowest, "v")):
@@ -90,11 +90,11 @@ def _friction(axes: Axes, dataset: xr.Dataset, scene: str, _: str, label: str, c
         zorder=6,
         clip_on=False,
     )
-    axes.set(xlim=(0.0, amplitude[-1]), xlabel=label, ylabel=look.FRICTION)
+    axes.set(xlim=(0.0, amplitude[-1]), xlabel=look.axis(quantity), ylabel=look.FRICTION)
     look.unit_range(axes)
 
 
-def _shares(axes: Axes, dataset: xr.Dataset, scene: str) -> None:
+def _shares(axes: Axes, dataset: xr.Dataset, scene: str, quantity: Quantity) -> None:
     """What the oscillation uses at its turning points, solid, and what is left, dashed."""
     radius = dataset["share_radius"].values
     dim = f"{scene}_share_amplitude"
@@ -103,7 +103,7 @@ def _shares(axes: Axes, dataset: xr.Dataset, scene: str) -> None:
     for index, (amplitude, color) in enumerate(zip(amplitudes, shades, strict=True)):
         row = dataset.isel({dim: index})
         used, left = (row[f"{scene}_{n}_share"].values for n in ("used", "left"))
-        text = rf"${SYMBOLS[scene]} = {look.number(float(amplitude))}$"
+        text = look.conditions([(quantity.latex, float(amplitude))])
         axes.plot(radius, used, color=color, linestyle=look.SOLID, label=text, gid="used")
         axes.plot(radius, left, color=color, linestyle=look.DASHED, gid="left")
     for linestyle, text in ((look.SOLID, "used"), (look.DASHED, "left, forward")):

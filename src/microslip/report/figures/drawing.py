@@ -26,25 +26,28 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-#: Every figure and the datasets it is drawn from, but for those of groups in `extended`, which have
-#: the names that `figure_of` gives and all the datasets of their group.
-FIGURES: dict[str, tuple[str, ...]] = {
-    "fig1_force_history": ("transverse",),
-    "fig2_transverse_map": ("transverse",),
-    "fig3_traction_field": ("continuous_bore",),
-    "fig4_continuous_bore": ("continuous_bore",),
-    "fig5_transients": ("continuous_bore",),
-    "fig6_bore_map": ("bore",),
-    "poisson": ("transverse", "bore"),
-    "accuracy_profile": ("accuracy_cost",),
-    "accuracy_vs_cost": ("accuracy_cost",),
-    "accuracy_vs_work": ("accuracy_cost",),
-    "model_map": ("accuracy_cost",),
-    "scaling": ("accuracy_cost",),
-    "stability_atlas": ("stability",),
-    "claims_static": ("claims",),
-    "claims_patches": ("claims",),
+#: Every figure: the module beside this one that draws it, and the datasets it is drawn from.
+_DRAWN: dict[str, tuple[str, ...]] = {
+    "fig1_force_history": ("history", "transverse"),
+    "fig2_transverse_map": ("maps", "transverse"),
+    "fig3_traction_field": ("field", "continuous_bore"),
+    "fig4_continuous_bore": ("steady", "continuous_bore"),
+    "fig5_transients": ("transients", "continuous_bore"),
+    "fig6_bore_map": ("maps", "bore"),
+    "poisson": ("poisson", "transverse", "bore"),
+    "accuracy_profile": ("profile", "accuracy_cost"),
+    "accuracy_vs_cost": ("work_precision", "accuracy_cost"),
+    "accuracy_vs_work": ("work_precision", "accuracy_cost"),
+    "model_map": ("model_map", "accuracy_cost"),
+    "scaling": ("scaling", "accuracy_cost"),
+    "stability_atlas": ("atlas", "stability"),
+    "claims_static": ("claims_static", "claims"),
+    "claims_patches": ("claims_patches", "claims"),
 }
+_MODULES = {name: module for name, (module, *_) in _DRAWN.items()}
+#: Every figure and its datasets, but for those of groups in `extended`, which have the names that
+#: `figure_of` gives and all the datasets of their group.
+FIGURES = {name: tuple(datasets) for name, (_, *datasets) in _DRAWN.items()}
 
 #: Lines that the figure of Poisson's ratios can tell apart.
 MOST_POISSONS = 4
@@ -57,24 +60,6 @@ FORMATS: dict[str, tuple[dict[str, None], str]] = {
 }
 PROVENANCE = ("title", "references", "microslip_version", "source_digest", "results_digest")
 PROVENANCE += ("configuration", "library_versions")
-
-_MODULES = {
-    "fig1_force_history": "history",
-    "fig2_transverse_map": "maps",
-    "fig3_traction_field": "field",
-    "fig4_continuous_bore": "steady",
-    "fig5_transients": "transients",
-    "fig6_bore_map": "maps",
-    "poisson": "poisson",
-    "accuracy_profile": "profile",
-    "accuracy_vs_cost": "work_precision",
-    "accuracy_vs_work": "work_precision",
-    "model_map": "model_map",
-    "scaling": "scaling",
-    "stability_atlas": "atlas",
-    "claims_static": "claims_static",
-    "claims_patches": "claims_patches",
-}
 
 __all__ = ["FIGURES", "FORMATS", "draw", "save"]
 

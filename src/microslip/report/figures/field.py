@@ -11,6 +11,7 @@ from matplotlib.patches import Circle
 from matplotlib.tri import Triangulation
 from scipy.interpolate import griddata
 
+from microslip.config.quantities import FORWARD, LATERAL, VELOCITY
 from microslip.report.figures import style as look
 from microslip.report.figures.data import at_one_poisson, require
 
@@ -74,10 +75,10 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         label="instantaneous centre",
     )
     axes.set(xlim=(min(-1.1, centre - 0.15), 1.1), ylim=(-1.1, 1.1))
-    axes.set(xlabel=look.LATERAL, ylabel=look.FORWARD)
+    axes.set(xlabel=look.axis(LATERAL), ylabel=look.axis(FORWARD))
     axes.set(xticks=_ticks(axes.get_xlim()), yticks=_ticks(axes.get_ylim()))
-    velocity = look.number(float(dataset["field_velocity"]))
-    axes.text(0.035, 0.97, rf"$\tilde{{v}} = {velocity}$", transform=axes.transAxes, va="top")
+    velocity = VELOCITY["continuous-bore"].latex, float(dataset["field_velocity"])
+    axes.text(0.035, 0.97, look.conditions([velocity]), transform=axes.transAxes, va="top")
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), handlelength=1.0, borderaxespad=0.1)
     return figure
 

@@ -9,6 +9,12 @@ GREEK = {
     name: rf"\{name}" for name in ("alpha", "beta", "delta", "kappa", "mu", "nu", "omega", "Omega")
 } | {"phi": r"\varphi", "theta": r"\vartheta"}
 
+#: The same as characters.
+LETTERS = {
+    **{"mu": "\N{GREEK SMALL LETTER MU}", "phi": "\N{GREEK SMALL LETTER PHI}"},
+    **{"omega": "\N{GREEK SMALL LETTER OMEGA}", "Omega": "\N{GREEK CAPITAL LETTER OMEGA}"},
+}
+
 _WORD = re.compile(r"([A-Za-z]+)(\d*)(?:_([A-Za-z0-9]+))?")
 
 
@@ -23,6 +29,19 @@ def mathtext(formula: str) -> str:
     text = re.sub(r"\s*([/()])\s*", r"\1", _WORD.sub(_symbol, formula).strip())
     text = re.sub(r"\s+", r"\\,", text)
     return f"${text}$" if text else ""
+
+
+def html(formula: str) -> str:
+    """A formula in HTML: letters in italics, indices below."""
+
+    def symbol(found):
+        letters, number, index = found.groups()
+        below = number + (index or "")
+        letter = LETTERS.get(letters, letters)
+        return f"<i>{letter}</i>" + (f"<sub>{below}</sub>" if below else "")
+
+    text = re.sub(r"\s*([/()])\s*", r"\1", _WORD.sub(symbol, formula))
+    return text.replace("</sub> <i>", "</sub><i>").replace("</i> <i>", " ")
 
 
 def _symbol(found: re.Match[str]) -> str:

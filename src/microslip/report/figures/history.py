@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
+from microslip.config.quantities import AMPLITUDE, FORCE_FORWARD, FORCE_LATERAL, VELOCITY
 from microslip.report.figures import style as look
 from microslip.report.figures.data import at_one_poisson, require
 
@@ -43,10 +44,10 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     lower.plot(periods, lateral, color=look.GREY, linewidth=1.0, gid="lateral")
 
     upper.set(
-        ylabel=f"forward force\n{look.FORCE_FORWARD}", ylim=(min(0.0, 1.05 * forward.min()), 1.05)
+        ylabel=f"forward force\n{FORCE_FORWARD.math}", ylim=(min(0.0, 1.05 * forward.min()), 1.05)
     )
     lower.set(
-        ylabel=f"lateral force\n{look.FORCE_LATERAL}",
+        ylabel=f"lateral force\n{FORCE_LATERAL.math}",
         ylim=(-1.1, 1.1),
         xlim=(periods[0], periods[-1]),
     )
@@ -56,9 +57,8 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     for axes in (upper, lower):
         axes.grid(axis="x", color=look.PALE, linewidth=0.5)
         axes.set_axisbelow(True)
-    conditions = rf"$\tilde{{v}}_0 = {look.number(velocity)}$, "
-    conditions += rf"$\tilde{{y}}_0 = {look.number(amplitude)}$"
-    look.legend_above(upper, "a", conditions)
+    symbols = VELOCITY["transverse"].latex, AMPLITUDE["transverse"].latex
+    look.legend_above(upper, "a", look.conditions(zip(symbols, (velocity, amplitude), strict=True)))
     look.letter(lower, "b")
     return figure
 

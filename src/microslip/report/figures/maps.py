@@ -8,12 +8,13 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
 
+from microslip.config.quantities import AMPLITUDE, VELOCITY
 from microslip.report.figures import style as look
 from microslip.report.figures.cuts import computed
 from microslip.report.figures.data import at_each_poisson, curve, limit, require, sweep
 from microslip.report.figures.map_panel import fill, unconverged
+from microslip.theory.catalogue import FORMS, STATIC
 
 #: A cut's panel ends where all of its curves have fallen below this.
 NOTHING = 0.02
@@ -41,51 +42,42 @@ class Overlay:
     linewidth: float = 1.3
 
 
+def form(motion: str, name: str, color: str, linestyle: object, linewidth: float = 1.3) -> Overlay:
+    """The Overlay of a closed form, under the name that the catalogue has for it."""
+    return Overlay(name, FORMS[motion][name].label, color, linestyle, linewidth)
+
+
 @dataclass(frozen=True)
 class Map:
-    """What one map figure shows."""
+    """What one map figure shows: a motion, its curves over the amplitude and over the velocity."""
 
     key: str
-    velocity_symbol: str
-    velocity_label: str
-    amplitude_symbol: str
-    amplitude_label: str
     static: tuple[Overlay, ...]
     large: Overlay
 
 
-EXACT = Overlay("mu_static", "exact limit", look.BLUE, look.SOLID)
+EXACT = form("transverse", STATIC, look.BLUE, look.SOLID)
 #: Exact for Poisson's ratio 0 alone; at any other it is shown as what it is.
 EXACT_AT_0 = replace(EXACT, label=r"limit at $\nu = 0$")
 
 MAPS = {
     "fig2_transverse_map": Map(
         key="transverse",
-        velocity_symbol=r"\tilde{v}_0",
-        velocity_label=r"forward velocity  $\tilde{v}_0 = v_0/(\omega\,u_\mathrm{lim})$",
-        amplitude_symbol=r"\tilde{y}_0",
-        amplitude_label=r"amplitude  $\tilde{y}_0 = y_0/u_\mathrm{lim}$",
         static=(
-            Overlay("mu_static_slider", "Eq 7, slider", look.ORANGE, look.DASHDOT),
-            Overlay("mu_static_stick_zone", "Eq 11, stick zone", look.GREEN, look.DASHED),
+            form("transverse", "mu_static_slider", look.ORANGE, look.DASHDOT),
+            form("transverse", "mu_static_stick_zone", look.GREEN, look.DASHED),
             EXACT,
         ),
-        large=Overlay("mu_large_amplitude", "Eq 6", look.VERMILLION, look.DASHED),
+        large=form("transverse", "mu_large_amplitude", look.VERMILLION, look.DASHED),
     ),
     "fig6_bore_map": Map(
         key="bore",
-        velocity_symbol=r"\tilde{v}",
-        velocity_label=r"forward velocity  $\tilde{v} = v_0/(\Omega\,\varphi_0\,a)$",
-        amplitude_symbol=r"\tilde{\varphi}_0",
-        amplitude_label=r"amplitude  $\tilde{\varphi}_0 = \varphi_0/\varphi_\mathrm{lk}(a/2)$",
         static=(
-            Overlay(
-                "mu_static_stick_zone_printed", "Eq 33 as printed", look.PURPLE, look.DOTTED, 1.0
-            ),
-            Overlay("mu_static_stick_zone", "Eq 33, corrected", look.GREEN, look.DASHED),
+            form("bore", "mu_static_stick_zone_printed", look.PURPLE, look.DOTTED, 1.0),
+            form("bore", "mu_static_stick_zone", look.GREEN, look.DASHED),
             EXACT,
         ),
-        large=Overlay("mu_large_amplitude", "Eq 29", look.VERMILLION, look.DASHED),
+        large=form("bore", "mu_large_amplitude", look.VERMILLION, look.DASHED),
     ),
 }
 
@@ -141,8 +133,9 @@ def _map(axes: Axes, dataset: xr.Dataset, plan: Map, letter: str, note: str) -> 
     filled, hatched = fill(axes, dataset)
     grid = axes.get_subplotspec().get_gridspec()
     alone = grid.ncols == 1
-    axes.set(xlabel=plan.velocity_label if alone else f"forward velocity  ${plan.velocity_symbol}$")
-    axes.set(ylabel=plan.amplitude_label if alone else f"amplitude  ${plan.amplitude_symbol}$")
+    shown = [table[plan.key] for table in (VELOCITY, AMPLITUDE)]
+    shown = shown if alone else [replace(quantity, unit="") for quantity in shown]
+    axes.set(xlabel=look.axis(shown[0]), ylabel=look.axis(shown[1]))
     last = axes.get_subplotspec().is_last_col()
     bar = axes.figure.colorbar(filled, ax=axes, pad=0.02, aspect=32, ticks=np.linspace(0, 1, 6))
     bar.set_label(look.FRICTION if alone or last else "")
@@ -164,10 +157,10 @@ def _static_cut(axes: Axes, shown: list[tuple[xr.Dataset, float]], plan: Map, le
     for overlay in plan.static:
         _overlay(axes, shown[0][0], overlay, velocity=velocity)
     _points(axes, [(part.sel(velocity=velocity), nu) for part, nu in shown], "amplitude")
-    symbol = plan.velocity_symbol
     where = "left edge" if velocity > 0 else "static limit"
-    look.legend_above(axes, letter, rf"{where}, ${symbol} = {look.number(velocity)}$")
-    axes.set(xlabel=plan.amplitude_label, xlim=_where_not_zero(axes))
+    note = f"{where}, {look.conditions([(VELOCITY[plan.key].latex, velocity)])}"
+    look.legend_above(axes, letter, note)
+    axes.set(xlabel=look.axis(AMPLITUDE[plan.key]), xlim=_where_not_zero(axes))
 
 
 def _where_not_zero(axes: Axes) -> tuple[float, float]:
@@ -183,13 +176,12 @@ def _large_cut(axes: Axes, shown: list[tuple[xr.Dataset, float]], plan: Map, let
     amplitude = float(shown[0][0]["amplitude"][-1])
     _overlay(axes, shown[0][0], plan.large, amplitude=amplitude)
     _points(axes, [(part.sel(amplitude=amplitude), nu) for part, nu in shown], "velocity")
-    symbol = plan.amplitude_symbol
-    look.legend_above(axes, letter, rf"top edge, ${symbol} = {look.number(amplitude)}$")
+    note = f"top edge, {look.conditions([(AMPLITUDE[plan.key].latex, amplitude)])}"
+    look.legend_above(axes, letter, note)
     velocity = shown[0][0]["velocity"].values
     axes.set_xscale("log")
-    axes.set(xlabel=plan.velocity_label, xlim=(velocity[velocity > 0][0], velocity[-1]))
-    axes.xaxis.set_major_locator(LogLocator(numticks=12))
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.set(xlabel=look.axis(VELOCITY[plan.key]), xlim=(velocity[velocity > 0][0], velocity[-1]))
+    look.logarithmic(axes.xaxis)
 
 
 def _overlay(axes: Axes, dataset: xr.Dataset, overlay: Overlay, **at: float) -> None:

@@ -8,16 +8,14 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from matplotlib.ticker import LogLocator, NullFormatter
 from matplotlib.transforms import Transform
 from scipy import ndimage
 
+from microslip.config.quantities import AMPLITUDE, VELOCITY
 from microslip.report.figures import style as look
 from microslip.report.figures.data import require
-from microslip.report.figures.maps import MAPS
 
-#: The scenes, each with the figure whose names for velocity and amplitude it shares.
-SCENES = {"transverse": "fig2_transverse_map", "bore": "fig6_bore_map"}
+SCENES = ("transverse", "bore")
 NONE = {"facecolor": "white", "edgecolor": look.GREY, "linewidth": 0.0, "hatch": "/////"}
 
 
@@ -33,13 +31,13 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     figure = look.new_figure(look.DOUBLE, 5.9)
     grid = figure.subplots(len(SCENES), tolerances.size, squeeze=False, sharex="row", sharey="row")
     letters = iter(look.letters(grid.size))
-    for row, (scene, plan) in zip(grid, SCENES.items(), strict=True):
+    for row, scene in zip(grid, SCENES, strict=True):
         for index, (axes, tolerance) in enumerate(zip(row, tolerances, strict=True)):
             _panel(axes, dataset.isel(map_tolerance=index), scene, models)
             note = rf"{scene}, error within ${look.power_of_ten(float(tolerance))}$"
             look.letter(axes, next(letters), note)
-            axes.set_xlabel(MAPS[plan].velocity_label)
-        row[0].set_ylabel(MAPS[plan].amplitude_label)
+            axes.set_xlabel(look.axis(VELOCITY[scene]))
+        row[0].set_ylabel(look.axis(AMPLITUDE[scene]))
     handles = [Patch(facecolor=_pale(n), edgecolor=look.BLACK, linewidth=0.6) for n in models]
     labels = [rf"$\bf{{{look.model(n)[2]}}}$  {n}" for n in models]
     if "" in found:
@@ -77,8 +75,7 @@ def _panel(axes: Axes, dataset: xr.Dataset, scene: str, models: list[str]) -> No
         _name_regions(axes, x, y, codes == code, look.model(name)[2])
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
     for axis in (axes.xaxis, axes.yaxis) if logarithmic else (axes.xaxis,):
-        axis.set_major_locator(LogLocator(numticks=12))
-        axis.set_minor_formatter(NullFormatter())
+        look.logarithmic(axis)
     axes.tick_params(which="both", direction="out", top=False, right=False)
 
 

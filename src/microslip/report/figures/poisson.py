@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
+from microslip.config.quantities import MU_MACRO
 from microslip.report.figures import contour_labels
 from microslip.report.figures import style as look
 from microslip.report.figures.data import require
@@ -106,7 +107,7 @@ def _change(axes: Axes, shown: xr.Dataset, letter: str) -> None:
     bar = axes.figure.colorbar(filled, ax=axes, pad=0.02, aspect=24, ticks=ends)
     first = look.number(float(shown["poisson"][0]))
     at = look.number(float(last["poisson"]))
-    bar.set_label(rf"{look.MU_MACRO} at $\nu = {at}$ less that at ${first}$")
+    bar.set_label(rf"{MU_MACRO.math} at $\nu = {at}$ less that at ${first}$")
     bar.ax.tick_params(direction="out")
     look.letter(axes, letter, "")
 

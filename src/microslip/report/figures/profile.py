@@ -6,7 +6,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
 
 from microslip.report.figures import style as look
 from microslip.report.figures.data import require
@@ -71,8 +70,7 @@ def _panel(axes: Axes, contest: xr.Dataset, of_models: bool) -> None:
             gid=f"profile {names[index]}",
         )
     axes.set(xscale="log", xlim=(1.0, high))
-    axes.xaxis.set_major_locator(LogLocator(numticks=8))
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    look.logarithmic(axes.xaxis, 8)
     axes.set_xlabel(r"CPU time over the least  $t/t_\mathrm{best}$")
     axes.set_ylabel("share of points  (dimensionless)")
     look.unit_range(axes)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import xarray as xr
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
 
+from microslip.config.quantities import FORCE_FORWARD, TORQUE, VELOCITY
 from microslip.report.figures import style as look
 from microslip.report.figures.cuts import computed
 from microslip.report.figures.data import curve, limit, require, sweep
@@ -42,11 +42,10 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         )
     if velocity[0] > 0 and velocity[-1] >= 20 * velocity[0]:
         axes.set_xscale("log")
-        axes.xaxis.set_major_locator(LogLocator(numticks=12))
-        axes.xaxis.set_minor_formatter(NullFormatter())
+        look.logarithmic(axes.xaxis)
     axes.set_xlim(velocity[0], velocity[-1])
-    axes.set_xlabel(r"forward velocity  $\tilde{v} = v_0/(\omega\,a)$")
-    axes.set_ylabel(f"force  {look.FORCE_FORWARD}\ntorque  {look.TORQUE}")
+    axes.set_xlabel(look.axis(VELOCITY["continuous-bore"]))
+    axes.set_ylabel(f"force  {FORCE_FORWARD.math}\ntorque  {TORQUE.math}")
     look.unit_range(axes)
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, columnspacing=1.5)
     return figure

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager
 
 import matplotlib.style
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from microslip.config.quantities import MU_MACRO, Quantity
+from microslip.report.figures.formulas import mathtext
 
 #: Journal column widths in inches (86 mm and 180 mm).
 SINGLE, DOUBLE = 3.39, 7.09
@@ -89,15 +94,15 @@ RC = {
     "figure.constrained_layout.w_pad": 0.05,
 }
 
-# Labels of quantities (mathtext). Every axis has words, then a symbol with its unit: a ratio shows
-# by itself that it has none, and of anything else it is said.
-MU_MACRO = r"$\tilde{\mu}_\mathrm{macro}$"
-FRICTION = rf"friction ratio  {MU_MACRO}  (dimensionless)"
-FORCE_FORWARD = r"$F_\mathrm{forward}/(\mu F_z)$"
-FORCE_LATERAL = r"$F_\mathrm{lateral}/(\mu F_z)$"
-TORQUE = r"$M_z/M_{z,0}$"
-LATERAL = r"lateral position  $r_\mathrm{lateral}/a$"
-FORWARD = r"forward position  $r_\mathrm{forward}/a$"
+# Every axis has words, then a symbol with its unit: a ratio shows by itself that it has none, and
+# of anything else it is said.
+FRICTION = f"{MU_MACRO.text}  {MU_MACRO.math}  (dimensionless)"
+
+
+def axis(quantity: Quantity) -> str:
+    """The label of an axis: words, the symbol, and the ratio that it stands for."""
+    ratio = f" = {mathtext(quantity.unit)[1:-1]}" if quantity.unit else ""
+    return f"{quantity.text}  ${quantity.latex}{ratio}$"
 
 
 def style() -> AbstractContextManager[None]:
@@ -118,6 +123,17 @@ def number(value: float) -> str:
     mantissa, exponent = text.split("e")
     power = f"10^{{{int(exponent)}}}"
     return power if mantissa == "1" else rf"{mantissa}\times {power}"
+
+
+def logarithmic(axis: Axis, ticks: int = 12) -> None:
+    """Powers of ten alone have labels on an axis, at most so many."""
+    axis.set_major_locator(LogLocator(numticks=ticks))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def conditions(pairs: Iterable[tuple[str, float]]) -> str:
+    """What holds in a panel: pairs of a symbol for LaTeX and its value, as mathtext."""
+    return ", ".join(f"${symbol} = {number(value)}$" for symbol, value in pairs)
 
 
 def model(name: str) -> tuple[str, str, str]:

@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from microslip.config.quantities import FORCE_FORWARD, TORQUE, VELOCITY
 from microslip.report.figures import style as look
 from microslip.report.figures.data import at_one_poisson, require
 
@@ -39,11 +40,11 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     for index, (axes, letter, start) in enumerate(zip(panels, letters, starts, strict=True)):
         _panel(axes, dataset, index)
         look.letter(axes, letter, STARTS.get(start, look.literal(start)))
-    panels[0].set_ylabel(f"force  {look.FORCE_FORWARD}\ntorque  {look.TORQUE}")
+    panels[0].set_ylabel(f"force  {FORCE_FORWARD.math}\ntorque  {TORQUE.math}")
     panels[len(starts) // 2].set_xlabel(r"forward travel  $v_0 t/u_\mathrm{lim}$")
     look.unit_range(panels[0])
     handles, labels = panels[0].get_legend_handles_labels()
-    velocity = look.number(float(dataset["transient_velocity"]))
+    velocity = float(dataset["transient_velocity"])
     figure.legend(
         handles,
         labels,
@@ -51,9 +52,8 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         ncols=4,
         columnspacing=1.6,
     )
-    panels[-1].text(
-        0.97, 0.05, rf"$\tilde{{v}} = {velocity}$", transform=panels[-1].transAxes, ha="right"
-    )
+    where = look.conditions([(VELOCITY["continuous-bore"].latex, velocity)])
+    panels[-1].text(0.97, 0.05, where, transform=panels[-1].transAxes, ha="right")
     return figure
 
 

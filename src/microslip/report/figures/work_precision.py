@@ -19,9 +19,9 @@ from matplotlib.markers import CARETDOWN, CARETLEFT
 from matplotlib.patches import Patch
 from matplotlib.transforms import Bbox
 
+from microslip.config.quantities import AMPLITUDE, MU_MACRO, VELOCITY
 from microslip.report.figures import style as look
 from microslip.report.figures.data import require
-from microslip.report.figures.maps import MAPS
 from microslip.report.figures.panels import (
     COLUMNS,
     PANEL,
@@ -47,11 +47,6 @@ TRIAL += ("error", "converged")
 BELOW_REFERENCE = 3.0
 #: The largest error over the smallest that has a place above the strip.
 MOST = 1e6
-#: Symbols of velocity and amplitude in each scene.
-SYMBOLS = {
-    scene: (MAPS[plan].velocity_symbol, MAPS[plan].amplitude_symbol)
-    for scene, plan in (("transverse", "fig2_transverse_map"), ("bore", "fig6_bore_map"))
-} | {"continuous-bore": (r"\tilde{v}", "")}
 
 FRONT = {"color": "#EBD9A0", "linewidth": 5.0, "solid_capstyle": "round", "zorder": 1}
 UNKNOWN = {"facecolor": "none", "edgecolor": "#A8A8A8", "linewidth": 0.0, "hatch": "/////"}
@@ -92,7 +87,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         lowest = index + COLUMNS >= len(points)
         axes.tick_params(labelleft=index % COLUMNS == 0, labelbottom=lowest)
         axes.set_xlabel(label if lowest else "")
-        axes.set_ylabel("" if index % COLUMNS else f"error of {look.MU_MACRO}\n(dimensionless)")
+        axes.set_ylabel("" if index % COLUMNS else f"error of {MU_MACRO.math}\n(dimensionless)")
     _legends(below, models, others)
     return figure
 
@@ -150,12 +145,13 @@ def _scale_of_errors(dataset: xr.Dataset) -> Scale:
 def _title(which: str, point: xr.Dataset) -> str:
     """The heading of a panel: its letter, the title of its point, and the point's numbers."""
     scene = str(point["point_scene"].item())
-    symbols = (*SYMBOLS.get(scene, ("v", "A")), r"\nu")
+    known = (table.get(scene) for table in (VELOCITY, AMPLITUDE))
+    symbols = [one.latex if one else plain for one, plain in zip(known, "vA", strict=True)]
     values = (float(point[f"point_{n}"]) for n in ("velocity", "amplitude", "poisson"))
     numbers = [
         rf"${symbol} = {look.number(value)}$"
-        for symbol, value in zip(symbols, values, strict=True)
-        if symbol and np.isfinite(value)
+        for symbol, value in zip((*symbols, r"\nu"), values, strict=True)
+        if np.isfinite(value)
     ]
     title = look.heading(which, look.literal(point["point_title"].item()))
     return look.wrapped(title, PANEL[0], TITLE) + "\n" + ",  ".join(numbers)

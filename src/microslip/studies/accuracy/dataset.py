@@ -4,11 +4,12 @@ from dataclasses import asdict
 
 import numpy as np
 
+from microslip.config.quantities import MU_MACRO
 from microslip.studies.accuracy import accuracy_cost as study
 from microslip.studies.accuracy import profiles
 from microslip.studies.accuracy.fronts import cheapest, confirmed, exponent, on_front
 from microslip.studies.ladders import exact_model
-from microslip.studies.tables import Answers, finished, value_of, variable
+from microslip.studies.tables import Answers, columns, finished, value_of, variable
 from microslip.theory import paper
 
 MEASURED = (
@@ -43,7 +44,7 @@ TRIAL_VARIABLES = {
     "trial_angles": (np.int32, "1", "angular points on half a ring"),
     "trial_steps": (np.int32, "1", "time steps in a period"),
     "trial_tolerance": (float, "1", "tolerance that was asked for"),
-    "mu_macro": (float, "1", "mean forward friction force over mu F_z"),
+    "mu_macro": (float, "1", MU_MACRO.description),
     "error": (float, "1", "distance of mu_macro from the reference"),
     "seconds": (float, "s", "median CPU time of a run, compiled"),
     "effort": (float, "1", "iterations of the step solver times unknowns"),
@@ -64,13 +65,13 @@ def build(settings, answer):
     points = list(settings.points.values())
     coords = {"point": variable("point", [p.name for p in points], "name of the point", str)}
     variables = _points(points, answers)
-    columns = _columns(settings, points, answers, variables)
-    variables |= {
-        name: variable("trial", columns[name], long_name, kind, units)
-        for name, (kind, units, long_name) in TRIAL_VARIABLES.items()
-    }
+    trials = _trials(settings, points, answers, variables)
+    rows = TRIAL_VARIABLES.items()
+    variables |= columns(
+        "trial", {n: (trials[n], long_name, kind, units) for n, (kind, units, long_name) in rows}
+    )
     names = [point.name for point in points]
-    variables |= profiles.variables(columns, names, settings.map_tolerance)
+    variables |= profiles.variables(trials, names, settings.map_tolerance)
     variables |= _scaling(settings, answers)
     for scene in study.MAP_SCENES:
         variables |= _map(settings, scene, answers)
@@ -105,24 +106,20 @@ def report(dataset):
 
 def _points(points, answers):
     found = [_reference(point, answers) for point in points]
-    columns = {
-        "point_title": (str, "title of the point", [p.title for p in points]),
-        "point_scene": (str, "what moves", [p.scene for p in points]),
-        "point_velocity": (float, "forward velocity of the point", [p.velocity for p in points]),
-        "point_amplitude": (
-            float,
-            "amplitude of the point",
-            [np.nan if p.amplitude is None else p.amplitude for p in points],
-        ),
-        "point_poisson": (float, "Poisson's ratio of the point", [p.poisson for p in points]),
-        "reference": (float, "mu_macro that trials are compared with", [f[0] for f in found]),
-        "reference_error": (float, "error that the reference claims", [f[1] for f in found]),
-        "reference_source": (str, "where the reference comes from", [f[2] for f in found]),
-    }
-    return {
-        name: variable("point", values, long_name, kind)
-        for name, (kind, long_name, values) in columns.items()
-    }
+    amplitudes = [np.nan if p.amplitude is None else p.amplitude for p in points]
+    return columns(
+        "point",
+        {
+            "point_title": ([p.title for p in points], "title of the point", str),
+            "point_scene": ([p.scene for p in points], "what moves", str),
+            "point_velocity": ([p.velocity for p in points], "forward velocity of the point"),
+            "point_amplitude": (amplitudes, "amplitude of the point"),
+            "point_poisson": ([p.poisson for p in points], "Poisson's ratio of the point"),
+            "reference": ([f[0] for f in found], "mu_macro that trials are compared with"),
+            "reference_error": ([f[1] for f in found], "error that the reference claims"),
+            "reference_source": ([f[2] for f in found], "where the reference comes from", str),
+        },
+    )
 
 
 def _reference(point, answers):
@@ -137,7 +134,7 @@ def _reference(point, answers):
     return value_of(result, "mu_macro"), value_of(result, "mu_macro_error"), source
 
 
-def _columns(settings, points, answers, of_points):
+def _trials(settings, points, answers, of_points):
     """Columns of TRIAL_VARIABLES, as lists."""
     rows, fronts = [], {"front_seconds": [], "front_effort": []}
     for i, point in enumerate(points):

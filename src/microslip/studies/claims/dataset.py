@@ -8,7 +8,7 @@ from microslip.studies.claims import checks, checks_static, static_limits, verdi
 from microslip.studies.claims import claims as asked
 from microslip.studies.claims.runs import Runs, command, friction, made_by, resolution
 from microslip.studies.claims.statements import PARTS, STATEMENTS
-from microslip.studies.tables import finished, value_of, variable
+from microslip.studies.tables import columns, finished, flags, value_of, variable
 from microslip.theory import hertz, paper
 
 ABOUT = (
@@ -23,7 +23,7 @@ GROUPS = {
     "patches": ("What sticks where, at moments of that period", ("patch_moment", "patch_point")),
     "patch_edges": ("Theory's edges of what sticks", ("patch_moment", "patch_edge")),
 }
-for _scene in static_limits.LIMITS:
+for _scene in static_limits.FORMULAS:
     GROUPS |= {
         f"{_scene}_static": (f"Static limit, scene {_scene}", (f"{_scene}_amplitude",)),
         f"{_scene}_curves": (
@@ -112,10 +112,8 @@ def _parts(checks):
         counts = [sum(check.outcome == outcome for check in row) for row in rows]
         found[f"part_{name}"] = (counts, f"number of checks: {name}", np.int32)
     values = [verdicts.of_part(row) for row in rows]
-    return {
-        name: variable("part", values, long_name, kind)
-        for name, (values, long_name, kind) in found.items()
-    } | {"part_verdict": flags("part", values, "what the checks say", verdicts.VERDICTS)}
+    verdict = flags("part", values, "what the checks say", verdicts.VERDICTS)
+    return columns("part", found) | {"part_verdict": verdict}
 
 
 def _shows(row):
@@ -145,29 +143,10 @@ def _checks(checks):
         values = [place.get(name, np.nan) for place in places]
         found[f"check_{name}"] = (values, f"{name} of the check", float)
     for name, long_name in numbers.items():
-        values = [getattr(check, name) for _, check in rows]
-        found[f"check_{name}"] = (values, long_name, float)
+        found[f"check_{name}"] = ([getattr(check, name) for _, check in rows], long_name)
     outcomes = [check.outcome for _, check in rows]
-    return {
-        name: variable("check", values, long_name, kind)
-        for name, (values, long_name, kind) in found.items()
-    } | {"check_outcome": flags("check", outcomes, "what it says", verdicts.OUTCOMES)}
-
-
-def flags(dims, values, long_name, meanings):
-    """A variable of small numbers that stand for words."""
-    dims, values, attributes = variable(dims, values, long_name, np.int8)
-    del attributes["units"]
-    numbers = np.arange(len(meanings), dtype=np.int8)
-    return (
-        dims,
-        values,
-        attributes
-        | {
-            "flag_values": numbers,
-            "flag_meanings": " ".join(meanings),
-        },
-    )
+    outcome = flags("check", outcomes, "what it says", verdicts.OUTCOMES)
+    return columns("check", found) | {"check_outcome": outcome}
 
 
 # Runs, and the patches of the oscillating bore
@@ -184,7 +163,7 @@ def _runs(found):
     def numbers(name):
         return [float(request.get(name) or np.nan) for request in requests]
 
-    columns = {
+    table = {
         "run": ([run.key for run in found], "name of the result in the store", str),
         "run_what": (list(map(made_by, requests)), "what was run", str),
         "run_scene": (texts("scene"), "what moves", str),
@@ -209,10 +188,7 @@ def _runs(found):
         ),
         "run_command": (list(map(command, requests)), "line that computes it again", str),
     }
-    return {
-        name: variable("run", values, long_name, kind)
-        for name, (values, long_name, kind) in columns.items()
-    }
+    return columns("run", table)
 
 
 def _model(run):

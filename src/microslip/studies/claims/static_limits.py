@@ -15,22 +15,19 @@ from microslip.studies.claims.runs import friction
 from microslip.studies.tables import value_of, variable
 from microslip.theory import hertz
 from microslip.theory import paper as theory
+from microslip.theory.catalogue import FORMS, STATIC
 
-LIMITS = {
-    "transverse": theory.static_limit_transverse,
-    "bore": theory.static_limit_bore,
-}
 FORMULAS = {
     "transverse": {
-        "slider": (theory.static_slider, "static friction of an elastic slider (Eq 7)"),
-        "zone": (theory.static_transverse, "load inside the stick zone (Eq 11)"),
+        "slider": ("mu_static_slider", "static friction of an elastic slider (Eq 7)"),
+        "zone": ("mu_static_stick_zone", "load inside the stick zone (Eq 11)"),
     },
     "bore": {
-        "zone": (theory.static_bore, "load inside the stick zone (Eq 33 with its square)"),
-        "zone_printed": (theory.static_bore_printed, "Eq 33 as printed"),
+        "zone": ("mu_static_stick_zone", "load inside the stick zone (Eq 33 with its square)"),
+        "zone_printed": ("mu_static_stick_zone_printed", "Eq 33 as printed"),
     },
 }
-"""The paper's formulas by scene: name -> (function of the amplitude, long_name)."""
+"""The paper's formulas by motion: name -> (name in theory.catalogue, long_name)."""
 CURVE_POINTS = 501
 SHARE_AMPLITUDES = {"transverse": (0.1, 0.25, 0.5, 0.75), "bore": (0.25, 0.5, 1.0, 2.0)}
 RADII = 201
@@ -104,13 +101,13 @@ def variables(study, runs):
 def _curves(scene):
     amplitude = np.linspace(0.0, STATIC_AMPLITUDES[scene], CURVE_POINTS)
     dim = f"{scene}_curve_amplitude"
-    exact = LIMITS[scene](amplitude)
+    exact = FORMS[scene][STATIC].function(amplitude)
     found = {
         dim: variable(dim, amplitude, f"amplitude of the curves, scene {scene}"),
         f"{scene}_curve_limit": variable(dim, exact, "static friction, exact limit"),
     }
     for name, (formula, long_name) in FORMULAS[scene].items():
-        values = formula(amplitude)
+        values = FORMS[scene][formula].function(amplitude)
         gap = values - exact
         most = int(np.argmax(gap))
         found |= {
@@ -145,7 +142,7 @@ def _split(study, runs, scene):
         values = [row[name] for row in rows]
         found[f"{scene}_{name}"] = variable(dim, values, long_name)
     for name, (formula, long_name) in FORMULAS[scene].items():
-        values = [float(formula(amplitude)) for amplitude in amplitudes]
+        values = [float(FORMS[scene][formula].function(amplitude)) for amplitude in amplitudes]
         found[f"{scene}_{name}"] = variable(dim, values, long_name)
     zone = np.array(found[f"{scene}_zone"][1], float)
     with np.errstate(invalid="ignore", divide="ignore"):

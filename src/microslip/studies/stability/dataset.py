@@ -4,9 +4,10 @@ from dataclasses import asdict
 
 import numpy as np
 
+from microslip.config.quantities import MU_MACRO
 from microslip.solver import method_names
 from microslip.studies.stability import stability as study
-from microslip.studies.tables import Answers, finished, value_of, variable
+from microslip.studies.tables import Answers, finished, flags, value_of, variable
 
 OUTCOMES = ("not_applicable", "converged", "slow", "wrong", "diverged")
 NOT_APPLICABLE, CONVERGED, SLOW, WRONG, DIVERGED = range(len(OUTCOMES))
@@ -15,7 +16,7 @@ GROUPS = {"axes": ("What is varied in the blocks of cases", ("axis",))}
 """What is not over methods and cases."""
 
 NUMBERS = {
-    "mu_macro": ("mu_macro", "mean forward friction force over mu F_z"),
+    "mu_macro": ("mu_macro", MU_MACRO.description),
     "claimed_error": ("mu_macro_error", "error of mu_macro that the method claims"),
     "work": ("work", "step solves times unknowns, summed over all runs"),
 }
@@ -69,7 +70,7 @@ def build(settings, answer):
         [outcome(*four) for four in zip(row, reference, reference_error, imposed, strict=True)]
         for row in results
     ]
-    variables = {"outcome": _flags(both, outcomes)}
+    variables = {"outcome": flags(both, outcomes, "what became of the method", OUTCOMES)}
     for name, (key, long_name) in NUMBERS.items():
         values = [[value_of(result or {}, key) for result in row] for row in results]
         variables[name] = variable(both, values, long_name)
@@ -106,13 +107,3 @@ def report(dataset):
 
 def _asked(answers, request):
     return None if request is None else answers(request)
-
-
-def _flags(dims, values):
-    name, values, attributes = variable(dims, values, "what became of the method", np.int8)
-    del attributes["units"]
-    flags = {
-        "flag_values": np.arange(len(OUTCOMES), dtype=np.int8),
-        "flag_meanings": " ".join(OUTCOMES),
-    }
-    return name, values, attributes | flags

@@ -1,0 +1,90 @@
+"""Quantities under one name each: what datasets, figures and pages call them, and their units.
+
+All are dimensionless: ratios, which are written in plain text with the names of Greek letters, as a
+motion's record does it, too: "v0 / (omega u_lim)".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity as text, as a formula and as a symbol.
+
+    Attributes
+    ----------
+    name : str
+        Of the coordinate or the variable in a dataset.
+    text : str
+        In words, for an axis.
+    unit : str
+        The ratio that its symbol stands for, plain text, "" where the symbol shows it; see
+        report.figures.formulas for other ways to write it.
+    symbol, latex : str
+        Its symbol, plain and for LaTeX.
+    description : str
+        In a sentence, for datasets.
+    """
+
+    name: str
+    text: str
+    unit: str
+    symbol: str
+    latex: str
+    description: str = ""
+
+    @property
+    def math(self) -> str:
+        """The symbol in mathtext."""
+        return f"${self.latex}$"
+
+
+MU_MACRO = Quantity(
+    *("mu_macro", "friction ratio", "", "mu~macro", r"\tilde{\mu}_\mathrm{macro}"),
+    "mean forward friction force over mu F_z",
+)
+FORCE_FORWARD = Quantity(
+    "force_forward", "forward force", "", "F_forward/(mu F_z)", r"F_\mathrm{forward}/(\mu F_z)"
+)
+FORCE_LATERAL = Quantity(
+    "force_lateral", "lateral force", "", "F_lateral/(mu F_z)", r"F_\mathrm{lateral}/(\mu F_z)"
+)
+TORQUE = Quantity(
+    *("mu_torque", "torque", "", "M_z/M_z,0", r"M_z/M_{z,0}"),
+    "torque about the normal over its value at zero forward velocity",
+)
+LATERAL = Quantity(
+    "lateral_position", "lateral position", "", "r_lateral/a", r"r_\mathrm{lateral}/a"
+)
+FORWARD = Quantity(
+    "forward_position", "forward position", "", "r_forward/a", r"r_\mathrm{forward}/a"
+)
+
+VELOCITY = {
+    "transverse": Quantity(
+        *("velocity", "forward velocity", "v0 / (omega u_lim)", "v~0", r"\tilde{v}_0"),
+        "forward velocity over angular frequency and u_lim (Eq 4)",
+    ),
+    "bore": Quantity(
+        *("velocity", "forward velocity", "v0 / (Omega phi0 a)", "v~", r"\tilde{v}"),
+        "forward velocity over largest rotational velocity of the contact's edge (Eq 28)",
+    ),
+    "continuous-bore": Quantity(
+        *("velocity", "forward velocity", "v0 / (omega a)", "v~", r"\tilde{v}"),
+        "forward velocity over rotational velocity of the contact's edge (Eq 13)",
+    ),
+}
+"""The axis of velocities by motion, those of the paper."""
+AMPLITUDE = {
+    "transverse": Quantity(
+        *("amplitude", "amplitude", "y0 / u_lim", "y~0", r"\tilde{y}_0"),
+        "amplitude of the transverse oscillation over u_lim (Eq 2)",
+    ),
+    "bore": Quantity(
+        *("amplitude", "amplitude", "phi0 / phi_lk(a/2)", "phi~0", r"\tilde{\varphi}_0"),
+        "amplitude of the rotation over the one that leaves the stick radius a/2 (Eq 27)",
+    ),
+}
+"""The axis of amplitudes by motion; a steady one has none."""

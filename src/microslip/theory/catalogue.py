@@ -1,0 +1,143 @@
+"""Every closed form by the motion it is of: the limit it holds in, its validity, its names.
+
+Whoever certifies a point, puts limits into a dataset, answers beyond a map, judges the paper or
+draws a curve looks a formula up here.  The forms are those under Hertz's pressure; under another
+one see datasets.pressure_limits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from microslip.theory import bounds, masing, paper
+
+ANYWHERE, LARGE, SLOW = "anywhere", "amplitude to infinity", "velocity to 0"
+"""Limits that a form holds in."""
+STATIC = "mu_static"
+"""Name of the exact limit for velocity to 0, whatever the motion."""
+
+
+@dataclass(frozen=True)
+class ClosedForm:
+    """A formula for the friction, or the torque, of a motion.
+
+    Attributes
+    ----------
+    motion, name : str
+        Name of the motion, and of the variable that holds the formula in a dataset.
+    function : callable
+        Of arrays of the ``arguments``, dimensionless; returns such an array.
+    arguments : tuple of str
+        "velocity", "amplitude" or both.
+    limit : str
+        What it holds in: ANYWHERE, LARGE or SLOW.
+    equation, label : str
+        Equation of the paper ("" for those that the paper has not), and the name in a legend.
+    long_name, description : str
+        What a dataset calls it; description: "" where the long name says it all.
+    exact : bool
+        Whether it is exact there, else an estimate.
+    any_poisson, any_pressure : bool
+        Whether it holds for every Poisson's ratio, else for 0; and for every pressure.
+    """
+
+    motion: str
+    name: str
+    function: Callable
+    arguments: tuple[str, ...]
+    limit: str
+    equation: str
+    label: str
+    long_name: str
+    description: str = ""
+    exact: bool = True
+    any_poisson: bool = False
+    any_pressure: bool = False
+
+
+_BOTH, _VELOCITY, _AMPLITUDE = ("velocity", "amplitude"), ("velocity",), ("amplitude",)
+_WHOLE = "static friction of the whole stick zone"
+_LIMIT = "exact limit for velocity to 0"
+_EXACT = "static friction, exact limit of mu_macro for velocity to 0"
+
+
+def _static(motion, function, any_poisson=False):
+    said = _EXACT if any_poisson else f"{_EXACT} at Poisson's ratio 0"
+    names = ("", "exact limit", _LIMIT, said)
+    return ClosedForm(motion, STATIC, function, _AMPLITUDE, SLOW, *names, any_poisson=any_poisson)
+
+
+FORMS: dict[str, dict[str, ClosedForm]] = {}
+"""Forms by motion and by name, in the order in which datasets hold them."""
+for _form in (
+    ClosedForm(
+        *("transverse", "mu_large_amplitude", paper.large_amplitude_transverse, _BOTH, LARGE),
+        *("Eq 6", "Eq 6", "rigid slider, large amplitude (Eq 6)"),
+        "mu_macro at large amplitude, rigid slider (Eq 6)",
+        any_poisson=True,
+        any_pressure=True,
+    ),
+    ClosedForm(
+        *("transverse", "mu_static_slider", paper.static_slider, _AMPLITUDE, SLOW),
+        *("Eq 7", "Eq 7, slider", "elastic slider, velocity to 0 (Eq 7)"),
+        "static friction of an elastic slider (Eq 7)",
+        exact=False,
+        any_pressure=True,
+    ),
+    ClosedForm(
+        *("transverse", "mu_static_stick_zone", paper.static_transverse, _AMPLITUDE, SLOW),
+        *("Eq 11", "Eq 11, stick zone", "whole stick zone, velocity to 0 (Eq 11)"),
+        f"{_WHOLE} (Eq 11)",
+        exact=False,
+    ),
+    _static("transverse", paper.static_limit_transverse),
+    ClosedForm(
+        *("bore", "mu_large_amplitude", paper.large_amplitude_bore, _VELOCITY, LARGE),
+        *("Eq 29", "Eq 29", "steady at every instant (Eq 29)"),
+        "mu_macro at large amplitude, steady at every instant (Eq 29)",
+        any_poisson=True,
+    ),
+    ClosedForm(
+        *("bore", "mu_static_stick_zone", paper.static_bore, _AMPLITUDE, SLOW),
+        *("Eq 33", "Eq 33, corrected", "whole stick zone (Eq 33, squared)"),
+        f"{_WHOLE} (Eq 33 with the square that Eq 10 demands)",
+        exact=False,
+        any_poisson=True,
+    ),
+    ClosedForm(
+        *("bore", "mu_static_stick_zone_printed", paper.static_bore_printed, _AMPLITUDE, SLOW),
+        *("Eq 33 as printed", "Eq 33 as printed", "whole stick zone (Eq 33 as printed)"),
+        f"{_WHOLE} (Eq 33 as printed)",
+        exact=False,
+        any_poisson=True,
+    ),
+    _static("bore", paper.static_limit_bore, any_poisson=True),
+    ClosedForm(
+        *("longitudinal", "mu_closed_form", masing.longitudinal, _BOTH, ANYWHERE),
+        *("", "closed form", "mu_macro in closed form"),
+        "mu_macro in closed form at Poisson's ratio 0 (Mindlin's curve with Masing's memory)",
+    ),
+    _static("longitudinal", paper.static_limit_longitudinal),
+    _static("zigzag", paper.static_limit_transverse),  # it knows the turning points alone
+    ClosedForm(
+        *("continuous-bore", "mu_forward_theory", paper.bore_forward, _VELOCITY, ANYWHERE),
+        *("Eq 21", "force, Eq 21", "steady mu_macro (Eq 21)"),
+        "steady mu_macro in closed form (Eq 21)",
+        any_poisson=True,
+    ),
+    ClosedForm(
+        *("continuous-bore", "mu_torque_theory", paper.bore_torque, _VELOCITY, ANYWHERE),
+        *("Eq 22", "torque, Eq 22", "steady mu_torque (Eq 22)"),
+        "steady mu_torque in closed form (Eq 22)",
+        any_poisson=True,
+    ),
+):
+    FORMS.setdefault(_form.motion, {})[_form.name] = _form
+
+LARGEST_DROPS = {
+    "longitudinal": bounds.largest_drop_longitudinal,
+    "transverse": bounds.largest_drop_transverse,
+    "bore": bounds.largest_drop_bore,
+}
+"""Upper bounds of 1 - mu_macro by motion, functions of velocity and amplitude (floats)."""
