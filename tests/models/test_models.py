@@ -3,6 +3,7 @@
 Motions are given here as displacements (forward, lateral, angle) at the ends of steps.
 """
 
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -298,15 +299,24 @@ def assert_coulomb(contact, q, slip, tolerance):
 
 
 SMALL = {
-    "radial": (RadialContact.resolved(6), "translation", 1e-11),
-    "slider": (slider_contact(), "translation", 1e-12),
-    "polar, translation": (PolarContact(5, 4, False, 0.0, 0.5), "translation", 1e-10),
-    "polar, coupled translation": (PolarContact(5, 4, False, 0.5), "translation", 1e-10),
-    "polar, rotation": (PolarContact(5, 4, True, 0.0), "mirror", 1e-10),
-    "polar, coupled rotation": (PolarContact(5, 4, True, 0.4, 0.5), "mirror", 1e-10),
-    "cartesian": (CartesianContact(6), "any", 1e-8),
-    "cartesian, coupled": (CartesianContact(6, 0.4), "any", 1e-8),
+    "radial": (lambda: RadialContact.resolved(6), "translation", 1e-11),
+    "slider": (slider_contact, "translation", 1e-12),
+    "polar, translation": (lambda: PolarContact(5, 4, False, 0.0, 0.5), "translation", 1e-10),
+    "polar, coupled translation": (lambda: PolarContact(5, 4, False, 0.5), "translation", 1e-10),
+    "polar, rotation": (lambda: PolarContact(5, 4, True, 0.0), "mirror", 1e-10),
+    "polar, coupled rotation": (lambda: PolarContact(5, 4, True, 0.4, 0.5), "mirror", 1e-10),
+    "cartesian": (lambda: CartesianContact(6), "any", 1e-8),
+    "cartesian, coupled": (lambda: CartesianContact(6, 0.4), "any", 1e-8),
 }
+
+
+@cache
+def small(name):
+    """One of these with its contact built, once and when it is needed."""
+    build, *rest = SMALL[name]
+    return build(), *rest
+
+
 FREE = {"translation": [1, 1, 0], "mirror": [1, 0, 1], "any": [1, 1, 1]}
 """Which of (forward, lateral, angle) the symmetry of a contact leaves free."""
 
@@ -323,7 +333,7 @@ def motions_from(increments, free):
 @given(increments=STEPS)
 def test_every_step_obeys_coulomb_and_balances_energy(name, increments):
     """Backward Euler; slip and energy from the operator and the motion, not from the solver."""
-    contact, symmetry, tolerance = SMALL[name]
+    contact, symmetry, tolerance = small(name)
     q = at_rest(contact)
     motions = motions_from(increments, FREE[symmetry])
     for before, after in pairwise(motions):
@@ -361,7 +371,7 @@ def test_every_step_obeys_coulomb_and_balances_energy(name, increments):
 @settings(max_examples=12, deadline=None)
 @given(increments=STEPS)
 def test_both_stages_of_sdirk2_obey_coulomb(name, increments):
-    contact, symmetry, tolerance = SMALL[name]
+    contact, symmetry, tolerance = small(name)
     q = at_rest(contact)
     motions = motions_from(increments, FREE[symmetry])
     gamma = 1 - np.sqrt(0.5)
@@ -393,7 +403,7 @@ def random_state(contact, rng):
 @given(increments=STEPS, seed=st.integers(0, 2**32 - 1))
 def test_backward_euler_is_a_contraction(name, increments, seed):
     """Two states under one motion come closer in the energy norm in every step."""
-    contact, symmetry, tolerance = SMALL[name]
+    contact, symmetry, tolerance = small(name)
     rng = np.random.default_rng(seed)
     states = [random_state(contact, rng), random_state(contact, rng)]
     apart = energy_norm(contact, states[0] - states[1])
@@ -408,7 +418,7 @@ def test_backward_euler_is_a_contraction(name, increments, seed):
 
 @pytest.mark.parametrize("name", SMALL)
 def test_sliding_far_forgets_the_start(name):
-    contact, _, tolerance = SMALL[name]
+    contact, _, tolerance = small(name)
     rng = np.random.default_rng(3)
     states = [random_state(contact, rng), random_state(contact, rng)]
     start = energy_norm(contact, states[0] - states[1])
@@ -435,7 +445,7 @@ def projected_gradient(contact, b, q):
 @pytest.mark.parametrize("name", SMALL)
 @pytest.mark.parametrize("size", [0.05, 0.3, 1.0, 3.0])
 def test_step_solution_is_that_of_projected_gradient(name, size):
-    contact, symmetry, tolerance = SMALL[name]
+    contact, symmetry, tolerance = small(name)
     rng = np.random.default_rng(int(100 * size))
     before = random_state(contact, rng)
     motion = size * rng.normal(size=3) * FREE[symmetry]
@@ -452,17 +462,24 @@ def test_step_solution_is_that_of_projected_gradient(name, size):
 
 
 SMOOTH = {
-    "slider": (slider_contact(), TRANSVERSE, 1.0, 1.5),
-    "radial": (RadialContact.resolved(8), TRANSVERSE, 0.5, 2.0),
-    "polar": (PolarContact(6, 4, True, 0.3), BORE, 0.5, 2.0),
-    "cartesian": (CartesianContact(8, 0.3), BORE, 0.5, 2.0),
+    "slider": (slider_contact, TRANSVERSE, 1.0, 1.5),
+    "radial": (lambda: RadialContact.resolved(8), TRANSVERSE, 0.5, 2.0),
+    "polar": (lambda: PolarContact(6, 4, True, 0.3), BORE, 0.5, 2.0),
+    "cartesian": (lambda: CartesianContact(8, 0.3), BORE, 0.5, 2.0),
 }
+
+
+@cache
+def smooth(name):
+    """One of these with its contact built, once and when it is needed."""
+    build, *rest = SMOOTH[name]
+    return build(), *rest
 
 
 @pytest.mark.parametrize("name", SMOOTH)
 def test_order_of_the_integrators_on_a_smooth_stretch(name):
     """Everything slips; states compared in the energy norm."""
-    contact, scene, velocity, amplitude = SMOOTH[name]
+    contact, scene, velocity, amplitude = smooth(name)
     tolerance = 1e-8 if name == "cartesian" else 1e-10
 
     def state(steps, integrator):
@@ -478,7 +495,7 @@ def test_order_of_the_integrators_on_a_smooth_stretch(name):
 
 @pytest.mark.parametrize("name", ["radial", "polar"])
 def test_order_of_the_integrators_in_the_periodic_mean(name):
-    contact, scene, velocity, amplitude = SMOOTH[name]
+    contact, scene, velocity, amplitude = smooth(name)
 
     def mean(steps, integrator):
         path = half_period(scene, velocity, amplitude, 0.3, steps, integrator)

@@ -19,6 +19,8 @@ from microslip.report.figures import drawing, poisson
 from microslip.sweeps.sealed_files import CacheError
 from microslip.theory import paper
 
+pytestmark = pytest.mark.slow  # for drawing takes a second or two
+
 #: The paper's figures; those of the studies have tests of their own.
 PAPERS = [name for name in drawing.FIGURES if name.startswith("fig")]
 
@@ -150,7 +152,6 @@ def check_nothing_cut_off(figure) -> None:
             assert axes.get_position().width * axes.figure.bbox.width > 0.26 * figure.bbox.width
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", PAPERS)
 def test_saves_whole_and_reproducibly(name, datasets, figures, tmp_path):
     """Drawn twice it gives the same page; pixels follow, see the test of the user's settings."""
@@ -163,7 +164,6 @@ def test_saves_whole_and_reproducibly(name, datasets, figures, tmp_path):
     assert len(list((tmp_path / "new").glob("[!.]*"))) == 3
 
 
-@pytest.mark.slow
 def test_a_figure_says_what_made_it(datasets, tmp_path):
     made = datasets["bore"].assign_attrs(title="friction", source_digest="f00d", author="nobody")
     figure = drawing.draw("fig6_bore_map", {"bore": made})
@@ -235,7 +235,6 @@ def test_arrows_follow_the_traction_of_the_cells(figures):
     np.testing.assert_allclose(arrows.V[far], (-bound * (x + 0.8) / away)[far], atol=0.03)
 
 
-@pytest.mark.slow
 def test_points_that_are_not_converged_are_hatched_and_hollow(datasets):
     bad = datasets["bore"].copy(deep=True)
     bad["converged"][2:4, 0:2] = 0
@@ -252,7 +251,6 @@ def test_points_that_are_not_converged_are_hatched_and_hollow(datasets):
     assert any("4 of 81" in text.get_text() for text in figure.findobj(Text))
 
 
-@pytest.mark.slow
 def test_history_mean_and_phase(datasets):
     dataset = datasets["transverse"].copy()
     (mean,) = artists(drawing.draw("fig1_force_history", {"transverse": dataset}), "mean")
@@ -263,7 +261,6 @@ def test_history_mean_and_phase(datasets):
     assert artists(figure, "forward")[0].get_xdata()[-1] == pytest.approx(4.0)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scene", "name", "label"),
     [
@@ -278,7 +275,6 @@ def test_the_static_limit_is_called_exact_only_where_it_is(datasets, scene, name
         assert line.get_label() == expected
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("key", "name"), [("transverse", "fig2_transverse_map"), ("bore", "fig6_bore_map")]
 )
@@ -300,7 +296,6 @@ def test_all_of_poissons_ratios_in_a_sweep_are_drawn(datasets, key, name):
     assert said.count(r"computed, $\nu = 0.5$") == 2
 
 
-@pytest.mark.slow
 def test_of_many_of_poissons_ratios_it_is_said_how_many_are_drawn(datasets):
     given = at_ratios(datasets["bore"], *np.linspace(0, 0.5, 11))
     figure = drawing.draw("fig6_bore_map", {"bore": given})
@@ -318,7 +313,6 @@ def at_ratios(dataset, *ratios):
     return both.assign_attrs(tolerance=1e-3)
 
 
-@pytest.mark.slow
 def test_what_poissons_ratio_changes(datasets):
     assert len(poisson.LOOKS) == drawing.MOST_POISSONS
     given = {name: at_ratios(datasets[name], 0.0, 0.5) for name in ("transverse", "bore")}
@@ -337,7 +331,6 @@ def test_what_poissons_ratio_changes(datasets):
             drawing.draw("poisson", bad)
 
 
-@pytest.mark.slow
 def test_a_theory_curve_may_have_a_finer_axis_of_its_own(datasets):
     fine = np.linspace(0, 1, 50)
     line = xr.DataArray(1 - fine**1.5, {"amplitude_fine": fine}, "amplitude_fine")
@@ -374,7 +367,6 @@ def test_a_failed_save_leaves_the_old_file(figures, tmp_path, monkeypatch):
     assert [file.read_text() for file in tmp_path.iterdir()] == ["old"]
 
 
-@pytest.mark.slow
 def test_the_users_settings_play_no_part_and_stay(datasets, figures, tmp_path):
     name = "fig5_transients"
     expected = drawing.save(figures[name], tmp_path / "expected.png").read_bytes()

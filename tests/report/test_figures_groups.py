@@ -17,6 +17,8 @@ from microslip.report.figures import drawing, lines, small_maps
 from microslip.report.figures.formulas import mathtext
 from microslip.theory import paper
 
+pytestmark = pytest.mark.slow  # for drawing takes a second or two
+
 VELOCITY = "v0 / (omega u_lim)"
 
 
@@ -68,7 +70,6 @@ def motions(count=3):
 # Which datasets a figure is drawn from
 
 
-@pytest.mark.slow
 def test_a_group_is_drawn_from_its_own_datasets_in_their_order():
     given = {"s": static("still"), "b": spanning("second"), "a": spanning("first")}
     figure = drawing.draw("extended_motions", given)
@@ -92,7 +93,6 @@ def test_a_group_that_is_not_there_or_is_mixed_is_refused():
         drawing.draw("extended_static", many)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("given", [motions(2), {"a": static("a"), "b": static("b")}])
 def test_saves_whole_and_reproducibly(given, tmp_path):
     name = drawing.figure_of(next(iter(given.values())).attrs["group"])
@@ -105,7 +105,6 @@ def test_saves_whole_and_reproducibly(given, tmp_path):
 # Maps
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("count", [1, 2, 3, 5, 12])
 def test_any_number_of_maps_has_room(count):
     figure = drawing.draw("extended_motions", motions(count))
@@ -124,7 +123,6 @@ def test_any_number_of_maps_has_room(count):
     assert min(small) >= 7.0
 
 
-@pytest.mark.slow
 def test_maps_share_one_scale_and_their_labels():
     figure = drawing.draw("extended_motions", motions(3))
     (bar,) = [axes for axes in figure.axes if axes.get_label() == "<colorbar>"]
@@ -138,7 +136,6 @@ def test_maps_share_one_scale_and_their_labels():
     assert labels[0] == r"$x_{0}/u_{\mathrm{lim}}$"
 
 
-@pytest.mark.slow
 def test_friction_below_zero_widens_the_scale_of_all():
     fills, contours, labels = small_maps.levels_of([spanning(), spanning(shift=-0.234)])
     assert (fills[0], fills[-1]) == pytest.approx((-0.3, 1.0))
@@ -150,7 +147,6 @@ def test_friction_below_zero_widens_the_scale_of_all():
     check_nothing_cut_off(drawing.draw("extended_motions", given))
 
 
-@pytest.mark.slow
 def test_what_did_not_converge_is_hatched_and_said_once():
     given = motions(2)
     for dataset in given.values():
@@ -167,7 +163,6 @@ def at_two_ratios(first):
     return xr.concat([first, other], "poisson", data_vars="all", combine_attrs="override")
 
 
-@pytest.mark.slow
 def test_all_of_poissons_ratios_are_drawn_whatever_else_is_in_the_group():
     figure = drawing.draw(
         "extended_motions", {"a": at_two_ratios(spanning("a")), "b": spanning("b")}
@@ -203,7 +198,6 @@ def drawn_words(figure):
     return [" ".join(text.replace(r"\$", "$").split()) for text in plain]
 
 
-@pytest.mark.slow
 def test_titles_are_drawn_as_they_stand(tmp_path):
     given = {f"m{k}": spanning(title) for k, title in enumerate(TITLES)}
     figure = drawing.draw("extended_motions", given)
@@ -220,7 +214,6 @@ def test_titles_are_drawn_as_they_stand(tmp_path):
         drawing.save(figure, tmp_path / f"lines.{kind}")
 
 
-@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:Glyph")
 def test_a_sign_that_the_font_lacks_and_a_word_without_end_do_no_harm(tmp_path):
     given = {"a": spanning("\u4e2d\u6587"), "b": spanning("x" * 100), "c": spanning("c")}
@@ -329,7 +322,6 @@ def test_labels_of_every_scene_can_be_set(name):
         MathTextParser("path").parse(mathtext(label))
 
 
-@pytest.mark.slow
 def test_maps_at_several_of_poissons_ratios_show_what_these_change():
     def at_ratios(title):
         first = spanning(title)

@@ -22,6 +22,8 @@ from microslip.report.figures import style as look
 from microslip.report.figures.surface import refined
 from microslip.theory import paper
 
+pytestmark = pytest.mark.slow  # for drawing takes a second or two
+
 # Colours
 
 # Machado, Oliveira, Fernandes, IEEE TVCG 15 (2009) 1291, severity 1: linear RGB as it is seen.
@@ -73,7 +75,6 @@ def test_negative_friction_is_even_and_another_hue_for_all_kinds_of_colour_visio
         assert away.min() > 10, seen  # 2 or 3 can just be told apart
 
 
-@pytest.mark.slow
 def test_a_map_with_negative_friction_is_drawn_in_these_colours():
     given = {"a": groups.spanning("a", shift=-0.234), "b": groups.spanning("b")}
     figure = drawing.draw("extended_motions", given)

@@ -17,6 +17,8 @@ from microslip.report.figures import drawing
 from microslip.report.figures import style as look
 from microslip.studies import registry
 
+pytestmark = pytest.mark.slow  # for drawing takes a second or two
+
 MODELS = ("rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian")
 RESOLVED = ("radial", "polar", "cartesian")
 METHODS = (
@@ -329,7 +331,6 @@ def test_figures_name_their_datasets():
     assert {drawing.FIGURES[name] for name in FIGURES[:-1]} == {("accuracy_cost",)}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ALL)
 def test_saves_whole_and_reproducibly(name, small, small_figures, tmp_path):
     """Drawn twice it gives the same page."""
@@ -341,7 +342,6 @@ def test_saves_whole_and_reproducibly(name, small, small_figures, tmp_path):
     assert first == again
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ALL)
 def test_fits_the_page_and_no_texts_meet(name, figures):
     figure = figures[name]
@@ -372,7 +372,6 @@ def test_legends_hide_no_panel_and_no_other_legend(name, figures):
         assert not any(box.overlaps(other) for other in [*panels, *legends[index + 1 :]])
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ALL)
 def test_a_small_dataset_is_drawn_without_complaint(name, small_figures):
     figure = small_figures[name]
@@ -401,7 +400,6 @@ def test_a_missing_variable_is_named(name, variable, small):
 # Accuracy against cost and effort
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("name", "cost"), [(FIGURES[0], "seconds"), (FIGURES[1], "effort")])
 def test_curves_hold_every_trial(name, cost, datasets, figures):
     dataset = datasets["accuracy_cost"]
@@ -519,7 +517,6 @@ def test_the_references_error_is_hatched_from_the_bottom_up(datasets, figures):
             assert band.get_y() + band.get_height() == pytest.approx(known)
 
 
-@pytest.mark.slow
 def test_an_unknown_error_of_the_reference_draws_no_band(small):
     dataset = small["accuracy_cost"].copy(deep=True)
     dataset["reference_error"][0] = np.nan
@@ -569,7 +566,6 @@ def test_the_legends_name_every_model_and_mark_and_no_method_alone(datasets, fig
         assert len({handle.get_marker() for handle in models.legend_handles}) == len(MODELS)
 
 
-@pytest.mark.slow
 def test_effort_is_called_what_the_dataset_calls_it(small):
     for words in ("step solves times unknowns", "iterations times unknowns"):
         dataset = small["accuracy_cost"].copy()
@@ -616,7 +612,6 @@ def test_every_panel_is_headed_by_its_point(datasets, figures):
         assert head.count("=") == (2 if np.isnan(amplitude) else 3)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("points", [1, 2, 3, 4])
 def test_any_number_of_points_finds_room_for_panels_and_legends(points):
     dataset = fake_accuracy(points, (*METHODS, "admm:penalty=0.1,relaxation=1.5"))

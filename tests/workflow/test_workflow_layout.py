@@ -1,6 +1,7 @@
 """What the workflow is made of besides its rules: captions, pages about datasets, its layout."""
 
 import re
+from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -37,13 +38,20 @@ def test_every_dataset_has_a_caption(wildcards):
     assert "``results/any.nc``" in rendered("dataset", **wildcards)
 
 
+@cache
+def settings():
+    """The default configuration with its defaults filled in."""
+    return schema.filled(load.read_yaml(ROOT / "config" / "config.yaml"))
+
+
+@cache
 def rendered(name, **wildcards):
     """A caption as Snakemake renders it, but that nothing may be undefined."""
     jinja2 = pytest.importorskip("jinja2")
     environment = jinja2.Environment(undefined=jinja2.StrictUndefined, trim_blocks=True)
     snakemake = SimpleNamespace(
         wildcards=SimpleNamespace(**wildcards, keys=lambda: wildcards.keys()),
-        config=schema.filled(load.read_yaml(ROOT / "config" / "config.yaml")),
+        config=settings(),
         input=["results/any.nc"],
         output=["results/any.nc"],
     )
