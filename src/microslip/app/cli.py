@@ -1,4 +1,4 @@
-"""The command line: ``microslip point SCENE ...`` answers for one point, ``sweep`` for many."""
+"""The command line: `microslip point SCENE ...` answers for one point, `sweep` for many."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ BORE = "Bore means spin: rotation about the contact normal."
 
 
 def build_parser(asked=None):
-    """Parser of the command line, with all that follows the command ``asked``."""
+    """Parser of the command line, with all that follows the command `asked`."""
     parser = command_line.OneLineParser(
         allow_abbrev=False,
         prog="microslip",
@@ -151,7 +151,7 @@ def main(arguments=None):
     Returns
     -------
     int
-        0 converged, 1 not converged, 2 bad input; of ``sweep`` Snakemake's.
+        0 converged, 1 not converged, 2 bad input; of `sweep` Snakemake's.
     """
     if arguments is None:
         words = sys.argv[1:]
@@ -191,7 +191,7 @@ def main(arguments=None):
 
 
 def _as_given(options, argument):
-    """Name of the option for an argument of ``solve``, and its value on the command line."""
+    """Name of the option for an argument of `solve`, and its value on the command line."""
     if argument == "scene":
         path = getattr(options, "path", None)
         return ("SCENE", options.scene) if path is None else ("--path", path)

@@ -1,4 +1,4 @@
-"""``microslip gc``: what is in a folder of results that no configuration asks for any more.
+"""`microslip gc`: what is in a folder of results that no configuration asks for any more.
 
 After an edit of the solver, an axis or a tolerance, older points, batches, datasets and figures
 stay where they are: another configuration may ask for them. This lists them, and removes them if
@@ -92,7 +92,7 @@ def remove(paths: Iterable[Path]) -> None:
 
 
 def main(arguments: list[str]) -> int:
-    """Entry point of ``microslip gc``; returns the exit code: 0, or 2 for bad input."""
+    """Entry point of `microslip gc`; returns the exit code: 0, or 2 for bad input."""
     options = _parser().parse_args(arguments)
     try:
         configurations = [load.load(path) for path in options.configfile or [DEFAULT]]

@@ -1,4 +1,4 @@
-"""``microslip predict``: a contact in SI units."""
+"""`microslip predict`: a contact in SI units."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ WIDTH = 18
 
 
 def add_parser(commands):
-    """Add the parser of ``predict`` to those of the other commands."""
+    """Add the parser of `predict` to those of the other commands."""
     parser = commands.add_parser(
         "predict",
         allow_abbrev=False,

@@ -1,4 +1,4 @@
-"""``microslip sweep``: the workflow of this package, run by Snakemake in the current folder.
+"""`microslip sweep`: the workflow of this package, run by Snakemake in the current folder.
 
 An installed package carries the workflow in its folder `bundle`; in a source tree it lies at the
 top. Either gives results that the other finds, since they are named by the solver's sources.

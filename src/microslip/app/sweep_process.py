@@ -1,4 +1,4 @@
-"""Snakemake as ``microslip sweep`` starts it: what can be seen to be wrong is one line, before it.
+"""Snakemake as `microslip sweep` starts it: what can be seen to be wrong is one line, before it.
 
 Snakemake reads the files given with --configfile before the workflow has a say, and prints all of
 its options where one is unknown.  So its own parser, which knows profiles and abbreviations, is

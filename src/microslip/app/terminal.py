@@ -32,7 +32,7 @@ def run(command: Callable[[], int], *, stoppable: bool = True) -> int:
     Parameters
     ----------
     command
-        Prints its answer to ``sys.stdout`` and returns an exit code, or raises SystemExit with it.
+        Prints its answer to `sys.stdout` and returns an exit code, or raises SystemExit with it.
     stoppable
         Whether signals end it; a command that leaves them to a process of its own says no.
 

@@ -29,7 +29,7 @@ class TwoBodies:
     mu : float
         Coefficient of friction without vibration, dimensionless.
     radii : tuple of float
-        R1 and R2, m, negative if hollow, infinite if flat; empty: R1 is ``radius``, R2 is flat.
+        R1 and R2, m, negative if hollow, infinite if flat; empty: R1 is `radius`, R2 is flat.
 
     Raises
     ------

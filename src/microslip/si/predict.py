@@ -30,7 +30,7 @@ class Prediction:
     scene : str
         The motion.
     counterbody : str
-        The body opposite, as in ``understood``.  Not compared by ==.
+        The body opposite, as in `understood`.  Not compared by ==.
     contact_radius_m, indentation_m, largest_pressure_Pa : float
         Hertz's contact.
     u_lim_m : float

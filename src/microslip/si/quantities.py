@@ -1,7 +1,7 @@
 """Numbers with units: texts such as "210 GPa" to SI values, by a strict grammar.
 
 A text is one number and one unit.  The number is what Python's float takes, without underscores and
-with the Unicode minus as a minus; the unit is what ``units`` reads.  Nothing else passes: of a text
+with the Unicode minus as a minus; the unit is what `units` reads.  Nothing else passes: of a text
 that is not understood from its first to its last character, no part counts.
 """
 
@@ -59,7 +59,7 @@ class Given:
 def si_value(name, value, unit, *, low=0.0, low_open=True, high=math.inf):
     """Value of a quantity in its SI unit, as a float.
 
-    Arguments and errors are those of ``read``.
+    Arguments and errors are those of `read`.
     """
     return read(name, value, unit, low=low, low_open=low_open, high=high).si
 
@@ -88,7 +88,7 @@ def read(
     low, high : float
         Allowed are finite values with low < value <= high.
     low_open : bool
-        Whether ``low`` itself is not allowed.
+        Whether `low` itself is not allowed.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""One point as ``microslip.solve`` answers it, kept among the results of sweeps."""
+"""One point as `microslip.solve` answers it, kept among the results of sweeps."""
 
 import math
 import time
@@ -35,12 +35,26 @@ def solve_stored(
 ):
     """Friction at one point, from a folder of results if it is there, else computed and kept there.
 
-    results: folder, that of a sweep or a new one; the rest as for ``microslip.solve``.  A result is
-    named by the physics, the tolerance and the sources of the solver, so that a sweep, the command
-    line and this function find what any of them has computed.  Numbers are rounded to 12 digits
-    first, as those of sweeps are.  What ran into the time limit, or raised, is not kept.
-    Returns a Result, whose solve_time_s is that of this call.
-    Raises ValueError as ``solve`` does, cache.CacheError if the folder cannot be used.
+    A result is named by the physics, the tolerance and the sources of the solver, so that a sweep,
+    the command line and this function find what any of them has computed.  Numbers are rounded to
+    12 digits first, as those of sweeps are.  What ran into the time limit, or raised, is not kept.
+
+    Parameters
+    ----------
+    results : str or path
+        Folder, that of a sweep or a new one; the rest as for `microslip.solve`.
+
+    Returns
+    -------
+    Result
+        Its solve_time_s is that of this call.
+
+    Raises
+    ------
+    InputError
+        As `solve` does.
+    CacheError
+        If the folder cannot be used.
     """
     started = time.perf_counter()
     kind, velocity, amplitude, poisson = checked_point(

@@ -1,4 +1,4 @@
-"""``dataset.friction.at(...)``: certified answers from the dataset of a sweep."""
+"""`dataset.friction.at(...)`: certified answers from the dataset of a sweep."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ def open_map(
     *,
     group: str | None = None,
 ) -> xr.Dataset:
-    """Open the dataset of a sweep, with the accessor ``friction`` for certified answers.
+    """Open the dataset of a sweep, with the accessor `friction` for certified answers.
 
     Parameters
     ----------

@@ -17,8 +17,8 @@ from microslip.report.explorer.requests import maps_of, period_requests, refusal
 
 __all__ = ["ASSETS", "digest", "maps_of", "period_requests", "refusal", "report"]
 
-#: What the page is made of besides numbers and plotly.js, in the order in which scripts run.
 ASSETS = ("page.html", "style.css", "data.js", "charts.js", "disc.js", "page.js")
+"""What the page is made of besides numbers and plotly.js, in the order in which scripts run."""
 
 
 def digest() -> str:

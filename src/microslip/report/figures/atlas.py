@@ -28,14 +28,14 @@ from microslip.report.figures.atlas_layout import (
 from microslip.report.figures.data import require
 
 VARIABLES = ("method", "outcome", "case_axis", "case_label", "axis", "axis_label", "axis_note")
-#: Outcomes by their code: name, fill, sign and its colour, meaning. The fills darken from good to
-#: bad, so that they differ in grey as well.
 OUTCOMES = {
     1: ("converged", "#CDE7DC", "\N{CHECK MARK}", "#00664A", "as near the reference as it claims"),
     2: ("slow", "#F0B84B", "S", look.BLACK, "gives up within its budget, and says so"),
     3: ("wrong", "#C04F00", "W", "white", "claims to have converged, but misses the reference"),
     4: ("diverged", "#222222", "D", "white", "tractions blew up, or no number came out"),
 }
+"""Outcomes by their code: name, fill, sign and its colour, meaning. The fills darken from good to
+bad, so that they differ in grey as well."""
 BLANK = "blank: the method does not apply"
 
 

@@ -81,9 +81,17 @@ class Band:
 class Layout:
     """The bands, one above the other, and the legend.
 
-    left: where squares begin. legend: texts, broken into lines. beside: whether the legend stands
-    right of the last band. fixed: height of all but the squares. free_row: height of a row that
-    would fill the page.
+    Attributes
+    ----------
+    left, column : float
+        Where squares begin, and how wide they are, mm.
+    bands : list of Band
+    legend : list of str
+        Texts, broken into lines.
+    beside : bool
+        Whether the legend stands right of the last band.
+    fixed, free_row : float
+        Height of all but the squares, and of a row that would fill the page, mm.
     """
 
     left: float

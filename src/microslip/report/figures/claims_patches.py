@@ -28,10 +28,10 @@ VARIABLES = (
     "patch_edge_lateral",
     "patch_edge_forward",
 )
-#: Pixels along a side of the picture of a contact; each shows the point next to it.
 PIXELS = 401
-#: The moments that are shown, and what they are.
+"""Pixels along a side of the picture of a contact; each shows the point next to it."""
 MOMENTS = ((0, "before one turning point"), (1, "mid-stroke"), (2, "before the other"))
+"""The moments that are shown, and what they are."""
 AREAS = (
     ("patch_stick", "all", look.BLACK, look.SOLID),
     ("patch_stick_right", "right half", look.BLUE, look.DASHED),

@@ -17,8 +17,6 @@ from microslip.report.figures.data import require
 from microslip.theory.catalogue import FORMS, STATIC
 
 BORE_AMPLITUDE = replace(AMPLITUDE["bore"], latex=r"\tilde{\varphi}")
-#: Each column: the motion, its name, its amplitude, and its curves: variable, closed form, colour
-#: and line style.
 SCENES = (
     (
         *("transverse", "transverse oscillation", AMPLITUDE["transverse"]),
@@ -37,9 +35,11 @@ SCENES = (
         ),
     ),
 )
+"""Each column: the motion, its name, its amplitude, and its curves: variable, closed form, colour
+and line style."""
 POINTS = ("slow", "slow_error", "paper", "march", "march_error")
-#: Shades for curves of one kind, from dark to light; the lightest are too pale for lines.
 LIGHTEST = 0.82
+"""Shades for curves of one kind, from dark to light; the lightest are too pale for lines."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:

@@ -10,12 +10,12 @@ from matplotlib.contour import ContourSet
 
 from microslip.report.figures import style as look
 
-#: Distances in points of length: between a number and the frame or another line, and between
-#: places that are tried.
 CLEAR, STEP = 2.0, 2.0
-#: A line is straight enough under a number where the way between its ends is no longer than this
-#: times their distance.
+"""Distances in points of length: between a number and the frame or another line, and between places
+that are tried."""
 STRAIGHT = 1.04
+"""A line is straight enough under a number where the way between its ends is no longer than this
+times their distance."""
 
 
 def label(axes: Axes, contours: ContourSet, levels: Iterable[float], size: float) -> None:

@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from microslip.report.figures.data import finite_or_nan
 from microslip.report.figures.style import COMPUTED, PALE
 
-#: A band narrower than this hides behind the markers and is not drawn.
 VISIBLE_ERROR = 0.01
+"""A band narrower than this hides behind the markers and is not drawn."""
 
 
 def computed(

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-#: Every figure: the module beside this one that draws it, and the datasets it is drawn from.
 _DRAWN: dict[str, tuple[str, ...]] = {
     "fig1_force_history": ("history", "transverse"),
     "fig2_transverse_map": ("maps", "transverse"),
@@ -44,20 +43,21 @@ _DRAWN: dict[str, tuple[str, ...]] = {
     "claims_static": ("claims_static", "claims"),
     "claims_patches": ("claims_patches", "claims"),
 }
+"""Every figure: the module beside this one that draws it, and the datasets it is drawn from."""
 _MODULES = {name: module for name, (module, *_) in _DRAWN.items()}
-#: Every figure and its datasets, but for those of groups in `extended`, which have the names that
-#: `figure_of` gives and all the datasets of their group.
 FIGURES = {name: tuple(datasets) for name, (_, *datasets) in _DRAWN.items()}
+"""Every figure and its datasets, but for those of groups in `extended`, which have the names that
+`figure_of` gives and all the datasets of their group."""
 
-#: Lines that the figure of Poisson's ratios can tell apart.
 MOST_POISSONS = 4
+"""Lines that the figure of Poisson's ratios can tell apart."""
 
-#: File formats `save` can write: metadata that would otherwise hold dates or versions of libraries,
-#: and the name of the one that says what the figure was made from.
 FORMATS: dict[str, tuple[dict[str, None], str]] = {
     "png": ({"Software": None}, "Description"),
     "pdf": ({"Creator": None, "Producer": None, "CreationDate": None}, "Subject"),
 }
+"""File formats `save` can write: metadata that would otherwise hold dates or versions of libraries,
+and the name of the one that says what the figure was made from."""
 PROVENANCE = ("title", "references", "microslip_version", "source_digest", "results_digest")
 PROVENANCE += ("configuration", "library_versions")
 

@@ -25,11 +25,11 @@ VARIABLES = (
     "field_centre_lateral",
 )
 
-#: Distance between the arrows, in contact radii.
 SPACING = 0.14
+"""Distance between the arrows, in contact radii."""
 
-#: Light enough everywhere for black arrows.
 SHADES = LinearSegmentedColormap.from_list("bound", ["#FFFFFF", "#8CC8EE"])
+"""Light enough everywhere for black arrows."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import re
 
-#: Names of Greek letters, and how matplotlib writes those that have two shapes.
 GREEK = {
     name: rf"\{name}" for name in ("alpha", "beta", "delta", "kappa", "mu", "nu", "omega", "Omega")
 } | {"phi": r"\varphi", "theta": r"\vartheta"}
+"""Names of Greek letters, and how matplotlib writes those that have two shapes."""
 
-#: The same as characters.
 LETTERS = {
     **{"mu": "\N{GREEK SMALL LETTER MU}", "phi": "\N{GREEK SMALL LETTER PHI}"},
     **{"omega": "\N{GREEK SMALL LETTER OMEGA}", "Omega": "\N{GREEK CAPITAL LETTER OMEGA}"},
 }
+"""The same as characters."""
 
 _WORD = re.compile(r"([A-Za-z]+)(\d*)(?:_([A-Za-z0-9]+))?")
 

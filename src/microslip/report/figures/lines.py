@@ -16,7 +16,6 @@ from microslip.report.figures import style as look
 from microslip.report.figures.data import finite_or_nan, limit
 from microslip.report.figures.formulas import mathtext
 
-#: Colour, marker and line style of each sweep; any one of the three tells them apart, or nearly.
 LOOKS = (
     (look.BLACK, "o", look.SOLID),
     (look.BLUE, "s", look.DASHED),
@@ -27,10 +26,11 @@ LOOKS = (
     (look.SKY, "X", look.DASHDOT),
     (look.GREY, "*", look.DOTTED),
 )
-#: Limits from theory at Poisson's ratio 0 that stand for the line, along each axis.
+"""Colour, marker and line style of each sweep; any one of the three tells them apart, or nearly."""
 THEORY = {"amplitude": ("mu_static",), "velocity": ("mu_forward_theory", "mu_closed_form")}
-#: Width of lines that do no more than join marks.
+"""Limits from theory at Poisson's ratio 0 that stand for the line, along each axis."""
 JOINING = 0.5
+"""Width of lines that do no more than join marks."""
 WIDTH, HEIGHT = 5.2, 3.3
 
 

@@ -16,9 +16,8 @@ from microslip.report.figures.data import at_each_poisson, curve, limit, require
 from microslip.report.figures.map_panel import fill, unconverged
 from microslip.theory.catalogue import FORMS, STATIC
 
-#: A cut's panel ends where all of its curves have fallen below this.
 NOTHING = 0.02
-#: Colour and marker of the points at each of Poisson's ratios, from the first one on.
+"""A cut's panel ends where all of its curves have fallen below this."""
 POISSONS = (
     (look.BLACK, "o"),
     (look.PURPLE, "s"),
@@ -27,8 +26,9 @@ POISSONS = (
     (look.VERMILLION, "v"),
     (look.ORANGE, "P"),
 )
-#: Columns of maps, and height in inches of a row of them, where there are several.
+"""Colour and marker of the points at each of Poisson's ratios, from the first one on."""
 COLUMNS, ROW = 3, {2: 2.9, 3: 2.4}
+"""Columns of maps, and height in inches of a row of them, where there are several."""
 
 
 @dataclass(frozen=True)
@@ -57,8 +57,8 @@ class Map:
 
 
 EXACT = form("transverse", STATIC, look.BLUE, look.SOLID)
-#: Exact for Poisson's ratio 0 alone; at any other it is shown as what it is.
 EXACT_AT_0 = replace(EXACT, label=r"limit at $\nu = 0$")
+"""Exact for Poisson's ratio 0 alone; at any other it is shown as what it is."""
 
 MAPS = {
     "fig2_transverse_map": Map(

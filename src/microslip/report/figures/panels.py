@@ -17,10 +17,10 @@ COLUMNS = 3
 # The page, in inches: a panel, what is left of, between, above (by line) and under the panels.
 PANEL, LEFT, BETWEEN, HEAD, FOOT = (2.0, 1.5), 0.76, 0.12, 0.145, 0.62
 TITLE = look.HEADING
-#: Width of a strip as a share of the decades on its axis.
 STRIP = 0.1
-#: Share of the axis between a zero and the next label.
+"""Width of a strip as a share of the decades on its axis."""
 ROOM_FOR_ZERO = 0.12
+"""Share of the axis between a zero and the next label."""
 
 
 @dataclass(frozen=True)

@@ -25,10 +25,10 @@ LOOKS = (
     (look.GREEN, look.DASHDOT),
 )
 """For up to so many of Poisson's ratios, from the smallest on."""
-#: Datasets that a figure has room for.
 MOST = 3
-#: Pale in the middle, and evenly darker on both sides.
+"""Datasets that a figure has room for."""
 DIVERGING = "PuOr"
+"""Pale in the middle, and evenly darker on both sides."""
 
 
 def shows(dataset: xr.Dataset) -> bool:

@@ -12,11 +12,11 @@ from microslip.report.figures.data import require
 from microslip.report.figures.lines import LOOKS
 
 VARIABLES = ("competitor", "competitor_contest", "profile_ratio", "map_tolerance")
-#: What the ones with a name of their own are called.
 NAMES = {"auto": "chosen by tolerance", "paper": "paper's run"}
+"""What the ones with a name of their own are called."""
 COLUMNS, ROW = 2, 3.1
-#: Where the axis ends if nothing is dearer than the best.
 LEAST_RANGE = 10.0
+"""Where the axis ends if nothing is dearer than the best."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:

@@ -11,12 +11,12 @@ from matplotlib.ticker import LogLocator
 from microslip.report.figures import style as look
 from microslip.report.figures.data import require
 
-#: Each panel: the quantity in the names of the variables, and its label.
 PANELS = (
     ("iterations", "iterations a step  (dimensionless)"),
     ("seconds", "time a step (s)"),
     ("memory", "memory (bytes)"),
 )
+"""Each panel: the quantity in the names of the variables, and its label."""
 VARIABLES = (
     "scaling_model",
     "scaling_unknowns",

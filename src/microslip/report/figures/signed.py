@@ -10,17 +10,17 @@ from matplotlib.colors import Colormap, LinearSegmentedColormap, Normalize, TwoS
 
 from microslip.report.figures import style as look
 
-#: Colours of friction 0, -0.05, ..., -1. They begin where `style.COLOURMAP` begins, are equally far
-#: apart in CIELAB, and get lighter away from 0 as that map does. Down to -0.5, by far the most that
-#: a motion drives, they keep apart from all of that map for all common kinds of colour vision.
 BELOW = (
     "#00224E", "#24204A", "#371D46", "#471B43", "#571941", "#671840", "#77183F",
     "#871C3E", "#97243D", "#A72E3B", "#B7393B", "#C9463C", "#E05846", "#ED6E59",
     "#F07F6A", "#F18E7A", "#F29D8A", "#F4AE9C", "#F6BEAF", "#F6CEC1", "#F5DED3",
 )  # fmt: skip
+"""Colours of friction 0, -0.05, ..., -1. They begin where `style.COLOURMAP` begins, are equally far
+apart in CIELAB, and get lighter away from 0 as that map does. Down to -0.5, by far the most that a
+motion drives, they keep apart from all of that map for all common kinds of colour vision."""
 LOWEST = -1.0
-#: Lines on colours darker than this are white, on others black.
 DARK = 0.5
+"""Lines on colours darker than this are white, on others black."""
 
 
 def scale(levels: Sequence[float]) -> tuple[Colormap, Normalize]:

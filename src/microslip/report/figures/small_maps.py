@@ -13,17 +13,17 @@ from microslip.report.figures import style as look
 from microslip.report.figures.formulas import mathtext
 from microslip.report.figures.map_panel import fill, unconverged
 
-#: Columns of panels by their number; more than these have three.
 COLUMNS = {1: 1, 2: 2, 4: 2}
-#: Height in inches of a row of panels, by the number of columns, and of what is around them.
+"""Columns of panels by their number; more than these have three."""
 HEIGHT, AROUND = {1: 3.4, 2: 2.5, 3: 1.75}, 0.45
-#: Fewer than on a large map, and fewer with a number, which would hide the others.
+"""Height in inches of a row of panels, by the number of columns, and of what is around them."""
 CONTOURS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
+"""Fewer than on a large map, and fewer with a number, which would hide the others."""
 LABELLED = np.array([0.1, 0.5, 0.9])
-#: What lies this far outside of 0 to 1 is more than the errors of points.
 BEYOND = 0.01
-#: Maps that a figure has room for, as `extended.MOST_PANELS`.
+"""What lies this far outside of 0 to 1 is more than the errors of points."""
 MOST = 12
+"""Maps that a figure has room for, as `extended.MOST_PANELS`."""
 
 
 def spans_a_map(dataset: xr.Dataset) -> bool:

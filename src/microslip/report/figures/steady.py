@@ -10,11 +10,11 @@ from microslip.report.figures import style as look
 from microslip.report.figures.cuts import computed
 from microslip.report.figures.data import curve, limit, require, sweep
 
-#: Each quantity's name, its theory, its values and their error, and its look.
 CURVES = (
     ("force", "Eq 21", "mu_forward_theory", "mu_macro", look.BLUE, look.SOLID, "o"),
     ("torque", "Eq 22", "mu_torque_theory", "mu_torque", look.VERMILLION, look.DASHED, "s"),
 )
+"""Each quantity's name, its theory, its values and their error, and its look."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:

@@ -16,17 +16,17 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from microslip.config.quantities import MU_MACRO, Quantity
 from microslip.report.figures.formulas import mathtext
 
-#: Journal column widths in inches (86 mm and 180 mm).
 SINGLE, DOUBLE = 3.39, 7.09
+"""Journal column widths in inches (86 mm and 180 mm)."""
 
 # Okabe and Ito's colours, which all common kinds of colour vision tell apart.
 BLACK, BLUE, VERMILLION = "#000000", "#0072B2", "#D55E00"
 GREEN, ORANGE, PURPLE = "#009E73", "#E69F00", "#CC79A7"
 GREY, PALE, SKY = "#6E6E6E", "#D4D4D4", "#56B4E9"
 
-#: Perceptually even and readable in grey and by colour-blind readers. For shares from 0 to 1; where
-#: friction may be negative as well, `signed` continues it below 0.
 COLOURMAP = "cividis"
+"""Perceptually even and readable in grey and by colour-blind readers. For shares from 0 to 1; where
+friction may be negative as well, `signed` continues it below 0."""
 
 # Line styles, so that curves differ without colour as well.
 SOLID = "-"
@@ -34,7 +34,6 @@ DASHED = (0, (5.0, 2.0))
 DASHDOT = (0, (6.0, 1.6, 1.2, 1.6))
 DOTTED = (0, (1.0, 1.6))
 
-#: Computed values: the same marker in every figure.
 COMPUTED = {
     "linestyle": "none",
     "marker": "o",
@@ -43,8 +42,8 @@ COMPUTED = {
     "markeredgewidth": 0.7,
     "zorder": 5,
 }
+"""Computed values: the same marker in every figure."""
 
-#: The contact models, coarsest first: colour, marker, and two letters where a word has no room.
 MODELS = {
     "rigid": (BLACK, "h", "Ri"),
     "slider": (ORANGE, "<", "Sl"),
@@ -54,13 +53,14 @@ MODELS = {
     "polar": (BLUE, "o", "Po"),
     "cartesian": (VERMILLION, "s", "Ca"),
 }
+"""The contact models, coarsest first: colour, marker, and two letters where a word has no room."""
 
-#: Characters that are smaller than this in print are hard to read.
 SMALLEST = 7.0
-#: Letters of panels and what follows them, in every figure.
+"""Characters that are smaller than this in print are hard to read."""
 HEADING = 8.0
-#: Characters of a text from outside that are drawn at most; the rest is an ellipsis.
+"""Letters of panels and what follows them, in every figure."""
 LONGEST = 100
+"""Characters of a text from outside that are drawn at most; the rest is an ellipsis."""
 
 RC = {
     "figure.dpi": 300,  # the layout is solved for the PNG that is written

@@ -16,8 +16,8 @@ import numpy as np
 if TYPE_CHECKING:
     from microslip.datasets.query.interpolation import Axis
 
-#: Lines of the fine grid along each axis, about.
 FINE = 200
+"""Lines of the fine grid along each axis, about."""
 
 
 def refined(

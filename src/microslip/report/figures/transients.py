@@ -21,12 +21,12 @@ VARIABLES = (
     "transient_torque_theory",
 )
 
-#: The paper's words for the starts; any other label is shown as it is.
 STARTS = {
     "stress-free": "full stick, no stress",
     "full-rotation": "full rotational slip",
     "full-slip": "full forward slip",
 }
+"""The paper's words for the starts; any other label is shown as it is."""
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:

@@ -32,21 +32,21 @@ from microslip.report.figures.panels import (
     share_axes,
 )
 
-#: What each figure has along x: the variable, the front in it, the label; an empty one is what the
-#: dataset calls the variable.
 COSTS = {
     "accuracy_vs_cost": ("seconds", "front_seconds", "CPU time of a run  $t$ (s)"),
     "accuracy_vs_work": ("effort", "front_effort", ""),
 }
+"""What each figure has along x: the variable, the front in it, the label; an empty one is what the
+dataset calls the variable."""
 POINT = ("point", "point_title", "point_scene", "point_velocity", "point_amplitude")
 POINT += ("point_poisson", "reference_error")
 TRIAL = ("trial_point", "trial_model", "trial_method", "trial_level", "trial_tolerance")
 TRIAL += ("error", "converged")
 
-#: Errors so many times smaller than what is known of any reference are drawn in the strip.
 BELOW_REFERENCE = 3.0
-#: The largest error over the smallest that has a place above the strip.
+"""Errors so many times smaller than what is known of any reference are drawn in the strip."""
 MOST = 1e6
+"""The largest error over the smallest that has a place above the strip."""
 
 FRONT = {"color": "#EBD9A0", "linewidth": 5.0, "solid_capstyle": "round", "zorder": 1}
 UNKNOWN = {"facecolor": "none", "edgecolor": "#A8A8A8", "linewidth": 0.0, "hatch": "/////"}

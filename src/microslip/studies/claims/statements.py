@@ -54,8 +54,16 @@ STATEMENTS = {
 class Part:
     """One thing that a statement says, in a form that a number can speak for or against.
 
-    name: of the function in claims_checks that collects the checks, and of the part; text: what is
-    asked, with its criterion; counts: whether the verdict on the statement depends on it.
+    Attributes
+    ----------
+    claim : int
+        Number of the statement.
+    name : str
+        Of the function in `checks` or `checks_static` that collects the checks, and of the part.
+    text : str
+        What is asked, with its criterion.
+    counts : bool
+        Whether the verdict on the statement depends on it.
     """
 
     claim: int

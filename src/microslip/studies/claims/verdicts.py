@@ -20,9 +20,17 @@ WORDS = ("not decided", "holds", "holds in part", "does not hold")
 class Check:
     """One number that speaks for or against a part.
 
-    value: computed; against: what it is compared with; margin: positive where the part holds;
-    error: of the margin, infinite where a run gave no number to trust; runs: names of the results
-    behind it, the one that it is about first; place: (name, number) pairs that say where.
+    Attributes
+    ----------
+    value, against : float
+        What was computed, and what it is compared with.
+    margin, error : float
+        Positive where the part holds; error of the margin, infinite where a run gave no number to
+        trust.
+    runs : tuple of str
+        Names of the results behind it, the one that it is about first.
+    place : tuple
+        (name, number) pairs that say where.
     """
 
     value: float

@@ -18,10 +18,19 @@ from microslip.studies import requests
 class Axis:
     """What is varied.
 
-    label: what it is, for axes of figures (mathtext allowed, without blanks in it); note: what is
-    held; cases: pairs of the value and what it sets in the request: scene, velocity, amplitude,
-    poisson, cells or steps; parameters: by method, the name of the number that takes the value; an
-    axis that has them asks only these methods, and the shipped one to compare with.
+    Attributes
+    ----------
+    name : str
+    label : str
+        What it is, for axes of figures (mathtext allowed, without blanks in it).
+    note : str
+        What is held.
+    cases : tuple
+        Pairs of the value and what it sets in the request: scene, velocity, amplitude, poisson,
+        cells or steps.
+    parameters : tuple
+        By method, the name of the number that takes the value; an axis that has them asks only
+        these methods, and the shipped one to compare with.
     """
 
     name: str
