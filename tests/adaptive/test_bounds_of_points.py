@@ -84,7 +84,7 @@ def test_the_time_limit_ends_a_point_and_says_so():
 @pytest.mark.parametrize("name", ["most_work", "time_limit"])
 @pytest.mark.parametrize("value", [0, -1.0, float("nan"), True, "1"])
 def test_bad_bounds_are_refused(name, value):
-    with pytest.raises(microslip.errors.InputError, match=f"^{name} = "):
+    with pytest.raises(microslip.InputError, match=f"^{name} = "):
         microslip.solve("transverse", 0.3, 1.0, **{name: value})
 
 
