@@ -25,8 +25,9 @@ class Method:
     summary : str
         In a line, for tables and figures.
     integrator : path.Integrator
+        Where the stages of a step sit, and what they carry on.
     dress : callable or None
-        dress(contact, **parameters) -> a contact that solves its steps in another way.
+        Of a contact and `parameters`: a contact that solves its steps in another way.
     parameters : mapping of str to float
         Numbers that `dress` takes, with their defaults.
     search : callable
