@@ -5,6 +5,7 @@ A file is one process's, since its tests share what is slow to make (--dist load
 
 import os
 import shutil
+import signal
 
 import pytest
 import yaml
@@ -13,6 +14,10 @@ from hypothesis import settings
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.load_profile("repeatable")
 """Whoever runs the tests sees the same random inputs; campaigns look at others."""
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    # A shell starts what runs in its background so, and processes that tests interrupt inherit it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 LONG = (
     "test_workflow.py",  # compiles the solver, which takes a fresh clone a minute or two
