@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from stubs.unpacked_period import unpacked
 
 import microslip
 from microslip.adaptive.period import NoPeriodicState
@@ -25,7 +26,7 @@ def asked(point):
 def test_a_stored_period_is_the_computed_one_within_half_a_step(point, tmp_path):
     record, _ = batches.answer(asked(point), Store(tmp_path))
     assert batches.answer(asked(point), Store(tmp_path)) == (record, 0.0)
-    found = period_codec.unpacked(record["result"])
+    found = unpacked(record["result"])
     scene, velocity, amplitude, poisson = point[0], *map(float, point[1:])
     truth = microslip.period(scene, velocity, amplitude, poisson=poisson, **COUNTS)
     for name in (*period_codec.HISTORIES, "forward_position", "lateral_position", "bound"):
@@ -39,8 +40,8 @@ def test_a_stored_period_is_the_computed_one_within_half_a_step(point, tmp_path)
 
 
 def test_a_stored_period_takes_few_bytes():
-    unpacked = microslip.period("bore", 0.1, 1.0, **COUNTS)
-    everything = json.dumps(evaluate.plain(vars(unpacked)))
+    whole = microslip.period("bore", 0.1, 1.0, **COUNTS)
+    everything = json.dumps(evaluate.plain(vars(whole)))
     result = evaluate.computed(asked(("bore", "0.1", "1", "0")))
     assert len(json.dumps(result)) < 0.1 * len(everything)
 
