@@ -123,7 +123,7 @@ def period(
     ------
     InputError
         For bad input; it names the argument.
-    NoPeriodicState
+    microslip.adaptive.period.NoPeriodicState
         Where the march broke off.
     """
     kind, velocity, amplitude, poisson = checked_point(
