@@ -21,6 +21,8 @@ STRIP = 0.1
 """Width of a strip as a share of the decades on its axis."""
 ROOM_FOR_ZERO = 0.12
 """Share of the axis between a zero and the next label."""
+AWAY = 5.0
+"""Distance of a text from its point, in points of length."""
 
 
 @dataclass(frozen=True)
@@ -125,24 +127,16 @@ def share_axes(axes: Axes, costs: Scale, errors: Scale) -> None:
 
 
 def label_beside(
-    axes: Axes,
-    text: str,
-    points: np.ndarray,
-    index: int,
-    taken: list[Bbox],
-    *,
-    away: float = 5.0,
-    always: bool = False,
+    axes: Axes, text: str, point: np.ndarray, drawn: np.ndarray, taken: list[Bbox]
 ) -> None:
-    """Write a text beside a point where it hides no other; leave it out if it must hide one.
+    """Write a text beside a point where it hides nothing; leave it out if it must.
 
-    points: all points of the panel in pixels. taken: boxes of the texts that are there already,
-    to which this one is added. away: distance in points of length. always: hide what is hidden
-    least rather than leave the text out.
+    point: in pixels. drawn: points that are not to be hidden, likewise. taken: boxes of the texts
+    that are there already, to which this one is added.
     """
     label = axes.annotate(
         text,
-        axes.transData.inverted().transform(points[index]),
+        axes.transData.inverted().transform(point),
         (0, 0),
         textcoords="offset points",
         fontsize=look.SMALLEST,
@@ -152,25 +146,16 @@ def label_beside(
     )
     label.set_in_layout(False)
     margin = 2.0 * axes.figure.dpi / 72.0  # panels still move a little when the layout settles
-    best = None
     for right, up in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)):
-        far = away if right == 0 or up == 0 else 0.7 * away
+        far = AWAY if right == 0 or up == 0 else 0.7 * AWAY
         label.set_position((right * far, up * far))
         label.set_horizontalalignment(("right", "center", "left")[right + 1])
         label.set_verticalalignment(("top", "center", "bottom")[up + 1])
-        box = label.get_window_extent()
-        room = box.padded(margin)
+        room = label.get_window_extent().padded(margin)
         inside = axes.bbox.containsx(room.x0) and axes.bbox.containsx(room.x1)
         inside = inside and axes.bbox.containsy(room.y0) and axes.bbox.containsy(room.y1)
-        if not inside or any(box.overlaps(other) for other in taken):
-            continue
-        wide = box.padded(2.0 * axes.figure.dpi / 72.0)
-        hidden = wide.count_contains(points)
-        if best is None or hidden < best[0]:
-            best = hidden, box, label.get_position(), label.get_ha(), label.get_va()
-    if best is None or (best[0] and not always):
-        label.remove()
-        return
-    _, box, position, across, up = best
-    label.set(position=position, ha=across, va=up)
-    taken.append(box)
+        free = not any(room.overlaps(other) for other in taken)
+        if inside and free and not room.count_contains(drawn):
+            taken.append(room)
+            return
+    label.remove()

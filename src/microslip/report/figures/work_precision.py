@@ -34,10 +34,13 @@ from microslip.report.figures.panels import (
 
 COSTS = {
     "accuracy_vs_cost": ("seconds", "front_seconds", "CPU time of a run  $t$ (s)"),
-    "accuracy_vs_work": ("effort", "front_effort", ""),
+    "accuracy_vs_work": (
+        "effort",
+        "front_effort",
+        "effort: iterations $\\times$ unknowns\n(dimensionless)",
+    ),
 }
-"""What each figure has along x: the variable, the front in it, the label; an empty one is what the
-dataset calls the variable."""
+"""What each figure has along x: the variable, the front in it, the label."""
 POINT = ("point", "point_title", "point_scene", "point_velocity", "point_amplitude")
 POINT += ("point_poisson", "reference_error")
 TRIAL = ("trial_point", "trial_model", "trial_method", "trial_level", "trial_tolerance")
@@ -70,7 +73,6 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         raise ValueError(f"figure {name}: the dataset holds no points or no trials")
     of_point = dataset["trial_point"].values.astype(str)
     scales = _scale_of_costs(dataset[cost].values), _scale_of_errors(dataset)
-    label = label or _label_of(dataset[cost])
     letters = look.letters(len(points))
     titles = [_title(which, point) for which, point in zip(letters, points, strict=True)]
     models = set(dataset["trial_model"].values.astype(str)) - {"auto"}
@@ -107,14 +109,7 @@ class Table:
         self.x, self.y = costs.shown(raw_cost), errors.shown(raw_error)
         self.left, self.low = raw_cost < costs.low, raw_error < errors.low
         self.costs, self.errors = costs, errors
-        self.auto, self.paper = self.model == "auto", self.method == "paper"
-
-
-def _label_of(work: xr.DataArray) -> str:
-    """What work is, in the words of the dataset."""
-    what = work.attrs.get("long_name", "").replace(" times ", r" $\times$ ")
-    label = f"effort: {what} (dimensionless)" if what else "effort (dimensionless)"
-    return look.wrapped(label, PANEL[0], look.RC["axes.labelsize"])
+        self.auto = self.model == "auto"
 
 
 def _scale_of_costs(costs: np.ndarray) -> Scale:
@@ -198,14 +193,22 @@ def _trials(axes: Axes, table: Table) -> None:
 
 
 def _labels(axes: Axes, table: Table) -> None:
-    """Name the paper's run, and the tolerances where there is room."""
+    """Name the tolerances where there is room; the list below tells the other marks."""
     points = axes.transData.transform(np.column_stack((table.x, table.y)))
+    drawn = [points]
+    for line in axes.get_lines():
+        if " " in (line.get_gid() or "") and line.get_linestyle() != "None":  # those of a model
+            corners = axes.transData.transform(line.get_path().vertices)
+            drawn.append(np.concatenate([*map(_along, corners[:-1], corners[1:]), corners]))
     taken: list[Bbox] = []
-    for index in np.flatnonzero(table.paper):
-        label_beside(axes, "paper's run", points, index, taken, away=7.0, always=True)
     for index in np.flatnonzero(table.auto):
         text = f"${look.power_of_ten(table.tolerance[index])}$"
-        label_beside(axes, text, points, index, taken)
+        label_beside(axes, text, points[index], np.concatenate(drawn), taken)
+
+
+def _along(start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """Points of a line from start to end, in pixels, closer than letters are wide."""
+    return np.linspace(start, end, 20)
 
 
 def _legends(below: Axes, models: set[str], others: bool) -> None:
