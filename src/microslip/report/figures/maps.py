@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 
 from microslip.config.quantities import AMPLITUDE, VELOCITY
 from microslip.report.figures import style as look
 from microslip.report.figures.cuts import computed
 from microslip.report.figures.data import at_each_poisson, curve, limit, require, sweep
-from microslip.report.figures.map_panel import fill, unconverged
+from microslip.report.figures.map_panel import LINE_LEVELS, fill, unconverged
 from microslip.theory.catalogue import FORMS, STATIC
 
 NOTHING = 0.02
@@ -105,7 +106,8 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     letters = look.letters(len(shown) + 2)
     for axes, letter, (part, poisson) in zip(panels, letters, shown, strict=False):
         note = rf"$\nu = {look.number(poisson)}$" if len(every) > 1 or poisson else ""
-        _map(axes, part, plan, letter, note)
+        filled = _map(axes, part, plan, letter, note)
+    _colour_bar(panels, filled)
     _static_cut(cuts[0], shown, plan, letters[-2])
     _large_cut(cuts[1], shown, plan, letters[-1])
     return figure
@@ -128,18 +130,15 @@ def _page(count: int) -> tuple[Figure, list[Axes], list[Axes]]:
     return figure, panels[:count], list(lower.subplots(1, 2))
 
 
-def _map(axes: Axes, dataset: xr.Dataset, plan: Map, letter: str, note: str) -> None:
-    """A map with its colours, its letter, and its hatching explained above it."""
-    filled, hatched = fill(axes, dataset)
-    grid = axes.get_subplotspec().get_gridspec()
-    alone = grid.ncols == 1
+def _map(axes: Axes, dataset: xr.Dataset, plan: Map, letter: str, note: str) -> ContourSet:
+    """A map with its letter, and its hatching explained above it; returns its bands."""
+    grid = axes.get_subplotspec()
+    alone = grid.get_gridspec().nrows * grid.get_gridspec().ncols == 1
+    filled, hatched = fill(axes, dataset, labelled=LINE_LEVELS if alone else LINE_LEVELS[::2])
     shown = [table[plan.key] for table in (VELOCITY, AMPLITUDE)]
     shown = shown if alone else [replace(quantity, unit="") for quantity in shown]
-    axes.set(xlabel=look.axis(shown[0]), ylabel=look.axis(shown[1]))
-    last = axes.get_subplotspec().is_last_col()
-    bar = axes.figure.colorbar(filled, ax=axes, pad=0.02, aspect=32, ticks=np.linspace(0, 1, 6))
-    bar.set_label(look.FRICTION if alone or last else "")
-    bar.ax.tick_params(direction="out")
+    axes.set_xlabel(look.axis(shown[0]))
+    axes.set_ylabel(look.axis(shown[1]) if grid.is_first_col() else "")
     look.letter(axes, letter, note)
     if hatched:
         text = f"not converged ({hatched} of {dataset['mu_macro'].size})"
@@ -149,6 +148,16 @@ def _map(axes: Axes, dataset: xr.Dataset, plan: Map, letter: str, note: str) -> 
             bbox_to_anchor=(1.0, 1.0),
             borderaxespad=0.2,
         )
+    return filled
+
+
+def _colour_bar(panels: list[Axes], filled: ContourSet) -> None:
+    """One colour bar beside all maps, which share their colours."""
+    ticks = np.linspace(0, 1, 6)
+    bar = panels[0].figure.colorbar(filled, ax=panels, pad=0.02, aspect=32, ticks=ticks)
+    lines = "  (" if len(panels) == 1 else "\n("  # a row of small maps is not as high as the words
+    bar.set_label(look.FRICTION.replace("  (", lines))
+    bar.ax.tick_params(direction="out")
 
 
 def _static_cut(axes: Axes, shown: list[tuple[xr.Dataset, float]], plan: Map, letter: str) -> None:
