@@ -46,15 +46,15 @@ def names(folder):
     return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
 
 
-def test_a_plan_of_other_sources_is_left_over_and_a_grown_configuration_needs_the_old_batches(
+def test_what_was_planned_counts_and_a_plan_of_other_sources_is_left_over(
     results, tmp_path, monkeypatch
 ):
-    """What was planned counts: of the old points each is still where it was."""
+    """A configuration that has grown still needs the batch of its old points."""
     folder = batch_plans.Folder(results)
     first = Plan(load.load(tmp_path / "first.yaml"), folder)
     first.batches_in("bore")
     with monkeypatch.context() as patch:
-        patch.setattr(source_digest, "of_request", lambda request: "of other sources" * 4)
+        patch.setattr(source_digest, "of_request", lambda request: "0123" * 16)
         before = Plan(load.load(tmp_path / "first.yaml"), folder)
         before.batches_in("bore")
         before.keep_planned()
