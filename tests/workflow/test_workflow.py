@@ -93,7 +93,8 @@ def test_what_is_damaged_is_made_again_where_it_is_needed(project):
     whole = batch.read_bytes()
     batch.write_bytes(whole[:-20])
     said = project.run(*targets)
-    assert jobs_in(said)["solve_batch"] == 2
+    assert jobs_in(said) == {"solve_batch": 2, "collect": 2}
+    assert "| 8/8 [" in said  # the line of progress: what was lost is solved in batches
     assert len({line for line in said.splitlines() if "damaged result" in line}) == 4
     assert batch.read_bytes() == whole
     assert project.points() == before
