@@ -16,6 +16,11 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 
+try:
+    from stubs import job_server
+except ImportError:  # in the process itself
+    job_server = None
+
 
 def start(arguments, folder, environment, timeout=900):
     """Run Snakemake with these arguments in a folder, as subprocess.run does a command."""
@@ -34,7 +39,7 @@ class _Server:
     def __init__(self, environment):
         self.lock = threading.Lock()
         self.process = subprocess.Popen(
-            [sys.executable, __file__],
+            [sys.executable, __file__, job_server.start(environment)],
             env=environment,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -79,6 +84,7 @@ def _run(asked):
     from snakemake.cli import main as snakemake
 
     signal.alarm(asked["timeout"])  # which ends it
+    sys.executable = sys.argv[1]  # what starts jobs
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     for number, name in enumerate(asked["said"], 1):
         os.dup2(os.open(name, os.O_WRONLY), number)
