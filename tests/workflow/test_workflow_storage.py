@@ -138,5 +138,5 @@ def test_a_job_on_a_machine_of_its_own_finds_its_requests_in_the_bucket(
     client(server).delete_object(Bucket=BUCKET, Key=f"{FOLDER}/{name}")
     job = f"solve_batch:group=bore,batch={name.split('/')[-1].removesuffix('.json')}"
     alone = ["--target-jobs", job, "--allowed-rules", "solve_batch", "--mode", "remote", "--nolock"]
-    run(empty_copy(finished, tmp_path / "alone"), server, *alone, "--")
+    run(empty_copy(finished, tmp_path / "alone"), server, *alone)
     assert stored(server)[name] == first[name]
