@@ -26,9 +26,9 @@ def start(arguments, folder, environment, timeout=900):
     """Run Snakemake with these arguments in a folder, as subprocess.run does a command."""
     server = _server(tuple(sorted(environment.items())))
     with ExitStack() as stack:
-        said = [stack.enter_context(tempfile.TemporaryFile("w+")) for _ in range(2)]
-        names = [f"/proc/{os.getpid()}/fd/{file.fileno()}" for file in said]
-        asked = {"arguments": list(map(str, arguments)), "folder": str(folder), "said": names}
+        said = [stack.enter_context(tempfile.NamedTemporaryFile("w+")) for _ in range(2)]
+        asked = {"arguments": list(map(str, arguments)), "folder": str(folder)}
+        asked["said"] = [file.name for file in said]
         code = server.ask(asked | {"timeout": timeout})
         for file in said:
             file.seek(0)
