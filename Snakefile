@@ -26,6 +26,7 @@
 #
 # Batches are named by the hashes of their points, points by what they depend on: the physics, the
 # tolerance and the solver's sources. So what is there is never stale, and never computed twice.
+# A batch stays as it was planned: results/batches/*/*.plan lists them, and new points get new ones.
 
 import os
 

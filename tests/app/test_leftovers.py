@@ -9,7 +9,8 @@ from stubs.sweep_stub import Solver
 from microslip.app import leftovers
 from microslip.app.plan import Plan
 from microslip.config import load
-from microslip.sweeps import batch_files, batches, cache, sealed_files
+from microslip.foundation import source_digest
+from microslip.sweeps import batch_files, batch_plans, batches, cache, sealed_files
 
 AXES = {"velocity": [0.5, 2], "amplitude": [0, 1], "tolerance": 1e-2}
 
@@ -43,6 +44,28 @@ def results(tmp_path, monkeypatch):
 
 def names(folder):
     return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_what_was_planned_counts_and_a_plan_of_other_sources_is_left_over(
+    results, tmp_path, monkeypatch
+):
+    """A configuration that has grown still needs the batch of its old points."""
+    folder = batch_plans.Folder(results)
+    first = Plan(load.load(tmp_path / "first.yaml"), folder)
+    first.batches_in("bore")
+    with monkeypatch.context() as patch:
+        patch.setattr(source_digest, "of_request", lambda request: "0123" * 16)
+        before = Plan(load.load(tmp_path / "first.yaml"), folder)
+        before.batches_in("bore")
+        before.keep_planned()
+    (stale,) = results.rglob("*.plan")
+    first.keep_planned()
+    grown = configured(tmp_path, "grown", velocity=[0.5, 1, 2])
+    left = leftovers.left_over(results, [Plan(load.load(grown), folder)])
+    assert stale in left["batches"]
+    (batch,) = first.batch_files("bore")
+    assert results / batch not in left["batches"]
+    assert len(left["batches"]) == 2  # and the batch of the other configuration
 
 
 def test_without_delete_nothing_is_removed(results, tmp_path, capsys):

@@ -3,11 +3,11 @@
 import os
 import re
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 import yaml
+from stubs import snakemake_server
 
 from microslip.foundation import compiled
 
@@ -74,14 +74,7 @@ class Project:
 
     def snakemake(self, *arguments):
         # Nothing of the environment is activated: only the path of the executable is known.
-        return subprocess.run(
-            [SNAKEMAKE, *arguments],
-            cwd=self.folder,
-            env=ENVIRONMENT,
-            capture_output=True,
-            text=True,
-            timeout=900,
-        )
+        return snakemake_server.start(arguments, self.folder, ENVIRONMENT)
 
     def run(self, *targets):
         done = self.snakemake(*targets, *RUN)

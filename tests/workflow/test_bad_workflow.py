@@ -1,16 +1,13 @@
 """Bad input to the workflow: real runs of Snakemake that end with one line, before any job."""
 
 import os
-import subprocess
-import sys
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 from bad_input.bad_configurations import EXTENDED, FILES, GOOD, KEYS, changed
+from stubs import snakemake_server
 
 ROOT = Path(__file__).parents[2]
-SNAKEMAKE = Path(sys.executable).with_name("snakemake")
 pytestmark = pytest.mark.slow
 
 GIVEN = ["--configfile", "given.yaml"]
@@ -89,14 +86,8 @@ MODES = {case: ["-n"] if index % 2 else ["-j1"] for index, case in enumerate(CAS
 
 
 def snakemake(folder, *arguments):
-    return subprocess.run(
-        [SNAKEMAKE, *arguments],
-        cwd=folder,
-        env={"PATH": "/usr/bin:/bin", "HOME": os.environ.get("HOME", str(folder))},
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
+    environment = {"PATH": "/usr/bin:/bin", "HOME": os.environ.get("HOME", str(folder))}
+    return snakemake_server.start(arguments, folder, environment, timeout=120)
 
 
 def project(folder, prepare):
@@ -117,7 +108,7 @@ def content(folder):
 
 @pytest.fixture(scope="module")
 def done(tmp_path_factory):
-    """Every case's run, and the content of its folder before; two at a time, to save time."""
+    """Every case's run, and the content of its folder before."""
 
     def run(case):
         prepare, arguments, _ = CASES[case]
@@ -125,8 +116,7 @@ def done(tmp_path_factory):
         before = content(folder)
         return snakemake(folder, *MODES[case], *arguments), folder, before
 
-    with ThreadPoolExecutor(2) as pool:
-        return dict(zip(CASES, pool.map(run, CASES), strict=True))
+    return {case: run(case) for case in CASES}
 
 
 @pytest.mark.parametrize("case", CASES)

@@ -11,7 +11,8 @@ import time
 
 import pytest
 import yaml
-from stubs.workflow_project import AXES, ENVIRONMENT, RUN, SNAKEMAKE, TINY
+from stubs import snakemake_server
+from stubs.workflow_project import AXES, ENVIRONMENT, RUN, TINY
 
 pytest.importorskip("moto.server")
 pytest.importorskip("snakemake_storage_plugin_s3")
@@ -53,21 +54,15 @@ def client(address):
     return boto3.client("s3", endpoint_url=address, region_name="us-east-1", **given)
 
 
-def run(folder, address):
+def run(folder, address, *arguments):
     """Run the workflow with everything it makes in the bucket; what it says."""
     plugin = {
         "SNAKEMAKE_STORAGE_S3_ENDPOINT_URL": address,
         "SNAKEMAKE_STORAGE_S3_ACCESS_KEY": "a",
         "SNAKEMAKE_STORAGE_S3_SECRET_KEY": "b",
     }
-    done = subprocess.run(
-        [SNAKEMAKE, *RUN, *STORAGE],
-        cwd=folder,
-        env={**ENVIRONMENT, **KEYS, **plugin},
-        capture_output=True,
-        text=True,
-        timeout=600,
-    )
+    environment = {**ENVIRONMENT, **KEYS, **plugin}
+    done = snakemake_server.start([*arguments, *RUN, *STORAGE], folder, environment, timeout=600)
     assert done.returncode == 0, done.stderr
     return done.stdout + done.stderr
 
@@ -96,26 +91,52 @@ def empty_copy(finished, folder):
     return folder
 
 
-def test_points_are_solved_once_and_datasets_are_those_of_a_local_run(finished, server, tmp_path):
-    run(empty_copy(finished, tmp_path / "first"), server)
-    files = stored(server)
-    assert computed(files) == 10 + 5  # points, and single runs for figures
-    local = {p.name: p.read_bytes() for p in (finished.folder / "results").glob("*.nc")}
-    assert {name: files[f"results/{name}"] for name in local} == local
-    # another machine, with one more velocity: the batch that has it is solved, and no other
-    other = empty_copy(finished, tmp_path / "other")
-    grown = {**AXES, "velocity": [0.5, 2, 3]}
-    configuration = {**TINY, "sweeps": {**TINY["sweeps"], "continuous_bore": None}}
-    configuration["sweeps"]["continuous_bore"] = {
-        name: value for name, value in grown.items() if name != "amplitude"
+DATASETS = ["results/transverse.nc", "results/bore.nc"]
+DATASET = DATASETS[0]
+GROWN = {
+    **TINY,
+    "sweeps": {"transverse": {**AXES, "velocity": [0.5, 2, 3], "amplitude": [0, 1, 2]}},
+}
+
+
+@pytest.fixture(scope="module")
+def first(finished, server, tmp_path_factory):
+    """What is in the bucket after a run of an empty machine."""
+    run(empty_copy(finished, tmp_path_factory.mktemp("first") / "it"), server, *DATASETS)
+    return stored(server)
+
+
+def test_points_are_solved_once_and_datasets_are_those_of_a_local_run(
+    finished, first, server, tmp_path
+):
+    assert computed(first) == 8 + 1  # points, and a single run for a figure
+    assert {name: first[name] for name in DATASETS} == {
+        name: (finished.folder / name).read_bytes() for name in DATASETS
     }
-    (other / "tiny.yaml").write_text(yaml.safe_dump(configuration))
-    run(other, server)
+    # another machine, with a velocity and an amplitude more: five points in batches of their own
+    other = empty_copy(finished, tmp_path / "other")
+    (other / "tiny.yaml").write_text(yaml.safe_dump(GROWN))
+    run(other, server, DATASET)
     after = stored(server)
-    assert after["results/transverse.nc"] == files["results/transverse.nc"]
-    assert after["results/continuous_bore.nc"] != files["results/continuous_bore.nc"]
-    batches = {name for name in after if "batches/" in name} - set(files)
-    assert [name.split("/")[2] for name in batches] == ["continuous_bore"]
+    assert after[DATASET] != first[DATASET]
+    assert computed(after) == computed(first) + 5
+    new = [name.split("/")[2] for name in set(after) - set(first) if name.endswith(".json")]
+    assert new == ["transverse"] * 2
+    unchanged = [name for name in first if "/batches/" in name and name.endswith(".json")]
+    assert {name: after[name] for name in unchanged} == {name: first[name] for name in unchanged}
     # and a third one, as it was in the beginning
-    run(empty_copy(finished, tmp_path / "third"), server)
-    assert stored(server)["results/continuous_bore.nc"] == files["results/continuous_bore.nc"]
+    run(empty_copy(finished, tmp_path / "third"), server, DATASET)
+    assert stored(server)[DATASET] == first[DATASET]
+    assert computed(stored(server)) == computed(after)
+
+
+def test_a_job_on_a_machine_of_its_own_finds_its_requests_in_the_bucket(
+    finished, first, server, tmp_path
+):
+    """As an executor starts it that shares no files: by nothing but the name of a batch."""
+    (name,) = (name for name in first if "batches/bore/" in name and name.endswith(".json"))
+    client(server).delete_object(Bucket=BUCKET, Key=f"{FOLDER}/{name}")
+    job = f"solve_batch:group=bore,batch={name.split('/')[-1].removesuffix('.json')}"
+    alone = ["--target-jobs", job, "--allowed-rules", "solve_batch", "--mode", "remote", "--nolock"]
+    run(empty_copy(finished, tmp_path / "alone"), server, *alone)
+    assert stored(server)[name] == first[name]

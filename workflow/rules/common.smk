@@ -2,15 +2,17 @@
 
 from glob import glob
 
+from snakemake.io import get_flag_value
 from snakemake.logging import logger as snakemake_log
 
 from microslip.app import job_log, plan
+from microslip.app.bucket import Bucket
 from microslip.app.plan import Plan
 from microslip.app.progress import Watch
 from microslip.config import schema
 from microslip.foundation import canonical, source_digest
 from microslip.report.explorer import explorer
-from microslip.sweeps import batch_files, batches, cache
+from microslip.sweeps import batch_files, batch_plans, batches, cache
 
 # In a module the files are those of another workflow, which may hold more than this one knows.
 FILES = [os.path.relpath(file) for file in workflow.configfiles] if MAIN else []
@@ -33,7 +35,19 @@ with refused_in_one_line(ORIGIN):
     PLACE = str(workflow.modifier.modify_path(RESULTS))
 
 STORED_ELSEWHERE = workflow.storage_settings.default_storage_provider is not None
-PLAN = Plan(CONFIGURATION)
+
+
+def stored(file):
+    """Where Snakemake keeps a file of the folder of results that is elsewhere."""
+    return get_flag_value(workflow.modifier.modify_path(f"{RESULTS}/{file}"), "storage_object")
+
+
+EARLIER = (
+    Bucket(stored)
+    if STORED_ELSEWHERE
+    else batch_plans.Folder(PLACE, forgets=workflow.is_main_process)
+)
+PLAN = Plan(CONFIGURATION, EARLIER)
 COUNTER = f"{PLACE}/logs/points_done"
 STUDIES = PLAN.studies
 EXPLORED = PLAN.explored
@@ -113,7 +127,10 @@ def make_again(path, why=""):
 def requests_of(group, batch):
     """Requests of a batch as one string: Snakemake compares parameters as a set and would miss two
     swapped numbers."""
-    requests = PLAN.batches_in(group).get(batch)
+    if workflow.is_main_process:
+        requests = PLAN.batches_in(group).get(batch)
+    else:
+        requests = PLAN.requests_of(group, batch)
     if requests is None:  # in a job, where the sources are no longer those of the plan
         sys.exit(f"Error: {batches.SourcesEdited('the solver')}")
     return canonical.canonical_json(requests)
@@ -152,9 +169,11 @@ WATCH = Watch(COUNTER)
 
 
 def make_ready():
-    """Before the first job: see that results can be written, clear what killed runs left."""
+    """Before the first job: see that results can be written, note the new batches, clear what
+    killed runs left."""
     with refused_in_one_line(ORIGIN):
         cache.Store(PLACE).try_writing()
+        PLAN.keep_planned()
     for path in sealed_files.clear_abandoned(PLACE):
         print(f"{path} was left by a run that was killed: removed", file=sys.stderr)
     WATCH.start(points_to_do())

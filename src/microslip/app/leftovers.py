@@ -18,10 +18,10 @@ from microslip.app.plan import Plan
 from microslip.app.terminal import complain
 from microslip.config import load
 from microslip.config.records import ConfigError, Configuration
-from microslip.sweeps import batches, cache, sealed_files
+from microslip.sweeps import batch_plans, batches, cache, sealed_files
 
 RECORD = re.compile(r"[0-9a-f]{64}\.json")
-BATCH = re.compile(r"[0-9a-f]{16}\.json")
+BATCH = re.compile(r"[0-9a-f]{16}\.(json|plan)")
 MADE = (".nc", ".html", ".png", ".pdf")
 FOLDERS_MADE = (".", "summaries", "figures")
 DEFAULT = "config/config.yaml"
@@ -32,10 +32,9 @@ def asked_for(plans: Iterable[Plan]) -> set[str]:
     """Paths, inside the folder of results, of all that some of the plans would make."""
     found = set()
     for plan in plans:
-        found |= {*plan.made_files(), *plan.batch_files(*plan.groups)}
+        found |= {*plan.made_files(), *plan.batch_files(*plan.groups), *plan.plan_files()}
         for group in plan.groups:
-            for requests in plan.batches_in(group).values():
-                found |= {_path_of(request) for request in requests}
+            found |= {_path_of(request) for request in plan.requests_in(group)}
     return found
 
 
@@ -59,7 +58,7 @@ def _named(folder):
         for path in sorted((folder / group).rglob("*.json")):
             if RECORD.fullmatch(path.name):
                 yield KINDS[0], path
-    for path in sorted((folder / "batches").glob("*/*.json")):
+    for path in sorted((folder / "batches").glob("*/*")):
         if BATCH.fullmatch(path.name):
             yield KINDS[1], path
     for place in FOLDERS_MADE:
@@ -100,7 +99,10 @@ def main(arguments: list[str]) -> int:
         sealed_files.refuse_unusable([folder], [])
         if not os.path.isdir(folder):
             raise ConfigError(f"results: {folder} is not there; allowed: a folder of results")
-        found = left_over(folder, [Plan(configuration) for configuration in configurations])
+        earlier = batch_plans.Folder(folder)
+        found = left_over(
+            folder, [Plan(configuration, earlier) for configuration in configurations]
+        )
         _say(found, folder, options.delete, options.list)
         if options.delete:
             remove(path for paths in found.values() for path in paths)

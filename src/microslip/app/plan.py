@@ -15,6 +15,7 @@ from microslip.foundation.canonical import canonical_json, fingerprint
 from microslip.report.explorer import explorer
 from microslip.report.figures import drawing
 from microslip.studies import registry
+from microslip.sweeps import batch_plans
 from microslip.sweeps import batches as sweep
 
 PERIODS_PER_JOB = 150
@@ -38,14 +39,18 @@ class Plan:
         Names of the maps that the explorer shows.
     figures : dict of str to tuple of str
         Figures that there is data for, and the datasets of each.
+    earlier : sweeps.batch_plans.Folder, or what does the same elsewhere; None
+        What was planned before.  Batches stay as they are there, and new requests get new ones.
     """
 
-    def __init__(self, configuration: Configuration):
-        self.configuration = configuration
+    def __init__(self, configuration: Configuration, earlier: batch_plans.Folder | None = None):
+        self.configuration, self.earlier = configuration, earlier
         self.studies = {dataset: study for study, dataset in registry.DATASETS.items()}
         self.explored = explorer.maps_of(configuration)
         self.figures = dict(_figures(configuration, self.studies))
+        self._new_plans = {}
         self.batches_in = cache(self.batches_in)
+        self.points_of = cache(self.points_of)
         self.fingerprint_of = cache(self.fingerprint_of)
 
     # Batches
@@ -73,20 +78,84 @@ class Plan:
         Those of `extended` are made when they are asked for: names of motions with numbers are read
         by the solver, which jobs for other sweeps do without.
         """
+        growing = self._growing(group)
+        if growing is not None:
+            return self._kept(group, *growing)
+        name, _, beside = group.rpartition("_")
+        if beside == "histories":
+            requests = sweep.history_requests(self.configuration, name)
+            return sweep.batches(requests, self.configuration.points_per_job[name])
+        study = name if beside == "first" else group
+        first, rest = registry.pieces(study, self.configuration)
+        cuts = (sweep.batches(cut, len(cut)) for cut in (first if beside == "first" else rest))
+        return {name: cut for batch in cuts for name, cut in batch.items()}
+
+    def _growing(self, group):
+        """Requests of a group to which others may be added, and how many go into a batch; None for
+        groups whose batches follow from what they are for."""
         configuration = self.configuration
         if group in configuration.grids:
             requests = sweep.PointRequests(configuration.grids[group])
-            return sweep.batches(requests, configuration.points_per_job[group])
+            return requests, configuration.points_per_job[group]
         name, _, beside = group.rpartition("_")
-        if beside == "histories":
-            requests = sweep.history_requests(configuration, name)
-            return sweep.batches(requests, configuration.points_per_job[name])
         if beside == "periods":
-            return sweep.batches(explorer.period_requests(configuration, name), PERIODS_PER_JOB)
-        study = name if beside == "first" else group
-        first, rest = registry.pieces(study, configuration)
-        cuts = (sweep.batches(cut, len(cut)) for cut in (first if beside == "first" else rest))
-        return {name: cut for batch in cuts for name, cut in batch.items()}
+            return explorer.period_requests(configuration, name), PERIODS_PER_JOB
+        return None
+
+    def _kept(self, group, requests, size):
+        """Batches that were planned before, and new ones for what is in none of them."""
+        if self.earlier is None or not len(requests):
+            return batch_plans.cut(requests, size, {})
+        file = batch_plans.file_of(group, requests)
+        planned = {
+            name: cut
+            for name, cut in batch_plans.batches_in(self.earlier.read(file)).items()
+            if self.earlier.counts(f"batches/{group}/{name}.json")
+        }
+        found = batch_plans.cut(requests, size, planned)
+        if not found.keys() <= planned.keys():
+            self._new_plans[file] = planned | found
+        return found
+
+    def requests_of(self, group: str, batch: str) -> list[dict] | None:
+        """Requests of one batch, from what was planned before if it is there; None if it is not.
+
+        A job asks this, and plans nothing that is not its own.
+        """
+        growing = self.earlier and self._growing(group)
+        if growing and len(growing[0]):
+            content = self.earlier.read(batch_plans.file_of(group, growing[0]))
+            requests = batch_plans.requests_of(content, batch)
+            if requests is not None:
+                return requests
+        return self.batches_in(group).get(batch)
+
+    def keep_planned(self) -> None:
+        """Note the new batches of all groups that were asked for, so that they stay as they are."""
+        for file, planned in self._new_plans.items():
+            self.earlier.write(file, batch_plans.text_of(planned))
+
+    def plan_files(self) -> list[str]:
+        """Files that say what was planned, of all groups."""
+        growing = ((group, self._growing(group)) for group in self.groups)
+        return [
+            batch_plans.file_of(group, found[0]) for group, found in growing if found and found[0]
+        ]
+
+    def requests_in(self, group: str) -> list[dict]:
+        """All requests of a group."""
+        growing = self._growing(group)
+        if growing:
+            return list(growing[0])
+        return [request for cut in self.batches_in(group).values() for request in cut]
+
+    def points_of(self, group: str) -> str:
+        """What a group asks for, as a short text, however it is cut into batches."""
+        growing = self._growing(group)
+        requests = self.requests_in(group)
+        if growing is None or not requests:
+            return fingerprint(self.batch_files(group))
+        return fingerprint(batch_plans.packed(requests), source_digest.of_request(requests[0]))
 
     def groups_of(self, dataset: str) -> list[str]:
         """Groups whose batches a dataset is made of."""
@@ -108,7 +177,7 @@ class Plan:
         return [*self.configuration.grids, *self.studies]
 
     def batch_files(self, *groups: str) -> list[str]:
-        """Files of all batches of these groups, in the order of their requests."""
+        """Files of all batches of these groups, those planned first before others."""
         return [
             f"batches/{group}/{name}.json" for group in groups for name in self.batches_in(group)
         ]
@@ -167,10 +236,9 @@ class Plan:
             names, groups = self.figures[path.stem], ()
         else:
             groups = [*self.groups_of(path.stem), *self.groups_beside(path.stem)]
-            batches = self.batch_files(*groups)
-            return fingerprint(code, self.settings_of(path.stem), batches)
+            return fingerprint(code, self.settings_of(path.stem), [*map(self.points_of, groups)])
         datasets = [self.fingerprint_of(f"{name}.nc") for name in names]
-        return fingerprint(code, path.stem, datasets, self.batch_files(*groups))
+        return fingerprint(code, path.stem, datasets, [*map(self.points_of, groups)])
 
 
 def _figures(configuration, of_studies):

@@ -20,7 +20,9 @@ PATH = Path(__file__).parent / "config.schema.yaml"
 @cache
 def schema():
     """Return the schema as a dict, shared by all callers: do not change it."""
-    return yaml.safe_load(PATH.read_text(encoding="utf-8"))
+    # Every job reads it; libyaml, where PyYAML has it, takes a fifth of the time.
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    return yaml.load(PATH.read_text(encoding="utf-8"), loader)
 
 
 def problem(mapping):

@@ -19,6 +19,8 @@ import sys
 from functools import cache
 from pathlib import Path
 
+from microslip.foundation import parsed_sources
+
 PACKAGE = Path(__file__).parents[1]
 
 ANSWERED_BY = {
@@ -41,7 +43,11 @@ ASKS = "sweeps/evaluate.py"
 NAMED_IN_REQUESTS = {"solver/methods": "method", "motions": "scene", "pressures": "pressure"}
 """Folders of files that requests name, and the key that names them."""
 
-NAMES_ONLY = {"foundation/source_digest.py", "foundation/syntax_digest.py"}
+NAMES_ONLY = {
+    "foundation/source_digest.py",
+    "foundation/syntax_digest.py",
+    "foundation/parsed_sources.py",
+}
 """They say what results are called, and change no number in them."""
 
 
@@ -60,6 +66,7 @@ class Sources:
     def __init__(self, package: str | Path = PACKAGE):
         self.package = Path(package)
         self.contents, self._stamps, self._imports, self._digests = {}, {}, {}, {}
+        self._parsed = parsed_sources.Answers(self.package / "__pycache__")
         for name, path in _importable(self.package):
             self._stamps[name] = _stamp(path)
             self.contents[name] = path.read_bytes()
@@ -85,6 +92,7 @@ class Sources:
         names: paths inside the package, or in one of the folders that requests name.
         """
         content = [(name, self._digest(name)) for name in sorted(names)]
+        self._parsed.keep()
         return hashlib.sha256(json.dumps(content).encode()).hexdigest()
 
     def raw_digest(self, names) -> str:
@@ -133,7 +141,8 @@ class Sources:
 
     def _digest(self, name):
         if name not in self._digests:
-            self._digests[name] = _digest_of(self._content(name))
+            content = self._content(name)
+            self._digests[name] = self._parsed.of("code", content, lambda: _digest_of(content))
         return self._digests[name]
 
     def _targets(self, name, deep):
@@ -143,8 +152,11 @@ class Sources:
         return self._imports[name, deep]
 
     def _imported(self, name, deep):
-        parts = name.removesuffix(".py").split("/")
-        for dotted in _imports_of(self._content(name), [self.package.name, *parts[:-1]], deep):
+        parts, content = name.removesuffix(".py").split("/"), self._content(name)
+        place = [self.package.name, *parts[:-1]]
+        question = f"imports of {'.'.join(place)}{' deep' if deep else ''}"
+        found = self._parsed.of(question, content, lambda: [*_imports_of(content, place, deep)])
+        for dotted in found:
             path = "/".join(dotted)
             for target in (f"{path}.py", f"{path}/__init__.py"):
                 if target in self.contents and target not in NAMES_ONLY:

@@ -7,6 +7,8 @@ file of a single result, see microslip.sweeps.cache; the last one is the checksu
 from __future__ import annotations
 
 import hashlib
+import json
+import re
 from pathlib import Path
 
 from microslip.sweeps.cache import line_of, record_in
@@ -24,7 +26,7 @@ def write_batch(path, records, final=True):
     Raises CacheError as `writing_beside` does.
     """
     content = b"".join(line_of(record) for record in records)
-    write_atomically(path, content + _last_line(content, final))
+    write_atomically(path, with_checksum(content, final))
 
 
 def read_batch(path):
@@ -48,17 +50,64 @@ def why_not_whole(path):
     return "" if final else "it has points that failed"
 
 
-def _batch_content(path):
-    """What a batch holds above its last line, empty if that does not fit; whether it is final."""
-    try:
-        text = Path(path).read_bytes()
-    except OSError as error:
-        raise CacheError(advice("read", path, error)) from error
+class Records:
+    """Records in the files of batches, found by their keys wherever they lie.
+
+    Where they lie is remembered, and not what they hold, so that memory does not grow with them.
+
+    Parameters
+    ----------
+    paths : iterable of paths
+        Files of batches, in any order.
+
+    Raises
+    ------
+    CacheError
+        One line that says what to do, for a file that is damaged.
+    """
+
+    def __init__(self, paths):
+        self._places = {}
+        for path in paths:
+            content, _ = _batch_content(path)
+            if not content:
+                raise CacheError(
+                    f"{path} is damaged; run again: it is made again from finished points"
+                )
+            begin = 0
+            for line in content.splitlines(keepends=True):
+                self._places[KEY.match(line)[1].decode()] = path, begin, len(line)
+                begin += len(line)
+
+    def get(self, key):
+        """The record with this key, None if there is none."""
+        if key not in self._places:
+            return None
+        path, begin, length = self._places[key]
+        with open(path, "rb") as file:
+            file.seek(begin)
+            return json.loads(file.read(length))["record"]
+
+
+KEY = re.compile(rb'{"checksum":"[0-9a-f]{64}","record":{"key":"([0-9a-f]{64})"')
+"""How the line of a record begins."""
+
+
+def with_checksum(content, final=True):
+    """Lines, bytes, and one more that holds their checksum, and whether they are final."""
+    checksum = hashlib.sha256(content).hexdigest().encode()
+    return content + checksum + (b"\n" if final else NOT_FINAL)
+
+
+def without_checksum(text):
+    """What `with_checksum` was given: lines, bytes, none if they are damaged; and `final`."""
     end = text.rfind(b"\n", 0, -1) + 1
     final = not text.endswith(NOT_FINAL)
-    return (text[:end], final) if text[end:] == _last_line(text[:end], final) else (b"", False)
+    return (text[:end], final) if with_checksum(text[:end], final) == text else (b"", False)
 
 
-def _last_line(content, final):
-    checksum = hashlib.sha256(content).hexdigest().encode()
-    return checksum + (b"\n" if final else NOT_FINAL)
+def _batch_content(path):
+    try:
+        return without_checksum(Path(path).read_bytes())
+    except OSError as error:
+        raise CacheError(advice("read", path, error)) from error

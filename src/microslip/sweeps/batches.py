@@ -205,14 +205,16 @@ def records_in(paths):
 def records_for(requests, paths):
     """Records in the files of batches, one by one, each the answer to the next of the requests.
 
-    Raises CacheError as `records_in` does, and where a record answers another request.
+    They may lie in any order, and others between them. Raises CacheError as `records_in` does, and
+    where a request is not answered.
     """
-    records = records_in(paths)
-    for request, record in zip(requests, records, strict=True):
-        if record["request"] != request:
+    records = batch_files.Records(paths)
+    for request in requests:
+        record = records.get(key_of(request))
+        if record is None:
             raise CacheError(
-                f"a batch answers {label(record['request'])} in the place of {label(request)}; "
-                "remove the folder batches and run again: finished points are kept"
+                f"no batch answers {label(request)}; remove the folder batches and run again: "
+                "finished points are kept"
             )
         yield record
 

@@ -8,7 +8,6 @@ integrals over the record of a pressure.Pressure, to about 1e-8.  Dimensionless 
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import brentq
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(128)
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
@@ -53,6 +52,8 @@ def torsion_angle(pressure, stick_radius, poisson=0.0):
 def torsion_stick_radius(pressure, angle, poisson=0.0):
     """Stick radius left by pure torsion through an angle (u_lim/a, >= 0) from rest, the inverse of
     torsion_angle; 0 below SMALLEST_STICK_RADIUS."""
+    from scipy.optimize import brentq  # takes long to load, and few ask for it
+
     if angle <= 0.0:
         return 1.0
 

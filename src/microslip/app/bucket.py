@@ -1,0 +1,44 @@
+"""Plans of batches in a storage that Snakemake knows, such as a bucket."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from microslip.sweeps.sealed_files import write_atomically
+
+
+class Bucket:
+    """What `sweeps.batch_plans.Folder` is, for results that lie in a storage.
+
+    What was planned stays so, whether or not it was made: to ask for hundreds of batches one by one
+    would take longer than planning.
+
+    Attributes
+    ----------
+    object_of : callable
+        The storage object of a file, by its path inside the folder of results.
+    """
+
+    def __init__(self, object_of: Callable):
+        self.object_of = object_of
+
+    def read(self, file: str) -> bytes:
+        """What a file holds, nothing if it is not there."""
+        stored = self.object_of(file)
+        if not stored.exists():
+            return b""
+        local = Path(stored.local_path())
+        local.parent.mkdir(parents=True, exist_ok=True)
+        stored.retrieve_object()
+        return local.read_bytes()
+
+    def counts(self, file: str) -> bool:
+        """Whether the batch that this file is to hold stays as it was planned."""
+        return True
+
+    def write(self, file: str, content: bytes) -> None:
+        """Put a plan in its place."""
+        stored = self.object_of(file)
+        write_atomically(stored.local_path(), content)
+        stored.store_object()

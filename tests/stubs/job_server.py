@@ -1,0 +1,128 @@
+"""Jobs of the workflow, each a fork of a process that has imported what others have written.
+
+Snakemake starts a Python for every script, and most of what that does is to import libraries.  The
+process knows nothing of this package: each job reads the sources of its own project.  `python` is
+what Snakemake starts in the place of Python; it asks the process here for a fork that has its
+folder, its environment and its streams, and ends as that does.
+"""
+
+import atexit
+import contextlib
+import json
+import os
+import runpy
+import signal
+import socket
+import stat
+import subprocess
+import sys
+import tempfile
+import threading
+from importlib import import_module
+from pathlib import Path
+
+LIBRARIES = (
+    *("numba", "scipy.special", "scipy.linalg", "scipy.optimize"),
+    *("netCDF4", "xarray", "dask.array", "pint", "matplotlib.figure", "matplotlib.offsetbox"),
+    *("matplotlib.backends.backend_agg", "matplotlib.backends.backend_pdf"),
+    *("yaml", "jsonschema", "tqdm", "snakemake.logging", "snakemake.script"),
+)
+
+CLIENT = """\
+import json, os, socket, sys
+asked = {"arguments": sys.argv[2:], "folder": os.getcwd(), "environment": dict(os.environ)}
+server = socket.socket(socket.AF_UNIX)
+server.connect(sys.argv[1])
+socket.send_fds(server, [b"."], [0, 1, 2])
+server.sendall(json.dumps(asked).encode() + b"\\n")
+raise SystemExit(int(server.recv(9) or b"1"))
+"""
+
+
+def start(environment):
+    """Start the process; the path of what Snakemake is to start in the place of Python."""
+    folder = tempfile.TemporaryDirectory(prefix="jobs-")
+    atexit.register(folder.cleanup)
+    client, python = Path(folder.name, "client.py"), Path(folder.name, "python")
+    client.write_text(CLIENT)
+    address = f"{folder.name}/socket"
+    one = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
+    running = subprocess.Popen(
+        [sys.executable, __file__, address], env={**environment, **one}, stdin=subprocess.PIPE
+    )
+    atexit.register(running.kill)
+    python.write_text(f'#!/bin/sh\nexec {sys.executable} -I -S {client} {address} "$@"\n')
+    python.chmod(stat.S_IRWXU)
+    while not os.path.exists(address) and running.poll() is None:
+        threading.Event().wait(0.02)
+    return str(python)
+
+
+# What the process does
+
+
+def main(address):
+    sys.path.remove(str(Path(__file__).parent))
+    for name in LIBRARIES:
+        with contextlib.suppress(ImportError):
+            import_module(name)
+    signal.signal(signal.SIGCHLD, _bury)
+    server = socket.socket(socket.AF_UNIX)
+    server.bind(address)
+    server.listen(64)
+    while True:
+        asked, _ = server.accept()
+        if not os.fork():
+            server.close()
+            _run(asked)
+        asked.close()
+
+
+def _bury(*_):
+    """Take note that jobs have ended; how, they say themselves."""
+    with contextlib.suppress(ChildProcessError):
+        while os.waitpid(-1, os.WNOHANG)[0]:
+            pass
+
+
+def _run(connection):
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    _, files, _, _ = socket.recv_fds(connection, 1, 3)
+    for number, file in enumerate(files):
+        os.dup2(file, number)
+        os.close(file)
+    asked = json.loads(connection.makefile().readline())
+    os.chdir(asked["folder"])
+    os.environ.clear()
+    os.environ.update(asked["environment"])
+    sys.argv = asked["arguments"]
+    given = asked["environment"].get("PYTHONPATH", "").split(os.pathsep)
+    sys.path[:0] = [os.path.dirname(sys.argv[0]), *filter(None, given)]
+    threading.Thread(target=_end_with, args=[connection], daemon=True).start()
+    code = 1
+    try:
+        runpy.run_path(sys.argv[0], run_name="__main__")
+        code = 0
+    except SystemExit as ended:
+        code = ended.code if isinstance(ended.code, int) else 1 if ended.code else 0
+        if isinstance(ended.code, str):
+            print(ended.code, file=sys.stderr)
+    except BaseException:
+        sys.excepthook(*sys.exc_info())
+    finally:
+        threading._shutdown()
+        atexit._run_exitfuncs()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        connection.sendall(str(code).encode())
+        os._exit(code)
+
+
+def _end_with(connection):
+    """End this process when that which it stands for has ended."""
+    connection.recv(1)
+    os._exit(1)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

@@ -1,0 +1,111 @@
+"""Snakemake, imported once: each start is a fork of a process that has done nothing else.
+
+To import it takes longer than most of what tests ask of it.  The process knows nothing of this
+package, so that each start reads the workflow and the sources of its own project.
+"""
+
+import atexit
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import threading
+from contextlib import ExitStack
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+
+try:
+    from stubs import job_server
+except ImportError:  # in the process itself
+    job_server = None
+
+
+def start(arguments, folder, environment, timeout=900):
+    """Run Snakemake with these arguments in a folder, as subprocess.run does a command."""
+    server = _server(tuple(sorted(environment.items())))
+    with ExitStack() as stack:
+        said = [stack.enter_context(tempfile.NamedTemporaryFile("w+")) for _ in range(2)]
+        asked = {"arguments": list(map(str, arguments)), "folder": str(folder)}
+        asked["said"] = [file.name for file in said]
+        code = server.ask(asked | {"timeout": timeout})
+        for file in said:
+            file.seek(0)
+        return subprocess.CompletedProcess(arguments, code, *(file.read() for file in said))
+
+
+class _Server:
+    def __init__(self, environment):
+        self.lock = threading.Lock()
+        self.process = subprocess.Popen(
+            [sys.executable, __file__, job_server.start(environment)],
+            env=environment,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        atexit.register(self.process.stdin.close)
+
+    def ask(self, asked):
+        with self.lock:
+            print(json.dumps(asked), file=self.process.stdin, flush=True)
+            return int(self.process.stdout.readline())
+
+
+@cache
+def _server(environment):
+    return _Server(dict(environment))
+
+
+# What the process does
+
+LOADED_LATER = ("jsonschema", "nbformat", "requests", "smart_open", "snakemake.storage", "tqdm")
+
+
+def main():
+    from snakemake import cli
+
+    cli.get_argument_parser()  # imports all plugins
+    for name in LOADED_LATER:
+        import_module(name)
+    sys.path.remove(str(Path(__file__).parent))
+    for line in sys.stdin:
+        asked = json.loads(line)
+        child = os.fork()
+        if not child:
+            _run(asked)
+        print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
+
+
+def _run(asked):
+    import signal
+
+    from snakemake.cli import main as snakemake
+
+    signal.alarm(asked["timeout"])  # which ends it
+    sys.executable = sys.argv[1]  # what starts jobs
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    for number, name in enumerate(asked["said"], 1):
+        os.dup2(os.open(name, os.O_WRONLY), number)
+    os.chdir(asked["folder"])
+    sys.argv = ["snakemake", *asked["arguments"]]
+    code = 1
+    try:
+        snakemake(asked["arguments"])
+    except SystemExit as ended:
+        code = ended.code if isinstance(ended.code, int) else 1 if ended.code else 0
+        if isinstance(ended.code, str):
+            print(ended.code, file=sys.stderr)
+    except BaseException:
+        sys.excepthook(*sys.exc_info())
+    finally:
+        threading._shutdown()
+        atexit._run_exitfuncs()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)
+
+
+if __name__ == "__main__":
+    main()
