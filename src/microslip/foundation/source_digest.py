@@ -41,8 +41,10 @@ ASKS = "sweeps/evaluate.py"
 NAMED_IN_REQUESTS = {"solver/methods": "method", "motions": "scene", "pressures": "pressure"}
 """Folders of files that requests name, and the key that names them."""
 
-NAMES_ONLY = {"foundation/source_digest.py", "foundation/syntax_digest.py"}
-"""They say what results are called, and change no number in them."""
+NAMES_ONLY = {
+    f"foundation/{name}.py" for name in ("kernel_cache", "source_digest", "syntax_digest")
+}
+"""They say what results are called and where code is kept, and change no number in results."""
 
 
 class Sources:

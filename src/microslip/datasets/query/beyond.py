@@ -18,7 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from microslip.theory.catalogue import FORMS, LARGEST_DROPS, STATIC
+from microslip.theory.catalogue import FORMS
+from microslip.theory.exact import LARGEST_DROPS, STATIC_LIMITS
 
 ROUNDING = 1e-12
 SLOW_EXPONENT = 2.0 / 3.0
@@ -51,7 +52,7 @@ class Limits:
 
 
 def _limits(motion, same_limit):
-    static, large = FORMS[motion][STATIC], FORMS[motion]["mu_large_amplitude"]
+    static, large = STATIC_LIMITS[motion], FORMS[motion]["mu_large_amplitude"]
     return Limits(
         static.function,
         not static.any_poisson,
