@@ -22,7 +22,7 @@ from microslip.models.rings.contact import RadialContact
 from microslip.models.squares.contact import CartesianContact
 from microslip.motions.bore import SCENE as BORE
 from microslip.motions.transverse import SCENE as TRANSVERSE
-from microslip.solver.period_map import PeriodMap
+from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
@@ -485,7 +485,8 @@ def test_order_of_the_integrators_in_the_periodic_mean(name):
 
     def mean(steps, integrator):
         path = half_period(scene, velocity, amplitude, 0.3, steps, integrator)
-        found = find_periodic_state(PeriodMap(contact, path), forward_slip(contact), 1e-7, 1e-9)
+        start, goal = forward_slip(contact), Goal(1e-7, 1e-9)
+        found = find_periodic_state(PeriodMap(contact, path), start, goal)
         assert found.converged
         return path.mean(found.forces)[0]
 

@@ -10,7 +10,7 @@ from microslip.models.polar.contact import PolarContact
 from microslip.models.rings.contact import RadialContact
 from microslip.models.squares.contact import CartesianContact
 from microslip.motions.registry import scene_named
-from microslip.solver.period_map import PeriodMap
+from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
 
 CONTACTS = {
@@ -66,7 +66,7 @@ def test_the_periodic_state_is_the_one_that_the_plain_march_ends_in():
     phases, start = half_period_phases(8), forward_slip(contact)
     expected = periodic(matrix, contact.bound, displacement, phases, start, contact.mirrored)
     path = make_path(lambda phase: scene.displacement(phase, VELOCITY, AMPLITUDE, 0.0), phases)
-    found = find_periodic_state(PeriodMap(contact, path), start, 1e-10, 1e-13)
+    found = find_periodic_state(PeriodMap(contact, path), start, Goal(1e-10, 1e-13))
     assert found.converged
     assert found.start == pytest.approx(expected[0], abs=1e-9)
     forces = (contact.weight * expected[:, 0]).sum(axis=(1, 2))

@@ -171,10 +171,7 @@ def solve(
         model=name,
         mu_macro=_within(kind, certified.mu),
         mu_macro_error=certified.error,
-        **{
-            f"error_{source}": error
-            for source, error in ({"model": 0.0} | certified.errors).items()
-        },
+        **{f"error_{source}": error for source, error in certified.errors.items()},
         mu_torque=certified.torque if steady else None,
         mu_torque_error=certified.torque_error + certified.errors["periodicity"]
         if steady

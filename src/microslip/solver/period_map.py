@@ -8,11 +8,34 @@ static limit a state changes so little in a period that a small residual proves 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from microslip.models.contact import March, StepFailure, energy_norm
 from microslip.models.coulomb import project
+
+MOST_MARCHES = 200
+"""Of a search, unless told otherwise."""
+
+
+class Goal(NamedTuple):
+    """What a search for the periodic state is to reach, and what it may take for it.
+
+    Attributes
+    ----------
+    tolerance, step_tolerance : float
+        Of the state and of a step, forces over mu F_z.
+    most_marches : int
+        Marches to try.
+    inverse : np.ndarray or None, shape (start.size, start.size)
+        Of a search from a start near by, if there was one: the inverse of 1 - F' (see newton.py).
+    """
+
+    tolerance: float
+    step_tolerance: float
+    most_marches: int = MOST_MARCHES
+    inverse: np.ndarray | None = None
 
 
 @dataclass(frozen=True, eq=False)
