@@ -232,7 +232,9 @@ def checked_request(
     return tolerance, cells, steps
 
 
-def refuse_choice(kind, model, place, cells, steps):
+def refuse_choice(
+    kind: Scene, model: str, place: tuple, cells: int | None, steps: int | None
+) -> None:
     """Raise InputError where a resolution would have to be chosen, and there is no tolerance to do
     that; place: velocity, amplitude, poisson, and all as checked."""
     problem = Problem(kind, *place)
@@ -260,7 +262,7 @@ def _refuse_free(axes):
         raise InputError("tolerance", None, allowed)
 
 
-def refuse_bounds(**given):
+def refuse_bounds(**given) -> None:
     """Raise InputError for a bound, None or a number, that is not above 0."""
     for name, value in given.items():
         if value is None:

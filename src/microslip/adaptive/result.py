@@ -104,7 +104,7 @@ class Result:
     exhausted: str = ""
     solve_time_s: float
 
-    def to_dict(self):
+    def to_dict(self) -> dict:
         """Fields as a plain dict, without those that the scene does not have."""
         fields = asdict(self)
         return {k: v for k, v in fields.items() if v is not None or k == "tolerance"}

@@ -15,7 +15,7 @@ RATIO = "a ratio: mean forward force over mu F_z; the coefficient felt is mu_app
 BORE = "Bore means spin: rotation about the contact normal."
 
 
-def build_parser(asked=None):
+def build_parser(asked: str | None = None) -> command_line.OneLineParser:
     """Parser of the command line, with all that follows the command `asked`."""
     parser = command_line.OneLineParser(
         allow_abbrev=False,
@@ -132,7 +132,7 @@ def _add_options(parser):
     )
 
 
-def main(arguments=None):
+def main(arguments: list[str] | None = None) -> int:
     """Entry point.
 
     Parameters

@@ -45,7 +45,7 @@ UNDERSTOOD += ("amplitude", "frequency", "rotation", "reduction")
 WIDTH = 18
 
 
-def add_parser(commands):
+def add_parser(commands) -> None:
     """Add the parser of `predict` to those of the other commands."""
     parser = commands.add_parser(
         "predict",
@@ -72,7 +72,7 @@ def add_parser(commands):
     )
 
 
-def run(options):
+def run(options) -> int:
     """Answer; returns the exit code: 0 converged, 1 not converged, 2 bad input."""
     from microslip import predict
     from microslip.foundation.errors import InputError

@@ -5,6 +5,8 @@ Where the compiled code is kept, on which none depends, is in kernel_cache.py.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numba
 
 from microslip.foundation.kernel_cache import folder, kept_in
@@ -13,7 +15,7 @@ OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy"}
 """Compiled once and kept on disk; no reordering of sums; division by zero as NumPy does it."""
 
 
-def kernel(function=None, **options):
+def kernel(function: Callable | None = None, **options) -> Callable:
     """Decorator of functions that Numba compiles when they are first called.
 
     options: of numba.njit, besides OPTIONS, as in `@kernel(inline="always")`.

@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 import sys
 import tempfile
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -24,7 +25,7 @@ FOLDER_NAME = "compiled-"
 
 
 @contextmanager
-def kept_in(place):
+def kept_in(place: Path) -> Iterator[None]:
     """Context in which Numba takes note of where to keep what it will compile."""
     config = numba.config
     before = config.CACHE_DIR, getattr(config, "CACHE_LOCATOR_CLASSES", "")
@@ -48,23 +49,23 @@ class BySources:
         self.function = function
 
     @classmethod
-    def from_function(cls, function, file):
+    def from_function(cls, function: Callable, file: str) -> BySources:
         """The locator of a function."""
         return cls(function)
 
-    def ensure_cache_path(self):
+    def ensure_cache_path(self) -> None:
         """Make the folder; raises OSError."""
         Path(self.get_cache_path()).mkdir(parents=True, exist_ok=True)
 
-    def get_cache_path(self):
+    def get_cache_path(self) -> str:
         """Folder of the function's module."""
         return str(folder() / self.function.__module__)
 
-    def get_source_stamp(self):
+    def get_source_stamp(self) -> str:
         """The same whenever it is asked: the folder changes with the sources."""
         return ""
 
-    def get_disambiguator(self):
+    def get_disambiguator(self) -> str:
         """Tells functions of the same name apart."""
         return str(self.function.__code__.co_firstlineno)
 

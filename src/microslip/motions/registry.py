@@ -8,6 +8,7 @@ adaptive/closed_forms.py.
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from functools import lru_cache
 from importlib import import_module
@@ -29,7 +30,7 @@ FAMILIES = {}
 """Name -> module with DEFAULTS, numbers and their values if not given, and scene(name, ...)."""
 
 
-def find(folder):
+def find(folder: str | os.PathLike) -> None:
     """Make the motions in a folder known: those of the package, or one's own."""
     if str(folder) not in motions.__path__:
         motions.__path__.append(str(folder))

@@ -48,7 +48,7 @@ def _torque(ratio):
     return hertz.TORQUE_FULL_SLIP * float(np.hypot(np.cos(angle), ratio * np.sin(angle)).mean())
 
 
-def ellipse_loads(cells, axes=(1.0, 1.0)):
+def ellipse_loads(cells: int, axes: tuple[float, float] = (1.0, 1.0)) -> np.ndarray:
     """Hertz's pressure integrated over each square, (cells, cells); axes: semi-axes, the forward
     one first."""
     edges = np.arange(cells + 1) * 2.0 / cells - 1.0

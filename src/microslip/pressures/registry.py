@@ -9,6 +9,7 @@ a word and a colon: its file holds SOURCE, the word, and pressure(name).
 
 from __future__ import annotations
 
+import os
 from functools import lru_cache
 from importlib import import_module
 from pkgutil import iter_modules
@@ -29,7 +30,7 @@ SOURCES = {}
 """Word -> module with pressure(name), for names that begin with the word and a colon."""
 
 
-def find(folder):
+def find(folder: str | os.PathLike) -> None:
     """Make the families in a folder known: those of the package, or one's own."""
     if str(folder) not in pressures.__path__:
         pressures.__path__.append(str(folder))

@@ -21,12 +21,12 @@ surface is tilted by 30 degrees at the edge, and a sphere is 7 % deeper there th
 Hertz takes for it."""
 
 
-def doubts(contact, motion):
+def doubts(contact, motion) -> list[str]:
     """List of warnings; contact: contact.TwoBodies, motion: groups.RealMotion."""
     return [text for text in (check(contact, motion) for check in _CHECKS) if text]
 
 
-def unchecked(contact):
+def unchecked(contact) -> list[str]:
     """What could not be checked, for want of which property: list of texts."""
     missing = []
     for name, what in (("hardness", "whether the bodies stay elastic"), ("density", "inertia")):

@@ -89,7 +89,7 @@ class Corrector:
         self.step = float(np.sqrt(self._metric @ correction**2))
         return self.period_map.admissible(interval.state + correction.reshape(interval.state.shape))
 
-    def learn(self, interval, before):
+    def learn(self, interval, before) -> None:
         """Take the derivative from an interval that has one, else update it from the one before."""
         if interval.march.sensitivity is not None:
             self._system = -self._signs * interval.march.sensitivity
@@ -102,7 +102,7 @@ class Corrector:
                 (interval.state - before.state).ravel(), (before.change - interval.change).ravel()
             )
 
-    def damp(self):
+    def damp(self) -> None:
         """Damp corrections by the last derivative more than before."""
         self.damping = max(DAMPING_FACTOR * self.damping, FIRST_DAMPING)
         self._invert()

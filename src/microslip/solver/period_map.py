@@ -95,7 +95,7 @@ class CreepRate:
     static_force: float
     gain: float
 
-    def force_error(self, residual, force):
+    def force_error(self, residual: float, force: float) -> float:
         """Error of the mean forward force that a residual of the plain map stands for."""
         return abs(force - self.static_force) * residual / self.gain
 
@@ -167,15 +167,15 @@ class PeriodMap:
             raise StepFailure("diverged: tractions are not finite")
         return MarchInterval(state, image, change, energy_norm(self.contact, change), march)
 
-    def image(self, state):
+    def image(self, state: np.ndarray) -> np.ndarray:
         """Where the next interval begins, for tractions at the end of one; linear."""
         return self.contact.mirrored(state) if self.mirror else state
 
-    def admissible(self, state):
+    def admissible(self, state: np.ndarray) -> np.ndarray:
         """The state projected on the friction bound, where the integrator keeps to it."""
         return project(state, self.contact.bound) if self.path.end == 1.0 else state
 
-    def distance(self, interval, proposal):
+    def distance(self, interval: MarchInterval, proposal: np.ndarray) -> float:
         """Estimated distance of an interval's state from the fixed point, given a better state."""
         distance = max(energy_norm(self.contact, proposal - interval.state), interval.residual)
         if self.creep_rate is not None:
@@ -184,7 +184,13 @@ class PeriodMap:
             distance = max(distance, self.creep_rate.force_error(interval.residual, mean))
         return distance
 
-    def result(self, interval, distance, converged, inverse=None):
+    def result(
+        self,
+        interval: MarchInterval,
+        distance: float,
+        converged: bool,
+        inverse: np.ndarray | None = None,
+    ) -> PeriodicState:
         """The PeriodicState that an interval amounts to."""
         return PeriodicState(
             forces=interval.march.forces,
