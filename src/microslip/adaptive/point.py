@@ -214,21 +214,13 @@ def checked_point(
     return kind, velocity, amplitude, poisson
 
 
-def checked_accuracy(
-    tolerance: float, cells: int | None, steps: int | None
-) -> tuple[float, int | None, int | None]:
-    """Tolerance and imposed resolution; raises InputError naming the argument at fault."""
-    tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
-    return tolerance, _count("cells", cells, 4), _count("steps", steps, 8)
-
-
 def checked_request(
     tolerance: float | None, cells: int | None, steps: int | None
 ) -> tuple[float | None, int | None, int | None]:
-    """As `checked_accuracy`, but that no tolerance, None, may be asked for."""
-    _, cells, steps = checked_accuracy(TOLERANCE, cells, steps)
+    """Tolerance, if any, and imposed resolution; raises InputError naming the argument at fault."""
+    cells, steps = _count("cells", cells, 4), _count("steps", steps, 8)
     if tolerance is not None:
-        tolerance, _, _ = checked_accuracy(tolerance, None, None)
+        tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
     return tolerance, cells, steps
 
 
@@ -265,9 +257,7 @@ def _refuse_free(axes):
 def refuse_bounds(**given) -> None:
     """Raise InputError for a bound, None or a number, that is not above 0."""
     for name, value in given.items():
-        if value is None:
-            continue
-        if not (is_real(value) and value > 0.0):
+        if value is not None and not (is_real(value) and value > 0.0):
             raise InputError(name, value, "allowed is a number above 0")
 
 

@@ -11,6 +11,7 @@ coulomb.coulomb_residual.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -111,6 +112,11 @@ class DenseContact:
                 lateral - angle * self.contact.forward_position.ravel(),
             ]
         )
+
+
+def dense(solve: Callable, prepare: Callable = nothing) -> Callable:
+    """What a Method's `dress` is: a contact and parameters to a DenseContact."""
+    return lambda contact, **parameters: DenseContact(contact, solve, prepare, **parameters)
 
 
 def safe_length(matrix: np.ndarray) -> float:
