@@ -32,13 +32,29 @@ def write_sweep(
 ) -> None:
     """Write the dataset of a sweep to the netCDF-4 file `path`, all of it or nothing.
 
-    sweep: settings.Sweep. points: records in the order of sweep.PointRequests, any iterable; it is
-    read a block at a time, so that memory does not grow with their number. histories: records
-    in the order of sweep.history_requests. settings: dict of the configuration that led here, kept
-    as provenance. The root has dims (amplitude, velocity), those of them that the scene has, and
-    poisson before them if that is an axis; what has other axes is in GROUPS. The same results give
-    the same bytes. Raises ValueError if there are not as many points as the grid has, CacheError as
-    `write` does.
+    The root has dims (amplitude, velocity), those of them that the scene has, and poisson before
+    them if that is an axis; what has other axes is in GROUPS. The same results give the same bytes.
+
+    Parameters
+    ----------
+    path : str or path
+        Of the file.
+    sweep : records.Sweep
+        Whose dataset it is.
+    points : iterable of dict
+        Records in the order of batches.PointRequests; they are read a block at a time, so that
+        memory does not grow with their number.
+    histories : list of dict
+        Records in the order of batches.history_requests.
+    settings : dict
+        Of the configuration that led here, kept as provenance.
+
+    Raises
+    ------
+    ValueError
+        If there are not as many points as the grid has.
+    CacheError
+        As for `write`.
     """
     axes = _axes(sweep)
     scene, pressure = solver_names(sweep)

@@ -41,8 +41,8 @@ class RadialContact:
     Attributes
     ----------
     edges : np.ndarray or None, shape (cells + 1,)
-        Radii between the rings before the contact is `pressed`, None where there are none or it has
-        a hole.
+        Radii between the rings of the reference contact, None where there are none or it has a
+        hole.
     """
 
     has_sensitivity = True
@@ -113,8 +113,8 @@ class RadialContact:
         """
         carried = self.growth.carried(self.growth.pressure, self.growth.edges, depths)
         edge = self.growth.pressure.radius(depths) if edge is None else edge
-        outside = edge[:, None] <= self._joins
-        carried[:, 1:-1] = np.where(outside, carried[:, -1:], carried[:, 1:-1])
+        outside, most = edge[:, None] <= self._joins, carried[:, -1:]
+        carried[:, 1:-1] = np.where(outside, most, carried[:, 1:-1])
         return np.maximum(np.diff(carried, axis=1), 0.0) / self.weight
 
     def bounds_along(self, path) -> np.ndarray:
