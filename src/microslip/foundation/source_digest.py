@@ -36,8 +36,8 @@ ANSWERED_BY = {
 }
 """Kinds of requests (see sweeps.batches) and the modules that `answers` asks for them."""
 
-ASKS = "sweeps/evaluate.py"
-"""It imports what answers a request where that is asked; only what it always imports counts."""
+ASKS = {"sweeps/__init__.py", "sweeps/evaluate.py"}
+"""They import what answers a request where that is asked; only what they always import counts."""
 
 NAMED_IN_REQUESTS = {"solver/methods": "method", "motions": "scene", "pressures": "pressure"}
 """Folders of files that requests name, and the key that names them."""
@@ -101,7 +101,7 @@ class Sources:
         """Modules that a request depends on; named: (folder, name of a file in it) pairs."""
         roots = {f"{module}.py" for module in ANSWERED_BY[kind]} & self.contents.keys()
         roots |= {f"{folder}/{file}.py" for folder, file in named if self._has(folder, file)}
-        asks = self.closure({ASKS} & self.contents.keys(), deep=False)
+        asks = self.closure(ASKS & self.contents.keys(), deep=False)
         return self.closure(roots) | asks
 
     def edited(self, names: Iterable[str]) -> list[str]:
