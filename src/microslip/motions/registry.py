@@ -8,7 +8,6 @@ adaptive/closed_forms.py.
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 from functools import lru_cache
 from importlib import import_module
@@ -29,7 +28,7 @@ FAMILIES = {}
 """Name -> module with DEFAULTS, numbers and their values if not given, and scene(name, ...)."""
 
 
-def find(folder: str | os.PathLike) -> None:
+def find(folder: str) -> None:
     """Make the motions in a folder known: those of the package, or one's own."""
     for file, module in modules_in(folder, motions):
         _add(file, module)

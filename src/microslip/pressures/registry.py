@@ -9,7 +9,6 @@ a word and a colon: its file holds SOURCE, the word, and pressure(name).
 
 from __future__ import annotations
 
-import os
 
 from microslip import pressures
 from microslip.foundation.errors import InputError
@@ -27,7 +26,7 @@ SOURCES = {}
 """Word -> module with pressure(name), for names that begin with the word and a colon."""
 
 
-def find(folder: str | os.PathLike) -> None:
+def find(folder: str) -> None:
     """Make the families in a folder known: those of the package, or one's own."""
     for file, module in modules_in(folder, pressures):
         if hasattr(module, "PRESSURE"):
