@@ -9,7 +9,6 @@ a word and a colon: its file holds SOURCE, the word, and pressure(name).
 
 from __future__ import annotations
 
-
 from microslip import pressures
 from microslip.foundation.errors import InputError
 from microslip.foundation.families import modules_in, record_named
