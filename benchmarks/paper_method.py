@@ -1,6 +1,6 @@
 """The paper's method beside a certified point, in one process on one core.
 
-    python benchmarks/paper_method.py [--steps N] [--repeats N] [--json FILE] [--markdown FILE]
+    python benchmarks/paper_method.py [--steps N] [--repeats N] [--markdown FILE]
 
 The paper's method (R. Pohrt, Front. Mech. Eng. 6:566440, 2020): 32 x 32 squares, backward Euler,
 up to 8,000 time steps marched plainly from full forward slip, stresses to 0.1 %.  Here the steps
@@ -15,9 +15,7 @@ from __future__ import annotations
 import one_thread  # isort: split
 
 import argparse
-import json
 import time
-from pathlib import Path
 from statistics import median
 
 import tables
@@ -102,7 +100,6 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--steps", type=int, default=STEPS, help="steps to march and time")
     parser.add_argument("--repeats", type=int, default=7)
-    parser.add_argument("--json", type=Path, help="file to write the table to")
     tables.add_markdown(parser)
     args = parser.parse_args()
     if args.steps < STEPS_PER_PERIOD or args.repeats < 1:
@@ -116,8 +113,6 @@ def main():
             " them, and the friction need not be periodic yet."
         )
     tables.publish(table, args)
-    if args.json:
-        args.json.write_text(json.dumps(rows, indent=2) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ import signal
 import sys
 
 
-def main():
+def main() -> int:
     """Run this process as the command; returns the exit code, see microslip.app.cli.main."""
     stoppable = sys.argv[1:2] != ["sweep"]  # whose signals are for Snakemake
     asked = signal.getsignal(signal.SIGINT)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from reference_march import solved_stage
 
 from microslip.models.contact import energy_norm
 from microslip.models.path import EULER, SDIRK2, make_path
@@ -183,23 +184,6 @@ def test_folding_takes_even_and_odd_parts(shape, rng):
 # Steps
 
 
-def plain_descent(matrix, b, bound, start):
-    """Tractions of one Coulomb step: projected gradients, accelerated by Nesterov's momentum."""
-    step = 1.0 / np.abs(np.linalg.eigvals(matrix)).max()
-    q, ahead, momentum = start, start, 1.0
-    for count in range(200_000):
-        moved = ahead + step * (b.ravel() - matrix @ ahead.ravel()).reshape(b.shape)
-        moved = moved * np.minimum(1.0, bound / np.maximum(np.hypot(*moved), 1e-300))
-        if np.sum((moved - q) * (ahead - moved)) > 0.0:
-            momentum = 1.0  # overshot: start again
-        following = 0.5 * (1.0 + np.sqrt(1.0 + 4.0 * momentum**2))
-        ahead = moved + (momentum - 1.0) / following * (moved - q)
-        change, q, momentum = np.abs(moved - q).max(), moved, following
-        if change < 1e-14 and count > 50:
-            break
-    return q
-
-
 def path_through(motions, integrator=EULER):
     """Straight lines through rows of (forward, lateral, angle), a step each."""
     motions, phase = np.asarray(motions, dtype=float), np.arange(len(motions))
@@ -240,9 +224,9 @@ def test_steps_are_the_solutions_of_plain_descent(rotates, nu, integrator):
         b = held + rigid(after - before)
         if integrator is SDIRK2:
             early = held + gamma * rigid(after - before)
-            expected = plain_descent(matrix, early, contact.bound, q)
+            expected = solved_stage(matrix, early, contact.bound, q)
             b = b - (1.0 - gamma) / gamma * (early - displacement(expected))
-        expected = plain_descent(matrix, b, contact.bound, expected)
+        expected = solved_stage(matrix, b, contact.bound, expected)
         path = path_through([before, after], integrator)
         assert contact.march(path, q, 1e-11).state == pytest.approx(expected, abs=1e-8)
         q = expected

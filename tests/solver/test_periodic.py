@@ -12,7 +12,7 @@ from microslip.models.rings.contact import RadialContact
 from microslip.motions.bore import SCENE as BORE
 from microslip.motions.transverse import SCENE as TRANSVERSE
 from microslip.solver.newton import Corrector
-from microslip.solver.period_map import PeriodMap
+from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.simulate import simulate
@@ -113,7 +113,7 @@ def test_second_half_of_the_period_mirrors_the_first(name, integrator):
     scene, point = CASES[name][1], POINTS[name][1]
     contact, path = contact_of(name, *point), path_of(name, *point, integrator)
     cycle = PeriodMap(contact, path)
-    found = find_periodic_state(cycle, forward_slip(contact), TOLERANCE, STEP_TOLERANCE)
+    found = find_periodic_state(cycle, forward_slip(contact), Goal(TOLERANCE, STEP_TOLERANCE))
     assert found.converged
     whole = path_of(name, *point, integrator, whole=True)
     march = contact.march(whole, found.start, STEP_TOLERANCE)
@@ -130,11 +130,10 @@ def test_second_half_of_the_period_mirrors_the_first(name, integrator):
 def test_verdict_is_that_of_the_plain_map(name):
     contact, path = contact_of(name, *POINTS[name][1]), path_of(name, *POINTS[name][1])
     start = forward_slip(contact)
-    enough = find_periodic_state(PeriodMap(contact, path), start, TOLERANCE, STEP_TOLERANCE)
+    enough = find_periodic_state(PeriodMap(contact, path), start, Goal(TOLERANCE, STEP_TOLERANCE))
     assert enough.converged and enough.residual <= enough.distance <= TOLERANCE
-    few = find_periodic_state(
-        PeriodMap(contact, path), start, TOLERANCE, STEP_TOLERANCE, most_marches=enough.marches - 1
-    )
+    fewer = Goal(TOLERANCE, STEP_TOLERANCE, enough.marches - 1)
+    few = find_periodic_state(PeriodMap(contact, path), start, fewer)
     assert not few.converged
     assert few.marches < enough.marches
     assert few.distance > TOLERANCE or few.solver_residual > enough.solver_residual

@@ -12,7 +12,7 @@ from microslip.motions.bore import SCENE as BORE
 from microslip.motions.transverse import SCENE as TRANSVERSE
 from microslip.solver.method_names import method_named
 from microslip.solver.methods import _searches
-from microslip.solver.period_map import PeriodMap
+from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.static_limit import static_state
@@ -167,7 +167,7 @@ def periodic_force(velocity, share, search):
     contact = RadialContact.resolved(16, TRANSVERSE.focus(velocity, 0.5, TRANSVERSE.pressure))
     path = motion.path(contact, 32)
     room, oscillating = static_state(contact, motion.oscillation, 1e-12)
-    found = search(PeriodMap(contact, path), oscillating + share * room, 1e-6, 1e-9, 200)
+    found = search(PeriodMap(contact, path), oscillating + share * room, Goal(1e-6, 1e-9))
     assert found.converged
     return path.mean(found.forces)[FORWARD]
 

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from microslip.solver.problem import Resolution
+
 EXTRAPOLATION_SHARE = 0.6
 CHANGE_SHARE = 0.5
 """Errors of cells over the last extrapolation, and over the change of the extrapolated value."""
@@ -52,7 +54,7 @@ class Axis:
     tied: tuple[str, tuple[int, ...]] | None = None
 
     @property
-    def refines(self):
+    def refines(self) -> tuple[str, ...]:
         """Names of what it refines: itself, and what is tied to it."""
         return (self.name,) if self.tied is None else (self.name, self.tied[0])
 
@@ -65,7 +67,7 @@ class Runs:
         self.base = {axis.name: axis.base for axis in axes}
         self.done = {}
 
-    def resolution(self, **indices):
+    def resolution(self, **indices: int) -> Resolution:
         """The base with some indices replaced, as a problem.Resolution."""
         at = self.base | indices
         levels = {name: self.axes[name].levels[index] for name, index in at.items()}
@@ -87,7 +89,7 @@ class Readings:
     def __init__(self, runs, readings):
         self.runs, self.readings, self.done = runs, readings, {}
 
-    def open(self, chains, name):
+    def open(self, chains: dict[str, Chain], name: str) -> float:
         """How far they leave a value open."""
         first = refines_cells(chains)
         finest = {} if first is None else {first: chains[first].indices[-1]}
@@ -109,25 +111,25 @@ class Chain:
         self.indices = list(axis.first)
 
     @property
-    def levels(self):
+    def levels(self) -> list[int]:
         return [self.axis.levels[index] for index in self.indices]
 
-    def values(self, name):
+    def values(self, name: str) -> list[float]:
         return [getattr(self.runs(**{self.axis.name: index}), name) for index in self.indices]
 
-    def rebase(self):
+    def rebase(self) -> None:
         """Go on from a new base: no more runs than the error needs, up to the base at least."""
         last = max(self.indices[-1], self.runs.base[self.axis.name])
         self.indices = list(range(max(last + 1 - len(self.axis.first), 0), last + 1))
 
-    def refine(self):
+    def refine(self) -> bool:
         """One more run; False if there is no finer level."""
         if self.indices[-1] + 1 == len(self.axis.levels):
             return False
         self.indices.append(self.indices[-1] + 1)
         return True
 
-    def correction(self, name):
+    def correction(self, name: str) -> float:
         """What the chain adds to the value at the base."""
         values = self.values(name)
         added = values[-1] - getattr(self.runs(), name)
@@ -135,7 +137,7 @@ class Chain:
             added += _extrapolation(values, self.levels)
         return added
 
-    def error(self, name):
+    def error(self, name: str) -> float:
         """Estimated error after the correction."""
         values, levels = self.values(name), self.levels
         if not self.axis.regular:

@@ -58,8 +58,8 @@ def choose_model(scene: Scene, poisson: float, model: str = "auto") -> str:
 
 
 def method_refusal(scene: Scene, model: str, method: Method) -> str:
-    """Why a method.Method has no part in how a model (by name) computes a scene, as one line; "" if
-    it has."""
+    """Why a method has no part in how a model (by name) computes a scene, as one line; "" if it
+    has."""
     if method.run is not None:
         if model != method.model:
             return f"it is a run of the model {method.model}"

@@ -5,8 +5,8 @@ from __future__ import annotations
 from microslip.motions.motion import Scene
 from microslip.pressures.registry import HERTZ
 from microslip.solver.problem import Problem
-from microslip.theory import hertz
-from microslip.theory.catalogue import FORMS, LARGEST_DROPS, STATIC
+from microslip.theory import hertz, paper
+from microslip.theory.exact import LARGEST_DROPS, STATIC_LIMITS
 
 QUADRATURE = 1e-7
 """Error of Eqs 17 and 18 for another pressure, which may have kinks."""
@@ -43,14 +43,14 @@ def closed_form(problem: Problem, tolerance: float) -> tuple | None:
     """
     scene, velocity, amplitude = problem.scene, problem.velocity, problem.amplitude
     if not scene.periodic:
-        return _steady(scene, velocity)
+        return _steady_bore(scene, velocity) if scene.name == "continuous-bore" else None
     if scene.whole is not None and problem.poisson == 0.0:
         whole = scene.whole(velocity, amplitude, scene.pressure)
         if whole is not None:
             error = WHOLE_ROUNDING if velocity > 0.0 else ROUNDING
             return float(whole), None, error if scene.pressure.hertzian else OF_RECORD
     if velocity == 0.0:
-        known = None if scene.whole is not None else FORMS.get(scene.name, {}).get(STATIC)
+        known = None if scene.whole is not None else STATIC_LIMITS.get(scene.name)
         if known is None or (problem.poisson > 0.0 and not known.any_poisson):
             return None
         return _static(scene, known.function, amplitude, problem.poisson)
@@ -62,10 +62,10 @@ def closed_form(problem: Problem, tolerance: float) -> tuple | None:
     return None
 
 
-def _steady(scene, velocity):
+def _steady_bore(scene, velocity):
     """Eqs 17 and 18; 21 and 22 for a sphere."""
     if scene.pressure is HERTZ:
-        forward, torque = (form.function(velocity) for form in FORMS[scene.name].values())
+        forward, torque = paper.bore_forward(velocity), paper.bore_torque(velocity)
         return float(forward), float(torque), ROUNDING
     if not scene.pressure.is_round:
         return None

@@ -149,10 +149,10 @@ def traction_field(
     Returns
     -------
     dict
-        Arrays over points: lateral_position, forward_position (over a); traction_lateral,
-        traction_forward, bound (over mu F_z / a^2), the tractions those on the indenter, which
-        oppose its motion, as in Eq 15.  And centre_lateral, where the instantaneous centre of
-        rotation lies (Eq 14).
+        - lateral_position, forward_position: of the points, over a.
+        - traction_lateral, traction_forward, bound: there, over mu F_z / a^2; the tractions are
+          those on the indenter, which oppose its motion, as in Eq 15.
+        - centre_lateral: where the instantaneous centre of rotation lies (Eq 14), over a.
 
     Raises
     ------

@@ -171,10 +171,7 @@ def solve(
         model=name,
         mu_macro=_within(kind, certified.mu),
         mu_macro_error=certified.error,
-        **{
-            f"error_{source}": error
-            for source, error in ({"model": 0.0} | certified.errors).items()
-        },
+        **{f"error_{source}": error for source, error in certified.errors.items()},
         mu_torque=certified.torque if steady else None,
         mu_torque_error=certified.torque_error + certified.errors["periodicity"]
         if steady
@@ -217,25 +214,19 @@ def checked_point(
     return kind, velocity, amplitude, poisson
 
 
-def checked_accuracy(
-    tolerance: float, cells: int | None, steps: int | None
-) -> tuple[float, int | None, int | None]:
-    """Tolerance and imposed resolution; raises InputError naming the argument at fault."""
-    tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
-    return tolerance, _count("cells", cells, 4), _count("steps", steps, 8)
-
-
 def checked_request(
     tolerance: float | None, cells: int | None, steps: int | None
 ) -> tuple[float | None, int | None, int | None]:
-    """As `checked_accuracy`, but that no tolerance, None, may be asked for."""
-    _, cells, steps = checked_accuracy(TOLERANCE, cells, steps)
+    """Tolerance, if any, and imposed resolution; raises InputError naming the argument at fault."""
+    cells, steps = _count("cells", cells, 4), _count("steps", steps, 8)
     if tolerance is not None:
-        tolerance, _, _ = checked_accuracy(tolerance, None, None)
+        tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
     return tolerance, cells, steps
 
 
-def refuse_choice(kind, model, place, cells, steps):
+def refuse_choice(
+    kind: Scene, model: str, place: tuple, cells: int | None, steps: int | None
+) -> None:
     """Raise InputError where a resolution would have to be chosen, and there is no tolerance to do
     that; place: velocity, amplitude, poisson, and all as checked."""
     problem = Problem(kind, *place)
@@ -263,12 +254,10 @@ def _refuse_free(axes):
         raise InputError("tolerance", None, allowed)
 
 
-def refuse_bounds(**given):
+def refuse_bounds(**given) -> None:
     """Raise InputError for a bound, None or a number, that is not above 0."""
     for name, value in given.items():
-        if value is None:
-            continue
-        if not (is_real(value) and value > 0.0):
+        if value is not None and not (is_real(value) and value > 0.0):
             raise InputError(name, value, "allowed is a number above 0")
 
 

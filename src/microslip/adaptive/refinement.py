@@ -82,7 +82,7 @@ class Certified:
     periodic: bool
 
     @property
-    def error(self):
+    def error(self) -> float:
         return sum(self.errors.values())
 
 

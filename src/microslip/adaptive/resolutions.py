@@ -103,7 +103,7 @@ class CellsPolicy:
     regular: bool = True
     caution: float = 1.0
 
-    def axis(self):
+    def axis(self) -> Axis:
         """The Axis to refine."""
         coarsest, finest = (self.levels.index(cells) for cells in self.first)
         first = tuple(range(coarsest, finest + 1))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Result:
     """Friction at one point, and how far to trust it.
 
@@ -83,28 +83,28 @@ class Result:
     method: str
     mu_macro: float
     mu_macro_error: float
-    error_space: float
-    error_time: float
-    error_periodicity: float
-    error_solver: float
-    error_model: float
-    mu_torque: float | None
-    mu_torque_error: float | None
+    error_space: float = 0.0
+    error_time: float = 0.0
+    error_periodicity: float = 0.0
+    error_solver: float = 0.0
+    error_model: float = 0.0
+    mu_torque: float | None = None
+    mu_torque_error: float | None = None
     converged: bool
     periodic: bool
-    reason: str
-    cells: int
-    angles: int
-    steps_per_period: int
-    periods: float
-    iterations: int
-    work: int
-    effort: int
-    retried: int
-    exhausted: str
+    reason: str = ""
+    cells: int = 0
+    angles: int = 0
+    steps_per_period: int = 0
+    periods: float = 0.0
+    iterations: int = 0
+    work: int = 0
+    effort: int = 0
+    retried: int = 0
+    exhausted: str = ""
     solve_time_s: float
 
-    def to_dict(self):
+    def to_dict(self) -> dict:
         """Fields as a plain dict, without those that the scene does not have."""
         fields = asdict(self)
         return {k: v for k, v in fields.items() if v is not None or k == "tolerance"}
@@ -118,24 +118,11 @@ def of_closed_form(point: dict, values: tuple, seconds: float) -> Result:
         **point,
         mu_macro=mu,
         mu_macro_error=error,
-        error_space=0.0,
-        error_time=0.0,
-        error_periodicity=0.0,
-        error_solver=0.0,
         error_model=error,
         mu_torque=torque,
         mu_torque_error=None if torque is None else error,
         converged=within,
         periodic=True,
         reason="" if within else f"the error is {error:.1e}, above the tolerance of {asked:g}",
-        cells=0,
-        angles=0,
-        steps_per_period=0,
-        periods=0.0,
-        iterations=0,
-        work=0,
-        effort=0,
-        retried=0,
-        exhausted="",
         solve_time_s=seconds,
     )

@@ -65,9 +65,11 @@ def run_trial(
     Returns
     -------
     dict
-        mu_macro (nan if there is none), converged, reason, periods (full ones, of all searches
-        together), iterations, solves, unknowns, work = solves x unknowns and effort = iterations x
-        unknowns.
+        - mu_macro: NaN if there is none.
+        - converged, reason: whether the state is periodic, and why not.
+        - periods: full ones, of all searches together.
+        - iterations, solves, unknowns: of the step solver.
+        - work, effort: solves x unknowns, and iterations x unknowns.
 
     Raises
     ------

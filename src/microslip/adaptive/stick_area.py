@@ -29,13 +29,16 @@ def patches(
     Returns
     -------
     dict
-        mu_macro, converged, reason; phase, stick_right, stick_left: over the steps, the last two
-        the shares of the contact's area that stick at positive and at negative lateral positions;
-        least_stick: of both together; forward_position, lateral_position, area: of the points
-        (units a and a^2, the areas add up to pi); moment_phase: phases of single moments, and
-        moment_share, shape (moments, points): size of the traction over the bound there, 1 where a
-        point slips.  The moments are: when least of the contact sticks in a stroke, the middle of
-        the stroke, and the same of the stroke back.
+        - mu_macro, converged, reason: as for `microslip.solve`.
+        - phase, stick_right, stick_left: over the steps, the last two the shares of the contact's
+          area that stick at positive and at negative lateral positions.
+        - least_stick: of both together.
+        - forward_position, lateral_position, area: of the points, units a and a^2; the areas add up
+          to pi.
+        - moment_phase: phases of single moments: when least of the contact sticks in a stroke, the
+          middle of the stroke, and the same of the stroke back.
+        - moment_share, shape (moments, points): size of the traction over the bound there, 1 where
+          a point slips.
 
     Raises
     ------

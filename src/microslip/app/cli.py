@@ -15,7 +15,7 @@ RATIO = "a ratio: mean forward force over mu F_z; the coefficient felt is mu_app
 BORE = "Bore means spin: rotation about the contact normal."
 
 
-def build_parser(asked=None):
+def build_parser(asked: str | None = None) -> command_line.OneLineParser:
     """Parser of the command line, with all that follows the command `asked`."""
     parser = command_line.OneLineParser(
         allow_abbrev=False,
@@ -80,66 +80,59 @@ def _add_motions(parser):
         _add_options(scene)
 
 
-def _add_options(parser):
-    parser.add_argument(
-        "--pressure",
-        default="hertz",
-        metavar="NAME",
-        help="hertz (a sphere), power:exponent=1 (a cone; any power), punch:flat=0.8 (rounded "
-        "edge), ring:inner=0.5, ellipse:ratio=0.5 (across=1: long axis across), or file:FILE, a "
-        "grid of forward,lateral,pressure, CSV or netCDF, means over cells unless "
-        "file:FILE,grid=samples says values at points (hertz)",
-    )
-    parser.add_argument(
-        "--poisson",
-        "--nu",
-        action=command_line.Said,
-        default="0",
-        metavar="NU",
-        help="Poisson's ratio, 0 to 0.5 (0)",
-    )
-    parser.add_argument(
-        "--model",
-        default="auto",
-        metavar="NAME",
-        help="auto (the cheapest that is right), rigid, slider, dahl, mdr, radial, polar or "
-        "cartesian",
-    )
-    parser.add_argument(
-        "--tolerance",
-        default="1e-3",
-        metavar="T",
-        help="largest accepted error of mu_macro, absolute (1e-3); none, where cells and steps are "
+OPTIONS = {
+    "pressure": (
+        "NAME",
+        "hertz (a sphere), power:exponent=1 (a cone; any power), punch:flat=0.8 (rounded edge), "
+        "ring:inner=0.5, ellipse:ratio=0.5 (across=1: long axis across), or file:FILE, a grid of "
+        "forward,lateral,pressure, CSV or netCDF, means over cells unless file:FILE,grid=samples "
+        "says values at points (hertz)",
+    ),
+    "poisson": ("NU", "Poisson's ratio, 0 to 0.5 (0)"),
+    "model": (
+        "NAME",
+        "auto (the cheapest that is right), rigid, slider, dahl, mdr, radial, polar or cartesian",
+    ),
+    "tolerance": (
+        "T",
+        "largest accepted error of mu_macro, absolute (1e-3); none, where cells and steps are "
         "imposed: whatever their error is",
-    )
-    parser.add_argument(
-        "--cells",
-        metavar="N",
-        help="impose N rings, or N x N squares (even, from 4 on)",
-    )
-    parser.add_argument("--steps", metavar="N", help="impose N steps a period (even)")
-    parser.add_argument(
-        "--time-limit",
-        metavar="SECONDS",
-        help="give up after so long, looked at between two marches; the answer is not kept then",
-    )
-    parser.add_argument(
-        "--method",
-        default="shipped",
-        metavar="NAME",
-        help="another way to compute it, for comparison: the name of a file in microslip/methods",
-    )
-    parser.add_argument(
-        "--results",
-        metavar="FOLDER",
-        help="look the answer up in a folder of results, say of a sweep, and keep it there",
-    )
+    ),
+    "cells": ("N", "impose N rings, or N x N squares (even, from 4 on)"),
+    "steps": ("N", "impose N steps a period (even)"),
+    "time-limit": (
+        "SECONDS",
+        "give up after so long, looked at between two marches; the answer is not kept then",
+    ),
+    "method": (
+        "NAME",
+        "another way to compute it, for comparison: the name of a file in microslip/methods",
+    ),
+    "results": (
+        "FOLDER",
+        "look the answer up in a folder of results, say of a sweep, and keep it there",
+    ),
+}
+DEFAULTS = {"pressure": "hertz", "poisson": "0", "model": "auto", "tolerance": "1e-3"}
+DEFAULTS["method"] = "shipped"
+OTHER_NAMES = {"poisson": ("--nu",)}
+
+
+def _add_options(parser):
+    for name, (metavar, text) in OPTIONS.items():
+        parser.add_argument(
+            *(f"--{name}", *OTHER_NAMES.get(name, ())),
+            action=command_line.Said,
+            default=DEFAULTS.get(name),
+            metavar=metavar,
+            help=text,
+        )
     parser.add_argument(
         "--json", action="store_true", help="print one JSON object and nothing else"
     )
 
 
-def main(arguments=None):
+def main(arguments: list[str] | None = None) -> int:
     """Entry point.
 
     Parameters
@@ -168,9 +161,10 @@ def main(arguments=None):
     from microslip.sweeps.evaluate import plain  # only now: --help and bad options need no solver
     from microslip.sweeps.sealed_files import CacheError
 
-    progress, named = _Progress(enabled=sys.stderr.isatty()), f"microslip point {options.scene}"
+    named = f"microslip point {options.scene}"
     try:
-        result = _answer(options, progress)
+        with _bar() as bar:
+            result = _answer(options, lambda resolution: _show(bar, resolution))
     except InputError as error:
         problem = error.renamed(*_as_given(options, error.argument))
         terminal.complain(f"{named}: {problem}")
@@ -181,8 +175,6 @@ def main(arguments=None):
     except ValueError as error:
         terminal.complain(f"{named}: {error}")
         return 2
-    finally:
-        progress.close()
     if options.json:
         print(json.dumps({"amplitude": None} | plain(result.to_dict())))
     else:
@@ -223,27 +215,17 @@ def _answer(options, progress):
     return solve_stored(**settings, results=options.results)
 
 
-class _Progress:
+def _bar():
     """A line on standard error that counts the runs; silent where nobody looks."""
+    from tqdm import tqdm
 
-    def __init__(self, enabled):
-        self.enabled, self.bar = enabled, None
+    return tqdm(unit=" runs", leave=False, disable=None, delay=0.1)
 
-    def __call__(self, resolution):
-        if not self.enabled:
-            return
-        if self.bar is None:
-            from tqdm import tqdm
 
-            self.bar = tqdm(unit=" runs", leave=False)
-        self.bar.set_description(
-            f"{resolution.cells} cells, {resolution.angles} angles, {resolution.steps} steps"
-        )
-        self.bar.update()
-
-    def close(self):
-        if self.bar is not None:
-            self.bar.close()
+def _show(bar, resolution):
+    cells, angles, steps = resolution.cells, resolution.angles, resolution.steps
+    bar.set_description(f"{cells} cells, {angles} angles, {steps} steps")
+    bar.update()
 
 
 def _as_text(result):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import difflib
 import re
+from typing import NoReturn
 
 from microslip.app.terminal import complain
 
@@ -23,11 +24,11 @@ NEGATIVE = re.compile(r"-\s*([0-9.,]|inf|nan)", re.IGNORECASE)
 class OneLineParser(argparse.ArgumentParser):
     """Bad input gets one line on standard error and exit code 2."""
 
-    def error(self, message):
+    def error(self, message: str) -> NoReturn:
         complain(f"{self.prog}: {message} (see {self.prog} --help)")
         raise SystemExit(2)
 
-    def parse_known_args(self, args=None, namespace=None):
+    def parse_known_args(self, args=None, namespace=None) -> tuple:
         self._refuse_strange_words(args)
         return super().parse_known_args(args, namespace)
 
@@ -73,7 +74,7 @@ class Said(argparse.Action):
         namespace.said = getattr(namespace, "said", {}) | {self.dest: option_string}
 
 
-def joined(arguments):
+def joined(arguments: list[str]) -> list[str]:
     """Options and negative numbers, with a unit or not, as one word: argparse takes -1e-3 for an
     option."""
     out = []

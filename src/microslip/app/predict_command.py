@@ -39,25 +39,13 @@ OPTIONS = {
 }
 NEEDED = ("radius", "load", "mu", "speed")
 OTHER_NAMES = {"nu": ("--poisson",)}
-UNDERSTOOD = {
-    "scene": "scene",
-    "body": "body",
-    "counterbody": "counterbody",
-    "radius": "radius",
-    "counter_radius": "counter radius",
-    "load": "load",
-    "mu": "mu",
-    "speed": "speed",
-    "amplitude": "amplitude",
-    "frequency": "frequency",
-    "rotation": "rotation",
-    "reduction": "reduction",
-}
-"""What a Prediction has understood, in the order of the answer, and what it is called there."""
+UNDERSTOOD = ("scene", "body", "counterbody", "radius", "counter_radius", "load", "mu", "speed")
+UNDERSTOOD += ("amplitude", "frequency", "rotation", "reduction")
+"""What a Prediction has understood, in the order of the answer."""
 WIDTH = 18
 
 
-def add_parser(commands):
+def add_parser(commands) -> None:
     """Add the parser of `predict` to those of the other commands."""
     parser = commands.add_parser(
         "predict",
@@ -84,7 +72,7 @@ def add_parser(commands):
     )
 
 
-def run(options):
+def run(options) -> int:
     """Answer; returns the exit code: 0 converged, 1 not converged, 2 bad input."""
     from microslip import predict
     from microslip.foundation.errors import InputError
@@ -112,8 +100,8 @@ def _complaint(error, typed):
 
 def _as_text(found):
     lines = [
-        _line(title, found.understood[name])
-        for name, title in UNDERSTOOD.items()
+        _line(name.replace("_", " "), found.understood[name])
+        for name in UNDERSTOOD
         if name in found.understood
     ]
     lines += [

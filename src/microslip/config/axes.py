@@ -14,7 +14,7 @@ from microslip.foundation.canonical import number
 MOST_POINTS = 1_000_000
 
 
-def of_paper(name, given, where):
+def of_paper(name: str, given: dict, where: str) -> Sweep:
     """The Sweep of a scene of the paper; given: dict of settings, with defaults filled in.
 
     where: how messages begin, file and key. Raises ConfigError.
@@ -24,7 +24,7 @@ def of_paper(name, given, where):
     return sweep
 
 
-def grid_of(name, scene, given, where, **more):
+def grid_of(name: str, scene: str, given: dict, where: str, **more) -> Sweep:
     """A Sweep with its axes expanded, of settings with defaults filled in; more: its other fields.
 
     Raises ConfigError, beginning with `where`, for a bad axis or too many points.
@@ -64,13 +64,13 @@ def _refuse_no_tolerance(sweep, where):
         )
 
 
-def refuse_crowd(points, where, most):
+def refuse_crowd(points: int, where: str, most: int) -> None:
     """Raise ConfigError for more points than `most`."""
     if points > most:
         raise ConfigError(f"{where}: {points} points are not allowed; allowed: at most {most}")
 
 
-def axis_of(given, where, positive=False):
+def axis_of(given: list | dict, where: str, positive: bool = False) -> tuple[float, ...]:
     """Coordinates of an axis, an ascending tuple; given: a list, or a dict of one spacing.
 
     positive: whether 0 is refused. Raises ConfigError, beginning with `where`.

@@ -5,6 +5,8 @@ What the solver calls a motion or a pressure is a name with numbers, such as
 functions that ask it, and by nothing else: the workflow reads this whenever it is parsed.
 """
 
+from collections.abc import Iterable
+
 from microslip.config import axes
 from microslip.config.records import TAKEN, ConfigError
 from microslip.foundation import named_files
@@ -16,7 +18,7 @@ MOST_LINES = 8
 """Sweeps on a figure of lines, each with a colour and a marker of its own."""
 
 
-def with_files_found(given, where, folders, strict=True):
+def with_files_found(given: dict, where: str, folders: Iterable, strict: bool = True) -> dict:
     """Settings by the names of their sweeps, with the places and digests of files in them.
 
     Whoever reads them again, such as a job, finds the same files without knowing where the
@@ -59,7 +61,7 @@ def with_files_found(given, where, folders, strict=True):
     return found
 
 
-def sweeps(given, where):
+def sweeps(given: dict, where: str) -> dict:
     """Sweeps by their names, in their order; given: dict of settings with defaults filled in.
 
     where: how messages begin, file and key. Raises ConfigError. Whether the solver knows the
@@ -83,7 +85,7 @@ def _by_content(pressure):
     return file.name if file.digest else pressure
 
 
-def refuse_mixtures(given, where):
+def refuse_mixtures(given: list, where: str) -> None:
     """Raise ConfigError for a group of Sweeps that cannot be one figure; where: as above."""
     for group in dict.fromkeys(sweep.group for sweep in given):
         _refuse_mixture([sweep for sweep in given if sweep.group == group], where)
@@ -107,7 +109,7 @@ def _refuse_mixture(together, where):
         )
 
 
-def refuse_unsolvable(given, where):
+def refuse_unsolvable(given: list, where: str) -> None:
     """Raise ConfigError where the solver refuses one of the Sweeps; where: as above."""
     for sweep in given:
         try:
@@ -144,7 +146,7 @@ def _ask_solver(sweep, where):
         checked_point(sweep.scene, 0, amplitude, sweep.poisson[-1], sweep.pressure)
 
 
-def solver_names(sweep):
+def solver_names(sweep) -> tuple[str, str]:
     """Names of a Sweep's scene and pressure as the solver writes them, however they were given.
 
     Equal ones are written alike, so that their points are found again.
@@ -156,7 +158,7 @@ def solver_names(sweep):
 
 
 def _scene_of(sweep):
-    """The Scene of a Sweep; raises ValueError where the solver knows no such motion or pressure."""
+    """The Scene of a Sweep; raises ValueError for a motion or a pressure that there is not."""
     from microslip.motions.registry import scene_named
 
     return scene_named(sweep.scene, sweep.pressure)

@@ -8,6 +8,8 @@ Imports nothing heavy, since the workflow reads it whenever it is parsed.
 
 import codecs
 import io
+import os
+from collections.abc import Iterable
 from pathlib import Path
 
 import yaml
@@ -36,7 +38,7 @@ MOST_MAP_POINTS = 10_000
 STATIC_AMPLITUDES = {"transverse": 1.0, "bore": 5.0}
 
 
-def load(path):
+def load(path: str | os.PathLike) -> Configuration:
     """Read and check the YAML file `path`; return a Configuration or raise ConfigError.
 
     Files that it names are looked for beside it, then in the working directory.
@@ -44,7 +46,7 @@ def load(path):
     return from_mapping(read_yaml(path), source=str(path), folders=[Path(path).parent])
 
 
-def read_yaml(path):
+def read_yaml(path: str | os.PathLike) -> dict:
     """Parse a YAML file into a dict, refusing keys that occur twice.
 
     Raises ConfigError, one line with the file, and the line in it that is at fault.
@@ -78,7 +80,9 @@ def read_yaml(path):
     return mapping
 
 
-def with_files_found(mapping, source="configuration", folders=(), strict=True):
+def with_files_found(
+    mapping: dict, source: str = "configuration", folders: Iterable = (), strict: bool = True
+) -> dict:
     """A parsed configuration, its defaults filled in, that says where the files lie that it names.
 
     A job that is handed it finds them wherever it runs.  Arguments as for `from_mapping`; strict:
@@ -106,7 +110,9 @@ def _as_text(content, path):
     return text
 
 
-def from_mapping(mapping, source="configuration", ask_solver=True, folders=()):
+def from_mapping(
+    mapping: dict, source: str = "configuration", ask_solver: bool = True, folders: Iterable = ()
+) -> Configuration:
     """Check a parsed configuration and return it as a Configuration.
 
     source: how messages name the origin, usually the file. ask_solver: whether the solver, which

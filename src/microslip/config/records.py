@@ -53,13 +53,13 @@ class Sweep:
     title: str | None = None  # there
 
     @property
-    def spans_a_map(self):
+    def spans_a_map(self) -> bool:
         """Whether there is an area to draw: two amplitudes and two velocities above 0 at least."""
         positive = [velocity for velocity in self.velocity if velocity > 0]
         return len(self.amplitude or ()) > 1 and len(positive) > 1
 
     @property
-    def drawn_over(self):
+    def drawn_over(self) -> str:
         """What the figure of a group shows friction over."""
         if self.spans_a_map:
             return "velocity and amplitude"
@@ -124,12 +124,12 @@ class Configuration:
     claims: Claims
 
     @property
-    def grids(self):
+    def grids(self) -> dict[str, Sweep]:
         """All sweeps by name, the paper's first."""
         return self.sweeps | self.extended
 
     @property
-    def groups(self):
+    def groups(self) -> dict[str, tuple[str, ...]]:
         """Names of the sweeps in `extended` by group, a dict of tuples."""
         groups = dict.fromkeys(sweep.group for sweep in self.extended.values())
         return {
@@ -137,7 +137,7 @@ class Configuration:
             for group in groups
         }
 
-    def of_sweep(self, name):
+    def of_sweep(self, name: str) -> dict:
         """All settings that the dataset of the sweep `name` depends on, as a dict for JSON."""
         names = HISTORIES_OF_SWEEP.get(name, ())
         return {

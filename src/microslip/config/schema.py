@@ -8,6 +8,7 @@ import difflib
 import json
 import math
 import re
+from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
@@ -18,14 +19,14 @@ PATH = Path(__file__).parent / "config.schema.yaml"
 
 
 @cache
-def schema():
+def schema() -> dict:
     """Return the schema as a dict, shared by all callers: do not change it."""
     # Every job reads it; libyaml, where PyYAML has it, takes a fifth of the time.
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     return yaml.load(PATH.read_text(encoding="utf-8"), loader)
 
 
-def problem(mapping):
+def problem(mapping: object) -> str | None:
     """Say in one line what is wrong with a configuration: key, value, what is allowed.
 
     mapping: parsed YAML. Returns None if it fits the schema.
@@ -41,7 +42,7 @@ def problem(mapping):
     return None if first is None else _explain(first)
 
 
-def filled(mapping):
+def filled(mapping: object) -> dict:
     """Copy a configuration that fits the schema, with all defaults filled in."""
     return _filled(mapping, schema())
 
@@ -103,7 +104,7 @@ def _explain(error):
     return f"{where}: {shown(value)} is not allowed; {hint}allowed: {_allowed(rule)}"
 
 
-def near_miss(given, known):
+def near_miss(given: object, known: Iterable[str]) -> str:
     """'did you mean this? ' if one of the known names is like what is given, else ''."""
     near = difflib.get_close_matches(str(given), known, n=1)
     return f"did you mean {near[0]}? " if near else ""
@@ -172,7 +173,7 @@ def _dotted(path):
     return text.removeprefix(".")
 
 
-def shown(value):
+def shown(value: object) -> str:
     """Write a value as in JSON, cut to 60 characters."""
     text = json.dumps(value, default=str, ensure_ascii=False)
     text = text.encode("utf-8", "backslashreplace").decode()  # halves of a character, too

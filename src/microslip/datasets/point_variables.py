@@ -3,6 +3,7 @@
 Memory does not grow with the number of points: at most BLOCK of them are held at a time.
 """
 
+from collections.abc import Iterable
 from itertools import islice
 
 import numpy as np
@@ -69,7 +70,7 @@ BLOCK = 4096
 """Points that are held at a time when a dataset is written, and a chunk of larger ones."""
 
 
-def append(file, sweep, axes, points):
+def append(file, sweep, axes: dict, points: Iterable) -> set[str]:
     """Write POINT_VARIABLES over the axes into an open file; the versions behind the records."""
     table = POINT_VARIABLES | (TORQUE_VARIABLES if sweep.amplitude is None else {})
     shape = tuple(len(values) for values in axes.values())
@@ -165,7 +166,7 @@ def _text(value, width):
     return coded[: width - 3].decode(errors="ignore").encode() + b"..."
 
 
-def attributes(kind, long_name, units="1", flags="no yes"):
+def attributes(kind: type, long_name: str, units: str = "1", flags: str = "no yes") -> dict:
     """Attributes of a variable whose values are of a type; flags: what the two of bool mean."""
     if kind is str:
         return {"long_name": long_name}

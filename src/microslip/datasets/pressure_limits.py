@@ -21,7 +21,7 @@ ZONE = replace(
 )
 
 
-def formulas_under(scene, name):
+def formulas_under(scene: str, name: str) -> dict:
     """What theory says about a motion under the pressure of this name: ClosedForms by name."""
     pressure, of_sphere = pressure_named(name), FORMS.get(scene, {})
     if scene == "continuous-bore" and pressure.is_round:

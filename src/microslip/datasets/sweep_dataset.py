@@ -6,6 +6,9 @@ says what made it. The root of a file is the map alone; finer curves and single 
 file depends on when, where or in how many jobs it was made.
 """
 
+import os
+from collections.abc import Iterable, Iterator
+
 import netCDF4
 import numpy as np
 import xarray as xr
@@ -24,16 +27,34 @@ CONVENTIONS = "CF-1.11"
 PAPER = "R. Pohrt, Front. Mech. Eng. 6:566440 (2020), doi:10.3389/fmech.2020.566440"
 
 
-def write_sweep(path, sweep, points, histories, settings):
+def write_sweep(
+    path: str | os.PathLike, sweep, points: Iterable, histories: list, settings: dict
+) -> None:
     """Write the dataset of a sweep to the netCDF-4 file `path`, all of it or nothing.
 
-    sweep: settings.Sweep. points: records in the order of sweep.PointRequests, any iterable; it is
-    read a block at a time, so that memory does not grow with their number. histories: records
-    in the order of sweep.history_requests. settings: dict of the configuration that led here, kept
-    as provenance. The root has dims (amplitude, velocity), those of them that the scene has, and
-    poisson before them if that is an axis; what has other axes is in GROUPS. The same results give
-    the same bytes. Raises ValueError if there are not as many points as the grid has, CacheError as
-    `write` does.
+    The root has dims (amplitude, velocity), those of them that the scene has, and poisson before
+    them if that is an axis; what has other axes is in GROUPS. The same results give the same bytes.
+
+    Parameters
+    ----------
+    path : str or path
+        Of the file.
+    sweep : records.Sweep
+        Whose dataset it is.
+    points : iterable of dict
+        Records in the order of batches.PointRequests; they are read a block at a time, so that
+        memory does not grow with their number.
+    histories : list of dict
+        Records in the order of batches.history_requests.
+    settings : dict
+        Of the configuration that led here, kept as provenance.
+
+    Raises
+    ------
+    ValueError
+        If there are not as many points as the grid has.
+    CacheError
+        As for `write`.
     """
     axes = _axes(sweep)
     scene, pressure = solver_names(sweep)
@@ -87,7 +108,7 @@ def _parts(sweep, histories):
     }
 
 
-def provenance(title, settings, versions, **more):
+def provenance(title: str, settings: dict, versions: set, **more) -> dict:
     """Attributes that say what made a dataset; settings: dict, kept as JSON; versions: set of
     texts, those of the libraries behind its results."""
     return {
@@ -101,7 +122,7 @@ def provenance(title, settings, versions, **more):
     } | more
 
 
-def write(dataset, path, groups=None):
+def write(dataset: xr.Dataset, path: str | os.PathLike, groups: dict | None = None) -> None:
     """Write a Dataset to the netCDF-4 file `path`, all of it or nothing.
 
     groups: those of its dims that are to be in groups of the file, as for `netcdf.divided`.  The
@@ -112,7 +133,7 @@ def write(dataset, path, groups=None):
         netcdf.write(beside, *netcdf.divided(dataset, groups or {}))
 
 
-def report(dataset, name=None):
+def report(dataset: xr.Dataset, name: str | None = None) -> Iterator[str]:
     """Lines of text: how many points there are and, one each, those that did not converge.
 
     name: of the sweep, that of its scene unless told.

@@ -12,7 +12,7 @@ from microslip.theory import catalogue
 CURVE_POINTS = 241
 
 
-def formulas(scene, pressure="hertz"):
+def formulas(scene: str, pressure: str = "hertz") -> dict:
     """What theory says about a motion under a pressure, by the solver's names: a dict of
     catalogue.ClosedForm by name, {} if it says nothing."""
     if pressure == "hertz":
@@ -22,7 +22,7 @@ def formulas(scene, pressure="hertz"):
     return formulas_under(scene, pressure)
 
 
-def variables(sweep):
+def variables(sweep) -> dict:
     """Variables on the axes of a settings.Sweep: name -> (dims, values, attributes)."""
     found = {}
     for name, form in formulas(*solver_names(sweep)).items():
@@ -33,7 +33,7 @@ def variables(sweep):
     return found
 
 
-def curves(sweep):
+def curves(sweep) -> dict:
     """The same on axes fine enough to draw, by `velocity_curves` and `amplitude_curves`.
 
     Beside every limit stands `<name>_curve`, on the fine axis `amplitude_curve` or

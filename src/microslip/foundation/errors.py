@@ -1,6 +1,11 @@
-"""The one kind of error for bad input: it carries what was given and what is allowed."""
+"""The errors that a user can mend: bad input, and a folder that cannot hold results."""
 
 from __future__ import annotations
+
+import errno
+
+NO_WRITING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
+"""Errors of the system that say by themselves what the user is to mend."""
 
 LONGEST = 400
 """Characters of a value that a message shows; of a longer one its beginning and its end."""
@@ -32,6 +37,10 @@ class InputError(ValueError):
     def renamed(self, argument: str, value: object = None) -> InputError:
         """The same about another argument, and another value unless that is None."""
         return InputError(argument, self.value if value is None else value, self.allowed)
+
+
+class CacheError(RuntimeError):
+    """The results folder cannot be used. The message is one line that says what to do."""
 
 
 def shown(value: object) -> str:

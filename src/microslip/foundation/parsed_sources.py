@@ -41,7 +41,7 @@ class Answers:
         self.path = Path(folder, name)
         self._known, self._asked = None, {}
 
-    def of(self, question: str, content: bytes, answer: Callable):
+    def of(self, question: str, content: bytes, answer: Callable) -> object:
         """The answer to a question about a text: what JSON can hold, by `answer()` if not known."""
         if self._known is None:
             self._known = self._read()

@@ -16,6 +16,7 @@ import hashlib
 import json
 import os
 import sys
+from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
@@ -37,18 +38,17 @@ ANSWERED_BY = {
 }
 """Kinds of requests (see sweeps.batches) and the modules that `answers` asks for them."""
 
-ASKS = "sweeps/evaluate.py"
-"""It imports what answers a request where that is asked; only what it always imports counts."""
+ASKS = {"sweeps/__init__.py", "sweeps/evaluate.py"}
+"""They import what answers a request where that is asked; only what they always import counts."""
 
 NAMED_IN_REQUESTS = {"solver/methods": "method", "motions": "scene", "pressures": "pressure"}
 """Folders of files that requests name, and the key that names them."""
 
 NAMES_ONLY = {
-    "foundation/source_digest.py",
-    "foundation/syntax_digest.py",
-    "foundation/parsed_sources.py",
+    f"foundation/{name}.py"
+    for name in ("kernel_cache", "parsed_sources", "source_digest", "syntax_digest")
 }
-"""They say what results are called, and change no number in them."""
+"""They say what results are called and where code is kept, and change no number in results."""
 
 
 class Sources:
@@ -71,7 +71,7 @@ class Sources:
             self._stamps[name] = _stamp(path)
             self.contents[name] = path.read_bytes()
 
-    def closure(self, names, deep=True) -> set[str]:
+    def closure(self, names: Iterable[str], deep: bool = True) -> set[str]:
         """Paths of the modules that these lead to by their imports, themselves included.
 
         names: paths inside the package.  deep: whether imports inside functions of the named
@@ -86,7 +86,7 @@ class Sources:
                 waiting += self._targets(name, True)
         return found
 
-    def digest(self, names) -> str:
+    def digest(self, names: Iterable[str]) -> str:
         """SHA-256 of modules and their names, in hexadecimal; comments and docstrings are no part.
 
         names: paths inside the package, or in one of the folders that requests name.
@@ -95,21 +95,21 @@ class Sources:
         self._parsed.keep()
         return hashlib.sha256(json.dumps(content).encode()).hexdigest()
 
-    def raw_digest(self, names) -> str:
+    def raw_digest(self, names: Iterable[str]) -> str:
         """SHA-256 of modules as they are written, in hexadecimal; quick."""
         found = hashlib.sha256()
         for name in sorted(names):
             found.update(f"{name} {len(self._content(name))} ".encode() + self._content(name))
         return found.hexdigest()
 
-    def of_request(self, kind, named) -> set[str]:
+    def of_request(self, kind: str, named: Iterable) -> set[str]:
         """Modules that a request depends on; named: (folder, name of a file in it) pairs."""
         roots = {f"{module}.py" for module in ANSWERED_BY[kind]} & self.contents.keys()
         roots |= {f"{folder}/{file}.py" for folder, file in named if self._has(folder, file)}
-        asks = self.closure({ASKS} & self.contents.keys(), deep=False)
+        asks = self.closure(ASKS & self.contents.keys(), deep=False)
         return self.closure(roots) | asks
 
-    def edited(self, names) -> list[str]:
+    def edited(self, names: Iterable[str]) -> list[str]:
         """Those of the modules whose code on disk is no longer what was read."""
         return [name for name in sorted(names) if self._is_edited(name)]
 

@@ -75,11 +75,19 @@ def refuse_unknown(text: str, what: str, numbers: dict[str, float], known: Itera
         raise InputError(what, text, f"unknown number {strange[0]}; allowed: {allowed}")
 
 
+def refuse_outside(
+    text: str, what: str, key: str, number: float, limits: tuple, *, kind: str = "a number"
+) -> None:
+    """Raise InputError about `what` for a number, of a kind in words, outside of its limits."""
+    low, high = limits
+    if not low <= number <= high:
+        raise InputError(what, text, f"{key} = {number:g}: allowed is {kind} in {low:g}..{high:g}")
+
+
 def refuse_shares(text: str, what: str, shares: dict[str, float]) -> None:
     """Raise InputError about `what` for a share outside 0..1; shares: dict."""
     for key, share in shares.items():
-        if not 0.0 <= share <= 1.0:
-            raise InputError(what, text, f"{key} = {share:g}: allowed is a share in 0..1")
+        refuse_outside(text, what, key, share, (0.0, 1.0), kind="a share")
 
 
 def refuse_counts(text: str, what: str, counts: dict[str, float], most: int) -> None:

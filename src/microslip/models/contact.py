@@ -51,8 +51,9 @@ class StepFailure(ArithmeticError):
 class Contact(Protocol):
     """A discretised contact under given pressure.
 
-    A contact whose normal load may change also has pressed, bounds, bounds_along and at_phases; one
-    of rings may tell its edges, for rings to be gathered at one of them: see RadialContact.
+    A contact whose normal load may change also has pressed, bounds, bounds_along and
+    at_phases; one of rings may tell its edges, for rings to be gathered at one of them: see
+    RadialContact.
 
     Attributes
     ----------
@@ -82,13 +83,20 @@ class Contact(Protocol):
     stiffness: float
     sticks: bool
 
-    def displacement(self, state) -> np.ndarray:
+    def displacement(self, state: np.ndarray) -> np.ndarray:
         """A q: elastic displacement of each point, same shape as the state."""
 
-    def mirrored(self, state) -> np.ndarray:
+    def mirrored(self, state: np.ndarray) -> np.ndarray:
         """The state after lateral -> -lateral (lateral traction negated)."""
 
-    def march(self, path, state, tolerance, sensitivity=False, previous=None) -> March:
+    def march(
+        self,
+        path,
+        state: np.ndarray,
+        tolerance: float,
+        sensitivity: bool = False,
+        previous: March | None = None,
+    ) -> March:
         """March along a path from a state; every stage is solved to `tolerance` (a force).
 
         previous: a March of the same path from a start near by, whose tractions are first guesses.

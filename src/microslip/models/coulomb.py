@@ -18,20 +18,20 @@ from microslip.foundation.compiled import kernel
 
 
 @kernel(inline="always")
-def shrink(forward, lateral, bound):
+def shrink(forward: float, lateral: float, bound: np.ndarray) -> float:
     """Factor in 0..1 that brings the traction (forward, lateral) onto the disc |q| <= bound."""
     size = np.sqrt(forward * forward + lateral * lateral)
     return min(1.0, bound / max(size, 1e-300))  # no branch: the compiler can vectorise it
 
 
 @kernel(inline="always")
-def extended(start, stage, end):
+def extended(start: float, stage: float, end: float) -> float:
     """Value at the end of a step, given that at its start and that at its share `end`."""
     return stage if end == 1.0 else start + (stage - start) / end
 
 
 @kernel
-def coulomb_residual(q, slip, bound, weight, scale):
+def coulomb_residual(q, slip, bound, weight, scale) -> float:
     """How far tractions are from Coulomb's law, as a force over mu F_z.
 
     q, slip: forward and lateral components, shape (2, n, m); bound, weight (area of a point) and

@@ -8,6 +8,7 @@ Ctrl-C, and the signal is raised again where Python can handle it.
 from __future__ import annotations
 
 import signal
+from collections.abc import Callable
 
 from numba import types
 
@@ -23,7 +24,7 @@ the other threads of the interpreter, so there should not be many."""
 
 
 @kernel
-def interrupted():
+def interrupted() -> bool:
     """Whether Ctrl-C was pressed since somebody asked: only the main thread is told, and once."""
     held = _hold()
     found = _happened()
@@ -31,7 +32,7 @@ def interrupted():
     return found != 0
 
 
-def unbroken(march, *arguments):
+def unbroken(march: Callable, *arguments) -> list:
     """What a compiled march returns, whose last value is whether it was interrupted.
 
     Then Python is told of the signal, which as a rule is a KeyboardInterrupt; where the program has

@@ -50,7 +50,7 @@ class Integrator:
     carried: tuple[tuple[float, ...], ...]
     end: float = 1.0
 
-    def carry_matrix(self):
+    def carry_matrix(self) -> np.ndarray:
         """Carried slips as an array of shape (stages, stages), zero on and above the diagonal."""
         out = np.zeros((len(self.times), len(self.times)))
         for i, row in enumerate(self.carried):
@@ -140,14 +140,14 @@ class Path:
     depth: np.ndarray | None = None
 
     @property
-    def steps(self):
+    def steps(self) -> int:
         return len(self.phase) - 1
 
-    def under(self, bounds):
+    def under(self, bounds: np.ndarray) -> LoadingPath:
         """The LoadingPath under friction bounds, see there."""
         return LoadingPath(self.positions, self.stages, self.carry, self.end, bounds)
 
-    def mean(self, values):
+    def mean(self, values: np.ndarray) -> np.ndarray:
         """Time average of values at the phases (first axis), by the trapezoidal rule."""
         return np.trapezoid(values, self.phase, axis=0) / (self.phase[-1] - self.phase[0])
 

@@ -10,7 +10,7 @@ from microslip.foundation.compiled import kernel
 
 
 @kernel
-def rigid_displacement(motion, positions, out):
+def rigid_displacement(motion, positions: tuple, out) -> None:
     """Fill out, (2, rows, columns), for motion = (forward, lateral, angle); positions: (forward,
     lateral), (rows, columns) each."""
     forward_position, lateral_position = positions
@@ -21,7 +21,7 @@ def rigid_displacement(motion, positions, out):
 
 
 @kernel
-def sum_forces(q, weight, positions, out):
+def sum_forces(q, weight, positions: tuple, out) -> None:
     """Fill out with forward force, lateral force and torque of tractions q, (2, rows, columns);
     weight: area of the points of each column, (columns,)."""
     forward_position, lateral_position = positions

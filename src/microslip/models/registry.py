@@ -53,8 +53,12 @@ class Model:
 
     build: Callable
     refuses: Callable
-    exact: Callable
-    axes: Callable
+    exact: Callable = lambda scene: True
+    axes: Callable = lambda scene: ("cells",)
+
+
+def _never(scene):
+    return False
 
 
 LOAD_CHANGES = "it knows a constant normal load alone"
@@ -103,58 +107,52 @@ def _refuse_rigid(scene, poisson):
     return _refuse_half_disc(scene, poisson) if scene.rotates else ""
 
 
+_NO_ROTATION = _any_of(_refuse_rotation, _refuse_pulsation)
+
 MODELS = {
     "rigid": Model(
-        build=lambda scene, poisson, cells, angles, focus: RigidContact(
+        lambda scene, poisson, cells, angles, focus: RigidContact(
             cells, angles, scene.rotates, scene.pressure
         ),
-        refuses=_any_of(_refuse_pulsation, _refuse_rigid),
+        _any_of(_refuse_pulsation, _refuse_rigid),
         exact=lambda scene: not scene.periodic,
         axes=lambda scene: ("cells", "angles") if scene.rotates else (),
     ),
     "slider": Model(
-        build=lambda scene, poisson, cells, angles, focus: slider_contact(),
-        refuses=_any_of(_refuse_rotation, _refuse_pulsation),
-        exact=lambda scene: False,
+        lambda scene, poisson, cells, angles, focus: slider_contact(),
+        _NO_ROTATION,
+        exact=_never,
         axes=lambda scene: (),
     ),
     "dahl": Model(
-        build=lambda scene, poisson, cells, angles, focus: DahlContact(scene.pressure.stiffness),
-        refuses=_any_of(_refuse_rotation, _refuse_pulsation),
-        exact=lambda scene: False,
+        lambda scene, poisson, cells, angles, focus: DahlContact(scene.pressure.stiffness),
+        _NO_ROTATION,
+        exact=_never,
         axes=lambda scene: (),
     ),
     "mdr": Model(
-        build=lambda scene, poisson, cells, angles, focus: mdr_contact(
-            cells, focus, scene.pressure
-        ),
-        refuses=_any_of(_refuse_other_loads, _refuse_springs),
-        exact=lambda scene: False,
-        axes=lambda scene: ("cells",),
+        lambda scene, poisson, cells, angles, focus: mdr_contact(cells, focus, scene.pressure),
+        _any_of(_refuse_other_loads, _refuse_springs),
+        exact=_never,
     ),
     "radial": Model(
-        build=lambda scene, poisson, cells, angles, focus: RadialContact.resolved(
+        lambda scene, poisson, cells, angles, focus: RadialContact.resolved(
             cells, focus, scene.pressure
         ),
-        refuses=_any_of(_refuse_other_loads, _refuse_rings),
-        exact=lambda scene: True,
-        axes=lambda scene: ("cells",),
+        _any_of(_refuse_other_loads, _refuse_rings),
     ),
     "polar": Model(
-        build=lambda scene, poisson, cells, angles, focus: PolarContact(
+        lambda scene, poisson, cells, angles, focus: PolarContact(
             cells, angles, scene.rotates, poisson, focus, scene.pressure
         ),
-        refuses=_any_of(_refuse_other_loads, _refuse_half_disc),
-        exact=lambda scene: True,
+        _any_of(_refuse_other_loads, _refuse_half_disc),
         axes=lambda scene: ("cells", "angles"),
     ),
     "cartesian": Model(
-        build=lambda scene, poisson, cells, angles, focus: CartesianContact(
+        lambda scene, poisson, cells, angles, focus: CartesianContact(
             cells, poisson, scene.pressure
         ),
-        refuses=_refuse_pulsation,
-        exact=lambda scene: True,
-        axes=lambda scene: ("cells",),
+        _refuse_pulsation,
     ),
 }
 """Models by name."""

@@ -7,13 +7,13 @@ from microslip.motions.motion import Scene, within_rings
 from microslip.theory import hertz
 
 
-def displacement(phase, velocity, amplitude, poisson):
+def displacement(phase: np.ndarray, velocity: float, amplitude: float, poisson: float) -> tuple:
     """Eq 23 with Eqs 27 and 28: forward v~ phi_0 t, angle phi_0 sin t."""
     angle = hertz.bore_angle(amplitude, poisson)
     return velocity * angle * phase, np.zeros_like(phase), angle * np.sin(phase)
 
 
-def focus(velocity, amplitude, pressure):
+def focus(velocity: float, amplitude: float, pressure) -> float | None:
     """Lubkin's stick radius of the oscillation alone (Eq 30); under another pressure rings there do
     no harm."""
     return within_rings(hertz.lubkin_stick_radius(hertz.bore_angle(amplitude)))

@@ -5,12 +5,12 @@ import numpy as np
 from microslip.motions.motion import Scene, within_rings
 
 
-def displacement(phase, velocity, amplitude, poisson):
+def displacement(phase: np.ndarray, velocity: float, amplitude: float, poisson: float) -> tuple:
     """Eqs 12 and 13: forward v~ and angle 1 for each unit of turned angle (in u_lim / a)."""
     return velocity * phase, np.zeros_like(phase), phase + 0.0
 
 
-def focus(velocity, amplitude, pressure):
+def focus(velocity: float, amplitude: float, pressure) -> float | None:
     """The instantaneous centre of rotation, while it lies inside the contact (Eq 14)."""
     return within_rings(velocity) if velocity < 1.0 else None
 

@@ -8,19 +8,19 @@ from microslip.motions import transverse
 from microslip.theory import masing
 
 
-def displacement(phase, velocity, amplitude, poisson):
+def displacement(phase: np.ndarray, velocity: float, amplitude: float, poisson: float) -> tuple:
     """Forward v~ t + x~ sin t."""
     forward = velocity * phase + amplitude * np.sin(phase)
     return forward, np.zeros_like(phase), np.zeros_like(phase)
 
 
-def turns(velocity, amplitude):
+def turns(velocity: float, amplitude: float) -> tuple[float, ...]:
     """Where the sphere turns back and forth, if it does: v~ + x~ cos t = 0."""
     back = np.arccos(-velocity / amplitude) if velocity < amplitude else np.pi / 2
     return -back, back, 2.0 * np.pi - back
 
 
-def whole(velocity, amplitude, pressure):
+def whole(velocity: float, amplitude: float, pressure) -> float | None:
     """First loading with Masing's memory, where the curve of first loading is known."""
     if pressure.loading is None:
         return None

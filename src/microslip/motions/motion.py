@@ -92,7 +92,7 @@ class Scene:
     mean_load: Callable = lambda amplitude, pressure: 1.0
     whole: Callable | None = None
 
-    def creep(self, velocity, amplitude, poisson):
+    def creep(self, velocity: float, amplitude: float, poisson: float) -> float:
         """Mean forward displacement in one radian of phase, in u_lim.
 
         It is proportional to the velocity, so that it is taken at one which the oscillation, whose
@@ -104,7 +104,7 @@ class Scene:
         gained = (fast[1] - still[1]) - (fast[0] - still[0])
         return float(gained) / (2.0 * np.pi) * velocity
 
-    def stroke(self, amplitude, poisson):
+    def stroke(self, amplitude: float, poisson: float) -> float:
         """Half the way that the edge of the contact oscillates, in u_lim; 0 for steady scenes."""
         if not self.periodic:
             return 0.0

@@ -11,13 +11,12 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import lru_cache
 from importlib import import_module
-from pkgutil import iter_modules
 
 import numpy as np
 
 from microslip import motions
-from microslip.foundation import spec
 from microslip.foundation.errors import InputError
+from microslip.foundation.families import modules_in, record_named
 from microslip.motions.motion import Scene
 from microslip.pressures.registry import HERTZ, pressure_named
 
@@ -29,18 +28,13 @@ FAMILIES = {}
 """Name -> module with DEFAULTS, numbers and their values if not given, and scene(name, ...)."""
 
 
-def find(folder):
+def find(folder: str) -> None:
     """Make the motions in a folder known: those of the package, or one's own."""
-    if str(folder) not in motions.__path__:
-        motions.__path__.append(str(folder))
-    for file in iter_modules([str(folder)]):
-        if not file.name.isidentifier():
-            continue  # a copy or a checkpoint of one, which nobody means
-        _add(file.name)
+    for file, module in modules_in(folder, motions):
+        _add(file, module)
 
 
-def _add(file):
-    module = import_module(f"{motions.__name__}.{file}")
+def _add(file, module):
     name = file.replace("_", "-")
     if hasattr(module, "SCENE"):
         SCENES[name] = module.SCENE
@@ -49,7 +43,7 @@ def _add(file):
 
 
 for _file in _FIRST:
-    _add(_file)
+    _add(_file, import_module(f"{motions.__name__}.{_file}"))
 for _folder in list(motions.__path__):
     find(_folder)
 
@@ -83,22 +77,7 @@ def _under(scene, pressure):
 def _motion_named(name):
     if isinstance(name, str) and name in SCENES:
         return SCENES[name]
+    known = [*SCENES, *FAMILIES]
     if not isinstance(name, str):
-        known = ", ".join([*SCENES, *FAMILIES])
-        raise InputError("scene", name, f"allowed is one of {known}")
-    return _of_family(name)
-
-
-@lru_cache(maxsize=64)
-def _of_family(name):
-    """One record for a name: what is prepared for a motion is found again by it."""
-    family, numbers = spec.split(name, "scene", [*SCENES, *FAMILIES])
-    module = FAMILIES.get(family)
-    defaults = module.DEFAULTS if module else {}
-    spec.refuse_unknown(name, "scene", numbers, list(defaults))
-    given = {key: value for key, value in sorted(numbers.items()) if value != defaults[key]}
-    words = ",".join(f"{key}={value:.12g}" for key, value in given.items())
-    try:
-        return module.scene(f"{family}:{words}" if words else family, **(defaults | numbers))
-    except InputError as error:  # about the name as it is kept
-        raise InputError("scene", name, error.allowed) from None
+        raise InputError("scene", name, f"allowed is one of {', '.join(known)}")
+    return record_named(name, "scene", FAMILIES, known, make="scene")

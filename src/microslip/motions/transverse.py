@@ -5,7 +5,7 @@ import numpy as np
 from microslip.motions.motion import Scene, stick_focus
 
 
-def displacement(phase, velocity, amplitude, poisson):
+def displacement(phase: np.ndarray, velocity: float, amplitude: float, poisson: float) -> tuple:
     """Eq 1 with Eqs 2 and 4: forward v~ t, lateral y~ sin t."""
     return velocity * phase, amplitude * np.sin(phase), np.zeros_like(phase)
 

@@ -7,7 +7,7 @@ import numpy as np
 from microslip.motions import transverse
 
 
-def displacement(phase, velocity, amplitude, poisson):
+def displacement(phase: np.ndarray, velocity: float, amplitude: float, poisson: float) -> tuple:
     """Forward v~ t, lateral to and fro between -y~ and y~, straight in the plane."""
     lateral = amplitude * 2.0 / np.pi * np.arcsin(np.sin(phase))
     return velocity * phase, lateral, np.zeros_like(phase)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 RINGS = 4096
@@ -9,19 +11,19 @@ SMALLEST_LOAD = 1e-13
 """Loads of cells below this share of the whole are rounding at the contact's edge."""
 
 
-def of_corner_loads(load):
+def of_corner_loads(load: np.ndarray) -> np.ndarray:
     """Loads of cells, sum 1, from the load of the rectangle from the centre to each corner (odd in
     both coordinates), (cells + 1, cells + 1)."""
     return of_loads(np.diff(np.diff(load, axis=0), axis=1))
 
 
-def of_loads(loads):
+def of_loads(loads: np.ndarray) -> np.ndarray:
     """The same from loads of cells that rounding has touched."""
     loads = np.where(loads < SMALLEST_LOAD * loads.sum(), 0.0, loads)
     return loads / loads.sum()
 
 
-def round_loads(cells, ring_loads, inner=0.0):
+def round_loads(cells: int, ring_loads: Callable, inner: float = 0.0) -> np.ndarray:
     """Loads of cells under a pressure that depends on the radius alone, (cells, cells), sum 1.
 
     ring_loads(psi): loads of the rings between the radii sin(psi).  The load of each of many thin

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import ellipk
 
+from microslip.foundation import spec
 from microslip.foundation.errors import InputError
 from microslip.pressures.cell_loads import of_corner_loads
 from microslip.pressures.pressure import Pressure
@@ -22,10 +23,7 @@ def pressure(name: str, ratio: float, across: float) -> Pressure:
     integral of the eccentricity: 3/4 for a circle.  Raises InputError for a ratio outside 0.05..1
     and another `across`.
     """
-    if not SMALLEST_RATIO <= ratio <= 1.0:
-        raise InputError(
-            "pressure", name, f"ratio = {ratio:g}: allowed is a number in {SMALLEST_RATIO:g}..1"
-        )
+    spec.refuse_outside(name, "pressure", "ratio", ratio, (SMALLEST_RATIO, 1.0))
     if across not in (0.0, 1.0):
         raise InputError("pressure", name, f"across = {across:g}: allowed is 0 or 1")
     axes = (ratio, 1.0) if across else (1.0, ratio)
@@ -48,7 +46,7 @@ def _torque(ratio):
     return hertz.TORQUE_FULL_SLIP * float(np.hypot(np.cos(angle), ratio * np.sin(angle)).mean())
 
 
-def ellipse_loads(cells, axes=(1.0, 1.0)):
+def ellipse_loads(cells: int, axes: tuple[float, float] = (1.0, 1.0)) -> np.ndarray:
     """Hertz's pressure integrated over each square, (cells, cells); axes: semi-axes, the forward
     one first."""
     edges = np.arange(cells + 1) * 2.0 / cells - 1.0

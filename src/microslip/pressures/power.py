@@ -4,22 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.foundation.errors import InputError
+from microslip.foundation import spec
 from microslip.pressures.axisymmetric_indenter import indenter
 from microslip.pressures.pressure import Pressure
 
 DEFAULTS = {"exponent": 2.0}
-SMALLEST, LARGEST = 1.0, 100.0
+LIMITS = (1.0, 100.0)
 
 
 def pressure(name: str, exponent: float) -> Pressure:
     """The Pressure of an indenter r^exponent; raises InputError for one below 1 or above 100."""
-    if not SMALLEST <= exponent <= LARGEST:
-        raise InputError(
-            "pressure",
-            name,
-            f"exponent = {exponent:g}: allowed is a number in {SMALLEST:g}..{LARGEST:g}",
-        )
+    spec.refuse_outside(name, "pressure", "exponent", exponent, LIMITS)
     return indenter(
         name,
         f"an indenter with the profile r^{exponent:g}",

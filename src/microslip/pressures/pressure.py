@@ -83,27 +83,27 @@ class Pressure:
     readings: tuple[Pressure, ...] = ()
 
     @property
-    def is_round(self):
+    def is_round(self) -> bool:
         """Whether it depends on the radius alone."""
         return self.ring_means is not None
 
     @property
-    def is_indenter(self):
+    def is_indenter(self) -> bool:
         """Whether it is that of an axisymmetric indenter."""
         return self.depth is not None
 
     @property
-    def stiffness(self):
+    def stiffness(self) -> float:
         """Force over mu F_z per uniform displacement u_lim without slip, 2 G* a; of a contact that
         does not fill the circle of radius a an upper bound."""
         return 2.0 * self.G_star
 
-    def total(self, depth):
+    def total(self, depth: np.ndarray) -> np.ndarray:
         """Load of an indenter at a depth >= 0, any shape."""
         radius = self.radius(depth)
         return self.load(radius, radius)
 
-    def stick_radius(self, displacement):
+    def stick_radius(self, displacement: float) -> float | None:
         """Stick radius after a displacement (u_lim) in one direction from rest: that of the contact
         whose indentation is less by this share (Ciavarella, Jaeger); None if it is not known, and
         0.0 where all slides.  displacement >= 0: a float."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.foundation.errors import InputError
+from microslip.foundation import spec
 from microslip.pressures.axisymmetric_indenter import indenter
 from microslip.pressures.pressure import Pressure
 
@@ -19,12 +19,8 @@ def pressure(name: str, flat: float) -> Pressure:
     Equivalent plane profile (Ciavarella 1999): D(c) ~ c (sqrt(c^2 - b^2) - b arccos(b/c)) for c
     above b.  Raises InputError for a flat end outside 0..0.99.
     """
-    if not 0.0 <= flat <= LARGEST_FLAT:
-        raise InputError(
-            "pressure",
-            name,
-            f"flat = {flat:g}: allowed is a share of the contact radius in 0..{LARGEST_FLAT:g}",
-        )
+    kind = "a share of the contact radius"
+    spec.refuse_outside(name, "pressure", "flat", flat, (0.0, LARGEST_FLAT), kind=kind)
 
     def rises(c):
         c = np.maximum(np.asarray(c, float), flat)

@@ -9,13 +9,9 @@ a word and a colon: its file holds SOURCE, the word, and pressure(name).
 
 from __future__ import annotations
 
-from functools import lru_cache
-from importlib import import_module
-from pkgutil import iter_modules
-
 from microslip import pressures
-from microslip.foundation import spec
 from microslip.foundation.errors import InputError
+from microslip.foundation.families import modules_in, record_named
 from microslip.pressures.hertz import PRESSURE as HERTZ
 from microslip.pressures.pressure import Pressure
 
@@ -29,18 +25,13 @@ SOURCES = {}
 """Word -> module with pressure(name), for names that begin with the word and a colon."""
 
 
-def find(folder):
+def find(folder: str) -> None:
     """Make the families in a folder known: those of the package, or one's own."""
-    if str(folder) not in pressures.__path__:
-        pressures.__path__.append(str(folder))
-    for file in iter_modules([str(folder)]):
-        if not file.name.isidentifier():
-            continue  # a copy or a checkpoint of one, which nobody means
-        module = import_module(f"{pressures.__name__}.{file.name}")
+    for file, module in modules_in(folder, pressures):
         if hasattr(module, "PRESSURE"):
-            PRESSURES[file.name] = module.PRESSURE
+            PRESSURES[file] = module.PRESSURE
         elif hasattr(module, "DEFAULTS"):
-            FAMILIES[file.name.replace("_", "-")] = module
+            FAMILIES[file.replace("_", "-")] = module
         elif hasattr(module, "SOURCE"):
             SOURCES[module.SOURCE] = module
 
@@ -61,21 +52,4 @@ def pressure_named(name: str) -> Pressure:
     word, colon, _ = name.partition(":")
     if colon and word in SOURCES:
         return SOURCES[word].pressure(name)
-    family, numbers = spec.split(name, "pressure", known)
-    module = FAMILIES.get(family)
-    spec.refuse_unknown(name, "pressure", numbers, list(module.DEFAULTS if module else ()))
-    try:
-        return _of_family(family, tuple(sorted(numbers.items())))
-    except InputError as error:  # about the name as it is kept
-        raise InputError("pressure", name, error.allowed) from None
-
-
-@lru_cache(maxsize=64)
-def _of_family(family, numbers):
-    """One record for a name: what is prepared for a pressure is found again by it."""
-    module = FAMILIES[family]
-    given = {key: value for key, value in numbers if value != module.DEFAULTS[key]}
-    words = ",".join(f"{key}={value:.12g}" for key, value in given.items())
-    return module.pressure(
-        f"{family}:{words}" if words else family, **(module.DEFAULTS | dict(numbers))
-    )
+    return record_named(name, "pressure", FAMILIES, known, make="pressure")

@@ -7,12 +7,12 @@ from functools import cache
 import numpy as np
 from scipy.special import ellipkm1
 
-from microslip.foundation.errors import InputError
+from microslip.foundation import spec
 from microslip.pressures.cell_loads import round_loads
 from microslip.pressures.pressure import Pressure, of_radii
 
 DEFAULTS = {"inner": 0.5}
-SMALLEST, LARGEST = 0.05, 0.95
+LIMITS = (0.05, 0.95)
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
@@ -22,13 +22,8 @@ def pressure(name: str, inner: float) -> Pressure:
     That is Hertz's pressure of a line contact laid around a circle, which a slender torus comes
     close to; of a wide ring it is an assumption.  Raises InputError for b outside 0.05..0.95.
     """
-    if not SMALLEST <= inner <= LARGEST:
-        raise InputError(
-            "pressure",
-            name,
-            f"inner = {inner:g}: allowed is a share of the outer radius in "
-            f"{SMALLEST:g}..{LARGEST:g}",
-        )
+    kind = "a share of the outer radius"
+    spec.refuse_outside(name, "pressure", "inner", inner, LIMITS, kind=kind)
     half, middle = 0.5 * (1.0 - inner), 0.5 * (1.0 + inner)
     # Integral of sqrt((r - b)(1 - r)) 2 pi r dr, r = middle - half cos(t)
     top = 1.0 / (np.pi**2 * half**2 * middle)

@@ -4,6 +4,7 @@ One HTML file that needs nothing beside it. All that it says is in the dataset.
 """
 
 import json
+import os
 from html import escape
 
 import numpy as np
@@ -28,7 +29,7 @@ PARTS_OF_SHIFT = ("from_velocity", "from_resolution")
 SCENES = {"transverse": "Transverse oscillation", "bore": "Oscillating bore"}
 
 
-def write(path, dataset, lines):
+def write(path: str | os.PathLike, dataset, lines: list[str]) -> None:
     """Write the page of the xarray.Dataset; lines: list of what its report says.
 
     Raises CacheError as `cache.writing_beside` does.
@@ -37,7 +38,7 @@ def write(path, dataset, lines):
         beside.write_text(page(dataset, lines), encoding="utf-8", newline="\n")
 
 
-def page(dataset, lines):
+def page(dataset, lines: list[str]) -> str:
     """The page as text; it depends on its arguments alone."""
     data = {name: dataset[name].values for name in dataset.variables}
     title = escape(dataset.attrs.get("title", ""))

@@ -1,6 +1,7 @@
 """A page about a dataset: what it holds, and what made it."""
 
 import json
+import os
 from html import escape
 
 import yaml
@@ -12,7 +13,7 @@ RANGES = ("mu_macro", "mu_macro_error", "mu_torque", "reference_error", "seconds
 MOST_LINES = 40
 
 
-def write(path, dataset, lines):
+def write(path: str | os.PathLike, dataset, lines: list[str]) -> None:
     """Write the page of an xarray.Dataset; lines: list of what its report says.
 
     Raises CacheError as `cache.writing_beside` does.
@@ -25,7 +26,7 @@ def write(path, dataset, lines):
         beside.write_text(f"{head}\n<pre>{text}</pre></html>\n", encoding="utf-8", newline="\n")
 
 
-def page(dataset, lines):
+def page(dataset, lines: list[str]) -> str:
     """Return the text of the page; it depends on its arguments alone."""
     attributes = dict(dataset.attrs)
     parts = [attributes.pop("title", ""), "", *lines[:MOST_LINES]]

@@ -1,12 +1,14 @@
 """The page about a study's dataset."""
 
+import os
+
 from microslip.report import claims_page, dataset_page
 
 _PAGES = {"claims": claims_page}
 """Those that have a page of their own."""
 
 
-def write(study, path, dataset, lines):
+def write(study: str, path: str | os.PathLike, dataset, lines: list[str]) -> None:
     """Write the page about a study's dataset; lines: those of its report.
 
     Raises CacheError as `cache.writing_beside` does.

@@ -52,58 +52,58 @@ class TwoBodies:
             raise InputError("counterbody", "rigid", allowed)
 
     @property
-    def bodies(self):
+    def bodies(self) -> tuple[Material, Material]:
         return (self.first, self.second)
 
     @property
-    def E_star(self):
+    def E_star(self) -> float:
         """1/E* = sum (1 - nu^2)/E, Pa (Hertz)."""
         return 1.0 / sum((1.0 - body.poisson**2) / body.young for body in self.bodies)
 
     @property
-    def G(self):
+    def G(self) -> float:
         """1/G = sum 1/G_i, Pa; what torsion feels."""
         return 1.0 / sum(1.0 / body.shear_modulus for body in self.bodies)
 
     @property
-    def poisson(self):
+    def poisson(self) -> float:
         """Poisson's ratio of the equal half-space on a rigid one, sum(nu/G) / sum(1/G)."""
         compliances = [1.0 / body.shear_modulus for body in self.bodies]
         total = sum(compliances)  # of one elastic body it is that body's ratio, to the last bit
         return sum(b.poisson * (c / total) for b, c in zip(self.bodies, compliances, strict=True))
 
     @property
-    def G_star(self):
+    def G_star(self) -> float:
         """1/G* = sum (2 - nu)/(4 G), Pa (Eq 3 for two bodies)."""
         return 4.0 * self.G / (2.0 - self.poisson)
 
     @property
-    def contact_radius(self):
+    def contact_radius(self) -> float:
         """a = (3 F R / (4 E*))^(1/3), m (Hertz)."""
         return (0.75 * self.load * self.radius / self.E_star) ** (1.0 / 3.0)
 
     @property
-    def smallest_radius(self):
+    def smallest_radius(self) -> float:
         """The smaller |radius| of either body, m."""
         return min(map(abs, self.radii), default=self.radius)
 
     @property
-    def indentation(self):
+    def indentation(self) -> float:
         """d = a^2/R, m (Hertz)."""
         return self.contact_radius**2 / self.radius
 
     @property
-    def largest_pressure(self):
+    def largest_pressure(self) -> float:
         """p0 = 3 F / (2 pi a^2), Pa (Hertz)."""
         return 1.5 * self.load / (math.pi * self.contact_radius**2)
 
     @property
-    def u_lim(self):
+    def u_lim(self) -> float:
         """Displacement at which the whole contact slides, mu d E*/G*, m (below Eq 2)."""
         return self.mu * self.indentation * self.E_star / self.G_star
 
     @property
-    def mismatch(self):
+    def mismatch(self) -> float:
         """Dundurs' constant beta, how far pressure moves the surfaces apart sideways, 0 if equal.
 
         Half of the difference of (1 - 2 nu)/G over the sum of (1 - nu)/G.

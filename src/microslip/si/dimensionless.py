@@ -20,7 +20,7 @@ class RealMotion:
     rotation: float | None = None
 
 
-def groups(motion, contact):
+def groups(motion: RealMotion, contact) -> tuple[float, float | None]:
     """(velocity, amplitude) as microslip.solve takes them (Eqs 2, 4, 13, 27, 28).
 
     motion: RealMotion; contact: contact.TwoBodies.  amplitude: None for a steady bore.
@@ -44,7 +44,7 @@ def _over(speed, unit):
     return speed / unit if unit > 0.0 else math.inf
 
 
-def largest_slip_speed(motion, contact):
+def largest_slip_speed(motion: RealMotion, contact) -> float:
     """Upper bound of the speed between the surfaces, m/s: rigid, at the edge."""
     edge = contact.contact_radius
     if motion.scene == "continuous-bore":

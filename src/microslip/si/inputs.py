@@ -119,7 +119,9 @@ def _numbers(body):
     return ", ".join(parts)
 
 
-def read_contact(body: Body, other: Body, *, radius, counter_radius, load, mu):
+def read_contact(
+    body: Body, other: Body, *, radius: object, counter_radius: object, load: object, mu: object
+) -> tuple[TwoBodies, dict]:
     """The contact, and a dict of texts of what was understood; raises InputError."""
     first = read("radius", radius, "m")
     given = {"radius": first, "load": read("load", load, "N")}
@@ -170,7 +172,15 @@ def _refuse_senseless(contact, radius, counter_radius, load):
         raise InputError("load", load, f"with these bodies and radii, {OUT_OF_RANGE}")
 
 
-def read_motion(scene, *, speed, amplitude, frequency, rotation, reduction):
+def read_motion(
+    scene: str,
+    *,
+    speed: object,
+    amplitude: object,
+    frequency: object,
+    rotation: object,
+    reduction: object,
+) -> tuple[RealMotion, dict]:
     """The motion, and a dict of texts of what was understood; raises InputError.
 
     The amplitude of the motion is None where a reduction is given in its place.

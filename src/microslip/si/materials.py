@@ -54,11 +54,11 @@ class Material:
         object.__setattr__(self, name, value)  # the record is frozen for everybody else
 
     @property
-    def rigid(self):
+    def rigid(self) -> bool:
         return math.isinf(self.young)
 
     @property
-    def shear_modulus(self):
+    def shear_modulus(self) -> float:
         """G = E/(2 (1 + nu)), Pa."""
         return self.young / (2.0 * (1.0 + self.poisson))
 
@@ -73,7 +73,7 @@ MATERIALS = {
 }
 
 
-def material_named(name):
+def material_named(name: object) -> Material:
     """The Material of this name; raises InputError, with those there are, if none."""
     if not isinstance(name, str) or name not in MATERIALS:
         raise InputError("material", name, f"allowed is one of {', '.join(MATERIALS)}")

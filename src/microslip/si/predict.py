@@ -100,7 +100,7 @@ class Prediction:
     counterbody: str = field(compare=False)
     understood: dict = field(compare=False)
 
-    def to_dict(self):
+    def to_dict(self) -> dict:
         """Fields as a plain dict."""
         return asdict(self) | {
             "warnings": list(self.warnings),
@@ -109,27 +109,27 @@ class Prediction:
 
 
 def predict(
-    scene,
+    scene: str,
     *,
-    radius,
-    load,
-    mu,
-    speed,
-    young=None,
-    nu=None,
-    material=None,
-    counterbody=None,
-    counter_radius=None,
-    amplitude=None,
-    frequency=None,
-    rotation=None,
-    reduction=None,
-    hardness=None,
-    density=None,
-    counter_hardness=None,
-    counter_density=None,
-    tolerance=1e-3,
-):
+    radius: object,
+    load: object,
+    mu: object,
+    speed: object,
+    young: object = None,
+    nu: object = None,
+    material: object = None,
+    counterbody: object = None,
+    counter_radius: object = None,
+    amplitude: object = None,
+    frequency: object = None,
+    rotation: object = None,
+    reduction: object = None,
+    hardness: object = None,
+    density: object = None,
+    counter_hardness: object = None,
+    counter_density: object = None,
+    tolerance: object = 1e-3,
+) -> Prediction:
     """Friction of a sphere on a flat (or on a second sphere) under vibration.
 
     A quantity is a text of one number and one unit ("5 mm"), a pint quantity, or a number in the

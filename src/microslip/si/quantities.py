@@ -56,7 +56,15 @@ class Given:
     text: str
 
 
-def si_value(name, value, unit, *, low=0.0, low_open=True, high=math.inf):
+def si_value(
+    name: str,
+    value: object,
+    unit: str,
+    *,
+    low: float = 0.0,
+    low_open: bool = True,
+    high: float = math.inf,
+) -> float:
     """Value of a quantity in its SI unit, as a float.
 
     Arguments and errors are those of `read`.
@@ -222,7 +230,7 @@ def _named(found):
 
 
 def _si_beside(found, unit, value):
-    """ " = 62.83 rad/s" where a rate or an angle was given by another kind of measure."""
+    """The text " = 62.83 rad/s" where a rate or an angle was given by another kind of measure."""
     (first, *others) = found.names
     same = {
         "Hz": found.counts_periods,

@@ -84,7 +84,7 @@ class Unit:
     factor: Decimal
 
     @property
-    def counts_periods(self):
+    def counts_periods(self) -> bool:
         """Whether it is a cyclic frequency: hertz or cycles a second, by name."""
         return len(self.names) == 1 and self.root.get("second") == -1 and self._has_cyclic
 
@@ -93,13 +93,13 @@ class Unit:
         return any(name.endswith(CYCLIC) for name in self.names)
 
     @property
-    def mixes_periods(self):
+    def mixes_periods(self) -> bool:
         """Whether hertz is a part of it: nobody can say whether 2 pi is meant there."""
         return self._has_cyclic and not self.counts_periods
 
 
 @cache
-def registry():
+def registry() -> object:
     """The pint.UnitRegistry in use; loading it takes most of a second.
 
     It computes in decimals, so that "1 um", "1e-3 mm" and "0.000001 m" are one number, to the last
@@ -112,7 +112,7 @@ def registry():
     return units
 
 
-def factors(text: str):
+def factors(text: str) -> list[tuple[str, int]]:
     """The units that a text multiplies: their names and exponents, in the order of the text.
 
     Names with whole exponents after ^ or **, or superscripts, and one of * / and the dot between

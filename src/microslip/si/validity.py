@@ -21,12 +21,12 @@ surface is tilted by 30 degrees at the edge, and a sphere is 7 % deeper there th
 Hertz takes for it."""
 
 
-def doubts(contact, motion):
+def doubts(contact, motion) -> list[str]:
     """List of warnings; contact: contact.TwoBodies, motion: groups.RealMotion."""
-    return [text for text in (check(contact, motion) for check in _CHECKS) if text]
+    return [text for check in _CHECKS for text in check(contact, motion)]
 
 
-def unchecked(contact):
+def unchecked(contact) -> list[str]:
     """What could not be checked, for want of which property: list of texts."""
     missing = []
     for name, what in (("hardness", "whether the bodies stay elastic"), ("density", "inertia")):
@@ -39,66 +39,54 @@ def _plastic(contact, motion):
     known = [b.hardness for b in contact.bodies if b.hardness is not None]
     pressure = contact.largest_pressure
     if known and pressure > YIELDS_AT * min(known):
-        return (
+        yield (
             f"the largest pressure, {pressure:.2g} Pa, is above {YIELDS_AT:g} of the hardness, "
             f"{min(known):.2g} Pa: the contact yields, and is larger than Hertz's"
         )
-    return ""
 
 
 def _steep(contact, motion):
-    a = contact.contact_radius
-    for radius, whose in (
-        (contact.smallest_radius, "smaller radius of the bodies"),
-        (contact.radius, "radius of relative curvature"),
-    ):
-        if a > STEEP * radius:
-            return (
-                f"the contact radius is {a / radius:.2g} of the {whose}: the bodies are no "
-                "half-spaces"
-            )
-    return ""
+    a, radius = contact.contact_radius, contact.radius
+    whose = "radius of relative curvature"
+    if a > STEEP * contact.smallest_radius:
+        radius, whose = contact.smallest_radius, "smaller radius of the bodies"
+    if a > STEEP * radius:
+        share = f"{a / radius:.2g} of the {whose}"
+        yield f"the contact radius is {share}: the bodies are no half-spaces"
 
 
 def _far(contact, motion):
     if motion.frequency is None or motion.scene == "bore":
-        return ""
+        return
     ratio = motion.amplitude / contact.contact_radius
     if ratio > SMALL:
-        return (
+        yield (
             f"the amplitude is {ratio:.2g} of the contact radius: tractions are carried along by "
             "the material in a stroke, which the theory leaves out"
         )
-    return ""
 
 
 def _inertia(contact, motion):
-    speeds = [
-        math.sqrt(b.shear_modulus / b.density)
-        for b in contact.bodies
-        if b.density is not None and not b.rigid
-    ]
-    if not speeds:
-        return ""
-    wave = min(speeds)
+    known = [b for b in contact.bodies if b.density is not None and not b.rigid]
+    if not known:
+        return
+    wave = min(math.sqrt(body.shear_modulus / body.density) for body in known)
     turn = motion.rotation if motion.frequency is None else 2.0 * math.pi * motion.frequency
-    ratio = turn * contact.contact_radius / wave
-    if ratio > SMALL:
-        return f"a shear wave crosses the contact in {ratio:.2g} of a radian: inertia counts"
-    ratio = largest_slip_speed(motion, contact) / wave
-    if ratio > SMALL:
-        return f"the slip speed is {ratio:.2g} of that of shear waves: inertia counts"
-    return ""
+    crossing = turn * contact.contact_radius / wave
+    slip = largest_slip_speed(motion, contact) / wave
+    if crossing > SMALL:
+        yield f"a shear wave crosses the contact in {crossing:.2g} of a radian: inertia counts"
+    elif slip > SMALL:
+        yield f"the slip speed is {slip:.2g} of that of shear waves: inertia counts"
 
 
 def _mismatched(contact, motion):
     beta = abs(contact.mismatch)
     if beta > SMALL:
-        return (
+        yield (
             f"the bodies are elastically unlike (Dundurs' beta {beta:.2g}): pressure moves their "
             "surfaces sideways, which the theory leaves out"
         )
-    return ""
 
 
 _CHECKS = (_plastic, _steep, _far, _inertia, _mismatched)

@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from microslip.solver.period_map import PeriodicState, PeriodMap
+from microslip.solver.period_map import Goal, PeriodicState, PeriodMap
 
 FORCING = 1e-3
 LOOSEST = 1e-4
@@ -24,13 +24,7 @@ FORGETFUL = 0.2
 """Contraction of the plain map from the start on below which it is left alone."""
 
 
-def search(
-    period_map: PeriodMap,
-    start: np.ndarray,
-    tolerance: float,
-    step_tolerance: float,
-    most_marches: int,
-) -> PeriodicState:
+def search(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
     """Find the fixed point of a map by Anderson acceleration.
 
     Parameters
@@ -39,21 +33,19 @@ def search(
         The map.
     start : np.ndarray
         Tractions.
-    tolerance, step_tolerance : float
-        Of the state and of a step, forces over mu F_z.
-    most_marches : int
-        Marches to try.
+    goal : period_map.Goal
+        What to reach.
 
     Returns
     -------
     period_map.PeriodicState
         The best state seen, if none is good enough.
     """
-    accelerate = Anderson(period_map.contact, DEPTH)
+    accelerate, step_tolerance = Anderson(period_map.contact, DEPTH), goal.step_tolerance
     state, best = start, None
     inner = max(step_tolerance, LOOSEST)
     forgets, last_residual = True, np.inf
-    while period_map.marches < most_marches:
+    while period_map.marches < goal.most_marches:
         interval = period_map(state, inner)
         solved = inner <= step_tolerance
         noisy = not solved and interval.march.residual > NOISE * interval.residual
@@ -68,7 +60,7 @@ def search(
             proposal = interval.image
         state = period_map.admissible(proposal)
         distance = period_map.distance(interval, state)
-        converged = solved and distance <= tolerance
+        converged = solved and distance <= goal.tolerance
         if best is None or distance < best.distance or converged:
             best = period_map.result(interval, distance, converged)
         if converged:

@@ -10,6 +10,8 @@ from __future__ import annotations
 import math
 import time
 
+from microslip.models.contact import Contact, March
+
 
 class Spent(RuntimeError):
     """A point has taken what it may.  The message says of what, for the reason of its result."""
@@ -39,11 +41,11 @@ class Budget:
         self.exhausted = ""
         self._began = time.monotonic()
 
-    def metered(self, contact):
+    def metered(self, contact: Contact) -> Contact:
         """The contact, whose marches count from now on."""
         return _Metered(contact, self)
 
-    def take(self, march):
+    def take(self, march: March) -> None:
         """Count a models.contact.March; raises Spent where that was too much."""
         unknowns = march.state.size
         self.iterations += march.iterations
@@ -56,7 +58,7 @@ class Budget:
             self.exhausted = "time"
             raise Spent(f"the time limit of {self.time_limit:g} s is over")
 
-    def counts(self):
+    def counts(self) -> dict:
         """What was taken, by the names of simulate.Run, a dict."""
         return {name: getattr(self, name) for name in ("iterations", "work", "effort")}
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+from microslip.models.contact import Contact
 from microslip.models.path import SDIRK2, Integrator
 from microslip.solver.periodic import find_periodic_state
 
@@ -61,7 +62,7 @@ class Method:
     requires: str = ""
     turns: bool = True
 
-    def dressed(self, contact):
+    def dressed(self, contact: Contact) -> Contact:
         """The contact with this method's solver of a step."""
         return contact if self.dress is None else self.dress(contact, **self.parameters)
 

@@ -75,7 +75,7 @@ def refuse_missing(text: str) -> None:
         raise InputError("method", text, f"needs the package {package}, which is not installed")
 
 
-def method_named(text):
+def method_named(text: str) -> object:  # of a module that is not imported here
     """The method.Method that a text names; raises InputError, with what is allowed, if none."""
     check(text)
     from dataclasses import replace

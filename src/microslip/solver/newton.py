@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.solver.period_map import PeriodicState, PeriodMap
+from microslip.solver.period_map import Goal, PeriodicState, PeriodMap
 
 NEUTRAL = 1e-10
 """Damping of every correction: keeps directions in which nothing ever slips where they are."""
@@ -24,14 +24,7 @@ SKEWED = 1e-3
 """Broyden updates that divide by less than this share of a move's square are left out."""
 
 
-def search(
-    period_map: PeriodMap,
-    start: np.ndarray,
-    tolerance: float,
-    step_tolerance: float,
-    most_marches: int,
-    inverse: np.ndarray | None = None,
-) -> PeriodicState:
+def search(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
     """Find the fixed point of a map by Newton's method.
 
     Parameters
@@ -40,23 +33,19 @@ def search(
         The map, of a contact whose marches give derivatives.
     start : np.ndarray
         Tractions.
-    tolerance, step_tolerance : float
-        Of the state and of a step, forces over mu F_z.
-    most_marches : int
-        Marches to try.
-    inverse : np.ndarray or None, shape (start.size, start.size)
-        Known inverse of 1 - F' near the start; without it the first march gives its derivative.
+    goal : period_map.Goal
+        What to reach; without an inverse the first march gives its derivative.
 
     Returns
     -------
     period_map.PeriodicState
         The last state that was no worse than the one before.
     """
-    corrector = Corrector(period_map, start, inverse)
-    state, derivative = start, inverse is None
+    corrector = Corrector(period_map, start, goal.inverse)
+    state, derivative = start, goal.inverse is None
     best, found, last_step, rejected = None, None, np.inf, 0
-    while period_map.marches < most_marches:
-        interval = period_map(state, step_tolerance, derivative)
+    while period_map.marches < goal.most_marches:
+        interval = period_map(state, goal.step_tolerance, derivative)
         if best is not None and not interval.residual <= best.residual:
             rejected += 1
             derivative = True
@@ -71,7 +60,7 @@ def search(
         corrector.learn(interval, best)
         state = corrector(interval)
         distance = period_map.distance(interval, state)
-        converged = distance <= tolerance and not corrector.damping
+        converged = distance <= goal.tolerance and not corrector.damping
         found = period_map.result(interval, distance, converged, corrector.inverse)
         if converged:
             break
@@ -100,7 +89,7 @@ class Corrector:
         self.step = float(np.sqrt(self._metric @ correction**2))
         return self.period_map.admissible(interval.state + correction.reshape(interval.state.shape))
 
-    def learn(self, interval, before):
+    def learn(self, interval, before) -> None:
         """Take the derivative from an interval that has one, else update it from the one before."""
         if interval.march.sensitivity is not None:
             self._system = -self._signs * interval.march.sensitivity
@@ -113,7 +102,7 @@ class Corrector:
                 (interval.state - before.state).ravel(), (before.change - interval.change).ravel()
             )
 
-    def damp(self):
+    def damp(self) -> None:
         """Damp corrections by the last derivative more than before."""
         self.damping = max(DAMPING_FACTOR * self.damping, FIRST_DAMPING)
         self._invert()

@@ -8,11 +8,34 @@ static limit a state changes so little in a period that a small residual proves 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from microslip.models.contact import March, StepFailure, energy_norm
 from microslip.models.coulomb import project
+
+MOST_MARCHES = 200
+"""Of a search, unless told otherwise."""
+
+
+class Goal(NamedTuple):
+    """What a search for the periodic state is to reach, and what it may take for it.
+
+    Attributes
+    ----------
+    tolerance, step_tolerance : float
+        Of the state and of a step, forces over mu F_z.
+    most_marches : int
+        Marches to try.
+    inverse : np.ndarray or None, shape (start.size, start.size)
+        Of a search from a start near by, if there was one: the inverse of 1 - F' (see newton.py).
+    """
+
+    tolerance: float
+    step_tolerance: float
+    most_marches: int = MOST_MARCHES
+    inverse: np.ndarray | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +95,7 @@ class CreepRate:
     static_force: float
     gain: float
 
-    def force_error(self, residual, force):
+    def force_error(self, residual: float, force: float) -> float:
         """Error of the mean forward force that a residual of the plain map stands for."""
         return abs(force - self.static_force) * residual / self.gain
 
@@ -144,15 +167,15 @@ class PeriodMap:
             raise StepFailure("diverged: tractions are not finite")
         return MarchInterval(state, image, change, energy_norm(self.contact, change), march)
 
-    def image(self, state):
+    def image(self, state: np.ndarray) -> np.ndarray:
         """Where the next interval begins, for tractions at the end of one; linear."""
         return self.contact.mirrored(state) if self.mirror else state
 
-    def admissible(self, state):
+    def admissible(self, state: np.ndarray) -> np.ndarray:
         """The state projected on the friction bound, where the integrator keeps to it."""
         return project(state, self.contact.bound) if self.path.end == 1.0 else state
 
-    def distance(self, interval, proposal):
+    def distance(self, interval: MarchInterval, proposal: np.ndarray) -> float:
         """Estimated distance of an interval's state from the fixed point, given a better state."""
         distance = max(energy_norm(self.contact, proposal - interval.state), interval.residual)
         if self.creep_rate is not None:
@@ -161,7 +184,13 @@ class PeriodMap:
             distance = max(distance, self.creep_rate.force_error(interval.residual, mean))
         return distance
 
-    def result(self, interval, distance, converged, inverse=None):
+    def result(
+        self,
+        interval: MarchInterval,
+        distance: float,
+        converged: bool,
+        inverse: np.ndarray | None = None,
+    ) -> PeriodicState:
         """The PeriodicState that an interval amounts to."""
         return PeriodicState(
             forces=interval.march.forces,

@@ -10,19 +10,10 @@ from __future__ import annotations
 import numpy as np
 
 from microslip.solver import anderson, newton
-from microslip.solver.period_map import PeriodicState, PeriodMap
-
-MOST_MARCHES = 200
+from microslip.solver.period_map import Goal, PeriodicState, PeriodMap
 
 
-def find_periodic_state(
-    period_map: PeriodMap,
-    start: np.ndarray,
-    tolerance: float,
-    step_tolerance: float,
-    most_marches: int = MOST_MARCHES,
-    inverse: np.ndarray | None = None,
-) -> PeriodicState:
+def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
     """March periods until the state repeats itself to the tolerance.
 
     Parameters
@@ -31,18 +22,13 @@ def find_periodic_state(
         The map over a (half) period.
     start : np.ndarray
         Tractions, of the shape of the contact's states.
-    tolerance, step_tolerance : float
-        Of the state and of a step, forces over mu F_z.
-    most_marches : int
-        Marches to try.
-    inverse : np.ndarray or None, shape (start.size, start.size)
-        That of a search from a start near by, if there was one.
+    goal : period_map.Goal
+        What to reach.
 
     Returns
     -------
     period_map.PeriodicState
         Never raises for want of convergence: see `converged` there.
     """
-    if period_map.contact.has_sensitivity:
-        return newton.search(period_map, start, tolerance, step_tolerance, most_marches, inverse)
-    return anderson.search(period_map, start, tolerance, step_tolerance, most_marches)
+    find = newton.search if period_map.contact.has_sensitivity else anderson.search
+    return find(period_map, start, goal)

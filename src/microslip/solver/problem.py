@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
 
 from microslip.models.contact import Contact
-from microslip.models.path import SDIRK2, make_path, phases_between, turning_point_grading
+from microslip.models.path import (
+    SDIRK2,
+    Integrator,
+    Path,
+    make_path,
+    phases_between,
+    turning_point_grading,
+)
 from microslip.models.registry import MODELS
 from microslip.models.rings.mesh import Focus
 
@@ -54,36 +62,36 @@ class Problem:
     amplitude: float
     poisson: float
 
-    def displacement(self, phase):
+    def displacement(self, phase: np.ndarray) -> tuple[np.ndarray, ...]:
         """Rigid displacement (forward, lateral, angle) at a phase."""
         return self.scene.displacement(phase, self.velocity, self.amplitude, self.poisson)
 
-    def oscillation(self, phase):
+    def oscillation(self, phase: np.ndarray) -> tuple[np.ndarray, ...]:
         """... without the forward motion."""
         return self.scene.displacement(phase, 0.0, self.amplitude, self.poisson)
 
     @cached_property
-    def depth(self):
+    def depth(self) -> Callable | None:
         """Indentation over the reference one, a function of the phase; None: it does not change."""
         depth, pressure = self.scene.depth, self.scene.pressure
         return None if depth is None else lambda phase: depth(phase, self.amplitude, pressure)
 
     @cached_property
-    def mean_load(self):
+    def mean_load(self) -> float:
         """Mean of the normal load over a period, over that of the reference state."""
         return float(self.scene.mean_load(self.amplitude, self.scene.pressure))
 
     @cached_property
-    def creep(self):
+    def creep(self) -> float:
         """Forward displacement in one radian of phase, in u_lim."""
         return self.scene.creep(self.velocity, self.amplitude, self.poisson)
 
     @cached_property
-    def grading(self):
+    def grading(self) -> float:
         """How much shorter steps are at the turning points (see path.turning_point_grading)."""
         return turning_point_grading(self.creep, self.scene.stroke(self.amplitude, self.poisson))
 
-    def path(self, contact, steps, integrator=SDIRK2):
+    def path(self, contact: Contact, steps: int, integrator: Integrator = SDIRK2) -> Path:
         """The path to march, in steps that suit the motion, or the contact if it has a say in it.
 
         It is half a period where the second half is the mirror image of the first, else the whole.

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from microslip.models.contact import Contact
 from microslip.solver.budget import Budget
 from microslip.solver.method import SHIPPED, Method
 from microslip.solver.problem import build_contact
@@ -29,7 +30,7 @@ class Settings:
     careful: bool = False
     budget: Budget | None = None
 
-    def contact(self, problem, model, resolution, focus=None):
+    def contact(self, problem, model: str, resolution, focus=None) -> Contact:
         """The contact of a problem with the method's steps, whose marches count."""
         contact = self.method.dressed(build_contact(problem, model, resolution, focus))
         return contact if self.budget is None else self.budget.metered(contact)

@@ -10,8 +10,7 @@ from microslip.models.contact import FORWARD, Contact, StepFailure, forces, forw
 from microslip.models.coulomb import project
 from microslip.models.path import Path
 from microslip.motions.motion import Scene
-from microslip.solver.period_map import CreepRate, PeriodMap
-from microslip.solver.periodic import MOST_MARCHES
+from microslip.solver.period_map import MOST_MARCHES, CreepRate, Goal, PeriodMap
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run
 from microslip.solver.static_limit import static_state
@@ -195,7 +194,8 @@ class _Search:
             self.contact, path, self.creep_rate, self.problem.scene.half_period_mirror
         )
         tolerances = looser * self.tolerance, looser * self.step_tolerance
-        self.done.append(self.method.search(period_map, start, *tolerances, MOST_MARCHES, inverse))
+        goal = Goal(*tolerances, MOST_MARCHES, inverse)
+        self.done.append(self.method.search(period_map, start, goal))
         return self.done[-1]
 
     def _summary(self, found):

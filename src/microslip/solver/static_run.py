@@ -9,7 +9,7 @@ import numpy as np
 from microslip.models.contact import FORWARD, StepFailure, forces
 from microslip.models.rings.mesh import Focus
 from microslip.solver import anderson
-from microslip.solver.period_map import PeriodMap
+from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.problem import STRONGEST_FOCUS, Problem, Resolution
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run
 from microslip.solver.simulate import STEP_SHARE, mean_forces, periods_of
@@ -103,7 +103,8 @@ def _on_these_points(contact, problem, path, tolerance):
     period_map = PeriodMap(contact, path, mirror=mirror)
     start, inner = np.zeros((2, *shape)), STEP_SHARE * distance
     for _ in range(MOST_ROUNDS):  # not Newton's method: what never slips keeps what it began with
-        found = anderson.search(period_map, start, distance, inner, period_map.marches + MARCHES)
+        goal = Goal(distance, inner, period_map.marches + MARCHES)
+        found = anderson.search(period_map, start, goal)
         start = found.start
         if found.converged:
             break

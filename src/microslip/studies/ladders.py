@@ -53,19 +53,19 @@ TRANSLATIONS = ("transverse", "longitudinal", "zigzag")
 """Scenes without rotation."""
 
 
-def models_of(scene, poisson):
+def models_of(scene: str, poisson: float) -> list[str]:
     """Names of the models that apply to a scene at a Poisson's ratio, from crude to costly."""
     rings_suffice = poisson == 0
     known = MODELS_OF_SCENE[scene]
     return [m for m in LADDERS if m in known and (m != "radial" or rings_suffice)]
 
 
-def exact_model(scene, poisson):
+def exact_model(scene: str, poisson: float) -> str:
     """The model that model auto takes: rings where they suffice, angular points otherwise."""
     return "radial" if "radial" in models_of(scene, poisson) else "polar"
 
 
-def ladder(model, method, count):
+def ladder(model: str, method: str, count: int) -> list:
     """List (number of the level, Level, tolerance) to run `method` in, at most `count` of them."""
     name, _ = split(method)
     own = declared(name, "resolution")
@@ -81,7 +81,7 @@ def ladder(model, method, count):
     ]
 
 
-def models_for(method, scene, poisson):
+def models_for(method: str, scene: str, poisson: float) -> list[str]:
     """Models that `method` is run on: all for the shipped one, else its own or what auto takes.
 
     None for a rotation that it does not know, or where it requires a package that is not installed.

@@ -6,6 +6,7 @@ turn the answers into datasets. What is asked is plain data that imports nothing
 workflow reads it whenever it is parsed.
 """
 
+from collections.abc import Callable, Iterator
 from dataclasses import asdict
 from importlib import import_module
 
@@ -19,17 +20,17 @@ DATASETS = {"accuracy": "accuracy_cost", "stability": "stability", "claims": "cl
 _ASKED = {"accuracy": accuracy_cost, "stability": stability, "claims": claims}
 
 
-def pieces(study, configuration):
+def pieces(study: str, configuration) -> tuple[list, list]:
     """What one job each answers: two lists of lists of requests, those that take long first."""
     return _ASKED[study].pieces(getattr(configuration, study))
 
 
-def settings(study, configuration):
+def settings(study: str, configuration) -> dict:
     """All settings that the dataset of a study depends on, as a dict for JSON."""
     return asdict(getattr(configuration, study))
 
 
-def build(study, configuration, answer):
+def build(study: str, configuration, answer: Callable) -> object:
     """Assemble the xarray.Dataset of a study.
 
     configuration: settings.Configuration. answer(request) -> record, see microslip.sweeps.batches.
@@ -37,13 +38,13 @@ def build(study, configuration, answer):
     return _dataset_of(study).build(getattr(configuration, study), answer)
 
 
-def groups(study):
+def groups(study: str) -> dict:
     """What of the dataset of a study goes to groups of its file, as for netcdf.divided: dims by
     the name of a group, each with its title."""
     return _dataset_of(study).GROUPS
 
 
-def report(study, dataset):
+def report(study: str, dataset) -> Iterator[str]:
     """Lines of text that sum up the dataset of a study."""
     return _dataset_of(study).report(dataset)
 

@@ -16,7 +16,7 @@ MOST_WORK = 5_000_000
 """Step solves x unknowns that a probe may take: several times what the shipped method needs."""
 
 
-def of_point(point):
+def of_point(point) -> dict:
     """The part of a request that says where: point is a settings.StudyPoint."""
     return {
         "scene": point.scene,
@@ -26,7 +26,7 @@ def of_point(point):
     }
 
 
-def trial(point, model, method, level, tolerance, repeats):
+def trial(point, model: str, method: str, level, tolerance: float, repeats: int) -> dict:
     """One timed run; level: ladders.Level.  A steady motion takes no steps."""
     return of_point(point) | {
         "kind": "trial",
@@ -40,13 +40,15 @@ def trial(point, model, method, level, tolerance, repeats):
     }
 
 
-def choice(point, tolerance, repeats):
+def choice(point, tolerance: float, repeats: int) -> dict:
     """One timed solve, as anybody would call it."""
     kind = {"kind": "choice", "tolerance": number(tolerance), "repeats": repeats}
     return of_point(point) | kind
 
 
-def probe(point, method, tolerance, cells=None, steps=None):
+def probe(
+    point, method: str, tolerance: float, cells: int | None = None, steps: int | None = None
+) -> dict:
     """One solve with another method, on a budget; cells, steps: imposed resolution, None: by the
     tolerance."""
     kind = {"kind": "probe", "method": method, "model": "auto", "tolerance": number(tolerance)}
@@ -54,7 +56,7 @@ def probe(point, method, tolerance, cells=None, steps=None):
     return of_point(point) | kind | {"cells": cells, "steps": steps} | budget
 
 
-def reference(point, tolerance=None):
+def reference(point, tolerance: float | None = None) -> dict:
     """An ordinary point; tolerance: None for what a reference is worth."""
     if tolerance is None:
         rings = exact_model(point.scene, point.poisson) == "radial"
@@ -63,7 +65,7 @@ def reference(point, tolerance=None):
     return of_point(point) | kind | {"cells": None, "steps": None}
 
 
-def scaling(model, cells, angles, steps):
+def scaling(model: str, cells: int | None, angles: int, steps: int | None) -> dict:
     """What a step costs with so many cells and angles, over a period of `steps` steps."""
     sizes = {"cells": cells, "angles": angles, "steps": steps}
     return {"kind": "scaling", "model": model, "poisson": "0"} | sizes

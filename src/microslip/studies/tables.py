@@ -23,7 +23,7 @@ class Answers:
         return record["result"]
 
 
-def value_of(result, name, kind=float):
+def value_of(result: dict, name: str, kind: type = float) -> object:
     """A value of a result as `kind`; for what is not there NaN, 0, False or empty text."""
     value = result.get(name)
     if value is None:
@@ -31,13 +31,15 @@ def value_of(result, name, kind=float):
     return kind(value)
 
 
-def variable(dims, values, long_name, kind=float, units="1"):
+def variable(
+    dims: str | tuple, values: np.ndarray, long_name: str, kind: type = float, units: str = "1"
+) -> tuple:
     """A variable of a dataset with its attributes; kind: type of its values."""
     values = np.asarray(values).astype(object if kind is str else kind)
     return dims, values, point_variables.attributes(kind, long_name, units)
 
 
-def flags(dims, values, long_name, meanings):
+def flags(dims: str | tuple, values: np.ndarray, long_name: str, meanings: tuple) -> tuple:
     """A variable of small numbers that stand for words."""
     dims, values, about = variable(dims, values, long_name, np.int8)
     del about["units"]
@@ -45,13 +47,15 @@ def flags(dims, values, long_name, meanings):
     return dims, values, about | {"flag_values": numbers, "flag_meanings": " ".join(meanings)}
 
 
-def columns(dims, table):
+def columns(dims: str | tuple, table: dict) -> dict:
     """Variables over the same dims; table: name -> (values, long_name, kind, units), the last two
     as far as they are not those of `variable`."""
     return {name: variable(dims, *row) for name, row in table.items()}
 
 
-def finished(variables, coords, title, answers, settings, **attributes):
+def finished(
+    variables: dict, coords: dict, title: str, answers: Answers, settings, **attributes
+) -> xr.Dataset:
     """A Dataset with what says where it comes from; settings: dict, kept as JSON."""
     # The names of all results: they depend on the sources of the methods, too.
     digest = sha256("\n".join(sorted(answers.keys)))

@@ -9,7 +9,7 @@ import time
 from statistics import median
 
 import microslip
-from microslip.sweeps.sealed_files import NO_WRITING, CacheError
+from microslip.foundation.errors import NO_WRITING, CacheError
 
 log = logging.getLogger(__name__)
 

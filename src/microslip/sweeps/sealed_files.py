@@ -3,7 +3,6 @@
 What others read carries a seal, a file beside it with its checksum and what it is made of.
 """
 
-import errno
 import hashlib
 import logging
 import os
@@ -12,7 +11,7 @@ import uuid
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from microslip.foundation.errors import shown
+from microslip.foundation.errors import NO_WRITING, CacheError, shown
 
 log = logging.getLogger(__name__)
 
@@ -22,15 +21,8 @@ LEAST_ROOM = 65536
 # What files that others read begin with; one without a seal that does not is no such file.
 BEGINNINGS = {".nc": b"\x89HDF", ".png": b"\x89PNG", ".pdf": b"%PDF"}
 
-# Errors of the system that say by themselves what the user is to mend.
-NO_WRITING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
-
 # Half a file that nobody has written to for that long (s) is left of a process that was killed.
 ABANDONED = 3600.0
-
-
-class CacheError(RuntimeError):
-    """The results folder cannot be used. The message is one line that says what to do."""
 
 
 def refuse_no_folder(folder):

@@ -4,29 +4,53 @@ Dimensionless as in theory, where their closed forms for Hertz's pressure stand;
 since a library of integration takes longer to load than a closed form to evaluate.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
 from microslip.theory import paper
 from microslip.theory.hertz import checked
 
 
-def static_stick_zone_of(pressure, stick_radius):
-    """Share of the load inside the stick radius (Eq 9).
+def static_stick_zone_of(pressure: Callable, stick_radius: np.ndarray | float) -> np.ndarray:
+    """Share of the load inside the stick radius (Eq 9), by adaptive quadrature.
 
-    pressure: function of a float radius in 0..1, in any unit. 0 <= stick_radius <= 1 (any shape).
-    Adaptive quadrature. Raises ValueError also for a load that is not positive.
+    Parameters
+    ----------
+    pressure : callable
+        Of a float radius over the contact radius, 0 to 1; in any unit.
+    stick_radius : array_like
+        Likewise, any shape.
+
+    Raises
+    ------
+    ValueError
+        For another radius, and for a load that is not positive.
     """
     stick_radius = checked("stick_radius", stick_radius, high=1.0)
     total = _total(pressure, 1)
     return _each(lambda c: _integral(lambda r: pressure(r) * r, 0.0, c) / total, stick_radius)
 
 
-def bore_of(pressure, velocity):
-    """Steady continuous bore (Eqs 17, 18; 21 and 22 for Hertz's pressure).
+def bore_of(pressure: Callable, velocity: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+    """Steady continuous bore (Eqs 17, 18; 21 and 22 for Hertz's pressure), by adaptive quadrature.
 
-    pressure: function of a float radius in 0..1, in any unit. velocity > 0 (any shape), else
-    ValueError. Returns two arrays, theory.bore_forward and bore_torque for this pressure. Adaptive
-    quadrature. Raises ValueError also for a load that is not positive.
+    Parameters
+    ----------
+    pressure : callable
+        Of a float radius over the contact radius, 0 to 1; in any unit.
+    velocity : array_like
+        Over omega a, above 0, any shape.
+
+    Returns
+    -------
+    forward, torque : np.ndarray
+        As paper.bore_forward and paper.bore_torque, for this pressure.
+
+    Raises
+    ------
+    ValueError
+        For another velocity, and for a load that is not positive.
     """
     velocity = checked("velocity", velocity, low_open=True)
     forward = _bore_mean(pressure, velocity, paper.forward_kernel, power=1)

@@ -1,8 +1,8 @@
 """Every closed form by the motion it is of: the limit it holds in, its validity, its names.
 
-Whoever certifies a point, puts limits into a dataset, answers beyond a map, judges the paper or
-draws a curve looks a formula up here.  The forms are those under Hertz's pressure; under another
-one see datasets.pressure_limits.
+Whoever puts limits into a dataset, answers beyond a map, judges the paper or draws a curve looks a
+formula up here.  The forms are those under Hertz's pressure; under another one see
+datasets.pressure_limits.  The solver asks exact.py, so that names can be edited freely.
 """
 
 from __future__ import annotations
@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from microslip.theory import bounds, masing, paper
+from microslip.theory import masing, paper
+from microslip.theory.exact import STATIC_LIMITS
 
 ANYWHERE, LARGE, SLOW = "anywhere", "amplitude to infinity", "velocity to 0"
 """Limits that a form holds in."""
@@ -58,14 +59,7 @@ class ClosedForm:
 
 _BOTH, _VELOCITY, _AMPLITUDE = ("velocity", "amplitude"), ("velocity",), ("amplitude",)
 _WHOLE = "static friction of the whole stick zone"
-_LIMIT = "exact limit for velocity to 0"
 _EXACT = "static friction, exact limit of mu_macro for velocity to 0"
-
-
-def _static(motion, function, any_poisson=False):
-    said = _EXACT if any_poisson else f"{_EXACT} at Poisson's ratio 0"
-    names = ("", "exact limit", _LIMIT, said)
-    return ClosedForm(motion, STATIC, function, _AMPLITUDE, SLOW, *names, any_poisson=any_poisson)
 
 
 FORMS: dict[str, dict[str, ClosedForm]] = {}
@@ -91,7 +85,6 @@ for _form in (
         f"{_WHOLE} (Eq 11)",
         exact=False,
     ),
-    _static("transverse", paper.static_limit_transverse),
     ClosedForm(
         *("bore", "mu_large_amplitude", paper.large_amplitude_bore, _VELOCITY, LARGE),
         *("Eq 29", "Eq 29", "steady at every instant (Eq 29)"),
@@ -112,14 +105,11 @@ for _form in (
         exact=False,
         any_poisson=True,
     ),
-    _static("bore", paper.static_limit_bore, any_poisson=True),
     ClosedForm(
         *("longitudinal", "mu_closed_form", masing.longitudinal, _BOTH, ANYWHERE),
         *("", "closed form", "mu_macro in closed form"),
         "mu_macro in closed form at Poisson's ratio 0 (Mindlin's curve with Masing's memory)",
     ),
-    _static("longitudinal", paper.static_limit_longitudinal),
-    _static("zigzag", paper.static_limit_transverse),  # it knows the turning points alone
     ClosedForm(
         *("continuous-bore", "mu_forward_theory", paper.bore_forward, _VELOCITY, ANYWHERE),
         *("Eq 21", "force, Eq 21", "steady mu_macro (Eq 21)"),
@@ -134,10 +124,10 @@ for _form in (
     ),
 ):
     FORMS.setdefault(_form.motion, {})[_form.name] = _form
-
-LARGEST_DROPS = {
-    "longitudinal": bounds.largest_drop_longitudinal,
-    "transverse": bounds.largest_drop_transverse,
-    "bore": bounds.largest_drop_bore,
-}
-"""Upper bounds of 1 - mu_macro by motion, functions of velocity and amplitude (floats)."""
+for _motion, _limit in STATIC_LIMITS.items():
+    _at_0 = "" if _limit.any_poisson else " at Poisson's ratio 0"
+    FORMS.setdefault(_motion, {})[STATIC] = ClosedForm(
+        *(_motion, STATIC, _limit.function, _AMPLITUDE, SLOW),
+        *("", "exact limit", "exact limit for velocity to 0", _EXACT + _at_0),
+        any_poisson=_limit.any_poisson,
+    )

@@ -20,7 +20,13 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
 _UNIT_NODES, _UNIT_WEIGHTS = (_NODES + 1) / 2, _WEIGHTS / 2
 
 
-def checked(name, values, low=0.0, high=np.inf, low_open=False):
+def checked(
+    name: str,
+    values: np.ndarray | float,
+    low: float = 0.0,
+    high: float = np.inf,
+    low_open: bool = False,
+) -> np.ndarray:
     """Return `values` as a float array, or raise ValueError naming what is wrong.
 
     Allowed are finite numbers with low <= value <= high (low < value where `low_open`).

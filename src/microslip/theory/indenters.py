@@ -14,10 +14,22 @@ _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 SMALLEST_STICK_RADIUS = 1e-6
 
 
-def static_transverse(pressure, amplitude):
-    """Static friction under transverse oscillation, v -> 0, nu = 0; amplitude >= 0 (a float).
+def static_transverse(pressure, amplitude: float) -> float:
+    """Static friction under transverse oscillation, v -> 0, nu = 0.
 
     Integral over the stick zone of sqrt(g^2 - (g - g_c)^2), see paper.static_limit_transverse.
+
+    Parameters
+    ----------
+    pressure : pressure.Pressure
+        Of an axisymmetric indenter.
+    amplitude : float
+        In u_lim, >= 0.
+
+    Returns
+    -------
+    float
+        Over mu F_z, 0 to 1.
     """
     if amplitude >= 1.0:
         return 0.0
@@ -30,17 +42,38 @@ def static_transverse(pressure, amplitude):
     return min(_over_the_circle(left, c, _kink(pressure)), 1.0)
 
 
-def static_stick_zone(pressure, stick_radius):
-    """Share of the load inside a stick radius, 0..1 (Eq 9; any shape)."""
+def static_stick_zone(pressure, stick_radius: np.ndarray | float) -> np.ndarray:
+    """Share of the load inside a stick radius, 0 to 1 (Eq 9).
+
+    Parameters
+    ----------
+    pressure : pressure.Pressure
+        Of an axisymmetric indenter.
+    stick_radius : array_like
+        Over the contact radius, 0 to 1, any shape.
+    """
     return pressure.load(stick_radius, 1.0)
 
 
-def torsion_angle(pressure, stick_radius, poisson=0.0):
-    """Angle of pure torsion, from rest, that leaves a stick circle, in u_lim/a (Eq 24 for a
-    sphere); 0 < stick_radius <= 1.
+def torsion_angle(pressure, stick_radius: np.ndarray | float, poisson: float = 0.0) -> float:
+    """Angle of pure torsion, from rest, that leaves a stick circle (Eq 24 for a sphere).
 
     Torsion is a sum of turned flat punches, whose inversion by Abel gives
     phi = 1/(2 G) Integral_c^1 g / sqrt(r^2 - c^2) dr.
+
+    Parameters
+    ----------
+    pressure : pressure.Pressure
+        Of an axisymmetric indenter.
+    stick_radius : float
+        Over the contact radius, above 0 and at most 1.
+    poisson : float
+        Poisson's ratio, 0 to 0.5.
+
+    Returns
+    -------
+    float
+        In u_lim / a.
     """
     end = np.arccosh(1.0 / stick_radius)
     eta = end * np.sin(0.5 * np.pi * _NODES)  # the bound falls like a root at the edge
@@ -49,9 +82,23 @@ def torsion_angle(pressure, stick_radius, poisson=0.0):
     return 2.0 / ((2.0 - poisson) * pressure.G_star) * float(np.sum(step * bound))
 
 
-def torsion_stick_radius(pressure, angle, poisson=0.0):
-    """Stick radius left by pure torsion through an angle (u_lim/a, >= 0) from rest, the inverse of
-    torsion_angle; 0 below SMALLEST_STICK_RADIUS."""
+def torsion_stick_radius(pressure, angle: float, poisson: float = 0.0) -> float:
+    """Stick radius left by pure torsion from rest, the inverse of torsion_angle.
+
+    Parameters
+    ----------
+    pressure : pressure.Pressure
+        Of an axisymmetric indenter.
+    angle : float
+        In u_lim / a, >= 0.
+    poisson : float
+        Poisson's ratio, 0 to 0.5.
+
+    Returns
+    -------
+    float
+        Over the contact radius; 0 below SMALLEST_STICK_RADIUS.
+    """
     from scipy.optimize import brentq  # takes long to load, and few ask for it
 
     if angle <= 0.0:
@@ -64,10 +111,24 @@ def torsion_stick_radius(pressure, angle, poisson=0.0):
     return float(np.exp(brentq(excess, smallest, 0.0, xtol=1e-13))) if excess(smallest) > 0 else 0.0
 
 
-def torsion_traction(pressure, r, stick_radius):
-    """Circumferential traction of pure torsion inside the stick circle, r < stick_radius (array).
+def torsion_traction(pressure, r: np.ndarray, stick_radius: np.ndarray | float) -> np.ndarray:
+    """Circumferential traction of pure torsion inside the stick circle.
 
     The turned punches summed up: (2 r/pi) Integral g(t)/t d(theta), t^2 = c^2 + (c^2 - r^2) tan^2.
+
+    Parameters
+    ----------
+    pressure : pressure.Pressure
+        Of an axisymmetric indenter.
+    r : array_like
+        Radii below the stick radius, over the contact radius, any shape.
+    stick_radius : float
+        Likewise.
+
+    Returns
+    -------
+    np.ndarray
+        Over mu F_z / a^2, of the shape of r.
     """
     r = np.asarray(r, float)[..., None]
     inside = stick_radius**2 - r**2
@@ -78,10 +139,24 @@ def torsion_traction(pressure, r, stick_radius):
     return 2.0 / np.pi * r[..., 0] * np.sum(step * pressure.bound(t, 1.0) / t, axis=-1)
 
 
-def static_bore(pressure, angle, poisson=0.0):
-    """Static friction under oscillating bore, v -> 0; angle >= 0 in u_lim/a.
+def static_bore(pressure, angle: float, poisson: float = 0.0) -> float:
+    """Static friction under oscillating bore, v -> 0.
 
     4 Integral_0^c g arccos(tau / g) r dr, see paper.static_limit_bore.
+
+    Parameters
+    ----------
+    pressure : pressure.Pressure
+        Of an axisymmetric indenter.
+    angle : float
+        Half stroke of the oscillation in u_lim / a, >= 0.
+    poisson : float
+        Poisson's ratio, 0 to 0.5.
+
+    Returns
+    -------
+    float
+        Over mu F_z, 0 to 1.
     """
     c = torsion_stick_radius(pressure, angle, poisson)
     if c in (0.0, 1.0):

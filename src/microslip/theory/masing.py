@@ -6,6 +6,8 @@ sphere), after each turn the same curve at twice the scale, back to where the la
 older branch from there on.  Exact for Poisson's ratio 0.  Dimensionless as in theory.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
 from microslip.theory.hertz import checked, mindlin_force
@@ -17,13 +19,30 @@ _NODES, _WEIGHTS = np.sin(_ANGLES) ** 2, 0.25 * np.pi * _WEIGHTS * np.sin(2.0 * 
 _HALVINGS = 60
 
 
-def longitudinal(velocity, amplitude, curve=mindlin_force):
+def longitudinal(
+    velocity: np.ndarray | float, amplitude: np.ndarray | float, curve: Callable = mindlin_force
+) -> np.ndarray:
     """Mean forward friction under an oscillation along the direction of sliding, nu = 0.
 
-    velocity >= 0 over omega u_lim, amplitude >= 0 in u_lim (broadcast), else ValueError.  1 where
-    the motion never turns back (velocity >= amplitude); 1 less the curve at the amplitude for
-    velocity to 0.  curve: force over mu F_z after a displacement from rest, by default that of a
-    sphere.  Quadrature, to about 1e-10.
+    Parameters
+    ----------
+    velocity : array_like
+        Over omega u_lim, >= 0; 0: its limit.
+    amplitude : array_like
+        In u_lim, >= 0; the two broadcast.
+    curve : callable
+        Force over mu F_z after a displacement from rest, by default that of a sphere.
+
+    Returns
+    -------
+    np.ndarray
+        To about 1e-10, by quadrature; 1 where the motion never turns back (velocity >= amplitude),
+        1 less the curve at the amplitude for velocity to 0.
+
+    Raises
+    ------
+    ValueError
+        For another velocity or amplitude.
     """
     velocity, amplitude = checked("velocity", velocity), checked("amplitude", amplitude)
     velocity, amplitude = np.broadcast_arrays(velocity, amplitude)

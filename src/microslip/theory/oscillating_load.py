@@ -26,9 +26,18 @@ _HALVINGS = 60
 _LOOKED_AT = 2001
 
 
-def mean_load(amplitude, by_load, pressure):
-    """Mean normal load over that of the reference state, for a change of the load (by_load), or of
-    the indentation, by `amplitude` >= 0 of its mean."""
+def mean_load(amplitude: float, by_load: bool, pressure) -> float:
+    """Mean normal load over that of the reference state.
+
+    Parameters
+    ----------
+    amplitude : float
+        Of the load or of the indentation, over its mean, >= 0.
+    by_load : bool
+        Whether it is the load that oscillates, else the indentation.
+    pressure : pressure.Pressure
+        Of an axisymmetric indenter.
+    """
     motion = _Motion(0.0, amplitude, by_load, pressure)
     loss = np.pi - motion.touch
     if by_load:
@@ -38,11 +47,15 @@ def mean_load(amplitude, by_load, pressure):
     return float(loss * (2.0 * _NODES * _WEIGHTS) @ pressure.total(motion.depth(t))) / np.pi
 
 
-def friction(velocity, amplitude, by_load, pressure):
+def friction(velocity: float, amplitude: float, by_load: bool, pressure) -> float:
     """Mean forward friction over mu times the mean normal load.
 
-    velocity >= 0 over omega u_lim (0: the limit), omega the frequency of the oscillation;
-    amplitude, by_load: as for mean_load.
+    Parameters
+    ----------
+    velocity : float
+        Over omega u_lim, omega the frequency of the oscillation, >= 0; 0: the limit.
+    amplitude, by_load, pressure
+        As for mean_load.
     """
     if amplitude == 0.0:
         return 1.0

@@ -72,7 +72,7 @@ def static_transverse(amplitude: np.ndarray | float) -> np.ndarray | float:
 
 
 # Continuous bore
-def rotation_centre(velocity, time=0.0):
+def rotation_centre(velocity: np.ndarray | float, time: np.ndarray | float = 0.0) -> tuple:
     """Instantaneous centre of rotation (lateral, forward), in the frame at rest (Eq 14).
 
     velocity >= 0, time t~ = t v0/a >= 0 (broadcast), else ValueError. Returns two arrays:
@@ -82,7 +82,9 @@ def rotation_centre(velocity, time=0.0):
     return 0 * time - velocity, time + 0 * velocity
 
 
-def steady_bore_traction(lateral, forward, velocity):
+def steady_bore_traction(
+    lateral: np.ndarray | float, forward: np.ndarray | float, velocity: np.ndarray | float
+) -> tuple:
     """Traction on the body that bores and moves forward, slipping everywhere (Eq 15).
 
     lateral, forward: position from the contact centre; velocity >= 0 (all broadcast), else

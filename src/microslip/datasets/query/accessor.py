@@ -56,7 +56,14 @@ class Friction:
         self._pressure = dataset.attrs.get("pressure", "hertz")
         self._tables = {}  # by what they are made of: a dataset may be changed in place
 
-    def at(self, velocity, amplitude=None, *, poisson=None, tolerance=None):
+    def at(
+        self,
+        velocity: object,
+        amplitude: object = None,
+        *,
+        poisson: float | None = None,
+        tolerance: float | None = None,
+    ) -> xr.Dataset:
         """Friction and a bound of its error, whatever the point.
 
         Between the nodes of a map the error holds what interpolation leaves (see `interpolation`,

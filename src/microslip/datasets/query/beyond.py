@@ -18,7 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from microslip.theory.catalogue import FORMS, LARGEST_DROPS, STATIC
+from microslip.theory.catalogue import FORMS
+from microslip.theory.exact import LARGEST_DROPS, STATIC_LIMITS
 
 ROUNDING = 1e-12
 SLOW_EXPONENT = 2.0 / 3.0
@@ -51,7 +52,7 @@ class Limits:
 
 
 def _limits(motion, same_limit):
-    static, large = FORMS[motion][STATIC], FORMS[motion]["mu_large_amplitude"]
+    static, large = STATIC_LIMITS[motion], FORMS[motion]["mu_large_amplitude"]
     return Limits(
         static.function,
         not static.any_poisson,
@@ -69,7 +70,7 @@ LIMITS = {
 }
 
 
-def is_known(scene, pressure):
+def is_known(scene: str, pressure: str) -> bool:
     """Whether limits of a scene under a pressure are proved."""
     return pressure == "hertz" and (scene in LIMITS or scene == "continuous-bore")
 
@@ -87,7 +88,9 @@ class Edge(NamedTuple):
     error: np.ndarray
 
 
-def slower(limits, edge, velocity, amplitude, slowest):
+def slower(
+    limits: Limits, edge: Edge, velocity: np.ndarray, amplitude: np.ndarray, slowest: float
+) -> tuple:
     """Value and error for velocities from 0 to the slowest of a map, shape (n,) each.
 
     edge: at the slowest velocity and the same amplitudes.
@@ -98,7 +101,9 @@ def slower(limits, edge, velocity, amplitude, slowest):
     return _within(static, high, static + share * (edge.value - static))
 
 
-def faster(limits, edge, velocity, amplitude, fastest):
+def faster(
+    limits: Limits, edge: Edge, velocity: np.ndarray, amplitude: np.ndarray, fastest: float
+) -> tuple:
     """... for velocities above the fastest of a map; the edge is NaN where nothing is known."""
     low = 1.0 - limits.drop(velocity, amplitude)
     low = np.clip(np.fmax(low, edge.value - edge.error), 0.0, 1.0)
@@ -106,7 +111,14 @@ def faster(limits, edge, velocity, amplitude, fastest):
     return _within(low, np.ones_like(low), np.where(np.isnan(far), low, far))
 
 
-def wider(limits, edge, distance, velocity, amplitude, widest):
+def wider(
+    limits: Limits,
+    edge: Edge,
+    distance: np.ndarray,
+    velocity: np.ndarray,
+    amplitude: np.ndarray,
+    widest: float,
+) -> tuple:
     """... for amplitudes above the largest of a map.
 
     edge: at the largest amplitude, at the velocity with the same limit; distance: see `distances`.
@@ -116,7 +128,14 @@ def wider(limits, edge, distance, velocity, amplitude, widest):
     return np.clip(end + left, 0.0, 1.0), distance + np.abs(left) + edge.error
 
 
-def distances(limits, nodes, values, errors, velocity, widest):
+def distances(
+    limits: Limits,
+    nodes: np.ndarray,
+    values: np.ndarray,
+    errors: np.ndarray,
+    velocity: np.ndarray,
+    widest: float,
+) -> np.ndarray:
     """Largest distance from the limit for large amplitudes within a decade of velocities, (n,).
 
     nodes, values, errors: the edge of a map at its largest amplitude, (m,); velocity: (n,).
@@ -127,14 +146,20 @@ def distances(limits, nodes, values, errors, velocity, widest):
     return np.where(near, off, 0.0).max(axis=1)
 
 
-def narrower(limits, edge, amplitude, narrowest):
+def narrower(limits: Limits, edge: Edge, amplitude: np.ndarray, narrowest: float) -> tuple:
     """... for amplitudes from 0 to the smallest of a map."""
     low = np.clip(edge.value - edge.error, 0.0, 1.0)
     guess = 1.0 - (1.0 - edge.value) * amplitude / narrowest
     return _within(low, np.ones_like(low), guess)
 
 
-def within_the_balance(limits, value, error, velocity, amplitude):
+def within_the_balance(
+    limits: Limits,
+    value: np.ndarray,
+    error: np.ndarray,
+    velocity: np.ndarray,
+    amplitude: np.ndarray,
+) -> tuple:
     """Any value and error, no worse than the energy balance allows; NaN stays what it is."""
     low = np.maximum(1.0 - limits.drop(velocity, amplitude), 0.0)
     value = np.clip(value, low, 1.0)

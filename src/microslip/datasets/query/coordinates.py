@@ -14,7 +14,7 @@ from microslip.theory import hertz
 ALLOWED = "allowed is a finite number >= 0, or several"
 
 
-def labelled(name, given):
+def labelled(name: str, given: object) -> xr.DataArray:
     """A DataArray of numbers >= 0; sequences get a dimension of their name."""
     array = given if isinstance(given, xr.DataArray) else _array(name, given)
     if array.dtype.kind not in "iuf":

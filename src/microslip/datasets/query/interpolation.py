@@ -25,25 +25,25 @@ class Axis:
     values: np.ndarray
 
     @cached_property
-    def logarithmic(self):
+    def logarithmic(self) -> bool:
         values = self.values
         if len(values) < 3 or values[0] <= 0.0:
             return len(values) == 2 and 0.0 < 10.0 * values[0] < values[1]
         return _unevenness(np.log(values)) < _unevenness(values)
 
     @cached_property
-    def nodes(self):
+    def nodes(self) -> np.ndarray:
         return self.scaled(self.values)
 
-    def scaled(self, points):
+    def scaled(self, points: np.ndarray) -> np.ndarray:
         """Points in the measure that the axis is interpolated in."""
         return np.log(points) if self.logarithmic else np.asarray(points, float)
 
-    def holds(self, points):
+    def holds(self, points: np.ndarray) -> np.ndarray:
         """Which of the points lie on the axis or between its ends."""
         return (points >= self.values[0]) & (points <= self.values[-1])
 
-    def cubics(self, points):
+    def cubics(self, points: np.ndarray) -> tuple[np.ndarray, ...]:
         """Local cubics at points inside, shape (n,): (index of the cell, its share that lies to the
         left of the point, indices of the nodes (n, k), their weights (n, k)); k: at most 4."""
         x, q = self.nodes, self.scaled(points)
@@ -58,7 +58,7 @@ class Axis:
         index = first[:, None] + np.arange(width)
         return cell, share, index, _lagrange(x[index], q)
 
-    def misses(self, table):
+    def misses(self, table: np.ndarray) -> np.ndarray:
         """|node - what the cubic through its neighbours says| along the first axis of a table.
 
         An end node is given what the node beside it has, and of two nodes both their difference.
@@ -109,7 +109,7 @@ class Table:
         along_columns = self.columns.misses(self.values.T).T
         return largest_around(along_rows), largest_around(along_columns)
 
-    def at(self, row, column):
+    def at(self, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Values and bounds of their errors at points inside, shape (n,) each; NaN and infinity
         where a node that counts is not known."""
         i, s, rows, row_weights = self.rows.cubics(row)
@@ -123,7 +123,7 @@ class Table:
         return value, np.where(np.isnan(value) | np.isnan(error), np.inf, error)
 
 
-def largest_around(values):
+def largest_around(values: np.ndarray) -> np.ndarray:
     """The largest of every entry of a table and those beside it, across corners too."""
     padded = np.pad(values, 1, mode="edge")
     n, m = values.shape

@@ -28,7 +28,7 @@ __all__ = ["SOURCES", "Friction", "open_map"]
 def open_map(
     name: str | os.PathLike[str],
     results: str | os.PathLike[str] = "results",
-    chunks=None,
+    chunks: object = None,
     *,
     group: str | None = None,
 ) -> xr.Dataset:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 
-def within(table, still, velocity, amplitude):
+def within(table, still, velocity: np.ndarray, amplitude: np.ndarray) -> tuple:
     """Values and bounds of their errors, shape (n,) each; NaN and infinity beyond the map.
 
     table, still: interpolation.Table of the map above velocity 0 and of its row at velocity 0, each
@@ -20,7 +20,7 @@ def within(table, still, velocity, amplitude):
     return value, error
 
 
-def refuse_beyond(table, still, velocity, amplitude, what):
+def refuse_beyond(table, still, velocity: np.ndarray, amplitude: np.ndarray, what: str) -> None:
     """Raise ValueError, naming the argument, for the first point beyond a map; as `within`."""
     for v, a in zip(velocity, amplitude, strict=True):
         part = still if v == 0.0 else table

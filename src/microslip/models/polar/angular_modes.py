@@ -50,7 +50,7 @@ class Sectors(NamedTuple):
 
 
 @kernel
-def fold(x, out):
+def fold(x: np.ndarray, out: np.ndarray) -> None:
     """Even and odd parts (4, M/2, N) of tractions (2, M, N)."""
     last = x.shape[1] - 1
     for j in range(out.shape[1]):
@@ -62,7 +62,7 @@ def fold(x, out):
 
 
 @kernel
-def unfold(x, out):
+def unfold(x: np.ndarray, out: np.ndarray) -> None:
     """Tractions (2, M, N) from their folded parts."""
     last = out.shape[1] - 1
     for j in range(x.shape[1]):
@@ -103,7 +103,7 @@ def _transform(matrix, x, out):
 
 
 @kernel(**FUSED)
-def apply_sectors(sectors, x, out):
+def apply_sectors(sectors: Sectors, x: np.ndarray, out: np.ndarray) -> None:
     """Apply an operator to folded tractions x, all (4, M/2, N)."""
     dense, to_modes, to_points, members, blocks = sectors
     n = x.shape[2]

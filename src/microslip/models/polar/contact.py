@@ -82,7 +82,7 @@ class PolarContact:
         self.penalty = PENALTY * self.compliance
         self._made_of = cells, focus, pressure
 
-    def pressed(self, deepest, start):
+    def pressed(self, deepest: float, start: np.ndarray) -> PolarContact:
         """The same points spread over the contact at its `deepest`, with the bound at `start`;
         see RadialContact.pressed."""
         out = copy(self)
@@ -97,21 +97,21 @@ class PolarContact:
         out.stiffness = self.stiffness * radius
         return out
 
-    def bounds(self, depths):
+    def bounds(self, depths: np.ndarray) -> np.ndarray:
         """Mean friction bound of each ring at each depth, shape (len(depths), cells)."""
         return self.loaded.bounds(depths)
 
-    def bounds_along(self, path):
+    def bounds_along(self, path) -> np.ndarray:
         """Bounds at the start and at every stage of a path, (1 + steps stages, cells)."""
         return self.loaded.bounds_along(path)
 
-    def at_phases(self, march, start):
+    def at_phases(self, march: contact.March, start: np.ndarray) -> np.ndarray:
         """Tractions at every phase of a march from `start`, (steps + 1, 2, angles, cells)."""
         return start + np.concatenate(
             [np.zeros((1, *start.shape)), np.cumsum(march.stages[0].sum(axis=1), axis=0)]
         )
 
-    def displacement(self, state):
+    def displacement(self, state: np.ndarray) -> np.ndarray:
         """A q; shapes (2, angles, cells)."""
         folded = np.empty((4, self.angles // 2, state.shape[2]))
         image, out = np.empty_like(folded), np.empty(state.shape)
@@ -120,11 +120,11 @@ class PolarContact:
         unfold(image, out)
         return out
 
-    def mirrored(self, state):
+    def mirrored(self, state: np.ndarray) -> np.ndarray:
         """theta -> pi - theta, lateral traction negated."""
         return state[:, ::-1, :] * contact.MIRROR
 
-    def march(self, path, state, tolerance, sensitivity=False, previous=None):
+    def march(self, path, state, tolerance, sensitivity=False, previous=None) -> contact.March:
         """March along `path`; see models.contact.Contact."""
         forces = np.zeros((path.steps + 1, 3))
         if previous is None:

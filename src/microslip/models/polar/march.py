@@ -156,7 +156,7 @@ class Step(NamedTuple):
 
 
 @kernel
-def solve_step(points, step, unknowns, slip, scratch):
+def solve_step(points, step, unknowns, slip, scratch) -> tuple[int, float]:
     """Solve one Coulomb step by over-relaxed ADMM, in place.
 
     Parameters
@@ -221,7 +221,7 @@ def _shrink(q, bound):
 
 
 @kernel
-def march(points, path, state, tolerance, known, forces):
+def march(points, path, state, tolerance, known, forces) -> tuple:
     """March along a path.
 
     Parameters

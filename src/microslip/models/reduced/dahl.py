@@ -28,15 +28,15 @@ class DahlContact:
         self.compliance = np.full(1, 1.0 / stiffness)
         self.forward_position = self.lateral_position = np.zeros((1, 1))
 
-    def displacement(self, state):
+    def displacement(self, state: np.ndarray) -> np.ndarray:
         """Deflection of the bristle, shape (2, 1, 1)."""
         return state / self.stiffness
 
-    def mirrored(self, state):
+    def mirrored(self, state: np.ndarray) -> np.ndarray:
         """Lateral traction negated."""
         return state * contact.MIRROR
 
-    def march(self, path, state, tolerance, sensitivity=False, previous=None):
+    def march(self, path, state, tolerance, sensitivity=False, previous=None) -> contact.March:
         """Solve along `path`, straight from phase to phase (translations only)."""
         moves = np.diff(path.positions[:, :2], axis=0)
         lengths = np.hypot(*moves.T)

@@ -18,7 +18,7 @@ from microslip.models.varying_load import Growth, load_on_springs
 from microslip.pressures.registry import HERTZ
 
 
-def mdr_contact(cells, focus=None, pressure=HERTZ):
+def mdr_contact(cells: int, focus=None, pressure=HERTZ) -> RadialContact:
     """`cells` springs under an indenter's Pressure on 0 < x < 1 with their mirror images,
     gathered around x = `focus`.
 

@@ -37,15 +37,15 @@ class RigidContact:
             self.bound = self.weight = np.ones(1)
         self.compliance = np.ones_like(self.bound)
 
-    def displacement(self, state):
+    def displacement(self, state: np.ndarray) -> np.ndarray:
         """No elastic displacement."""
         return np.zeros_like(state)
 
-    def mirrored(self, state):
+    def mirrored(self, state: np.ndarray) -> np.ndarray:
         """theta -> pi - theta, lateral traction negated."""
         return state[:, ::-1, :] * contact.MIRROR
 
-    def march(self, path, state, tolerance, sensitivity=False, previous=None):
+    def march(self, path, state, tolerance, sensitivity=False, previous=None) -> contact.March:
         """Forces of full slip along the velocity at each phase of the path."""
         velocity = np.gradient(path.positions, path.phase, axis=0, edge_order=2)
         forces = np.empty((path.steps + 1, 3))

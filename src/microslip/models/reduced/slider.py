@@ -12,6 +12,6 @@ import numpy as np
 from microslip.models.rings.contact import RadialContact
 
 
-def slider_contact():
+def slider_contact() -> RadialContact:
     """The slider as a contact of one point: unit friction bound, unit compliance."""
     return RadialContact(np.ones((1, 1)), np.ones(1), np.ones(1))

@@ -41,8 +41,8 @@ class RadialContact:
     Attributes
     ----------
     edges : np.ndarray or None, shape (cells + 1,)
-        Radii between the rings before the contact is `pressed`, None where there are none or it has
-        a hole.
+        Radii between the rings of the reference contact, None where there are none or it has a
+        hole.
     """
 
     has_sensitivity = True
@@ -67,11 +67,11 @@ class RadialContact:
         self.stiffness = float(stiffness)
 
     @staticmethod
-    def resolved(cells, focus=None, pressure=HERTZ):
+    def resolved(cells: int, focus=None, pressure=HERTZ) -> RadialContact:
         """The half-space on `cells` rings refined around the radius `focus`."""
         return _resolved(cells, focus, pressure)
 
-    def pressed(self, deepest, start):
+    def pressed(self, deepest: float, start: np.ndarray) -> RadialContact:
         """The same rings spread over the contact at its `deepest`, with the bound at `start`.
 
         Both are depths (see varying_load.py), deepest > 0.
@@ -105,7 +105,7 @@ class RadialContact:
         # w^T B^-1 w of the first k rings
         return np.concatenate([[0.0], np.cumsum(part**2) * self.radius / self.stiffness])
 
-    def bounds(self, depths, edge=None):
+    def bounds(self, depths: np.ndarray, edge: np.ndarray | None = None) -> np.ndarray:
         """Mean friction bound of each ring at each depth, shape (len(depths), cells).
 
         edge: radii (len(depths),) that say which rings are in contact, by default those of the
@@ -113,11 +113,11 @@ class RadialContact:
         """
         carried = self.growth.carried(self.growth.pressure, self.growth.edges, depths)
         edge = self.growth.pressure.radius(depths) if edge is None else edge
-        outside = edge[:, None] <= self._joins
-        carried[:, 1:-1] = np.where(outside, carried[:, -1:], carried[:, 1:-1])
+        outside, most = edge[:, None] <= self._joins, carried[:, -1:]
+        carried[:, 1:-1] = np.where(outside, most, carried[:, 1:-1])
         return np.maximum(np.diff(carried, axis=1), 0.0) / self.weight
 
-    def bounds_along(self, path):
+    def bounds_along(self, path) -> np.ndarray:
         """Bounds at the start and at every stage of a path, (1 + steps stages, cells).
 
         Rings join or leave at the last stage of a step only: what jumps at an earlier one would be
@@ -134,20 +134,20 @@ class RadialContact:
         edge[:, -1] = seen[1:]
         return self.bounds(path.depth, np.append(seen[:1], edge))
 
-    def at_phases(self, march, start):
+    def at_phases(self, march: contact.March, start: np.ndarray) -> np.ndarray:
         """Tractions at every phase of a march from `start`, (steps + 1, 2, 1, cells)."""
         stages = march.solves // (len(march.forces) - 1)
         return march.stages[::stages, :, None]
 
-    def displacement(self, state):
+    def displacement(self, state: np.ndarray) -> np.ndarray:
         """A q; shapes (2, 1, cells)."""
         return state @ self.influence.T
 
-    def mirrored(self, state):
+    def mirrored(self, state: np.ndarray) -> np.ndarray:
         """Lateral traction negated."""
         return state * contact.MIRROR
 
-    def march(self, path, state, tolerance, sensitivity=False, previous=None):
+    def march(self, path, state, tolerance, sensitivity=False, previous=None) -> contact.March:
         """March along `path` (translations only); see models.contact.Contact.
 
         The stages of the result, and of `previous`, are the tractions at the start and after

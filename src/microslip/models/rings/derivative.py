@@ -48,7 +48,7 @@ class Derivative(NamedTuple):
 
 
 @kernel
-def make_derivative(n, stages, columns):
+def make_derivative(n: int, stages: int, columns: int) -> Derivative:
     """That of the start itself."""
     displacement = np.zeros((2, n, columns))
     if columns > 0:
@@ -142,7 +142,7 @@ def _fill_felt(order, stick, derivative):
 
 
 @kernel
-def slip_tangent(factors, stick, slip, bound, derivative, stage):
+def slip_tangent(factors, stick, slip, bound, derivative, stage) -> None:
     """Derivative of the slips of one solved stage: fills those of the slipping rings.
 
     slip: weighted slips, (2, n); stick: number of the sticking rings, as `factorise` returns it.
@@ -177,7 +177,7 @@ def slip_tangent(factors, stick, slip, bound, derivative, stage):
 
 
 @kernel
-def start_derivative(rings, dz):
+def start_derivative(rings, dz: np.ndarray) -> np.ndarray:
     """Derivative of the end tractions with respect to the first ones, B^-1 dz B, (2 n, 2 n)."""
     n = len(rings.weight)
     out = np.zeros((2 * n, 2 * n))
@@ -194,7 +194,7 @@ def start_derivative(rings, dz):
 
 
 @kernel(inline="always")
-def carry_derivative(derivative, stage, share):
+def carry_derivative(derivative: Derivative, stage: int, share: float) -> None:
     """Less `share` of the slips of a stage, where rings slipped in it; these count as touched."""
     slid, dslip, dz = derivative.slid[stage], derivative.slips[stage], derivative.displacement
     for i in range(len(slid)):
@@ -205,7 +205,7 @@ def carry_derivative(derivative, stage, share):
 
 
 @kernel(inline="always")
-def carry_to_stage(derivative, carry, stage):
+def carry_to_stage(derivative: Derivative, carry: np.ndarray, stage: int) -> None:
     """The displacement imposed on a stage, from that of the stage before."""
     for j in range(stage):
         share = carry[stage, j] - (carry[stage - 1, j] if j < stage - 1 else 0.0)

@@ -13,7 +13,7 @@ LONGEST_STRETCH = 3.0
 
 
 @kernel
-def follow(q, bound, now, before):
+def follow(q: np.ndarray, bound: np.ndarray, now: np.ndarray, before: np.ndarray) -> None:
     """First guess: move q as another march moved its tractions in the same stage.
 
     Rings that slipped there are taken to slip here in the same direction.
@@ -30,7 +30,7 @@ def follow(q, bound, now, before):
 
 
 @kernel
-def extrapolate(q, last, bound, before, ratio):
+def extrapolate(q, last, bound, before, ratio) -> None:
     """First guess: go on as from `before` to q, `ratio` times as far; slip stays slip.
 
     last, bound: those that q obeys, and that the guess shall.
@@ -48,7 +48,7 @@ def extrapolate(q, last, bound, before, ratio):
 
 
 @kernel
-def stretch(way, at):
+def stretch(way: np.ndarray, at: int) -> float:
     """Length of the stage that ends at `at` over that of the stage before, at most 3."""
     before = np.hypot(way[at - 1, 0] - way[at - 2, 0], way[at - 1, 1] - way[at - 2, 1])
     length = np.hypot(way[at, 0] - way[at - 1, 0], way[at, 1] - way[at - 1, 1])
@@ -56,7 +56,7 @@ def stretch(way, at):
 
 
 @kernel
-def within(q, bound):
+def within(q: np.ndarray, bound: np.ndarray) -> None:
     """Shrink q onto the bound."""
     for i in range(len(bound)):
         f = shrink(q[0, i], q[1, i], bound[i])

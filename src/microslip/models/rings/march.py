@@ -68,7 +68,7 @@ def _guess(q, bounds, way, at, known, tractions):
 
 
 @kernel
-def march(rings, path, state, known, tolerance, tangent):
+def march(rings, path, state, known, tolerance, tangent) -> tuple:
     """March along a path.
 
     Parameters

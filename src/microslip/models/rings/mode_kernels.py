@@ -25,7 +25,7 @@ def _elliptic_ke(kc):
 
 
 @kernel
-def toroidal_kernels(r, s, out):
+def toroidal_kernels(r: float, s: float, out: np.ndarray) -> None:
     """Fill out[m] = G_m(r, s) = Integral J_m(k r) J_m(k s) dk for m = 0 .. len(out) - 1.
 
     Parameters: two different positive radii (dimensionless) and the array to fill.  G_m equals
@@ -60,7 +60,7 @@ def toroidal_kernels(r, s, out):
 
 
 @kernel
-def coupling_kernels(r, s, toroidal, out):
+def coupling_kernels(r: float, s: float, toroidal: np.ndarray, out: np.ndarray) -> None:
     """Fill out[j] = C_{j+1}(r, s) = Integral J_{j+1}(k r) J_{j-1}(k s) dk, j = 0 .. len(out) - 1.
 
     `toroidal` holds G_m(r, s) for m = 0 .. len(toroidal) - 1 with len(toroidal) > len(out).
@@ -87,7 +87,7 @@ def coupling_kernels(r, s, toroidal, out):
 
 
 @kernel
-def mode_kernels(r, s, n_modes, coupled, torus, pair):
+def mode_kernels(r, s, n_modes, coupled, torus, pair) -> np.ndarray:
     """Fill torus[m] = G_m and, if coupled, pair[j] = C_{j+1}; returns torus, perhaps enlarged."""
     top = n_modes
     if coupled:

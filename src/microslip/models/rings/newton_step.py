@@ -23,7 +23,7 @@ GOOD_STEP = 0.3
 
 
 @kernel
-def weighted_slip(stiffness, imposed, q, out):
+def weighted_slip(stiffness, imposed, q, out) -> None:
     """out = imposed - B q; all (2, n)."""
     n = q.shape[1]
     for c in range(2):
@@ -36,7 +36,7 @@ def weighted_slip(stiffness, imposed, q, out):
 
 
 @kernel
-def step_residual(stiffness, q, slip, bound, weight):
+def step_residual(stiffness, q, slip, bound, weight) -> float:
     """coulomb.coulomb_residual for weighted slips on rings."""
     total = 0.0
     for i in range(q.shape[1]):
@@ -155,7 +155,7 @@ def _move(q, bound, stick, factors):
 
 
 @kernel
-def solve_step(rings, step, q, slip, factors):
+def solve_step(rings, step: Step, q: np.ndarray, slip: np.ndarray, factors) -> tuple[int, float]:
     """Solve one Coulomb step on rings in place.
 
     Parameters

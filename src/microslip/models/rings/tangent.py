@@ -81,7 +81,7 @@ class Factors(NamedTuple):
 
 
 @kernel
-def make_factors(n):
+def make_factors(n: int) -> Factors:
     """Empty scratch for n rings."""
     return Factors(
         np.zeros(n, np.int64),
@@ -96,7 +96,7 @@ def make_factors(n):
 
 
 @kernel
-def copy(out, values):
+def copy(out: np.ndarray, values: np.ndarray) -> None:
     """out[:] = values for shape (2, n): no shapes are compared, and so none of the compiler's time
     goes into words for those that differ."""
     for c in range(2):
@@ -105,14 +105,14 @@ def copy(out, values):
 
 
 @kernel(inline="always")
-def subtract(y, factor, x):
+def subtract(y: np.ndarray, factor: float, x: np.ndarray) -> None:
     """y -= factor x."""
     for k in range(len(y)):
         y[k] -= factor * x[k]
 
 
 @kernel
-def combine(y, factors, rows, count):
+def combine(y: np.ndarray, factors: Factors, rows: np.ndarray, count: int) -> None:
     """y -= Sum over k < count of factors[k] rows[k], four rows at a time to spare memory."""
     columns = len(y)
     k = 0
@@ -152,7 +152,7 @@ def _eliminate(matrix, first, last, scratch):
 
 
 @kernel
-def cholesky(stiffness):
+def cholesky(stiffness: np.ndarray) -> np.ndarray:
     """Upper factor U of B = U^T U, reciprocals of its pivots on the diagonal, shape (n, n)."""
     upper = stiffness.copy()
     if not _eliminate(upper, 0, len(upper), np.empty(len(upper))):
@@ -161,7 +161,7 @@ def cholesky(stiffness):
 
 
 @kernel(inline="always")
-def turning(slip_forward, slip_lateral, bound):
+def turning(slip_forward: float, slip_lateral: float, bound: np.ndarray) -> float:
     """|slip| / bound: how much a traction on the bound resists being turned away from its slip."""
     size = np.sqrt(slip_forward * slip_forward + slip_lateral * slip_lateral)
     return size / bound if bound > 0.0 else HELD
@@ -249,7 +249,7 @@ def _schur_of_outer(whole, stick, upper, scratch):
 
 
 @kernel
-def factorise(rings, bound, q, slip, factors):
+def factorise(rings, bound, q, slip, factors) -> int:
     """Tangent problem at (q, slip), factorised; returns the number of sticking rings, -1 if it
     breaks down.  What belongs to the sticking rings is kept while these stay the same."""
     stick, news = _split(q, slip, bound, factors)

@@ -54,23 +54,23 @@ class CartesianContact:
         )
         self.compliance = np.full((cells, cells), self.scale)
 
-    def squares(self):
+    def squares(self) -> square_march.Squares:
         """The march.Squares of this contact, for one thread at a time."""
         room = workspace(self.operator)
         scales = self.scale, self.largest
         return square_march.Squares(self.operator, room, *scales, self.bound, self.size**2)
 
-    def displacement(self, state):
+    def displacement(self, state: np.ndarray) -> np.ndarray:
         """A q; shapes (2, cells, cells)."""
         out = np.empty(state.shape)
         convolve(self.operator, workspace(self.operator), np.ascontiguousarray(state), out)
         return out
 
-    def mirrored(self, state):
+    def mirrored(self, state: np.ndarray) -> np.ndarray:
         """Lateral axis reversed, lateral traction negated."""
         return state[:, :, ::-1] * contact.MIRROR
 
-    def march(self, path, state, tolerance, sensitivity=False, previous=None):
+    def march(self, path, state, tolerance, sensitivity=False, previous=None) -> contact.March:
         """March along `path`; see models.contact.Contact."""
         steps, n_stages, _ = path.stages.shape
         guided = previous is not None and previous.stages is not None

@@ -134,7 +134,7 @@ def workspace(operator: Convolution) -> tuple[np.ndarray, np.ndarray]:
 
 
 @kernel
-def convolve(operator, scratch, q, out):
+def convolve(operator: Convolution, scratch: tuple, q: np.ndarray, out: np.ndarray) -> None:
     """out = A q; q, out: forward and lateral parts, (2, n, n); scratch: from `workspace`."""
     n = q.shape[1]
     first, second = scratch

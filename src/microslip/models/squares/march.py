@@ -85,7 +85,7 @@ class Trial(NamedTuple):
 
 
 @kernel
-def march(squares, positions, path, state, tolerance, guide):
+def march(squares, positions, path, state, tolerance, guide) -> tuple:
     """March along a path.
 
     Parameters
@@ -155,7 +155,7 @@ def march(squares, positions, path, state, tolerance, guide):
 
 
 @kernel
-def solve_step(squares, b, q, slip, length, tolerance):
+def solve_step(squares, b, q, slip, length, tolerance) -> tuple[int, float, float]:
     """Solve one Coulomb step in place.
 
     Parameters

@@ -13,7 +13,7 @@ from microslip.foundation.compiled import kernel
 
 
 @kernel
-def forward(re, im, columns, radices, roots):
+def forward(re, im, columns, radices, roots) -> None:
     """Transform the first `columns` columns in place; for the order see `convolution._order`."""
     length = padded = re.shape[0]
     for radix in radices:
@@ -31,7 +31,7 @@ def forward(re, im, columns, radices, roots):
 
 
 @kernel
-def backward(re, im, columns, radices, roots):
+def backward(re, im, columns, radices, roots) -> None:
     """Undo `forward`, up to the factor P."""
     part, padded = 1, re.shape[0]
     for radix in radices[::-1]:

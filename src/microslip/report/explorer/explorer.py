@@ -10,6 +10,7 @@ Importing this package is cheap, since the workflow reads it whenever it is pars
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterator
 from pathlib import Path
 
 from microslip.foundation import source_digest
@@ -28,7 +29,7 @@ def digest() -> str:
     return hashlib.sha256(b"\0".join(parts)).hexdigest()
 
 
-def report(periods):
+def report(periods: dict) -> Iterator[str]:
     """Lines of text: how many periods there are and, one each, those that did not converge.
 
     periods: dict of lists of records, by the names of maps.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 from plotly.offline import get_plotlyjs
@@ -14,7 +15,7 @@ from microslip.sweeps.sealed_files import writing_beside
 FOLDER = Path(__file__).parent
 
 
-def write(path, datasets, periods):
+def write(path: str | os.PathLike, datasets: dict, periods: dict) -> None:
     """Write the page to `path`, whole or not at all.
 
     datasets, periods: as for `payload.build`. The same ones give the same bytes. Raises ValueError
@@ -25,7 +26,7 @@ def write(path, datasets, periods):
         beside.write_text(text, encoding="utf-8", newline="\n")
 
 
-def page(content):
+def page(content: dict) -> str:
     """Return the text of the page; content: as `payload.build` makes it."""
     template, style, *scripts = (
         (FOLDER / name).read_text(encoding="utf-8").rstrip() for name in ASSETS

@@ -54,7 +54,7 @@ POINTS += ("steps_per_period", "model", "reason")
 SPARE_COLOURS = (style.SKY, style.GREY)
 
 
-def build(datasets, periods):
+def build(datasets: dict, periods: dict) -> dict:
     """All that the page shows, as a dict.
 
     datasets: xarray.Datasets by the names of maps, see `requests.MAPS`; periods: lists of records

@@ -11,7 +11,7 @@ MOST_POINTS = 5000
 """Points of a map on a page; one takes some 260 bytes of it."""
 
 
-def maps_of(configuration):
+def maps_of(configuration) -> list[str]:
     """Names of the sweeps that the page shows as maps, a list."""
     return [
         name
@@ -20,7 +20,7 @@ def maps_of(configuration):
     ]
 
 
-def refusal(configuration):
+def refusal(configuration) -> str | None:
     """Why there can be no page for a configuration, one line; None if there can."""
     names = maps_of(configuration)
     if not names:
@@ -39,7 +39,7 @@ def refusal(configuration):
     return None
 
 
-def period_requests(configuration, name):
+def period_requests(configuration, name: str) -> list[dict]:
     """List the requests for periods of the points of a map, amplitude by amplitude.
 
     Where there are more points than a page can hold, every second, third, ... of both axes has

@@ -11,6 +11,7 @@ coulomb.coulomb_residual.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -43,7 +44,7 @@ class Points(NamedTuple):
     weight: np.ndarray
 
 
-def nothing(matrix, scale):
+def nothing(matrix: np.ndarray, scale: np.ndarray) -> float:
     """Settings of a solver that has none."""
     return 0.0
 
@@ -66,7 +67,7 @@ class DenseContact:
     def __getattr__(self, name):
         return getattr(self.contact, name)
 
-    def march(self, path, state, tolerance, sensitivity=False, previous=None):
+    def march(self, path, state, tolerance, sensitivity=False, previous=None) -> March:
         """March along `path`; raises StepFailure at the first step that stays unsolved."""
         q = state.reshape(2, -1).copy()
         held, z = q.copy(), self._elastic(q) - self._rigid(path.positions[0])
@@ -113,7 +114,12 @@ class DenseContact:
         )
 
 
-def safe_length(matrix):
+def dense(solve: Callable, prepare: Callable = nothing) -> Callable:
+    """What a Method's `dress` is: a contact and parameters to a DenseContact."""
+    return lambda contact, **parameters: DenseContact(contact, solve, prepare, **parameters)
+
+
+def safe_length(matrix: np.ndarray) -> float:
     """Length of a gradient step that lowers the energy for certain: 1 / largest eigenvalue."""
     return 1.0 / np.abs(np.linalg.eigvals(matrix)).max()
 
@@ -131,7 +137,7 @@ def _matrix(contact, shape):
 
 
 @kernel
-def judge(points, b, q, slip):
+def judge(points: Points, b: np.ndarray, q: np.ndarray, slip: np.ndarray) -> float:
     """Fill slip = b - A q, all (2, K), and return the residual of the step."""
     slip[:] = b - (points.matrix @ q.ravel()).reshape(q.shape)
     shape = (2, 1, q.shape[1])
@@ -140,7 +146,7 @@ def judge(points, b, q, slip):
 
 
 @kernel
-def project_in_place(q, bound):
+def project_in_place(q: np.ndarray, bound: np.ndarray) -> None:
     """Shrink every traction of q, (2, K), onto its bound."""
     for i in range(q.shape[1]):
         f = shrink(q[0, i], q[1, i], bound[i])
@@ -149,7 +155,7 @@ def project_in_place(q, bound):
 
 
 @kernel
-def descend(points, b, q, slip, tolerance, length):
+def descend(points, b, q, slip, tolerance, length) -> tuple[int, float]:
     """Solve a step by projected gradient steps of fixed length, that of each point in `length`,
     (K,); see the module's docstring."""
     residual = judge(points, b, q, slip)

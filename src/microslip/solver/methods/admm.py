@@ -10,7 +10,7 @@ import numpy as np
 
 from microslip.foundation.compiled import kernel
 from microslip.solver.method import Method
-from microslip.solver.methods._dense import DenseContact, judge, project_in_place
+from microslip.solver.methods._dense import dense, judge, project_in_place
 
 MAX_ITERATIONS = 2000
 
@@ -38,10 +38,8 @@ def _solve(points, b, q, slip, tolerance, settings):
     return MAX_ITERATIONS, residual
 
 
-def _dress(contact, penalty, relaxation):
-    return DenseContact(contact, _solve, _inverse, penalty=penalty, relaxation=relaxation)
-
-
 METHOD = Method(
-    "ADMM on the dense matrix", dress=_dress, parameters={"penalty": 1.0, "relaxation": 1.7}
+    "ADMM on the dense matrix",
+    dress=dense(_solve, _inverse),
+    parameters={"penalty": 1.0, "relaxation": 1.7},
 )

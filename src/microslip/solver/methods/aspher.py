@@ -63,7 +63,7 @@ class Solver:
         self.loaded = self._solver.step(p_bar=1.0 / 4.0).converged
         self.bound = np.asarray(self._solver.pressure).reshape(cells, cells)
 
-    def step(self, forward, lateral):
+    def step(self, forward: float, lateral: float) -> tuple[float, float]:
         """Move on to a rigid displacement (in u_lim); returns the forward force (over mu F_z) and
         the residual, as coulomb.coulomb_residual.  Takes note of steps that failed."""
         step = self._solver.step(delta_t=(forward, lateral), tol_kkt=math.inf)
@@ -76,7 +76,7 @@ class Solver:
         return float(force) * self.size**2, float(residual) * self.size**2
 
 
-def half_period(solver, path, number):
+def half_period(solver: Solver, path, number: int) -> tuple[np.ndarray, float]:
     """March the half period of this number, from 0; returns the forward forces at its phases, the
     first one left out, and the sum of the residuals."""
     start, end = path.positions[0, :2], path.positions[-1, :2]

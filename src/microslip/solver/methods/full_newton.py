@@ -10,7 +10,7 @@ import numpy as np
 
 from microslip.foundation.compiled import kernel
 from microslip.solver.method import Method
-from microslip.solver.methods._dense import DenseContact, judge, project_in_place
+from microslip.solver.methods._dense import dense, judge, project_in_place
 
 MAX_ITERATIONS = 60
 
@@ -56,8 +56,4 @@ def _solve(points, b, q, slip, tolerance, settings):
     return MAX_ITERATIONS, judge(points, b, q, slip)
 
 
-def _dress(contact):
-    return DenseContact(contact, _solve)
-
-
-METHOD = Method("semismooth Newton, full steps", dress=_dress)
+METHOD = Method("semismooth Newton, full steps", dress=dense(_solve))

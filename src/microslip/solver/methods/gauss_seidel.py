@@ -10,7 +10,7 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 from microslip.models.coulomb import shrink
 from microslip.solver.method import Method
-from microslip.solver.methods._dense import DenseContact, judge
+from microslip.solver.methods._dense import dense, judge
 
 MAX_ITERATIONS = 1000
 
@@ -45,8 +45,8 @@ def _solve(points, b, q, slip, tolerance, settings):
     return MAX_ITERATIONS, residual
 
 
-def _dress(contact, relaxation):
-    return DenseContact(contact, _solve, _columns, relaxation=relaxation)
-
-
-METHOD = Method("projected Gauss-Seidel", dress=_dress, parameters={"relaxation": 1.0})
+METHOD = Method(
+    "projected Gauss-Seidel",
+    dress=dense(_solve, _columns),
+    parameters={"relaxation": 1.0},
+)

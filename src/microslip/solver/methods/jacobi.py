@@ -7,7 +7,7 @@ diagonal.
 from __future__ import annotations
 
 from microslip.solver.method import Method
-from microslip.solver.methods._dense import DenseContact, descend
+from microslip.solver.methods._dense import dense, descend
 
 
 def _lengths(matrix, scale, damping):
@@ -15,8 +15,8 @@ def _lengths(matrix, scale, damping):
     return damping / scale
 
 
-def _dress(contact, damping):
-    return DenseContact(contact, descend, _lengths, damping=damping)
-
-
-METHOD = Method("projected Jacobi, undamped", dress=_dress, parameters={"damping": 1.0})
+METHOD = Method(
+    "projected Jacobi, undamped",
+    dress=dense(descend, _lengths),
+    parameters={"damping": 1.0},
+)

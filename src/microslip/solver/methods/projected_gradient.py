@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from microslip.solver.method import Method
-from microslip.solver.methods._dense import DenseContact, descend, safe_length
+from microslip.solver.methods._dense import dense, descend, safe_length
 
 
 def _lengths(matrix, scale, step):
@@ -16,8 +16,8 @@ def _lengths(matrix, scale, step):
     return np.full_like(scale, step * safe_length(matrix))
 
 
-def _dress(contact, step):
-    return DenseContact(contact, descend, _lengths, step=step)
-
-
-METHOD = Method("projected gradient, fixed step", dress=_dress, parameters={"step": 1.0})
+METHOD = Method(
+    "projected gradient, fixed step",
+    dress=dense(descend, _lengths),
+    parameters={"step": 1.0},
+)

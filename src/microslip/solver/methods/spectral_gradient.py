@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from microslip.foundation.compiled import kernel
 from microslip.solver.method import Method
-from microslip.solver.methods._dense import DenseContact, judge, project_in_place, safe_length
+from microslip.solver.methods._dense import dense, judge, project_in_place, safe_length
 
 MAX_ITERATIONS = 2000
 PATIENCE = 60
@@ -42,8 +42,4 @@ def _solve(points, b, q, slip, tolerance, shortest):
     return MAX_ITERATIONS, residual
 
 
-def _dress(contact):
-    return DenseContact(contact, _solve, _shortest)
-
-
-METHOD = Method("projected gradient, Barzilai-Borwein steps", dress=_dress)
+METHOD = Method("projected gradient, Barzilai-Borwein steps", dress=dense(_solve, _shortest))

@@ -11,7 +11,7 @@ import numpy as np
 
 from microslip.foundation.compiled import kernel
 from microslip.solver.method import Method
-from microslip.solver.methods._dense import DenseContact, judge
+from microslip.solver.methods._dense import dense, judge
 
 MAX_ITERATIONS = 200
 
@@ -58,8 +58,4 @@ def _solve(points, b, q, slip, tolerance, settings):
     return MAX_ITERATIONS, residual
 
 
-def _dress(contact):
-    return DenseContact(contact, _solve)
-
-
-METHOD = Method("fixed-point stick/slip switching", dress=_dress)
+METHOD = Method("fixed-point stick/slip switching", dress=dense(_solve))

@@ -9,6 +9,7 @@ Requests come in pieces that one job can answer, large enough that the start of 
 part of it, and cut so that another method in the configuration adds pieces and changes none.
 """
 
+from collections.abc import Iterator
 from itertools import groupby
 
 from microslip.config.load import StudyPoint
@@ -36,7 +37,7 @@ LARGE, LONE_SIZES = 64, 4
 many of the sizes one job can measure together."""
 
 
-def trials(study, point):
+def trials(study, point: StudyPoint) -> Iterator[tuple[int, dict]]:
     """Yield (level, request) for the trials of one point, the choices of `solve` at the end.
 
     study: settings.Accuracy. The level of a choice counts its tolerances.
@@ -53,12 +54,12 @@ def trials(study, point):
             yield k, requests.choice(point, tolerance, study.repeats)
 
 
-def truth(point):
+def truth(point: StudyPoint) -> dict | None:
     """The request that the trials of a point are compared with; None where Eq 21 is exact."""
     return requests.reference(point) if point.amplitude is not None else None
 
 
-def map_points(study, scene):
+def map_points(study, scene: str) -> list[StudyPoint]:
     """The points of a map as settings.StudyPoint, amplitude by amplitude, the velocity fastest."""
     return [
         StudyPoint("", scene, velocity, amplitude, 0.0, "")
@@ -67,7 +68,7 @@ def map_points(study, scene):
     ]
 
 
-def map_trials(study, point):
+def map_trials(study, point: StudyPoint) -> list[dict]:
     """Requests of the trials at one point of a map, all models with the shipped method."""
     repeats = min(study.repeats, MAP_REPEATS)
     return [
@@ -78,18 +79,18 @@ def map_trials(study, point):
     ]
 
 
-def map_truth(study, point):
+def map_truth(study, point: StudyPoint) -> dict:
     """The request that the trials at a point of a map are compared with."""
     return requests.reference(point, TRUTH_SHARE * min(study.map_tolerance))
 
 
-def scaling(study, model):
+def scaling(study, model: str) -> list[dict]:
     """Requests for the sizes of a model, two at least."""
     sizes = SCALING_SIZES[model][: max(study.levels, 2)]
     return [requests.scaling(model, cells, angles, SCALING_STEPS) for cells, angles in sizes]
 
 
-def pieces(study):
+def pieces(study) -> tuple[list, list]:
     """What one job each answers: two lists of lists of requests, those that take long first."""
     points = list(study.points.values())
     long = [[request] for request in map(truth, points) if request is not None]
@@ -127,7 +128,7 @@ def _map_row(study, points):
     ]
 
 
-def size_label(request):
+def size_label(request: dict) -> str:
     """The size of a grid as text: "64 x 64" angular points or squares, "64" rings."""
     across = {"radial": None, "cartesian": request["cells"]}
     second = across.get(request["model"], request["angles"])

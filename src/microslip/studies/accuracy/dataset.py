@@ -1,8 +1,10 @@
 """The dataset accuracy_cost: trials with errors and costs, maps of models, costs of a step."""
 
+from collections.abc import Callable, Iterator
 from dataclasses import asdict
 
 import numpy as np
+import xarray as xr
 
 from microslip.config.quantities import MU_MACRO
 from microslip.studies.accuracy import accuracy_cost as study
@@ -56,7 +58,7 @@ TRIAL_VARIABLES = {
 }
 
 
-def build(settings, answer):
+def build(settings, answer: Callable) -> xr.Dataset:
     """Assemble the Dataset.
 
     settings: settings.Accuracy. answer(request) -> record, such as sweep.answer with a store.
@@ -89,7 +91,7 @@ def build(settings, answer):
     return finished(variables, coords, title, answers, asdict(settings), comment=MEASURED)
 
 
-def report(dataset):
+def report(dataset: xr.Dataset) -> Iterator[str]:
     """Lines of text: how many trials there are at every point, and how good the reference is."""
     for point in dataset["point"].values:
         own = dataset["trial_point"].values == point

@@ -6,7 +6,7 @@ AS_CHEAP = 1.5
 """Ratio of two times up to which they may be the same."""
 
 
-def on_front(cost, error):
+def on_front(cost: np.ndarray, error: np.ndarray) -> np.ndarray:
     """Mark what nothing beats: nothing costs no more and errs no more, and one of the two less.
 
     cost, error: arrays (n,); what has no finite value of both takes no part. Returns bool (n,).
@@ -25,7 +25,7 @@ def on_front(cost, error):
     return front
 
 
-def cheapest(cost, error, tolerance):
+def cheapest(cost: np.ndarray, error: np.ndarray, tolerance: float) -> int | None:
     """Index of the least cost among those within the tolerance, or None if none is.
 
     Costs that differ by less than clocks do count as equal: then the first one is taken.
@@ -37,7 +37,7 @@ def cheapest(cost, error, tolerance):
     return int(good[np.argmax(cost[good] <= AS_CHEAP * cost[good].min())])
 
 
-def confirmed(models, error, exact):
+def confirmed(models: list[str], error: np.ndarray, exact: str) -> np.ndarray:
     """The error that each rung of a ladder is good for: the largest of its own and all finer ones.
 
     models: of the rungs, each from coarse to fine. A coarse run may be right by chance, where its
@@ -53,7 +53,7 @@ def confirmed(models, error, exact):
     return out
 
 
-def exponent(sizes, values):
+def exponent(sizes: np.ndarray, values: np.ndarray) -> float:
     """Exponent p of values ~ sizes^p by least squares of logarithms, over the larger half of sizes.
 
     sizes, values: arrays (n,). NaN where fewer than two of them are positive numbers.

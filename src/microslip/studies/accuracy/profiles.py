@@ -16,7 +16,7 @@ MODELS = "models"
 CHOSEN = "auto"
 
 
-def contest_of(method):
+def contest_of(method: str) -> str:
     """The contest that a method takes part in, by the part of a run that it exchanges.
 
     Parameters
@@ -62,12 +62,12 @@ class Trial(NamedTuple):
     cost: float
     error: float
 
-    def is_finer_than(self, other):
+    def is_finer_than(self, other) -> bool:
         """Whether it is of the same series of runs, and as fine as another or finer."""
         return self[:3] == other[:3] and self.level >= other.level
 
 
-def ratios(trials, tolerance):
+def ratios(trials: list, tolerance: float) -> tuple[list, list, np.ndarray]:
     """Least cost of every competitor at every point over the least of all.
 
     A run counts if it and all finer ones of its model and competitor are within the tolerance,
@@ -100,7 +100,7 @@ def ratios(trials, tolerance):
     return of_name, of_point, np.divide(least, best, out=np.full_like(least, np.inf), where=solved)
 
 
-def variables(columns, points, tolerances):
+def variables(columns: dict, points: list[str], tolerances: list[float]) -> dict:
     """Variables of the dataset: a row for each competitor of each contest.
 
     Parameters

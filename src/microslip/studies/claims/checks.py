@@ -16,12 +16,12 @@ from microslip.studies.tables import value_of
 from microslip.theory import paper as theory
 
 
-def check(value, against, margin, error, runs, **place):
+def check(value: float, against: float, margin: float, error: np.ndarray, runs, **place) -> Check:
     numbers = (float(value), float(against), float(margin), float(error))
     return Check(*numbers, tuple(run.key for run in runs), tuple(place.items()))
 
 
-def within(limit, value, against, error, runs, **place):
+def within(limit: float, value: float, against: float, error: np.ndarray, runs, **place) -> Check:
     """Holds where value and against are no more than `limit` apart."""
     return check(value, against, limit - abs(value - against), error, runs, **place)
 
@@ -42,12 +42,12 @@ def _map(study, runs, scene, formula, judge, chosen=lambda amplitude: True):
 # Transverse oscillation
 
 
-def rigid_below(study, runs):
+def rigid_below(study, runs) -> list[Check]:
     formula = theory.large_amplitude_transverse
     return _map(study, runs, "transverse", formula, lambda mu, eq: mu - eq)
 
 
-def rigid_below_squares(study, runs):
+def rigid_below_squares(study, runs) -> list[Check]:
     """The paper's run claims no error: it is what the certified point next to it tells."""
     found = []
     for amplitude in asked.sliding(study):
@@ -62,7 +62,7 @@ def rigid_below_squares(study, runs):
     return found
 
 
-def rigid_near(study, runs):
+def rigid_near(study, runs) -> list[Check]:
     formula = theory.large_amplitude_transverse
     return _map(study, runs, "transverse", formula, lambda mu, eq: say.SLIGHT - abs(mu - eq))
 
@@ -84,15 +84,15 @@ def _settles(runs, quantity, against):
     return found
 
 
-def force_settles(study, runs):
+def force_settles(study, runs) -> list[Check]:
     return _settles(runs, "force_forward", theory.bore_forward(asked.TRANSIENT_VELOCITY))
 
 
-def torque_settles(study, runs):
+def torque_settles(study, runs) -> list[Check]:
     return _settles(runs, "torque", theory.bore_torque(asked.TRANSIENT_VELOCITY))
 
 
-def force_steady(study, runs):
+def force_steady(study, runs) -> list[Check]:
     found = []
     for velocity, request in zip(asked.STEADY_VELOCITIES, asked.steady(study), strict=True):
         run = runs(request)
@@ -125,11 +125,11 @@ def _fields(runs, index, judge):
     return found
 
 
-def on_bound(study, runs):
+def on_bound(study, runs) -> list[Check]:
     return _fields(runs, 0, lambda share: (say.ON_BOUND, share - say.ON_BOUND))
 
 
-def aligned(study, runs):
+def aligned(study, runs) -> list[Check]:
     return _fields(runs, 1, lambda angle: (say.ALIGNED, say.ALIGNED - angle))
 
 
@@ -147,15 +147,15 @@ def _steady_near(study, runs, chosen):
     return _map(study, runs, "bore", _steady_formula, judge, chosen)
 
 
-def steady_near(study, runs):
+def steady_near(study, runs) -> list[Check]:
     return _steady_near(study, runs, lambda amplitude: amplitude >= say.LARGE_BORE)
 
 
-def steady_near_below(study, runs):
+def steady_near_below(study, runs) -> list[Check]:
     return _steady_near(study, runs, lambda amplitude: amplitude < say.LARGE_BORE)
 
 
-def steady_nears(study, runs):
+def steady_nears(study, runs) -> list[Check]:
     found = []
     for before, amplitude in pairwise(study.amplitude["bore"]):
         for velocity in asked.velocities(study):
@@ -193,7 +193,7 @@ def _periods(study, runs, judge):
     return found
 
 
-def some_sticks(study, runs):
+def some_sticks(study, runs) -> list[Check]:
     def judge(right, left, cell):
         least = (right + left).min()
         return least, cell, least - cell
@@ -201,7 +201,7 @@ def some_sticks(study, runs):
     return _periods(study, runs, judge)
 
 
-def alternates(study, runs):
+def alternates(study, runs) -> list[Check]:
     def judge(right, left, _):
         half = right.size // 2
         least = int(np.argmin((right + left)[:half]))
@@ -234,14 +234,14 @@ def _rows(study, runs, scene):
             ]
 
 
-def rises_transverse(study, runs):
+def rises_transverse(study, runs) -> list[Check]:
     return _rises(_rows(study, runs, "transverse"))
 
 
-def rises_bore(study, runs):
+def rises_bore(study, runs) -> list[Check]:
     return _rises(_rows(study, runs, "bore"))
 
 
-def rises_continuous_bore(study, runs):
+def rises_continuous_bore(study, runs) -> list[Check]:
     row = [({"velocity": float(r["velocity"])}, runs(r)) for r in asked.steady(study)]
     return _rises([row])

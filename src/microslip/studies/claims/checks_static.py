@@ -36,11 +36,11 @@ def _formula_above(study, runs, scene, formula, chosen):
     return _at_limit(study, runs, scene, judge, chosen)
 
 
-def slider_above(study, runs):
+def slider_above(study, runs) -> list:
     return _formula_above(study, runs, "transverse", paper.static_slider, _below_one)
 
 
-def zone_nearer(study, runs):
+def zone_nearer(study, runs) -> list:
     def judge(amplitude, limit):
         zone = paper.static_transverse(amplitude)
         return zone, abs(paper.static_slider(amplitude) - limit) - abs(zone - limit)
@@ -48,11 +48,11 @@ def zone_nearer(study, runs):
     return _at_limit(study, runs, "transverse", judge, _below_one)
 
 
-def zone_above(study, runs):
+def zone_above(study, runs) -> list:
     return _formula_above(study, runs, "transverse", paper.static_transverse, _below_one)
 
 
-def slider_above_march(study, runs):
+def slider_above_march(study, runs) -> list:
     return _above_march(study, runs, "transverse", paper.static_slider, _below_one)
 
 
@@ -86,19 +86,19 @@ def _bore_zone(study, runs, judge, chosen):
     return _at_limit(study, runs, "bore", of, chosen)
 
 
-def bore_zone_near(study, runs):
+def bore_zone_near(study, runs) -> list:
     return _bore_zone(study, runs, lambda eq, mu: say.GOOD - abs(eq - mu), _above_turning)
 
 
-def bore_zone_relative(study, runs):
+def bore_zone_relative(study, runs) -> list:
     return _bore_zone(study, runs, lambda eq, mu: say.RELATIVE * mu - abs(eq - mu), _above_turning)
 
 
-def bore_zone_above(study, runs):
+def bore_zone_above(study, runs) -> list:
     return _formula_above(study, runs, "bore", paper.static_bore, _below_turning)
 
 
-def bore_zone_printed(study, runs):
+def bore_zone_printed(study, runs) -> list:
     def judge(amplitude, limit):
         printed = paper.static_bore_printed(amplitude)
         return printed, say.GOOD - abs(printed - limit)
@@ -106,11 +106,11 @@ def bore_zone_printed(study, runs):
     return _at_limit(study, runs, "bore", judge, _above_turning)
 
 
-def bore_zone_above_march(study, runs):
+def bore_zone_above_march(study, runs) -> list:
     return _above_march(study, runs, "bore", paper.static_bore, _below_turning)
 
 
-def bore_zone_seen(study, runs):
+def bore_zone_seen(study, runs) -> list:
     found = []
     for amplitude in filter(_above_turning, asked.limited(study, "bore")):
         run = runs(asked.point(study, "bore", asked.PAPER_VELOCITY, amplitude))
@@ -123,12 +123,12 @@ def bore_zone_seen(study, runs):
 # Whether anything is left, at any amplitude
 
 
-def limit_positive(study, runs):
+def limit_positive(study, runs) -> list:
     asked_for = [asked.point(study, "bore", 0.0, a) for a in study.amplitude["bore"]]
     return _positive(runs, asked_for)
 
 
-def limit_positive_rings(study, runs):
+def limit_positive_rings(study, runs) -> list:
     amplitudes = asked.limited(study, "bore")
     return _positive(runs, [asked.resolved_limit(study, "bore", a) for a in amplitudes])
 
@@ -144,7 +144,7 @@ def _positive(runs, asked_for):
     return found
 
 
-def limit_asymptote(study, runs):
+def limit_asymptote(study, runs) -> list:
     found = []
     for amplitude in study.amplitude["bore"]:
         if amplitude < say.FAR:

@@ -34,29 +34,36 @@ FEW = 2
 """Runs of the paper in one job."""
 
 
-def velocities(study):
+def velocities(study) -> list[float]:
     """Velocities of the study and the paper's smallest one, ascending; study: settings.Claims."""
     return sorted({*study.velocity, PAPER_VELOCITY})
 
 
-def point(study, scene, velocity, amplitude=None, model="auto", cells=None):
+def point(
+    study,
+    scene: str,
+    velocity: float,
+    amplitude: float | None = None,
+    model: str = "auto",
+    cells: int | None = None,
+) -> dict:
     """A certified point; velocity 0: the static limit; cells: an imposed number of squares."""
     place = StudyPoint("", scene, velocity, amplitude, 0.0, "")
     kind = {"kind": "point", "model": model, "tolerance": number(study.tolerance)}
     return requests.of_point(place) | kind | {"cells": cells, "steps": None}
 
 
-def resolved_limit(study, scene, amplitude):
+def resolved_limit(study, scene: str, amplitude: float) -> dict:
     """The static limit on rings: the oscillation's tractions computed, no closed form in it."""
     return point(study, scene, 0.0, amplitude, exact_model(scene, 0.0))
 
 
-def limit_on_squares(study, scene, amplitude):
+def limit_on_squares(study, scene: str, amplitude: float) -> dict:
     """The static limit on the paper's squares."""
     return point(study, scene, 0.0, amplitude, "cartesian", PAPER_SQUARES)
 
 
-def paper_run(scene, amplitude):
+def paper_run(scene: str, amplitude: float) -> dict:
     """The paper's own run at its smallest velocity: 32 x 32 squares, 8,000 plain steps."""
     place = StudyPoint("", scene, PAPER_VELOCITY, amplitude, 0.0, "")
     sizes = {"cells": PAPER_SQUARES, "angles": 1, "steps": PAPER_STEPS}
@@ -64,7 +71,7 @@ def paper_run(scene, amplitude):
     return requests.of_point(place) | how | sizes | {"tolerance": number(PAPER_TOLERANCE)}
 
 
-def transient(start, cells):
+def transient(start: str, cells: str) -> dict:
     """Forces of the continuous bore from one of the three initial states on; cells: of CELLS."""
     numbers = {"velocity": number(TRANSIENT_VELOCITY), "travel": number(TRAVEL)}
     return (
@@ -74,13 +81,13 @@ def transient(start, cells):
     )
 
 
-def field(velocity, cells):
+def field(velocity: float, cells: str) -> dict:
     """Steady tractions of the continuous bore; cells: of CELLS."""
     place = {"scene": "continuous-bore", "velocity": number(velocity)}
     return {"kind": "field", "cells": CELLS[cells]} | place
 
 
-def period(study, velocity, amplitude, coarse=False):
+def period(study, velocity: float, amplitude: float, coarse: bool = False) -> dict:
     """A period of the oscillating bore from inside, or the same with half as many rings."""
     cells = 2 * (study.cells // 4) if coarse else study.cells
     place = StudyPoint("", "bore", velocity, amplitude, 0.0, "")
@@ -88,24 +95,24 @@ def period(study, velocity, amplitude, coarse=False):
     return requests.of_point(place) | {"kind": "patches"} | sizes
 
 
-def limited(study, scene):
+def limited(study, scene: str) -> list[float]:
     """Amplitudes at which there is static friction that the paper's maps show."""
     return [a for a in study.amplitude[scene] if a <= STATIC_AMPLITUDES[scene]]
 
 
-def sliding(study):
+def sliding(study) -> list[float]:
     """The largest transverse amplitude, in a list, if the contact slides in every stroke there."""
     largest = study.amplitude["transverse"][-1]
     return [largest] if largest > STATIC_AMPLITUDES["transverse"] else []
 
 
-def periods(study):
+def periods(study) -> list[tuple[float, float]]:
     """(velocity, amplitude) of the periods that are looked into, those near static friction."""
     slow = [v for v in velocities(study) if v <= NEAR_STATIC]
     return [(v, a) for v in slow[-2:] for a in limited(study, "bore")]
 
 
-def rows(study):
+def rows(study) -> list[list[dict]]:
     """Certified points, a list for each scene and amplitude, from the static limit upwards."""
     return [
         [point(study, scene, v, amplitude) for v in (0.0, *velocities(study))]
@@ -114,12 +121,12 @@ def rows(study):
     ]
 
 
-def steady(study):
+def steady(study) -> list[dict]:
     """Certified points of the continuous bore, resolved though Eq 21 is exact."""
     return [point(study, "continuous-bore", v, model="polar") for v in STEADY_VELOCITIES]
 
 
-def pieces(study):
+def pieces(study) -> tuple[list, list]:
     """What one job each answers: two lists of lists of requests, those that take long first."""
     of_paper = [paper_run("transverse", amplitude) for amplitude in sliding(study)]
     of_paper += [paper_run(scene, a) for scene in study.amplitude for a in limited(study, scene)]

@@ -1,8 +1,10 @@
 """The dataset claims: verdicts, the checks and runs behind them, the static limit, and patches."""
 
+from collections.abc import Callable, Iterator
 from dataclasses import asdict
 
 import numpy as np
+import xarray as xr
 
 from microslip.studies.claims import checks, checks_static, static_limits, verdicts
 from microslip.studies.claims import claims as asked
@@ -40,7 +42,7 @@ BOUNDARY = 181
 """Angles at which the edge of the alternating patches is given."""
 
 
-def build(settings, answer):
+def build(settings, answer: Callable) -> xr.Dataset:
     """Assemble the Dataset.
 
     settings: settings.Claims. answer(request) -> record, such as sweep.answer with a store.
@@ -58,13 +60,13 @@ def build(settings, answer):
     return finished(variables, coords, title, runs, asdict(settings), comment=ABOUT)
 
 
-def collected(name, settings, runs):
+def collected(name: str, settings, runs) -> list:
     """The checks of a part by its name: list of verdicts.Check."""
     module = checks if hasattr(checks, name) else checks_static
     return getattr(module, name)(settings, runs)
 
 
-def report(dataset):
+def report(dataset: xr.Dataset) -> Iterator[str]:
     """Lines of text: what became of every statement."""
     for claim, verdict in zip(dataset["claim"].values, dataset["verdict"].values, strict=True):
         yield f"claim {claim}: {verdicts.WORDS[int(verdict)]}"
@@ -73,7 +75,7 @@ def report(dataset):
 # Statements, parts and checks
 
 
-def verdict_on(claim, checks):
+def verdict_on(claim: int, checks: list) -> int:
     """Verdict on a statement, an index of VERDICTS; checks: list of Check by name of the part."""
     parts = [part for part in PARTS if part.claim == claim and part.counts]
     return verdicts.of_claim([verdicts.of_part(checks[part.name]) for part in parts])

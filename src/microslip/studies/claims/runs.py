@@ -34,21 +34,21 @@ class Runs(Answers):
         return self.found[text]
 
 
-def friction(run):
+def friction(run: Run) -> tuple[float, float]:
     """(mu_macro, its error) of a certified point; the error is infinite if it did not converge."""
     error = value_of(run.result, "mu_macro_error")
     good = value_of(run.result, "converged", bool) and np.isfinite(error)
     return value_of(run.result, "mu_macro"), error if good else np.inf
 
 
-def resolution(run):
+def resolution(run: Run) -> tuple[int, ...]:
     """(cells, angles, steps) of a run as far as it has them, 0 for what it has not."""
     used = run.request | {name: n for name, n in run.result.items() if name in ("cells", "angles")}
     steps = run.result.get("steps_per_period") or run.request.get("steps")
     return tuple(int(n or 0) for n in (used.get("cells"), used.get("angles"), steps))
 
 
-def command(request):
+def command(request: dict) -> str:
     """A line for the shell that computes a request again."""
     kind, scene = request["kind"], request["scene"]
     if kind == "point":
@@ -93,7 +93,7 @@ def _shown(value):
     return str(value)
 
 
-def made_by(request):
+def made_by(request: dict) -> str:
     """What computed a run, in a few words."""
     kinds = {
         "point": "certified point",

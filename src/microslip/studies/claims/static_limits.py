@@ -42,7 +42,7 @@ class Limit:
     runs: tuple
 
 
-def limit(study, runs, scene, amplitude):
+def limit(study, runs, scene: str, amplitude: np.ndarray) -> Limit:
     """The Limit at an amplitude: the closed form, its error its distance from the limit on rings
     and what that claims as its own error."""
     closed = runs(asked.point(study, scene, 0.0, amplitude))
@@ -52,7 +52,7 @@ def limit(study, runs, scene, amplitude):
     return Limit(value, rounding + error + abs(resolved - value), (closed, rings))
 
 
-def asymptote(amplitude):
+def asymptote(amplitude: np.ndarray) -> np.ndarray:
     """Static limit of the oscillating bore at large amplitudes, where the stick zone is small.
 
     There its radius is c = (4/e) exp(-D(1/2) amplitude), the share of the bound that the rotation
@@ -63,7 +63,7 @@ def asymptote(amplitude):
     return 0.75 * (1.0 - j0(np.pi)) * radius**2
 
 
-def used_share(scene, radius, amplitude):
+def used_share(scene: str, radius: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
     """Share of the friction bound that the oscillation alone uses at its turning points; 1 from the
     stick radius on. radius, amplitude: broadcast."""
     if scene == "bore":
@@ -73,7 +73,7 @@ def used_share(scene, radius, amplitude):
     return np.where(bound > 0, traction / np.where(bound > 0, bound, 1.0), 1.0)
 
 
-def left_share(scene, radius, amplitude):
+def left_share(scene: str, radius: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
     """Share of the bound that is left for the forward direction, averaged over the angle."""
     used = used_share(scene, radius, amplitude)
     if scene == "bore":
@@ -81,7 +81,7 @@ def left_share(scene, radius, amplitude):
     return np.sqrt((1.0 - used) * (1.0 + used))
 
 
-def variables(study, runs):
+def variables(study, runs) -> dict:
     """Variables of the dataset about the static limit of both scenes, as a dict."""
     found = {}
     for scene in study.amplitude:

@@ -41,14 +41,14 @@ class Check:
     place: tuple
 
     @property
-    def outcome(self):
+    def outcome(self) -> int:
         """One of OUTCOMES, as an index: open unless the margin is larger than its error."""
         if not (math.isfinite(self.margin) and abs(self.margin) > self.error):
             return OPEN
         return HOLDS if self.margin > 0 else FAILS
 
 
-def of_part(checks):
+def of_part(checks: list) -> int:
     """The verdict on a part, an index of VERDICTS; checks: list of Check."""
     found = {check.outcome for check in checks}
     if HOLDS not in found:
@@ -56,7 +56,7 @@ def of_part(checks):
     return PARTLY if FAILS in found else WHOLLY
 
 
-def of_claim(parts):
+def of_claim(parts: list) -> int:
     """The verdict on a statement, from those on its parts.
 
     One that is open leaves the statement open too, unless the others hold and fail among
@@ -70,20 +70,20 @@ def of_claim(parts):
     return found.pop()
 
 
-def decisive(checks, outcome):
+def decisive(checks: list, outcome: int) -> Check | None:
     """The check that shows an outcome best: the one with the largest margin; None without any."""
     found = [check for check in checks if check.outcome == outcome]
     return max(found, key=lambda check: abs(check.margin), default=None)
 
 
-def tightest(checks):
+def tightest(checks: list) -> Check | None:
     """Of the checks that hold the one with the least margin, None without any."""
     found = [check for check in checks if check.outcome == HOLDS]
     return min(found, key=lambda check: check.margin, default=None)
 
 
-def where(checks):
-    """In words where a part holds and where it does not: "amplitude 1 to 3; not at amplitude ..."
+def where(checks: list) -> str:
+    """In words where a part holds and where not, as in "amplitude 1 to 3; not at amplitude 5".
 
     The first name in the places of the checks groups them, the second gives the range of failures
     within a group.

@@ -1,8 +1,10 @@
 """The dataset stability: what became of every method in every case."""
 
+from collections.abc import Callable, Iterator
 from dataclasses import asdict
 
 import numpy as np
+import xarray as xr
 
 from microslip.config.quantities import MU_MACRO
 from microslip.solver import method_names
@@ -25,7 +27,7 @@ UNSOLVED = "a step was left unsolved"
 """How the reason of a run starts that ran out of iterations near the solution of a step."""
 
 
-def outcome(result, reference, reference_error, imposed=False):
+def outcome(result: dict, reference: float, reference_error: float, imposed: bool = False) -> int:
     """One of OUTCOMES, as an index.
 
     result: of a probe, None or `applies` False where the method was not asked; imposed: whether its
@@ -50,7 +52,7 @@ def outcome(result, reference, reference_error, imposed=False):
     return CONVERGED if abs(mu - reference) <= claimed + reference_error else WRONG
 
 
-def build(settings, answer):
+def build(settings, answer: Callable) -> xr.Dataset:
     """Assemble the Dataset.
 
     settings: settings.Stability. answer(request) -> record, such as sweep.answer with a store.
@@ -98,7 +100,7 @@ def build(settings, answer):
     return finished(variables, coords, title, answers, asdict(settings), **more)
 
 
-def report(dataset):
+def report(dataset: xr.Dataset) -> Iterator[str]:
     """Lines of text: what became of every method, and how often."""
     for method, found in zip(dataset["method"].values, dataset["outcome"].values, strict=True):
         counts = ((OUTCOMES[i], int((found == i).sum())) for i in range(1, len(OUTCOMES)))

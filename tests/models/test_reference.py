@@ -1,0 +1,73 @@
+"""Compiled marches against the plain one, on rings, angular points and squares."""
+
+import numpy as np
+import pytest
+from reference_march import march, periodic
+
+from microslip.models.contact import forward_slip
+from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.models.polar.contact import PolarContact
+from microslip.models.rings.contact import RadialContact
+from microslip.models.squares.contact import CartesianContact
+from microslip.motions.registry import scene_named
+from microslip.solver.period_map import Goal, PeriodMap
+from microslip.solver.periodic import find_periodic_state
+
+CONTACTS = {
+    "rings": (lambda: RadialContact.resolved(5, 0.7), "transverse", 0.0),
+    "rings, ahead and aside": (lambda: RadialContact.resolved(5, 0.7), "elliptic", 0.0),
+    "angular points": (lambda: PolarContact(4, 4, True, 0.3, 0.6), "bore", 0.3),
+    "angular points of a translation": (
+        lambda: PolarContact(4, 4, False, 0.3, 0.6),
+        "transverse",
+        0.3,
+    ),
+    "squares": (lambda: CartesianContact(5, 0.3), "bore", 0.3),
+}
+VELOCITY, AMPLITUDE = 0.3, 0.8
+
+
+def plain_parts(contact, scene, poisson):
+    """Matrix of a contact, and the displacement of its points, as the reference takes them."""
+    shape = forward_slip(contact).shape
+    units = np.eye(int(np.prod(shape))).reshape(-1, *shape)
+    matrix = np.stack([contact.displacement(unit).ravel() for unit in units], axis=1)
+
+    def displacement(phase):
+        forward, lateral, angle = scene.displacement(phase, VELOCITY, AMPLITUDE, poisson)
+        turn = np.stack([contact.lateral_position, -contact.forward_position])
+        return np.array([forward, lateral])[:, None, None] + angle * turn
+
+    return matrix, displacement
+
+
+@pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
+@pytest.mark.parametrize("name", CONTACTS)
+def test_a_march_is_the_plain_one(name, integrator):
+    build, motion, poisson = CONTACTS[name]
+    contact, scene, phases = build(), scene_named(motion), half_period_phases(6)
+    start = 0.5 * forward_slip(contact)
+    matrix, displacement = plain_parts(contact, scene, poisson)
+    stages = len(integrator.times)
+    expected = march(matrix, contact.bound, displacement, phases, start, stages)
+    path = make_path(
+        lambda phase: scene.displacement(phase, VELOCITY, AMPLITUDE, poisson), phases, integrator
+    )
+    found = contact.march(path, start, 1e-13)
+    assert found.state == pytest.approx(expected[-1], abs=1e-9)
+    sums = (contact.weight * expected).sum(axis=(2, 3))
+    kept = [0] if name.startswith("angular") else [0, 1]  # half a disc knows one of them
+    assert found.forces[:, kept] == pytest.approx(sums[:, kept], abs=1e-9)
+
+
+def test_the_periodic_state_is_the_one_that_the_plain_march_ends_in():
+    contact, scene = RadialContact.resolved(5, 0.7), scene_named("transverse")
+    matrix, displacement = plain_parts(contact, scene, 0.0)
+    phases, start = half_period_phases(8), forward_slip(contact)
+    expected = periodic(matrix, contact.bound, displacement, phases, start, contact.mirrored)
+    path = make_path(lambda phase: scene.displacement(phase, VELOCITY, AMPLITUDE, 0.0), phases)
+    found = find_periodic_state(PeriodMap(contact, path), start, Goal(1e-10, 1e-13))
+    assert found.converged
+    assert found.start == pytest.approx(expected[0], abs=1e-9)
+    forces = (contact.weight * expected[:, 0]).sum(axis=(1, 2))
+    assert found.forces[:, 0] == pytest.approx(forces, abs=1e-9)
