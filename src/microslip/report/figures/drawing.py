@@ -97,9 +97,10 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     module = importlib.import_module(f"microslip.report.figures.{_MODULES.get(name, 'groups')}")
     with style():
         figure = module.draw(name, *(datasets[key] for key in keys))
-        for _ in range(2):  # the layout settles, and is then fixed: every save gives the same
-            figure.draw_without_rendering()
-        figure.set_layout_engine("none")
+        if (layout := figure.get_layout_engine()) is not None:
+            for _ in range(2):  # it settles, and is then fixed: every save gives the same
+                layout.execute(figure)
+            figure.set_layout_engine("none")
         for finish in getattr(figure, "finishing", ()):
             finish()
     figure.made_from = made_from(datasets[key] for key in keys)
