@@ -143,5 +143,21 @@ def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
     plain, key = FORMATS[kind]
     metadata = plain | {key: getattr(figure, "made_from", None)}
     with writing_beside(path, sealed=True) as beside, style():
-        figure.savefig(beside, format=kind, metadata=metadata)
+        _write(figure, kind, beside, metadata)
     return path
+
+
+def _write(figure: Figure, kind: str, path: Path, metadata: Mapping[str, str | None]) -> None:
+    """What `savefig` does, but that it lays out a second time what has its place."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.backends.backend_pdf import FigureCanvasPdf
+
+    canvas, dpi = figure.canvas, figure.dpi
+    try:
+        if kind == "png":
+            FigureCanvasAgg(figure).print_png(path, metadata=metadata)
+        else:
+            FigureCanvasPdf(figure).print_pdf(path, metadata=metadata)
+    finally:
+        figure.set_canvas(canvas)
+        figure.dpi = dpi
