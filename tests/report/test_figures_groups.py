@@ -93,15 +93,6 @@ def test_a_group_that_is_not_there_or_is_mixed_is_refused():
         drawing.draw("extended_static", many)
 
 
-@pytest.mark.parametrize("given", [motions(2), {"a": static("a"), "b": static("b")}])
-def test_saves_whole_and_reproducibly(given, tmp_path):
-    name = drawing.figure_of(next(iter(given.values())).attrs["group"])
-    first, again = drawing.draw(name, given), drawing.draw(name, given)
-    for kind in ("png", "pdf"):
-        one = drawing.save(first, tmp_path / f"first.{kind}").read_bytes()
-        assert one == drawing.save(again, tmp_path / f"again.{kind}").read_bytes()
-
-
 # Maps
 
 
