@@ -115,9 +115,7 @@ def test_slow_marches_end_there(scene):
     """Limit and marches are those of the same rings and steps, so that few of them tell."""
     kind, resolution = scene_named(scene), Resolution(32, 1, 128)
     limit = simulate_static(Problem(kind, 0.0, 0.5, 0.0), "radial", resolution, 1e-5)
-    slow = [
-        simulate(Problem(kind, v, 0.5, 0.0), "radial", resolution, 1e-5) for v in (8e-3, 1e-3)
-    ]
+    slow = [simulate(Problem(kind, v, 0.5, 0.0), "radial", resolution, 1e-5) for v in (8e-3, 1e-3)]
     assert limit.converged and slow[0].converged and slow[1].converged
     above = [run.mu - limit.mu for run in slow]
     # what is left of it shrinks like v^(2/3), to a quarter, or faster

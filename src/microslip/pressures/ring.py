@@ -5,8 +5,6 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from scipy.integrate import quad
-from scipy.optimize import minimize_scalar
 from scipy.special import ellipkm1
 
 from microslip.foundation.errors import InputError
@@ -73,6 +71,8 @@ def _largest_displacement(inner, top):
     A circle of radius s under unit load per area causes 4 s/(r + s) K(m)/pi at r, 1 - m the square
     of (r - s)/(r + s).
     """
+    from scipy.integrate import quad  # only here: they take a while to load
+    from scipy.optimize import minimize_scalar
 
     def displacement(r):
         def of_circle(s):

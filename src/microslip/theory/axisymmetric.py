@@ -5,7 +5,6 @@ since a library of integration takes longer to load than a closed form to evalua
 """
 
 import numpy as np
-from scipy.integrate import quad
 
 from microslip.theory import paper
 from microslip.theory.hertz import checked
@@ -56,6 +55,8 @@ def _total(pressure, power):
 
 
 def _integral(function, start, end):
+    from scipy.integrate import quad  # only here: it takes a while to load
+
     return quad(function, start, end, epsabs=0.0, epsrel=1e-11, limit=200)[0]
 
 

@@ -8,7 +8,6 @@ integrals over the record of a pressure.Pressure, to about 1e-8.  Dimensionless 
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import brentq
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(128)
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
@@ -55,6 +54,7 @@ def torsion_stick_radius(pressure, angle, poisson=0.0):
     torsion_angle; 0 below SMALLEST_STICK_RADIUS."""
     if angle <= 0.0:
         return 1.0
+    from scipy.optimize import brentq  # only here: it takes a while to load
 
     def excess(log_c):
         return torsion_angle(pressure, np.exp(log_c), poisson) - angle
