@@ -143,7 +143,7 @@ def test_a_real_contact():
         "load": "10 N",
         "mu": 0.3,
     }
-    ball |= {"speed": "10 mm/s", "frequency": "20 kHz"}
+    ball |= {"speed": "10 mm/s", "frequency": "20 kHz", "tolerance": 3e-3}
     found = microslip.predict("longitudinal", **ball, amplitude="0.2 um")
     expected = longitudinal(found.velocity, found.amplitude)
     assert found.mu_macro == pytest.approx(expected, abs=found.mu_macro_error)

@@ -142,7 +142,7 @@ def test_two_balls_are_one_ball_of_half_the_radius():
     ],
 )
 def test_the_amplitude_that_halves_friction_does(scene, motion):
-    ball = BALL | {"material": "steel", "counterbody": "steel"} | motion
+    ball = BALL | {"material": "steel", "counterbody": "steel", "tolerance": 3e-3} | motion
     wanted = microslip.predict(scene, reduction="50 %", **ball)
     assert wanted.force_reduction == pytest.approx(0.5, abs=2e-3)
     there = microslip.predict(scene, amplitude=wanted.amplitude_si, **ball)
