@@ -61,9 +61,7 @@ def test_the_static_limit_is_approached_by_marches():
     """All on the same few squares and steps, whose errors are the same in limit and marches."""
     scene, squares = scene_named("transverse-bore"), Resolution(16, 1, 48)
     limit = simulate_static(Problem(scene, 0.0, 0.5, 0.0), "cartesian", squares, 1e-5)
-    runs = [
-        simulate(Problem(scene, v, 0.5, 0.0), "cartesian", squares, 1e-5) for v in (4e-3, 5e-4)
-    ]
+    runs = [simulate(Problem(scene, v, 0.5, 0.0), "cartesian", squares, 1e-5) for v in (4e-3, 5e-4)]
     above = [run.mu for run in runs]
     # differences shrink like v^(2/3): an eighth of the velocity leaves a quarter of them
     guess = above[1] - (above[0] - above[1]) / 3.0

@@ -87,7 +87,10 @@ def test_where_all_slides_the_mean_of_the_directions_is_left():
 
 @pytest.mark.slow
 def test_mirror_images_have_the_same_limit_or_the_opposite_one():
-    one, other = (microslip.solve(f"elliptic:forward=0.5,phase={p}", 0.0, 0.5) for p in (30, 210))
+    one, other = (
+        microslip.solve(f"elliptic:forward=0.5,phase={p}", 0.0, 0.5, tolerance=3e-3)
+        for p in (30, 210)
+    )
     within(one, other.mu_macro, other.mu_macro_error)
     drags, drives = (
         microslip.solve(f"elliptic:forward=0.5,phase={p},forward_cycles=2", 0.0, 1.2)
