@@ -174,6 +174,7 @@ def test_large_amplitudes_tend_to_the_rigid_contact():
     assert far == pytest.approx(paper.large_amplitude_bore(0.5), abs=5e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("nu", [0.0, 0.3])
 @pytest.mark.parametrize(
     ("scene", "amplitude"), [("transverse", 0.4), ("transverse", 2.0), ("bore", 0.5), ("bore", 3.0)]

@@ -26,6 +26,7 @@ def within(found, other, slack=0.0):
     assert gap <= found.mu_macro_error + other.mu_macro_error + slack
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", ["normal", "normal:lateral=1", "normal:forward=1,phase=60"])
 def test_modes_find_what_rings_find(scene):
     """At the same resolution to the tolerance of the steps, for at nu = 0 they are the same."""
@@ -76,6 +77,7 @@ def test_which_way_it_turns_does_not_matter():
     within(one, other)
 
 
+@pytest.mark.slow
 def test_half_a_period_suffices_where_it_is_mirrored():
     scene = scene_named("normal:angle=1,normal_cycles=2")
     assert scene.half_period_mirror and scene.half_disc

@@ -178,6 +178,7 @@ def test_the_error_holds_what_the_resolution_of_a_file_leaves_open(
     assert found.converged == (found.mu_macro_error <= 2e-2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("reading", ["cells", "samples"])
 @pytest.mark.parametrize(("count", "shift"), [(8, 0.0), (16, 0.3), (32, 0.5)])
 def test_so_it_does_where_the_edge_lies_between_the_points(tmp_path, count, shift, reading):

@@ -82,6 +82,7 @@ def test_thin_rings_give_the_loads_of_squares_in_closed_form():
     assert np.abs(difference).sum() < 5e-5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*ROUND, *PLANAR])
 def test_u_lim_is_the_largest_displacement_under_full_slip(name):
     """Summed up on points of a fine grid, the middle cell by its own closed form."""
@@ -231,6 +232,7 @@ def test_the_steady_bore_is_eqs_17_and_18(name):
 # One model against the next
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["power:exponent=1", "punch", "ring"])
 @pytest.mark.parametrize(
     ("scene", "velocity", "amplitude"), [("transverse", 0.1, 0.6), ("bore", 0.3, 1.0)]

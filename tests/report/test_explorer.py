@@ -90,6 +90,7 @@ def test_every_point_that_moves_and_oscillates_has_a_period_or_a_reason(made):
         assert (has == moves.values).all()
 
 
+@pytest.mark.slow
 def test_the_default_configuration_has_a_period_for_every_point_and_stays_small(tmp_path):
     default = load.load(ROOT / "config" / "config.yaml")
     datasets, records = stub.made_up(tmp_path, default)

@@ -79,8 +79,8 @@ LETTER = re.compile(r"^\$\\bf\{\((\w+)\)\}\$")
 
 def test_letters_of_panels_are_alike_in_every_figure(figures):
     for name, figure in figures.items():
-        edges = figure.get_tightbbox().extents  # which puts all titles in their places, too
-        assert np.all(edges[:2] > -0.02), name
+        figure.draw_without_rendering()  # which puts all titles in their places
+        assert np.all(figure.get_tightbbox().extents[:2] > -0.02), name
         texts = [text for text in figure.findobj(Text) if text.get_visible()]
         heads = [text for text in texts if r"\bf{(" in text.get_text()]
         letters = [LETTER.match(text.get_text())[1] for text in heads]

@@ -266,6 +266,7 @@ def test_static_translations_are_the_best_constant_traction_point_by_point(ampli
     assert theory.static_limit_transverse(amplitude) == pytest.approx(total[np.pi / 2], abs=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("amplitude", [0.3, 1.0, 2.0])
 def test_static_bore_limit_is_the_best_constant_traction_point_by_point(amplitude):
     c = theory.bore_stick_radius(amplitude)
