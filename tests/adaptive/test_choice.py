@@ -205,6 +205,7 @@ def planned(point, **imposed):
     return coarsest, {axis.name: axis for axis in axes}
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None, derandomize=True)
 @given(points)
 def test_every_plan_can_be_run(point):

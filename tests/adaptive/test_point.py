@@ -94,6 +94,7 @@ def test_tighter_tolerances_come_closer(velocity, amplitude):
         assert result.mu_macro == pytest.approx(expected, abs=tolerance + 2e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("scene", "nu"), [("transverse", 0.3), ("bore", 0.0)])
 def test_squares_confirm_the_automatic_model(scene, nu):
     automatic = microslip.solve(scene, 0.4, 1.5, poisson=nu)
@@ -123,6 +124,7 @@ def test_without_vibration_friction_is_exactly_one(scene, model, nu, velocity):
     assert result.mu_macro_error <= 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scene", "amplitude", "limit"),
     [

@@ -45,6 +45,7 @@ def names(folder):
     return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
 
 
+@pytest.mark.slow
 def test_without_delete_nothing_is_removed(results, tmp_path, capsys):
     before = names(results)
     assert leftovers.main(["--configfile", str(tmp_path / "first.yaml"), "--list"]) == 0
@@ -57,6 +58,7 @@ def test_without_delete_nothing_is_removed(results, tmp_path, capsys):
     assert "mine" not in said
 
 
+@pytest.mark.slow
 def test_what_no_configuration_asks_for_is_removed(results, tmp_path):
     before = names(results)
     assert leftovers.main(["--configfile", str(tmp_path / "first.yaml"), "--delete"]) == 0

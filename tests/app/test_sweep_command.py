@@ -104,6 +104,7 @@ def here(monkeypatch, tmp_path):
     return tmp_path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("arguments", "parts"), [(first, rest) for first, *rest in REFUSED])
 def test_bad_arguments_are_one_line_before_snakemake_starts(arguments, parts, here):
     (here / "good.yaml").write_text(GOOD)

@@ -332,6 +332,7 @@ def test_static_friction_is_interpolated_along_the_amplitude(monkeypatch, tmp_pa
     assert float(friction.at(0.1, 0.5).mu_macro) == pytest.approx(0.1 / 1.6)
 
 
+@pytest.mark.slow
 def test_a_dataset_under_another_pressure_has_none_of_hertzs_limits(monkeypatch, tmp_path):
     Solver(monkeypatch)
     built(tmp_path, scene="transverse", pressure=POWER)

@@ -78,6 +78,7 @@ def test_what_does_not_apply_has_no_row_and_what_fails_has_no_number(accuracy):
     assert not (euler.front_seconds | euler.front_effort).any()
 
 
+@pytest.mark.slow
 def test_references_say_where_they_come_from(accuracy):
     mid, steady = accuracy.isel(point=0), accuracy.isel(point=1)
     assert float(mid.reference) == pytest.approx(0.1 / 1.6)
@@ -279,6 +280,7 @@ def test_the_digest_of_results_follows_what_was_asked():
     assert digest() != digest(methods=["shipped", "admm"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "study"), [("accuracy_cost", "accuracy"), ("stability", "stability")]
 )

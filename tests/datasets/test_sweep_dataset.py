@@ -146,6 +146,7 @@ def test_limits_of_the_transverse_scene(tmp_path, solver):
     assert v.size == 3
 
 
+@pytest.mark.slow
 def test_limits_of_the_bore_scenes(tmp_path, solver):
     data = built("bore", tmp_path)
     v, a = data.velocity.values, data.amplitude.values
@@ -173,6 +174,7 @@ def test_single_runs_for_the_figures_are_in_the_dataset(tmp_path, solver):
     assert float(data.field_centre_lateral) == -0.5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", GRIDS)
 def test_conventions_and_provenance(name, tmp_path, solver):
     for variable in built(name, tmp_path).variables.values():
@@ -328,6 +330,7 @@ def test_a_tree_of_all_groups_opens(tmp_path, solver):
         assert tree["transients/transient_torque"].dims == ("start", "transient_step")
 
 
+@pytest.mark.slow
 def test_files_of_parts_of_an_axis_are_one_dataset(tmp_path, solver):
     axes = {"amplitude": [0, 2]}
     for name, velocity in (("slow", [0.1, 1]), ("fast", [10, 100])):
@@ -347,6 +350,7 @@ def test_files_of_parts_of_an_axis_are_one_dataset(tmp_path, solver):
         assert both.scene == "bore"
 
 
+@pytest.mark.slow
 def test_files_of_several_poissons_ratios_are_one_dataset(tmp_path, solver):
     paths = []
     for nu in (0.3, 0):

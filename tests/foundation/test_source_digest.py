@@ -170,6 +170,7 @@ def test_scratch_and_hidden_files_neither_count_nor_disturb(package):
     assert after.digest(after.of_request("point", ())) == Sources(package).digest(SOLVER)
 
 
+@pytest.mark.slow
 def test_a_scratch_file_is_no_motion(tmp_path):
     """The real package, with what editors leave in its folders."""
     copy = tmp_path / "microslip"

@@ -61,6 +61,7 @@ def solutions(draw):
     return unit * bound * np.where(slips, 1, share), unit * slips * speed, bound, scale, weight
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(solutions())
 def test_residual_and_gap_vanish_for_solutions(solution):

@@ -58,6 +58,7 @@ def refusal(name):
 # What a grid means
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("reading", ["cells", "samples"])
 def test_a_uniform_square_is_one_pressure_at_any_resolution(reading):
     """The torque is the mean distance of a square from its centre, u_lim that at the centre."""
@@ -129,6 +130,7 @@ def test_zeros_around_the_contact_change_nothing():
     assert outside.torque == pytest.approx(inside.torque, abs=1e-14)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("reading", ["cells", "samples"])
 def test_a_finer_grid_of_hertzs_pressure_is_nearer_to_it(reading):
     def off(count):
@@ -244,6 +246,7 @@ PLAIN = "forward,lateral,pressure\n0,0,1\n0,1,2\n1,0,3\n1,1,4\n"
 BOM = b"\xef\xbb\xbf"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "content",
     [
@@ -335,6 +338,7 @@ def test_huge_files_folders_and_pipes_are_refused_unread(tmp_path, monkeypatch):
         assert "not a regular file" in refusal(f"file:{tmp_path / 'pipe'}")
 
 
+@pytest.mark.slow
 def test_netcdf_is_read_with_its_units_whatever_its_name(tmp_path):
     values, axis = np.array([[1.0, 2.0], [3.0, 4.0]]), np.array([0.0, 1.0])
     units = {"forward": "mm", "lateral": "um", "pressure": "MPa"}
@@ -416,6 +420,7 @@ def test_a_stored_point_is_found_by_any_path_and_says_none(tmp_path, monkeypatch
     assert "file:sha256=" in record.read_text()
 
 
+@pytest.mark.slow
 def test_a_file_that_changes_is_another_pressure(tmp_path):
     name = csv(tmp_path / "p.csv")
     found = pressure_named(name)

@@ -178,6 +178,7 @@ def test_a_ring_slides_as_a_whole_at_u_lim_and_not_before(name):
 # Closed forms
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["hertz", "power"])
 def test_integrals_over_the_record_are_the_closed_forms_of_a_sphere(name):
     pressure = pressure_named(name)
@@ -210,6 +211,7 @@ def test_static_limits_agree_with_those_point_by_point(name, scene, amplitude, m
     assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error + exact.mu_macro_error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["power:exponent=1", "power:exponent=8", "punch"])
 @pytest.mark.parametrize("velocity", [0.01, 0.3])
 def test_rings_agree_with_the_closed_form_along_a_line(name, velocity):
@@ -220,6 +222,7 @@ def test_rings_agree_with_the_closed_form_along_a_line(name, velocity):
     assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error + exact.mu_macro_error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["power:exponent=1", "punch", "ring"])
 def test_the_steady_bore_is_eqs_17_and_18(name):
     exact = microslip.solve("continuous-bore", 0.6, pressure=name)

@@ -46,6 +46,7 @@ def test_points_and_limits_are_those_of_the_dataset(made, name):
             assert np.array_equal(given["curve"][1], dataset[f"{key}_curve"].values)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", requests.MAPS)
 def test_periods_come_back_within_the_steps_that_they_are_kept_in(made, name):
     _, records, content = made

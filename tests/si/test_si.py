@@ -262,6 +262,7 @@ def test_nothing_is_warned_of_without_reason():
     assert sure.warnings == ()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("word", WARNED)
 def test_what_breaks_is_warned_of(word, monkeypatch):
     found = microslip.predict("transverse", **MILD | WARNED[word])

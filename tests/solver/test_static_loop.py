@@ -136,6 +136,7 @@ def test_a_load_that_oscillates_leaves_its_least(amplitude):
         within(microslip.solve(scene, 0.0, amplitude, model=model), exact, 1e-5)
 
 
+@pytest.mark.slow
 def test_a_contact_that_lifts_off_has_no_limit_but_what_drives_it():
     across = microslip.solve("normal:lateral=1", 0.0, 1.2)
     within(across, 0.0)
