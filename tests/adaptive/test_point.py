@@ -202,7 +202,7 @@ def test_friction_falls_with_amplitude(scene, velocity, nu):
 
 
 @pytest.mark.slow
-@settings(max_examples=25, deadline=None, derandomize=True)
+@settings(max_examples=15, deadline=None, derandomize=True)
 @given(
     st.sampled_from(["transverse", "bore", "continuous-bore"]),
     st.floats(-3.0, 1.0).map(lambda x: 10**x),
@@ -394,7 +394,7 @@ def test_converged_means_within_the_tolerance_at_an_imposed_resolution_too(scene
 
 
 @pytest.mark.slow
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(
     st.sampled_from(["transverse", "longitudinal"]),
     st.floats(0.0, 3.0),
