@@ -163,6 +163,7 @@ def test_rigid_model_is_eq_29(velocity):
     assert result.converged and result.mu_macro == pytest.approx(exact, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_large_amplitudes_tend_to_the_rigid_contact():
     """Claims 1 and 5: Eq 6 overestimates the reduction a little, Eq 29 is good far out."""
     excess = [
@@ -191,6 +192,7 @@ def test_friction_rises_with_velocity(scene, amplitude, nu):
     assert means[0] > 0 and means[-1] < 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("nu", [0.0, 0.5])
 @pytest.mark.parametrize(("scene", "velocity"), [("transverse", 0.05), ("bore", 0.05)])
 def test_friction_falls_with_amplitude(scene, velocity, nu):

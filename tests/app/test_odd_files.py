@@ -56,6 +56,7 @@ def test_odd_settings(text, words, tmp_path):
     one_line(caught, [str(path), *words]).encode()  # it can be printed
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize(("text", "expected"), odd.CSV)
 def test_odd_pressures_as_text(text, expected, tmp_path):

@@ -107,6 +107,7 @@ terminal.run(command)
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "code", "word"),
     [

@@ -311,6 +311,7 @@ def test_within_the_map_friction_is_interpolated(friction):
     assert (answer.mu_macro_error < 0.02).all()
 
 
+@pytest.mark.slow
 def test_beyond_the_map_nothing_is_known_and_the_solver_may_be_asked(friction):
     for place, said in (
         ((0.01, 1), "velocity = 0.01: allowed is 0.1 to 10"),

@@ -109,6 +109,7 @@ def test_a_reference_that_did_not_converge_says_so():
     assert data.reference.values[0] == pytest.approx(0.1 / 1.6)
 
 
+@pytest.mark.slow
 def test_fronts_count_errors_below_the_reference_as_equal(accuracy):
     mid = rows_of(accuracy, point="mid")
     floor = float(accuracy.reference_error[0])
@@ -241,6 +242,7 @@ def test_the_atlas_holds_what_became_of_every_method(atlas, tmp_path):
         assert raw["outcome"].flag_meanings == "not_applicable converged slow wrong diverged"
 
 
+@pytest.mark.slow
 def test_reports_count(accuracy, atlas):
     assert list(registry.report("accuracy", accuracy))[0] == (
         f"mid: {rows_of(accuracy, point='mid').sizes['trial']} trials, 3 not converged, "
@@ -253,6 +255,7 @@ def test_reports_count(accuracy, atlas):
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["accuracy", "atlas"])
 def test_conventions_and_provenance(name, request):
     data = request.getfixturevalue(name)

@@ -159,6 +159,7 @@ def test_limits_of_the_bore_scenes(tmp_path, solver):
     assert data.mu_torque_theory.values == pytest.approx(paper.bore_torque(v))
 
 
+@pytest.mark.slow
 def test_single_runs_for_the_figures_are_in_the_dataset(tmp_path, solver):
     data = built("transverse", tmp_path)
     assert data.history_force_forward.dims == ("history_step",)
@@ -194,6 +195,7 @@ def test_conventions_and_provenance(name, tmp_path, solver):
         assert str(tmp_path) not in str(data.attrs)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", GRIDS)
 def test_equal_results_give_equal_bytes(name, tmp_path, solver):
     first, second = tmp_path / "first.nc", tmp_path / "elsewhere" / "second.nc"
@@ -203,6 +205,7 @@ def test_equal_results_give_equal_bytes(name, tmp_path, solver):
     assert first.read_bytes() == second.read_bytes()
 
 
+@pytest.mark.slow
 def test_a_missing_or_additional_point_is_an_error(tmp_path, solver):
     configuration = load.from_mapping({"sweeps": GRIDS})
     grid, store = configuration.sweeps["bore"], Store(tmp_path)
@@ -265,6 +268,7 @@ def test_a_single_run_that_fails_is_left_out_and_listed(tmp_path, monkeypatch, s
         assert "transient_torque" not in data and "field_bound" not in data
 
 
+@pytest.mark.slow
 def test_a_sweep_at_an_imposed_resolution_counts_what_misses_its_tolerance(tmp_path):
     """Not so without a tolerance: then its attribute is not a number."""
     axes = {"velocity": [0.1, 0.3], "amplitude": [1], "cells": 8, "steps": 16}

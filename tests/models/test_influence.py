@@ -403,6 +403,7 @@ def test_square_coefficients_are_the_integral_over_a_square(nu):
     )
 
 
+@pytest.mark.slow
 def test_square_loads_are_those_of_the_hertz_pressure():
     contact = CartesianContact(9)
     loads = contact.bound * contact.weight

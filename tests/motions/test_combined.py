@@ -26,6 +26,7 @@ def test_without_the_way_sideways_it_is_the_bore_at_another_velocity():
     assert abs(one.mu_macro - other.mu_macro) <= one.mu_macro_error + other.mu_macro_error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("phase", [0.0, 90.0])
 def test_a_small_part_changes_little(phase):
     """Squares, which know no symmetry, next to rings that do."""

@@ -66,6 +66,7 @@ def test_squares_come_close():
     assert answer.mu_macro == pytest.approx(longitudinal(0.2, 0.8), abs=5e-3)
 
 
+@pytest.mark.slow
 def test_the_closed_form_is_taken_where_it_holds():
     assert microslip.solve("longitudinal", 0.1, 0.5).model == "closed-form"
     assert microslip.solve("longitudinal", 0.1, 0.5, poisson=0.3).model == "polar"

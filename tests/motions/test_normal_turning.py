@@ -52,6 +52,7 @@ def test_a_small_part_changes_little():
     within(microslip.solve("normal:angle=0.0001", 0.1, 0.7), load, 1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("velocity", [0.5, 5.0, 40.0])
 def test_where_all_slides_every_moment_is_a_steady_bore(velocity):
     """Eq 21 at the contact radius and the rate of turning of the moment, weighted by the load."""
@@ -93,6 +94,7 @@ def test_half_a_period_suffices_where_it_is_mirrored():
     assert path.mean(march.forces[:, 0]) == pytest.approx(half.mu, abs=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("poisson", [0.0, 0.4])
 def test_the_least_load_is_what_is_left_at_any_nu(poisson):
     found = microslip.solve("normal", 0.0, 0.6, poisson=poisson, model="polar")
@@ -100,6 +102,7 @@ def test_the_least_load_is_what_is_left_at_any_nu(poisson):
     assert found.mu_macro == pytest.approx(0.4, abs=found.mu_macro_error)
 
 
+@pytest.mark.slow
 def test_a_turning_contact_that_lifts_off_has_no_static_friction():
     found = microslip.solve(TURNING, 0.0, 1.2, tolerance=1e-2)
     assert found.converged and found.mu_macro <= found.mu_macro_error

@@ -120,6 +120,7 @@ def test_oblong_cells_and_grids_keep_their_shape():
     assert loads == pytest.approx(expected, abs=1e-14)
 
 
+@pytest.mark.slow
 def test_zeros_around_the_contact_change_nothing():
     values = np.array([[1.0, 2.0], [3.0, 4.0]])
     inside = of_grid("four", [0.0, 1.0], [0.0, 1.0], values)

@@ -249,6 +249,7 @@ def test_rings_and_squares_agree(name, scene, velocity, amplitude):
     assert abs(rings.mu_macro - squares.mu_macro) <= rings.mu_macro_error + squares.mu_macro_error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scene", "velocity", "amplitude", "poisson"),
     [("transverse", 0.1, 0.5, 0.0), ("transverse", 0.1, 0.5, 0.4), ("bore", 0.3, 1.0, 0.0)],

@@ -79,6 +79,7 @@ def test_periods_come_back_within_the_steps_that_they_are_kept_in(made, name):
     assert packed["force_step"] < 5e-5
 
 
+@pytest.mark.slow
 def test_every_point_that_moves_and_oscillates_has_a_period_or_a_reason(made):
     for name in requests.MAPS:
         dataset, packed = made[0][name], map_of(made[2], name)["periods"]

@@ -174,6 +174,7 @@ FLIPPED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", FLIPPED)
 def test_verdicts_follow_the_runs(case):
     claim, results, expected = FLIPPED[case]
@@ -236,6 +237,7 @@ def test_checks_name_their_runs_and_parts_the_one_that_shows_them(claims):
         assert own.sum() == claims[f"part_{name}"].values.sum()
 
 
+@pytest.mark.slow
 def test_margins_are_of_the_numbers_beside_them(claims):
     own = claims["check_part"].values == "rigid_below"
     value, against, margin = (

@@ -199,6 +199,7 @@ def test_large_amplitude_bore_is_the_mean_of_eq_21(velocity):
     assert theory.large_amplitude_bore(velocity) == pytest.approx(2 / np.pi * mean, rel=1e-10)
 
 
+@pytest.mark.slow
 def test_large_amplitude_bore_limits():
     assert theory.large_amplitude_bore(0.0) == 0.0
     v = np.geomspace(1e-6, 1e6, 500)
