@@ -21,17 +21,19 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 LONG = (
     "test_workflow.py",  # compiles the solver, which takes a fresh clone a minute or two
-    "test_figures_studies",  # needs no solver
+    "test_figures_every",  # needs no solver
+    "test_figures_studies",
     "test_workflow_",
     "test_docs",
     "test_figures",
     "test_explorer",
     "test_terminal",
-    "test_stability",
+    "test_pressure",
+    "test_point",
     "test_static_loop",
     "test_approach",
+    "test_stability",
     "test_normal_turning",
-    "test_point",
     "test_odd_files",
 )
 """Files that take long, by how their names begin: they come first, so that all processes end at

@@ -205,6 +205,7 @@ def planned(point, **imposed):
     return coarsest, {axis.name: axis for axis in axes}
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None, derandomize=True)
 @given(points)
 def test_every_plan_can_be_run(point):
@@ -222,6 +223,7 @@ def test_every_plan_can_be_run(point):
         assert 1 <= axis.base < len(axis.levels) and not axis.imposed
 
 
+@pytest.mark.slow
 @settings(max_examples=200, deadline=None, derandomize=True)
 @given(points)
 def test_axes_are_those_that_the_scene_and_the_model_have(point):

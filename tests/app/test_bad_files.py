@@ -228,6 +228,7 @@ except sealed_files.CacheError as error:
 """
 
 
+@pytest.mark.slow
 def test_a_disk_that_fills_up_under_a_dataset_leaves_the_old_one(sealed):
     """A limit on the size of files stands for the disk: both end a write half-way."""
     before = sealed.read_bytes()

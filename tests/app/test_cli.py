@@ -172,6 +172,7 @@ def test_version_is_that_of_the_package():
     assert (done.returncode, done.stdout) == (0, f"microslip {microslip.__version__}\n")
 
 
+@pytest.mark.slow
 def test_help_and_bad_options_do_not_load_the_solver():
     """They must answer at once; the compiled kernels take their time to load."""
     code = (

@@ -68,6 +68,7 @@ def test_what_was_planned_counts_and_a_plan_of_other_sources_is_left_over(
     assert len(left["batches"]) == 2  # and the batch of the other configuration
 
 
+@pytest.mark.slow
 def test_without_delete_nothing_is_removed(results, tmp_path, capsys):
     before = names(results)
     assert leftovers.main(["--configfile", str(tmp_path / "first.yaml"), "--list"]) == 0
@@ -80,6 +81,7 @@ def test_without_delete_nothing_is_removed(results, tmp_path, capsys):
     assert "mine" not in said
 
 
+@pytest.mark.slow
 def test_what_no_configuration_asks_for_is_removed(results, tmp_path):
     before = names(results)
     assert leftovers.main(["--configfile", str(tmp_path / "first.yaml"), "--delete"]) == 0
@@ -97,6 +99,7 @@ def test_what_no_configuration_asks_for_is_removed(results, tmp_path):
             assert store.read(batches.group(request), batches.key_of(request)) is not None
 
 
+@pytest.mark.slow
 def test_what_any_of_several_asks_for_stays(results, tmp_path, capsys):
     files = [str(tmp_path / "first.yaml"), str(tmp_path / "second.yaml")]
     assert leftovers.main(["--configfile", *files, "--delete"]) == 0

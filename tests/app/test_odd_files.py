@@ -56,6 +56,7 @@ def test_odd_settings(text, words, tmp_path):
     one_line(caught, [str(path), *words]).encode()  # it can be printed
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize(("text", "expected"), odd.CSV)
 def test_odd_pressures_as_text(text, expected, tmp_path):
@@ -71,6 +72,7 @@ def test_odd_pressures_as_text(text, expected, tmp_path):
     one_line(caught, [str(path), *expected["words"]])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("data", "expected"), odd.NETCDF)
 def test_odd_pressures_as_netcdf(data, expected, tmp_path):
     path = tmp_path / "p.nc"
@@ -186,6 +188,7 @@ def test_gc_knows_a_folder_by_any_path(results, tmp_path, monkeypatch, capsys): 
     assert cli.main(["gc", "--configfile", *given]) == 0
 
 
+@pytest.mark.slow
 def test_gc_leaves_folders_and_links_alone(results, tmp_path):  # noqa: F811
     odd_places = results / "points" / "00"
     (odd_places / f"{'0' * 64}.json").mkdir(parents=True)

@@ -104,6 +104,7 @@ def here(monkeypatch, tmp_path):
     return tmp_path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("arguments", "parts"), [(first, rest) for first, *rest in REFUSED])
 def test_bad_arguments_are_one_line_before_snakemake_starts(arguments, parts, here):
     (here / "good.yaml").write_text(GOOD)
@@ -111,6 +112,7 @@ def test_bad_arguments_are_one_line_before_snakemake_starts(arguments, parts, he
     refused(in_process.run("sweep", *arguments.split()), parts)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", SHOWN)
 def test_a_file_that_is_no_configuration_is_one_line(case, here):
     content, *parts = FILES[case]

@@ -94,6 +94,7 @@ def test_a_list_of_poissons_ratios_is_an_axis(tmp_path):
     assert (sweep.poisson, sweep.poisson_is_axis) == ((0.0, 0.3), True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["config", "smoke"])
 def test_shipped_configurations_are_good(name):
     found = load(ROOT / "config" / f"{name}.yaml")

@@ -311,6 +311,7 @@ def test_within_the_map_friction_is_interpolated(friction):
     assert (answer.mu_macro_error < 0.02).all()
 
 
+@pytest.mark.slow
 def test_beyond_the_map_nothing_is_known_and_the_solver_may_be_asked(friction):
     for place, said in (
         ((0.01, 1), "velocity = 0.01: allowed is 0.1 to 10"),
@@ -332,6 +333,7 @@ def test_static_friction_is_interpolated_along_the_amplitude(monkeypatch, tmp_pa
     assert float(friction.at(0.1, 0.5).mu_macro) == pytest.approx(0.1 / 1.6)
 
 
+@pytest.mark.slow
 def test_a_dataset_under_another_pressure_has_none_of_hertzs_limits(monkeypatch, tmp_path):
     Solver(monkeypatch)
     built(tmp_path, scene="transverse", pressure=POWER)

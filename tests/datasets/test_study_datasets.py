@@ -78,6 +78,7 @@ def test_what_does_not_apply_has_no_row_and_what_fails_has_no_number(accuracy):
     assert not (euler.front_seconds | euler.front_effort).any()
 
 
+@pytest.mark.slow
 def test_references_say_where_they_come_from(accuracy):
     mid, steady = accuracy.isel(point=0), accuracy.isel(point=1)
     assert float(mid.reference) == pytest.approx(0.1 / 1.6)
@@ -108,6 +109,7 @@ def test_a_reference_that_did_not_converge_says_so():
     assert data.reference.values[0] == pytest.approx(0.1 / 1.6)
 
 
+@pytest.mark.slow
 def test_fronts_count_errors_below_the_reference_as_equal(accuracy):
     mid = rows_of(accuracy, point="mid")
     floor = float(accuracy.reference_error[0])
@@ -240,6 +242,7 @@ def test_the_atlas_holds_what_became_of_every_method(atlas, tmp_path):
         assert raw["outcome"].flag_meanings == "not_applicable converged slow wrong diverged"
 
 
+@pytest.mark.slow
 def test_reports_count(accuracy, atlas):
     assert list(registry.report("accuracy", accuracy))[0] == (
         f"mid: {rows_of(accuracy, point='mid').sizes['trial']} trials, 3 not converged, "
@@ -252,6 +255,7 @@ def test_reports_count(accuracy, atlas):
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["accuracy", "atlas"])
 def test_conventions_and_provenance(name, request):
     data = request.getfixturevalue(name)
@@ -279,6 +283,7 @@ def test_the_digest_of_results_follows_what_was_asked():
     assert digest() != digest(methods=["shipped", "admm"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "study"), [("accuracy_cost", "accuracy"), ("stability", "stability")]
 )

@@ -146,6 +146,7 @@ def test_limits_of_the_transverse_scene(tmp_path, solver):
     assert v.size == 3
 
 
+@pytest.mark.slow
 def test_limits_of_the_bore_scenes(tmp_path, solver):
     data = built("bore", tmp_path)
     v, a = data.velocity.values, data.amplitude.values
@@ -158,6 +159,7 @@ def test_limits_of_the_bore_scenes(tmp_path, solver):
     assert data.mu_torque_theory.values == pytest.approx(paper.bore_torque(v))
 
 
+@pytest.mark.slow
 def test_single_runs_for_the_figures_are_in_the_dataset(tmp_path, solver):
     data = built("transverse", tmp_path)
     assert data.history_force_forward.dims == ("history_step",)
@@ -173,6 +175,7 @@ def test_single_runs_for_the_figures_are_in_the_dataset(tmp_path, solver):
     assert float(data.field_centre_lateral) == -0.5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", GRIDS)
 def test_conventions_and_provenance(name, tmp_path, solver):
     for variable in built(name, tmp_path).variables.values():
@@ -192,6 +195,7 @@ def test_conventions_and_provenance(name, tmp_path, solver):
         assert str(tmp_path) not in str(data.attrs)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", GRIDS)
 def test_equal_results_give_equal_bytes(name, tmp_path, solver):
     first, second = tmp_path / "first.nc", tmp_path / "elsewhere" / "second.nc"
@@ -201,6 +205,7 @@ def test_equal_results_give_equal_bytes(name, tmp_path, solver):
     assert first.read_bytes() == second.read_bytes()
 
 
+@pytest.mark.slow
 def test_a_missing_or_additional_point_is_an_error(tmp_path, solver):
     configuration = load.from_mapping({"sweeps": GRIDS})
     grid, store = configuration.sweeps["bore"], Store(tmp_path)
@@ -263,6 +268,7 @@ def test_a_single_run_that_fails_is_left_out_and_listed(tmp_path, monkeypatch, s
         assert "transient_torque" not in data and "field_bound" not in data
 
 
+@pytest.mark.slow
 def test_a_sweep_at_an_imposed_resolution_counts_what_misses_its_tolerance(tmp_path):
     """Not so without a tolerance: then its attribute is not a number."""
     axes = {"velocity": [0.1, 0.3], "amplitude": [1], "cells": 8, "steps": 16}
@@ -328,6 +334,7 @@ def test_a_tree_of_all_groups_opens(tmp_path, solver):
         assert tree["transients/transient_torque"].dims == ("start", "transient_step")
 
 
+@pytest.mark.slow
 def test_files_of_parts_of_an_axis_are_one_dataset(tmp_path, solver):
     axes = {"amplitude": [0, 2]}
     for name, velocity in (("slow", [0.1, 1]), ("fast", [10, 100])):
@@ -347,6 +354,7 @@ def test_files_of_parts_of_an_axis_are_one_dataset(tmp_path, solver):
         assert both.scene == "bore"
 
 
+@pytest.mark.slow
 def test_files_of_several_poissons_ratios_are_one_dataset(tmp_path, solver):
     paths = []
     for nu in (0.3, 0):

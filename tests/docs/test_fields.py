@@ -67,6 +67,7 @@ def written(name, folder):
         return all_names(data)
 
 
+@pytest.mark.slow
 def test_every_variable_of_a_sweep_is_in_the_table_and_no_other(tmp_path, monkeypatch):
     Solver(monkeypatch)
     found = set().union(*(written(name, tmp_path) for name in GRIDS))

@@ -50,6 +50,7 @@ def test_there_are_kernels_to_speak_of():
     assert some <= set(KERNELS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", KERNELS)
 def test_an_edit_of_any_kernel_file_leaves_the_old_machine_code_alone(name, copy):
     before = of_kernels(copy)
@@ -84,12 +85,14 @@ def test_an_edited_law_of_friction_is_the_one_that_runs(copy):
     assert float(run(program, copy).stdout) == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 def test_the_folder_that_the_user_names_comes_first(copy, tmp_path):
     place = tmp_path / "mine"
     said = run(FOLDER, copy, NUMBA_CACHE_DIR=str(place)).stdout.strip()
     assert Path(said).parent == place and Path(said).is_dir()
 
 
+@pytest.mark.slow
 def test_the_package_comes_next(copy):
     said = run(FOLDER, copy).stdout.strip()
     assert Path(said).parent == copy / "__pycache__"
@@ -119,6 +122,7 @@ def test_where_neither_package_nor_home_can_be_written_it_runs_all_the_same_and_
     assert again.stdout == done.stdout
 
 
+@pytest.mark.slow
 def test_the_home_is_used_where_the_package_cannot_be_written(copy, tmp_path):
     (copy / "__pycache__").write_text("in the way")
     done = run(FOLDER, copy, XDG_CACHE_HOME=str(tmp_path / "caches"))

@@ -200,6 +200,7 @@ MOTIONS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
 @pytest.mark.parametrize("rotates", [True, False])

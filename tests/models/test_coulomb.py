@@ -61,6 +61,7 @@ def solutions(draw):
     return unit * bound * np.where(slips, 1, share), unit * slips * speed, bound, scale, weight
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(solutions())
 def test_residual_and_gap_vanish_for_solutions(solution):
@@ -94,6 +95,7 @@ def test_residual_counts_every_breach(q, slip, expected):
     assert coulomb_residual(q, slip, one, 7 * one, one) == pytest.approx(7 * expected, rel=1e-12)
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(VECTORS, VECTORS, BOUNDS, BOUNDS, BOUNDS)
 def test_residual_is_positive_unless_solved(q, slip, bound, weight, scale):

@@ -122,6 +122,7 @@ def ring_average(kernel, i, j, hertzian):
     return 2 / hertz.G_STAR * area * np.sum(w * [inner(p) for p in psi]) / np.sum(w)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hertzian", [True, False])
 @pytest.mark.parametrize(("i", "j"), [(0, 0), (2, 2), (3, 3), (1, 2), (3, 2), (0, 3), (3, 0)])
 def test_ring_influence_is_the_average_over_both_rings(i, j, hertzian):
@@ -402,6 +403,7 @@ def test_square_coefficients_are_the_integral_over_a_square(nu):
     )
 
 
+@pytest.mark.slow
 def test_square_loads_are_those_of_the_hertz_pressure():
     contact = CartesianContact(9)
     loads = contact.bound * contact.weight

@@ -80,6 +80,7 @@ def test_a_bristle_loads_exponentially():
     assert slope == pytest.approx(HERTZ.stiffness, rel=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("velocity", "amplitude"), [(0.05, 0.5), (0.5, 2.0), (2.0, 1.0)])
 def test_a_bristle_solves_its_differential_equation(velocity, amplitude):
     found = microslip.solve("transverse", velocity, amplitude, model="dahl", tolerance=1e-4)

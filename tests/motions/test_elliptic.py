@@ -50,7 +50,7 @@ def test_rings_and_squares_agree(scene):
 @pytest.mark.parametrize(("velocity", "amplitude"), [(0.05, 0.4), (0.5, 2.0), (0.01, 0.8)])
 def test_certificates_hold_against_finer_runs(velocity, amplitude):
     answer = microslip.solve(CIRCLE, velocity, amplitude)
-    finer = microslip.solve(CIRCLE, velocity, amplitude, tolerance=1e-4)
+    finer = microslip.solve(CIRCLE, velocity, amplitude, tolerance=2e-4)
     assert answer.converged and finer.converged
     assert abs(answer.mu_macro - finer.mu_macro) <= answer.mu_macro_error + finer.mu_macro_error
 

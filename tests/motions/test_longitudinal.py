@@ -66,6 +66,7 @@ def test_squares_come_close():
     assert answer.mu_macro == pytest.approx(longitudinal(0.2, 0.8), abs=5e-3)
 
 
+@pytest.mark.slow
 def test_the_closed_form_is_taken_where_it_holds():
     assert microslip.solve("longitudinal", 0.1, 0.5).model == "closed-form"
     assert microslip.solve("longitudinal", 0.1, 0.5, poisson=0.3).model == "polar"
@@ -143,7 +144,7 @@ def test_a_real_contact():
         "load": "10 N",
         "mu": 0.3,
     }
-    ball |= {"speed": "10 mm/s", "frequency": "20 kHz"}
+    ball |= {"speed": "10 mm/s", "frequency": "20 kHz", "tolerance": 3e-3}
     found = microslip.predict("longitudinal", **ball, amplitude="0.2 um")
     expected = longitudinal(found.velocity, found.amplitude)
     assert found.mu_macro == pytest.approx(expected, abs=found.mu_macro_error)

@@ -9,6 +9,7 @@ from microslip.motions.registry import scene_named
 from microslip.pressures.registry import HERTZ
 from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.simulate import simulate
+from microslip.solver.static_run import simulate_static
 from microslip.theory import hertz, paper
 
 TURNING = "normal:angle=1"
@@ -25,6 +26,7 @@ def within(found, other, slack=0.0):
     assert gap <= found.mu_macro_error + other.mu_macro_error + slack
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", ["normal", "normal:lateral=1", "normal:forward=1,phase=60"])
 def test_modes_find_what_rings_find(scene):
     """At the same resolution to the tolerance of the steps, for at nu = 0 they are the same."""
@@ -37,11 +39,8 @@ def test_modes_find_what_rings_find(scene):
 @pytest.mark.slow
 def test_the_static_limit_is_that_of_rings_too():
     scene = "normal:lateral=1"
-    rings, modes = (
-        microslip.solve(scene, 0.0, 0.4, model=model, tolerance=5e-3)
-        for model in ("radial", "polar")
-    )
-    within(modes, rings)
+    rings = microslip.solve(scene, 0.0, 0.4, model="radial", tolerance=1e-3)
+    within(microslip.solve(scene, 0.0, 0.4, model="polar", tolerance=2e-2), rings)
 
 
 @pytest.mark.slow
@@ -53,6 +52,7 @@ def test_a_small_part_changes_little():
     within(microslip.solve("normal:angle=0.0001", 0.1, 0.7), load, 1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("velocity", [0.5, 5.0, 40.0])
 def test_where_all_slides_every_moment_is_a_steady_bore(velocity):
     """Eq 21 at the contact radius and the rate of turning of the moment, weighted by the load."""
@@ -78,6 +78,7 @@ def test_which_way_it_turns_does_not_matter():
     within(one, other)
 
 
+@pytest.mark.slow
 def test_half_a_period_suffices_where_it_is_mirrored():
     scene = scene_named("normal:angle=1,normal_cycles=2")
     assert scene.half_period_mirror and scene.half_disc
@@ -93,6 +94,7 @@ def test_half_a_period_suffices_where_it_is_mirrored():
     assert path.mean(march.forces[:, 0]) == pytest.approx(half.mu, abs=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("poisson", [0.0, 0.4])
 def test_the_least_load_is_what_is_left_at_any_nu(poisson):
     found = microslip.solve("normal", 0.0, 0.6, poisson=poisson, model="polar")
@@ -100,6 +102,7 @@ def test_the_least_load_is_what_is_left_at_any_nu(poisson):
     assert found.mu_macro == pytest.approx(0.4, abs=found.mu_macro_error)
 
 
+@pytest.mark.slow
 def test_a_turning_contact_that_lifts_off_has_no_static_friction():
     found = microslip.solve(TURNING, 0.0, 1.2, tolerance=1e-2)
     assert found.converged and found.mu_macro <= found.mu_macro_error
@@ -107,20 +110,24 @@ def test_a_turning_contact_that_lifts_off_has_no_static_friction():
 
 @pytest.mark.slow
 def test_slow_marches_end_in_the_limit():
-    limit = microslip.solve(TURNING, 0.0, 0.5, tolerance=5e-3).mu_macro
-    above = [run(TURNING, v, 0.5, resolution=(48, 8, 192)).mu - limit for v in (2e-2, 2.5e-3)]
-    assert -5e-3 < above[1] < 0.36 * above[0]
+    """Limit and marches are those of the same contact and steps, so that few of them tell."""
+    still = Problem(scene_named(TURNING), 0.0, 0.5, 0.0)
+    limit = simulate_static(still, "polar", Resolution(16, 4, 64), 1e-5)
+    above = [run(TURNING, v, 0.5, resolution=(16, 4, 64)).mu - limit.mu for v in (2e-2, 2.5e-3)]
+    assert limit.converged and 0.0 < above[1] < 0.36 * above[0]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["normal", "normal:lateral=1", TURNING])
-def test_certificates_hold_against_finer_runs(scene):
+@pytest.mark.parametrize(
+    ("scene", "finer"), [("normal", 1e-3), ("normal:lateral=1", 1e-3), (TURNING, 3e-3)]
+)
+def test_certificates_hold_against_finer_runs(scene, finer):
     loose, tight = (
-        microslip.solve(scene, 0.08, 0.7, poisson=0.4, tolerance=t) for t in (1e-2, 1e-3)
+        microslip.solve(scene, 0.08, 0.7, poisson=0.4, tolerance=t) for t in (1e-2, finer)
     )
     assert loose.model == "polar"
     within(loose, tight)
-    assert loose.mu_macro_error <= 1e-2 and tight.mu_macro_error <= 1e-3
+    assert loose.mu_macro_error <= 1e-2 and tight.mu_macro_error <= finer
 
 
 @pytest.mark.slow

@@ -58,6 +58,7 @@ def refusal(name):
 # What a grid means
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("reading", ["cells", "samples"])
 def test_a_uniform_square_is_one_pressure_at_any_resolution(reading):
     """The torque is the mean distance of a square from its centre, u_lim that at the centre."""
@@ -119,6 +120,7 @@ def test_oblong_cells_and_grids_keep_their_shape():
     assert loads == pytest.approx(expected, abs=1e-14)
 
 
+@pytest.mark.slow
 def test_zeros_around_the_contact_change_nothing():
     values = np.array([[1.0, 2.0], [3.0, 4.0]])
     inside = of_grid("four", [0.0, 1.0], [0.0, 1.0], values)
@@ -129,6 +131,7 @@ def test_zeros_around_the_contact_change_nothing():
     assert outside.torque == pytest.approx(inside.torque, abs=1e-14)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("reading", ["cells", "samples"])
 def test_a_finer_grid_of_hertzs_pressure_is_nearer_to_it(reading):
     def off(count):
@@ -155,7 +158,7 @@ def cone(x, y):
     return np.arccosh(1.0 / np.clip(np.hypot(x, y), 0.25 * step, 1.0))
 
 
-TRUTHS = [("hertz", sphere, count) for count in (8, 16, 32, 64)]
+TRUTHS = [("hertz", sphere, count) for count in (8, 64)]
 TRUTHS += [("power:exponent=1", cone, 16)]
 
 
@@ -178,6 +181,7 @@ def test_the_error_holds_what_the_resolution_of_a_file_leaves_open(
     assert found.converged == (found.mu_macro_error <= 2e-2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("reading", ["cells", "samples"])
 @pytest.mark.parametrize(("count", "shift"), [(8, 0.0), (16, 0.3), (32, 0.5)])
 def test_so_it_does_where_the_edge_lies_between_the_points(tmp_path, count, shift, reading):
@@ -243,6 +247,7 @@ PLAIN = "forward,lateral,pressure\n0,0,1\n0,1,2\n1,0,3\n1,1,4\n"
 BOM = b"\xef\xbb\xbf"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "content",
     [
@@ -334,6 +339,7 @@ def test_huge_files_folders_and_pipes_are_refused_unread(tmp_path, monkeypatch):
         assert "not a regular file" in refusal(f"file:{tmp_path / 'pipe'}")
 
 
+@pytest.mark.slow
 def test_netcdf_is_read_with_its_units_whatever_its_name(tmp_path):
     values, axis = np.array([[1.0, 2.0], [3.0, 4.0]]), np.array([0.0, 1.0])
     units = {"forward": "mm", "lateral": "um", "pressure": "MPa"}
@@ -415,6 +421,7 @@ def test_a_stored_point_is_found_by_any_path_and_says_none(tmp_path, monkeypatch
     assert "file:sha256=" in record.read_text()
 
 
+@pytest.mark.slow
 def test_a_file_that_changes_is_another_pressure(tmp_path):
     name = csv(tmp_path / "p.csv")
     found = pressure_named(name)

@@ -82,6 +82,7 @@ def test_thin_rings_give_the_loads_of_squares_in_closed_form():
     assert np.abs(difference).sum() < 5e-5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*ROUND, *PLANAR])
 def test_u_lim_is_the_largest_displacement_under_full_slip(name):
     """Summed up on points of a fine grid, the middle cell by its own closed form."""
@@ -177,6 +178,7 @@ def test_a_ring_slides_as_a_whole_at_u_lim_and_not_before(name):
 # Closed forms
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["hertz", "power"])
 def test_integrals_over_the_record_are_the_closed_forms_of_a_sphere(name):
     pressure = pressure_named(name)
@@ -209,6 +211,7 @@ def test_static_limits_agree_with_those_point_by_point(name, scene, amplitude, m
     assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error + exact.mu_macro_error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["power:exponent=1", "power:exponent=8", "punch"])
 @pytest.mark.parametrize("velocity", [0.01, 0.3])
 def test_rings_agree_with_the_closed_form_along_a_line(name, velocity):
@@ -219,6 +222,7 @@ def test_rings_agree_with_the_closed_form_along_a_line(name, velocity):
     assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error + exact.mu_macro_error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["power:exponent=1", "punch", "ring"])
 def test_the_steady_bore_is_eqs_17_and_18(name):
     exact = microslip.solve("continuous-bore", 0.6, pressure=name)
@@ -231,6 +235,7 @@ def test_the_steady_bore_is_eqs_17_and_18(name):
 # One model against the next
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["power:exponent=1", "punch", "ring"])
 @pytest.mark.parametrize(
     ("scene", "velocity", "amplitude"), [("transverse", 0.1, 0.6), ("bore", 0.3, 1.0)]
@@ -244,6 +249,7 @@ def test_rings_and_squares_agree(name, scene, velocity, amplitude):
     assert abs(rings.mu_macro - squares.mu_macro) <= rings.mu_macro_error + squares.mu_macro_error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scene", "velocity", "amplitude", "poisson"),
     [("transverse", 0.1, 0.5, 0.0), ("transverse", 0.1, 0.5, 0.4), ("bore", 0.3, 1.0, 0.0)],

@@ -46,6 +46,7 @@ def test_points_and_limits_are_those_of_the_dataset(made, name):
             assert np.array_equal(given["curve"][1], dataset[f"{key}_curve"].values)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", requests.MAPS)
 def test_periods_come_back_within_the_steps_that_they_are_kept_in(made, name):
     _, records, content = made
@@ -78,6 +79,7 @@ def test_periods_come_back_within_the_steps_that_they_are_kept_in(made, name):
     assert packed["force_step"] < 5e-5
 
 
+@pytest.mark.slow
 def test_every_point_that_moves_and_oscillates_has_a_period_or_a_reason(made):
     for name in requests.MAPS:
         dataset, packed = made[0][name], map_of(made[2], name)["periods"]
@@ -90,6 +92,7 @@ def test_every_point_that_moves_and_oscillates_has_a_period_or_a_reason(made):
         assert (has == moves.values).all()
 
 
+@pytest.mark.slow
 def test_the_default_configuration_has_a_period_for_every_point_and_stays_small(tmp_path):
     default = load.load(ROOT / "config" / "config.yaml")
     datasets, records = stub.made_up(tmp_path, default)

@@ -1,5 +1,4 @@
-"""Maps: their colours, the surface between the points, the numbers on contours, and letters and
-labels that are alike in every figure."""
+"""Maps: their colours, the surface between the points, and the numbers on contours."""
 
 from __future__ import annotations
 
@@ -10,11 +9,8 @@ import numpy as np
 import pytest
 import test_figures
 import test_figures_groups as groups
-import test_figures_studies as of_studies
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
-from matplotlib.text import Text
 
 from microslip.datasets.query import open_map
 from microslip.report.figures import drawing, map_panel, signed, small_maps
@@ -168,81 +164,6 @@ def test_numbers_are_inside_the_frame_and_off_other_lines(velocities, amplitudes
                 over = (np.abs(beside) < [0.5 * width, 0.4 * height]).all(axis=1)
                 assert not over.any(), (level, text.get_text())
     assert found >= 6  # one on each map at least
-
-
-# Letters and labels
-
-
-@pytest.fixture(scope="module")
-def figures():
-    """Every figure there is, small."""
-    scenes = {"transverse": test_figures.fake_transverse(5), "bore": test_figures.fake_bore(5)}
-    given = scenes | {"continuous_bore": test_figures.fake_continuous_bore()}
-    given |= {"accuracy_cost": of_studies.fake_accuracy(3), "claims": of_studies.claims()}
-    given["stability"] = of_studies.fake_stability(axes=3, cases=3)
-    drawn = {name: drawing.draw(name, given) for name in drawing.FIGURES if name != "poisson"}
-    two = {name: test_figures.at_ratios(dataset, 0.0, 0.5) for name, dataset in scenes.items()}
-    for dataset in two.values():
-        dataset["velocity"].attrs["formula"] = "v0 / (omega u_lim)"
-        dataset["amplitude"].attrs["formula"] = "y0 / u_lim"
-    drawn["poisson"] = drawing.draw("poisson", two)
-    drawn |= {
-        f"two {name}": drawing.draw(name, two) for name in ("fig2_transverse_map", "fig6_bore_map")
-    }
-    drawn["maps"] = drawing.draw("extended_motions", groups.motions(3))
-    drawn["lines"] = drawing.draw("extended_static", {"a": groups.static("a")})
-    return drawn
-
-
-LETTER = re.compile(r"^\$\\bf\{\((\w+)\)\}\$")
-
-
-def test_letters_of_panels_are_alike_in_every_figure(figures):
-    for name, figure in figures.items():
-        texts = [text for text in figure.findobj(Text) if text.get_visible()]
-        heads = [text for text in texts if r"\bf{(" in text.get_text()]
-        letters = [LETTER.match(text.get_text())[1] for text in heads]
-        assert sorted(letters) == look.letters(len(letters)), name
-        assert {text.get_fontsize() for text in heads} <= {look.HEADING}, name
-        panels = [a for a in figure.findobj(Axes) if a.axison and "<" not in str(a.get_label())]
-        assert len(letters) in (0, len(panels)), name
-        assert len(panels) == 1 or letters, name
-        for text in heads:  # its left edge is that of a panel
-            left = text.get_window_extent().x0
-            edges = [axes.get_window_extent().x0 for axes in panels]
-            assert min(abs(left - edge) for edge in edges) < 0.04 * figure.dpi, name
-
-
-def test_every_axis_has_a_quantity_and_its_unit(figures):
-    for name, figure in figures.items():
-        for axes in figure.findobj(Axes):
-            texts = [axes.get_xlabel(), axes.get_ylabel()]
-            for text in filter(None, texts):
-                words = re.sub(r"\$[^$]*\$", "", text)
-                assert re.search("[a-z]{3}", words) or name == "maps", (name, text)
-                has_unit = re.search(r"\((s|bytes|dimensionless|degrees)\)", text)
-                ratio = re.search(r"\$[^$]*/[^$]*\$", text) or "$t/t" in text
-                symbol = "two" in name and text.startswith(("forward velocity", "amplitude"))
-                less = "less that at" in text  # a difference of ratios
-                assert has_unit or ratio or symbol or less, (name, text)
-
-
-def test_figures_3_to_5_speak_of_forward_and_lateral(figures):
-    for name in ("fig3_traction_field", "fig4_continuous_bore", "fig5_transients"):
-        said = " ".join(text.get_text() for text in figures[name].findobj(Text))
-        assert "lateral slip" not in said
-        assert not re.search(r"\$x/a|\$y/a|F_y|\\mu\}_y", said), name
-        assert "forward" in said
-    starts = [axes.get_title(loc="left") for axes in figures["fig5_transients"].axes]
-    assert starts[2].endswith("full forward slip")
-
-
-def test_pictures_have_300_dots_an_inch(tmp_path, figures):
-    from PIL import Image
-
-    figure = figures["fig4_continuous_bore"]
-    with Image.open(drawing.save(figure, tmp_path / "figure.png")) as image:
-        assert image.size[0] == pytest.approx(300 * figure.get_size_inches()[0], abs=1)
 
 
 def test_lines_stand_out_from_their_bands():

@@ -12,6 +12,7 @@ HALF_A_DIGIT = 3e-16
 """Relative: what the last bit of a float and of pi leave open."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("value", "unit", "expected"), ROWS, ids=repr)
 def test_an_odd_quantity_is_its_value_or_is_refused(value, unit, expected):
     if not isinstance(expected, str):

@@ -88,6 +88,7 @@ def test_slider_limit_is_eq_7():
     assert found.mu_macro == pytest.approx(float(paper.static_slider(0.5)), abs=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scene", "amplitude", "poisson"),
     [("transverse", 0.5, 0.0), ("transverse", 0.5, 0.3), ("bore", 1.0, 0.0)],

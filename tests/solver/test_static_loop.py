@@ -87,7 +87,10 @@ def test_where_all_slides_the_mean_of_the_directions_is_left():
 
 @pytest.mark.slow
 def test_mirror_images_have_the_same_limit_or_the_opposite_one():
-    one, other = (microslip.solve(f"elliptic:forward=0.5,phase={p}", 0.0, 0.5) for p in (30, 210))
+    one, other = (
+        microslip.solve(f"elliptic:forward=0.5,phase={p}", 0.0, 0.5, tolerance=3e-3)
+        for p in (30, 210)
+    )
     within(one, other.mu_macro, other.mu_macro_error)
     drags, drives = (
         microslip.solve(f"elliptic:forward=0.5,phase={p},forward_cycles=2", 0.0, 1.2)
@@ -99,12 +102,13 @@ def test_mirror_images_have_the_same_limit_or_the_opposite_one():
 @pytest.mark.slow
 def test_other_models_find_the_same_limit():
     rings = microslip.solve("elliptic", 0.0, 0.5)
-    modes = microslip.solve("elliptic", 0.0, 0.5, model="polar", tolerance=1e-2)
+    coarse = {"cells": 16, "steps": 64, "tolerance": 1e-2}
+    modes = microslip.solve("elliptic", 0.0, 0.5, model="polar", **coarse)
     within(modes, rings.mu_macro, rings.mu_macro_error)
     # squares, too, and an elliptic contact, whose stick zones are ellipses of its own shape
     for pressure in ("hertz", "ellipse:ratio=0.7"):
         problem = Problem(scene_named("elliptic", pressure), 0.0, 0.5, 0.0)
-        squares = simulate_static(problem, "cartesian", Resolution(32, 1, 24), 1e-3)
+        squares = simulate_static(problem, "cartesian", Resolution(24, 1, 24), 1e-3)
         assert squares.converged
         assert squares.mu == pytest.approx(rings.mu_macro, abs=8e-3)
 
@@ -112,13 +116,12 @@ def test_other_models_find_the_same_limit():
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", [NARROW, EIGHT, "elliptic", ACROSS, "normal:forward=1,phase=90"])
 def test_slow_marches_end_there(scene):
-    limit, kind = microslip.solve(scene, 0.0, 0.5).mu_macro, scene_named(scene)
-    slow = [
-        simulate(Problem(kind, v, 0.5, 0.0), "radial", Resolution(64, 1, 256), 1e-5)
-        for v in (8e-3, 1e-3)
-    ]
-    assert slow[0].converged and slow[1].converged
-    above = [run.mu - limit for run in slow]
+    """Limit and marches are those of the same rings and steps, so that few of them tell."""
+    kind, resolution = scene_named(scene), Resolution(32, 1, 128)
+    limit = simulate_static(Problem(kind, 0.0, 0.5, 0.0), "radial", resolution, 1e-5)
+    slow = [simulate(Problem(kind, v, 0.5, 0.0), "radial", resolution, 1e-5) for v in (8e-3, 1e-3)]
+    assert limit.converged and slow[0].converged and slow[1].converged
+    above = [run.mu - limit.mu for run in slow]
     # what is left of it shrinks like v^(2/3), to a quarter, or faster
     assert 0.0 < above[1] < 0.36 * above[0]
 
@@ -133,6 +136,7 @@ def test_a_load_that_oscillates_leaves_its_least(amplitude):
         within(microslip.solve(scene, 0.0, amplitude, model=model), exact, 1e-5)
 
 
+@pytest.mark.slow
 def test_a_contact_that_lifts_off_has_no_limit_but_what_drives_it():
     across = microslip.solve("normal:lateral=1", 0.0, 1.2)
     within(across, 0.0)
@@ -144,7 +148,8 @@ def test_a_contact_that_lifts_off_has_no_limit_but_what_drives_it():
 def test_poissons_ratio_and_squares_without_symmetry_are_in():
     softer = microslip.solve("elliptic", 0.0, 0.5, poisson=0.4, tolerance=5e-2)
     assert softer.converged and softer.model == "polar"
-    turning = microslip.solve("transverse-bore:phase=90", 0.0, 0.5, tolerance=5e-2)
+    imposed = {"cells": 16, "steps": 24, "tolerance": 5e-2}
+    turning = microslip.solve("transverse-bore:phase=90", 0.0, 0.5, **imposed)
     assert turning.converged and turning.model == "cartesian"
     alone = microslip.solve("transverse", 0.0, 0.5).mu_macro
     # the bore beside it takes some more

@@ -174,6 +174,7 @@ FLIPPED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", FLIPPED)
 def test_verdicts_follow_the_runs(case):
     claim, results, expected = FLIPPED[case]
@@ -223,6 +224,7 @@ def test_a_solver_that_gives_up_leaves_gaps_and_no_more():
 # The dataset
 
 
+@pytest.mark.slow
 def test_checks_name_their_runs_and_parts_the_one_that_shows_them(claims):
     runs = set(claims["run"].values)
     assert set(claims["check_run"].values) <= runs
@@ -235,6 +237,7 @@ def test_checks_name_their_runs_and_parts_the_one_that_shows_them(claims):
         assert own.sum() == claims[f"part_{name}"].values.sum()
 
 
+@pytest.mark.slow
 def test_margins_are_of_the_numbers_beside_them(claims):
     own = claims["check_part"].values == "rigid_below"
     value, against, margin = (
@@ -262,6 +265,7 @@ def test_what_the_papers_run_is_off_by_is_split(claims):
     assert claims["bore_amplitude"].values.tolist() == [1, 3, 5]
 
 
+@pytest.mark.slow
 def test_conventions_and_provenance(claims, tmp_path):
     for name, variable in claims.variables.items():
         assert variable.attrs["long_name"], name

@@ -133,6 +133,7 @@ def test_patches_are_shares_of_a_period(scene):
     assert found["moment_phase"][2] - least == pytest.approx(math.pi)
 
 
+@pytest.mark.slow
 def test_patches_of_the_slow_bore_lie_where_theory_has_them():
     """At the moment of least stick: on one side, with |cos angle| above the share in use."""
     found = patches("bore", 1e-3, 1.0, cells=24, angles=24, steps=64)

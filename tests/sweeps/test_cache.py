@@ -218,6 +218,7 @@ def _write_many(folder, seed):
     return seed
 
 
+@pytest.mark.slow
 def test_two_writers_of_one_result_do_not_disturb_each_other(store):
     with multiprocessing.get_context("spawn").Pool(2) as pool:
         assert pool.starmap(_write_many, [(store.folder, 1), (store.folder, 2)]) == [1, 2]

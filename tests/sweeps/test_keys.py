@@ -75,6 +75,7 @@ def test_batches_are_named_by_their_keys_in_order():
     assert keys.batch_name(["a", "b"]) == keys.batch_name(["a", "b"])
 
 
+@pytest.mark.slow
 def test_the_workflow_reads_this_without_loading_anything_heavy():
     heavy = ("numpy", "scipy", "numba", "xarray", "matplotlib")
     program = (

@@ -96,6 +96,7 @@ def test_brackets_close_as_the_velocity_grows(velocity, amplitude, factor):
 # What the brackets must contain
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None, derandomize=True)
 @given(ratios, amplitudes)
 def test_rigid_contacts_lie_within(ratio, amplitude):

@@ -130,6 +130,7 @@ def test_mindlin_force_is_the_integral_of_its_traction(u):
     assert hertz.mindlin_force(u) == pytest.approx(force, rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("u", [0.05, 0.5, 0.95])
 def test_mindlin_traction_displaces_the_stick_zone_uniformly(u):
     def displacement(r):
@@ -169,6 +170,7 @@ def test_lubkin_traction_is_the_sum_of_rigid_rotation_punches(c):
         assert hertz.lubkin_traction(r, c) == pytest.approx(3 / np.pi**2 * punches, rel=1e-10)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("nu", [0.0, 0.4])
 @pytest.mark.parametrize("c", [0.3, 0.8])
 def test_lubkin_traction_rotates_the_stick_zone_rigidly(c, nu):

@@ -199,6 +199,7 @@ def test_large_amplitude_bore_is_the_mean_of_eq_21(velocity):
     assert theory.large_amplitude_bore(velocity) == pytest.approx(2 / np.pi * mean, rel=1e-10)
 
 
+@pytest.mark.slow
 def test_large_amplitude_bore_limits():
     assert theory.large_amplitude_bore(0.0) == 0.0
     v = np.geomspace(1e-6, 1e6, 500)
@@ -266,6 +267,7 @@ def test_static_translations_are_the_best_constant_traction_point_by_point(ampli
     assert theory.static_limit_transverse(amplitude) == pytest.approx(total[np.pi / 2], abs=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("amplitude", [0.3, 1.0, 2.0])
 def test_static_bore_limit_is_the_best_constant_traction_point_by_point(amplitude):
     c = theory.bore_stick_radius(amplitude)

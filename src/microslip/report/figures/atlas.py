@@ -45,7 +45,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     methods, blocks = _read(name, dataset)
     meanings = [f"{name}: {meaning}" for name, _, _, _, meaning in OUTCOMES.values()]
     plan = layout(methods, blocks, [*meanings, BLANK])
-    page = Page(Figure(figsize=(WIDTH * MM, plan.height * MM)), plan.height)
+    page = Page(look.new_figure(WIDTH * MM, plan.height * MM, layout=None), plan.height)
     top = MARGIN
     for band in plan.bands:
         start, x = top, plan.left

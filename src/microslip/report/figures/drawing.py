@@ -97,9 +97,10 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     module = importlib.import_module(f"microslip.report.figures.{_MODULES.get(name, 'groups')}")
     with style():
         figure = module.draw(name, *(datasets[key] for key in keys))
-        for _ in range(2):  # the layout settles, and is then fixed: every save gives the same
-            figure.draw_without_rendering()
-        figure.set_layout_engine("none")
+        if (layout := figure.get_layout_engine()) is not None:
+            for _ in range(2):  # it settles, and is then fixed: every save gives the same
+                layout.execute(figure)
+            figure.set_layout_engine("none")
         for finish in getattr(figure, "finishing", ()):
             finish()
     figure.made_from = made_from(datasets[key] for key in keys)
@@ -142,5 +143,21 @@ def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
     plain, key = FORMATS[kind]
     metadata = plain | {key: getattr(figure, "made_from", None)}
     with writing_beside(path, sealed=True) as beside, style():
-        figure.savefig(beside, format=kind, metadata=metadata)
+        _write(figure, kind, beside, metadata)
     return path
+
+
+def _write(figure: Figure, kind: str, path: Path, metadata: Mapping[str, str | None]) -> None:
+    """What `savefig` does, but that it lays out a second time what has its place."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.backends.backend_pdf import FigureCanvasPdf
+
+    canvas, dpi = figure.canvas, figure.dpi
+    try:
+        if kind == "png":
+            FigureCanvasAgg(figure).print_png(path, metadata=metadata)
+        else:
+            FigureCanvasPdf(figure).print_pdf(path, metadata=metadata)
+    finally:
+        figure.set_canvas(canvas)
+        figure.dpi = dpi

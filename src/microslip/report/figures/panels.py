@@ -82,7 +82,7 @@ def grid(titles: list[str], narrow: int, wide: int) -> tuple[Figure, list[Axes],
     beside = len(titles) % COLUMNS == 1 and rows > 1 and HEAD * (narrow + 1.5) < room
     legend = room if beside else HEAD * (wide + 1.5)
     height = sum(heads) + rows * PANEL[1] + FOOT + (0.0 if beside else legend)
-    figure = Figure(figsize=(look.DOUBLE, height))
+    figure = look.new_figure(look.DOUBLE, height, layout=None)
 
     def place(x: float, top: float, width: float, tall: float, **shared: Axes) -> Axes:
         low = 1.0 - (top + tall) / height

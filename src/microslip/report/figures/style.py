@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager
 
+import matplotlib
 import matplotlib.style
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
@@ -110,9 +113,15 @@ def style() -> AbstractContextManager[None]:
     return matplotlib.style.context(RC, after_reset=True)
 
 
-def new_figure(width: float, height: float) -> Figure:
-    """An empty figure of that size in inches which places its own panels without overlap."""
-    return Figure(figsize=(width, height), layout="constrained")
+def new_figure(width: float, height: float, layout: str | None = "constrained") -> Figure:
+    """An empty figure of that size in inches.
+
+    With its layout "constrained" it places its own panels without overlap. On a canvas of its own
+    a text is measured once, and not each time that someone asks how wide it is.
+    """
+    figure = Figure(figsize=(width, height), layout=layout)
+    FigureCanvasAgg(figure)
+    return figure
 
 
 def number(value: float) -> str:
@@ -188,15 +197,16 @@ def _broken(word: str, width: float, measure: Callable[[str], float]) -> list[st
 
 def measurer(size: float, weight: str = "normal") -> Callable[[str], float]:
     """A function that tells the width in inches of a text set in that size."""
-    figure = Figure()
+    dpi = matplotlib.rcParams["figure.dpi"]
+    return lambda text: _width(text, size, weight, dpi)
 
-    def measure(text: str) -> float:
-        probe = figure.text(0.0, 0.0, text, fontsize=size, fontweight=weight)
-        width = probe.get_window_extent().width / figure.dpi
-        probe.remove()
-        return width
 
-    return measure
+@functools.lru_cache(4096)
+def _width(text: str, size: float, weight: str, dpi: float) -> float:
+    """The width of a text in inches; a page asks for that of the same words many times."""
+    figure = new_figure(1.0, 1.0, layout=None)
+    probe = figure.text(0.0, 0.0, text, fontsize=size, fontweight=weight)
+    return probe.get_window_extent(dpi=dpi).width / dpi
 
 
 def power_of_ten(value: float) -> str:
