@@ -35,7 +35,7 @@ import tables
 
 import microslip
 from microslip.adaptive.choice import choose_model
-from microslip.motions.registry import scene_named
+from microslip.motions.registry import motion_named
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
@@ -69,7 +69,7 @@ LIMITS = [
     ("elliptic", "power:exponent=1"),
     ("elliptic:forward=0.5,phase=30", "punch"),
 ]
-"""Motions whose static limit takes a whole lap, as many."""
+"""Motions whose static limit takes a whole period, as many."""
 LIMIT_AMPLITUDES = (-1.3, 0.1)
 TURNED = [
     ("normal:angle=1", "hertz"),
@@ -129,7 +129,7 @@ def _sample_of(cases, points, seed, velocities=EXTENDED_VELOCITIES, amplitudes=E
 
 def reference(problem, tolerance, certified):
     """(mu, uncertainty) four times as fine as the ``certified`` Result."""
-    kind = problem.scene
+    kind = problem.motion
     model = choose_model(kind, problem.poisson)
     stroke = min(max(kind.stroke(problem.amplitude, problem.poisson), 1.0), 16.0) ** 0.5
     stroke *= kind.cycles
@@ -181,7 +181,7 @@ def examine(point):
     settings = {"poisson": poisson, "tolerance": tolerance}
     settings |= {"pressure": pressure[0]} if pressure else {}
     result = microslip.solve(scene, velocity, amplitude, **settings)
-    problem = Problem(scene_named(scene, *pressure), velocity, amplitude, poisson)
+    problem = Problem(motion_named(scene, *pressure), velocity, amplitude, poisson)
     mu, uncertainty = reference(problem, tolerance, result)
     error = abs(result.mu_macro - mu)
     return {

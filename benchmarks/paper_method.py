@@ -23,7 +23,7 @@ import tables
 import microslip
 from microslip.models.contact import forward_slip
 from microslip.models.squares.contact import CartesianContact
-from microslip.motions.registry import SCENES
+from microslip.motions.registry import MOTIONS
 from microslip.solver.methods.paper import (
     CELLS,
     STEPS,
@@ -35,7 +35,7 @@ from microslip.solver.methods.paper import (
 from microslip.solver.problem import Problem
 
 POINTS = [("transverse", 0.5), ("bore", 1.0)]
-"""Scene and amplitude."""
+"""Motion and amplitude."""
 VELOCITY = 0.005
 TOLERANCE = 1e-3
 """Of the certified point, absolute, on the friction."""
@@ -51,7 +51,7 @@ def timed(function):
 def compare(scene, amplitude, steps, repeats):
     """One row of the table: the two methods in turns, ``repeats`` times."""
     contact = CartesianContact(CELLS)
-    motion = Problem(SCENES[scene], VELOCITY, amplitude, 0.0)
+    motion = Problem(MOTIONS[scene], VELOCITY, amplitude, 0.0)
     path, start = path_of(motion, steps), forward_slip(contact)
 
     def paper():

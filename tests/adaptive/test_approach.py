@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.motions.registry import SCENES
+from microslip.motions.registry import MOTIONS
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
 from microslip.theory import paper
@@ -28,7 +28,7 @@ def ladder(scene, model, amplitude, velocities, resolution):
     """Mean forces at falling velocities, each search started from the state before it."""
     means, guess = [], None
     for velocity in velocities:
-        problem = Problem(SCENES[scene], velocity, amplitude, 0.0)
+        problem = Problem(MOTIONS[scene], velocity, amplitude, 0.0)
         run = simulate(problem, model, resolution, 1e-6, guess)
         assert run.converged, f"{velocity}: {run.reason}"
         means.append(run.mu)

@@ -12,7 +12,7 @@ from microslip.adaptive import point
 from microslip.models import interrupts
 from microslip.models.contact import forward_slip
 from microslip.models.registry import MODELS
-from microslip.motions.registry import scene_named
+from microslip.motions.registry import motion_named
 from microslip.solver.budget import Budget, Spent
 from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.simulate import Settings, simulate
@@ -60,17 +60,17 @@ def test_every_point_has_a_bound(monkeypatch, model):
 
 def test_every_march_counts():
     """Those of searches, and those of the static limit."""
-    problem, resolution = Problem(scene_named("transverse"), 0.01, 0.5, 0.0), Resolution(8, 1, 16)
+    problem, resolution = Problem(motion_named("transverse"), 0.01, 0.5, 0.0), Resolution(8, 1, 16)
     budget = Budget()
     run = simulate(problem, "radial", resolution, 1e-6, settings=Settings(budget=budget))
     assert budget.work >= run.work > 0 and budget.effort >= run.effort
-    loop = Problem(scene_named("elliptic"), 0.0, 0.5, 0.0)
+    loop = Problem(motion_named("elliptic"), 0.0, 0.5, 0.0)
     for spent_at in (0, 100):
         with pytest.raises(Spent):
             bounded = Settings(budget=Budget(spent_at))
             simulate_static(loop, "radial", resolution, 1e-3, bounded)
     with pytest.raises(Spent):
-        steady, bounded = Problem(scene_named("continuous-bore"), 0.5, None, 0.0), Budget(10)
+        steady, bounded = Problem(motion_named("continuous-bore"), 0.5, None, 0.0), Budget(10)
         simulate(steady, "polar", Resolution(4, 4, 1), 1e-3, settings=Settings(budget=bounded))
 
 
@@ -108,7 +108,7 @@ MARCHES = {
 def test_ctrl_c_ends_a_march_that_would_take_minutes(name):
     """One call of a compiled function; the test would hang for its whole length without that."""
     scene, model, resolution = MARCHES[name]
-    motion = Problem(scene_named(scene), 0.01, 0.5, 0.0)
+    motion = Problem(motion_named(scene), 0.01, 0.5, 0.0)
     contact = build_contact(motion, model, Resolution(4, 4, 2))
     contact.march(motion.path(contact, 2), forward_slip(contact), 1e-3)  # compiles
     contact = build_contact(motion, model, resolution)

@@ -12,10 +12,10 @@ from microslip.adaptive.choice import choose_model
 from microslip.adaptive.closed_forms import closed_form
 from microslip.adaptive.resolutions import plan
 from microslip.models.registry import MODELS
-from microslip.motions.bore import SCENE as BORE
-from microslip.motions.continuous_bore import SCENE as CONTINUOUS_BORE
-from microslip.motions.registry import SCENES
-from microslip.motions.transverse import SCENE as TRANSVERSE
+from microslip.motions.bore import MOTION as BORE
+from microslip.motions.continuous_bore import MOTION as CONTINUOUS_BORE
+from microslip.motions.registry import MOTIONS
+from microslip.motions.transverse import MOTION as TRANSVERSE
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
@@ -43,7 +43,7 @@ def test_cheapest_exact_model_is_chosen(scene, poisson, expected):
     assert MODELS[chosen].exact(scene) and not MODELS[chosen].refuses(scene, poisson)
 
 
-@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+@pytest.mark.parametrize("scene", MOTIONS.values(), ids=MOTIONS)
 @pytest.mark.parametrize("poisson", [0.0, 0.3])
 def test_models_asked_for_are_taken_or_refused(scene, poisson):
     if scene.rotates:
@@ -62,7 +62,7 @@ def test_models_asked_for_are_taken_or_refused(scene, poisson):
     "model", ["best", "", "AUTO", None, ["radial"], {}, ("auto",), 3, 0.5, b""]
 )
 def test_unknown_models_are_refused(model):
-    for scene in SCENES.values():
+    for scene in MOTIONS.values():
         with pytest.raises(ValueError, match="^model = .*auto.*radial"):
             choose_model(scene, 0.0, model)
 
@@ -87,7 +87,7 @@ def test_vanishing_velocity_needs_no_run(scene, amplitude, poisson):
     result = microslip.solve(scene, 0.0, amplitude, poisson=poisson)
     assert result.model == "closed-form" and result.cells == 0
     model = "polar" if scene == "bore" else "radial"
-    problem = Problem(SCENES[scene], 0.0, amplitude, poisson)
+    problem = Problem(MOTIONS[scene], 0.0, amplitude, poisson)
     coarse, fine = (
         simulate_static(problem, model, Resolution(cells, 24, 0), 1e-8).mu for cells in (24, 48)
     )
@@ -182,7 +182,7 @@ def test_a_model_asked_for_is_run_where_a_form_is_known():
 
 decades = st.floats(-6.0, 3.0).map(lambda x: 10**x)
 points = st.tuples(
-    st.sampled_from(list(SCENES.values())),
+    st.sampled_from(list(MOTIONS.values())),
     st.one_of(st.just(0.0), decades),
     decades,
     st.sampled_from([0.0, 0.3, 0.5]),

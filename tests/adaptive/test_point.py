@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from stubs.point_contract import CONTRACT
 
 import microslip
-from microslip.motions.registry import SCENES, scene_named
+from microslip.motions.registry import MOTIONS, motion_named
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
 from microslip.theory import paper
@@ -20,7 +20,7 @@ from microslip.theory import paper
 def reference(scene, velocity, amplitude, nu):
     """(friction, allowance): a finer resolution than solve's base, refined once more along each
     axis by itself, each periodic state ten times closer and searched for from scratch."""
-    kind = SCENES[scene]
+    kind = MOTIONS[scene]
     model = "polar" if kind.rotates or nu > 0 else "radial"
     cells, angles, steps = (24, 1, 128) if model == "radial" else (16, 8, 32)
 
@@ -86,7 +86,7 @@ def test_certificate_sees_rings_and_angles_together():
 
 @pytest.mark.parametrize(("velocity", "amplitude"), [(0.3, 0.8), (0.05, 2.0), (2.0, 4.0)])
 def test_tighter_tolerances_come_closer(velocity, amplitude):
-    problem = Problem(SCENES["transverse"], velocity, amplitude, 0.0)
+    problem = Problem(MOTIONS["transverse"], velocity, amplitude, 0.0)
     expected = simulate(problem, "radial", Resolution(48, 1, 384), 1e-6).mu
     for tolerance in (1e-2, 1e-3, 2e-4):
         result = microslip.solve("transverse", velocity, amplitude, tolerance=tolerance)
@@ -212,7 +212,7 @@ def test_friction_falls_with_amplitude(scene, velocity, nu):
     st.sampled_from([0.0, 0.3, 0.5]),
 )
 def test_friction_lies_between_none_and_full(scene, velocity, amplitude, nu):
-    amplitude = amplitude if SCENES[scene].periodic else None
+    amplitude = amplitude if MOTIONS[scene].periodic else None
     result = microslip.solve(scene, velocity, amplitude, poisson=nu, tolerance=5e-3)
     assert result.converged and result.reason == ""
     assert 0.0 <= result.mu_macro <= 1.0
@@ -278,7 +278,7 @@ def test_imposed_resolution_is_what_runs(scene, model, nu, cells, steps):
     )
     assert result.periodic and (result.cells, result.steps_per_period) == (cells, steps)
     if model != "polar":  # whose angles are still chosen, and corrected for
-        problem, share = Problem(SCENES[scene], 0.3, 1.2, nu), 1e-5
+        problem, share = Problem(MOTIONS[scene], 0.3, 1.2, nu), 1e-5
 
         def mean(c, s):
             return simulate(problem, model, Resolution(c, 1, s), share).mu
@@ -461,7 +461,7 @@ def test_periods_are_full_ones_whatever_a_lap_is(monkeypatch):
     monkeypatch.setattr(period_map.PeriodMap, "__call__", counted)
     for scene, lap in (("transverse", np.pi), ("elliptic:forward=0.5,phase=30", 2 * np.pi)):
         laps.clear()
-        problem = Problem(scene_named(scene), 0.3, 1.0, 0.0)
+        problem = Problem(motion_named(scene), 0.3, 1.0, 0.0)
         run = simulate(problem, "radial", Resolution(8, 1, 16), 1e-5)
         assert laps and np.allclose(laps, lap)
         assert run.periods == pytest.approx(sum(laps) / (2 * np.pi))
@@ -497,7 +497,7 @@ def test_an_extrapolated_run_scales_its_tolerance_once(monkeypatch):
 
     monkeypatch.setattr(module, "_run", noted)
     method = replace(SHIPPED, extrapolated=True)
-    problem = Problem(scene_named("normal"), 0.3, 0.9, 0.0)
+    problem = Problem(motion_named("normal"), 0.3, 0.9, 0.0)
     simulate(problem, "radial", Resolution(8, 1, 16), 1e-4, settings=module.Settings(method))
     assert [steps for steps, _ in seen] == [16, 8]
     assert [tolerance for _, tolerance in seen] == pytest.approx([1e-4, 1e-4])

@@ -11,7 +11,7 @@ from stubs.point_contract import CONTRACT
 
 import microslip
 from microslip.app import cli, sweep_command
-from microslip.motions.registry import FAMILIES, SCENES
+from microslip.motions.registry import FAMILIES, MOTIONS
 
 TRANSVERSE = ("point", "transverse", "--velocity", "0.5", "--amplitude", "0.5")
 SPIN = "spin: rotation about the contact normal"
@@ -147,7 +147,7 @@ def test_model_that_does_not_apply_says_to_which_scene():
             (),
             ["point", "friction", "vibrated", "dimensionless", "sweep", "predict", SPIN],
         ),
-        (("point",), [*SCENES, *FAMILIES, "mu F_z", "ratio", "mu_apparent", SPIN]),
+        (("point",), [*MOTIONS, *FAMILIES, "mu F_z", "ratio", "mu_apparent", SPIN]),
         (("sweep",), [*sweep_command.TARGETS, "--cores", "--report", SPIN]),
         (
             ("point", "transverse"),

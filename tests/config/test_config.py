@@ -223,7 +223,7 @@ def test_the_workflow_shows_the_same_schema():
 
 def test_models_are_refused_here_exactly_where_the_solver_refuses_them():
     from microslip.models.registry import MODELS
-    from microslip.motions.registry import scene_named
+    from microslip.motions.registry import motion_named
 
     assert schemas.schema()["$defs"]["model"]["enum"] == ["auto", *MODELS]
     for sweep, scene in config.SCENE_OF_SWEEP.items():
@@ -236,7 +236,7 @@ def test_models_are_refused_here_exactly_where_the_solver_refuses_them():
                 refused = False
             except ConfigError:
                 refused = True
-            assert refused == bool(MODELS[model].refuses(scene_named(scene), poisson))
+            assert refused == bool(MODELS[model].refuses(motion_named(scene), poisson))
 
 
 def test_settings_of_a_sweep_are_plain_json(tmp_path):

@@ -13,7 +13,7 @@ import microslip
 from microslip.config import extended, load
 from microslip.config import records as settings
 from microslip.datasets import sweep_dataset, theory_limits
-from microslip.motions.registry import SCENES, scene_named
+from microslip.motions.registry import MOTIONS, motion_named
 from microslip.pressures.registry import pressure_named
 from microslip.studies import registry
 from microslip.sweeps import batches as sweep
@@ -266,7 +266,7 @@ def test_a_dataset_says_what_it_is_of(monkeypatch, tmp_path):
     assert data.mu_macro.dims == ("amplitude", "velocity")
     said = {key: data.attrs[key] for key in ("scene", "pressure", "title", "group")}
     assert said == {"scene": "elliptic", "pressure": "hertz", "title": "a circle", "group": "loops"}
-    scene = scene_named("elliptic")
+    scene = motion_named("elliptic")
     assert data.velocity.formula == scene.velocity_label
     assert data.amplitude.long_name == f"amplitude, {scene.amplitude_label}"
     assert not [name for name in data if "static" in name]
@@ -286,7 +286,7 @@ def test_limits_stand_beside_the_points_of_motions_that_have_some(monkeypatch, t
 
 
 def test_limits_are_those_of_the_paper_under_its_pressure_alone():
-    assert FORMS.keys() <= SCENES.keys()
+    assert FORMS.keys() <= MOTIONS.keys()
     assert "(Eq 9)" in theory_limits.formulas("transverse", POWER)["mu_static_stick_zone"].long_name
     assert theory_limits.formulas("elliptic") == {}
     assert "mu_static" in theory_limits.formulas("bore")

@@ -182,7 +182,7 @@ def test_a_scratch_file_is_no_motion(tmp_path):
         (copy / folder / "bore copy.py").write_text("raise SystemExit('run')\n")
     program = (
         "from microslip.motions import registry; from microslip.solver import method_names\n"
-        "print(*registry.SCENES, *method_names.names())"
+        "print(*registry.MOTIONS, *method_names.names())"
     )
     done = python(program, tmp_path)
     assert done.returncode == 0, done.stderr

@@ -20,8 +20,8 @@ from microslip.models.reduced.slider import slider_contact
 from microslip.models.registry import MODELS
 from microslip.models.rings.contact import RadialContact
 from microslip.models.squares.contact import CartesianContact
-from microslip.motions.bore import SCENE as BORE
-from microslip.motions.transverse import SCENE as TRANSVERSE
+from microslip.motions.bore import MOTION as BORE
+from microslip.motions.transverse import MOTION as TRANSVERSE
 from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.problem import Problem, Resolution

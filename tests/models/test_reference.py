@@ -9,7 +9,7 @@ from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.polar.contact import PolarContact
 from microslip.models.rings.contact import RadialContact
 from microslip.models.squares.contact import CartesianContact
-from microslip.motions.registry import scene_named
+from microslip.motions.registry import motion_named
 from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
 
@@ -45,7 +45,7 @@ def plain_parts(contact, scene, poisson):
 @pytest.mark.parametrize("name", CONTACTS)
 def test_a_march_is_the_plain_one(name, integrator):
     build, motion, poisson = CONTACTS[name]
-    contact, scene, phases = build(), scene_named(motion), half_period_phases(6)
+    contact, scene, phases = build(), motion_named(motion), half_period_phases(6)
     start = 0.5 * forward_slip(contact)
     matrix, displacement = plain_parts(contact, scene, poisson)
     stages = len(integrator.times)
@@ -61,7 +61,7 @@ def test_a_march_is_the_plain_one(name, integrator):
 
 
 def test_the_periodic_state_is_the_one_that_the_plain_march_ends_in():
-    contact, scene = RadialContact.resolved(5, 0.7), scene_named("transverse")
+    contact, scene = RadialContact.resolved(5, 0.7), motion_named("transverse")
     matrix, displacement = plain_parts(contact, scene, 0.0)
     phases, start = half_period_phases(8), forward_slip(contact)
     expected = periodic(matrix, contact.bound, displacement, phases, start, contact.mirrored)

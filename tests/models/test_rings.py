@@ -9,7 +9,7 @@ from microslip.models.coulomb import coulomb_residual, project
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.reduced.slider import slider_contact
 from microslip.models.rings.contact import RadialContact
-from microslip.motions.transverse import SCENE as TRANSVERSE
+from microslip.motions.transverse import MOTION as TRANSVERSE
 
 # Friction of ``exponential_contact`` after six half periods from forward slip, from a solver in
 # complex numbers, Gauss-Seidel and dense Newton, that has no line in common with this one

@@ -12,8 +12,8 @@ from microslip.models.squares import march as square_march
 from microslip.models.squares.contact import CartesianContact
 from microslip.models.squares.convolution import convolve, influence, square_convolution, workspace
 from microslip.models.squares.march import solve_step
-from microslip.motions.bore import SCENE as BORE
-from microslip.motions.transverse import SCENE as TRANSVERSE
+from microslip.motions.bore import MOTION as BORE
+from microslip.motions.transverse import MOTION as TRANSVERSE
 
 NUS = [0.0, 0.4]
 
@@ -128,7 +128,7 @@ def test_step_is_that_of_a_plain_solver(cells, size, nu, rng):
 @pytest.mark.parametrize("nu", NUS)
 @pytest.mark.parametrize("size", [1e-3, 0.1, 1.0, 30.0])
 def test_steps_are_solved_down_to_rounding(size, nu, rng):
-    """... and to a residual that is the one of friction.coulomb_residual."""
+    """... and to a residual that is the one of coulomb.coulomb_residual."""
     contact = CartesianContact(16, nu)
     before = project(rng.normal(size=(2, 16, 16)) * contact.bound, contact.bound)
     forward, lateral, angle = size * rng.normal(size=3)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.motions.registry import scene_named
+from microslip.motions.registry import motion_named
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
@@ -50,7 +50,7 @@ def test_turning_the_phase_by_half_a_period_is_looking_in_a_mirror():
 
 
 def test_the_motion_is_its_own_mirror_image_half_a_period_later():
-    motion = Problem(scene_named("transverse-bore:phase=40"), 0.3, 0.7, 0.2)
+    motion = Problem(motion_named("transverse-bore:phase=40"), 0.3, 0.7, 0.2)
     phase = np.linspace(-3.0, 3.0, 41)
     now, later = motion.displacement(phase), motion.displacement(phase + np.pi)
     for one, other, sign, way in zip(now, later, (1, -1, -1), (0.3 * np.pi, 0, 0), strict=True):
@@ -60,7 +60,7 @@ def test_the_motion_is_its_own_mirror_image_half_a_period_later():
 @pytest.mark.slow
 def test_the_static_limit_is_approached_by_marches():
     """All on the same few squares and steps, whose errors are the same in limit and marches."""
-    scene, squares = scene_named("transverse-bore"), Resolution(16, 1, 48)
+    scene, squares = motion_named("transverse-bore"), Resolution(16, 1, 48)
     limit = simulate_static(Problem(scene, 0.0, 0.5, 0.0), "cartesian", squares, 1e-5)
     runs = [simulate(Problem(scene, v, 0.5, 0.0), "cartesian", squares, 1e-5) for v in (4e-3, 5e-4)]
     above = [run.mu for run in runs]

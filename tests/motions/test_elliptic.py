@@ -7,7 +7,7 @@ import pytest
 
 import microslip
 from microslip.app import cli
-from microslip.motions.registry import scene_named
+from microslip.motions.registry import motion_named
 from microslip.theory.masing import longitudinal
 
 CIRCLE = "elliptic"
@@ -73,8 +73,8 @@ def test_a_path_and_its_mirror_image_have_the_same_friction():
 
 
 def test_names_are_canonical():
-    assert scene_named("elliptic:phase=90,forward=1").name == "elliptic"
-    assert scene_named("elliptic:phase=30.0,forward=0.50").name == "elliptic:forward=0.5,phase=30"
+    assert motion_named("elliptic:phase=90,forward=1").name == "elliptic"
+    assert motion_named("elliptic:phase=30.0,forward=0.50").name == "elliptic:forward=0.5,phase=30"
     assert microslip.solve("elliptic:phase=30.0", 0.5, 0.5).scene == "elliptic:phase=30"
 
 

@@ -13,7 +13,7 @@ from microslip.models.path import EULER, make_path
 from microslip.models.reduced.mdr import mdr_contact
 from microslip.models.registry import MODELS
 from microslip.models.rings.contact import RadialContact
-from microslip.motions.registry import scene_named
+from microslip.motions.registry import motion_named
 from microslip.pressures.registry import HERTZ
 from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.simulate import simulate
@@ -45,7 +45,7 @@ def marched_springs(scene, velocity, amplitude, count, periods=8):
 
     What a spring at x can hold is the overlap with the flat, d - x^2; mean force over mean load.
     """
-    scene = scene_named(scene)
+    scene = motion_named(scene)
     widest = np.sqrt(scene.deepest(amplitude, HERTZ))
     edges = widest * np.sqrt(np.linspace(0.0, 1.0, count + 1))
     x, width = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
@@ -62,14 +62,14 @@ def marched_springs(scene, velocity, amplitude, count, periods=8):
 
 
 def run(scene, velocity, amplitude, model="radial", cells=32, steps=128):
-    problem = Problem(scene_named(scene), velocity, amplitude, 0.0)
+    problem = Problem(motion_named(scene), velocity, amplitude, 0.0)
     return simulate(problem, model, Resolution(cells, 1, steps), 1e-7)
 
 
 @pytest.mark.parametrize("place", ALONE, ids=str)
 def test_the_closed_form_is_that_of_springs_marched_one_by_one(place):
     scene, velocity, amplitude = place
-    exact = scene_named(scene).whole(velocity, amplitude, HERTZ)
+    exact = motion_named(scene).closed_form_of(velocity, amplitude, HERTZ)
     coarse, fine = (marched_springs(*place, count, periods=2) for count in (100, 200))
     assert abs(fine - exact) < 1e-3
     assert 2.0 * fine - coarse == pytest.approx(exact, abs=1e-4)  # they err in first order
@@ -81,7 +81,9 @@ def test_springs_and_rings_agree_with_the_closed_form(place, model):
     scene, velocity, amplitude = place
     answer = microslip.solve(*place, model=model)
     assert answer.converged
-    assert abs(answer.mu_macro - scene_named(scene).whole(velocity, amplitude, HERTZ)) < 1e-3
+    assert (
+        abs(answer.mu_macro - motion_named(scene).closed_form_of(velocity, amplitude, HERTZ)) < 1e-3
+    )
 
 
 @pytest.mark.slow
@@ -138,9 +140,9 @@ def test_the_parts_of_a_contact_carry_its_load(carried):
 def test_a_contact_that_grows_keeps_load_and_stiffness(contact):
     """At the reference depth it is as it was; at another the load is Hertz's, and so is the
     stiffness of all rings together, 2 G* times the radius."""
-    same = contact.pressed(1.0, 1.0)
+    same = contact.at_indentation(1.0, 1.0)
     assert same.bound == pytest.approx(contact.bound, rel=1e-9)
-    wide = contact.pressed(1.69, 0.5)
+    wide = contact.at_indentation(1.69, 0.5)
     depths = np.linspace(0.0, 1.69, 30)
     assert wide.bounds(depths) @ wide.weight == pytest.approx(HERTZ.total(depths), abs=1e-12)
     assert wide.bound @ wide.weight == pytest.approx(0.5**1.5)
@@ -150,7 +152,7 @@ def test_a_contact_that_grows_keeps_load_and_stiffness(contact):
 
 def test_contact_that_is_lost_forgets():
     """After a moment without contact it does not matter how a march began."""
-    scene = scene_named("normal:lateral=0.7,phase=40")
+    scene = motion_named("normal:lateral=0.7,phase=40")
     motion = Problem(scene, 0.2, 1.3, 0.0)
     contact = build_contact(motion, "radial", Resolution(16, 1, 32))
     path = make_path(motion.displacement, np.linspace(0.0, 2 * np.pi, 129), depth=motion.depth)
@@ -167,7 +169,7 @@ def test_contact_that_is_lost_forgets():
 @pytest.mark.parametrize("velocity", [0.001, 0.5])
 @pytest.mark.parametrize("scene", ["normal:lateral=1", "normal:indentation=1,forward=0.6,phase=45"])
 def test_every_stage_keeps_within_the_bound_of_its_time(scene, velocity):
-    motion = Problem(scene_named(scene), velocity, 0.9, 0.0)
+    motion = Problem(motion_named(scene), velocity, 0.9, 0.0)
     contact = build_contact(motion, "radial", Resolution(12, 1, 24))
     path = motion.path(contact, 24)
     march = contact.march(path, np.zeros((2, 1, 12)), 1e-9)
@@ -180,7 +182,7 @@ def test_every_stage_keeps_within_the_bound_of_its_time(scene, velocity):
     "scene", ["normal", "normal:indentation=1,lateral=1", "normal:forward=0.5"]
 )
 def test_sensitivity_is_that_of_finite_differences(scene):
-    motion = Problem(scene_named(scene), 0.05, 0.5, 0.0)
+    motion = Problem(motion_named(scene), 0.05, 0.5, 0.0)
     contact = build_contact(motion, "radial", Resolution(9, 1, 12))
     path = motion.path(contact, 12)
     state = np.stack([0.6 * contact.bound, 0.1 * contact.bound])[:, None]
@@ -198,7 +200,7 @@ def test_sensitivity_is_that_of_finite_differences(scene):
 def test_work_is_dissipated(place):
     """The motion's work is what is stored, what friction takes and what Euler steps lose."""
     scene, velocity, amplitude = place
-    motion = Problem(scene_named(scene), velocity, amplitude, 0.0)
+    motion = Problem(motion_named(scene), velocity, amplitude, 0.0)
     resolution = Resolution(16, 1, 256)
     contact, found = build_contact(motion, "radial", resolution), run(*place, "radial", 16, 256)
     phase = motion.path(contact, 256).phase
@@ -223,7 +225,7 @@ def test_work_is_dissipated(place):
 def test_slow_sliding_tends_to_the_least_load():
     """The whole contact waits for the moment at which it is pressed the least."""
     for scene, power in (("normal", 1.0), ("normal:indentation=1", 1.5)):
-        mean = scene_named(scene).mean_load(0.6, HERTZ)
+        mean = motion_named(scene).mean_load(0.6, HERTZ)
         exact = 0.4**power / mean
         assert microslip.solve(scene, 0.0, 0.6).mu_macro == pytest.approx(exact, abs=1e-12)
         rings = microslip.solve(scene, 0.0, 0.6, model="radial")
@@ -253,8 +255,8 @@ def test_without_vibration_friction_is_that_of_coulomb():
 
 def test_a_small_change_of_the_load_is_one_of_the_indentation():
     """Load goes like the power 3/2 of the indentation, so that small shares differ by that."""
-    load = 1.0 - scene_named("normal").whole(1e-3, 0.015, HERTZ)
-    indentation = 1.0 - scene_named("normal:indentation=1").whole(1e-3, 0.01, HERTZ)
+    load = 1.0 - motion_named("normal").closed_form_of(1e-3, 0.015, HERTZ)
+    indentation = 1.0 - motion_named("normal:indentation=1").closed_form_of(1e-3, 0.01, HERTZ)
     assert load == pytest.approx(indentation, rel=0.01)
 
 
@@ -271,9 +273,9 @@ def test_a_small_normal_part_leaves_the_motion_in_the_plane():
 
 def test_half_a_period_suffices_where_it_is_mirrored():
     """Twice as fast a load over a lateral oscillation; with phases a whole period later, too."""
-    scene = scene_named("normal:lateral=1,normal_cycles=2")
+    scene = motion_named("normal:lateral=1,normal_cycles=2")
     assert scene.half_period_mirror
-    assert not scene_named("normal:lateral=1").half_period_mirror
+    assert not motion_named("normal:lateral=1").half_period_mirror
     motion = Problem(scene, 0.1, 0.8, 0.0)
     contact = build_contact(motion, "radial", Resolution(16, 1, 64))
     phase = np.linspace(-0.25, 1.75, 513) * np.pi
@@ -288,7 +290,7 @@ def test_half_a_period_suffices_where_it_is_mirrored():
 
 def test_friction_rises_with_velocity_and_falls_with_amplitude():
     for scene in ("normal", "normal:indentation=1"):
-        whole = scene_named(scene).whole
+        whole = motion_named(scene).closed_form_of
         table = np.array(
             [[whole(v, a, HERTZ) for v in (1e-3, 0.03, 0.1, 0.4)] for a in (0.2, 0.7, 1.3)]
         )
@@ -334,7 +336,8 @@ def test_methods_that_know_one_load_are_refused(method):
 def test_a_method_with_another_integrator_finds_the_same():
     answer = microslip.solve("normal", 0.1, 0.5, model="radial", method="euler", tolerance=1e-2)
     assert (
-        abs(answer.mu_macro - scene_named("normal").whole(0.1, 0.5, HERTZ)) <= answer.mu_macro_error
+        abs(answer.mu_macro - motion_named("normal").closed_form_of(0.1, 0.5, HERTZ))
+        <= answer.mu_macro_error
     )
 
 

@@ -5,7 +5,7 @@ import pytest
 
 import microslip
 from microslip.models.path import make_path
-from microslip.motions.registry import scene_named
+from microslip.motions.registry import motion_named
 from microslip.pressures.registry import HERTZ
 from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.simulate import simulate
@@ -16,7 +16,7 @@ TURNING = "normal:angle=1"
 
 
 def run(scene, velocity, amplitude, model="polar", poisson=0.0, resolution=(24, 8, 96)):
-    problem = Problem(scene_named(scene), velocity, amplitude, poisson)
+    problem = Problem(motion_named(scene), velocity, amplitude, poisson)
     return simulate(problem, model, Resolution(*resolution), 1e-6)
 
 
@@ -80,9 +80,9 @@ def test_which_way_it_turns_does_not_matter():
 
 @pytest.mark.slow
 def test_half_a_period_suffices_where_it_is_mirrored():
-    scene = scene_named("normal:angle=1,normal_cycles=2")
+    scene = motion_named("normal:angle=1,normal_cycles=2")
     assert scene.half_period_mirror and scene.half_disc
-    assert not scene_named(TURNING).half_period_mirror
+    assert not motion_named(TURNING).half_period_mirror
     motion = Problem(scene, 0.1, 0.8, 0.2)
     contact = build_contact(motion, "polar", Resolution(12, 8, 64))
     path = make_path(motion.displacement, np.linspace(-0.25, 1.75, 257) * np.pi, depth=motion.depth)
@@ -111,7 +111,7 @@ def test_a_turning_contact_that_lifts_off_has_no_static_friction():
 @pytest.mark.slow
 def test_slow_marches_end_in_the_limit():
     """Limit and marches are those of the same contact and steps, so that few of them tell."""
-    still = Problem(scene_named(TURNING), 0.0, 0.5, 0.0)
+    still = Problem(motion_named(TURNING), 0.0, 0.5, 0.0)
     limit = simulate_static(still, "polar", Resolution(16, 4, 64), 1e-5)
     above = [run(TURNING, v, 0.5, resolution=(16, 4, 64)).mu - limit.mu for v in (2e-2, 2.5e-3)]
     assert limit.converged and 0.0 < above[1] < 0.36 * above[0]

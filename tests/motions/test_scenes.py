@@ -9,14 +9,14 @@ import microslip
 from microslip import motions
 from microslip.app.cli import main
 from microslip.motions import registry
-from microslip.motions.registry import SCENES
-from microslip.motions.transverse import SCENE as TRANSVERSE
-from microslip.motions.zigzag import SCENE as ZIGZAG
+from microslip.motions.registry import MOTIONS
+from microslip.motions.transverse import MOTION as TRANSVERSE
+from microslip.motions.zigzag import MOTION as ZIGZAG
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.static_run import simulate_static
 from microslip.theory import paper
 
-PERIODIC = [scene for scene in SCENES.values() if scene.periodic]
+PERIODIC = [scene for scene in MOTIONS.values() if scene.periodic]
 MIRRORED = [scene for scene in PERIODIC if scene.half_period_mirror]
 PHASE = np.linspace(-3.0, 3.0, 101)
 
@@ -100,8 +100,8 @@ def displacement(phase, velocity, amplitude, poisson):
     return velocity * phase, amplitude * np.sin(phase) ** 3, np.zeros_like(phase)
 
 
-SCENE = replace(
-    transverse.SCENE,
+MOTION = replace(
+    transverse.MOTION,
     name="sine-cubed",
     summary="sliding forward while oscillating sideways, slowly in the middle",
     displacement=displacement,
@@ -112,12 +112,12 @@ SCENE = replace(
 @pytest.fixture
 def cube(tmp_path):
     """A motion in one file of one's own; what it changes in the registry is undone."""
-    known, path = dict(registry.SCENES), list(motions.__path__)
+    known, path = dict(registry.MOTIONS), list(motions.__path__)
     (tmp_path / "sine_cubed.py").write_text(CUBE)
     registry.find(tmp_path)
     yield "sine-cubed"
-    registry.SCENES.clear()
-    registry.SCENES.update(known)
+    registry.MOTIONS.clear()
+    registry.MOTIONS.update(known)
     motions.__path__[:] = path
 
 

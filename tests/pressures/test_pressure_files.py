@@ -12,7 +12,7 @@ import microslip
 from microslip.app.cli import main
 from microslip.foundation import named_files
 from microslip.foundation.errors import InputError
-from microslip.motions.registry import scene_named
+from microslip.motions.registry import motion_named
 from microslip.pressures.measured import of_grid
 from microslip.pressures.registry import HERTZ, pressure_named
 
@@ -232,7 +232,7 @@ def test_units_and_formats_do_not_matter(tmp_path):
 def test_a_pressure_that_is_not_symmetric_is_marched_over_the_whole_period(tmp_path):
     values = HERTZIAN * (1.0 + 0.5 * AXIS)
     name = csv(tmp_path / "p.csv", values=values)
-    scene = scene_named("bore", name)
+    scene = motion_named("bore", name)
     assert not scene.half_period_mirror
     assert scene.turns(0.1, 1.0) == pytest.approx((-np.pi / 2, np.pi / 2, 1.5 * np.pi))
     found = microslip.solve("bore", 0.3, 1.0, pressure=name, tolerance=4e-2)

@@ -11,7 +11,7 @@ from microslip.models.contact import forward_slip
 from microslip.models.path import EULER, make_path
 from microslip.models.registry import MODELS
 from microslip.models.rings.mesh import make_rings
-from microslip.motions.registry import scene_named
+from microslip.motions.registry import motion_named
 from microslip.pressures import registry
 from microslip.pressures.registry import FAMILIES, HERTZ, pressure_named
 from microslip.theory import hertz, indenters, paper
@@ -24,7 +24,7 @@ PLANAR = ["ellipse", "ellipse:ratio=0.3,across=1"]
 
 def pushed(name, model, cells, displacement, steps=40):
     """Forward force after each share of a displacement from rest."""
-    contact = MODELS[model].build(scene_named("longitudinal", name), 0.0, cells, 8, None)
+    contact = MODELS[model].build(motion_named("longitudinal", name), 0.0, cells, 8, None)
     way = np.linspace(0.0, displacement, steps + 1)
     path = make_path(lambda t: (t, 0.0 * t, 0.0 * t), way, EULER)
     start = np.zeros_like(forward_slip(contact))

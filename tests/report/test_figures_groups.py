@@ -12,7 +12,7 @@ from matplotlib.legend import Legend
 from matplotlib.text import Text
 from test_figures import artists, check_nothing_cut_off, fake_map
 
-from microslip.motions.registry import FAMILIES, SCENES, scene_named
+from microslip.motions.registry import FAMILIES, MOTIONS, motion_named
 from microslip.report.figures import drawing, lines, small_maps
 from microslip.report.figures.formulas import mathtext
 from microslip.theory import paper
@@ -302,11 +302,11 @@ def test_formulas_become_math(formula, expected):
     assert mathtext(formula) == expected
 
 
-@pytest.mark.parametrize("name", [*SCENES, *FAMILIES])
+@pytest.mark.parametrize("name", [*MOTIONS, *FAMILIES])
 def test_labels_of_every_scene_can_be_set(name):
     from matplotlib.mathtext import MathTextParser
 
-    scene = scene_named(name)
+    scene = motion_named(name)
     for label in (scene.velocity_label, scene.amplitude_label):
         MathTextParser("path").parse(mathtext(label))
 

@@ -38,7 +38,7 @@ METHODS = (
     "equal-means",
 )
 LEVELS = 6
-SCENES = (
+MOTIONS = (
     ("transverse", 0.1, 1.0, 0.0, "middle of the transverse map"),
     ("transverse", 0.001, 0.5, 0.0, "almost static"),
     ("transverse", 0.1, 1.0, 0.3, "as before, with coupled directions"),
@@ -70,7 +70,7 @@ def fake_trials(points: int = 11, methods: tuple[str, ...] = METHODS) -> dict:
             (f"p{point}", model, method, level, error, seconds, effort, converged, tolerance)
         )
 
-    for point, (scene, _, _, poisson, _) in enumerate(SCENES[:points]):
+    for point, (scene, _, _, poisson, _) in enumerate(MOTIONS[:points]):
         for model in MODELS:
             if not applies(model, scene, poisson):
                 continue
@@ -113,7 +113,7 @@ def fake_accuracy(points: int = 11, methods: tuple[str, ...] = METHODS) -> xr.Da
     """All of `accuracy_cost.nc`, with points, trials, scaling and maps of realistic size."""
     table = fake_trials(points, methods)
     known = [2e-6, 1e-5, 3e-5, 2e-6, 3e-5, 1e-4, 1e-4, 1e-6, 0.0, 1e-5, 1e-5]
-    scenes, velocity, amplitude, poisson, titles = zip(*SCENES[:points], strict=True)
+    scenes, velocity, amplitude, poisson, titles = zip(*MOTIONS[:points], strict=True)
     trials = {f"trial_{n}": ("trial", table[n]) for n in ("point", "model", "method", "level")}
     trials["trial_tolerance"] = ("trial", table["tolerance"])
     trials |= {n: ("trial", table[n]) for n in ("error", "seconds", "effort", "converged")}
@@ -569,7 +569,7 @@ def test_a_profile_shows_the_share_of_points_within_a_ratio_of_the_best(datasets
 
 def test_every_panel_is_headed_by_its_point(datasets, figures):
     for axes, (_, velocity, amplitude, poisson, title) in zip(
-        figures["accuracy_vs_cost"].axes, SCENES, strict=False
+        figures["accuracy_vs_cost"].axes, MOTIONS, strict=False
     ):
         head = axes.get_title(loc="left")
         assert title in head.replace("\n", " ")

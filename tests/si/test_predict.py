@@ -12,7 +12,7 @@ import pytest
 import microslip
 from microslip.app import cli
 from microslip.si.materials import Material
-from microslip.si.motions import SCENES
+from microslip.si.motions import MOTIONS
 
 BALL = {"radius": "5 mm", "load": "10 N", "mu": 0.3, "speed": "1 mm/s"}
 EXAMPLE = BALL | {"young": "210 GPa", "nu": 0.3, "amplitude": "1 um", "frequency": "20 kHz"}
@@ -154,7 +154,7 @@ def test_the_command_line_answers_in_words(capsys):
         assert "54.57 um" in found
         assert "warning: " in found
         for text in (
-            f"{scene}: the sphere {SCENES[scene]}",
+            f"{scene}: the sphere {MOTIONS[scene]}",
             "rigid, as none was given",
             *said_first,
         ):
@@ -199,7 +199,7 @@ def test_the_help_of_predict_lists_the_scenes_and_explains_the_terms(capsys):
     with pytest.raises(SystemExit):
         cli.main(["predict", "--help"])
     said = " ".join(capsys.readouterr().out.split())
-    for name, what in SCENES.items():
+    for name, what in MOTIONS.items():
         assert f"{name}: it {what}" in said
     for term in (
         "rotation about the contact normal",

@@ -16,8 +16,8 @@ from microslip.foundation import canonical
 from microslip.models.path import EULER, make_path
 from microslip.models.registry import MODELS
 from microslip.models.squares.contact import CartesianContact
-from microslip.motions.registry import SCENES
-from microslip.motions.transverse import SCENE as TRANSVERSE
+from microslip.motions.registry import MOTIONS
+from microslip.motions.transverse import MOTION as TRANSVERSE
 from microslip.solver import method_names
 from microslip.solver.methods import aspher
 from microslip.solver.problem import Problem, Resolution
@@ -95,7 +95,7 @@ def test_squares_are_asked_with_the_package(within):
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.5])
-@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("scene", MOTIONS)
 def test_it_applies_where_it_is_asked(scene, poisson, within):
     known = [m for m in MODELS if not trial.applies(scene, poisson, m, "aspher")]
     assert ladders.models_for("aspher", scene, poisson) == known

@@ -9,8 +9,8 @@ from microslip.models.contact import energy_norm, forward_slip
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.registry import MODELS
 from microslip.models.rings.contact import RadialContact
-from microslip.motions.bore import SCENE as BORE
-from microslip.motions.transverse import SCENE as TRANSVERSE
+from microslip.motions.bore import MOTION as BORE
+from microslip.motions.transverse import MOTION as TRANSVERSE
 from microslip.solver.newton import Corrector
 from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state

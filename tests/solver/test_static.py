@@ -5,8 +5,8 @@ import pytest
 
 import microslip
 from microslip.models.registry import MODELS
-from microslip.motions.bore import SCENE as BORE
-from microslip.motions.transverse import SCENE as TRANSVERSE
+from microslip.motions.bore import MOTION as BORE
+from microslip.motions.transverse import MOTION as TRANSVERSE
 from microslip.solver.static_limit import oscillating_part, residual_part, static_state
 from microslip.theory import hertz, paper
 

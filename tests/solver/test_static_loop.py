@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 import microslip
-from microslip.motions.registry import scene_named
+from microslip.motions.registry import motion_named
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
 from microslip.solver.static_loop import largest_shift
@@ -55,10 +55,10 @@ def test_a_loop_of_no_width_has_the_limit_of_its_line(amplitude):
     within(along, float(paper.static_limit_longitudinal(amplitude)), 2e-4)
 
 
-def test_on_a_line_the_whole_lap_says_what_the_turning_points_say():
-    scene, resolution = scene_named("transverse"), Resolution(16, 1, 64)
+def test_on_a_line_the_whole_period_says_what_the_turning_points_say():
+    scene, resolution = motion_named("transverse"), Resolution(16, 1, 64)
     line = simulate_static(Problem(scene, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
-    loop = scene_named("elliptic:forward=0,phase=0,forward_cycles=2")  # not called a line
+    loop = motion_named("elliptic:forward=0,phase=0,forward_cycles=2")  # not called a line
     assert not loop.straight
     found = simulate_static(Problem(loop, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
     assert found == pytest.approx(line, abs=2e-3)
@@ -107,7 +107,7 @@ def test_other_models_find_the_same_limit():
     within(modes, rings.mu_macro, rings.mu_macro_error)
     # squares, too, and an elliptic contact, whose stick zones are ellipses of its own shape
     for pressure in ("hertz", "ellipse:ratio=0.7"):
-        problem = Problem(scene_named("elliptic", pressure), 0.0, 0.5, 0.0)
+        problem = Problem(motion_named("elliptic", pressure), 0.0, 0.5, 0.0)
         squares = simulate_static(problem, "cartesian", Resolution(24, 1, 24), 1e-3)
         assert squares.converged
         assert squares.mu == pytest.approx(rings.mu_macro, abs=8e-3)
@@ -117,7 +117,7 @@ def test_other_models_find_the_same_limit():
 @pytest.mark.parametrize("scene", [NARROW, EIGHT, "elliptic", ACROSS, "normal:forward=1,phase=90"])
 def test_slow_marches_end_there(scene):
     """Limit and marches are those of the same rings and steps, so that few of them tell."""
-    kind, resolution = scene_named(scene), Resolution(32, 1, 128)
+    kind, resolution = motion_named(scene), Resolution(32, 1, 128)
     limit = simulate_static(Problem(kind, 0.0, 0.5, 0.0), "radial", resolution, 1e-5)
     slow = [simulate(Problem(kind, v, 0.5, 0.0), "radial", resolution, 1e-5) for v in (8e-3, 1e-3)]
     assert limit.converged and slow[0].converged and slow[1].converged

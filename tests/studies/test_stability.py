@@ -8,8 +8,8 @@ from microslip.models.contact import FORWARD, StepFailure, energy_norm, forward_
 from microslip.models.path import SDIRK2, make_path
 from microslip.models.reduced.slider import slider_contact
 from microslip.models.rings.contact import RadialContact
-from microslip.motions.bore import SCENE as BORE
-from microslip.motions.transverse import SCENE as TRANSVERSE
+from microslip.motions.bore import MOTION as BORE
+from microslip.motions.transverse import MOTION as TRANSVERSE
 from microslip.solver.method_names import method_named
 from microslip.solver.methods import _searches
 from microslip.solver.period_map import Goal, PeriodMap

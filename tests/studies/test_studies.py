@@ -17,7 +17,7 @@ from microslip.adaptive import single_run
 from microslip.adaptive.choice import choose_model
 from microslip.config import load, schema
 from microslip.models.registry import MODELS
-from microslip.motions.registry import SCENES
+from microslip.motions.registry import MOTIONS
 from microslip.solver.methods import paper
 from microslip.studies import ladders, registry
 from microslip.studies import requests as study_requests
@@ -30,11 +30,11 @@ from microslip.sweeps.cache import Store
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.3])
-@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("scene", MOTIONS)
 def test_models_apply_here_exactly_where_the_solver_lets_them(scene, poisson):
     known = {m for m in MODELS if not single_run.applies(scene, poisson, m, "shipped")}
     assert set(ladders.models_of(scene, poisson)) == known
-    assert ladders.exact_model(scene, poisson) == choose_model(SCENES[scene], poisson)
+    assert ladders.exact_model(scene, poisson) == choose_model(MOTIONS[scene], poisson)
 
 
 def test_every_model_has_a_ladder_and_fixed_methods_run_where_they_say():
@@ -179,7 +179,7 @@ def test_blocks_have_names_that_the_configuration_knows():
 def test_cases_can_be_asked():
     for axis, value, overrides in stability.cases(configured(stability={"axes": None}).stability):
         request = stability.probe(configured().stability, "shipped", axis, value, overrides)
-        assert SCENES[request["scene"]].periodic
+        assert MOTIONS[request["scene"]].periodic
         assert request["amplitude"] is not None
         for name in ("cells", "steps"):
             assert request[name] is None or request[name] % 2 == 0

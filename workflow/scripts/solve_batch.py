@@ -3,7 +3,7 @@
 Output: the records of the batch, in the order of the requests, one a line as JSON with a checksum.
 All numbers in them are dimensionless, but for the times (s) and sizes of memory (byte) of trials
 and scaling. Each is kept in the store as well, as soon as it is computed, under the folders that
-sweep.FOLDERS names.
+batches.FOLDERS names.
 """
 
 import json

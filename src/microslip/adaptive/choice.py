@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from microslip.foundation.errors import InputError
 from microslip.models.registry import MODELS
-from microslip.motions.motion import Scene
+from microslip.motions.motion import Motion
 from microslip.pressures.registry import HERTZ
 from microslip.solver.method import SHIPPED, Method
 
@@ -12,7 +12,7 @@ STEPLESS = ("rigid", "dahl")
 """Models whose march is an evaluation: no step of theirs is solved."""
 
 
-def choose_model(scene: Scene, poisson: float, model: str = "auto") -> str:
+def choose_model(motion: Motion, poisson: float, model: str = "auto") -> str:
     """The model to use: the cheapest that is exact for the motion, or the one asked for.
 
     Rings where the traction depends on the radius alone (translation at nu = 0), angular modes
@@ -22,7 +22,7 @@ def choose_model(scene: Scene, poisson: float, model: str = "auto") -> str:
 
     Parameters
     ----------
-    scene : motion.Scene
+    motion : motion.Motion
         What moves.
     poisson : float
         Poisson's ratio.
@@ -35,46 +35,46 @@ def choose_model(scene: Scene, poisson: float, model: str = "auto") -> str:
         For an unknown model or one that does not apply.
     """
     if model == "auto":
-        if not (scene.pressure.is_round and scene.half_disc):
+        if not (motion.pressure.is_round and motion.half_disc):
             name = "cartesian"
         else:
-            name = "polar" if scene.rotates or poisson > 0.0 else "radial"
-        refusal = MODELS[name].refuses(scene, poisson)
+            name = "polar" if motion.rotates or poisson > 0.0 else "radial"
+        refusal = MODELS[name].refuses(motion, poisson)
         if refusal:
             why = f"only {name} could resolve it, and {refusal}"
-            if scene.pressure is HERTZ and poisson == 0.0:
-                raise InputError("scene", scene.name, why)
+            if motion.pressure is HERTZ and poisson == 0.0:
+                raise InputError("scene", motion.name, why)
             given = ("poisson", poisson)
-            if scene.pressure is not HERTZ:
-                given = ("pressure", scene.pressure.name)
-            raise InputError(*given, f"does not go with {scene.name}: {why}")
+            if motion.pressure is not HERTZ:
+                given = ("pressure", motion.pressure.name)
+            raise InputError(*given, f"does not go with {motion.name}: {why}")
         return name
     if not isinstance(model, str) or model not in MODELS:
         raise InputError("model", model, f"allowed is one of auto, {', '.join(MODELS)}")
-    refusal = MODELS[model].refuses(scene, poisson)
+    refusal = MODELS[model].refuses(motion, poisson)
     if refusal:
-        raise InputError("model", model, f"does not apply to {scene.name}: {refusal}")
+        raise InputError("model", model, f"does not apply to {motion.name}: {refusal}")
     return model
 
 
-def method_refusal(scene: Scene, model: str, method: Method) -> str:
-    """Why a method has no part in how a model (by name) computes a scene, as one line; "" if it
+def method_refusal(motion: Motion, model: str, method: Method) -> str:
+    """Why a method has no part in how a model (by name) computes a motion, as one line; "" if it
     has."""
     if method.run is not None:
         if model != method.model:
             return f"it is a run of the model {method.model}"
-        if not scene.periodic:
+        if not motion.periodic:
             return "nothing oscillates"
-        if scene.depth is not None:
+        if motion.depth is not None:
             return "it knows a constant normal load alone"
-        return "it knows translations alone" if scene.rotates and not method.turns else ""
+        return "it knows translations alone" if motion.rotates and not method.turns else ""
     if method == SHIPPED:
         return ""
-    if scene.depth is not None and (method.dress is not None or method.integrator.end < 1.0):
+    if motion.depth is not None and (method.dress is not None or method.integrator.end < 1.0):
         return "its steps know one friction bound"
     if model in STEPLESS:
         return "no step of the model has to be solved"
-    if not scene.periodic and method.dress is None:
+    if not motion.periodic and method.dress is None:
         return "nothing oscillates"
     if model == "cartesian" and method.dress is not None:
         return "the matrix of all squares would be too large"

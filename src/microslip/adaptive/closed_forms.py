@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from microslip.motions.motion import Scene
+from microslip.motions.motion import Motion
 from microslip.pressures.registry import HERTZ
 from microslip.solver.problem import Problem
 from microslip.theory import hertz, paper
@@ -17,9 +17,9 @@ indenter's pressure."""
 ROUNDING = 1e-12
 
 
-def no_vibration(scene: Scene, amplitude: float | None) -> tuple | None:
+def no_vibration(motion: Motion, amplitude: float | None) -> tuple | None:
     """(mu, torque, error) where nothing oscillates, whatever the model, else None."""
-    return (1.0, None, ROUNDING) if scene.periodic and amplitude == 0.0 else None
+    return (1.0, None, ROUNDING) if motion.periodic and amplitude == 0.0 else None
 
 
 def closed_form(problem: Problem, tolerance: float) -> tuple | None:
@@ -41,50 +41,50 @@ def closed_form(problem: Problem, tolerance: float) -> tuple | None:
     tuple or None
         mu, torque (None where there is none to tell) and the error.
     """
-    scene, velocity, amplitude = problem.scene, problem.velocity, problem.amplitude
-    if not scene.periodic:
-        return _steady_bore(scene, velocity) if scene.name == "continuous-bore" else None
-    if scene.whole is not None and problem.poisson == 0.0:
-        whole = scene.whole(velocity, amplitude, scene.pressure)
-        if whole is not None:
+    motion, velocity, amplitude = problem.motion, problem.velocity, problem.amplitude
+    if not motion.periodic:
+        return _steady_bore(motion, velocity) if motion.name == "continuous-bore" else None
+    if motion.closed_form_of is not None and problem.poisson == 0.0:
+        closed_form_of = motion.closed_form_of(velocity, amplitude, motion.pressure)
+        if closed_form_of is not None:
             error = WHOLE_ROUNDING if velocity > 0.0 else ROUNDING
-            return float(whole), None, error if scene.pressure.hertzian else OF_RECORD
+            return float(closed_form_of), None, error if motion.pressure.hertzian else OF_RECORD
     if velocity == 0.0:
-        known = None if scene.whole is not None else STATIC_LIMITS.get(scene.name)
+        known = None if motion.closed_form_of is not None else STATIC_LIMITS.get(motion.name)
         if known is None or (problem.poisson > 0.0 and not known.any_poisson):
             return None
-        return _static(scene, known.function, amplitude, problem.poisson)
-    largest_drop = LARGEST_DROPS.get(scene.name)
-    if largest_drop is not None and not (scene.rotates and scene.pressure is not HERTZ):
+        return _static(motion, known.function, amplitude, problem.poisson)
+    largest_drop = LARGEST_DROPS.get(motion.name)
+    if largest_drop is not None and not (motion.rotates and motion.pressure is not HERTZ):
         drop = largest_drop(velocity, amplitude)
         if 0.5 * drop + ROUNDING <= tolerance:
             return 1.0 - 0.5 * drop, None, 0.5 * drop + ROUNDING
     return None
 
 
-def _steady_bore(scene, velocity):
+def _steady_bore(motion, velocity):
     """Eqs 17 and 18; 21 and 22 for a sphere."""
-    if scene.pressure is HERTZ:
+    if motion.pressure is HERTZ:
         forward, torque = paper.bore_forward(velocity), paper.bore_torque(velocity)
         return float(forward), float(torque), ROUNDING
-    if not scene.pressure.is_round:
+    if not motion.pressure.is_round:
         return None
     from microslip.theory import axisymmetric  # only now: integration takes a while to load
 
-    forward, torque = axisymmetric.bore_of(scene.pressure.bound, velocity)
+    forward, torque = axisymmetric.bore_of(motion.pressure.bound, velocity)
     return float(forward), float(torque), QUADRATURE
 
 
-def _static(scene, of_sphere, amplitude, poisson):
+def _static(motion, of_sphere, amplitude, poisson):
     """The limit of vanishing velocity, if it has a closed form under this pressure."""
-    pressure = scene.pressure
-    if pressure is HERTZ or (pressure.hertzian and not scene.rotates):
+    pressure = motion.pressure
+    if pressure is HERTZ or (pressure.hertzian and not motion.rotates):
         return float(of_sphere(amplitude)), None, ROUNDING
     if not pressure.is_indenter:
         return None
     from microslip.theory import indenters as limits  # only now, as above
 
-    if scene.rotates:
+    if motion.rotates:
         mu = limits.static_bore(pressure, float(hertz.bore_angle(amplitude, poisson)), poisson)
     else:
         mu = limits.static_transverse(pressure, amplitude)

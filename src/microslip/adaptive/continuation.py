@@ -26,15 +26,15 @@ def run_safely(run_at: Callable, velocity: float, guess: Run | None) -> Run:
     Parameters
     ----------
     run_at : callable
-        run_at(velocity, guess, careful) -> simulate.Run; careful: solve the steps tighter.
+        run_at(velocity, guess, tighter) -> run.Run; tighter: solve the steps tighter.
     velocity : float
         Dimensionless.
-    guess : simulate.Run or None
+    guess : run.Run or None
         One to start near.
 
     Returns
     -------
-    simulate.Run
+    run.Run
         It counts the effort of all that was tried; `retried` is 1 if there was more than one.
     """
     first = run_at(velocity, guess, False)

@@ -94,15 +94,15 @@ def history(
     InputError
         For bad input; it names the argument.
     """
-    kind, velocity, amplitude, poisson = checked_point(
+    motion, velocity, amplitude, poisson = checked_point(
         scene, velocity, amplitude, poisson, pressure
     )
     if velocity <= 0.0:
         raise InputError("velocity", velocity, "a history needs velocity > 0")
     if not isinstance(start, str) or start not in STARTS:
         raise InputError("start", start, f"allowed is one of {', '.join(STARTS)}")
-    if start == "full-rotation" and not kind.rotates:
-        raise InputError("start", start, f"the {kind.name} scene does not rotate")
+    if start == "full-rotation" and not motion.rotates:
+        raise InputError("start", start, f"the {motion.name} scene does not rotate")
     if cells is not None:
         count("cells", cells, 1, most=LARGEST["cells"])
     if steps is not None:
@@ -111,13 +111,13 @@ def history(
     periods = count("periods", periods, 1, most=MOST_STEPS // steps)
     if real("travel", travel, 0.0, LONGEST_TRAVEL) == 0.0:
         raise InputError("travel", travel, "allowed is a finite number above 0")
-    if not kind.periodic and travel / velocity > LONGEST_PHASE:
+    if not motion.periodic and travel / velocity > LONGEST_PHASE:
         allowed = f"allowed is at least {LONGEST_PHASE:g} times less than the travel, {travel:g}"
         raise InputError("velocity", velocity, allowed)
-    problem = Problem(kind, velocity, amplitude, poisson)
+    problem = Problem(motion, velocity, amplitude, poisson)
     contact = _contact(problem, model, cells)
-    end = 2 * np.pi * periods if kind.periodic else travel / velocity
-    total = steps * (periods if kind.periodic else 1)
+    end = 2 * np.pi * periods if motion.periodic else travel / velocity
+    total = steps * (periods if motion.periodic else 1)
     path = make_path(problem.displacement, np.linspace(0.0, end, total + 1), depth=problem.depth)
     march = contact.march(path, _start(contact, start), STEP_TOLERANCE)
     return History(
@@ -125,7 +125,7 @@ def history(
         displacement_forward=path.positions[:, 0],
         force_forward=march.forces[:, 0],
         force_lateral=march.forces[:, 1],
-        torque=march.forces[:, 2] / kind.pressure.torque,
+        torque=march.forces[:, 2] / motion.pressure.torque,
     )
 
 
@@ -159,14 +159,14 @@ def traction_field(
     InputError
         For bad input, or another motion.
     """
-    kind, velocity, _, poisson = checked_point(scene, velocity, amplitude, poisson)
-    if kind.periodic:
+    motion, velocity, _, poisson = checked_point(scene, velocity, amplitude, poisson)
+    if motion.periodic:
         raise InputError("scene", scene, "allowed is continuous-bore")
     if velocity <= 0.0:
         raise InputError("velocity", velocity, "a traction field needs velocity > 0")
     if cells is not None:
         count("cells", cells, 2, most=LARGEST["cells"])
-    problem = Problem(kind, velocity, None, poisson)
+    problem = Problem(motion, velocity, None, poisson)
     contact = _contact(problem, "polar", cells)
     found = steady_state(contact, problem.displacement, velocity, 1e-6, STEP_TOLERANCE)
     (forward,), (lateral,) = whole_disc(contact, -found.state[None])
@@ -182,7 +182,7 @@ def traction_field(
 
 
 def _contact(problem, model, cells):
-    name = choose_model(problem.scene, problem.poisson, model)
+    name = choose_model(problem.motion, problem.poisson, model)
     return build_contact(problem, name, Resolution(cells or CELLS, ANGLES, steps=0))
 
 

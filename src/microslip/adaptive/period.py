@@ -126,10 +126,10 @@ def period(
     microslip.adaptive.period.NoPeriodicState
         Where the march broke off.
     """
-    kind, velocity, amplitude, poisson = checked_point(
+    motion, velocity, amplitude, poisson = checked_point(
         scene, velocity, amplitude, poisson, pressure
     )
-    if not kind.periodic:
+    if not motion.periodic:
         raise InputError("scene", scene, "allowed is one that oscillates")
     for name, value in (("velocity", velocity), ("amplitude", amplitude)):
         if value <= 0.0:
@@ -140,8 +140,8 @@ def period(
     if cells * angles * steps > MOST_VALUES:
         allowed = f"allowed is at most {MOST_VALUES:g} for cells x angles x steps"
         raise InputError("steps", steps, allowed)
-    choose_model(kind, poisson, "polar")
-    problem = Problem(kind, velocity, amplitude, poisson)
+    choose_model(motion, poisson, "polar")
+    problem = Problem(motion, velocity, amplitude, poisson)
     resolution = Resolution(cells, angles, steps // 2)
     run = simulate(problem, "polar", resolution, PERIOD_TOLERANCE)
     if run.state is None:
@@ -152,7 +152,7 @@ def period(
     slip = _slip(contact, path, tractions)
     bounds = np.broadcast_to(bounds_at_phases(contact, path), tractions[:, 0].shape)
     phase = path.phase
-    if kind.half_period_mirror:  # the second half is the mirror image of the first
+    if motion.half_period_mirror:  # the second half is the mirror image of the first
         tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions[1:]]])
         slip = np.concatenate([slip, [contact.mirrored(part) for part in slip]])
         forces = np.concatenate([forces, forces[1:] * MIRRORED_FORCES])
@@ -168,10 +168,10 @@ def period(
         *(np.array(part) for part in problem.displacement(phase)),
         forces[:, FORWARD],
         forces[:, LATERAL],
-        forces[:, TORQUE] / kind.pressure.torque,
+        forces[:, TORQUE] / motion.pressure.torque,
         forward_position,
         lateral_position,
-        bound if kind.depth is not None else bound[0],
+        bound if motion.depth is not None else bound[0],
         area,
         forward,
         lateral,

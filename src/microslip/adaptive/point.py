@@ -16,8 +16,8 @@ from microslip.adaptive.resolutions import plan
 from microslip.adaptive.result import Result, of_closed_form
 from microslip.foundation.arguments import LARGEST, count, is_real, real
 from microslip.foundation.errors import InputError
-from microslip.motions.motion import Scene
-from microslip.motions.registry import read_otherwise, scene_named
+from microslip.motions.motion import Motion
+from microslip.motions.registry import motion_named, read_otherwise
 from microslip.solver.budget import Budget
 from microslip.solver.method_names import SHIPPED, method_named, refuse_missing
 from microslip.solver.problem import Problem
@@ -98,7 +98,7 @@ def solve(
     InputError
         For input out of range or a model that does not apply; it names the argument.
     """
-    kind, velocity, amplitude, poisson = checked_point(
+    motion, velocity, amplitude, poisson = checked_point(
         scene, velocity, amplitude, poisson, pressure
     )
     asked, cells, steps = checked_request(tolerance, cells, steps)
@@ -106,20 +106,20 @@ def solve(
     if progress is not None and not callable(progress):
         raise InputError("progress", progress, "allowed is a function of one argument")
     tolerance = TOLERANCE if asked is None else asked
-    name, how = choose_model(kind, poisson, model), method_named(method)
-    _refuse_method(kind, name, method, how)
+    name, how = choose_model(motion, poisson, model), method_named(method)
+    _refuse_method(motion, name, method, how)
     started = time.perf_counter()
     point = {
-        "scene": kind.name,
-        "pressure": kind.pressure.name,
+        "scene": motion.name,
+        "pressure": motion.pressure.name,
         "velocity": velocity,
         "amplitude": amplitude,
         "poisson": poisson,
         "tolerance": asked,
         "method": method,
     }
-    problem = Problem(kind, velocity, amplitude, poisson)
-    exact = no_vibration(kind, amplitude)
+    problem = Problem(motion, velocity, amplitude, poisson)
+    exact = no_vibration(motion, amplitude)
     if exact is None and model == "auto" and method == SHIPPED:
         exact = _exact(problem, asked, cells, steps)
     if exact is not None:
@@ -139,25 +139,25 @@ def solve(
     def run(resolution, guess, problem=problem):
         if progress is not None:
             progress(resolution)
-        if velocity == 0.0 and kind.periodic:
+        if velocity == 0.0 and motion.periodic:
             return simulate_static(problem, name, resolution, share, settings)
 
-        def run_at(velocity, guess, careful=False):
+        def run_at(velocity, guess, tighter=False):
             there = replace(problem, velocity=velocity)
-            how_so = replace(settings, careful=careful)
+            how_so = replace(settings, tighter=tighter)
             return simulate(there, name, resolution, share, guess, how_so)
 
-        if method != SHIPPED or not kind.periodic:
+        if method != SHIPPED or not motion.periodic:
             return run_at(velocity, guess)
         return run_safely(run_at, velocity, guess)
 
     readings = [
-        partial(run, problem=replace(problem, scene=other)) for other in read_otherwise(kind)
+        partial(run, problem=replace(problem, motion=other)) for other in read_otherwise(motion)
     ]
     certified = certify(run, coarsest, axes, tolerance, readings)
     if budget.exhausted:
         certified = replace(certified, **budget.counts())
-    steady = not kind.periodic
+    steady = not motion.periodic
     within = asked is None or certified.error <= asked
     reason = certified.reason
     if certified.converged and not within:
@@ -169,7 +169,7 @@ def solve(
     return Result(
         **point,
         model=name,
-        mu_macro=_within(kind, certified.mu),
+        mu_macro=_within(motion, certified.mu),
         mu_macro_error=certified.error,
         **{f"error_{source}": error for source, error in certified.errors.items()},
         mu_torque=certified.torque if steady else None,
@@ -192,26 +192,26 @@ def solve(
     )
 
 
-def _within(kind, mu):
+def _within(motion, mu):
     """A mean force brought to where it can be: what lies beyond is rounding and error."""
-    least = -1.0 if kind.drives else 0.0
+    least = -1.0 if motion.drives else 0.0
     return min(max(mu, least), 1.0) if math.isfinite(mu) else math.nan
 
 
 def checked_point(
     scene: str, velocity: float, amplitude: float | None, poisson: float, pressure: str = "hertz"
-) -> tuple[Scene, float, float | None, float]:
-    """Scene record and numbers of a point; raises InputError naming the argument at fault."""
-    kind = scene_named(scene, pressure)
+) -> tuple[Motion, float, float | None, float]:
+    """Motion record and numbers of a point; raises InputError naming the argument at fault."""
+    motion = motion_named(scene, pressure)
     velocity = real("velocity", velocity, 0.0, LARGEST["velocity"])
     poisson = real("poisson", poisson, 0.0, 0.5)
-    if kind.periodic:
+    if motion.periodic:
         if amplitude is None:
-            raise InputError("amplitude", None, f"{kind.name} needs an amplitude >= 0")
+            raise InputError("amplitude", None, f"{motion.name} needs an amplitude >= 0")
         amplitude = real("amplitude", amplitude, 0.0, LARGEST["amplitude"])
     elif amplitude is not None:
-        raise InputError("amplitude", amplitude, f"{kind.name} has no amplitude")
-    return kind, velocity, amplitude, poisson
+        raise InputError("amplitude", amplitude, f"{motion.name} has no amplitude")
+    return motion, velocity, amplitude, poisson
 
 
 def checked_request(
@@ -225,16 +225,16 @@ def checked_request(
 
 
 def refuse_choice(
-    kind: Scene, model: str, place: tuple, cells: int | None, steps: int | None
+    motion: Motion, model: str, place: tuple, cells: int | None, steps: int | None
 ) -> None:
     """Raise InputError where a resolution would have to be chosen, and there is no tolerance to do
     that; place: velocity, amplitude, poisson, and all as checked."""
-    problem = Problem(kind, *place)
-    exact = no_vibration(kind, problem.amplitude)
+    problem = Problem(motion, *place)
+    exact = no_vibration(motion, problem.amplitude)
     if exact is None and model == "auto":
         exact = _exact(problem, None, cells, steps)
     if exact is None:
-        name = choose_model(kind, problem.poisson, model)
+        name = choose_model(motion, problem.poisson, model)
         _refuse_free(plan(problem, name, TOLERANCE, cells, steps)[1])
 
 
@@ -261,15 +261,15 @@ def refuse_bounds(**given) -> None:
             raise InputError(name, value, "allowed is a number above 0")
 
 
-def _refuse_method(kind, model, method, how):
+def _refuse_method(motion, model, method, how):
     """Raise InputError where a method, by name and as a method.Method, has no part in a solve."""
     refuse_missing(method)
-    refusal = method_refusal(kind, model, how)
+    refusal = method_refusal(motion, model, how)
     if not refusal and how.run is not None:
         refusal = "it is one run, which cannot be refined"
     if refusal:
         raise InputError(
-            "method", method, f"does not apply to {kind.name}, model {model}: {refusal}"
+            "method", method, f"does not apply to {motion.name}, model {model}: {refusal}"
         )
 
 

@@ -98,7 +98,7 @@ def certify(
     Parameters
     ----------
     run : callable
-        run(resolution, guess) -> simulate.Run; guess: the run at the base, or None.
+        run(resolution, guess) -> run.Run; guess: the run at the base, or None.
     coarsest : problem.Resolution
         For what is not refined.
     axes : sequence of chains.Axis

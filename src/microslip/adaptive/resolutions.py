@@ -58,17 +58,17 @@ def plan(
     cells, steps : int or None
         Impose a resolution instead; steps in a full period.
     """
-    scene = problem.scene
-    resolved, axes = MODELS[model].axes(scene), []
-    marches = scene.periodic and (problem.velocity > 0.0 or not at_turning_points(scene))
-    sweeps = scene.depth is not None and marches and cells is None and steps is None
+    motion = problem.motion
+    resolved, axes = MODELS[model].axes(motion), []
+    marches = motion.periodic and (problem.velocity > 0.0 or not at_turning_points(motion))
+    sweeps = motion.depth is not None and marches and cells is None and steps is None
     if sweeps:
         axes.append(_sweeping(problem, tolerance))
     elif "cells" in resolved:
         axes.append(_cells(problem, model) if cells is None else _imposed("cells", cells))
     if "angles" in resolved:
         # only nu > 0 makes tractions of a translation depend on the angle, and only a little
-        base = ANGLES.index(BASE_ANGLES) + (not scene.periodic) - (not scene.rotates)
+        base = ANGLES.index(BASE_ANGLES) + (not motion.periodic) - (not motion.rotates)
         axes.append(Axis("angles", ANGLES, base, (base - 1, base, base + 1)))
     if marches and not sweeps:
         axes.append(_steps(problem, tolerance) if steps is None else _imposed("steps", steps // 2))
@@ -113,16 +113,16 @@ class CellsPolicy:
 
 def _is_slow(problem):
     """Whether the layer at the stick radius is thin."""
-    return problem.scene.periodic and 0.0 < problem.creep < SLOW_CREEP
+    return problem.motion.periodic and 0.0 < problem.creep < SLOW_CREEP
 
 
 def _is_static(problem):
-    return problem.scene.periodic and problem.velocity == 0.0
+    return problem.motion.periodic and problem.velocity == 0.0
 
 
 def _sweeps_the_centre(problem):
     least, most = SWEEPING_CENTRE
-    return problem.scene.rotates and least <= problem.velocity < most
+    return problem.motion.rotates and least <= problem.velocity < most
 
 
 CELLS_POLICIES = (
@@ -157,13 +157,13 @@ CELLS_POLICIES = (
     ),
     CellsPolicy(
         "steady: the centre of rotation stays where it is, and only fine rings see it",
-        lambda problem, model: not problem.scene.periodic,
+        lambda problem, model: not problem.motion.periodic,
         base=12,
         first=(8, 16),
     ),
     CellsPolicy(
         "static limit on a loop: each run finds the edge of what sticks by itself",
-        lambda problem, model: _is_static(problem) and not at_turning_points(problem.scene),
+        lambda problem, model: _is_static(problem) and not at_turning_points(problem.motion),
         base=24,
         first=(16, 48),
         regular=False,
@@ -179,14 +179,14 @@ CELLS_POLICIES = (
     CellsPolicy(
         "rotation whose layer at the stick radius is thin, or whose centre sweeps the contact",
         lambda problem, model: (
-            problem.scene.rotates and (_is_slow(problem) or _sweeps_the_centre(problem))
+            problem.motion.rotates and (_is_slow(problem) or _sweeps_the_centre(problem))
         ),
         base=8,
         first=(6, 12),
     ),
     CellsPolicy(
         "rotation: with angles there are many unknowns, so as few rings as will do",
-        lambda problem, model: problem.scene.rotates,
+        lambda problem, model: problem.motion.rotates,
         base=8,
         first=(4, 8),
     ),
@@ -227,16 +227,16 @@ def _sweeping(problem, tolerance):
 
 def _step_levels(problem, counts):
     """Even numbers of steps that stay short against u_lim where the stroke is long."""
-    scene = problem.scene
-    stroke = min(max(1.0, scene.stroke(problem.amplitude, problem.poisson)), LONGEST_STROKE)
-    return tuple(2 * round(0.5 * count * scene.cycles * stroke**0.5) for count in counts)
+    motion = problem.motion
+    stroke = min(max(1.0, motion.stroke(problem.amplitude, problem.poisson)), LONGEST_STROKE)
+    return tuple(2 * round(0.5 * count * motion.cycles * stroke**0.5) for count in counts)
 
 
 def _steps(problem, tolerance):
     # second order in time
     wanted = BASE_STEPS * max(1.0, (1e-3 / tolerance) ** 0.5)
     base = next(k for k, count in enumerate(STEPS) if count >= wanted)
-    turns = problem.scene.rotates or not problem.scene.half_period_mirror
+    turns = problem.motion.rotates or not problem.motion.half_period_mirror
     caution = TURNING_CAUTION if turns else 1.0
     first = (base - 2, base - 1, base)
     return Axis("steps", _step_levels(problem, STEPS), base, first, caution=caution)

@@ -14,9 +14,9 @@ from microslip.adaptive.choice import method_refusal
 from microslip.models.contact import forward_slip
 from microslip.models.path import EULER, half_period_phases, make_path
 from microslip.models.registry import MODELS
-from microslip.motions.bore import SCENE as BORE
-from microslip.motions.registry import scene_named
-from microslip.motions.transverse import SCENE as TRANSVERSE
+from microslip.motions.bore import MOTION as BORE
+from microslip.motions.registry import motion_named
+from microslip.motions.transverse import MOTION as TRANSVERSE
 from microslip.pressures.registry import HERTZ
 from microslip.solver.method_names import method_named, missing
 from microslip.solver.problem import Problem, Resolution, build_contact
@@ -28,9 +28,9 @@ STEP_TOLERANCE = 1e-6
 
 def applies(scene: str, poisson: float, model: str, method: str, pressure: str = HERTZ.name) -> str:
     """Why a model or a method, by name, cannot be tried on a scene, as one line; "" if it can."""
-    kind = scene_named(scene, pressure)
-    refusal = MODELS[model].refuses(kind, poisson) or missing(method)
-    return refusal or method_refusal(kind, model, method_named(method))
+    motion = motion_named(scene, pressure)
+    refusal = MODELS[model].refuses(motion, poisson) or missing(method)
+    return refusal or method_refusal(motion, model, method_named(method))
 
 
 def run_trial(
@@ -80,7 +80,7 @@ def run_trial(
     if refusal:
         raise ValueError(f"model = {model!r}, method = {method!r}: {refusal}")
     resolution = Resolution(cells, angles, max(steps // 2, 1))
-    problem = Problem(scene_named(scene, pressure), velocity, amplitude, poisson)
+    problem = Problem(motion_named(scene, pressure), velocity, amplitude, poisson)
     settings = Settings(method_named(method))
     run = simulate(problem, model, resolution, tolerance, settings=settings)
     unknowns = run.work // run.solves if run.solves else 0

@@ -50,10 +50,10 @@ def build_parser(asked: str | None = None) -> command_line.OneLineParser:
 
 def _add_motions(parser):
     """A parser for each motion; what they are is asked of the solver, so only where it counts."""
-    from microslip.motions.registry import FAMILIES, SCENES
+    from microslip.motions.registry import FAMILIES, MOTIONS
 
     scenes = parser.add_subparsers(dest="scene", required=True, metavar="SCENE")
-    known = {name: (scene.summary, scene.periodic, None) for name, scene in SCENES.items()}
+    known = {name: (scene.summary, scene.periodic, None) for name, scene in MOTIONS.items()}
     known |= {name: (family.SUMMARY, True, family.HELP) for name, family in FAMILIES.items()}
     for name, (summary, periodic, path) in known.items():
         scene = scenes.add_parser(
@@ -64,7 +64,7 @@ def _add_motions(parser):
             f"of it sticking.{f'  {BORE}' if 'bore' in name else ''}",
             allow_abbrev=False,
         )
-        record = SCENES.get(name) or FAMILIES[name].scene(name, **FAMILIES[name].DEFAULTS)
+        record = MOTIONS.get(name) or FAMILIES[name].motion(name, **FAMILIES[name].DEFAULTS)
         scene.add_argument(
             "--velocity",
             required=True,
@@ -106,7 +106,7 @@ OPTIONS = {
     ),
     "method": (
         "NAME",
-        "another way to compute it, for comparison: the name of a file in microslip/methods",
+        "another way to compute it, for comparison: the name of a file in microslip/solver/methods",
     ),
     "results": (
         "FOLDER",

@@ -8,7 +8,7 @@ import sys
 from microslip.app.command_line import Said
 from microslip.app.terminal import complain
 from microslip.foundation.errors import shown
-from microslip.si.motions import SCENES
+from microslip.si.motions import MOTIONS
 
 OPTIONS = {
     "young": ("E", "Young's modulus of the body, such as '210 GPa'"),
@@ -56,7 +56,7 @@ def add_parser(commands) -> None:
         "ratio, the friction with vibration over that without; mu_apparent is the coefficient of "
         "friction that is felt.",
     )
-    scenes = "; ".join(f"{name}: it {what}" for name, what in SCENES.items())
+    scenes = "; ".join(f"{name}: it {what}" for name, what in MOTIONS.items())
     parser.add_argument("scene", metavar="SCENE", help=f"what the sphere does. {scenes}")
     for name, (metavar, text) in OPTIONS.items():
         parser.add_argument(

@@ -158,7 +158,7 @@ def solver_names(sweep) -> tuple[str, str]:
 
 
 def _scene_of(sweep):
-    """The Scene of a Sweep; raises ValueError for a motion or a pressure that there is not."""
-    from microslip.motions.registry import scene_named
+    """The Motion of a Sweep; raises ValueError for a motion or a pressure that there is not."""
+    from microslip.motions.registry import motion_named
 
-    return scene_named(sweep.scene, sweep.pressure)
+    return motion_named(sweep.scene, sweep.pressure)

@@ -19,7 +19,7 @@ from microslip.config.quantities import AMPLITUDE, VELOCITY
 from microslip.datasets import netcdf, point_variables, theory_limits
 from microslip.foundation import named_files, source_digest
 from microslip.foundation.canonical import canonical_json
-from microslip.motions.registry import scene_named
+from microslip.motions.registry import motion_named
 from microslip.sweeps.sealed_files import writing_beside
 from microslip.theory.catalogue import FORMS
 
@@ -158,7 +158,7 @@ def _axes(sweep):
 
 def _describe_axes(dataset, sweep):
     """Name the axes; `formula` is what a coordinate is, in the words of the scene."""
-    scene = scene_named(sweep.scene)
+    scene = motion_named(sweep.scene)
     axes = [(VELOCITY, scene.velocity_label)]
     if sweep.amplitude is not None:
         axes.append((AMPLITUDE, scene.amplitude_label))

@@ -23,7 +23,7 @@ def formulas(scene: str, pressure: str = "hertz") -> dict:
 
 
 def variables(sweep) -> dict:
-    """Variables on the axes of a settings.Sweep: name -> (dims, values, attributes)."""
+    """Variables on the axes of a records.Sweep: name -> (dims, values, attributes)."""
     found = {}
     for name, form in formulas(*solver_names(sweep)).items():
         axes = [np.array(getattr(sweep, dim)) for dim in form.arguments]

@@ -51,7 +51,7 @@ class StepFailure(ArithmeticError):
 class Contact(Protocol):
     """A discretised contact under given pressure.
 
-    A contact whose normal load may change also has pressed, bounds, bounds_along and
+    A contact whose normal load may change also has at_indentation, bounds, bounds_along and
     at_phases; one of rings may tell its edges, for rings to be gathered at one of them: see
     RadialContact.
 

@@ -1,4 +1,4 @@
-"""The model hierarchy: which model resolves which scene, and how well.
+"""The model hierarchy: which model resolves which motion, and how well.
 
 | model     | transverse, nu = 0 | transverse, nu > 0 | bore (oscillating, continuous)     |
 |-----------|--------------------|--------------------|------------------------------------|
@@ -42,115 +42,115 @@ class Model:
     Attributes
     ----------
     build : callable
-        build(scene, poisson, cells, angles, focus) -> Contact.
+        build(motion, poisson, cells, angles, focus) -> Contact.
     refuses : callable
-        refuses(scene, poisson) -> why it does not apply, or "".
+        refuses(motion, poisson) -> why it does not apply, or "".
     exact : callable
-        exact(scene) -> whether refinement converges to the truth.
+        exact(motion) -> whether refinement converges to the truth.
     axes : callable
-        axes(scene) -> what of its space can be refined: "cells", "angles".
+        axes(motion) -> what of its space can be refined: "cells", "angles".
     """
 
     build: Callable
     refuses: Callable
-    exact: Callable = lambda scene: True
-    axes: Callable = lambda scene: ("cells",)
+    exact: Callable = lambda motion: True
+    axes: Callable = lambda motion: ("cells",)
 
 
-def _never(scene):
+def _never(motion):
     return False
 
 
 LOAD_CHANGES = "it knows a constant normal load alone"
 
 
-def _refuse_pulsation(scene, poisson):
-    return LOAD_CHANGES if scene.depth is not None else ""
+def _refuse_pulsation(motion, poisson):
+    return LOAD_CHANGES if motion.depth is not None else ""
 
 
-def _refuse_other_loads(scene, poisson):
-    if scene.depth is None or scene.pressure.is_indenter:
+def _refuse_other_loads(motion, poisson):
+    if motion.depth is None or motion.pressure.is_indenter:
         return ""
-    return f"the load of axisymmetric indenters may change, not that of {scene.pressure.name}"
+    return f"the load of axisymmetric indenters may change, not that of {motion.pressure.name}"
 
 
 def _any_of(*refusals):
     """What the first refusal says that says something."""
-    return lambda scene, poisson: next(filter(None, (r(scene, poisson) for r in refusals)), "")
+    return lambda motion, poisson: next(filter(None, (r(motion, poisson) for r in refusals)), "")
 
 
-def _refuse_rings(scene, poisson):
-    if not scene.pressure.is_round:
-        return f"rings cannot resolve the pressure {scene.pressure.name}"
-    if scene.rotates:
+def _refuse_rings(motion, poisson):
+    if not motion.pressure.is_round:
+        return f"rings cannot resolve the pressure {motion.pressure.name}"
+    if motion.rotates:
         return "rings alone cannot resolve a rotation"
     return "rings alone cannot resolve nu > 0" if poisson > 0.0 else ""
 
 
-def _refuse_rotation(scene, poisson):
-    return "it has no extension that could turn" if scene.rotates else ""
+def _refuse_rotation(motion, poisson):
+    return "it has no extension that could turn" if motion.rotates else ""
 
 
-def _refuse_springs(scene, poisson):
-    if not scene.pressure.is_indenter:
-        return f"it is known for axisymmetric indenters only, not for {scene.pressure.name}"
-    return _refuse_rotation(scene, poisson)
+def _refuse_springs(motion, poisson):
+    if not motion.pressure.is_indenter:
+        return f"it is known for axisymmetric indenters only, not for {motion.pressure.name}"
+    return _refuse_rotation(motion, poisson)
 
 
-def _refuse_half_disc(scene, poisson):
-    if not scene.pressure.is_round:
-        return f"rings cannot resolve the pressure {scene.pressure.name}"
-    return "" if scene.half_disc else "half of the contact does not tell the other half"
+def _refuse_half_disc(motion, poisson):
+    if not motion.pressure.is_round:
+        return f"rings cannot resolve the pressure {motion.pressure.name}"
+    return "" if motion.half_disc else "half of the contact does not tell the other half"
 
 
-def _refuse_rigid(scene, poisson):
-    return _refuse_half_disc(scene, poisson) if scene.rotates else ""
+def _refuse_rigid(motion, poisson):
+    return _refuse_half_disc(motion, poisson) if motion.rotates else ""
 
 
 _NO_ROTATION = _any_of(_refuse_rotation, _refuse_pulsation)
 
 MODELS = {
     "rigid": Model(
-        lambda scene, poisson, cells, angles, focus: RigidContact(
-            cells, angles, scene.rotates, scene.pressure
+        lambda motion, poisson, cells, angles, focus: RigidContact(
+            cells, angles, motion.rotates, motion.pressure
         ),
         _any_of(_refuse_pulsation, _refuse_rigid),
-        exact=lambda scene: not scene.periodic,
-        axes=lambda scene: ("cells", "angles") if scene.rotates else (),
+        exact=lambda motion: not motion.periodic,
+        axes=lambda motion: ("cells", "angles") if motion.rotates else (),
     ),
     "slider": Model(
-        lambda scene, poisson, cells, angles, focus: slider_contact(),
+        lambda motion, poisson, cells, angles, focus: slider_contact(),
         _NO_ROTATION,
         exact=_never,
-        axes=lambda scene: (),
+        axes=lambda motion: (),
     ),
     "dahl": Model(
-        lambda scene, poisson, cells, angles, focus: DahlContact(scene.pressure.stiffness),
+        lambda motion, poisson, cells, angles, focus: DahlContact(motion.pressure.stiffness),
         _NO_ROTATION,
         exact=_never,
-        axes=lambda scene: (),
+        axes=lambda motion: (),
     ),
     "mdr": Model(
-        lambda scene, poisson, cells, angles, focus: mdr_contact(cells, focus, scene.pressure),
+        lambda motion, poisson, cells, angles, focus: mdr_contact(cells, focus, motion.pressure),
         _any_of(_refuse_other_loads, _refuse_springs),
         exact=_never,
     ),
     "radial": Model(
-        lambda scene, poisson, cells, angles, focus: RadialContact.resolved(
-            cells, focus, scene.pressure
+        lambda motion, poisson, cells, angles, focus: RadialContact.resolved(
+            cells, focus, motion.pressure
         ),
         _any_of(_refuse_other_loads, _refuse_rings),
     ),
     "polar": Model(
-        lambda scene, poisson, cells, angles, focus: PolarContact(
-            cells, angles, scene.rotates, poisson, focus, scene.pressure
+        lambda motion, poisson, cells, angles, focus: PolarContact(
+            cells, angles, motion.rotates, poisson, focus, motion.pressure
         ),
         _any_of(_refuse_other_loads, _refuse_half_disc),
-        axes=lambda scene: ("cells", "angles"),
+        axes=lambda motion: ("cells", "angles"),
     ),
     "cartesian": Model(
-        lambda scene, poisson, cells, angles, focus: CartesianContact(
-            cells, poisson, scene.pressure
+        lambda motion, poisson, cells, angles, focus: CartesianContact(
+            cells, poisson, motion.pressure
         ),
         _refuse_pulsation,
     ),

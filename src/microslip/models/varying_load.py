@@ -39,14 +39,14 @@ class Growth(NamedTuple):
         Of an axisymmetric indenter.
     edges : np.ndarray, shape (n + 1,)
         From 0 to 1.
-    carried : callable
-        carried(pressure, edges, depth) -> load within each edge, (k, n + 1).
+    load_within : callable
+        load_within(pressure, edges, depth) -> load within each edge, (k, n + 1).
     influence_power, weight_power : int
         Powers of the contact radius by which influence and weights grow.
     """
 
     pressure: Pressure
     edges: np.ndarray
-    carried: Callable
+    load_within: Callable
     influence_power: int
     weight_power: int

@@ -3,7 +3,7 @@ motion."""
 
 import numpy as np
 
-from microslip.motions.motion import Scene, within_rings
+from microslip.motions.motion import Motion, within_rings
 from microslip.theory import hertz
 
 
@@ -19,7 +19,7 @@ def focus(velocity: float, amplitude: float, pressure) -> float | None:
     return within_rings(hertz.lubkin_stick_radius(hertz.bore_angle(amplitude)))
 
 
-SCENE = Scene(
+MOTION = Motion(
     name="bore",
     summary="sliding forward while oscillating in rotation about the contact normal",
     displacement=displacement,

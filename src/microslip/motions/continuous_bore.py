@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from microslip.motions.motion import Scene, within_rings
+from microslip.motions.motion import Motion, within_rings
 
 
 def displacement(phase: np.ndarray, velocity: float, amplitude: float, poisson: float) -> tuple:
@@ -15,7 +15,7 @@ def focus(velocity: float, amplitude: float, pressure) -> float | None:
     return within_rings(velocity) if velocity < 1.0 else None
 
 
-SCENE = Scene(
+MOTION = Motion(
     name="continuous-bore",
     summary="sliding forward while rotating steadily about the contact normal",
     displacement=displacement,

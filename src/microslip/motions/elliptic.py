@@ -3,7 +3,7 @@
     elliptic:forward=F,lateral=L,phase=P,forward_cycles=M,lateral_cycles=N
 
 moves by forward v~ t + A F sin(M t + P), lateral A L sin(N t): P in degrees, A the amplitude, in
-u_lim.  The defaults are a circle; F = 0 is the transverse scene, L = 0 the longitudinal one.
+u_lim.  The defaults are a circle; F = 0 is the transverse motion, L = 0 the longitudinal one.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
-from microslip.motions.motion import HALF_PERIOD, Scene, stick_focus
+from microslip.motions.motion import HALF_PERIOD, Motion, stick_focus
 
 SUMMARY = "sliding forward while oscillating along two directions"
 HELP = (
@@ -31,15 +31,15 @@ WHOLE_PERIOD = (*HALF_PERIOD, 1.5 * np.pi)
 _LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
 
 
-def scene(
+def motion(
     name: str,
     forward: float,
     lateral: float,
     phase: float,
     forward_cycles: float,
     lateral_cycles: float,
-) -> Scene:
-    """The Scene of these numbers; raises InputError for shares below 0, none at all, and cycles
+) -> Motion:
+    """The Motion of these numbers; raises InputError for shares below 0, none at all, and cycles
     that are no whole numbers."""
     spec.refuse_shares(name, "scene", {"forward": forward, "lateral": lateral})
     if max(forward, lateral) == 0.0:
@@ -58,7 +58,7 @@ def scene(
     mirrored = lateral_cycles % 2 == 1 and (forward == 0.0 or forward_cycles % 2 == 0)
     both_odd = forward_cycles % 2 == lateral_cycles % 2 == 1
     simple = forward_cycles == lateral_cycles == 1.0
-    return Scene(
+    return Motion(
         name=name,
         summary=SUMMARY,
         displacement=displacement,

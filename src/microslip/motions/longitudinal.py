@@ -20,20 +20,20 @@ def turns(velocity: float, amplitude: float) -> tuple[float, ...]:
     return -back, back, 2.0 * np.pi - back
 
 
-def whole(velocity: float, amplitude: float, pressure) -> float | None:
+def closed_form_of(velocity: float, amplitude: float, pressure) -> float | None:
     """First loading with Masing's memory, where the curve of first loading is known."""
     if pressure.loading is None:
         return None
     return masing.longitudinal(velocity, amplitude, pressure.loading)
 
 
-SCENE = replace(
-    transverse.SCENE,
+MOTION = replace(
+    transverse.MOTION,
     name="longitudinal",
     summary="sliding forward while oscillating along the same direction",
     displacement=displacement,
     half_period_mirror=False,
     turns=turns,
     amplitude_label="x0 / u_lim",
-    whole=whole,
+    closed_form_of=closed_form_of,
 )

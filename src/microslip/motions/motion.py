@@ -23,7 +23,7 @@ HALF_PERIOD = (-np.pi / 2, np.pi / 2)
 
 
 @dataclass(frozen=True)
-class Scene:
+class Motion:
     """One kind of motion.
 
     Attributes
@@ -90,7 +90,7 @@ class Scene:
     depth: Callable | None = None
     deepest: Callable = lambda amplitude, pressure: 1.0
     mean_load: Callable = lambda amplitude, pressure: 1.0
-    whole: Callable | None = None
+    closed_form_of: Callable | None = None
 
     def creep(self, velocity: float, amplitude: float, poisson: float) -> float:
         """Mean forward displacement in one radian of phase, in u_lim.

@@ -17,7 +17,7 @@ import numpy as np
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
 from microslip.motions.elliptic import MOST_CYCLES
-from microslip.motions.motion import Scene, within_rings
+from microslip.motions.motion import Motion, within_rings
 from microslip.theory import hertz, oscillating_load
 
 SUMMARY = "sliding forward while the normal load oscillates, or the indentation"
@@ -40,7 +40,7 @@ DEFAULTS = {
 }
 
 
-def scene(
+def motion(
     name: str,
     *,
     load: float,
@@ -53,8 +53,8 @@ def scene(
     lateral_cycles: float,
     forward_cycles: float,
     angle_cycles: float,
-) -> Scene:
-    """The Scene of these numbers; raises InputError for shares out of 0..1, where neither or both
+) -> Motion:
+    """The Motion of these numbers; raises InputError for shares out of 0..1, where neither or both
     of load and indentation oscillate, and for cycles that are no whole numbers."""
     cycles = {
         "normal_cycles": normal_cycles,
@@ -92,7 +92,7 @@ def scene(
         least = -0.5 * np.pi / normal_cycles
         return tuple(least + np.pi * np.arange(2 if mirrored else 3))
 
-    def whole(velocity, amplitude, pressure):
+    def closed_form_of(velocity, amplitude, pressure):
         if not pressure.is_indenter:
             return None
         place = (velocity / normal_cycles, amplitude * share, by_load, pressure)
@@ -104,7 +104,7 @@ def scene(
     mirrored = normal_cycles % 2 == 0 and aside_odd and turns_odd and ahead_even
     opposite = normal_cycles % 2 == 0 and aside_odd and forward_cycles % 2 == 1
     alone = lateral == forward == angle == 0.0
-    return Scene(
+    return Motion(
         name=name,
         summary=SUMMARY,
         displacement=displacement,
@@ -131,7 +131,7 @@ def scene(
         mean_load=lambda amplitude, pressure: oscillating_load.mean_load(
             amplitude * share, by_load, pressure
         ),
-        whole=whole if alone else None,
+        closed_form_of=closed_form_of if alone else None,
     )
 
 

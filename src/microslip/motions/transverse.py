@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from microslip.motions.motion import Scene, stick_focus
+from microslip.motions.motion import Motion, stick_focus
 
 
 def displacement(phase: np.ndarray, velocity: float, amplitude: float, poisson: float) -> tuple:
@@ -10,7 +10,7 @@ def displacement(phase: np.ndarray, velocity: float, amplitude: float, poisson: 
     return velocity * phase, amplitude * np.sin(phase), np.zeros_like(phase)
 
 
-SCENE = Scene(
+MOTION = Motion(
     name="transverse",
     summary="sliding forward while oscillating sideways",
     displacement=displacement,

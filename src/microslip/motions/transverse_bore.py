@@ -3,7 +3,7 @@
     transverse-bore:lateral=L,angle=B,phase=P
 
 moves by lateral A L sin(t) and turns by the bore amplitude A B, angle ~ sin(t + P): P in degrees, A
-the amplitude.  B = 0 is the transverse scene, L = 0 the bore with its velocity over omega u_lim.
+the amplitude.  B = 0 is the transverse motion, L = 0 the bore with its velocity over omega u_lim.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
-from microslip.motions.motion import Scene, stick_focus, within_rings
+from microslip.motions.motion import Motion, stick_focus, within_rings
 from microslip.theory import hertz
 
 SUMMARY = "sliding forward while oscillating sideways and in rotation"
@@ -23,8 +23,8 @@ HELP = (
 DEFAULTS = {"lateral": 1.0, "angle": 1.0, "phase": 0.0}
 
 
-def scene(name: str, lateral: float, angle: float, phase: float) -> Scene:
-    """The Scene of these numbers; raises InputError for shares below 0, and none at all."""
+def motion(name: str, lateral: float, angle: float, phase: float) -> Motion:
+    """The Motion of these numbers; raises InputError for shares below 0, and none at all."""
     spec.refuse_shares(name, "scene", {"lateral": lateral, "angle": angle})
     if max(lateral, angle) == 0.0:
         raise InputError("scene", name, "allowed is lateral or angle above 0")
@@ -39,7 +39,7 @@ def scene(name: str, lateral: float, angle: float, phase: float) -> Scene:
             return stick_focus(amplitude * lateral, pressure)
         return within_rings(hertz.lubkin_stick_radius(hertz.bore_angle(amplitude * angle)))
 
-    return Scene(
+    return Motion(
         name=name,
         summary=SUMMARY,
         displacement=displacement,

@@ -13,8 +13,8 @@ def displacement(phase: np.ndarray, velocity: float, amplitude: float, poisson: 
     return velocity * phase, lateral, np.zeros_like(phase)
 
 
-SCENE = replace(
-    transverse.SCENE,
+MOTION = replace(
+    transverse.MOTION,
     name="zigzag",
     summary="sliding forward while moving sideways at constant speed, with abrupt turns",
     displacement=displacement,

@@ -26,13 +26,13 @@ code { font-size: 12px; overflow-wrap: anywhere; }
 """
 COUNTED = {"holds": "for it", "fails": "against", "open": "open"}
 PARTS_OF_SHIFT = ("from_velocity", "from_resolution")
-SCENES = {"transverse": "Transverse oscillation", "bore": "Oscillating bore"}
+MOTIONS = {"transverse": "Transverse oscillation", "bore": "Oscillating bore"}
 
 
 def write(path: str | os.PathLike, dataset, lines: list[str]) -> None:
     """Write the page of the xarray.Dataset; lines: list of what its report says.
 
-    Raises CacheError as `cache.writing_beside` does.
+    Raises CacheError as `sealed_files.writing_beside` does.
     """
     with writing_beside(path, sealed=True) as beside:
         beside.write_text(page(dataset, lines), encoding="utf-8", newline="\n")
@@ -50,7 +50,7 @@ def page(dataset, lines: list[str]) -> str:
         _summary(data),
         *(_claim(data, i) for i in range(len(data["claim"]))),
         "<h2 id='static'>The static limit, and what hid it</h2>",
-        *(_static(data, scene) for scene in SCENES if f"{scene}_limit" in data),
+        *(_static(data, scene) for scene in MOTIONS if f"{scene}_limit" in data),
         "<h2 id='runs'>Runs</h2>",
         _runs(data),
         "<h2>Made by</h2>",
@@ -205,7 +205,7 @@ def _static(data, scene):
         f"{float(data[f'{scene}_gap_{key}_at']):.3g}"
         for key, name in names.items()
     )
-    text = f"<h3>{SCENES[scene]}</h3>{_table(head, rows)}<p>Most above the limit: {most}."
+    text = f"<h3>{MOTIONS[scene]}</h3>{_table(head, rows)}<p>Most above the limit: {most}."
     if scene == "bore":
         share = 100 * float(data["static_asymptote_excess"])
         text += f" At large amplitudes Eq 33 tends to {share:.1f} % more than the limit."
@@ -228,7 +228,7 @@ def _command(data, row):
 
 
 def _place(data, row):
-    """Scene, velocity, amplitude, nu, model and resolution of a run, as text."""
+    """Motion, velocity, amplitude, nu, model and resolution of a run, as text."""
     words = [str(data["run_scene"][row]), f"v {data['run_velocity'][row]:g}"]
     if np.isfinite(data["run_amplitude"][row]):
         words.append(f"A {data['run_amplitude'][row]:g}")

@@ -16,7 +16,7 @@ MOST_LINES = 40
 def write(path: str | os.PathLike, dataset, lines: list[str]) -> None:
     """Write the page of an xarray.Dataset; lines: list of what its report says.
 
-    Raises CacheError as `cache.writing_beside` does.
+    Raises CacheError as `sealed_files.writing_beside` does.
     """
     # Text inside HTML, since the report of a run shows that in place.
     text = escape(page(dataset, lines))

@@ -10,5 +10,5 @@
 
 `quantities` reads texts with units, `materials` is a small table, `contact` holds Hertz's theory
 for two bodies, `groups` makes the paper's dimensionless groups, `predict` asks the solver and
-`doubts` says where an assumption of the theory breaks.
+`broken_assumptions` says where an assumption of the theory breaks.
 """

@@ -23,7 +23,7 @@ class RealMotion:
 def groups(motion: RealMotion, contact) -> tuple[float, float | None]:
     """(velocity, amplitude) as microslip.solve takes them (Eqs 2, 4, 13, 27, 28).
 
-    motion: RealMotion; contact: contact.TwoBodies.  amplitude: None for a steady bore.
+    motion: RealMotion; contact: bodies.TwoBodies.  amplitude: None for a steady bore.
     """
     a, u_lim = contact.contact_radius, contact.u_lim
     if motion.scene == "continuous-bore":

@@ -9,7 +9,7 @@ from microslip.foundation.errors import InputError
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealMotion
 from microslip.si.materials import RIGID, Material, material_named
-from microslip.si.motions import SCENES, UNIT_OF_AMPLITUDE
+from microslip.si.motions import MOTIONS, UNIT_OF_AMPLITUDE
 from microslip.si.quantities import read
 from microslip.si.validity import SENSELESS
 
@@ -185,8 +185,8 @@ def read_motion(
 
     The amplitude of the motion is None where a reduction is given in its place.
     """
-    if not isinstance(scene, str) or scene not in SCENES:
-        raise InputError("scene", scene, f"allowed is one of {', '.join(SCENES)}")
+    if not isinstance(scene, str) or scene not in MOTIONS:
+        raise InputError("scene", scene, f"allowed is one of {', '.join(MOTIONS)}")
     steady = scene not in UNIT_OF_AMPLITUDE
     given = {"amplitude": amplitude, "frequency": frequency, "rotation": rotation}
     needed = ("rotation",) if steady else ("amplitude", "frequency")
@@ -209,5 +209,5 @@ def read_motion(
             found["amplitude"] = read("amplitude", amplitude, unit, low_open=False)
         found["frequency"] = read("frequency", frequency, "Hz")
     motion = RealMotion(scene, **{name: one.si for name, one in found.items()})
-    texts = {"scene": f"{scene}: the sphere {SCENES[scene]}"}
+    texts = {"scene": f"{scene}: the sphere {MOTIONS[scene]}"}
     return motion, texts | {name: one.text for name, one in found.items()}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 UNIT_OF_AMPLITUDE = {"transverse": "m", "longitudinal": "m", "zigzag": "m", "bore": "rad"}
 """Scenes that oscillate, and the SI unit of what they oscillate in."""
-SCENES = {
+MOTIONS = {
     "transverse": "slides forward and oscillates sideways",
     "longitudinal": "slides forward and oscillates along the same direction",
     "zigzag": "slides forward and moves sideways at constant speed, with abrupt turns",

@@ -11,7 +11,7 @@ from microslip.si.dimensionless import groups
 from microslip.si.inputs import read_body, read_contact, read_counterbody, read_motion
 from microslip.si.quantities import read
 from microslip.si.reduction import friction_of, motion_for
-from microslip.si.validity import doubts, unchecked
+from microslip.si.validity import broken_assumptions, unchecked
 
 LARGEST_TOLERANCE = 0.1
 """Of mu_macro; what is larger is no answer."""
@@ -260,7 +260,7 @@ def _prediction(contact, motion, velocity, answer: Result, limit: Result | None,
         model=answer.model,
         converged=answer.converged and (limit is None or limit.converged),
         reason=answer.reason or ("" if limit is None else limit.reason),
-        warnings=tuple(doubts(contact, motion)),
+        warnings=tuple(broken_assumptions(contact, motion)),
         not_checked=tuple(unchecked(contact)),
         counterbody=understood["counterbody"],
         understood=understood,

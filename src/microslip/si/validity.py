@@ -21,8 +21,8 @@ surface is tilted by 30 degrees at the edge, and a sphere is 7 % deeper there th
 Hertz takes for it."""
 
 
-def doubts(contact, motion) -> list[str]:
-    """List of warnings; contact: contact.TwoBodies, motion: groups.RealMotion."""
+def broken_assumptions(contact, motion) -> list[str]:
+    """List of warnings; contact: bodies.TwoBodies, motion: dimensionless.RealMotion."""
     return [text for check in _CHECKS for text in check(contact, motion)]
 
 

@@ -59,7 +59,7 @@ class Budget:
             raise Spent(f"the time limit of {self.time_limit:g} s is over")
 
     def counts(self) -> dict:
-        """What was taken, by the names of simulate.Run, a dict."""
+        """What was taken, by the names of run.Run, a dict."""
         return {name: getattr(self, name) for name in ("iterations", "work", "effort")}
 
 

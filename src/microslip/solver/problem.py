@@ -49,7 +49,7 @@ class Problem:
 
     Attributes
     ----------
-    scene : motion.Scene
+    motion : motion.Motion
         What moves, and the pressure that it is under.
     velocity, amplitude : float
         The dimensionless groups of the motion; amplitude None where it is steady.
@@ -57,39 +57,39 @@ class Problem:
         Poisson's ratio, 0 to 0.5.
     """
 
-    scene: object
+    motion: object
     velocity: float
     amplitude: float
     poisson: float
 
     def displacement(self, phase: np.ndarray) -> tuple[np.ndarray, ...]:
         """Rigid displacement (forward, lateral, angle) at a phase."""
-        return self.scene.displacement(phase, self.velocity, self.amplitude, self.poisson)
+        return self.motion.displacement(phase, self.velocity, self.amplitude, self.poisson)
 
     def oscillation(self, phase: np.ndarray) -> tuple[np.ndarray, ...]:
         """... without the forward motion."""
-        return self.scene.displacement(phase, 0.0, self.amplitude, self.poisson)
+        return self.motion.displacement(phase, 0.0, self.amplitude, self.poisson)
 
     @cached_property
     def depth(self) -> Callable | None:
         """Indentation over the reference one, a function of the phase; None: it does not change."""
-        depth, pressure = self.scene.depth, self.scene.pressure
+        depth, pressure = self.motion.depth, self.motion.pressure
         return None if depth is None else lambda phase: depth(phase, self.amplitude, pressure)
 
     @cached_property
     def mean_load(self) -> float:
         """Mean of the normal load over a period, over that of the reference state."""
-        return float(self.scene.mean_load(self.amplitude, self.scene.pressure))
+        return float(self.motion.mean_load(self.amplitude, self.motion.pressure))
 
     @cached_property
     def creep(self) -> float:
         """Forward displacement in one radian of phase, in u_lim."""
-        return self.scene.creep(self.velocity, self.amplitude, self.poisson)
+        return self.motion.creep(self.velocity, self.amplitude, self.poisson)
 
     @cached_property
     def grading(self) -> float:
         """How much shorter steps are at the turning points (see path.turning_point_grading)."""
-        return turning_point_grading(self.creep, self.scene.stroke(self.amplitude, self.poisson))
+        return turning_point_grading(self.creep, self.motion.stroke(self.amplitude, self.poisson))
 
     def path(self, contact: Contact, steps: int, integrator: Integrator = SDIRK2) -> Path:
         """The path to march, in steps that suit the motion, or the contact if it has a say in it.
@@ -101,7 +101,7 @@ class Problem:
 
 @lru_cache(maxsize=32)
 def _path(problem, steps, grading, integrator):
-    turns = problem.scene.turns(problem.velocity, problem.amplitude)
+    turns = problem.motion.turns(problem.velocity, problem.amplitude)
     phases = phases_between(turns, steps, grading)
     return make_path(problem.displacement, phases, integrator, problem.depth)
 
@@ -119,9 +119,9 @@ def _focus_strength(creep):
 
 def _focus(problem):
     """Where the slip starts: rings gather there, the closer, the slower the creep."""
-    scene = problem.scene
-    radius = scene.focus(problem.velocity, problem.amplitude, scene.pressure)
-    if radius is None or not scene.periodic:
+    motion = problem.motion
+    radius = motion.focus(problem.velocity, problem.amplitude, motion.pressure)
+    if radius is None or not motion.periodic:
         return radius
     creep = problem.creep
     return Focus(radius, _focus_strength(creep) if creep > 0.0 else STATIC_FOCUS)
@@ -143,12 +143,12 @@ def build_contact(
     focus : mesh.Focus or None
         Where rings gather; None: where the slip starts.
     """
-    scene = problem.scene
+    motion = problem.motion
     focus = focus or _focus(problem)
     build = MODELS[model].build
-    contact = build(scene, problem.poisson, resolution.cells, resolution.angles, focus)
-    if scene.depth is None:
+    contact = build(motion, problem.poisson, resolution.cells, resolution.angles, focus)
+    if motion.depth is None:
         return contact
-    start = scene.turns(problem.velocity, problem.amplitude)[0]
-    deepest = scene.deepest(problem.amplitude, scene.pressure)
-    return contact.pressed(deepest, float(problem.depth(np.array(start))))
+    start = motion.turns(problem.velocity, problem.amplitude)[0]
+    deepest = motion.deepest(problem.amplitude, motion.pressure)
+    return contact.at_indentation(deepest, float(problem.depth(np.array(start))))

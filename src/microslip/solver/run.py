@@ -20,14 +20,14 @@ class Settings:
     ----------
     method : method.Method
         How steps are solved and the periodic state is searched for.
-    careful : bool
+    tighter : bool
         Whether to solve the steps of slow motions tighter.
     budget : budget.Budget or None
         What the marches may take, None: whatever they do.
     """
 
     method: Method = SHIPPED
-    careful: bool = False
+    tighter: bool = False
     budget: Budget | None = None
 
     def contact(self, problem, model: str, resolution, focus=None) -> Contact:

@@ -9,7 +9,7 @@ import numpy as np
 from microslip.models.contact import FORWARD, Contact, StepFailure, forces, forward_slip
 from microslip.models.coulomb import project
 from microslip.models.path import Path
-from microslip.motions.motion import Scene
+from microslip.motions.motion import Motion
 from microslip.solver.period_map import MOST_MARCHES, CreepRate, Goal, PeriodMap
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run
@@ -20,12 +20,12 @@ STEP_SHARE = 1e-2
 SLOW_STEP_SHARE = 3e-4
 """Tolerance of a step over that of the periodic state: the slower the motion, the less a state
 changes in a period, and the more an error of its steps adds up."""
-CAREFUL = 0.1
+TIGHTER = 0.1
 """The floor of these tolerances in a second attempt, over that in a first one."""
 MARCH_SHARE = 0.16
 """Bound of the sum over the steps of half a period, two stages each: a third of the tolerance."""
 
-SLOW_PUSH, LARGEST_PUSH = 4.0, 0.6
+SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
 """Forward traction added to the static limit's, as a share of the bound, for a start: it grows as
 the friction itself does with the creep in a radian, so that every point slips forward too much.
 From there an accelerated search finds its way down; below, points would only drift."""
@@ -81,7 +81,7 @@ def simulate(
         return failed_run(str(failure))
     if method.extrapolated and run.converged:
         half = replace(resolution, steps=max(resolution.steps // 2, 1))
-        plain = replace(settings, method=replace(method, extrapolated=False), careful=False)
+        plain = replace(settings, method=replace(method, extrapolated=False), tighter=False)
         return _extrapolated(run, simulate(problem, model, half, tolerance, run, plain))
     return run
 
@@ -89,21 +89,21 @@ def simulate(
 def _run(problem, model, resolution, tolerance, guess, settings):
     """As `simulate`, but that the tolerance is that of a force over mu F_z, and failures raise."""
     contact = settings.contact(problem, model, resolution)
-    if not problem.scene.periodic:
+    if not problem.motion.periodic:
         return _steady_run(contact, problem, tolerance, STEP_SHARE * tolerance)
-    share = _step_share(contact.stiffness * problem.creep, resolution.steps, settings.careful)
+    share = _step_share(contact.stiffness * problem.creep, resolution.steps, settings.tighter)
     step_tolerance = share * tolerance
     search = _Search(contact, problem, settings.method, resolution.steps, tolerance, step_tolerance)
     return search.run(guess)
 
 
-def _step_share(force_rate, steps, careful):
+def _step_share(force_rate, steps, tighter):
     """Tolerance of a step over that of the periodic state.
 
     force_rate: force over mu F_z that a contact without slip gains in a radian.
     """
     slow_share = force_rate * np.pi * STEP_SHARE
-    floor = CAREFUL * SLOW_STEP_SHARE if careful else SLOW_STEP_SHARE
+    floor = TIGHTER * SLOW_STEP_SHARE if tighter else SLOW_STEP_SHARE
     return min(max(slow_share, floor), STEP_SHARE, MARCH_SHARE / steps)
 
 
@@ -131,7 +131,7 @@ class _Search:
     def __init__(self, contact, problem, method, steps, tolerance, step_tolerance):
         self.contact, self.problem, self.method, self.steps = contact, problem, method, steps
         self.tolerance, self.step_tolerance = tolerance, step_tolerance
-        interval = np.pi if problem.scene.half_period_mirror else 2.0 * np.pi
+        interval = np.pi if problem.motion.half_period_mirror else 2.0 * np.pi
         self.creep_rate = CreepRate(0.0, contact.stiffness * problem.creep * interval)
         self.path = self._path(steps)
         self.done = []
@@ -166,13 +166,13 @@ class _Search:
     def _start_near_the_limit(self, slipping):
         """The static limit with all points pushed forward; also takes note of its force."""
         contact, creep = self.contact, self.problem.creep
-        if not (contact.sticks and self.problem.scene.straight):
+        if not (contact.sticks and self.problem.motion.straight):
             return slipping
         residual, oscillating = static_state(contact, self.problem.oscillation, self.step_tolerance)
         force = float(forces(contact, residual)[FORWARD])
         self.creep_rate = replace(self.creep_rate, static_force=force)
-        push = min(SLOW_PUSH * creep ** (2.0 / 3.0), LARGEST_PUSH)
-        return project(residual + oscillating + push * slipping, contact.bound)
+        excess = min(SLOW_EXCESS * creep ** (2.0 / 3.0), LARGEST_EXCESS)
+        return project(residual + oscillating + excess * slipping, contact.bound)
 
     def _find_in_stages(self, start):
         """From coarse steps to the steps asked for, each on the result of the last."""
@@ -191,7 +191,7 @@ class _Search:
     def _find(self, path, start, inverse, tolerance=None):
         looser = (tolerance or self.tolerance) / self.tolerance
         period_map = PeriodMap(
-            self.contact, path, self.creep_rate, self.problem.scene.half_period_mirror
+            self.contact, path, self.creep_rate, self.problem.motion.half_period_mirror
         )
         tolerances = looser * self.tolerance, looser * self.step_tolerance
         goal = Goal(*tolerances, MOST_MARCHES, inverse)
@@ -203,7 +203,7 @@ class _Search:
         forward, _, torque = mean_forces(self.contact, self.problem, self.path, found.forces)
         solves = sum(one.solves for one in self.done)
         solved = found.solver_residual <= _solved_sum(self.path, self.step_tolerance)
-        periods = periods_of(sum(one.marches for one in self.done), self.problem.scene)
+        periods = periods_of(sum(one.marches for one in self.done), self.problem.motion)
         reason = ""
         if not found.converged:
             reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
@@ -211,7 +211,7 @@ class _Search:
             reason = f"a step was left unsolved: residual {found.solver_residual:.1e}"
         return Run(
             mu=float(forward) / full,
-            torque=float(torque) / self.problem.scene.pressure.torque,
+            torque=float(torque) / self.problem.motion.pressure.torque,
             distance=found.distance / full,
             solver_residual=found.solver_residual / full,
             periods=periods,
@@ -227,10 +227,10 @@ class _Search:
         )
 
 
-def periods_of(marches: int, scene: Scene) -> float:
-    """Full periods in so many marches of a motion.Scene, a float: each is half of one where its
+def periods_of(marches: int, motion: Motion) -> float:
+    """Full periods in so many marches of a motion.Motion, a float: each is half of one where its
     second half is the mirror image of the first."""
-    return 0.5 * marches if scene.half_period_mirror else float(marches)
+    return 0.5 * marches if motion.half_period_mirror else float(marches)
 
 
 def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarray) -> np.ndarray:
@@ -253,7 +253,7 @@ def _steady_run(contact, problem, tolerance, step_tolerance):
     found = steady_state(contact, problem.displacement, problem.velocity, tolerance, step_tolerance)
     return Run(
         mu=float(found.forces[0]),
-        torque=float(found.forces[2]) / problem.scene.pressure.torque,
+        torque=float(found.forces[2]) / problem.motion.pressure.torque,
         distance=found.distance,
         solver_residual=found.solver_residual,
         periods=0.0,

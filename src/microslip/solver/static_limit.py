@@ -20,7 +20,7 @@ import numpy as np
 
 from microslip.models.contact import Contact
 from microslip.models.path import EULER, make_path
-from microslip.motions.motion import Scene
+from microslip.motions.motion import Motion
 
 STEPS = 4
 """Steps from one turning point to the next.  Between them the slip of each point keeps its
@@ -28,10 +28,10 @@ direction and only grows, so that backward Euler steps of any size end in the sa
 method of second order may end a step below the bound, and the residual feels the square root.)"""
 
 
-def at_turning_points(scene: Scene) -> bool:
-    """Whether the turning points tell the static limit of a motion.Scene: motion on a line under a
+def at_turning_points(motion: Motion) -> bool:
+    """Whether the turning points tell the static limit of a motion.Motion: motion on a line under a
     load that stays."""
-    return scene.straight and scene.depth is None
+    return motion.straight and motion.depth is None
 
 
 def oscillating_part(contact: Contact, oscillation: Callable, step_tolerance: float) -> np.ndarray:

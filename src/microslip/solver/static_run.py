@@ -42,7 +42,7 @@ def simulate_static(
     oscillation is on a line.
     """
     try:
-        if at_turning_points(problem.scene):
+        if at_turning_points(problem.motion):
             return _on_a_line(settings.contact(problem, model, resolution), problem, tolerance)
         return _on_a_loop(problem, model, resolution, tolerance, settings)
     except (StepFailure, ArithmeticError, np.linalg.LinAlgError) as failure:
@@ -97,7 +97,7 @@ def _stick_radius(contact, left):
 
 def _on_these_points(contact, problem, path, tolerance):
     """The Run on one contact, and which points have something left to resist with, if any has."""
-    mirror = problem.scene.half_period_mirror
+    mirror = problem.motion.half_period_mirror
     distance = max(tolerance**2, SMALLEST_DISTANCE)
     shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
     period_map = PeriodMap(contact, path, mirror=mirror)
@@ -119,7 +119,7 @@ def _on_these_points(contact, problem, path, tolerance):
         force += float(np.sum(contact.weight * shift))
         left = shift > NOTHING_LEFT * bounds.max()
     near = found.converged or found.distance <= ENOUGH * tolerance**2  # and its error is told
-    periods, reason = periods_of(found.marches, problem.scene), ""
+    periods, reason = periods_of(found.marches, problem.motion), ""
     if not near:
         reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
     run = Run(

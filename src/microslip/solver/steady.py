@@ -32,7 +32,7 @@ class SteadyState:
     solver_residual : float
         Summed over the last stretch.
     stretches, iterations, solves : int
-        Marched, and the effort (see simulate.Run).
+        Marched, and the effort (see run.Run).
     converged : bool
         Whether the distance is within the tolerance and every step was solved.
     """

@@ -33,7 +33,7 @@ def settings(study: str, configuration) -> dict:
 def build(study: str, configuration, answer: Callable) -> object:
     """Assemble the xarray.Dataset of a study.
 
-    configuration: settings.Configuration. answer(request) -> record, see microslip.sweeps.batches.
+    configuration: records.Configuration. answer(request) -> record, see microslip.sweeps.batches.
     """
     return _dataset_of(study).build(getattr(configuration, study), answer)
 

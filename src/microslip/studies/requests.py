@@ -17,7 +17,7 @@ MOST_WORK = 5_000_000
 
 
 def of_point(point) -> dict:
-    """The part of a request that says where: point is a settings.StudyPoint."""
+    """The part of a request that says where: point is a records.StudyPoint."""
     return {
         "scene": point.scene,
         "velocity": number(point.velocity),

@@ -43,7 +43,7 @@ FOLDERS = {
 
 
 class PointRequests(Sequence):
-    """Requests for all points of a settings.Sweep, each made when it is asked for.
+    """Requests for all points of a records.Sweep, each made when it is asked for.
 
     The order is that of the dataset: Poisson's ratio, amplitude, velocity, the last one fastest.
     """

@@ -130,10 +130,10 @@ def _probe(request):
     """A certified solve with another method; `applies` is False where it cannot be used."""
     from microslip.adaptive import single_run
     from microslip.adaptive.choice import choose_model
-    from microslip.motions.registry import scene_named
+    from microslip.motions.registry import motion_named
 
     place = _place(request)
-    scene = scene_named(place["scene"], place.get("pressure", "hertz"))
+    scene = motion_named(place["scene"], place.get("pressure", "hertz"))
     model = choose_model(scene, place["poisson"], request["model"])
     how = {"model": model, "method": request["method"], "pressure": scene.pressure.name}
     reason = single_run.applies(place["scene"], place["poisson"], **how)

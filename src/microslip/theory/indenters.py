@@ -103,7 +103,6 @@ def torsion_stick_radius(pressure, angle: float, poisson: float = 0.0) -> float:
 
     if angle <= 0.0:
         return 1.0
-    from scipy.optimize import brentq  # only here: it takes a while to load
 
     def excess(log_c):
         return torsion_angle(pressure, np.exp(log_c), poisson) - angle

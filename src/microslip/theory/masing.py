@@ -56,32 +56,32 @@ def longitudinal(
 def _mean(v, x, curve):
     """The same where 0 < v < x, shape (n,)."""
 
-    def way(phase):
+    def travel(phase):
         return v * phase + x * np.sin(phase)
 
     back = np.arccos(-v / x)  # turns back, and forward again
     forth = 2.0 * np.pi - back
     end = back + 2.0 * np.pi
-    stroke = way(back) - way(forth)
+    stroke = travel(back) - travel(forth)
     # What lies behind the last turn back has been forgotten when the sphere gets there again.
-    closed = _first(lambda phase: way(phase) - way(back), forth, end)
+    closed = _first(lambda phase: travel(phase) - travel(back), forth, end)
 
     def backward(phase):
-        return 1.0 - _turned(curve, way(back) - way(phase))
+        return 1.0 - _turned(curve, travel(back) - travel(phase))
 
     def forward(phase):
-        return 1.0 - _turned(curve, stroke) + _turned(curve, way(phase) - way(forth))
+        return 1.0 - _turned(curve, stroke) + _turned(curve, travel(phase) - travel(forth))
 
-    sliding = _first(lambda phase: way(back) - way(phase) - 2.0, back, forth)
+    sliding = _first(lambda phase: travel(back) - travel(phase) - 2.0, back, forth)
     area = _integral(backward, back, sliding) + _integral(backward, sliding, forth)
-    sliding = _first(lambda phase: way(phase) - way(forth) - 2.0, forth, closed)
+    sliding = _first(lambda phase: travel(phase) - travel(forth) - 2.0, forth, closed)
     area += _integral(forward, forth, sliding) + _integral(forward, sliding, closed)
     return (area + end - closed) / (2.0 * np.pi)
 
 
-def _turned(curve, way):
+def _turned(curve, travel):
     """Change of the force on the way from a turn on: the first curve at twice the scale."""
-    return 2.0 * curve(np.maximum(0.5 * way, 0.0))
+    return 2.0 * curve(np.maximum(0.5 * travel, 0.0))
 
 
 def _first(function, low, high):

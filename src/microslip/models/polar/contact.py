@@ -82,11 +82,11 @@ class PolarContact:
         self.penalty = PENALTY * self.compliance
         self._made_of = cells, focus, pressure
 
-    def pressed(self, deepest: float, start: np.ndarray) -> PolarContact:
+    def at_indentation(self, deepest: float, start: np.ndarray) -> PolarContact:
         """The same points spread over the contact at its `deepest`, with the bound at `start`;
-        see RadialContact.pressed."""
+        see RadialContact.at_indentation."""
         out = copy(self)
-        out.loaded = RadialContact.resolved(*self._made_of).pressed(deepest, start)
+        out.loaded = RadialContact.resolved(*self._made_of).at_indentation(deepest, start)
         out.radius = radius = out.loaded.radius
         out.forward_position = self.forward_position * radius
         out.lateral_position = self.lateral_position * radius

@@ -247,7 +247,7 @@ def march(points, path, state, tolerance, known, forces) -> tuple:
     weight, positions, bounds = points.weight, points.positions, path.bounds
     angles, n = state.shape[1], state.shape[2]
     stages = path.stages.shape[1]
-    q, held, before = state.copy(), state.copy(), np.empty_like(state)
+    q, at_end, before = state.copy(), state.copy(), np.empty_like(state)
     rigid, z, b = np.empty_like(q), np.empty_like(q), np.empty_like(q)
     slips = np.empty((stages, 2, angles, n))
     unknowns = Unknowns(q, np.zeros_like(q))
@@ -277,7 +277,7 @@ def march(points, path, state, tolerance, known, forces) -> tuple:
             count, residual = solve_step(points, step, unknowns, slips[s], scratch)
             spent += count * 8.0 * angles * n * n
             if count < 0 or (spent > BETWEEN_LOOKS and interrupted()):
-                return held, total, iterations, True
+                return at_end, total, iterations, True
             spent = 0.0 if spent > BETWEEN_LOOKS else spent
             _copy(known.added[k, s], q)
             _add(known.added[k, s], -1.0, before)
@@ -289,6 +289,6 @@ def march(points, path, state, tolerance, known, forces) -> tuple:
                 for i in range(n):
                     now = b[c, j, i] - (slips[stages - 1, c, j, i] + rigid[c, j, i])
                     z[c, j, i] = extended(z[c, j, i], now, path.end)
-                    held[c, j, i] = extended(held[c, j, i], q[c, j, i], path.end)
-        sum_forces(held, weight, positions, forces[k + 1])
-    return held, total, iterations, False
+                    at_end[c, j, i] = extended(at_end[c, j, i], q[c, j, i], path.end)
+        sum_forces(at_end, weight, positions, forces[k + 1])
+    return at_end, total, iterations, False

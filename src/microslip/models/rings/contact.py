@@ -71,7 +71,7 @@ class RadialContact:
         """The half-space on `cells` rings refined around the radius `focus`."""
         return _resolved(cells, focus, pressure)
 
-    def pressed(self, deepest: float, start: np.ndarray) -> RadialContact:
+    def at_indentation(self, deepest: float, start: np.ndarray) -> RadialContact:
         """The same rings spread over the contact at its `deepest`, with the bound at `start`.
 
         Both are depths (see varying_load.py), deepest > 0.
@@ -111,11 +111,11 @@ class RadialContact:
         edge: radii (len(depths),) that say which rings are in contact, by default those of the
         contact.  What is outside of these rings counts for the last of them.
         """
-        carried = self.growth.carried(self.growth.pressure, self.growth.edges, depths)
+        load_within = self.growth.load_within(self.growth.pressure, self.growth.edges, depths)
         edge = self.growth.pressure.radius(depths) if edge is None else edge
-        outside, most = edge[:, None] <= self._joins, carried[:, -1:]
-        carried[:, 1:-1] = np.where(outside, most, carried[:, 1:-1])
-        return np.maximum(np.diff(carried, axis=1), 0.0) / self.weight
+        outside, most = edge[:, None] <= self._joins, load_within[:, -1:]
+        load_within[:, 1:-1] = np.where(outside, most, load_within[:, 1:-1])
+        return np.maximum(np.diff(load_within, axis=1), 0.0) / self.weight
 
     def bounds_along(self, path) -> np.ndarray:
         """Bounds at the start and at every stage of a path, (1 + steps stages, cells).

@@ -31,7 +31,7 @@ class Derivative(NamedTuple):
         Whether the rows of a ring in it are no longer those of the identity.
     slips : np.ndarray, shape (stages, 2, n, columns)
         Of the slips in the last stages, filled where rings slipped.
-    slid : np.ndarray, shape (stages, n)
+    slipped : np.ndarray, shape (stages, n)
         Whether a ring slipped in them.
     transfer : np.ndarray, shape (n, n)
         See `_transfer`.
@@ -42,7 +42,7 @@ class Derivative(NamedTuple):
     displacement: np.ndarray
     touched: np.ndarray
     slips: np.ndarray
-    slid: np.ndarray
+    slipped: np.ndarray
     transfer: np.ndarray
     work: np.ndarray
 
@@ -196,9 +196,9 @@ def start_derivative(rings, dz: np.ndarray) -> np.ndarray:
 @kernel(inline="always")
 def carry_derivative(derivative: Derivative, stage: int, share: float) -> None:
     """Less `share` of the slips of a stage, where rings slipped in it; these count as touched."""
-    slid, dslip, dz = derivative.slid[stage], derivative.slips[stage], derivative.displacement
-    for i in range(len(slid)):
-        if slid[i]:
+    slipped, dslip, dz = derivative.slipped[stage], derivative.slips[stage], derivative.displacement
+    for i in range(len(slipped)):
+        if slipped[i]:
             derivative.touched[i] = True
             subtract(dz[0, i], share, dslip[0, i])
             subtract(dz[1, i], share, dslip[1, i])

@@ -48,10 +48,16 @@ def extrapolate(q, last, bound, before, ratio) -> None:
 
 
 @kernel
-def stretch(way: np.ndarray, at: int) -> float:
+def stretch(displacements: np.ndarray, at: int) -> float:
     """Length of the stage that ends at `at` over that of the stage before, at most 3."""
-    before = np.hypot(way[at - 1, 0] - way[at - 2, 0], way[at - 1, 1] - way[at - 2, 1])
-    length = np.hypot(way[at, 0] - way[at - 1, 0], way[at, 1] - way[at - 1, 1])
+    before = np.hypot(
+        displacements[at - 1, 0] - displacements[at - 2, 0],
+        displacements[at - 1, 1] - displacements[at - 2, 1],
+    )
+    length = np.hypot(
+        displacements[at, 0] - displacements[at - 1, 0],
+        displacements[at, 1] - displacements[at - 1, 1],
+    )
     return length / before if length < LONGEST_STRETCH * before else LONGEST_STRETCH
 
 

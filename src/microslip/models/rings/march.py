@@ -23,12 +23,12 @@ from microslip.models.rings.tangent import copy, factorise, make_factors, subtra
 def _displacements(path):
     """Forward and lateral displacement at the start and at every stage, (1 + steps stages, 2)."""
     steps, stages = path.stages.shape[0], path.stages.shape[1]
-    way = np.empty((1 + steps * stages, 2))
+    displacements = np.empty((1 + steps * stages, 2))
     for c in range(2):
-        way[0, c] = path.positions[0, c]
+        displacements[0, c] = path.positions[0, c]
         for k in range(steps * stages):
-            way[1 + k, c] = path.stages[k // stages, k % stages, c]
-    return way
+            displacements[1 + k, c] = path.stages[k // stages, k % stages, c]
+    return displacements
 
 
 @kernel
@@ -52,7 +52,7 @@ def _bound_at(bounds, at):
 
 
 @kernel(inline="always")
-def _guess(q, bounds, way, at, known, tractions):
+def _guess(q, bounds, displacements, at, known, tractions):
     """Move q, the tractions at the end of a stage, to the first guess of those of the next one.
 
     at: number of that stage from 1 on; known, tractions: of another march, or nothing, and of this
@@ -64,7 +64,9 @@ def _guess(q, bounds, way, at, known, tractions):
     if len(known) > 0:
         follow(q, bound, known[at], known[at - 1])
     elif at > 1:
-        extrapolate(q, _bound_at(bounds, at - 1), bound, tractions[at - 2], stretch(way, at))
+        extrapolate(
+            q, _bound_at(bounds, at - 1), bound, tractions[at - 2], stretch(displacements, at)
+        )
 
 
 @kernel
@@ -95,12 +97,12 @@ def march(rings, path, state, known, tolerance, tangent) -> tuple:
     """
     n, steps, stages = len(rings.weight), path.stages.shape[0], path.stages.shape[1]
     weight, carry, end = rings.weight, path.carry, path.end
-    factors, way, bounds = make_factors(n), _displacements(path), path.bounds
+    factors, displacements, bounds = make_factors(n), _displacements(path), path.bounds
     derivative = make_derivative(n, stages, 2 * n if tangent else 0)
     tractions, forces = np.empty((1 + steps * stages, 2, n)), np.zeros((steps + 1, 3))
     slips, b = np.empty((stages, 2, n)), np.empty((2, n))
-    q, held = state.copy(), state.copy()
-    z = _remembered(rings, way[0], q, b)
+    q, at_end = state.copy(), state.copy()
+    z = _remembered(rings, displacements[0], q, b)
     for c in range(2):
         for i in range(n):
             forces[0, c] += weight[i] * q[c, i]
@@ -111,11 +113,11 @@ def march(rings, path, state, known, tolerance, tangent) -> tuple:
             at += 1
             for c in range(2):
                 for i in range(n):
-                    b[c, i] = z[c, i] + weight[i] * way[at, c]
+                    b[c, i] = z[c, i] + weight[i] * displacements[at, c]
                 for j in range(s):
                     subtract(b[c], carry[s, j], slips[j, c])
             bound = _bound_at(bounds, at)
-            _guess(q, bounds, way, at, known, tractions)
+            _guess(q, bounds, displacements, at, known, tractions)
             step = Step(b, bound, tolerance)
             count, residual = solve_step(rings, step, q, slips[s], factors)
             copy(tractions[at], q)
@@ -125,21 +127,21 @@ def march(rings, path, state, known, tolerance, tangent) -> tuple:
             if spent > BETWEEN_LOOKS:
                 spent = 0.0
                 if interrupted():
-                    return held, tractions, forces, total, iterations, np.empty((0, 0)), True
+                    return at_end, tractions, forces, total, iterations, np.empty((0, 0)), True
             if tangent:
                 carry_to_stage(derivative, carry, s)
                 stick = factorise(rings, bound, q, slips[s], factors)
                 for p in range(n):
-                    derivative.slid[s, factors.order[p]] = p >= stick >= 0
+                    derivative.slipped[s, factors.order[p]] = p >= stick >= 0
                 if 0 <= stick < n:
                     slip_tangent(factors, stick, slips[s], bound, derivative, s)
         for c in range(2):
             for i in range(n):
-                now = b[c, i] - slips[stages - 1, c, i] - weight[i] * way[at, c]
+                now = b[c, i] - slips[stages - 1, c, i] - weight[i] * displacements[at, c]
                 z[c, i] = extended(z[c, i], now, end)
-                held[c, i] = extended(held[c, i], q[c, i], end)
-                forces[k + 1, c] += weight[i] * held[c, i]
+                at_end[c, i] = extended(at_end[c, i], q[c, i], end)
+                forces[k + 1, c] += weight[i] * at_end[c, i]
         if tangent:
             carry_derivative(derivative, stages - 1, 1.0 / end)
     found = start_derivative(rings, derivative.displacement) if tangent else np.empty((0, 0))
-    return held, tractions, forces, total, iterations, found, False
+    return at_end, tractions, forces, total, iterations, found, False

@@ -1,6 +1,6 @@
-"""Rings of a circular contact: edges that follow the scene, areas, bounds and lever arms.
+"""Rings of a circular contact: edges that follow the motion, areas, bounds and lever arms.
 
-Radii are r = sin(psi), psi equidistant but for what a scene asks for: so the edge of the contact
+Radii are r = sin(psi), psi equidistant but for what a motion asks for: so the edge of the contact
 is refined, where pressures of smooth bodies fall like a square root, and the edge of a hole alike.
 """
 

@@ -111,7 +111,7 @@ def march(squares, positions, path, state, tolerance, guide) -> tuple:
     """
     steps, stages, end = path.stages.shape[0], path.stages.shape[1], path.end
     bound, weight = squares.bound, np.full(state.shape[2], squares.area)
-    q, held = state.copy(), state.copy()
+    q, at_end = state.copy(), state.copy()
     rigid, z, b = np.empty_like(q), np.empty_like(q), np.empty_like(q)
     slips, forces = np.empty((stages, *q.shape)), np.empty((steps + 1, 3))
     last_guide = q.copy()
@@ -136,7 +136,7 @@ def march(squares, positions, path, state, tolerance, guide) -> tuple:
             count, residual, length = solve_step(squares, b, q, slips[s], length, tolerance)
             spent += count * 100.0 * q.size
             if count < 0 or (spent > BETWEEN_LOOKS and interrupted()):
-                return held, forces, total, iterations, True
+                return at_end, forces, total, iterations, True
             if spent > BETWEEN_LOOKS:
                 spent = 0.0
             iterations += count
@@ -149,9 +149,9 @@ def march(squares, positions, path, state, tolerance, guide) -> tuple:
             for i in range(q.shape[1]):
                 for j in range(q.shape[2]):
                     z[c, i, j] = extended(z[c, i, j], b[c, i, j], end)
-                    held[c, i, j] = extended(held[c, i, j], q[c, i, j], end)
-        sum_forces(held, weight, positions, forces[k + 1])
-    return held, forces, total, iterations, False
+                    at_end[c, i, j] = extended(at_end[c, i, j], q[c, i, j], end)
+        sum_forces(at_end, weight, positions, forces[k + 1])
+    return at_end, forces, total, iterations, False
 
 
 @kernel

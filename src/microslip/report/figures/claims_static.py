@@ -17,7 +17,7 @@ from microslip.report.figures.data import require
 from microslip.theory.catalogue import FORMS, STATIC
 
 BORE_AMPLITUDE = replace(AMPLITUDE["bore"], latex=r"\tilde{\varphi}")
-SCENES = (
+MOTIONS = (
     (
         *("transverse", "transverse oscillation", AMPLITUDE["transverse"]),
         (
@@ -45,14 +45,14 @@ LIGHTEST = 0.82
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw friction over amplitude above, shares of the bound over the radius below."""
     needed = ["share_radius", "claims_slowest", "claims_paper_velocity"]
-    for scene, _, _, curves in SCENES:
+    for scene, _, _, curves in MOTIONS:
         needed += [f"{scene}_curve_{n}" for n in ("amplitude", *(c[0] for c in curves))]
         needed += [f"{scene}_{n}" for n in ("amplitude", "used_share", "left_share", *POINTS)]
     require(name, "claims", dataset, needed)
 
     figure = look.new_figure(look.DOUBLE, 6.4)
     grid = figure.subplots(2, 2)
-    for axes, below, upper, lower, scene in zip(*grid, "ab", "cd", SCENES, strict=True):
+    for axes, below, upper, lower, scene in zip(*grid, "ab", "cd", MOTIONS, strict=True):
         _friction(axes, dataset, scene)
         look.legend_above(axes, upper, scene[1])
         _shares(below, dataset, scene[0], scene[2])

@@ -15,23 +15,23 @@ from microslip.config.quantities import AMPLITUDE, VELOCITY
 from microslip.report.figures import style as look
 from microslip.report.figures.data import require
 
-SCENES = ("transverse", "bore")
+MOTIONS = ("transverse", "bore")
 NONE = {"facecolor": "white", "edgecolor": look.GREY, "linewidth": 0.0, "hatch": "/////"}
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw one row of panels a scene, one column a tolerance."""
     parts = ("velocity", "amplitude", "cheapest")
-    needed = ["map_tolerance", *(f"{scene}_{part}" for scene in SCENES for part in parts)]
+    needed = ["map_tolerance", *(f"{scene}_{part}" for scene in MOTIONS for part in parts)]
     require(name, "accuracy_cost", dataset, needed)
     tolerances = dataset["map_tolerance"].values
-    found = {str(n) for scene in SCENES for n in dataset[f"{scene}_cheapest"].values.ravel()}
+    found = {str(n) for scene in MOTIONS for n in dataset[f"{scene}_cheapest"].values.ravel()}
     models = look.in_order(found - {""})
 
     figure = look.new_figure(look.DOUBLE, 5.9)
-    grid = figure.subplots(len(SCENES), tolerances.size, squeeze=False, sharex="row", sharey="row")
+    grid = figure.subplots(len(MOTIONS), tolerances.size, squeeze=False, sharex="row", sharey="row")
     letters = iter(look.letters(grid.size))
-    for row, scene in zip(grid, SCENES, strict=True):
+    for row, scene in zip(grid, MOTIONS, strict=True):
         for index, (axes, tolerance) in enumerate(zip(row, tolerances, strict=True)):
             _panel(axes, dataset.isel(map_tolerance=index), scene, models)
             note = rf"{scene}, error within ${look.power_of_ten(float(tolerance))}$"

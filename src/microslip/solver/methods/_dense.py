@@ -70,9 +70,9 @@ class DenseContact:
     def march(self, path, state, tolerance, sensitivity=False, previous=None) -> March:
         """March along `path`; raises StepFailure at the first step that stays unsolved."""
         q = state.reshape(2, -1).copy()
-        held, z = q.copy(), self._elastic(q) - self._rigid(path.positions[0])
+        at_end, z = q.copy(), self._elastic(q) - self._rigid(path.positions[0])
         found = np.empty((path.steps + 1, 3))
-        found[0] = forces(self.contact, held.reshape(self.shape))
+        found[0] = forces(self.contact, at_end.reshape(self.shape))
         slips = np.empty((path.stages.shape[1], *q.shape))
         total, iterations = 0.0, 0
         for k, stages in enumerate(path.stages):
@@ -83,10 +83,10 @@ class DenseContact:
                 iterations, total = iterations + count, total + residual
             now = b - slips[-1] - rigid
             z = z + (now - z) / path.end
-            held = q.copy() if path.end == 1.0 else held + (q - held) / path.end
-            found[k + 1] = forces(self.contact, held.reshape(self.shape))
+            at_end = q.copy() if path.end == 1.0 else at_end + (q - at_end) / path.end
+            found[k + 1] = forces(self.contact, at_end.reshape(self.shape))
         solves = path.stages.shape[0] * path.stages.shape[1]
-        return March(held.reshape(self.shape), found, total, iterations, solves)
+        return March(at_end.reshape(self.shape), found, total, iterations, solves)
 
     def _solved(self, b, q, slip, tolerance):
         try:

@@ -34,7 +34,7 @@ def last_means(march) -> tuple[float, float]:
 
 
 def _run(problem, model, resolution, tolerance):
-    contact = CartesianContact(CELLS, problem.poisson, problem.scene.pressure)
+    contact = CartesianContact(CELLS, problem.poisson, problem.motion.pressure)
     march = contact.march(path_of(problem), forward_slip(contact), STRESS_TOLERANCE)
     mean, before = last_means(march)
     return Run(

@@ -40,7 +40,7 @@ many of the sizes one job can measure together."""
 def trials(study, point: StudyPoint) -> Iterator[tuple[int, dict]]:
     """Yield (level, request) for the trials of one point, the choices of `solve` at the end.
 
-    study: settings.Accuracy. The level of a choice counts its tolerances.
+    study: records.Accuracy. The level of a choice counts its tolerances.
     """
     for method in study.methods:
         for model in models_for(method, point.scene, point.poisson):
@@ -60,7 +60,7 @@ def truth(point: StudyPoint) -> dict | None:
 
 
 def map_points(study, scene: str) -> list[StudyPoint]:
-    """The points of a map as settings.StudyPoint, amplitude by amplitude, the velocity fastest."""
+    """The points of a map as records.StudyPoint, amplitude by amplitude, the velocity fastest."""
     return [
         StudyPoint("", scene, velocity, amplitude, 0.0, "")
         for amplitude in study.map_amplitude[scene]

@@ -61,7 +61,7 @@ TRIAL_VARIABLES = {
 def build(settings, answer: Callable) -> xr.Dataset:
     """Assemble the Dataset.
 
-    settings: settings.Accuracy. answer(request) -> record, such as sweep.answer with a store.
+    settings: records.Accuracy. answer(request) -> record, such as batches.answer with a store.
     """
     answers = Answers(answer)
     points = list(settings.points.values())

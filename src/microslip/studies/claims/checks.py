@@ -1,7 +1,7 @@
 """What the runs say about each part of the paper's statements: checks with margins and errors.
 
-One function for each name in claims_statements.PARTS: (study, runs) -> list of verdicts.Check.
-study: settings.Claims; runs(request) -> tables of results, see runs.Runs.
+One function for each name in statements.PARTS: (study, runs) -> list of verdicts.Check.
+study: records.Claims; runs(request) -> tables of results, see runs.Runs.
 """
 
 from itertools import pairwise
@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from microslip.studies.claims import claims as asked
-from microslip.studies.claims import statements as say
+from microslip.studies.claims import statements as criteria
 from microslip.studies.claims.runs import friction
 from microslip.studies.claims.verdicts import Check
 from microslip.studies.tables import value_of
@@ -64,7 +64,7 @@ def rigid_below_squares(study, runs) -> list[Check]:
 
 def rigid_near(study, runs) -> list[Check]:
     formula = theory.large_amplitude_transverse
-    return _map(study, runs, "transverse", formula, lambda mu, eq: say.SLIGHT - abs(mu - eq))
+    return _map(study, runs, "transverse", formula, lambda mu, eq: criteria.SLIGHT - abs(mu - eq))
 
 
 # Continuous bore
@@ -80,7 +80,7 @@ def _settles(runs, quantity, against):
         tail = fine[-max(fine.size // 10, 2) :]
         error = abs(fine[-1] - coarse[-1]) + np.abs(tail - fine[-1]).max()
         place = {"velocity": asked.TRANSIENT_VELOCITY}
-        found.append(within(say.AGREES, fine[-1], against, error, two, **place))
+        found.append(within(criteria.AGREES, fine[-1], against, error, two, **place))
     return found
 
 
@@ -98,7 +98,7 @@ def force_steady(study, runs) -> list[Check]:
         run = runs(request)
         mu, error = friction(run)
         exact = theory.bore_forward(velocity)
-        found.append(within(say.AGREES, mu, exact, error, [run], velocity=velocity))
+        found.append(within(criteria.AGREES, mu, exact, error, [run], velocity=velocity))
     return found
 
 
@@ -126,11 +126,11 @@ def _fields(runs, index, judge):
 
 
 def on_bound(study, runs) -> list[Check]:
-    return _fields(runs, 0, lambda share: (say.ON_BOUND, share - say.ON_BOUND))
+    return _fields(runs, 0, lambda share: (criteria.ON_BOUND, share - criteria.ON_BOUND))
 
 
 def aligned(study, runs) -> list[Check]:
-    return _fields(runs, 1, lambda angle: (say.ALIGNED, say.ALIGNED - angle))
+    return _fields(runs, 1, lambda angle: (criteria.ALIGNED, criteria.ALIGNED - angle))
 
 
 # Oscillating bore
@@ -142,17 +142,17 @@ def _steady_formula(velocity, amplitude):
 
 def _steady_near(study, runs, chosen):
     def judge(mu, eq):
-        return say.GOOD - abs(mu - eq)
+        return criteria.GOOD - abs(mu - eq)
 
     return _map(study, runs, "bore", _steady_formula, judge, chosen)
 
 
 def steady_near(study, runs) -> list[Check]:
-    return _steady_near(study, runs, lambda amplitude: amplitude >= say.LARGE_BORE)
+    return _steady_near(study, runs, lambda amplitude: amplitude >= criteria.LARGE_BORE)
 
 
 def steady_near_below(study, runs) -> list[Check]:
-    return _steady_near(study, runs, lambda amplitude: amplitude < say.LARGE_BORE)
+    return _steady_near(study, runs, lambda amplitude: amplitude < criteria.LARGE_BORE)
 
 
 def steady_nears(study, runs) -> list[Check]:
@@ -211,7 +211,7 @@ def alternates(study, runs) -> list[Check]:
             leads.append((left[k] - right[k]) / total if total > 0 else 0.0)
         # the smaller of the two leads, of one side and then of the other
         lead = max(min(leads[0], -leads[1]), min(-leads[0], leads[1]))
-        return lead, say.ALTERNATES, lead - say.ALTERNATES
+        return lead, criteria.ALTERNATES, lead - criteria.ALTERNATES
 
     return _periods(study, runs, judge)
 

@@ -1,10 +1,10 @@
 """What the runs say about static friction: checks of the parts about Eqs 7, 11 and 33.
 
-As in claims_checks: one function for each part, (study, runs) -> list of verdicts.Check.
+As in checks.py: one function for each part, (study, runs) -> list of verdicts.Check.
 """
 
 from microslip.studies.claims import claims as asked
-from microslip.studies.claims import statements as say
+from microslip.studies.claims import statements as criteria
 from microslip.studies.claims import static_limits as static
 from microslip.studies.claims.checks import check, within
 from microslip.studies.claims.runs import friction
@@ -69,11 +69,11 @@ def _above_march(study, runs, scene, formula, chosen):
 
 
 def _above_turning(amplitude):
-    return amplitude > say.TURNING_BORE
+    return amplitude > criteria.TURNING_BORE
 
 
 def _below_turning(amplitude):
-    return amplitude < say.TURNING_BORE
+    return amplitude < criteria.TURNING_BORE
 
 
 def _bore_zone(study, runs, judge, chosen):
@@ -87,11 +87,13 @@ def _bore_zone(study, runs, judge, chosen):
 
 
 def bore_zone_near(study, runs) -> list:
-    return _bore_zone(study, runs, lambda eq, mu: say.GOOD - abs(eq - mu), _above_turning)
+    return _bore_zone(study, runs, lambda eq, mu: criteria.GOOD - abs(eq - mu), _above_turning)
 
 
 def bore_zone_relative(study, runs) -> list:
-    return _bore_zone(study, runs, lambda eq, mu: say.RELATIVE * mu - abs(eq - mu), _above_turning)
+    return _bore_zone(
+        study, runs, lambda eq, mu: criteria.RELATIVE * mu - abs(eq - mu), _above_turning
+    )
 
 
 def bore_zone_above(study, runs) -> list:
@@ -101,7 +103,7 @@ def bore_zone_above(study, runs) -> list:
 def bore_zone_printed(study, runs) -> list:
     def judge(amplitude, limit):
         printed = paper.static_bore_printed(amplitude)
-        return printed, say.GOOD - abs(printed - limit)
+        return printed, criteria.GOOD - abs(printed - limit)
 
     return _at_limit(study, runs, "bore", judge, _above_turning)
 
@@ -116,7 +118,7 @@ def bore_zone_seen(study, runs) -> list:
         run = runs(asked.point(study, "bore", asked.PAPER_VELOCITY, amplitude))
         mu, error = friction(run)
         zone = paper.static_bore(amplitude)
-        found.append(within(say.GOOD, mu, zone, error, [run], amplitude=amplitude))
+        found.append(within(criteria.GOOD, mu, zone, error, [run], amplitude=amplitude))
     return found
 
 
@@ -140,18 +142,18 @@ def _positive(runs, asked_for):
         run = runs(request)
         mu, error = friction(run)
         place = {"amplitude": float(request["amplitude"])}
-        found.append(check(mu, 0.0, mu - say.VANISHES, error, [run], **place))
+        found.append(check(mu, 0.0, mu - criteria.VANISHES, error, [run], **place))
     return found
 
 
 def limit_asymptote(study, runs) -> list:
     found = []
     for amplitude in study.amplitude["bore"]:
-        if amplitude < say.FAR:
+        if amplitude < criteria.FAR:
             continue
         run = runs(asked.point(study, "bore", 0.0, amplitude))
         mu, error = friction(run)
         far = float(static.asymptote(amplitude))
-        margin = say.RELATIVE * far - abs(mu - far)
+        margin = criteria.RELATIVE * far - abs(mu - far)
         found.append(check(mu, far, margin, error, [run], amplitude=amplitude))
     return found

@@ -35,7 +35,7 @@ FEW = 2
 
 
 def velocities(study) -> list[float]:
-    """Velocities of the study and the paper's smallest one, ascending; study: settings.Claims."""
+    """Velocities of the study and the paper's smallest one, ascending; study: records.Claims."""
     return sorted({*study.velocity, PAPER_VELOCITY})
 
 

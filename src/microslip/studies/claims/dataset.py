@@ -45,7 +45,7 @@ BOUNDARY = 181
 def build(settings, answer: Callable) -> xr.Dataset:
     """Assemble the Dataset.
 
-    settings: settings.Claims. answer(request) -> record, such as sweep.answer with a store.
+    settings: records.Claims. answer(request) -> record, such as batches.answer with a store.
     """
     runs = Runs(answer)
     found = {part.name: collected(part.name, settings, runs) for part in PARTS}
@@ -241,7 +241,7 @@ SIDES = {"right": "positive", "left": "negative"}
 
 
 def _edges(amplitude, moments):
-    """Theory's edges of what sticks as v -> 0, at the moments of patches.patches.
+    """Theory's edges of what sticks as v -> 0, at the moments of stick_area.patches.
 
     Next to a turning point a point that slips at the other one only still sticks: those of one
     side with |cos angle| >= tau/g. In mid-stroke the inner circle that the way from the last

@@ -1,7 +1,7 @@
 """The statements of the paper in plain words, the parts that they are cut into, and the criteria.
 
 A criterion is a number that stands here and nowhere else; what it is compared with comes out of
-runs, see claims_checks.
+runs, see checks.py.
 """
 
 from dataclasses import dataclass

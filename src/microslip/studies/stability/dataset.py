@@ -55,7 +55,7 @@ def outcome(result: dict, reference: float, reference_error: float, imposed: boo
 def build(settings, answer: Callable) -> xr.Dataset:
     """Assemble the Dataset.
 
-    settings: settings.Stability. answer(request) -> record, such as sweep.answer with a store.
+    settings: records.Stability. answer(request) -> record, such as batches.answer with a store.
     """
     answers = Answers(answer)
     cases = study.cases(settings)

@@ -152,7 +152,7 @@ BLOCKS_TOGETHER = 5
 
 
 def axes(study) -> list[Axis]:
-    """The blocks that a settings.Stability asks for, in the order of AXES."""
+    """The blocks that a records.Stability asks for, in the order of AXES."""
     return [axis for axis in AXES if study.axes is None or axis.name in study.axes]
 
 
