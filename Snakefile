@@ -56,6 +56,7 @@ if not (workflow.overwrite_configfiles if MAIN else config):
 
 
 include: "workflow/rules/common.smk"
+include: "workflow/rules/stale.smk"
 include: "workflow/rules/points.smk"
 include: "workflow/rules/datasets.smk"
 include: "workflow/rules/figures.smk"

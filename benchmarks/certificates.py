@@ -35,7 +35,7 @@ import tables
 
 import microslip
 from microslip.adaptive.choice import choose_model
-from microslip.motions.registry import motion_named
+from microslip.motions.by_name import motion_named
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static

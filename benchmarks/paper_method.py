@@ -23,7 +23,7 @@ import tables
 import microslip
 from microslip.models.contact import forward_slip
 from microslip.models.squares.contact import CartesianContact
-from microslip.motions.registry import MOTIONS
+from microslip.motions.by_name import MOTIONS
 from microslip.solver.methods.paper import (
     CELLS,
     STEPS,

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.motions.registry import MOTIONS
+from microslip.motions.by_name import MOTIONS
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
 from microslip.theory import paper

@@ -12,7 +12,7 @@ from microslip.adaptive import point
 from microslip.models import interrupts
 from microslip.models.contact import forward_slip
 from microslip.models.registry import MODELS
-from microslip.motions.registry import motion_named
+from microslip.motions.by_name import motion_named
 from microslip.solver.budget import Budget, Spent
 from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.simulate import Settings, simulate

@@ -13,8 +13,8 @@ from microslip.adaptive.closed_forms import closed_form
 from microslip.adaptive.resolutions import plan
 from microslip.models.registry import MODELS
 from microslip.motions.bore import MOTION as BORE
+from microslip.motions.by_name import MOTIONS
 from microslip.motions.continuous_bore import MOTION as CONTINUOUS_BORE
-from microslip.motions.registry import MOTIONS
 from microslip.motions.transverse import MOTION as TRANSVERSE
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate

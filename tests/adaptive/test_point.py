@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from stubs.point_contract import CONTRACT
 
 import microslip
-from microslip.motions.registry import MOTIONS, motion_named
+from microslip.motions.by_name import MOTIONS, motion_named
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
 from microslip.theory import paper

@@ -11,7 +11,7 @@ from stubs.point_contract import CONTRACT
 
 import microslip
 from microslip.app import cli, sweep_command
-from microslip.motions.registry import FAMILIES, MOTIONS
+from microslip.motions.by_name import FAMILIES, MOTIONS
 
 TRANSVERSE = ("point", "transverse", "--velocity", "0.5", "--amplitude", "0.5")
 SPIN = "spin: rotation about the contact normal"

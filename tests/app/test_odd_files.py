@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 import yaml
-from bad_input import odd_files as odd
-from bad_input.odd_files import SWEEP
+from bad_input_tables import odd_files as odd
+from bad_input_tables.odd_files import SWEEP
 from test_leftovers import configured, names, results  # noqa: F401 (a fixture)
 
 import microslip
@@ -17,7 +17,7 @@ from microslip.config import load
 from microslip.config.records import ConfigError
 from microslip.datasets.query.open_map import open_map
 from microslip.foundation.errors import InputError
-from microslip.pressures.registry import pressure_named
+from microslip.pressures.by_name import pressure_named
 from microslip.sweeps.sealed_files import CacheError
 
 SOURCE = str(Path(microslip.__file__).parent.parent)
@@ -90,7 +90,7 @@ OPEN_DAMAGED = """
 import sys
 from microslip.foundation.errors import InputError
 from microslip.pressures import grid_netcdf
-from microslip.pressures.registry import pressure_named
+from microslip.pressures.by_name import pressure_named
 grid_netcdf.LONGEST = 3  # what is looked for is that it ends
 for path in sys.argv[1:]:
     try:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
-from bad_input.odd_inputs import AT, CALLS, NUMBERS, PREDICTIONS, QUANTITIES, SAME
+from bad_input_tables.odd_inputs import AT, CALLS, NUMBERS, PREDICTIONS, QUANTITIES, SAME
 
 import microslip
 from microslip.app import cli

@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
-from bad_input.bad_configurations import FILES, GOOD
+from bad_input_tables.bad_configurations import FILES, GOOD
 from stubs import in_process
 
 import microslip

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 import yaml
-from bad_input.bad_command_lines import COMMAND_LINES, NAMES, NUMBERS, RESULTS
-from bad_input.bad_configurations import EXTENDED, FILES, KEYS, STUDIES, TOGETHER, changed
+from bad_input_tables.bad_command_lines import COMMAND_LINES, NAMES, NUMBERS, RESULTS
+from bad_input_tables.bad_configurations import EXTENDED, FILES, KEYS, STUDIES, TOGETHER, changed
 
 import microslip
 from microslip.adaptive import point

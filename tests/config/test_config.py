@@ -8,7 +8,7 @@ from pathlib import Path
 import jsonschema
 import pytest
 import yaml
-from bad_input.bad_configurations import GOOD
+from bad_input_tables.bad_configurations import GOOD
 
 from microslip.config import load as config
 from microslip.config import schema as schemas
@@ -223,7 +223,7 @@ def test_the_workflow_shows_the_same_schema():
 
 def test_models_are_refused_here_exactly_where_the_solver_refuses_them():
     from microslip.models.registry import MODELS
-    from microslip.motions.registry import motion_named
+    from microslip.motions.by_name import motion_named
 
     assert schemas.schema()["$defs"]["model"]["enum"] == ["auto", *MODELS]
     for sweep, scene in config.SCENE_OF_SWEEP.items():

@@ -13,8 +13,8 @@ import microslip
 from microslip.config import extended, load
 from microslip.config import records as settings
 from microslip.datasets import sweep_dataset, theory_limits
-from microslip.motions.registry import MOTIONS, motion_named
-from microslip.pressures.registry import pressure_named
+from microslip.motions.by_name import MOTIONS, motion_named
+from microslip.pressures.by_name import pressure_named
 from microslip.studies import registry
 from microslip.sweeps import batches as sweep
 from microslip.sweeps.cache import Store

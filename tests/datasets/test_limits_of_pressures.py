@@ -7,7 +7,7 @@ from scipy.integrate import quad
 import microslip
 from microslip.config import load as config
 from microslip.datasets import theory_limits
-from microslip.pressures.registry import pressure_named
+from microslip.pressures.by_name import pressure_named
 from microslip.theory import axisymmetric, hertz, indenters, paper
 from microslip.theory.catalogue import FORMS
 

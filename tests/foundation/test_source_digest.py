@@ -181,8 +181,8 @@ def test_a_scratch_file_is_no_motion(tmp_path):
         (copy / folder / "bore-checkpoint.py").write_text("raise SystemExit('run')\n")
         (copy / folder / "bore copy.py").write_text("raise SystemExit('run')\n")
     program = (
-        "from microslip.motions import registry; from microslip.solver import method_names\n"
-        "print(*registry.MOTIONS, *method_names.names())"
+        "from microslip.motions import by_name; from microslip.solver import method_names\n"
+        "print(*by_name.MOTIONS, *method_names.names())"
     )
     done = python(program, tmp_path)
     assert done.returncode == 0, done.stderr

@@ -9,7 +9,7 @@ from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.polar.contact import PolarContact
 from microslip.models.rings.contact import RadialContact
 from microslip.models.squares.contact import CartesianContact
-from microslip.motions.registry import motion_named
+from microslip.motions.by_name import motion_named
 from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
 

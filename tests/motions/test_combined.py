@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.motions.registry import motion_named
+from microslip.motions.by_name import motion_named
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static

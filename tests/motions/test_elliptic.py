@@ -7,7 +7,7 @@ import pytest
 
 import microslip
 from microslip.app import cli
-from microslip.motions.registry import motion_named
+from microslip.motions.by_name import motion_named
 from microslip.theory.masing import longitudinal
 
 CIRCLE = "elliptic"

@@ -13,8 +13,8 @@ from microslip.models.path import EULER, make_path
 from microslip.models.reduced.mdr import mdr_contact
 from microslip.models.registry import MODELS
 from microslip.models.rings.contact import RadialContact
-from microslip.motions.registry import motion_named
-from microslip.pressures.registry import HERTZ
+from microslip.motions.by_name import motion_named
+from microslip.pressures.by_name import HERTZ
 from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.simulate import simulate
 from microslip.theory import oscillating_load

@@ -5,8 +5,8 @@ import pytest
 
 import microslip
 from microslip.models.path import make_path
-from microslip.motions.registry import motion_named
-from microslip.pressures.registry import HERTZ
+from microslip.motions.by_name import motion_named
+from microslip.pressures.by_name import HERTZ
 from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static

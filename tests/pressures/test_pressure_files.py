@@ -12,9 +12,9 @@ import microslip
 from microslip.app.cli import main
 from microslip.foundation import named_files
 from microslip.foundation.errors import InputError
-from microslip.motions.registry import motion_named
+from microslip.motions.by_name import motion_named
+from microslip.pressures.by_name import HERTZ, pressure_named
 from microslip.pressures.measured import of_grid
-from microslip.pressures.registry import HERTZ, pressure_named
 
 AXIS = np.linspace(-1.25, 1.25, 51)
 HERTZIAN = np.sqrt(np.maximum(1.0 - AXIS[:, None] ** 2 - AXIS**2, 0.0))

@@ -11,9 +11,9 @@ from microslip.models.contact import forward_slip
 from microslip.models.path import EULER, make_path
 from microslip.models.registry import MODELS
 from microslip.models.rings.mesh import make_rings
-from microslip.motions.registry import motion_named
-from microslip.pressures import registry
-from microslip.pressures.registry import FAMILIES, HERTZ, pressure_named
+from microslip.motions.by_name import motion_named
+from microslip.pressures import by_name
+from microslip.pressures.by_name import FAMILIES, HERTZ, pressure_named
 from microslip.theory import hertz, indenters, paper
 
 INDENTERS = ["power", "power:exponent=1", "power:exponent=8", "punch", "punch:flat=0.5"]
@@ -375,7 +375,7 @@ def blunt(tmp_path):
     """A pressure in one file of one's own; what it changes in the registry is undone."""
     known, path = dict(FAMILIES), list(pressures.__path__)
     (tmp_path / "blunt.py").write_text(BLUNT)
-    registry.find(tmp_path)
+    by_name.find(tmp_path)
     yield "blunt:share=0.4"
     FAMILIES.clear()
     FAMILIES.update(known)

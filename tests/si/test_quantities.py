@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from bad_input.odd_quantities import ROWS, Q
+from bad_input_tables.odd_quantities import ROWS, Q
 
 from microslip.foundation.errors import InputError
 from microslip.si.quantities import si_value

@@ -16,7 +16,7 @@ from microslip.foundation import canonical
 from microslip.models.path import EULER, make_path
 from microslip.models.registry import MODELS
 from microslip.models.squares.contact import CartesianContact
-from microslip.motions.registry import MOTIONS
+from microslip.motions.by_name import MOTIONS
 from microslip.motions.transverse import MOTION as TRANSVERSE
 from microslip.solver import method_names
 from microslip.solver.methods import aspher

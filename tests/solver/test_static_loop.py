@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 import microslip
-from microslip.motions.registry import motion_named
+from microslip.motions.by_name import motion_named
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
 from microslip.solver.static_loop import largest_shift

@@ -17,7 +17,7 @@ from microslip.adaptive import single_run
 from microslip.adaptive.choice import choose_model
 from microslip.config import load, schema
 from microslip.models.registry import MODELS
-from microslip.motions.registry import MOTIONS
+from microslip.motions.by_name import MOTIONS
 from microslip.solver.methods import paper
 from microslip.studies import ladders, registry
 from microslip.studies import requests as study_requests
@@ -452,7 +452,7 @@ def test_a_trial_and_patches_take_the_pressure_that_is_asked_for(monkeypatch):
 
 def test_the_papers_run_is_under_the_pressure_that_is_asked_for(monkeypatch):
     """What it presses the squares with are the loads of that pressure."""
-    from microslip.pressures.registry import pressure_named
+    from microslip.pressures.by_name import pressure_named
 
     class Seen(Exception):
         pass

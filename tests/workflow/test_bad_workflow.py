@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 
 import pytest
-from bad_input.bad_configurations import EXTENDED, FILES, GOOD, KEYS, changed
+from bad_input_tables.bad_configurations import EXTENDED, FILES, GOOD, KEYS, changed
 from stubs import snakemake_server
 
 ROOT = Path(__file__).parents[2]

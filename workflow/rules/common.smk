@@ -1,7 +1,5 @@
 # What the rules share: the checked configuration, and the batches it leads to.
 
-from glob import glob
-
 from snakemake.io import get_flag_value
 from snakemake.logging import logger as snakemake_log
 
@@ -12,7 +10,7 @@ from microslip.app.progress import Watch
 from microslip.config import schema
 from microslip.foundation import canonical, source_digest
 from microslip.report.explorer import explorer
-from microslip.sweeps import batch_files, batch_plans, batches, cache
+from microslip.sweeps import batch_plans, batches, cache
 
 # In a module the files are those of another workflow, which may hold more than this one knows.
 FILES = [os.path.relpath(file) for file in workflow.configfiles] if MAIN else []
@@ -86,44 +84,6 @@ def figures_of(datasets):
     return in_results(PLAN.figure_files(datasets))
 
 
-def look_after(*files):
-    """Have Snakemake make these files again if they are not of what they are to be made of.
-
-    Snakemake compares dates, and what it noted of the last run in a folder that may be gone or of
-    another run. A seal goes with its file.
-    """
-    if STORED_ELSEWHERE and workflow.is_main_process:
-        # There is no seal here to look at. Collecting again from batches takes little.
-        # A module's rules have a prefix.
-        sealing = (rule for rule in workflow.rules if rule.name.endswith(SEALING))
-        workflow.dag.forcerules.update(sealing)
-    for file in files:
-        there = placed(file)
-        if ASKING and os.path.lexists(there):
-            if sealed_files.is_damaged(there):
-                make_again(there, "it is damaged")
-            elif not sealed_files.is_made_of(there, PLAN.fingerprint_of(file)):
-                make_again(there)
-
-
-def whole_batches(*groups):
-    """Files of all batches of these groups; those that are damaged, or have points that failed for
-    a reason that need not last, are made again."""
-    files = PLAN.batch_files(*groups)
-    for there in map(placed, files) if ASKING else ():
-        why = os.path.lexists(there) and batch_files.why_not_whole(there)
-        if why:
-            make_again(there, why)
-    return in_results(files)
-
-
-def make_again(path, why=""):
-    """Have Snakemake make a file in this run, if anything that is asked for depends on it."""
-    if why and path not in workflow.dag.forcefiles:
-        print(f"{path} is made again: {why}", file=sys.stderr)
-    workflow.dag.forcefiles.add(path)
-
-
 def requests_of(group, batch):
     """Requests of a batch as one string: Snakemake compares parameters as a set and would miss two
     swapped numbers."""
@@ -153,11 +113,7 @@ def datasets_for(figure):
     return in_results(f"{name}.nc" for name in FIGURES[figure])
 
 
-# Rules that seal what they make.
-SEALING = ("collect", "collect_study", "draw_figure", "explorer")
 GROUPS = {"batches", "figures", "logs", "warm_up", *batches.FOLDERS.values()}
-# Where another run may be writing, what looks damaged may be about to be whole.
-ASKING = workflow.is_main_process and not glob(".snakemake/locks/*")
 
 with refused_in_one_line(ORIGIN):
     if workflow.is_main_process:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from microslip.foundation.errors import InputError
 from microslip.models.registry import MODELS
 from microslip.motions.motion import Motion
-from microslip.pressures.registry import HERTZ
+from microslip.pressures.by_name import HERTZ
 from microslip.solver.method import SHIPPED, Method
 
 STEPLESS = ("rigid", "dahl")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from microslip.motions.motion import Motion
-from microslip.pressures.registry import HERTZ
+from microslip.pressures.by_name import HERTZ
 from microslip.solver.problem import Problem
 from microslip.theory import hertz, paper
 from microslip.theory.exact import LARGEST_DROPS, STATIC_LIMITS

@@ -16,8 +16,8 @@ from microslip.adaptive.resolutions import plan
 from microslip.adaptive.result import Result, of_closed_form
 from microslip.foundation.arguments import LARGEST, count, is_real, real
 from microslip.foundation.errors import InputError
+from microslip.motions.by_name import motion_named, read_otherwise
 from microslip.motions.motion import Motion
-from microslip.motions.registry import motion_named, read_otherwise
 from microslip.solver.budget import Budget
 from microslip.solver.method_names import SHIPPED, method_named, refuse_missing
 from microslip.solver.problem import Problem
@@ -66,7 +66,7 @@ def solve(
     amplitude : float or None
         The paper's dimensionless group likewise; None for continuous-bore.
     pressure : str
-        "hertz", "power:exponent=1", "file:measured.csv", see microslip.pressures.registry.
+        "hertz", "power:exponent=1", "file:measured.csv", see microslip.pressures.by_name.
     poisson : float
         Poisson's ratio, 0 to 0.5.
     model : str

@@ -15,9 +15,9 @@ from microslip.models.contact import forward_slip
 from microslip.models.path import EULER, half_period_phases, make_path
 from microslip.models.registry import MODELS
 from microslip.motions.bore import MOTION as BORE
-from microslip.motions.registry import motion_named
+from microslip.motions.by_name import motion_named
 from microslip.motions.transverse import MOTION as TRANSVERSE
-from microslip.pressures.registry import HERTZ
+from microslip.pressures.by_name import HERTZ
 from microslip.solver.method_names import method_named, missing
 from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.run import Settings

@@ -50,7 +50,7 @@ def build_parser(asked: str | None = None) -> command_line.OneLineParser:
 
 def _add_motions(parser):
     """A parser for each motion; what they are is asked of the solver, so only where it counts."""
-    from microslip.motions.registry import FAMILIES, MOTIONS
+    from microslip.motions.by_name import FAMILIES, MOTIONS
 
     scenes = parser.add_subparsers(dest="scene", required=True, metavar="SCENE")
     known = {name: (scene.summary, scene.periodic, None) for name, scene in MOTIONS.items()}

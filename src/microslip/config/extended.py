@@ -159,6 +159,6 @@ def solver_names(sweep) -> tuple[str, str]:
 
 def _scene_of(sweep):
     """The Motion of a Sweep; raises ValueError for a motion or a pressure that there is not."""
-    from microslip.motions.registry import motion_named
+    from microslip.motions.by_name import motion_named
 
     return motion_named(sweep.scene, sweep.pressure)

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from microslip.pressures.registry import pressure_named
+from microslip.pressures.by_name import pressure_named
 from microslip.theory import axisymmetric, hertz, indenters, masing, paper
 from microslip.theory.catalogue import FORMS, STATIC
 

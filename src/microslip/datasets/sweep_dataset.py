@@ -19,7 +19,7 @@ from microslip.config.quantities import AMPLITUDE, VELOCITY
 from microslip.datasets import netcdf, point_variables, theory_limits
 from microslip.foundation import named_files, source_digest
 from microslip.foundation.canonical import canonical_json
-from microslip.motions.registry import motion_named
+from microslip.motions.by_name import motion_named
 from microslip.sweeps.sealed_files import writing_beside
 from microslip.theory.catalogue import FORMS
 

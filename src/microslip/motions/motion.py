@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.pressures.registry import HERTZ, Pressure
+from microslip.pressures.by_name import HERTZ, Pressure
 
 FOCUS_RANGE = (0.05, 0.9995)
 """Radii that rings may gather at; a stick zone smaller than the first carries next to no load."""

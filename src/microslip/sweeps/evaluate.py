@@ -130,7 +130,7 @@ def _probe(request):
     """A certified solve with another method; `applies` is False where it cannot be used."""
     from microslip.adaptive import single_run
     from microslip.adaptive.choice import choose_model
-    from microslip.motions.registry import motion_named
+    from microslip.motions.by_name import motion_named
 
     place = _place(request)
     scene = motion_named(place["scene"], place.get("pressure", "hertz"))

@@ -17,7 +17,7 @@ from microslip.datasets.query.nodes import SAME, nodes_of, refuse_negative
 from microslip.datasets.query.within import refuse_beyond, within
 from microslip.foundation.arguments import is_real, real
 from microslip.foundation.errors import InputError
-from microslip.motions.registry import motion_named
+from microslip.motions.by_name import motion_named
 from microslip.sweeps.sealed_files import CacheError
 from microslip.sweeps.solve_stored import solve_stored
 from microslip.theory.catalogue import FORMS

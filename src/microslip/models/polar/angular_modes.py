@@ -18,8 +18,8 @@ from microslip.foundation.compiled import kernel
 from microslip.models.polar.symmetry import waves
 from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import Focus, make_rings
+from microslip.pressures.by_name import HERTZ
 from microslip.pressures.pressure import Pressure
-from microslip.pressures.registry import HERTZ
 
 FUSED = {"fastmath": {"contract"}}
 """Allows fused multiply-add, which keeps the order of operations."""

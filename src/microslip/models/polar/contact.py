@@ -32,7 +32,7 @@ from microslip.models.polar.angular_modes import (
 )
 from microslip.models.rings.contact import RadialContact
 from microslip.models.rings.mesh import make_rings
-from microslip.pressures.registry import HERTZ
+from microslip.pressures.by_name import HERTZ
 
 PENALTY = 1.0
 """Augmentation over the self-influence of a ring; iterations double at half and at twice it."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from microslip.models import contact
 from microslip.models.rings.mesh import make_rings
-from microslip.pressures.registry import HERTZ
+from microslip.pressures.by_name import HERTZ
 
 GRADING = 0.98
 """Steps at the turning points, over the mean: the direction turns there within a phase v/y."""

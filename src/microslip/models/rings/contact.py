@@ -18,7 +18,7 @@ from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import make_rings
 from microslip.models.rings.tangent import RingSystem, cholesky
 from microslip.models.varying_load import Growth, load_on_rings
-from microslip.pressures.registry import HERTZ
+from microslip.pressures.by_name import HERTZ
 
 
 class RadialContact:

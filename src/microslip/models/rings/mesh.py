@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from microslip.pressures.by_name import HERTZ
 from microslip.pressures.pressure import Pressure
-from microslip.pressures.registry import HERTZ
 
 
 class Focus(NamedTuple):

@@ -9,7 +9,7 @@ from microslip.models import contact
 from microslip.models.interrupts import unbroken
 from microslip.models.squares import march as square_march
 from microslip.models.squares.convolution import convolve, square_convolution, workspace
-from microslip.pressures.registry import HERTZ
+from microslip.pressures.by_name import HERTZ
 
 MAX_REMEMBERED = 4_000_000
 """Numbers that a march keeps as first guesses for the next one; longer marches keep none."""

@@ -8,8 +8,8 @@ import pytest
 import microslip
 from microslip import motions
 from microslip.app.cli import main
-from microslip.motions import registry
-from microslip.motions.registry import MOTIONS
+from microslip.motions import by_name
+from microslip.motions.by_name import MOTIONS
 from microslip.motions.transverse import MOTION as TRANSVERSE
 from microslip.motions.zigzag import MOTION as ZIGZAG
 from microslip.solver.problem import Problem, Resolution
@@ -112,12 +112,12 @@ MOTION = replace(
 @pytest.fixture
 def cube(tmp_path):
     """A motion in one file of one's own; what it changes in the registry is undone."""
-    known, path = dict(registry.MOTIONS), list(motions.__path__)
+    known, path = dict(by_name.MOTIONS), list(motions.__path__)
     (tmp_path / "sine_cubed.py").write_text(CUBE)
-    registry.find(tmp_path)
+    by_name.find(tmp_path)
     yield "sine-cubed"
-    registry.MOTIONS.clear()
-    registry.MOTIONS.update(known)
+    by_name.MOTIONS.clear()
+    by_name.MOTIONS.update(known)
     motions.__path__[:] = path
 
 

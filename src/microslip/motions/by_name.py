@@ -18,7 +18,7 @@ from microslip import motions
 from microslip.foundation.errors import InputError
 from microslip.foundation.families import modules_in, record_named
 from microslip.motions.motion import Motion
-from microslip.pressures.registry import HERTZ, pressure_named
+from microslip.pressures.by_name import HERTZ, pressure_named
 
 _FIRST = ("transverse", "longitudinal", "zigzag", "bore", "continuous_bore")
 """Files in the order in which they are listed, before all others."""
@@ -50,7 +50,7 @@ for _folder in list(motions.__path__):
 
 def motion_named(name: str, pressure: str = HERTZ.name) -> Motion:
     """The motion of this name, or of a family for the numbers that follow its name, such as
-    "elliptic:forward=0.5,phase=90", under the pressure of this name (see pressures.registry).
+    "elliptic:forward=0.5,phase=90", under the pressure of this name (see pressures.by_name).
     Raises InputError saying what is allowed."""
     motion = _motion_named(name)
     return motion if pressure == HERTZ.name else _under(motion, pressure_named(pressure))
