@@ -46,17 +46,24 @@ def browser(tmp_path_factory):
         context.close()
 
 
-@pytest.fixture
-def page(made, browser):
-    """The page, just opened. It has to say nothing to the console, and to ask for nothing."""
+@pytest.fixture(scope="module")
+def opened(made, browser):
+    """The page, opened once, with what it says to the console and what it asks for."""
     page, heard, asked = browser.new_page(), [], []
     page.on("console", lambda message: heard.append(message.text))
     page.on("pageerror", lambda error: heard.append(str(error)))
     page.on("request", lambda request: asked.append(request.url))
     page.goto(made[0].as_uri())
     page.locator("body[data-ready]").wait_for()
+    return page, heard, asked
+
+
+@pytest.fixture
+def page(made, opened):
+    """The page as the test before has left it. It has to say nothing, and to ask for nothing."""
+    page, heard, asked = opened
+    page.set_viewport_size({"width": 1280, "height": 800})
     yield page
-    page.close()
     assert heard == []
     assert asked == [made[0].as_uri()]
 
@@ -171,7 +178,7 @@ def test_the_phase_slider_and_the_animation_move_the_contact(made, page):
     click_on_map(page, 0.02, 0.6)
     truth = unpacked(record_at(made[2], "bore", 0.02, 0.6))
     drawn = "(k) => element('disc').data[k].x.filter((x) => x === null).length"
-    page.locator("#phase").focus()
+    page.locator("#phase").press("Home")
     for frame in range(1, 9):
         page.keyboard.press("ArrowRight")
         slipping = truth["slips"][frame].sum()
@@ -195,6 +202,7 @@ def test_the_phase_slider_and_the_animation_move_the_contact(made, page):
 
 def test_sliders_reach_every_point_by_keyboard_and_boxes_switch_limits(made, page):
     dataset = made[1]["transverse"]
+    select(page, "transverse")
     for slider, dim in (("amplitude", "amplitude"), ("velocity", "velocity")):
         page.locator(f"#{slider}").focus()
         page.keyboard.press("Home")
@@ -224,6 +232,7 @@ def test_sliders_reach_every_point_by_keyboard_and_boxes_switch_limits(made, pag
 
 
 def test_what_did_not_converge_says_so(page):
+    select(page, "transverse")
     click_on_map(page, 1, 0.6)
     assert "not converged: made up" in page.inner_text("#certificate")
     assert "not converged (1 of 9)" in page.inner_text("#map")
