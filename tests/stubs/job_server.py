@@ -21,6 +21,11 @@ import threading
 from importlib import import_module
 from pathlib import Path
 
+try:
+    from stubs import forked
+except ImportError:  # in the process itself
+    import forked
+
 LIBRARIES = (
     *("numba", "scipy.special", "scipy.linalg", "scipy.optimize"),
     *("netCDF4", "xarray", "dask.array", "pint", "matplotlib.figure", "matplotlib.offsetbox"),
@@ -99,23 +104,10 @@ def _run(connection):
     given = asked["environment"].get("PYTHONPATH", "").split(os.pathsep)
     sys.path[:0] = [os.path.dirname(sys.argv[0]), *filter(None, given)]
     threading.Thread(target=_end_with, args=[connection], daemon=True).start()
-    code = 1
-    try:
-        runpy.run_path(sys.argv[0], run_name="__main__")
-        code = 0
-    except SystemExit as ended:
-        code = ended.code if isinstance(ended.code, int) else 1 if ended.code else 0
-        if isinstance(ended.code, str):
-            print(ended.code, file=sys.stderr)
-    except BaseException:
-        sys.excepthook(*sys.exc_info())
-    finally:
-        threading._shutdown()
-        atexit._run_exitfuncs()
-        sys.stdout.flush()
-        sys.stderr.flush()
-        connection.sendall(str(code).encode())
-        os._exit(code)
+    forked.end_with(
+        lambda: runpy.run_path(sys.argv[0], run_name="__main__"),
+        lambda code: connection.sendall(str(code).encode()),
+    )
 
 
 def _end_with(connection):

@@ -17,8 +17,10 @@ from importlib import import_module
 from pathlib import Path
 
 try:
-    from stubs import job_server
+    from stubs import forked, job_server
 except ImportError:  # in the process itself
+    import forked
+
     job_server = None
 
 
@@ -90,21 +92,7 @@ def _run(asked):
         os.dup2(os.open(name, os.O_WRONLY), number)
     os.chdir(asked["folder"])
     sys.argv = ["snakemake", *asked["arguments"]]
-    code = 1
-    try:
-        snakemake(asked["arguments"])
-    except SystemExit as ended:
-        code = ended.code if isinstance(ended.code, int) else 1 if ended.code else 0
-        if isinstance(ended.code, str):
-            print(ended.code, file=sys.stderr)
-    except BaseException:
-        sys.excepthook(*sys.exc_info())
-    finally:
-        threading._shutdown()
-        atexit._run_exitfuncs()
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(code)
+    forked.end_with(lambda: snakemake(asked["arguments"]))
 
 
 if __name__ == "__main__":

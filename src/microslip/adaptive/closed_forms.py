@@ -45,10 +45,10 @@ def closed_form(problem: Problem, tolerance: float) -> tuple | None:
     if not motion.periodic:
         return _steady_bore(motion, velocity) if motion.name == "continuous-bore" else None
     if motion.closed_form_of is not None and problem.poisson == 0.0:
-        closed_form_of = motion.closed_form_of(velocity, amplitude, motion.pressure)
-        if closed_form_of is not None:
+        mu = motion.closed_form_of(velocity, amplitude, motion.pressure)
+        if mu is not None:
             error = WHOLE_ROUNDING if velocity > 0.0 else ROUNDING
-            return float(closed_form_of), None, error if motion.pressure.hertzian else OF_RECORD
+            return float(mu), None, error if motion.pressure.hertzian else OF_RECORD
     if velocity == 0.0:
         known = None if motion.closed_form_of is not None else STATIC_LIMITS.get(motion.name)
         if known is None or (problem.poisson > 0.0 and not known.any_poisson):
