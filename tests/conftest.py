@@ -106,3 +106,11 @@ def finished(tmp_path_factory):
 def project(finished, tmp_path):
     """A copy of the finished project to edit."""
     return finished.copied(tmp_path / "copy")
+
+
+@pytest.fixture
+def unplaced(monkeypatch):
+    """Figures are drawn without looking for room for what they hold, which takes the longest."""
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+    monkeypatch.setattr(ConstrainedLayoutEngine, "execute", lambda engine, figure: None)
