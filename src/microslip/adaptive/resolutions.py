@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from microslip.adaptive.chains import Axis
+import numpy as np
+
+from microslip.adaptive.chains import EXTRAPOLATED_SHARES, Axis
 from microslip.models.registry import MODELS
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.static_limit import at_turning_points
@@ -17,16 +19,20 @@ ANGLES = (2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)
 STEPS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768)
 """Levels: rings (squares along a side), angles on half the disc, steps in half a period."""
 BASE_RINGS, BASE_ANGLES, BASE_STEPS = 8, 6, 16
+ROTATING_ANGLES, ROTATING_STEPS = 4, 12
+"""Bases of motions that rotate to and fro: their many unknowns make each run cost more, and what
+the corrections lack that are found there is measured as their mixed difference."""
 SLOW_CREEP = 3e-3
 """Creep in a radian (u_lim) below which the layer at the stick radius is thin: the coarsest rings
 agree with each other there before they see it, and prove nothing."""
-SWEEPING_CENTRE = (0.1, 1.0)
-"""Velocities of a bore at which the centre of rotation sweeps through the contact and stays in it
-for a good part of the period: the coarsest rings agree there, too, without having seen it."""
 TURNING_CAUTION = 2.0
 """Error in time over the spread of the runs where the contact turns or slides back: the first step
 after a turning point, in which all points stick and slip again, errs to one side whatever its
 length."""
+ROTATING_CAUTION = {"angles": 1.3, "steps": 1.8}
+ROTATING_SHARES = 0.35, 0.45
+ROTATING_SCATTER = 0.3
+"""See chains.Axis; for motions that rotate to and fro."""
 SWEEPING_STEPS = 4
 """Steps in half a period over rings where the edge of the contact sweeps over these.  They join it
 one by one, and the error scatters unless both are refined together."""
@@ -65,11 +71,12 @@ def plan(
     if sweeps:
         axes.append(_sweeping(problem, tolerance))
     elif "cells" in resolved:
-        axes.append(_cells(problem, model) if cells is None else _imposed("cells", cells))
+        axes.append(
+            _cells(problem, model, tolerance) if cells is None else _imposed("cells", cells)
+        )
     if "angles" in resolved:
         # only nu > 0 makes tractions of a translation depend on the angle, and only a little
-        base = ANGLES.index(BASE_ANGLES) + (not motion.periodic) - (not motion.rotates)
-        axes.append(Axis("angles", ANGLES, base, (base - 1, base, base + 1)))
+        axes.append(_angles(motion, tolerance))
     if marches and not sweeps:
         axes.append(_steps(problem, tolerance) if steps is None else _imposed("steps", steps // 2))
     return Resolution(cells=1, angles=1, steps=STEPS[0]), tuple(axes)
@@ -91,8 +98,10 @@ class CellsPolicy:
         Cells of the coarsest and of the finest of the runs to start with.
     levels : tuple of int
         Cells there may be.
-    regular, caution
+    regular, caution, shares
         See chains.Axis.
+    follows : bool
+        Whether all of them are finer where the tolerance is.
     """
 
     reason: str
@@ -102,13 +111,22 @@ class CellsPolicy:
     levels: tuple[int, ...] = RINGS
     regular: bool = True
     caution: float = 1.0
+    shares: tuple[float, float] = EXTRAPOLATED_SHARES
+    follows: bool = False
 
-    def axis(self) -> Axis:
+    def axis(self, tolerance: float) -> Axis:
         """The Axis to refine."""
-        coarsest, finest = (self.levels.index(cells) for cells in self.first)
-        first = tuple(range(coarsest, finest + 1))
-        base = self.levels.index(self.base)
-        return Axis("cells", self.levels, base, first, regular=self.regular, caution=self.caution)
+        finer = _levels_finer(tolerance) if self.follows else 0
+        coarsest, finest = (self.levels.index(cells) + finer for cells in self.first)
+        return Axis(
+            "cells",
+            self.levels,
+            base=self.levels.index(self.base) + finer,
+            first=tuple(range(coarsest, finest + 1)),
+            regular=self.regular,
+            caution=self.caution,
+            shares=self.shares,
+        )
 
 
 def _is_slow(problem):
@@ -118,11 +136,6 @@ def _is_slow(problem):
 
 def _is_static(problem):
     return problem.motion.periodic and problem.velocity == 0.0
-
-
-def _sweeps_the_centre(problem):
-    least, most = SWEEPING_CENTRE
-    return problem.motion.rotates and least <= problem.velocity < most
 
 
 CELLS_POLICIES = (
@@ -177,18 +190,12 @@ CELLS_POLICIES = (
         regular=False,
     ),
     CellsPolicy(
-        "rotation whose layer at the stick radius is thin, or whose centre sweeps the contact",
-        lambda problem, model: (
-            problem.motion.rotates and (_is_slow(problem) or _sweeps_the_centre(problem))
-        ),
-        base=8,
-        first=(6, 12),
-    ),
-    CellsPolicy(
         "rotation: with angles there are many unknowns, so as few rings as will do",
         lambda problem, model: problem.motion.rotates,
-        base=8,
-        first=(4, 8),
+        base=6,
+        first=(6, 12),
+        shares=ROTATING_SHARES,
+        follows=True,
     ),
     CellsPolicy(
         "translation at nu > 0: the front of slip is oval, which rings are not",
@@ -206,8 +213,14 @@ CELLS_POLICIES = (
 """The first that applies is taken."""
 
 
-def _cells(problem, model):
-    return next(policy for policy in CELLS_POLICIES if policy.applies(problem, model)).axis()
+def _levels_finer(tolerance):
+    """Levels of rings and angles by which rotating motions begin finer than at 1e-3."""
+    return max(round(2.0 * np.log10(1e-3 / tolerance)), 0)
+
+
+def _cells(problem, model, tolerance):
+    policy = next(policy for policy in CELLS_POLICIES if policy.applies(problem, model))
+    return policy.axis(tolerance)
 
 
 def _imposed(name, count):
@@ -232,11 +245,25 @@ def _step_levels(problem, counts):
     return tuple(2 * round(0.5 * count * motion.cycles * stroke**0.5) for count in counts)
 
 
+def _angles(motion, tolerance):
+    if motion.rotates and motion.periodic:
+        base = ANGLES.index(ROTATING_ANGLES) + _levels_finer(tolerance)
+        first, caution = (base, base + 1, base + 2), ROTATING_CAUTION["angles"]
+        return Axis("angles", ANGLES, base, first, projected=True, caution=caution)
+    # only nu > 0 makes tractions of a translation depend on the angle, and only a little
+    base = ANGLES.index(BASE_ANGLES) + (not motion.periodic) - (not motion.rotates)
+    return Axis("angles", ANGLES, base, (base - 1, base, base + 1))
+
+
 def _steps(problem, tolerance):
+    motion, levels = problem.motion, _step_levels(problem, STEPS)
+    if motion.rotates:
+        base = STEPS.index(ROTATING_STEPS) + _levels_finer(tolerance) // 2
+        caution, scatter = ROTATING_CAUTION["steps"], ROTATING_SCATTER
+        first = (base - 2, base - 1, base)
+        return Axis("steps", levels, base, first, projected=True, caution=caution, scatter=scatter)
     # second order in time
     wanted = BASE_STEPS * max(1.0, (1e-3 / tolerance) ** 0.5)
     base = next(k for k, count in enumerate(STEPS) if count >= wanted)
-    turns = problem.motion.rotates or not problem.motion.half_period_mirror
-    caution = TURNING_CAUTION if turns else 1.0
-    first = (base - 2, base - 1, base)
-    return Axis("steps", _step_levels(problem, STEPS), base, first, caution=caution)
+    caution = 1.0 if motion.half_period_mirror else TURNING_CAUTION
+    return Axis("steps", levels, base, (base - 2, base - 1, base), caution=caution)
