@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,9 +20,6 @@ ANGLES = (2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)
 STEPS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768)
 """Levels: rings (squares along a side), angles on half the disc, steps in half a period."""
 BASE_RINGS, BASE_ANGLES, BASE_STEPS = 8, 6, 16
-ROTATING_ANGLES, ROTATING_STEPS = 4, 12
-"""Bases of motions that rotate to and fro: their many unknowns make each run cost more, and what
-the corrections lack that are found there is measured as their mixed difference."""
 SLOW_CREEP = 3e-3
 """Creep in a radian (u_lim) below which the layer at the stick radius is thin: the coarsest rings
 agree with each other there before they see it, and prove nothing."""
@@ -29,10 +27,10 @@ TURNING_CAUTION = 2.0
 """Error in time over the spread of the runs where the contact turns or slides back: the first step
 after a turning point, in which all points stick and slip again, errs to one side whatever its
 length."""
-ROTATING_CAUTION = {"angles": 1.3, "steps": 1.8}
-ROTATING_SHARES = 0.35, 0.45
-ROTATING_SCATTER = 0.3
-"""See chains.Axis; for motions that rotate to and fro."""
+PROJECTED_CAUTION = {"angles": 1.3, "steps": 1.8}
+PROJECTED_SHARES, PROJECTED_SCATTER = (0.35, 0.45), 0.3
+"""See chains.Axis: where errors over angles and steps are projected, those of cells are bounded
+more closely, too."""
 SWEEPING_STEPS = 4
 """Steps in half a period over rings where the edge of the contact sweeps over these.  They join it
 one by one, and the error scatters unless both are refined together."""
@@ -76,7 +74,7 @@ def plan(
         )
     if "angles" in resolved:
         # only nu > 0 makes tractions of a translation depend on the angle, and only a little
-        axes.append(_angles(motion, tolerance))
+        axes.append(_angles(problem, tolerance))
     if marches and not sweeps:
         axes.append(_steps(problem, tolerance) if steps is None else _imposed("steps", steps // 2))
     return Resolution(cells=1, angles=1, steps=STEPS[0]), tuple(axes)
@@ -194,11 +192,19 @@ CELLS_POLICIES = (
         lambda problem, model: problem.motion.rotates,
         base=6,
         first=(6, 12),
-        shares=ROTATING_SHARES,
+        shares=PROJECTED_SHARES,
         follows=True,
     ),
     CellsPolicy(
-        "translation at nu > 0: the front of slip is oval, which rings are not",
+        "translation to and fro at nu > 0: the front of slip is oval, which rings are not",
+        lambda problem, model: problem.poisson > 0.0 and problem.motion.half_period_mirror,
+        base=8,
+        first=(8, 16),
+        shares=PROJECTED_SHARES,
+        follows=True,
+    ),
+    CellsPolicy(
+        "translation on a loop at nu > 0",
         lambda problem, model: problem.poisson > 0.0,
         base=12,
         first=(8, 16),
@@ -214,7 +220,7 @@ CELLS_POLICIES = (
 
 
 def _levels_finer(tolerance):
-    """Levels of rings and angles by which rotating motions begin finer than at 1e-3."""
+    """Levels of rings and angles by which a point begins finer than at 1e-3."""
     return max(round(2.0 * np.log10(1e-3 / tolerance)), 0)
 
 
@@ -245,25 +251,47 @@ def _step_levels(problem, counts):
     return tuple(2 * round(0.5 * count * motion.cycles * stroke**0.5) for count in counts)
 
 
-def _angles(motion, tolerance):
-    if motion.rotates and motion.periodic:
-        base = ANGLES.index(ROTATING_ANGLES) + _levels_finer(tolerance)
-        first, caution = (base, base + 1, base + 2), ROTATING_CAUTION["angles"]
-        return Axis("angles", ANGLES, base, first, projected=True, caution=caution)
-    # only nu > 0 makes tractions of a translation depend on the angle, and only a little
-    base = ANGLES.index(BASE_ANGLES) + (not motion.periodic) - (not motion.rotates)
-    return Axis("angles", ANGLES, base, (base - 1, base, base + 1))
+class Coarsest(NamedTuple):
+    """Angles and steps that a point begins with where errors over both are projected: the many
+    unknowns make each run cost more, and what corrections lack that are found at so few is measured
+    as their mixed difference."""
+
+    angles: int
+    steps: int
+
+
+def _coarsest(problem):
+    """The Coarsest of a problem, None where errors are the spread of runs."""
+    motion = problem.motion
+    if not motion.periodic or problem.velocity == 0.0:
+        return None
+    if motion.rotates:
+        return Coarsest(angles=4, steps=12)
+    if problem.poisson > 0.0 and motion.half_period_mirror:
+        return Coarsest(angles=2, steps=16)  # tractions depend on the angle a little only
+    return None
+
+
+def _angles(problem, tolerance):
+    motion, coarsest = problem.motion, _coarsest(problem)
+    if coarsest is None:
+        # only nu > 0 makes tractions of a translation depend on the angle, and only a little
+        base = ANGLES.index(BASE_ANGLES) + (not motion.periodic) - (not motion.rotates)
+        return Axis("angles", ANGLES, base, (base - 1, base, base + 1))
+    base = ANGLES.index(coarsest.angles) + _levels_finer(tolerance)
+    first, caution = (base, base + 1, base + 2), PROJECTED_CAUTION["angles"]
+    return Axis("angles", ANGLES, base, first, projected=True, caution=caution)
 
 
 def _steps(problem, tolerance):
-    motion, levels = problem.motion, _step_levels(problem, STEPS)
-    if motion.rotates:
-        base = STEPS.index(ROTATING_STEPS) + _levels_finer(tolerance) // 2
-        caution, scatter = ROTATING_CAUTION["steps"], ROTATING_SCATTER
-        first = (base - 2, base - 1, base)
-        return Axis("steps", levels, base, first, projected=True, caution=caution, scatter=scatter)
-    # second order in time
-    wanted = BASE_STEPS * max(1.0, (1e-3 / tolerance) ** 0.5)
-    base = next(k for k, count in enumerate(STEPS) if count >= wanted)
-    caution = 1.0 if motion.half_period_mirror else TURNING_CAUTION
-    return Axis("steps", levels, base, (base - 2, base - 1, base), caution=caution)
+    motion, levels, coarsest = problem.motion, _step_levels(problem, STEPS), _coarsest(problem)
+    if coarsest is None:
+        # second order in time
+        wanted = BASE_STEPS * max(1.0, (1e-3 / tolerance) ** 0.5)
+        base = next(k for k, count in enumerate(STEPS) if count >= wanted)
+        caution = 1.0 if motion.half_period_mirror else TURNING_CAUTION
+        return Axis("steps", levels, base, (base - 2, base - 1, base), caution=caution)
+    base = STEPS.index(coarsest.steps) + _levels_finer(tolerance) // 2
+    caution, scatter = PROJECTED_CAUTION["steps"], PROJECTED_SCATTER
+    first = (base - 2, base - 1, base)
+    return Axis("steps", levels, base, first, projected=True, caution=caution, scatter=scatter)
