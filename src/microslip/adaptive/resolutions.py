@@ -11,7 +11,7 @@ from microslip.solver.problem import Problem, Resolution
 from microslip.solver.static_limit import at_turning_points
 
 ANGLES = (2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)
-STEPS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768)
+STEPS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024, 1536, 2048)
 """Levels: angles on half the disc, steps in half a period."""
 BASE_RINGS, BASE_ANGLES, BASE_STEPS = 8, 6, 16
 RADIAL_STEPS, RADIAL_CAUTION = 32, 1.5
