@@ -22,8 +22,7 @@ EDGE_CAUTION = 1.25
 """Error over the spread of four runs where each gathers its rings at a stick radius that it finds
 by itself, to the width of a ring."""
 PROJECTED_SHARES = 0.35, 0.45
-"""See chains.Axis: where errors over angles and steps are projected, those of cells are bounded
-more closely, too."""
+"""See chains.Axis; of translations to and fro, whose rings fall into line soon."""
 
 
 def levels_finer(tighter: float) -> int:
@@ -143,7 +142,6 @@ CELLS_POLICIES = (
         lambda problem, model: problem.motion.rotates,
         base=6,
         first=(6, 12),
-        shares=PROJECTED_SHARES,
         made_for=1e-3,
     ),
     CellsPolicy(
