@@ -176,7 +176,7 @@ def _modes_to_know(angles):
     return next((most for most in SHARED_MODES if angles < most), angles + 1)
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=4)
 def _shared_influence(psi, n_modes, coupled, modulus):
     """Mode matrices of rings with the edges `psi`, see ring_influence."""
     return ring_influence(np.array(psi), n_modes, coupled, modulus=modulus)
