@@ -8,9 +8,11 @@ by a dashpot c and pulled by a spring k, whose far end follows the path, or by a
 in working units, primes for derivatives by the phase.  The contact's integrator does for the body,
 too: with r_i = g x_i' (g: the implicit part of the step) every stage leaves
 
-    stiffness x_i + f(q_i) = pushed,    stiffness = k + c / g + m / g^2,
+    stiffness r_i + f(q_i) = pushed,    stiffness = k + c / g + m / g^2,
 
-next to the Coulomb step, which x_i moves.  As f does not fall with x, the two have one solution.
+next to the Coulomb step, which r_i moves on from where earlier stages have left the body.  As f does
+not fall with r_i, the two have one solution.  (An equation for x_i would drown in the rounding of
+what a heavy body has behind it.)
 Without mass and dashpot nothing of the body's past is in it: x is what the tractions make it.
 """
 
@@ -123,5 +125,4 @@ def stage_stiffness(pull: Pull, length: float) -> float:
 @kernel(inline="always")
 def stage_load(pull: Pull, length: float, place: float, rate: float) -> float:
     """Force that pushes the body in a stage; place, rate: what earlier stages make of x and x'."""
-    past = pull.damping / length * place + pull.mass * (place / length + rate) / length
-    return pull.load + past
+    return pull.load - pull.stiffness * place + pull.mass * rate / length

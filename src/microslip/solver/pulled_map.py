@@ -1,8 +1,13 @@
 """One (half) period of a contact that is pulled, as a map of its state.
 
 The state is one row of numbers: the tractions, and where the body remembers (models/pull.py) how
-far it is ahead of the path, and how fast that grows.  In the mirror image of half a period later
-these two are what they were.
+far it is ahead of the path, x, and how fast that grows, x'.  In the mirror image of half a period
+later these two are what they were.
+
+In one period a heavy body hardly notices that the forces on it do not balance, nor does a soft
+spring that the contact stays behind.  So the map moves the body on as if it were no heavier, and
+its spring no softer, than the contact is: by so many times what it moved.  What repeats itself is
+the same.
 """
 
 from __future__ import annotations
@@ -11,11 +16,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from microslip.models.contact import StepFailure, energy_norm
+from microslip.models.contact import FORWARD, StepFailure, energy_norm, forces
 from microslip.models.coulomb import project
 from microslip.models.path import Path
 from microslip.models.pull import Body, PullsContact
 from microslip.solver.period_map import CreepRate, MarchInterval, PeriodicState, PeriodMap
+
+CAUTION = 0.3
+"""Share of the contact's stiffness that a softer spring counts as having: more would overshoot."""
 
 
 class PulledMap(PeriodMap):
@@ -47,6 +55,17 @@ class PulledMap(PeriodMap):
         self.body = body
         self._shape = (2, *np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape))
         self._points = int(np.prod(self._shape))
+        spread = np.broadcast_to(contact.bound, self._shape[1:])
+        self._spread = spread / np.sum(contact.weight * spread)
+        interval, stiffness = path.phase[-1] - path.phase[0], contact.stiffness
+        self._mass = min(body.mass, stiffness * interval**2)
+        self._held = body.stiffness * min(1.0, body.stiffness / stiffness)
+        self._haste = np.ones(2)
+        slow = max(1.0, body.damping / (stiffness * interval))
+        if body.stiffness > 0.0:
+            self._haste[0] = max(1.0, CAUTION * stiffness / body.stiffness * slow)
+        if body.mass > 0.0:
+            self._haste[1] = max(1.0, body.mass / (self._mass * slow))
 
     def __call__(self, state, step_tolerance, sensitivity=False):
         """March once from `state`; steps are solved to `step_tolerance`.
@@ -60,19 +79,23 @@ class PulledMap(PeriodMap):
         self.marches += 1
         self.iterations += march.iterations
         self.solves += march.solves
-        image = self.state(self.image(march.state), march.body[-1])
+        image = self._hastened(tractions, start, march)
         change = image - state
         if not np.isfinite(change).all():
             raise StepFailure("diverged: tractions are not finite")
         return MarchInterval(state, image, change, self.size(change), march)
 
+    def _hastened(self, tractions, start, march):
+        """The state that the next interval begins with."""
+        image = self.image(march.state)
+        if not self.body.remembers and self._haste[0] > 1.0:
+            gained = march.forces[-1, FORWARD] - forces(self.contact, tractions)[FORWARD]
+            image[FORWARD] += (self._haste[0] - 1.0) * gained * self._spread
+        return self.state(image, start + self._haste * (march.body[-1] - start))
+
     def state(self, tractions: np.ndarray, moved: np.ndarray) -> np.ndarray:
         """The state of tractions and of (x, x'), one row."""
         return np.append(tractions.ravel(), moved) if self.body.remembers else tractions.ravel()
-
-    def tractions(self, state: np.ndarray) -> np.ndarray:
-        """Those of a state, of the shape of the contact's states."""
-        return self._parts(state)[0]
 
     def _parts(self, state):
         moved = state[self._points :] if self.body.remembers else np.zeros(2)
@@ -81,24 +104,31 @@ class PulledMap(PeriodMap):
     @property
     def metric(self) -> np.ndarray:
         points = np.broadcast_to(super().metric, self._shape)
-        return self.state(points, np.array([self._held, self.body.mass]))
-
-    @property
-    def _held(self):
-        """Stiffness that counts for x: a mass or a dashpot alone leaves it free."""
-        return self.body.stiffness
+        return self.state(points, np.array([self._held, self._mass]))
 
     def size(self, change: np.ndarray) -> float:
+        """Bound on the force that a change of a state carries, over mu F_z.
+
+        A soft spring changes its force by less than the contact would for the same displacement.
+        """
         tractions, moved = self._parts(change)
-        squared = energy_norm(self.contact, tractions) ** 2
-        if self.body.remembers:
-            squared += self.contact.stiffness * (
-                self._held * moved[0] ** 2 + self.body.mass * moved[1] ** 2
-            )
-        elif self.body.stiffness > 0.0:  # the spring gives way as far as the force changes
-            force = float(np.sum(self.contact.weight * tractions[0]))
-            squared += self.contact.stiffness * force**2 / self.body.stiffness
+        held = self._held * moved[0] ** 2 + self._mass * moved[1] ** 2
+        if not self.body.remembers and self.body.stiffness > 0.0:
+            force = forces(self.contact, tractions)[FORWARD]
+            held = self._held * (force / self.body.stiffness) ** 2
+        squared = energy_norm(self.contact, tractions) ** 2 + self.contact.stiffness * held
         return float(np.sqrt(squared))
+
+    def distance(self, interval: MarchInterval, proposal: np.ndarray) -> float:
+        """Estimated distance of an interval's state from the fixed point, given a better state."""
+        distance = max(self.size(proposal - interval.state), interval.residual)
+        if self.creep_rate is None:
+            return distance
+        march, tractions = interval.march, self._parts(interval.state)[0]
+        gained = float(abs(march.body[-1, 0] - march.body[0, 0])) * self.contact.stiffness
+        gained += energy_norm(self.contact, self.image(march.state) - tractions)
+        force = self.path.mean(march.forces[:, FORWARD])
+        return max(distance, self.creep_rate.force_error(gained, force))
 
     def admissible(self, state: np.ndarray) -> np.ndarray:
         """The state, its tractions projected on the friction bound."""

@@ -94,13 +94,11 @@ class _Pulled:
     def run(self, tolerance):
         """The Run, to a tolerance that is a force over mu F_z."""
         moved = self._moved(tolerance)
-        stiffness, held = self.contact.stiffness, self.drive.stiffness
-        rate = stiffness * self.problem.creep
+        rate = self.contact.stiffness * self.problem.creep
         step_tolerance = tolerance * step_share(rate, self.resolution.steps, False)
         creep_rate = None
-        if self.drive.force is None:  # contact and spring in series
-            gain = rate * self.interval * np.sqrt(held / (held + stiffness))
-            creep_rate = CreepRate(moved.static_force, gain)
+        if self.drive.force is None:
+            creep_rate = CreepRate(moved.static_force, rate * self.interval)
         mirror = self.problem.motion.half_period_mirror
         period_map = PulledMap(self.contact, self.path, self.body, creep_rate, mirror)
         goal = Goal(tolerance, step_tolerance, MARCHES)

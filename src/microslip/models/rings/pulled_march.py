@@ -79,6 +79,8 @@ def pulled_march(rings, path, pull, state, known, settings) -> tuple:
             for c in range(2):
                 for i in range(n):
                     b[c, i] = z[c, i] + weight[i] * moved[at, c]
+                if c == 0:
+                    subtract(b[0], -past_place, weight)
                 for j in range(s):
                     subtract(b[c], carry[s, j], slips[j, c])
             guess(q, bounds, moved, at, known_tractions, tractions)
@@ -88,11 +90,11 @@ def pulled_march(rings, path, pull, state, known, settings) -> tuple:
                 stage_load(pull, length, past_place, past_rate),
                 holding,
             )
-            first = _guessed_place(places, at, known_places, moved)
-            count, residual, place = solve_pulled_step(
+            first = _guessed_place(places, at, known_places, moved) - past_place
+            count, residual, advances[s] = solve_pulled_step(
                 rings, pulled, (q, slips[s], first), factors, trial
             )
-            advances[s] = place - past_place
+            place = past_place + advances[s]
             gains[s] = advances[s] / length - past_rate
             copy(tractions[at], q)
             places[at] = place
@@ -108,4 +110,5 @@ def pulled_march(rings, path, pull, state, known, settings) -> tuple:
             for i in range(n):
                 z[c, i] = b[c, i] - slips[stages - 1, c, i] - weight[i] * moved[at, c]
                 forces[k + 1, c] += weight[i] * q[c, i]
+        subtract(z[0], past_place, weight)
     return q, tractions, places, body, forces, total, iterations, False

@@ -1,6 +1,6 @@
 """One Coulomb step on rings whose forward displacement is not given but pulled (models/pull.py).
 
-Next to the tractions q there is one unknown, the place x, and one equation more,
+Next to the tractions q there is one unknown more, how far the body moves, and one equation,
 
     stiffness x + f(q) = load,     f(q) = Sum area q_forward.
 
