@@ -140,7 +140,7 @@ def _ask_solver(sweep, where):
 
         choose_model(scene, sweep.poisson[-1], sweep.model)
     if sweep.velocity[0] == 0:
-        from microslip.adaptive.point import checked_point
+        from microslip.adaptive.checks import checked_point
 
         amplitude = sweep.amplitude and sweep.amplitude[0]
         checked_point(sweep.scene, 0, amplitude, sweep.poisson[-1], sweep.pressure)

@@ -10,9 +10,9 @@ too: with r_i = g x_i' (g: the implicit part of the step) every stage leaves
 
     stiffness r_i + f(q_i) = pushed,    stiffness = k + c / g + m / g^2,
 
-next to the Coulomb step, which r_i moves on from where earlier stages have left the body.  As f does
-not fall with r_i, the two have one solution.  (An equation for x_i would drown in the rounding of
-what a heavy body has behind it.)
+next to the Coulomb step, which r_i moves on from where earlier stages have left the body.  As f
+does not fall with r_i, the two have one solution.  (An equation for x_i would drown in the rounding
+of what a heavy body has behind it.)
 Without mass and dashpot nothing of the body's past is in it: x is what the tractions make it.
 """
 
@@ -77,7 +77,9 @@ class Body:
         """The Pull along a path, from x and x' at its start."""
         share = 1.0 / (1.0 + path.carry[-1].sum())  # a stiffly accurate method carries the rest
         lengths = share * np.diff(path.phase)
-        return Pull(*map(float, (self.stiffness, self.damping, self.mass, self.load)), lengths, start)
+        return Pull(
+            *map(float, (self.stiffness, self.damping, self.mass, self.load)), lengths, start
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -122,7 +122,8 @@ class _Pulled:
     def _summary(self, found, moved, step_tolerance):
         problem, unit = self.problem, self.force_of_answer
         forward, _, torque = mean_forces(self.contact, problem, self.path, found.forces)
-        solved = found.solver_residual <= len(self.path.stages[0]) * self.path.steps * step_tolerance
+        stages = self.path.stages.shape[0] * self.path.stages.shape[1]
+        solved = found.solver_residual <= stages * step_tolerance
         periods, reason = periods_of(found.marches, problem.motion), ""
         if not found.converged:
             reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"

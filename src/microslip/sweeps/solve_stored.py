@@ -5,14 +5,10 @@ import time
 import warnings
 from dataclasses import fields
 
+from microslip.adaptive.asked import TOLERANCE
+from microslip.adaptive.checks import checked_point, checked_request, refuse_bounds
 from microslip.adaptive.choice import choose_model
-from microslip.adaptive.point import (
-    TOLERANCE,
-    checked_point,
-    checked_request,
-    refuse_bounds,
-    refuse_choice,
-)
+from microslip.adaptive.moved import refuse_choice
 from microslip.adaptive.result import Result
 from microslip.config.records import Sweep
 from microslip.sweeps import batches

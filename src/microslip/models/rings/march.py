@@ -20,7 +20,7 @@ from microslip.models.rings.tangent import copy, factorise, make_factors, subtra
 
 
 @kernel
-def displacements(path):
+def displacements(path) -> np.ndarray:
     """Forward and lateral displacement at the start and at every stage, (1 + steps stages, 2)."""
     steps, stages = path.stages.shape[0], path.stages.shape[1]
     displacements = np.empty((1 + steps * stages, 2))
@@ -32,7 +32,7 @@ def displacements(path):
 
 
 @kernel
-def remembered(rings, position, q, b):
+def remembered(rings, position, q, b) -> np.ndarray:
     """Weighted displacement z = B q - area w at the start; b: scratch, all (2, n)."""
     z = np.empty_like(q)
     for c in range(2):
@@ -46,13 +46,13 @@ def remembered(rings, position, q, b):
 
 
 @kernel(inline="always")
-def bound_at(bounds, at):
+def bound_at(bounds, at) -> np.ndarray:
     """Friction bound at the start (0) and at the stages (from 1 on), (n,)."""
     return bounds[at if len(bounds) > 1 else 0]
 
 
 @kernel(inline="always")
-def guess(q, bounds, displacements, at, known, tractions):
+def guess(q, bounds, displacements, at, known, tractions) -> None:
     """Move q, the tractions at the end of a stage, to the first guess of those of the next one.
 
     at: number of that stage from 1 on; known, tractions: of another march, or nothing, and of this

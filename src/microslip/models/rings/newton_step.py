@@ -102,7 +102,7 @@ def _substitute_sticking(upper, change, stick):
 
 
 @kernel
-def newton_step(slip, stick, factors):
+def newton_step(slip, stick, factors) -> None:
     """Fill factors.change (in the order of the factors) with the Newton step against `slip`.
 
     Sticking rings are eliminated from both components, the angles of the slipping ones are solved
@@ -142,7 +142,7 @@ class Step(NamedTuple):
 
 
 @kernel(inline="always")
-def move(q, bound, stick, factors):
+def move(q, bound, stick, factors) -> None:
     """Fill factors.trial with q moved by factors.change, within the bound."""
     order, change, trial = factors.order, factors.change, factors.trial
     for p in range(len(bound)):

@@ -1,0 +1,194 @@
+"""The friction of a contact that a spring pulls, and the velocity of one that a force pulls."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import partial
+
+from microslip.adaptive.asked import Asked, refuse_free, verdict
+from microslip.adaptive.moved import CLOSED_FORM, PERIODICITY_SHARE, solve_moved
+from microslip.adaptive.refinement import certify
+from microslip.adaptive.resolutions import plan
+from microslip.adaptive.result import Result
+from microslip.adaptive.under_force import (
+    is_even,
+    oscillates,
+    runs_away,
+    steady_velocity,
+    velocity_near,
+    without_forward_motion,
+)
+from microslip.foundation.errors import InputError
+from microslip.models.registry import MODELS
+from microslip.motions.by_name import read_otherwise
+from microslip.motions.drive import Drive
+from microslip.solver.method_names import SHIPPED
+from microslip.solver.pulled_run import simulate_pulled
+from microslip.solver.run import Settings
+from microslip.solver.simulate import simulate
+
+STEADY_ERROR = 1e-9
+"""Of the velocity of a steady motion, over 1 and the velocity."""
+COARSE_TOLERANCE = 1e-2
+"""Of the runs that tell about which velocity a force belongs to."""
+FIRST_VELOCITY = 0.1
+"""For which these are planned."""
+GAP_MARGIN = 2.0
+"""Errors of the static limit above it at which the contact moves for certain."""
+
+
+def refuse_pull(asked: Asked, drive: Drive) -> None:
+    """Raise InputError where a model or a method does not know a contact that is pulled."""
+    given = ("force", drive.force) if drive.force is not None else ("stiffness", drive.stiffness)
+    motion = asked.problem.motion
+    if not MODELS[asked.model].pulled:
+        raise InputError("model", asked.model, f"does not know a {given[0]}, a velocity alone")
+    if asked.method != SHIPPED:
+        raise InputError("method", asked.method, f"allowed is {SHIPPED} with a {given[0]}")
+    if drive.force is not None or not motion.periodic:
+        return
+    if asked.problem.velocity == 0.0 and not is_even(asked.problem):
+        allowed = f"allowed is a number above 0 where a spring pulls {motion.name}"
+        raise InputError("velocity", 0.0, allowed)
+
+
+def solve_pulled(asked: Asked, drive: Drive) -> Result:
+    """The certified friction, or under a force the velocity, a result.Result; see microslip.solve.
+
+    It is for the caller to `refuse_pull` before.
+    """
+    if drive.force is not None:
+        return _under_force(asked, drive)
+    body = {"stiffness": drive.stiffness, "mass": drive.mass, "damping": drive.damping}
+    problem = asked.problem
+    if not problem.motion.periodic or problem.velocity == 0.0 or not oscillates(problem):
+        # what is steady stretches the spring to one length, whatever it is
+        return replace(solve_moved(asked), **body)
+    certified, axes = _certified(asked, drive, asked.accuracy)
+    return Result(
+        **asked.point,
+        **body,
+        model=asked.model,
+        mu_macro=_between(certified.mu, -1.0 if problem.motion.drives else 0.0, 1.0),
+        mu_macro_error=certified.error,
+        **verdict(asked, certified, axes, asked.tolerance),
+    )
+
+
+def _under_force(asked, drive):
+    """The velocity under a force."""
+    if drive.mass == 0.0 and asked.problem.motion.periodic:
+        asked = replace(asked, problem=without_forward_motion(asked.problem))
+    problem, force = asked.problem, drive.force
+    away = runs_away(problem, drive)
+    if away:
+        return _known(asked, drive, math.nan, math.inf, away)
+    if not problem.motion.periodic:
+        velocity = steady_velocity(problem.motion, force)
+        return _known(asked, drive, velocity, STEADY_ERROR * max(1.0, velocity))
+    if not oscillates(problem):
+        return _known(asked, drive, 0.0, 0.0)
+    least = 0.0
+    if is_even(problem):
+        static = solve_moved(replace(asked, problem=replace(problem, velocity=0.0)))
+        if force <= static.mu_macro - static.mu_macro_error:
+            return replace(
+                _known(asked, drive, 0.0, 0.0),
+                model=static.model,
+                cells=static.cells,
+                angles=static.angles,
+            )
+        least = static.mu_macro + GAP_MARGIN * static.mu_macro_error
+    return _moving(asked, drive, max(force, least))
+
+
+def _known(asked, drive, velocity, error, reason=""):
+    """The Result where nothing has to be marched."""
+    return Result(
+        **asked.point | {"velocity": velocity},
+        **_pulling(drive),
+        model=CLOSED_FORM if asked.chosen else asked.model,
+        mu_macro=1.0 if reason else drive.force,
+        mu_macro_error=0.0,
+        velocity_error=error,
+        converged=not reason and _good_enough(error, velocity, asked.tolerance),
+        periodic=not reason,
+        reason=reason,
+        solve_time_s=asked.seconds,
+    )
+
+
+def _good_enough(error, velocity, tolerance):
+    return tolerance is None or error <= tolerance * max(1.0, abs(velocity))
+
+
+def _pulling(drive):
+    """Fields that say how a force pulls."""
+    return {"force": drive.force} | ({"mass": drive.mass} if drive.mass > 0.0 else {})
+
+
+def _moving(asked, drive, marched):
+    """The Result of a contact that moves, marched under a force that it moves under for certain.
+
+    Where the static limit is not known well enough to tell whether it moves under the force that
+    was asked for, its velocity is between 0 and that one.
+    """
+    asked = replace(asked, problem=_problem_near(asked, marched))
+    scale = max(1.0, asked.problem.velocity)
+    certified, axes = _certified(asked, replace(drive, force=marched), asked.accuracy * scale)
+    velocity, error = max(certified.mu, 0.0), certified.error
+    if marched > drive.force:
+        velocity, error = 0.5 * velocity, 0.5 * velocity + error
+        certified = replace(certified, errors=certified.errors | {"model": 0.5 * certified.mu})
+    largest = None if asked.tolerance is None else asked.tolerance * max(1.0, velocity)
+    return Result(
+        **asked.point | {"velocity": velocity},
+        **_pulling(drive),
+        model=asked.model,
+        mu_macro=drive.force,
+        mu_macro_error=0.0,
+        velocity_error=error,
+        **verdict(asked, certified, axes, largest),
+    )
+
+
+def _problem_near(asked, force):
+    """The problem near the velocity that belongs to the force."""
+    moving = replace(asked.problem, velocity=FIRST_VELOCITY)
+    coarsest, axes = plan(moving, asked.model, COARSE_TOLERANCE, asked.cells, asked.steps)
+    coarse = replace(coarsest, **{axis.name: axis.levels[axis.first[0]] for axis in axes})
+    settings = Settings(asked.how, budget=asked.budget)
+
+    def friction_at(velocity):
+        there = replace(moving, velocity=velocity)
+        return simulate(there, asked.model, coarse, COARSE_TOLERANCE, settings=settings).mu
+
+    return replace(moving, velocity=velocity_near(moving, force, friction_at))
+
+
+def _certified(asked, drive, tolerance):
+    """The refinement.Certified to a tolerance, and what was refined."""
+    problem = asked.problem
+    coarsest, axes = plan(problem, asked.model, tolerance, asked.cells, asked.steps)
+    if asked.tolerance is None:
+        refuse_free(axes)
+    settings = Settings(asked.how, budget=asked.budget)
+
+    def run(resolution, guess, problem=problem):
+        if asked.progress is not None:
+            asked.progress(resolution)
+        return simulate_pulled(
+            problem, drive, asked.model, resolution, PERIODICITY_SHARE * tolerance, settings
+        )
+
+    readings = [
+        partial(run, problem=replace(problem, motion=other))
+        for other in read_otherwise(problem.motion)
+    ]
+    quantity = "mu" if drive.force is None else "velocity"
+    return certify(run, coarsest, axes, tolerance, readings, quantity), axes
+
+
+def _between(value, least, most):
+    return min(max(value, least), most) if math.isfinite(value) else math.nan
