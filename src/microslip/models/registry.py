@@ -153,12 +153,14 @@ MODELS = {
         ),
         _any_of(_refuse_other_loads, _refuse_half_disc),
         axes=lambda motion: ("cells", "angles"),
+        pulled=True,
     ),
     "cartesian": Model(
         lambda motion, poisson, cells, angles, focus: CartesianContact(
             cells, poisson, motion.pressure
         ),
         _refuse_pulsation,
+        pulled=True,
     ),
 }
 """Models by name."""
