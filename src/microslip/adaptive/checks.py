@@ -50,11 +50,13 @@ def checked_drive(
             if body[name] is not None:
                 allowed = "allowed is none beside a force, which does not pull through a spring"
                 raise InputError(name, body[name], allowed)
-        return Drive(force=real("force", force, 0.0, LARGEST_FORCE), mass=body["mass"] or 0.0)
+        return Drive(
+            force=real("force", force, -LARGEST_FORCE, LARGEST_FORCE), mass=body["mass"] or 0.0
+        )
     if stiffness is None:
         for name in ("mass", "damping"):
             if body[name] is not None:
-                allowed = "allowed beside a stiffness alone: a velocity moves any body"
+                allowed = "allowed beside a stiffness alone, for a velocity moves any body"
                 raise InputError(name, body[name], allowed)
         return None
     if body["stiffness"] == 0.0:

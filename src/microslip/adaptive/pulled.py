@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import partial
 
 from microslip.adaptive.asked import Asked, refuse_free, verdict
+from microslip.adaptive.chains import Runs
 from microslip.adaptive.moved import CLOSED_FORM, PERIODICITY_SHARE, solve_moved
 from microslip.adaptive.refinement import certify
 from microslip.adaptive.resolutions import plan
@@ -42,6 +43,9 @@ def refuse_pull(asked: Asked, drive: Drive) -> None:
     """Raise InputError where a model or a method does not know a contact that is pulled."""
     given = ("force", drive.force) if drive.force is not None else ("stiffness", drive.stiffness)
     motion = asked.problem.motion
+    if drive.force is not None and drive.force < 0.0 and not motion.drives:
+        allowed = f"allowed is a number of at least 0: {motion.name} drives nothing by itself"
+        raise InputError("force", drive.force, allowed)
     if not MODELS[asked.model].pulled:
         raise InputError("model", asked.model, f"does not know a {given[0]}, a velocity alone")
     if asked.method != SHIPPED:
@@ -81,6 +85,9 @@ def _under_force(asked, drive):
     if drive.mass == 0.0 and asked.problem.motion.periodic:
         asked = replace(asked, problem=without_forward_motion(asked.problem))
     problem, force = asked.problem, drive.force
+    if force < 0.0 and not problem.motion.drives:  # a pull back is a pull forward, seen from behind
+        ahead = _under_force(asked, replace(drive, force=-force))
+        return replace(ahead, force=force, mu_macro=-ahead.mu_macro, velocity=-ahead.velocity)
     away = runs_away(problem, drive)
     if away:
         return _known(asked, drive, math.nan, math.inf, away)
@@ -89,7 +96,7 @@ def _under_force(asked, drive):
         return _known(asked, drive, velocity, STEADY_ERROR * max(1.0, velocity))
     if not oscillates(problem):
         return _known(asked, drive, 0.0, 0.0)
-    least = 0.0
+    least = -math.inf
     if is_even(problem):
         static = solve_moved(replace(asked, problem=replace(problem, velocity=0.0)))
         if force <= static.mu_macro - static.mu_macro_error:
@@ -109,7 +116,7 @@ def _known(asked, drive, velocity, error, reason=""):
         **asked.point | {"velocity": velocity},
         **_pulling(drive),
         model=CLOSED_FORM if asked.chosen else asked.model,
-        mu_macro=1.0 if reason else drive.force,
+        mu_macro=math.copysign(1.0, drive.force) if reason else drive.force,
         mu_macro_error=0.0,
         velocity_error=error,
         converged=not reason and _good_enough(error, velocity, asked.tolerance),
@@ -137,11 +144,13 @@ def _moving(asked, drive, marched):
     asked = replace(asked, problem=_problem_near(asked, marched))
     scale = max(1.0, asked.problem.velocity)
     certified, axes = _certified(asked, replace(drive, force=marched), asked.accuracy * scale)
-    velocity, error = max(certified.mu, 0.0), certified.error
+    velocity, error = certified.mu, certified.error
+    if not asked.problem.motion.drives:
+        velocity = max(velocity, 0.0)  # what lies below is rounding and error
     if marched > drive.force:
         velocity, error = 0.5 * velocity, 0.5 * velocity + error
         certified = replace(certified, errors=certified.errors | {"model": 0.5 * certified.mu})
-    largest = None if asked.tolerance is None else asked.tolerance * max(1.0, velocity)
+    largest = None if asked.tolerance is None else asked.tolerance * max(1.0, abs(velocity))
     return Result(
         **asked.point | {"velocity": velocity},
         **_pulling(drive),
@@ -157,7 +166,8 @@ def _problem_near(asked, force):
     """The problem near the velocity that belongs to the force."""
     moving = replace(asked.problem, velocity=FIRST_VELOCITY)
     coarsest, axes = plan(moving, asked.model, COARSE_TOLERANCE, asked.cells, asked.steps)
-    coarse = replace(coarsest, **{axis.name: axis.levels[axis.first[0]] for axis in axes})
+    first = {axis.name: axis.first[0] for axis in axes}
+    coarse = Runs(None, coarsest, axes).resolution(**first)
     settings = Settings(asked.how, budget=asked.budget)
 
     def friction_at(velocity):

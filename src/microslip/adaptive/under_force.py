@@ -92,7 +92,7 @@ def least_load(problem: Problem) -> float:
 
 def runs_away(problem: Problem, drive: Drive) -> str:
     """Why there is no mean velocity, as one line; "" if there is one."""
-    if drive.force >= 1.0:
+    if abs(drive.force) >= 1.0:
         return f"runs away: the force {drive.force:g} is all that friction can hold, or more"
     least = least_load(problem)
     if drive.mass == 0.0 and drive.force >= least:

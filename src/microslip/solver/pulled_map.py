@@ -89,8 +89,10 @@ class PulledMap(PeriodMap):
         """The state that the next interval begins with."""
         image = self.image(march.state)
         if not self.body.remembers and self._haste[0] > 1.0:
-            gained = march.forces[-1, FORWARD] - forces(self.contact, tractions)[FORWARD]
-            image[FORWARD] += (self._haste[0] - 1.0) * gained * self._spread
+            # by how far the body moved, for the force itself is known to the steps' tolerance alone
+            ahead = march.body[-1, 0] - march.body[0, 0]
+            force = march.forces[0, FORWARD] - self._haste[0] * self.body.stiffness * ahead
+            image[FORWARD] += (force - march.forces[-1, FORWARD]) * self._spread
         return self.state(image, start + self._haste * (march.body[-1] - start))
 
     def state(self, tractions: np.ndarray, moved: np.ndarray) -> np.ndarray:

@@ -20,6 +20,9 @@ from microslip.solver.run import Run, Settings, failed_run
 from microslip.solver.simulate import mean_forces, periods_of, simulate, step_share
 
 MARCHES = 2 * MOST_MARCHES
+"""Of a search: a body may swing."""
+MOST_SCALED = 4.0
+"""By how much the tractions of a contact that is moved are scaled to the force at most."""
 
 
 def simulate_pulled(
@@ -115,7 +118,9 @@ class _Pulled:
         tractions, mean = moved.state, moved.mu * self.problem.mean_load
         if self.drive.force is not None:
             wanted = self.drive.force * self.problem.mean_load
-            tractions = project(tractions * (wanted / mean), self.contact.bound)
+            if mean > 0.0 and 0.0 <= wanted < MOST_SCALED * mean:
+                tractions = tractions * (wanted / mean)
+            tractions = project(tractions, self.contact.bound)
         place = (self.body.load - mean) / self.drive.stiffness if self.drive.stiffness else 0.0
         return period_map.state(tractions, np.array([place, 0.0]))
 
