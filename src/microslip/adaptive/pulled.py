@@ -25,7 +25,7 @@ from microslip.models.registry import MODELS
 from microslip.motions.by_name import read_otherwise
 from microslip.motions.drive import Drive
 from microslip.solver.method_names import SHIPPED
-from microslip.solver.pulled_run import simulate_pulled
+from microslip.solver.pulled_run import Accuracy, simulate_pulled
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 
@@ -69,7 +69,7 @@ def solve_pulled(asked: Asked, drive: Drive) -> Result:
     if not problem.motion.periodic or problem.velocity == 0.0 or not oscillates(problem):
         # what is steady stretches the spring to one length, whatever it is
         return replace(solve_moved(asked), **body)
-    certified, axes = _certified(asked, drive, asked.accuracy)
+    certified, axes = _certified(asked, drive, Accuracy(asked.accuracy))
     return Result(
         **asked.point,
         **body,
@@ -141,9 +141,10 @@ def _moving(asked, drive, marched):
     Where the static limit is not known well enough to tell whether it moves under the force that
     was asked for, its velocity is between 0 and that one.
     """
-    asked = replace(asked, problem=_problem_near(asked, marched))
-    scale = max(1.0, asked.problem.velocity)
-    certified, axes = _certified(asked, replace(drive, force=marched), asked.accuracy * scale)
+    near = _near(asked, marched)
+    asked = replace(asked, problem=replace(asked.problem, velocity=near.velocity))
+    accuracy = Accuracy(asked.accuracy * max(1.0, near.velocity), near.slope)
+    certified, axes = _certified(asked, replace(drive, force=marched), accuracy)
     velocity, error = certified.mu, certified.error
     if not asked.problem.motion.drives:
         velocity = max(velocity, 0.0)  # what lies below is rounding and error
@@ -162,8 +163,8 @@ def _moving(asked, drive, marched):
     )
 
 
-def _problem_near(asked, force):
-    """The problem near the velocity that belongs to the force."""
+def _near(asked, force):
+    """The under_force.Near where the contact, if it is moved, resists with the force."""
     moving = replace(asked.problem, velocity=FIRST_VELOCITY)
     coarsest, axes = plan(moving, asked.model, COARSE_TOLERANCE, asked.cells, asked.steps)
     first = {axis.name: axis.first[0] for axis in axes}
@@ -174,12 +175,13 @@ def _problem_near(asked, force):
         there = replace(moving, velocity=velocity)
         return simulate(there, asked.model, coarse, COARSE_TOLERANCE, settings=settings).mu
 
-    return replace(moving, velocity=velocity_near(moving, force, friction_at))
+    return velocity_near(moving, force, friction_at)
 
 
-def _certified(asked, drive, tolerance):
-    """The refinement.Certified to a tolerance, and what was refined."""
-    problem = asked.problem
+def _certified(asked, drive, accuracy):
+    """The refinement.Certified to an accuracy, and what was refined."""
+    problem, tolerance = asked.problem, accuracy.tolerance
+    share = accuracy._replace(tolerance=PERIODICITY_SHARE * tolerance)
     coarsest, axes = plan(problem, asked.model, tolerance, asked.cells, asked.steps)
     if asked.tolerance is None:
         refuse_free(axes)
@@ -188,9 +190,7 @@ def _certified(asked, drive, tolerance):
     def run(resolution, guess, problem=problem):
         if asked.progress is not None:
             asked.progress(resolution)
-        return simulate_pulled(
-            problem, drive, asked.model, resolution, PERIODICITY_SHARE * tolerance, settings
-        )
+        return simulate_pulled(problem, drive, asked.model, resolution, share, settings)
 
     readings = [
         partial(run, problem=replace(problem, motion=other))

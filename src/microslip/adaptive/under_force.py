@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,6 +28,8 @@ FIRST_CREEP, FACTOR = 0.1, 4.0
 SLOWEST, FASTEST = 1e-6, 1e6
 """Creep in a radian at which the search for a velocity begins, what it is multiplied by from one
 run to the next, and where it ends."""
+FLATTEST = 1e-6
+"""Least rise of friction that a pair of runs may tell, over the relative rise of the velocity."""
 HALVINGS = 2
 """Of the last such interval, by its logarithm."""
 
@@ -128,7 +132,22 @@ def steady_velocity(motion: Motion, force: float) -> float:
     return float(brentq(left, 0.0, high, xtol=1e-14, rtol=1e-14)) if force > 0.0 else 0.0
 
 
-def velocity_near(problem: Problem, force: float, friction_at: Callable[[float], float]) -> float:
+class Near(NamedTuple):
+    """A place on the curve of friction over velocity.
+
+    Attributes
+    ----------
+    velocity : float
+        In the unit of the motion.
+    slope : float
+        About how much friction rises there with the velocity.
+    """
+
+    velocity: float
+    slope: float
+
+
+def velocity_near(problem: Problem, force: float, friction_at: Callable[[float], float]) -> Near:
     """Velocity at which a contact that is moved resists with a force, to a factor of about two.
 
     It is where the search for a contact that is pulled begins, and what its path is cut into steps
@@ -144,18 +163,21 @@ def velocity_near(problem: Problem, force: float, friction_at: Callable[[float],
         friction_at(velocity) -> mean forward force likewise, NaN where there is none.
     """
     unit = problem.motion.creep(1.0, problem.amplitude, problem.poisson)
-    low = high = FIRST_CREEP
-    if friction_at(high / unit) < force:
-        while high < FASTEST and friction_at(high / unit) < force:
-            low, high = high, FACTOR * high
-    else:
-        low = high / FACTOR
-        while low > SLOWEST and friction_at(low / unit) > force:
-            low, high = low / FACTOR, low
+
+    @cache
+    def at(creep):
+        return friction_at(creep / unit)
+
+    low, high = FIRST_CREEP / FACTOR, FIRST_CREEP
+    while high < FASTEST and at(high) < force:
+        low, high = high, FACTOR * high
+    while low > SLOWEST and at(low) > force:
+        low, high = low / FACTOR, low
+    slope = (at(high) - at(low)) / (high - low) * unit
     for _ in range(HALVINGS):
         middle = float(np.sqrt(low * high))
-        if friction_at(middle / unit) < force:
+        if at(middle) < force:
             low = middle
         else:
             high = middle
-    return float(np.sqrt(low * high)) / unit
+    return Near(float(np.sqrt(low * high)) / unit, max(slope, FLATTEST / high * unit))

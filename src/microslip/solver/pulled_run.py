@@ -6,6 +6,8 @@ far end, or under a force one that is about as slow.  From there an accelerated 
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from microslip.models.contact import StepFailure
@@ -25,12 +27,28 @@ MOST_SCALED = 4.0
 """By how much the tractions of a contact that is moved are scaled to the force at most."""
 
 
+class Accuracy(NamedTuple):
+    """How exactly the periodic state is to be found.
+
+    Attributes
+    ----------
+    tolerance : float
+        Of the answer: a force over mu F_z, or under a force the mean velocity.
+    slope : float
+        About how much friction rises with the velocity, over mu times the mean normal load: what
+        an unbalanced force does to the velocity.
+    """
+
+    tolerance: float
+    slope: float = np.inf
+
+
 def simulate_pulled(
     problem: Problem,
     drive: Drive,
     model: str,
     resolution: Resolution,
-    tolerance: float,
+    accuracy: Accuracy,
     settings: Settings,
 ) -> Run:
     """Run a model of a contact that is pulled to its periodic state.
@@ -45,8 +63,8 @@ def simulate_pulled(
         Name in models.registry.MODELS, of a contact that may be pulled.
     resolution : problem.Resolution
         Of the model.
-    tolerance : float
-        Of the periodic state, a force over mu F_z, or of the mean velocity under a force.
+    accuracy : Accuracy
+        Of the periodic state.
     settings : run.Settings
         How it is done; the method is what ships.
 
@@ -62,8 +80,9 @@ def simulate_pulled(
         Where the budget is.
     """
     pulled = _Pulled(problem, drive, model, resolution, settings)
+    pulled.slope = accuracy.slope
     try:
-        return pulled.run(tolerance * pulled.force_of_answer)
+        return pulled.run(accuracy.tolerance * pulled.force_of_answer)
     except (StepFailure, ArithmeticError, np.linalg.LinAlgError) as failure:
         return failed_run(str(failure))
 
@@ -81,18 +100,21 @@ class _Pulled:
         if drive.force is not None:
             load += drive.force * problem.mean_load
         self.body = Body(drive.stiffness, drive.damping, drive.mass, load)
+        self.slope = np.inf
 
     @property
     def force_of_answer(self):
         """Force over mu F_z that stands for a unit of the answer, to judge states by.
 
         A state that is wrong by a force is wrong by that over the stiffness in its displacement,
-        and a march that began with it, in the velocity by this over the interval.
+        and a march that began with it, in the velocity by this over the interval.  A force that is
+        not balanced is wrong by what friction would rise by in the velocity.
         """
         if self.drive.force is None:
             return self.problem.mean_load
         unit = self.problem.motion.creep(1.0, self.problem.amplitude, self.problem.poisson)
-        return self.contact.stiffness * self.interval * unit
+        stuck = self.contact.stiffness * self.interval * unit
+        return min(stuck, self.slope * self.problem.mean_load)
 
     def run(self, tolerance):
         """The Run, to a tolerance that is a force over mu F_z."""
