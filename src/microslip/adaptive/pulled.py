@@ -24,6 +24,7 @@ from microslip.foundation.errors import InputError
 from microslip.models.registry import MODELS
 from microslip.motions.by_name import read_otherwise
 from microslip.motions.drive import Drive
+from microslip.solver.budget import Spent
 from microslip.solver.method_names import SHIPPED
 from microslip.solver.pulled_run import Accuracy, simulate_pulled
 from microslip.solver.run import Settings
@@ -35,6 +36,11 @@ COARSE_TOLERANCE = 1e-2
 """Of the runs that tell about which velocity a force belongs to."""
 FIRST_VELOCITY = 0.1
 """For which these are planned."""
+SLOWEST_SHARE = 0.3
+"""Of the velocity of the contact that is moved: one that the force makes slower is not known so
+coarsely."""
+SCALE_SHARE = 0.9
+"""Of the velocity so found that the tolerance is taken over."""
 GAP_MARGIN = 2.0
 """Errors of the static limit above it at which the contact moves for certain."""
 
@@ -141,11 +147,15 @@ def _moving(asked, drive, marched):
     Where the static limit is not known well enough to tell whether it moves under the force that
     was asked for, its velocity is between 0 and that one.
     """
-    near = _near(asked, marched)
+    drive_marched = replace(drive, force=marched)
+    try:
+        near = _near(asked, drive_marched)
+    except Spent as spent:
+        return _given_up(asked, drive, str(spent))
     asked = replace(asked, problem=replace(asked.problem, velocity=near.velocity))
-    accuracy = Accuracy(asked.accuracy * max(1.0, near.velocity), near.slope)
-    certified, axes = _certified(asked, replace(drive, force=marched), accuracy)
-    velocity, error = certified.mu, certified.error
+    accuracy = Accuracy(asked.accuracy * max(1.0, SCALE_SHARE * near.velocity), near.slope)
+    certified, axes = _certified(asked, drive_marched, accuracy)
+    velocity, error = float(certified.mu), float(certified.error)
     if not asked.problem.motion.drives:
         velocity = max(velocity, 0.0)  # what lies below is rounding and error
     if marched > drive.force:
@@ -163,19 +173,41 @@ def _moving(asked, drive, marched):
     )
 
 
-def _near(asked, force):
-    """The under_force.Near where the contact, if it is moved, resists with the force."""
+def _near(asked, drive):
+    """The under_force.Near of what the force makes of the contact, by coarse runs.
+
+    Friction of the contact that is moved tells about where it is, and one run under the force more
+    exactly, unless it is so slow that this would take finer ones.
+    """
     moving = replace(asked.problem, velocity=FIRST_VELOCITY)
     coarsest, axes = plan(moving, asked.model, COARSE_TOLERANCE, asked.cells, asked.steps)
+    if asked.tolerance is None:
+        refuse_free(axes)
     first = {axis.name: axis.first[0] for axis in axes}
     coarse = Runs(None, coarsest, axes).resolution(**first)
     settings = Settings(asked.how, budget=asked.budget)
+    if asked.progress is not None:
+        asked.progress(coarse)
 
     def friction_at(velocity):
         there = replace(moving, velocity=velocity)
         return simulate(there, asked.model, coarse, COARSE_TOLERANCE, settings=settings).mu
 
-    return velocity_near(moving, force, friction_at)
+    near = velocity_near(moving, drive.force, friction_at)
+    place = replace(moving, velocity=near.velocity)
+    accuracy = Accuracy(COARSE_TOLERANCE * near.velocity, near.slope)
+    found = simulate_pulled(place, drive, asked.model, coarse, accuracy, settings)
+    if found.converged and found.velocity > SLOWEST_SHARE * near.velocity:
+        return near._replace(velocity=found.velocity)
+    return near
+
+
+def _given_up(asked, drive, reason):
+    """The Result of a point of which nothing is known yet."""
+    unknown = replace(_known(asked, drive, math.nan, math.inf, reason), model=asked.model)
+    return replace(
+        unknown, mu_macro=drive.force, exhausted=asked.budget.exhausted, **asked.budget.counts()
+    )
 
 
 def _certified(asked, drive, accuracy):
