@@ -15,6 +15,7 @@ from microslip.adaptive.result import Result
 from microslip.adaptive.under_force import (
     is_even,
     oscillates,
+    refuse_steady,
     runs_away,
     steady_velocity,
     velocity_near,
@@ -26,6 +27,7 @@ from microslip.motions.by_name import read_otherwise
 from microslip.motions.drive import Drive
 from microslip.solver.budget import Spent
 from microslip.solver.method_names import SHIPPED
+from microslip.solver.problem import Problem
 from microslip.solver.pulled_run import Accuracy, simulate_pulled
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
@@ -45,22 +47,28 @@ GAP_MARGIN = 2.0
 """Errors of the static limit above it at which the contact moves for certain."""
 
 
-def refuse_pull(asked: Asked, drive: Drive) -> None:
-    """Raise InputError where a model or a method does not know a contact that is pulled."""
-    given = ("force", drive.force) if drive.force is not None else ("stiffness", drive.stiffness)
-    motion = asked.problem.motion
+def refuse_drive(problem: Problem, drive: Drive, model: str) -> None:
+    """Raise InputError where a model, by name, or a motion does not go with a drive."""
+    motion, pulls = problem.motion, "stiffness" if drive.force is None else "force"
     if drive.force is not None and drive.force < 0.0 and not motion.drives:
         allowed = f"allowed is a number of at least 0: {motion.name} drives nothing by itself"
         raise InputError("force", drive.force, allowed)
-    if not MODELS[asked.model].pulled:
-        raise InputError("model", asked.model, f"does not know a {given[0]}, a velocity alone")
-    if asked.method != SHIPPED:
-        raise InputError("method", asked.method, f"allowed is {SHIPPED} with a {given[0]}")
-    if drive.force is not None or not motion.periodic:
-        return
-    if asked.problem.velocity == 0.0 and not is_even(asked.problem):
+    if not MODELS[model].pulled:
+        raise InputError("model", model, f"does not know a {pulls}, a velocity alone")
+    if drive.force is not None:
+        if not motion.periodic:
+            refuse_steady(motion, drive.force)
+    elif motion.periodic and problem.velocity == 0.0 and not is_even(problem):
         allowed = f"allowed is a number above 0 where a spring pulls {motion.name}"
         raise InputError("velocity", 0.0, allowed)
+
+
+def refuse_pull(asked: Asked, drive: Drive) -> None:
+    """Raise InputError where what is asked does not go with a drive."""
+    refuse_drive(asked.problem, drive, asked.model)
+    if asked.method != SHIPPED:
+        pulls = "stiffness" if drive.force is None else "force"
+        raise InputError("method", asked.method, f"allowed is {SHIPPED} with a {pulls}")
 
 
 def solve_pulled(asked: Asked, drive: Drive) -> Result:

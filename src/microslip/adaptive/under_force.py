@@ -107,19 +107,21 @@ def runs_away(problem: Problem, drive: Drive) -> str:
     return ""
 
 
+def refuse_steady(motion: Motion, force: float) -> None:
+    """Raise InputError where the velocity of a steady motion under a force has no closed form."""
+    if motion.name != "continuous-bore" or not motion.pressure.is_round:
+        place = f"{motion.name} under {motion.pressure.name}"
+        raise InputError("force", force, f"allowed is none for {place}, which has no closed form")
+
+
 def steady_velocity(motion: Motion, force: float) -> float:
-    """Velocity of a steady rotation under a force below 1, from Eqs 17 and 21; raises InputError
-    where they are not known."""
+    """Velocity of a steady rotation under a force from 0 to below 1, from Eqs 17 and 21; it is for
+    the caller to `refuse_steady` before."""
     from scipy.optimize import brentq  # only now: these take a while to load
 
     from microslip.theory import axisymmetric
 
     pressure = motion.pressure
-    if motion.name != "continuous-bore" or not pressure.is_round:
-        allowed = (
-            f"allowed is none for {motion.name} under {pressure.name}: no closed form is known"
-        )
-        raise InputError("force", force, allowed)
 
     def left(velocity):
         if pressure.hertzian:

@@ -213,9 +213,6 @@ def _answer(options, progress):
     if options.results is not None and options.method != "shipped":
         allowed = "allowed is shipped with --results, which keeps points of sweeps"
         raise InputError("method", options.method, allowed)
-    for name in DRIVE:
-        if options.results is not None and name in numbers:
-            raise InputError(name, numbers[name], "allowed is none with --results")
     numbers.setdefault("velocity", None)
     from microslip import solve, solve_stored
 

@@ -70,6 +70,7 @@ class Plan:
             *found,
             *(f"{name}_periods" for name in self.explored),
             *self.configuration.extended,
+            *self.configuration.drives,
         ]
 
     def batches_in(self, group: str) -> dict[str, list]:

@@ -22,10 +22,18 @@ def formulas(scene: str, pressure: str = "hertz") -> dict:
     return formulas_under(scene, pressure)
 
 
+def _forms(sweep):
+    """Those that hold for a records.Sweep: what is said of a velocity holds where one moves."""
+    found = formulas(*solver_names(sweep))
+    if sweep.drives:
+        found = {name: form for name, form in found.items() if form.arguments == ("amplitude",)}
+    return found
+
+
 def variables(sweep) -> dict:
     """Variables on the axes of a records.Sweep: name -> (dims, values, attributes)."""
     found = {}
-    for name, form in formulas(*solver_names(sweep)).items():
+    for name, form in _forms(sweep).items():
         axes = [np.array(getattr(sweep, dim)) for dim in form.arguments]
         # meshgrid puts the first coordinate last, as the datasets do
         values = form.function(*np.meshgrid(*axes))
@@ -40,7 +48,7 @@ def curves(sweep) -> dict:
     `velocity_curve`; of a limit that depends on both it is the one at the largest amplitude.
     """
     found = {}
-    for name, form in formulas(*solver_names(sweep)).items():
+    for name, form in _forms(sweep).items():
         first, *others = form.arguments
         axes = [np.array(getattr(sweep, dim)) for dim in form.arguments]
         along, fine = f"{first}_curve", _fine(first, axes[0])
