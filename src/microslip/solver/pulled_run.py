@@ -94,7 +94,7 @@ class _Pulled:
         self.problem, self.drive, self.model = problem, drive, model
         self.resolution, self.settings = resolution, settings
         self.contact = settings.contact(problem, model, resolution)
-        self.path = problem.path(self.contact, resolution.steps)
+        self.path = problem.path(self.contact, resolution.steps, settings.method.integrator)
         self.interval = self.path.phase[-1] - self.path.phase[0]
         load = -drive.damping * problem.creep
         if drive.force is not None:
