@@ -91,6 +91,7 @@ rule extended:
 rule drives:
     input:
         datasets_of(CONFIGURATION.drives),
+        figures_of(CONFIGURATION.drives),
 
 
 rule accuracy:

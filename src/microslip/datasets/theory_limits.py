@@ -30,11 +30,25 @@ def _forms(sweep):
     return found
 
 
+def _creep_forms(sweep):
+    """Those of the velocity under a force, where one pulls."""
+    scene, pressure = solver_names(sweep)
+    form = catalogue.CREEP_FORMS.get(scene)
+    is_map = [(name, is_axis) for name, _, is_axis in sweep.drives] == [("force", True)]
+    known = is_map and form is not None and (form.any_pressure or pressure == "hertz")
+    return {form.name: form} if known else {}
+
+
+def _axis(sweep, dim):
+    pulls = {name: values for name, values, _ in sweep.drives}
+    return np.array(pulls[dim] if dim in pulls else getattr(sweep, dim))
+
+
 def variables(sweep) -> dict:
     """Variables on the axes of a records.Sweep: name -> (dims, values, attributes)."""
     found = {}
-    for name, form in _forms(sweep).items():
-        axes = [np.array(getattr(sweep, dim)) for dim in form.arguments]
+    for name, form in (_forms(sweep) | _creep_forms(sweep)).items():
+        axes = [_axis(sweep, dim) for dim in form.arguments]
         # meshgrid puts the first coordinate last, as the datasets do
         values = form.function(*np.meshgrid(*axes))
         found[name] = _variable(form.arguments[::-1], values, form.long_name, form.description)
