@@ -17,7 +17,8 @@
 #   datasets --> draw_figure
 #
 # Sweeps of other motions and pressures, those under `extended`, come the same way: snakemake extended
-# makes results/NAME.nc of each, and a figure extended_GROUP of each of their groups.
+# makes results/NAME.nc of each, and a figure extended_GROUP of each of their groups. So do those of
+# contacts that are pulled, under `drives`: snakemake drives makes results/NAME.nc of each.
 #
 # snakemake explorer makes one page to look behind every point of the maps.
 #
@@ -85,6 +86,12 @@ rule extended:
     input:
         datasets_of(CONFIGURATION.extended),
         figures_of(CONFIGURATION.extended),
+
+
+rule drives:
+    input:
+        datasets_of(CONFIGURATION.drives),
+        figures_of(CONFIGURATION.drives),
 
 
 rule accuracy:

@@ -7,6 +7,8 @@ TRANSVERSE = "point transverse --velocity 0.5 --amplitude 0.5"
 BORE = "point bore --velocity 0.5 --amplitude 0.5"
 STEADY = "point continuous-bore --velocity 0.5"
 
+PULLED = "point transverse --amplitude 0.5"
+
 FINITE = "a finite number of at least 0"
 RATIO = "at least 0 and at most 0.5"
 RANGE = "at least 1e-06 and at most 0.1"
@@ -31,6 +33,22 @@ NUMBERS = [
     (f"{BORE} --amplitude 1e999", "--amplitude = '1e999'", FINITE),
     (f"{BORE} --amplitude 1e300", "--amplitude = '1e300'", "at most 1e+06"),
     (f"{BORE} --amplitude 30deg", "--amplitude = '30deg'", "allowed is a number"),
+    (f"{PULLED} --force -0.1", "--force = '-0.1'", "at least 0: transverse drives nothing"),
+    (f"{PULLED} --force nan", "--force = 'nan'", "a finite number"),
+    (f"{PULLED} --force 5N", "--force = '5N'", "allowed is a number"),
+    (f"{TRANSVERSE} --force 0.1", "--force = '0.1'", "a force or a velocity, not both"),
+    (f"{PULLED} --force 0.1 --stiffness 1", "--stiffness = '1'", "none beside a force"),
+    (f"{PULLED} --force 0.1 --damping 1", "--damping = '1'", "none beside a force"),
+    (f"{PULLED} --force -1 --results new", "--force = '-1'", "at least 0: transverse drives"),
+    (f"{PULLED} --force 0.1 --model rigid", "--model = 'rigid'", "does not know a force"),
+    (f"{PULLED} --force 0.1 --method march", "--method = 'march'", "shipped with a force"),
+    (f"{TRANSVERSE} --stiffness 0", "--stiffness = '0'", "a number above 0"),
+    (f"{TRANSVERSE} --stiffness -1", "--stiffness = '-1'", FINITE),
+    (f"{TRANSVERSE} --stiffness 1e7", "--stiffness = '1e7'", "at most 1e+06"),
+    (f"{TRANSVERSE} --stiffness 1 --mass inf", "--mass = 'inf'", FINITE),
+    (f"{TRANSVERSE} --stiffness 1 --damping -1", "--damping = '-1'", FINITE),
+    (f"{TRANSVERSE} --mass 1", "--mass = '1'", "beside a stiffness alone"),
+    (f"{TRANSVERSE} --damping 1", "--damping = '1'", "beside a stiffness alone"),
     (f"{TRANSVERSE} --poisson 0.7", "--poisson = '0.7'", RATIO),
     (f"{TRANSVERSE} --poisson 0.5000001", "--poisson = '0.5000001'", RATIO),
     (f"{BORE} --poisson -0.1", "--poisson = '-0.1'", RATIO),
@@ -136,9 +154,9 @@ OPTIONS = [
     ("point sideways --velocity 1", "SCENE", "'sideways'", "zigzag"),
     ("point continuous_bore --velocity 1", "'continuous_bore'", "continuous-bore"),
     ("point --velocity 1 transverse", "--velocity", "SCENE before other options"),
-    ("point transverse --amplitude 1", "required: --velocity"),
+    ("point transverse --amplitude 1", "--velocity = None", "or a force in its place"),
     ("point transverse --velocity 1", "required: --amplitude"),
-    ("point bore", "required: --velocity, --amplitude"),
+    ("point bore", "required: --amplitude"),
     (f"{STEADY} --amplitude 1", "unknown option --amplitude", "allowed: --help, --velocity"),
     ("point bore --velo 1 --amplitude 1", "option --velo;", "did you mean --velocity?"),
     ("point bore --vleocity=1 --amplitude 1", "option --vleocity;", "did you mean --velocity?"),

@@ -13,9 +13,9 @@ from bad_input_tables.bad_command_lines import COMMAND_LINES, NAMES, NUMBERS, RE
 from bad_input_tables.bad_configurations import EXTENDED, FILES, KEYS, STUDIES, TOGETHER, changed
 
 import microslip
-from microslip.adaptive import point
 from microslip.app import cli
 from microslip.config import load, schema
+from microslip.foundation.arguments import LARGEST
 
 SOURCE = str(Path(microslip.__file__).parent.parent)
 
@@ -28,7 +28,7 @@ def nothing_runs(monkeypatch):
         raise AssertionError("work has started")
 
     for name in ("certify", "simulate", "simulate_static", "no_vibration", "closed_form"):
-        monkeypatch.setattr(f"microslip.adaptive.point.{name}", work)
+        monkeypatch.setattr(f"microslip.adaptive.moved.{name}", work)
 
 
 @pytest.fixture
@@ -87,7 +87,7 @@ def test_the_command_line_has_the_limits_of_configurations():
     rules = schema.schema()["$defs"]
     limits = {name: rules[name]["maximum"] for name in ("cells", "steps", "non_negative")}
     limits |= dict.fromkeys(["velocity", "amplitude"], limits.pop("non_negative"))
-    assert limits == point.LARGEST
+    assert limits == LARGEST
 
 
 # Configurations

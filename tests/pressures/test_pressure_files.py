@@ -388,7 +388,7 @@ def test_a_file_is_found_without_any_other_import(tmp_path):
     """By the module that solves alone, in a fresh process."""
     name = csv(tmp_path / "p.csv", *2 * [np.array([0.0, 1.0])], np.ones((2, 2)))
     script = (
-        "from microslip.adaptive.point import checked_point\n"
+        "from microslip.adaptive.checks import checked_point\n"
         f"kind = checked_point('transverse', 0.5, 0.5, 0.0, {name!r})[0]\n"
         "print(kind.pressure.name)"
     )

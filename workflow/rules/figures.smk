@@ -12,6 +12,7 @@ rule draw_figure:
                 "claims": "The paper's claims",
                 **dict.fromkeys(CONFIGURATION.sweeps, "The paper's figures"),
                 **dict.fromkeys(CONFIGURATION.extended, "Other motions and pressures"),
+                **dict.fromkeys(CONFIGURATION.drives, "What pulls the contact"),
             }.get(FIGURES[wildcards.figure][0], "Methods"),
             labels={"figure": "{figure}"},
         ),

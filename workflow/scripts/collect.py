@@ -5,6 +5,8 @@ Output: netCDF-4, CF conventions, all quantities dimensionless (units 1, phases 
   bore.nc             dims (amplitude, velocity)
   continuous_bore.nc  dims (velocity)
   any of `extended`   dims (amplitude, velocity), or (velocity) if its motion is steady
+  any of `drives`     the same, the force in place of the velocity where one pulls, after the mass,
+                      the damping and the stiffness, those of them that are axes
 What has other axes is in groups of the file, see dataset.GROUPS: limits on fine axes, single runs.
 A sweep with a list of Poisson's ratios has the dim poisson before these. Beside it an HTML
 page that sums it up.
@@ -33,7 +35,7 @@ with job_log(snakemake.log[0]) as log:
         configuration.of_sweep(name),
     )
     with xr.open_dataset(snakemake.output[0]) as data:
-        lines = list(sweep_dataset.report(data, grid.group and name))
+        lines = list(sweep_dataset.report(data, name if grid.group or grid.drives else None))
         for line in lines:
             log.info(line)
         dataset_page.write(snakemake.output.summary, data, lines)

@@ -15,7 +15,8 @@ from microslip.sweeps import batch_files, batches, cache
 
 with job_log(snakemake.log[0]) as log:
     # Requests name files by what these hold.
-    named_files.remember(given["pressure"] for given in snakemake.config["extended"].values())
+    for others in ("extended", "drives"):
+        named_files.remember(given["pressure"] for given in snakemake.config[others].values())
     records, done = batches.run_batch(
         json.loads(snakemake.params.requests),
         cache.Store(snakemake.params.store),

@@ -71,10 +71,14 @@ class Axis:
 
 
 class Runs:
-    """Runs at (cells, angles, steps), given as indices into the levels of the axes; each once."""
+    """Runs at (cells, angles, steps), given as indices into the levels of the axes; each once.
 
-    def __init__(self, run, coarsest, axes):
+    quantity: name of what is asked of a run.Run.
+    """
+
+    def __init__(self, run, coarsest, axes, quantity="mu"):
         self.run, self.coarsest, self.axes = run, coarsest, {axis.name: axis for axis in axes}
+        self.quantity = quantity
         self.base = {axis.name: axis.base for axis in axes}
         self.done = {}
 

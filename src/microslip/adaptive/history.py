@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from microslip.adaptive.checks import checked_point
 from microslip.adaptive.choice import choose_model
-from microslip.adaptive.point import checked_point
 from microslip.adaptive.whole_disc import points_of, whole_disc
 from microslip.foundation.arguments import LARGEST, count, real
 from microslip.foundation.errors import InputError

@@ -43,12 +43,12 @@ SOURCES = {"cells": "space", "angles": "space", "steps": "time"}
 
 @dataclass(frozen=True)
 class Certified:
-    """A number and what is wrong with it at most; forces over mu F_z.
+    """A number and what is wrong with it at most; forces over mu F_z, or a velocity.
 
     Attributes
     ----------
     mu, torque : float
-        Corrected means.
+        Corrected means; for mu the quantity that was asked for.
     errors : dict of float
         Of mu by source: space, time, periodicity, solver; model, where there are readings.
     torque_error : float
@@ -92,6 +92,7 @@ def certify(
     axes: Sequence[Axis],
     tolerance: float,
     readings: Sequence[Callable] = (),
+    quantity: str = "mu",
 ) -> Certified:
     """Refine until the estimated error is within the tolerance.
 
@@ -104,9 +105,11 @@ def certify(
     axes : sequence of chains.Axis
         To be refined.
     tolerance : float
-        Absolute, on mu.
+        Absolute, on the quantity.
     readings : sequence of callable
         Like `run`, for other pressures that the same numbers may stand for.
+    quantity : str
+        Of a run.Run, what is asked for: "mu", or "velocity" where a force pulls.
 
     Returns
     -------
@@ -115,7 +118,7 @@ def certify(
         stays too large, or a run raised budget.Spent: then it is what was known before that run,
         NaN if that was nothing yet.
     """
-    refinement = _Refinement(Runs(run, coarsest, axes), axes, tolerance, readings)
+    refinement = _Refinement(Runs(run, coarsest, axes, quantity), axes, tolerance, readings)
     known = None
     try:
         while True:
@@ -168,11 +171,12 @@ class _Refinement:
         """An Estimate from the chains as they are; does the runs that they lack."""
         runs, chains = self.runs, self.chains
         runs()  # the base first: its state is a guess for others
-        left = {name: c.error("mu") for name, c in chains.items() if not c.axis.imposed}
-        hidden = {"steps": 0.0, "angles": abs(mixed_difference(runs, chains, "mu"))}
+        asked = runs.quantity
+        left = {name: c.error(asked) for name, c in chains.items() if not c.axis.imposed}
+        hidden = {"steps": 0.0, "angles": abs(mixed_difference(runs, chains, asked))}
         if "steps" in chains and len(chains) > 1:
             scatter = chains["steps"].axis.scatter
-            hidden["steps"] = scatter * abs(chains["steps"].correction("mu"))
+            hidden["steps"] = scatter * abs(chains["steps"].correction(asked))
         errors = _errors(runs, chains, hidden, self.tolerance)
         reason = next((r.reason for r in runs.done.values() if not r.converged), "")
         return Estimate(errors, left, hidden, reason)
@@ -186,7 +190,7 @@ class _Refinement:
         if error > self.goal:
             return False
         if self.goal == self.tolerance:
-            left_open = self.readings.open(self.chains, "mu")
+            left_open = self.readings.open(self.chains, self.runs.quantity)
             if error + left_open > self.tolerance and left_open <= LARGEST_OPEN * self.tolerance:
                 self.goal = self.tolerance - left_open
                 return error <= self.goal
@@ -251,7 +255,7 @@ def _errors(runs, chains, hidden, tolerance):
     errors = {"space": hidden["angles"], "time": hidden["steps"]}
     for name, chain in chains.items():
         floor = 0.0 if chain.axis.imposed else RESOLVED * tolerance
-        errors[SOURCES[name]] += max(chain.error("mu"), floor)
+        errors[SOURCES[name]] += max(chain.error(runs.quantity), floor)
     done = runs.done.values()
     errors["periodicity"] = float(max(r.distance for r in done))
     errors["solver"] = float(max(r.solver_residual for r in done))
@@ -267,13 +271,13 @@ def _summary(runs, chains, errors, others, reason):
     """The Certified of chains that are fine enough, or as fine as they get."""
     torque_error = sum(chain.error("torque") for chain in chains.values())
     if others.readings:
-        errors = errors | {"model": others.open(chains, "mu")}
+        errors = errors | {"model": others.open(chains, runs.quantity)}
         torque_error += others.open(chains, "torque")
     done = [*runs.done.values(), *others.done.values()]
     if not reason:
         reason = next((r.reason for r in done if not r.converged), "")
     return Certified(
-        mu=_corrected(runs, chains, "mu"),
+        mu=_corrected(runs, chains, runs.quantity),
         torque=_corrected(runs, chains, "torque"),
         errors=errors,
         torque_error=torque_error,

@@ -19,19 +19,26 @@ class Result:
     pressure : str
         How the load is spread over the contact, likewise.
     velocity, amplitude : float
-        The dimensionless groups of the scene; amplitude: None where the motion is steady.
+        The dimensionless groups of the scene; amplitude: None where the motion is steady.  Under a
+        force the mean velocity that comes out, NaN where it runs away.
+    velocity_error : float or None
+        Largest error that it may have then, by estimate; None where the velocity was given.
+    force, stiffness, mass, damping : float or None
+        What pulls, see motions.drive.Drive; None: not that.
     poisson : float
         Poisson's ratio.
     model : str
         Contact model that was used, or "closed-form".
     tolerance : float or None
-        Largest accepted error of mu_macro; None: none was meant.
+        Largest accepted error of mu_macro; under a force of the velocity, times the velocity where
+        that is above 1; None: none was meant.
     method : str
         How it was computed: "shipped", or another to be compared with that.
     mu_macro : float
         Mean forward friction force over mu F_z, a ratio: 1 means that the vibration does nothing.
     mu_macro_error : float
-        Largest error that mu_macro may have, by estimate: the sum of the next five.
+        Largest error that mu_macro may have, by estimate: the sum of the next five.  Under a force
+        these are of the velocity, and mu_macro is the force.
     error_space, error_time : float
         Parts of it from the rings or squares and the angles, and from the time steps.
     error_periodicity, error_solver : float
@@ -42,7 +49,7 @@ class Result:
         Torque over its value at zero forward velocity, and its error; None where the motion
         oscillates.
     converged : bool
-        mu_macro_error is within the tolerance, and every run found its state; without a tolerance
+        The error is within the tolerance, and every run found its state; without a tolerance
         the second alone.
     periodic : bool
         Every run found the state that repeats itself, so that what is wrong with mu_macro is that
@@ -81,6 +88,11 @@ class Result:
     model: str
     tolerance: float | None
     method: str
+    force: float | None = None
+    stiffness: float | None = None
+    mass: float | None = None
+    damping: float | None = None
+    velocity_error: float | None = None
     mu_macro: float
     mu_macro_error: float
     error_space: float = 0.0

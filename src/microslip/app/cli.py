@@ -67,9 +67,8 @@ def _add_motions(parser):
         record = MOTIONS.get(name) or FAMILIES[name].motion(name, **FAMILIES[name].DEFAULTS)
         scene.add_argument(
             "--velocity",
-            required=True,
             metavar="V",
-            help=f"{record.velocity_label}; 0: v -> 0",
+            help=f"{record.velocity_label}; 0: v -> 0; left out under a force",
         )
         if periodic:
             scene.add_argument(
@@ -81,6 +80,13 @@ def _add_motions(parser):
 
 
 OPTIONS = {
+    "force": (
+        "P",
+        "pulls in place of a velocity, over mu times the mean normal load; asks for the velocity",
+    ),
+    "stiffness": ("K", "of a spring whose far end has the velocity, over mu F_z / u_lim"),
+    "mass": ("M", "of what the spring or the force pulls, over mu F_z / (u_lim omega^2) (0)"),
+    "damping": ("C", "of a dashpot beside the spring, over mu F_z / (u_lim omega) (0)"),
     "pressure": (
         "NAME",
         "hertz (a sphere), power:exponent=1 (a cone; any power), punch:flat=0.8 (rounded edge), "
@@ -95,8 +101,8 @@ OPTIONS = {
     ),
     "tolerance": (
         "T",
-        "largest accepted error of mu_macro, absolute (1e-3); none, where cells and steps are "
-        "imposed: whatever their error is",
+        "largest accepted error of mu_macro, absolute, or of the velocity under a force, relative "
+        "above 1 (1e-3); none, where cells and steps are imposed: whatever their error is",
     ),
     "cells": ("N", "impose N rings, or N x N squares (even, from 4 on)"),
     "steps": ("N", "impose N steps a period (even)"),
@@ -115,6 +121,8 @@ OPTIONS = {
 }
 DEFAULTS = {"pressure": "hertz", "poisson": "0", "model": "auto", "tolerance": "1e-3"}
 DEFAULTS["method"] = "shipped"
+DRIVE = ("force", "stiffness", "mass", "damping")
+REALS = ("velocity", "amplitude", "poisson", "tolerance", *DRIVE)
 OTHER_NAMES = {"poisson": ("--nu",)}
 
 
@@ -193,8 +201,8 @@ def _as_given(options, argument):
 
 def _answer(options, progress):
     """What the options ask for; raises InputError and CacheError as microslip.solve_stored."""
-    reals = [name for name in ("velocity", "amplitude", "poisson", "tolerance") if name in options]
-    given = {name: getattr(options, name) for name in reals}
+    given = {name: getattr(options, name, None) for name in REALS}
+    given = {name: text for name, text in given.items() if text is not None}
     numbers = {name: spec.read(name, text) for name, text in given.items() if text != "none"}
     numbers.setdefault("tolerance", None)
     if options.time_limit is not None:
@@ -205,6 +213,7 @@ def _answer(options, progress):
     if options.results is not None and options.method != "shipped":
         allowed = "allowed is shipped with --results, which keeps points of sweeps"
         raise InputError("method", options.method, allowed)
+    numbers.setdefault("velocity", None)
     from microslip import solve, solve_stored
 
     path = getattr(options, "path", None)
@@ -229,7 +238,10 @@ def _show(bar, resolution):
 
 
 def _as_text(result):
-    lines = [f"mu_macro = {result.mu_macro:.6g} +- {result.mu_macro_error:.1g}", RATIO]
+    if result.force is not None:
+        lines = [f"velocity = {result.velocity:.6g} +- {result.velocity_error:.1g}"]
+    else:
+        lines = [f"mu_macro = {result.mu_macro:.6g} +- {result.mu_macro_error:.1g}", RATIO]
     if result.mu_torque is not None:
         lines.append(f"mu_torque = {result.mu_torque:.6g} +- {result.mu_torque_error:.1g}")
     resolved = f"{result.cells} cells"

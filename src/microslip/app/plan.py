@@ -70,6 +70,7 @@ class Plan:
             *found,
             *(f"{name}_periods" for name in self.explored),
             *self.configuration.extended,
+            *self.configuration.drives,
         ]
 
     def batches_in(self, group: str) -> dict[str, list]:
@@ -187,11 +188,16 @@ class Plan:
         return [file for name in names for file in (f"{name}.nc", f"summaries/{name}.html")]
 
     def figure_files(self, datasets) -> list[str]:
-        """Files of all figures that are drawn from these datasets."""
+        """Files of all figures that are drawn from these datasets, a map of the paper beside them
+        perhaps."""
+        own = {
+            figure: set(names) - set(self.configuration.sweeps) or set(names)
+            for figure, names in self.figures.items()
+        }
         return [
             f"figures/{figure}.{form}"
-            for figure, names in self.figures.items()
-            if set(names) <= set(datasets)
+            for figure, names in own.items()
+            if names <= set(datasets)
             for form in ("png", "pdf")
         ]
 
@@ -244,7 +250,8 @@ class Plan:
 def _figures(configuration, of_studies):
     """(name, names of its datasets) of the figures that there is data for."""
     for figure, names in drawing.FIGURES.items():
-        known = all(name in configuration.sweeps or name in of_studies for name in names)
+        sources = (configuration.sweeps, configuration.drives, of_studies)
+        known = all(any(name in source for source in sources) for name in names)
         if known and _is_drawable(figure, names, configuration):
             yield figure, names
     for group, names in configuration.groups.items():

@@ -12,6 +12,8 @@ from microslip.foundation.canonical import number
 # More points than this are a slip of the pen: naming them all takes the workflow a minute whenever
 # it starts.
 MOST_POINTS = 1_000_000
+DRIVES = ("mass", "damping", "stiffness", "force")
+"""Settings that say what pulls, in the order of the dimensions of a dataset."""
 
 
 def of_paper(name: str, given: dict, where: str) -> Sweep:
@@ -29,11 +31,11 @@ def grid_of(name: str, scene: str, given: dict, where: str, **more) -> Sweep:
 
     Raises ConfigError, beginning with `where`, for a bad axis or too many points.
     """
-    poisson, amplitude = given["poisson"], given.get("amplitude")
+    poisson, amplitude, velocity = given["poisson"], given.get("amplitude"), given.get("velocity")
     sweep = Sweep(
         name=name,
         scene=scene,
-        velocity=axis_of(given["velocity"], f"{where}.velocity"),
+        velocity=() if velocity is None else axis_of(velocity, f"{where}.velocity"),
         amplitude=None if amplitude is None else axis_of(amplitude, f"{where}.amplitude"),
         poisson=axis_of(poisson if isinstance(poisson, list) else [poisson], f"{where}.poisson"),
         poisson_is_axis=isinstance(poisson, list),
@@ -44,7 +46,8 @@ def grid_of(name: str, scene: str, given: dict, where: str, **more) -> Sweep:
         **more,
     )
     _refuse_no_tolerance(sweep, where)
-    points = len(sweep.velocity) * len(sweep.amplitude or (None,)) * len(sweep.poisson)
+    points = len(sweep.velocity or (None,)) * len(sweep.amplitude or (None,)) * len(sweep.poisson)
+    points *= math.prod(len(values) for _, values, _ in sweep.drives)
     refuse_crowd(points, where, MOST_POINTS)
     return sweep
 
@@ -62,6 +65,21 @@ def _refuse_no_tolerance(sweep, where):
             f"{where}.tolerance: null is not allowed; allowed: a number, or {' and '.join(free)} "
             "imposed"
         )
+
+
+def drives_of(given: dict, where: str) -> tuple:
+    """The `drives` of a Sweep; given: dict of settings with defaults filled in.
+
+    Raises ConfigError, beginning with `where`, for a bad axis.
+    """
+    found = []
+    for name in DRIVES:
+        value = given.get(name)
+        if value is not None:
+            is_axis = isinstance(value, list | dict)
+            values = axis_of(value if is_axis else [value], f"{where}.{name}")
+            found.append((name, values, is_axis))
+    return tuple(found)
 
 
 def refuse_crowd(points: int, where: str, most: int) -> None:

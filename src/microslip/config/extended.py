@@ -1,4 +1,5 @@
-"""Sweeps of other motions and pressures than the paper's: the key `extended` of a configuration.
+"""Sweeps of other motions, pressures and drives than the paper's: the keys `extended` and `drives`
+of a configuration.
 
 What the solver calls a motion or a pressure is a name with numbers, such as
 "elliptic:forward=0.5,phase=30". Only the solver can tell if there is one, so it is imported by the
@@ -77,6 +78,25 @@ def sweeps(given: dict, where: str) -> dict:
     return found
 
 
+def pulled_sweeps(given: dict, where: str, others: Iterable) -> dict:
+    """Sweeps of what is pulled by their names, in their order; given, where: as for `sweeps`.
+
+    others: names that are taken already. Raises ConfigError.
+    """
+    found = {}
+    for name, settings in given.items():
+        at = f"{where}.{name}"
+        if name in TAKEN or name in others:
+            raise ConfigError(f"{at}: another result has this name; allowed: a new one")
+        drives = axes.drives_of(settings, at)
+        if not drives:
+            raise ConfigError(f"{at}: missing; required: force or stiffness")
+        more = {"title": settings["title"] or name, "drives": drives}
+        more["pressure"] = _by_content(settings["pressure"])
+        found[name] = axes.grid_of(name, settings["scene"], settings, at, **more)
+    return found
+
+
 def _by_content(pressure):
     """The name of a pressure, without the place of a file whose content is known."""
     if not named_files.speaks_of_file(pressure):
@@ -139,11 +159,31 @@ def _ask_solver(sweep, where):
         from microslip.adaptive.choice import choose_model
 
         choose_model(scene, sweep.poisson[-1], sweep.model)
-    if sweep.velocity[0] == 0:
-        from microslip.adaptive.point import checked_point
+    if sweep.velocity[:1] == (0,):
+        from microslip.adaptive.checks import checked_point
 
         amplitude = sweep.amplitude and sweep.amplitude[0]
         checked_point(sweep.scene, 0, amplitude, sweep.poisson[-1], sweep.pressure)
+    if sweep.drives:
+        _ask_of_drive(sweep, scene)
+
+
+def _ask_of_drive(sweep, scene):
+    """Raise InputError for what does not go together, or with the scene, at any point."""
+    from microslip.adaptive.checks import checked_drive
+    from microslip.adaptive.choice import choose_model
+    from microslip.adaptive.pulled import refuse_drive
+    from microslip.solver.problem import Problem
+
+    drives = {name: values for name, values, _ in sweep.drives}
+    amplitude = sweep.amplitude and sweep.amplitude[-1]
+    for end in (0, -1):
+        given = {name: drives[name][end] if name in drives else None for name in axes.DRIVES}
+        velocity = sweep.velocity[end] if sweep.velocity else None
+        drive = checked_drive(velocity, **given)
+        model = choose_model(scene, sweep.poisson[-1], sweep.model)
+        problem = Problem(scene, velocity or 0.0, amplitude, sweep.poisson[-1])
+        refuse_drive(problem, drive, model)
 
 
 def solver_names(sweep: Sweep) -> tuple[str, str]:

@@ -91,7 +91,8 @@ def with_files_found(
     filled = schema.filled(mapping)
     where = f"{source}: extended"
     found = extended.with_files_found(filled["extended"], where, folders, strict)
-    return filled | {"extended": found}
+    pulled = extended.with_files_found(filled["drives"], f"{source}: drives", folders, strict)
+    return filled | {"extended": found, "drives": pulled}
 
 
 def _as_text(content, path):
@@ -133,18 +134,21 @@ def from_mapping(
         if name in filled["sweeps"]
     }
     others = extended.sweeps(filled["extended"], f"{source}: extended")
+    pulled = extended.pulled_sweeps(filled["drives"], f"{source}: drives", others)
     if ask_solver:
         extended.refuse_unsolvable(list(others.values()), f"{source}: extended")
+        extended.refuse_unsolvable(list(pulled.values()), f"{source}: drives")
     extended.refuse_mixtures(list(others.values()), f"{source}: extended")
-    given = filled["sweeps"] | filled["extended"]
+    given = filled["sweeps"] | filled["extended"] | filled["drives"]
     return Configuration(
         results=filled["results"],
         points_per_job={
             name: given[name]["points_per_job"] or filled["points_per_job"]
-            for name in (*sweeps, *others)
+            for name in (*sweeps, *others, *pulled)
         },
         sweeps=sweeps,
         extended=others,
+        drives=pulled,
         histories=filled["histories"],
         accuracy=_accuracy(filled["accuracy"], f"{source}: accuracy"),
         stability=_stability(filled["stability"], f"{source}: stability"),

@@ -88,3 +88,23 @@ AMPLITUDE = {
     ),
 }
 """The axis of amplitudes by motion; a steady one has none."""
+
+DRIVES = {
+    "force": Quantity(
+        *("force", "force", "P / (mu F_z)", "P~", r"\tilde{P}"),
+        "constant force that pulls, over mu times the mean normal load",
+    ),
+    "stiffness": Quantity(
+        *("stiffness", "stiffness", "k u_lim / (mu F_z)", "k~", r"\tilde{k}"),
+        "stiffness of the spring that pulls, over mu F_z / u_lim",
+    ),
+    "mass": Quantity(
+        *("mass", "mass", "m omega^2 u_lim / (mu F_z)", "m~", r"\tilde{m}"),
+        "mass of what is pulled, over mu F_z / (u_lim omega^2)",
+    ),
+    "damping": Quantity(
+        *("damping", "damping", "c omega u_lim / (mu F_z)", "c~", r"\tilde{c}"),
+        "damping of what is pulled, over mu F_z / (u_lim omega)",
+    ),
+}
+"""What pulls the contact."""

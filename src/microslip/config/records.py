@@ -51,6 +51,7 @@ class Sweep:
     pressure: str = "hertz"  # as for scene
     group: str | None = None  # of the figure that shows it, None for the paper's
     title: str | None = None  # there
+    drives: tuple = ()  # (name, values, whether they are an axis) of what pulls, as for solve()
 
     @property
     def spans_a_map(self) -> bool:
@@ -117,6 +118,7 @@ class Configuration:
     results: str
     sweeps: dict  # name -> Sweep, in the order of SCENE_OF_SWEEP
     extended: dict  # name -> Sweep, of other motions and pressures
+    drives: dict  # name -> Sweep, of contacts that are pulled
     points_per_job: dict  # name of a sweep -> int; no dataset depends on it
     histories: dict  # transverse, field, transients -> dict of settings, as in the schema
     accuracy: Accuracy
@@ -126,7 +128,7 @@ class Configuration:
     @property
     def grids(self) -> dict[str, Sweep]:
         """All sweeps by name, the paper's first."""
-        return self.sweeps | self.extended
+        return self.sweeps | self.extended | self.drives
 
     @property
     def groups(self) -> dict[str, tuple[str, ...]]:
@@ -140,7 +142,10 @@ class Configuration:
     def of_sweep(self, name: str) -> dict:
         """All settings that the dataset of the sweep `name` depends on, as a dict for JSON."""
         names = HISTORIES_OF_SWEEP.get(name, ())
+        sweep = asdict(self.grids[name])
+        if not sweep["drives"]:  # which goes without saying, as it did before there were any
+            del sweep["drives"]
         return {
-            "sweep": asdict(self.grids[name]),
+            "sweep": sweep,
             "histories": {history: self.histories[history] for history in names},
         }

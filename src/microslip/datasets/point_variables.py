@@ -35,6 +35,11 @@ POINT_VARIABLES = {
     "model": (str, "contact model that was used"),
     "reason": (str, "why the point did not converge"),
 }
+VELOCITY_VARIABLES = {
+    "velocity": (float, "mean forward velocity"),
+    "velocity_error": (float, "estimated error of velocity"),
+}
+"""Of a sweep under a force, where mu_macro is that force."""
 TORQUE = "torque over its value at velocity 0"
 TORQUE_VARIABLES = {
     "mu_torque": (float, TORQUE),
@@ -73,6 +78,8 @@ BLOCK = 4096
 def append(file, sweep, axes: dict, points: Iterable) -> set[str]:
     """Write POINT_VARIABLES over the axes into an open file; the versions behind the records."""
     table = POINT_VARIABLES | (TORQUE_VARIABLES if sweep.amplitude is None else {})
+    if not sweep.velocity:
+        table = VELOCITY_VARIABLES | POINT_VARIABLES
     shape = tuple(len(values) for values in axes.values())
     boxes = list(_boxes(shape))
     for name, (kind, long_name) in table.items():

@@ -15,7 +15,7 @@ import xarray as xr
 
 import microslip
 from microslip.config.extended import solver_names
-from microslip.config.quantities import AMPLITUDE, VELOCITY
+from microslip.config.quantities import AMPLITUDE, DRIVES, VELOCITY
 from microslip.datasets import netcdf, point_variables, theory_limits
 from microslip.foundation import named_files, source_digest
 from microslip.foundation.canonical import canonical_json
@@ -69,6 +69,8 @@ def write_sweep(
     if failed:
         reasons = (f"{r['request']['kind']}: {r['result']['reason']}" for r in failed)
         about["single_runs_failed"] = "; ".join(reasons)
+    if sweep.drives:
+        about["drive"] = ", ".join(name for name, _, _ in sweep.drives)
     versions = {canonical_json(record["versions"]) for record in histories}
     with writing_beside(path, sealed=True) as beside:
         netcdf.write(beside, _root(sweep), _parts(sweep, histories))
@@ -92,6 +94,7 @@ def _root(sweep):
     coords = {name: (name, np.array(values)) for name, values in _axes(sweep).items()}
     if not sweep.poisson_is_axis:
         coords["poisson"] = ((), sweep.poisson[0])
+    coords |= {name: ((), values[0]) for name, values, _ in sweep.drives if name not in coords}
     dataset = xr.Dataset(theory_limits.variables(sweep), coords)
     _describe_axes(dataset, sweep)
     return dataset
@@ -150,16 +153,18 @@ def report(dataset: xr.Dataset, name: str | None = None) -> Iterator[str]:
 
 
 def _axes(sweep):
-    axes = {"poisson": sweep.poisson} if sweep.poisson_is_axis else {}
+    pulls = {name: values for name, values, is_axis in sweep.drives if is_axis}
+    force = pulls.pop("force", None)
+    axes = pulls | ({"poisson": sweep.poisson} if sweep.poisson_is_axis else {})
     if sweep.amplitude is not None:
         axes["amplitude"] = sweep.amplitude
-    return axes | {"velocity": sweep.velocity}
+    return axes | ({"velocity": sweep.velocity} if sweep.velocity else {"force": force})
 
 
 def _describe_axes(dataset, sweep):
     """Name the axes; `formula` is what a coordinate is, in the words of the scene."""
     scene = motion_named(sweep.scene)
-    axes = [(VELOCITY, scene.velocity_label)]
+    axes = [(VELOCITY, scene.velocity_label)] if sweep.velocity else []
     if sweep.amplitude is not None:
         axes.append((AMPLITUDE, scene.amplitude_label))
     for of_paper, formula in axes:
@@ -168,6 +173,11 @@ def _describe_axes(dataset, sweep):
         if scene.name in of_paper:
             said["description"] = of_paper[scene.name].description
         dataset[quantity.name].attrs = said
+    for name, _, _ in sweep.drives:
+        quantity = DRIVES[name]
+        said = {"long_name": f"{quantity.text}, {quantity.unit}", "units": "1"}
+        said |= {"formula": quantity.unit, "description": quantity.description}
+        dataset[name].attrs = said
     dataset["poisson"].attrs = {"long_name": "Poisson's ratio", "units": "1"}
 
 

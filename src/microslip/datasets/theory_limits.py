@@ -22,11 +22,33 @@ def formulas(scene: str, pressure: str = "hertz") -> dict:
     return formulas_under(scene, pressure)
 
 
+def _forms(sweep):
+    """Those that hold for a records.Sweep: what is said of a velocity holds where one moves."""
+    found = formulas(*solver_names(sweep))
+    if sweep.drives:
+        found = {name: form for name, form in found.items() if form.arguments == ("amplitude",)}
+    return found
+
+
+def _creep_forms(sweep):
+    """Those of the velocity under a force, where one pulls."""
+    scene, pressure = solver_names(sweep)
+    form = catalogue.CREEP_FORMS.get(scene)
+    is_map = [(name, is_axis) for name, _, is_axis in sweep.drives] == [("force", True)]
+    known = is_map and form is not None and (form.any_pressure or pressure == "hertz")
+    return {form.name: form} if known else {}
+
+
+def _axis(sweep, dim):
+    pulls = {name: values for name, values, _ in sweep.drives}
+    return np.array(pulls[dim] if dim in pulls else getattr(sweep, dim))
+
+
 def variables(sweep) -> dict:
     """Variables on the axes of a records.Sweep: name -> (dims, values, attributes)."""
     found = {}
-    for name, form in formulas(*solver_names(sweep)).items():
-        axes = [np.array(getattr(sweep, dim)) for dim in form.arguments]
+    for name, form in (_forms(sweep) | _creep_forms(sweep)).items():
+        axes = [_axis(sweep, dim) for dim in form.arguments]
         # meshgrid puts the first coordinate last, as the datasets do
         values = form.function(*np.meshgrid(*axes))
         found[name] = _variable(form.arguments[::-1], values, form.long_name, form.description)
@@ -40,7 +62,7 @@ def curves(sweep) -> dict:
     `velocity_curve`; of a limit that depends on both it is the one at the largest amplitude.
     """
     found = {}
-    for name, form in formulas(*solver_names(sweep)).items():
+    for name, form in _forms(sweep).items():
         first, *others = form.arguments
         axes = [np.array(getattr(sweep, dim)) for dim in form.arguments]
         along, fine = f"{first}_curve", _fine(first, axes[0])

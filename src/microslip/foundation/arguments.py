@@ -11,6 +11,8 @@ from microslip.foundation.errors import InputError
 LARGEST = {"velocity": 1e6, "amplitude": 1e6, "cells": 1000, "steps": 1_000_000}
 """What is larger is a slip, and would run out of memory or of the range of floating-point numbers;
 a test keeps them as in the schema of configurations."""
+LARGEST_BODY = 1e6
+"""Likewise of the stiffness, mass and damping of what is pulled, in working units."""
 
 
 def is_real(value: object) -> bool:

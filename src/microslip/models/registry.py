@@ -49,12 +49,15 @@ class Model:
         exact(motion) -> whether refinement converges to the truth.
     axes : callable
         axes(motion) -> what of its space can be refined: "cells", "angles".
+    pulled : bool
+        Whether its contact may be pulled, see pull.PullsContact.
     """
 
     build: Callable
     refuses: Callable
     exact: Callable = lambda motion: True
     axes: Callable = lambda motion: ("cells",)
+    pulled: bool = False
 
 
 def _never(motion):
@@ -123,6 +126,7 @@ MODELS = {
         _NO_ROTATION,
         exact=_never,
         axes=lambda motion: (),
+        pulled=True,
     ),
     "dahl": Model(
         lambda motion, poisson, cells, angles, focus: DahlContact(motion.pressure.stiffness),
@@ -134,12 +138,14 @@ MODELS = {
         lambda motion, poisson, cells, angles, focus: mdr_contact(cells, focus, motion.pressure),
         _any_of(_refuse_other_loads, _refuse_springs),
         exact=_never,
+        pulled=True,
     ),
     "radial": Model(
         lambda motion, poisson, cells, angles, focus: RadialContact.resolved(
             cells, focus, motion.pressure
         ),
         _any_of(_refuse_other_loads, _refuse_rings),
+        pulled=True,
     ),
     "polar": Model(
         lambda motion, poisson, cells, angles, focus: PolarContact(
@@ -147,12 +153,14 @@ MODELS = {
         ),
         _any_of(_refuse_other_loads, _refuse_half_disc),
         axes=lambda motion: ("cells", "angles"),
+        pulled=True,
     ),
     "cartesian": Model(
         lambda motion, poisson, cells, angles, focus: CartesianContact(
             cells, poisson, motion.pressure
         ),
         _refuse_pulsation,
+        pulled=True,
     ),
 }
 """Models by name."""

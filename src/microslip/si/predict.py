@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass, field
 
-from microslip.adaptive.point import LARGEST, SMALLEST_TOLERANCE, Result, solve
+from microslip.adaptive.checks import SMALLEST_TOLERANCE
+from microslip.adaptive.point import Result, solve
+from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.si.dimensionless import groups
 from microslip.si.inputs import read_body, read_contact, read_counterbody, read_motion

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from microslip.adaptive.point import LARGEST, Result, solve
+from microslip.adaptive.point import Result, solve
+from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealMotion, groups

@@ -41,7 +41,7 @@ def search(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicStat
     period_map.PeriodicState
         The best state seen, if none is good enough.
     """
-    accelerate, step_tolerance = Anderson(period_map.contact, DEPTH), goal.step_tolerance
+    accelerate, step_tolerance = Anderson(period_map.metric, DEPTH), goal.step_tolerance
     state, best = start, None
     inner = max(step_tolerance, LOOSEST)
     forgets, last_residual = True, np.inf
@@ -71,8 +71,8 @@ def search(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicStat
 class Anderson:
     """Anderson acceleration of a fixed-point map on tractions, least squares in a force metric."""
 
-    def __init__(self, contact, depth):
-        self.scale = np.sqrt(contact.weight * contact.compliance)
+    def __init__(self, metric, depth):
+        self.scale = np.sqrt(metric)
         self.depth = depth
         self.images, self.changes = [], []
 

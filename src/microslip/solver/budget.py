@@ -73,6 +73,11 @@ class _Metered:
         return getattr(self._contact, name)
 
     def march(self, *path, **settings):
-        found = self._contact.march(*path, **settings)
+        return self._taken(self._contact.march(*path, **settings))
+
+    def pulled_march(self, *path, **settings):
+        return self._taken(self._contact.pulled_march(*path, **settings))
+
+    def _taken(self, found):
         self._budget.take(found)
         return found

@@ -62,6 +62,8 @@ class PeriodicState:
         Whether the distance is within the tolerance.
     inverse : np.ndarray or None, shape (start.size, start.size)
         What turned residuals into corrections, if anything did.
+    body : np.ndarray or None, shape (steps + 1, 2)
+        Of a contact that is pulled, over the last (half) period, see pull.PulledMarch.
     """
 
     forces: np.ndarray
@@ -74,6 +76,7 @@ class PeriodicState:
     solves: int
     converged: bool
     inverse: np.ndarray | None = None
+    body: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -165,7 +168,16 @@ class PeriodMap:
         change = image - state
         if not np.isfinite(change).all():
             raise StepFailure("diverged: tractions are not finite")
-        return MarchInterval(state, image, change, energy_norm(self.contact, change), march)
+        return MarchInterval(state, image, change, self.size(change), march)
+
+    @property
+    def metric(self) -> np.ndarray:
+        """Weights of squared changes of a state, as energies; broadcast to it."""
+        return self.contact.weight * self.contact.compliance
+
+    def size(self, change: np.ndarray) -> float:
+        """Bound on the force that a change of a state carries, over mu F_z."""
+        return energy_norm(self.contact, change)
 
     def image(self, state: np.ndarray) -> np.ndarray:
         """Where the next interval begins, for tractions at the end of one; linear."""
@@ -177,7 +189,7 @@ class PeriodMap:
 
     def distance(self, interval: MarchInterval, proposal: np.ndarray) -> float:
         """Estimated distance of an interval's state from the fixed point, given a better state."""
-        distance = max(energy_norm(self.contact, proposal - interval.state), interval.residual)
+        distance = max(self.size(proposal - interval.state), interval.residual)
         if self.creep_rate is not None:
             force = interval.march.forces[:, 0]
             mean = 0.5 * float(self._share @ force[1:] + self._share @ force[:-1])

@@ -67,6 +67,8 @@ class Run:
         For other runs of the point: the periodic tractions, and period_map.PeriodicState.inverse.
     static_force : float
         Mean forward force of the static limit, also for other runs.
+    velocity : float
+        Mean forward velocity, in the unit of the motion, where a force pulls; else NaN.
     retried : int
         1 if the run is a second attempt, see continuation.run_safely.
     """
@@ -85,6 +87,7 @@ class Run:
     state: np.ndarray | None = None
     inverse: np.ndarray | None = None
     static_force: float = 0.0
+    velocity: float = np.nan
     retried: int = 0
 
 

@@ -91,13 +91,13 @@ def _run(problem, model, resolution, tolerance, guess, settings):
     contact = settings.contact(problem, model, resolution)
     if not problem.motion.periodic:
         return _steady_run(contact, problem, tolerance, STEP_SHARE * tolerance)
-    share = _step_share(contact.stiffness * problem.creep, resolution.steps, settings.tighter)
+    share = step_share(contact.stiffness * problem.creep, resolution.steps, settings.tighter)
     step_tolerance = share * tolerance
     search = _Search(contact, problem, settings.method, resolution.steps, tolerance, step_tolerance)
     return search.run(guess)
 
 
-def _step_share(force_rate, steps, tighter):
+def step_share(force_rate: float, steps: int, tighter: bool) -> float:
     """Tolerance of a step over that of the periodic state.
 
     force_rate: force over mu F_z that a contact without slip gains in a radian.

@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
+from microslip.config.axes import DRIVES
 from microslip.config.extended import solver_names
 from microslip.config.records import HISTORIES_OF_SWEEP, Configuration
 from microslip.foundation import source_digest
@@ -47,7 +48,8 @@ FOLDERS = {
 class PointRequests(Sequence):
     """Requests for all points of a records.Sweep, each made when it is asked for.
 
-    The order is that of the dataset: Poisson's ratio, amplitude, velocity, the last one fastest.
+    The order is that of the dataset: what pulls, Poisson's ratio, amplitude, velocity, the last one
+    fastest; a force stands in the place of the velocity.
     """
 
     def __init__(self, sweep):
@@ -63,20 +65,25 @@ class PointRequests(Sequence):
         if pressure != "hertz":  # which goes without saying, as it did before there were others
             self._common["pressure"] = pressure
         amplitudes = [None] if sweep.amplitude is None else [number(a) for a in sweep.amplitude]
-        velocities = [number(velocity) for velocity in sweep.velocity]
-        self._axes = ([number(nu) for nu in sweep.poisson], amplitudes, velocities)
+        pulls = {name: [number(v) for v in values] for name, values, _ in sweep.drives}
+        last = {"velocity": [number(velocity) for velocity in sweep.velocity]}
+        if not sweep.velocity:
+            last = {"force": pulls.pop("force")}
+            self._common["velocity"] = None
+        rest = {"poisson": [number(nu) for nu in sweep.poisson], "amplitude": amplitudes}
+        self._axes = pulls | rest | last
 
     def __len__(self):
-        return math.prod(map(len, self._axes))
+        return math.prod(map(len, self._axes.values()))
 
     def __getitem__(self, index):
         if isinstance(index, slice):
             return [self[i] for i in range(*index.indices(len(self)))]
-        poisson, amplitude, velocity = self._axes
-        rest, v = divmod(range(len(self))[index], len(velocity))
-        nu, a = divmod(rest, len(amplitude))
-        at = {"poisson": poisson[nu], "amplitude": amplitude[a], "velocity": velocity[v]}
-        return self._common | at
+        rest, at = range(len(self))[index], {}
+        for name, values in reversed(self._axes.items()):
+            rest, place = divmod(rest, len(values))
+            at[name] = values[place]
+        return self._common | {name: at[name] for name in self._axes}
 
 
 def history_requests(configuration: Configuration, name: str) -> list[dict]:
@@ -231,7 +238,7 @@ def lookup(records: Iterable[dict]) -> Callable[[dict], dict]:
 
 def label(request: dict) -> str:
     """Describe a request in a few words, for messages."""
-    names = ["pressure", "poisson", "amplitude", "velocity", "start"]
+    names = ["pressure", "poisson", "amplitude", "velocity", *DRIVES, "start"]
     if request["kind"] != "point":
         names += ["model", "method", "cells", "angles", "steps"]
     given = ", ".join(f"{name} {request[name]}" for name in names if request.get(name) is not None)

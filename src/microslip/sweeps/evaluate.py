@@ -10,6 +10,7 @@ from collections.abc import Callable
 from statistics import median
 
 import microslip
+from microslip.config.axes import DRIVES
 from microslip.foundation.errors import NO_WRITING, CacheError
 
 log = logging.getLogger(__name__)
@@ -186,10 +187,10 @@ _KINDS = {
 
 
 def _place(request):
-    amplitude = request["amplitude"]
+    amplitude, velocity = request["amplitude"], request["velocity"]
     place = {
         "scene": request["scene"],
-        "velocity": float(request["velocity"]),
+        "velocity": None if velocity is None else float(velocity),
         "amplitude": None if amplitude is None else float(amplitude),
         "poisson": float(request["poisson"]),
     }
@@ -207,6 +208,7 @@ def _solved(request, **settings):
     place = _place(request)
     names = ("cells", "steps", "most_work")
     settings |= {name: request[name] for name in names if name in request}
+    settings |= {name: float(request[name]) for name in DRIVES if name in request}
     tolerance = request["tolerance"]
     result = microslip.solve(
         place.pop("scene"),

@@ -5,26 +5,34 @@ import time
 import warnings
 from dataclasses import fields
 
-from microslip.adaptive.choice import choose_model
-from microslip.adaptive.point import (
-    TOLERANCE,
+from microslip.adaptive.asked import TOLERANCE
+from microslip.adaptive.checks import (
+    checked_drive,
     checked_point,
     checked_request,
     refuse_bounds,
-    refuse_choice,
 )
+from microslip.adaptive.choice import choose_model
+from microslip.adaptive.moved import refuse_choice
+from microslip.adaptive.pulled import refuse_drive
 from microslip.adaptive.result import Result
+from microslip.config.axes import DRIVES
 from microslip.config.records import Sweep
+from microslip.solver.problem import Problem
 from microslip.sweeps import batches
 from microslip.sweeps.cache import Store
 
 
 def solve_stored(
     scene,
-    velocity,
+    velocity=None,
     amplitude=None,
     *,
     results="results",
+    force=None,
+    stiffness=None,
+    mass=None,
+    damping=None,
     pressure="hertz",
     poisson=0.0,
     model="auto",
@@ -57,18 +65,22 @@ def solve_stored(
         If the folder cannot be used.
     """
     started = time.perf_counter()
-    kind, velocity, amplitude, poisson = checked_point(
-        scene, velocity, amplitude, poisson, pressure
+    drive = checked_drive(velocity, force, stiffness, mass, damping)
+    kind, place, amplitude, poisson = checked_point(
+        scene, 0.0 if velocity is None else velocity, amplitude, poisson, pressure
     )
     tolerance, cells, steps = checked_request(tolerance, cells, steps)
     refuse_bounds(time_limit=time_limit)
-    choose_model(kind, poisson, model)
+    chosen = choose_model(kind, poisson, model)
+    if drive is not None:
+        refuse_drive(Problem(kind, place, amplitude, poisson), drive, chosen)
     if tolerance is None:
-        refuse_choice(kind, model, (velocity, amplitude, poisson), cells, steps)
+        moving = place if force is None else 1.0  # under a force it is the velocity that is asked
+        refuse_choice(kind, model, (moving, amplitude, poisson), cells, steps)
     grid = Sweep(
         name=kind.name,
         scene=kind.name,
-        velocity=(velocity,),
+        velocity=() if velocity is None else (place,),
         amplitude=None if amplitude is None else (amplitude,),
         poisson=(poisson,),
         poisson_is_axis=False,
@@ -77,6 +89,7 @@ def solve_stored(
         cells=cells,
         steps=steps,
         pressure=kind.pressure.name,
+        drives=_drives(force=force, stiffness=stiffness, mass=mass, damping=damping),
     )
     (request,) = batches.PointRequests(grid)
     try:
@@ -87,9 +100,14 @@ def solve_stored(
         warnings.warn(str(edited), stacklevel=2)
         record = edited.record
     given = {"pressure": kind.pressure.name} | request | record["result"]
-    numbers = ("velocity", "amplitude", "poisson", "tolerance")
-    given |= {k: float(given[k]) for k in numbers if given[k] is not None}
+    numbers = ("velocity", "amplitude", "poisson", "tolerance", *DRIVES)
+    given |= {k: float(given[k]) for k in numbers if given.get(k) is not None}
     return _result(given | {"solve_time_s": time.perf_counter() - started})
+
+
+def _drives(**given):
+    """What pulls as a Sweep has it."""
+    return tuple((name, (float(given[name]),), False) for name in DRIVES if given[name] is not None)
 
 
 def _result(given):

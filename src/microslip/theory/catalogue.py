@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from microslip.theory import masing, paper
+from microslip.theory import creep, masing, paper
 from microslip.theory.exact import STATIC_LIMITS
 
 ANYWHERE, LARGE, SLOW = "anywhere", "amplitude to infinity", "velocity to 0"
@@ -131,3 +131,16 @@ for _motion, _limit in STATIC_LIMITS.items():
         *("", "exact limit", "exact limit for velocity to 0", _EXACT + _at_0),
         any_poisson=_limit.any_poisson,
     )
+
+
+CREEP_FORMS = {
+    motion: ClosedForm(
+        *(motion, "velocity_large_amplitude", function, ("force", "amplitude"), LARGE),
+        *("", "rigid", "mean velocity under a force, rigid contact"),
+        "mean velocity that a constant force gives a rigid contact without mass",
+        any_poisson=True,
+        any_pressure=motion == "transverse",
+    )
+    for motion, function in (("transverse", creep.transverse_creep), ("bore", creep.bore_creep))
+}
+"""Forms of the velocity under a force, by motion."""

@@ -51,6 +51,11 @@ class Friction:
             raise ValueError(
                 "no scene of microslip: allowed is the dataset of a sweep, with its attributes"
             ) from None
+        if "drive" in dataset.attrs:
+            raise ValueError(
+                f"the contact of this dataset is pulled ({dataset.attrs['drive']}): allowed is one "
+                "that is moved at a velocity, and sel and interp for this one"
+            )
         self._dataset = dataset
         self._scene = self._motion.name
         self._pressure = dataset.attrs.get("pressure", "hertz")

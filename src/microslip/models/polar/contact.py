@@ -30,6 +30,7 @@ from microslip.models.polar.angular_modes import (
     shifted_inverse,
     unfold,
 )
+from microslip.models.pull import PulledMarch
 from microslip.models.rings.contact import RadialContact
 from microslip.models.rings.mesh import make_rings
 from microslip.pressures.by_name import HERTZ
@@ -124,6 +125,17 @@ class PolarContact:
         """theta -> pi - theta, lateral traction negated."""
         return state[:, ::-1, :] * contact.MIRROR
 
+    @property
+    def _points(self):
+        """The contact for compiled code."""
+        return polar_march.Points(
+            self.influence,
+            self.inverse,
+            self.penalty,
+            self.weight,
+            (self.forward_position, self.lateral_position),
+        )
+
     def march(self, path, state, tolerance, sensitivity=False, previous=None) -> contact.March:
         """March along `path`; see models.contact.Contact."""
         forces = np.zeros((path.steps + 1, 3))
@@ -133,13 +145,7 @@ class PolarContact:
             stages = previous.stages.copy()
         state, residual, iterations = unbroken(
             polar_march.march,
-            polar_march.Points(
-                self.influence,
-                self.inverse,
-                self.penalty,
-                self.weight,
-                (self.forward_position, self.lateral_position),
-            ),
+            self._points,
             path.under(self.bound[None] if path.depth is None else self.bounds_along(path)),
             np.ascontiguousarray(state),
             tolerance,
@@ -150,6 +156,33 @@ class PolarContact:
         forces[:, contact.LATERAL if self.rotates else contact.TORQUE] = 0.0
         solves = path.stages.shape[0] * path.stages.shape[1]
         return contact.March(state, forces, residual, iterations, solves, stages=stages)
+
+    def pulled_march(self, path, state, tolerance, body, start, previous=None) -> PulledMarch:
+        """March from which a body may stay behind or run ahead; see models.pull.PullsContact."""
+        from microslip.models.polar.pulled_march import (  # only now: it takes a while to load
+            PulledStages,
+            pulled_march,
+        )
+
+        shape = path.stages.shape[:2]
+        if previous is None:
+            stages = np.empty((2, *shape, *state.shape)), np.zeros(shape)
+        else:
+            stages = tuple(part.copy() for part in previous.stages)
+        forces, moved = np.zeros((path.steps + 1, 3)), np.empty((path.steps + 1, 2))
+        state, residual, iterations = unbroken(
+            pulled_march,
+            self._points,
+            path.under(self.bound[None] if path.depth is None else self.bounds_along(path)),
+            body.along(path, start),
+            np.ascontiguousarray(state),
+            PulledStages(stages[0][0], stages[0][1], stages[1], previous is not None),
+            (float(tolerance), forces, moved),
+        )
+        forces[:, contact.LATERAL if self.rotates else contact.TORQUE] = 0.0
+        return PulledMarch(
+            state, forces, residual, iterations, shape[0] * shape[1], stages=stages, body=moved
+        )
 
 
 @lru_cache(maxsize=32)

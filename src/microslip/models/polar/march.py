@@ -94,7 +94,7 @@ class Scratch(NamedTuple):
 
 
 @kernel
-def _slip(influence, b, q, folded, image, slip):
+def fill_slip(influence, b, q, folded, image, slip) -> None:
     """slip = b - A q; folded, image: room for folded tractions."""
     fold(q, folded)
     apply_sectors(influence, folded, image)
@@ -106,7 +106,7 @@ def _slip(influence, b, q, folded, image, slip):
 
 
 @kernel
-def _project(free, bound, q, dual):
+def project_relaxed(free, bound, q, dual) -> None:
     """Over-relaxed projection on the friction bound, the remainder kept in `dual`; in place."""
     for j in range(q.shape[1]):
         for i in range(q.shape[2]):
@@ -120,7 +120,7 @@ def _project(free, bound, q, dual):
 
 
 @kernel
-def _copy(out, values):
+def copy(out, values) -> None:
     """out[:] = values for shape (2, M, N); see rings.tangent.copy."""
     for c in range(2):
         for j in range(out.shape[1]):
@@ -129,7 +129,7 @@ def _copy(out, values):
 
 
 @kernel
-def _add(out, factor, values):
+def add(out, factor, values) -> None:
     """out += factor values for shape (2, M, N)."""
     for c in range(2):
         for j in range(out.shape[1]):
@@ -181,7 +181,7 @@ def solve_step(points, step, unknowns, slip, scratch) -> tuple[int, float]:
     q, dual, weight, penalty = unknowns.q, unknowns.dual, points.weight, points.penalty
     folded, image, free = scratch
     angles, n = q.shape[1], q.shape[2]
-    _slip(points.influence, b, q, folded, image, slip)
+    fill_slip(points.influence, b, q, folded, image, slip)
     residual = coulomb_residual(q, slip, bound, weight, penalty)
     iterations, between, spent = 0, FEWEST_BETWEEN, 0.0
     while residual > tolerance and iterations < MAX_ITERATIONS:
@@ -194,14 +194,14 @@ def solve_step(points, step, unknowns, slip, scratch) -> tuple[int, float]:
             fold(free, folded)
             apply_sectors(points.inverse, folded, image)
             unfold(image, free)
-            _project(free, bound, q, dual)
+            project_relaxed(free, bound, q, dual)
         iterations += between
         spent += between * 8.0 * angles * n * n
         if spent > BETWEEN_LOOKS:
             spent = 0.0
             if interrupted():
                 return -1, residual
-        _slip(points.influence, b, q, folded, image, slip)
+        fill_slip(points.influence, b, q, folded, image, slip)
         before, residual = residual, coulomb_residual(q, slip, bound, weight, penalty)
         # the residual falls geometrically: the next look is due where it should be small enough
         rate = np.log(max(residual, 1e-300) / before) / between
@@ -211,7 +211,7 @@ def solve_step(points, step, unknowns, slip, scratch) -> tuple[int, float]:
 
 
 @kernel
-def _shrink(q, bound):
+def shrink_onto(q, bound) -> None:
     """q projected on the friction bound, which may have become smaller; in place."""
     for j in range(q.shape[1]):
         for i in range(q.shape[2]):
@@ -254,34 +254,34 @@ def march(points, path, state, tolerance, known, forces) -> tuple:
     folded = np.empty((4, angles // 2, n))
     scratch = Scratch(folded, np.empty_like(folded), np.empty_like(q))
     rigid_displacement(path.positions[0], positions, rigid)
-    _slip(points.influence, rigid, q, folded, scratch.image, z)
-    _add(z, -2.0, z)
+    fill_slip(points.influence, rigid, q, folded, scratch.image, z)
+    add(z, -2.0, z)
     sum_forces(q, weight, positions, forces[0])
     total, iterations, spent = 0.0, 0, 0.0
     for k in range(path.stages.shape[0]):
         for s in range(stages):
             rigid_displacement(path.stages[k, s], positions, rigid)
-            _copy(b, z)
-            _add(b, 1.0, rigid)
+            copy(b, z)
+            add(b, 1.0, rigid)
             for j in range(s):
-                _add(b, -path.carry[s, j], slips[j])
-            _copy(before, q)
+                add(b, -path.carry[s, j], slips[j])
+            copy(before, q)
             if known.known:
-                _add(q, 1.0, known.added[k, s])
-                _copy(unknowns.dual, known.duals[k, s])
+                add(q, 1.0, known.added[k, s])
+                copy(unknowns.dual, known.duals[k, s])
             elif k > 0:
-                _copy(unknowns.dual, known.duals[k - 1, s])
+                copy(unknowns.dual, known.duals[k - 1, s])
             bound = bounds[min(1 + k * stages + s, len(bounds) - 1)]
-            _shrink(q, bound)
+            shrink_onto(q, bound)
             step = Step(b, bound, tolerance)
             count, residual = solve_step(points, step, unknowns, slips[s], scratch)
             spent += count * 8.0 * angles * n * n
             if count < 0 or (spent > BETWEEN_LOOKS and interrupted()):
                 return at_end, total, iterations, True
             spent = 0.0 if spent > BETWEEN_LOOKS else spent
-            _copy(known.added[k, s], q)
-            _add(known.added[k, s], -1.0, before)
-            _copy(known.duals[k, s], unknowns.dual)
+            copy(known.added[k, s], q)
+            add(known.added[k, s], -1.0, before)
+            copy(known.duals[k, s], unknowns.dual)
             iterations += count
             total += residual
         for c in range(2):

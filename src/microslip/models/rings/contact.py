@@ -13,6 +13,7 @@ from scipy.linalg import solve_triangular
 
 from microslip.models import contact
 from microslip.models.interrupts import unbroken
+from microslip.models.pull import PulledMarch
 from microslip.models.rings import march as ring_march
 from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import make_rings
@@ -174,6 +175,33 @@ class RadialContact:
             solves=stages,
             sensitivity=derivative if sensitivity else None,
             stages=tractions,
+        )
+
+    def pulled_march(self, path, state, tolerance, body, start, previous=None) -> PulledMarch:
+        """March from which a body may stay behind or run ahead; see models.pull.PullsContact."""
+        from microslip.models.rings.pulled_march import pulled_march  # only now: it takes a while
+
+        stages = path.stages.shape[0] * path.stages.shape[1]
+        known = None if previous is None else previous.stages
+        if known is None or known[0].shape != (1 + stages, 2, len(self.bound)):
+            known = np.empty((0, 2, 0)), np.empty(0)
+        end, tractions, places, moved, forces, residual, iterations = unbroken(
+            pulled_march,
+            self._system,
+            path.under(self.bound[None] if path.depth is None else self.bounds_along(path)),
+            body.along(path, start),
+            np.ascontiguousarray(state[:, 0]),
+            known,
+            (float(tolerance), self.stiffness),
+        )
+        return PulledMarch(
+            state=end[:, None],
+            forces=forces,
+            residual=residual,
+            iterations=iterations,
+            solves=stages,
+            stages=(tractions, places),
+            body=moved,
         )
 
 

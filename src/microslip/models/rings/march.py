@@ -20,7 +20,7 @@ from microslip.models.rings.tangent import copy, factorise, make_factors, subtra
 
 
 @kernel
-def _displacements(path):
+def displacements(path) -> np.ndarray:
     """Forward and lateral displacement at the start and at every stage, (1 + steps stages, 2)."""
     steps, stages = path.stages.shape[0], path.stages.shape[1]
     displacements = np.empty((1 + steps * stages, 2))
@@ -32,7 +32,7 @@ def _displacements(path):
 
 
 @kernel
-def _remembered(rings, position, q, b):
+def remembered(rings, position, q, b) -> np.ndarray:
     """Weighted displacement z = B q - area w at the start; b: scratch, all (2, n)."""
     z = np.empty_like(q)
     for c in range(2):
@@ -46,26 +46,26 @@ def _remembered(rings, position, q, b):
 
 
 @kernel(inline="always")
-def _bound_at(bounds, at):
+def bound_at(bounds, at) -> np.ndarray:
     """Friction bound at the start (0) and at the stages (from 1 on), (n,)."""
     return bounds[at if len(bounds) > 1 else 0]
 
 
 @kernel(inline="always")
-def _guess(q, bounds, displacements, at, known, tractions):
+def guess(q, bounds, displacements, at, known, tractions) -> None:
     """Move q, the tractions at the end of a stage, to the first guess of those of the next one.
 
     at: number of that stage from 1 on; known, tractions: of another march, or nothing, and of this
     one.
     """
-    bound = _bound_at(bounds, at)
+    bound = bound_at(bounds, at)
     if at == 1 and len(bounds) > 1:
         within(q, bound)
     if len(known) > 0:
         follow(q, bound, known[at], known[at - 1])
     elif at > 1:
         extrapolate(
-            q, _bound_at(bounds, at - 1), bound, tractions[at - 2], stretch(displacements, at)
+            q, bound_at(bounds, at - 1), bound, tractions[at - 2], stretch(displacements, at)
         )
 
 
@@ -97,12 +97,12 @@ def march(rings, path, state, known, tolerance, tangent) -> tuple:
     """
     n, steps, stages = len(rings.weight), path.stages.shape[0], path.stages.shape[1]
     weight, carry, end = rings.weight, path.carry, path.end
-    factors, displacements, bounds = make_factors(n), _displacements(path), path.bounds
+    factors, moved, bounds = make_factors(n), displacements(path), path.bounds
     derivative = make_derivative(n, stages, 2 * n if tangent else 0)
     tractions, forces = np.empty((1 + steps * stages, 2, n)), np.zeros((steps + 1, 3))
     slips, b = np.empty((stages, 2, n)), np.empty((2, n))
     q, at_end = state.copy(), state.copy()
-    z = _remembered(rings, displacements[0], q, b)
+    z = remembered(rings, moved[0], q, b)
     for c in range(2):
         for i in range(n):
             forces[0, c] += weight[i] * q[c, i]
@@ -113,11 +113,11 @@ def march(rings, path, state, known, tolerance, tangent) -> tuple:
             at += 1
             for c in range(2):
                 for i in range(n):
-                    b[c, i] = z[c, i] + weight[i] * displacements[at, c]
+                    b[c, i] = z[c, i] + weight[i] * moved[at, c]
                 for j in range(s):
                     subtract(b[c], carry[s, j], slips[j, c])
-            bound = _bound_at(bounds, at)
-            _guess(q, bounds, displacements, at, known, tractions)
+            bound = bound_at(bounds, at)
+            guess(q, bounds, moved, at, known, tractions)
             step = Step(b, bound, tolerance)
             count, residual = solve_step(rings, step, q, slips[s], factors)
             copy(tractions[at], q)
@@ -137,7 +137,7 @@ def march(rings, path, state, known, tolerance, tangent) -> tuple:
                     slip_tangent(factors, stick, slips[s], bound, derivative, s)
         for c in range(2):
             for i in range(n):
-                now = b[c, i] - slips[stages - 1, c, i] - weight[i] * displacements[at, c]
+                now = b[c, i] - slips[stages - 1, c, i] - weight[i] * moved[at, c]
                 z[c, i] = extended(z[c, i], now, end)
                 at_end[c, i] = extended(at_end[c, i], q[c, i], end)
                 forces[k + 1, c] += weight[i] * at_end[c, i]

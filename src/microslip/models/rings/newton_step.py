@@ -102,7 +102,7 @@ def _substitute_sticking(upper, change, stick):
 
 
 @kernel
-def _newton_step(slip, stick, factors):
+def newton_step(slip, stick, factors) -> None:
     """Fill factors.change (in the order of the factors) with the Newton step against `slip`.
 
     Sticking rings are eliminated from both components, the angles of the slipping ones are solved
@@ -142,7 +142,7 @@ class Step(NamedTuple):
 
 
 @kernel(inline="always")
-def _move(q, bound, stick, factors):
+def move(q, bound, stick, factors) -> None:
     """Fill factors.trial with q moved by factors.change, within the bound."""
     order, change, trial = factors.order, factors.change, factors.trial
     for p in range(len(bound)):
@@ -188,8 +188,8 @@ def solve_step(rings, step: Step, q: np.ndarray, slip: np.ndarray, factors) -> t
         trial_residual = np.inf
         stick = factorise(rings, bound, q, slip, factors)
         if stick >= 0:
-            _newton_step(slip, stick, factors)
-            _move(q, bound, stick, factors)
+            newton_step(slip, stick, factors)
+            move(q, bound, stick, factors)
             weighted_slip(stiffness, imposed, trial, trial_slip)
             trial_residual = step_residual(stiffness, trial, trial_slip, bound, weight)
         good = trial_residual <= max(GOOD_STEP * residual, tolerance)

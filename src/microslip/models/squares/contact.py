@@ -7,6 +7,7 @@ import numpy as np
 
 from microslip.models import contact
 from microslip.models.interrupts import unbroken
+from microslip.models.pull import PulledMarch
 from microslip.models.squares import march as square_march
 from microslip.models.squares.convolution import convolve, square_convolution, workspace
 from microslip.pressures.by_name import HERTZ
@@ -87,3 +88,19 @@ class CartesianContact:
         )
         stages = tractions if remembers else None
         return contact.March(state, forces, residual, iterations, steps * n_stages, stages=stages)
+
+    def pulled_march(self, path, state, tolerance, body, start, previous=None) -> PulledMarch:
+        """March from which a body may stay behind or run ahead; see models.pull.PullsContact."""
+        from microslip.models.squares.pulled_march import pulled_march  # only now: as for rings
+
+        state, moved, forces, residual, iterations = unbroken(
+            pulled_march,
+            self.squares(),
+            (self.forward_position, self.lateral_position),
+            path.under(self.bound[None]),
+            body.along(path, start),
+            np.ascontiguousarray(state),
+            (float(tolerance), self.stiffness),
+        )
+        solves = path.stages.shape[0] * path.stages.shape[1]
+        return PulledMarch(state, forces, residual, iterations, solves, body=moved)

@@ -129,10 +129,10 @@ def march(squares, positions, path, state, tolerance, guide) -> tuple:
             for j in range(s):
                 b -= path.carry[s, j] * slips[j]
             if guide.given:  # what the other march added in this stage is added here, too
-                _extrapolate(q, guide.known[k, s], last_guide, bound, q)
+                extrapolate(q, guide.known[k, s], last_guide, bound, q)
                 last_guide[:] = guide.known[k, s]
             elif k > 1:
-                _extrapolate(before[0, s], before[0, s], before[1, s], bound, q)
+                extrapolate(before[0, s], before[0, s], before[1, s], bound, q)
             count, residual, length = solve_step(squares, b, q, slips[s], length, tolerance)
             spent += count * 100.0 * q.size
             if count < 0 or (spent > BETWEEN_LOOKS and interrupted()):
@@ -243,7 +243,7 @@ def _replace(bound, b, q, slip, trial):
 
 
 @kernel
-def _extrapolate(start, later, earlier, bound, out):
+def extrapolate(start, later, earlier, bound, out) -> None:
     """out = P(start + later - earlier)."""
     for i in range(bound.shape[0]):
         for j in range(bound.shape[1]):

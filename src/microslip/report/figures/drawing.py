@@ -34,6 +34,8 @@ _DRAWN: dict[str, tuple[str, ...]] = {
     "fig5_transients": ("transients", "continuous_bore"),
     "fig6_bore_map": ("maps", "bore"),
     "poisson": ("poisson", "transverse", "bore"),
+    "creep_maps": ("creep", "creep_transverse", "creep_bore"),
+    "drives": ("drives", "transverse", "drive_force", "drive_spring", "drive_body"),
     "accuracy_profile": ("profile", "accuracy_cost"),
     "accuracy_vs_cost": ("work_precision", "accuracy_cost"),
     "accuracy_vs_work": ("work_precision", "accuracy_cost"),

@@ -57,7 +57,7 @@ def equal_means(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> Periodi
 
 def residual_alone(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
     """Anderson acceleration, believed as soon as the plain map changes less than the tolerance."""
-    accelerate, state = Anderson(period_map.contact, DEPTH), start
+    accelerate, state = Anderson(period_map.metric, DEPTH), start
     for _ in range(goal.most_marches):
         interval = period_map(state, goal.step_tolerance)
         if interval.residual <= goal.tolerance:

@@ -1,0 +1,129 @@
+"""What is asked of a point, as every part of its answer needs it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from microslip.adaptive.chains import Axis
+from microslip.adaptive.refinement import Certified
+from microslip.foundation.errors import InputError
+from microslip.solver.budget import Budget
+from microslip.solver.method import Method
+from microslip.solver.problem import Problem
+
+TOLERANCE = 1e-3
+"""Unless told otherwise; and how strict the search for a periodic state is where none is meant."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A point, checked.
+
+    Attributes
+    ----------
+    problem : problem.Problem
+        The motion and its numbers.
+    model : str
+        Name in models.registry.MODELS.
+    chosen : bool
+        Whether the model was left open, so that a closed form may take its place.
+    method : str
+        Name of the method.
+    how : method.Method
+        The method.
+    tolerance : float or None
+        None: none is meant.
+    cells, steps : int or None
+        Imposed, steps in a full period.
+    budget : budget.Budget
+        Of all runs.
+    progress : callable or None
+        Called with the Resolution of every run before it starts.
+    started : float
+        time.perf_counter() at the beginning.
+    """
+
+    problem: Problem
+    model: str
+    chosen: bool
+    method: str
+    how: Method
+    tolerance: float | None
+    cells: int | None
+    steps: int | None
+    budget: Budget
+    progress: Callable | None
+    started: float
+
+    @property
+    def accuracy(self) -> float:
+        """The tolerance that runs are done to."""
+        return TOLERANCE if self.tolerance is None else self.tolerance
+
+    @property
+    def point(self) -> dict:
+        """Fields of a result.Result that say what was asked."""
+        motion = self.problem.motion
+        return {
+            "scene": motion.name,
+            "pressure": motion.pressure.name,
+            "velocity": self.problem.velocity,
+            "amplitude": self.problem.amplitude,
+            "poisson": self.problem.poisson,
+            "tolerance": self.tolerance,
+            "method": self.method,
+        }
+
+    @property
+    def seconds(self) -> float:
+        """By the wall clock, so far."""
+        return time.perf_counter() - self.started
+
+
+def refuse_free(axes: Sequence[Axis]) -> None:
+    """Raise InputError where a tolerance would have to choose the cells or the steps."""
+    free = [name for axis in axes if not axis.imposed for name in axis.refines if name != "angles"]
+    if free:
+        what = " and ".join(free)
+        allowed = f"allowed is a number, or none where {what} are imposed"
+        raise InputError("tolerance", None, allowed)
+
+
+def verdict(
+    asked: Asked, certified: Certified, axes: Sequence[Axis], largest: float | None
+) -> dict:
+    """Fields of a result.Result that say how an answer was found, and whether it is good enough.
+
+    largest: error that is accepted, None: any.
+    """
+    if asked.budget.exhausted:
+        certified = replace(certified, **asked.budget.counts())
+    names = [axis.name for axis in axes]
+    within = largest is None or certified.error <= largest
+    reason = certified.reason
+    if certified.converged and not within:
+        imposed = any(axis.imposed for axis in axes)
+        where = "at the imposed resolution the error" if imposed else "the estimated error"
+        reason = f"{where} is {certified.error:.1e}, above the tolerance of {largest:g}"
+        read = asked.problem.motion.pressure.readings
+        left_open = certified.errors.get("model", 0.0) if read else 0.0
+        if left_open > 0.5 * certified.error:
+            reason += f": the file's own resolution leaves {left_open:.1e} open"
+    return {
+        **{f"error_{source}": error for source, error in certified.errors.items()},
+        "converged": bool(certified.converged and within),
+        "periodic": certified.periodic,
+        "reason": reason,
+        "cells": certified.finest.cells,
+        "angles": certified.finest.angles,
+        "steps_per_period": 2 * certified.finest.steps if "steps" in names else 0,
+        "periods": certified.periods,
+        "iterations": certified.iterations,
+        "work": certified.work,
+        "effort": certified.effort,
+        "retried": certified.retried,
+        "exhausted": asked.budget.exhausted,
+        "solve_time_s": asked.seconds,
+    }

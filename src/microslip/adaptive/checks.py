@@ -1,0 +1,86 @@
+"""What a point is asked with, checked: every refusal names the argument."""
+
+from __future__ import annotations
+
+from microslip.foundation.arguments import LARGEST, LARGEST_BODY, count, is_real, real
+from microslip.foundation.errors import InputError
+from microslip.motions.by_name import motion_named
+from microslip.motions.drive import Drive
+from microslip.motions.motion import Motion
+
+SMALLEST_TOLERANCE = 1e-6
+LARGEST_FORCE = 1e6
+"""Over mu times the mean normal load: it runs away from 1 on, which is an answer."""
+
+
+def checked_point(
+    scene: str, velocity: float, amplitude: float | None, poisson: float, pressure: str = "hertz"
+) -> tuple[Motion, float, float | None, float]:
+    """Motion record and numbers of a point; raises InputError naming the argument at fault."""
+    motion = motion_named(scene, pressure)
+    velocity = real("velocity", velocity, 0.0, LARGEST["velocity"])
+    poisson = real("poisson", poisson, 0.0, 0.5)
+    if motion.periodic:
+        if amplitude is None:
+            raise InputError("amplitude", None, f"{motion.name} needs an amplitude >= 0")
+        amplitude = real("amplitude", amplitude, 0.0, LARGEST["amplitude"])
+    elif amplitude is not None:
+        raise InputError("amplitude", amplitude, f"{motion.name} has no amplitude")
+    return motion, velocity, amplitude, poisson
+
+
+def checked_drive(
+    velocity: float | None,
+    force: float | None,
+    stiffness: float | None,
+    mass: float | None,
+    damping: float | None,
+) -> Drive | None:
+    """What pulls, None where the velocity alone does; raises InputError naming the argument."""
+    if velocity is None and force is None:
+        raise InputError("velocity", None, "allowed is a number, or a force in its place")
+    if velocity is not None and force is not None:
+        raise InputError("force", force, "allowed is a force or a velocity, not both")
+    body = {"stiffness": stiffness, "mass": mass, "damping": damping}
+    for name, value in body.items():
+        if value is not None:
+            body[name] = real(name, value, 0.0, LARGEST_BODY)
+    if force is not None:
+        for name in ("stiffness", "damping"):
+            if body[name] is not None:
+                allowed = "allowed is none beside a force, which does not pull through a spring"
+                raise InputError(name, body[name], allowed)
+        return Drive(
+            force=real("force", force, -LARGEST_FORCE, LARGEST_FORCE), mass=body["mass"] or 0.0
+        )
+    if stiffness is None:
+        for name in ("mass", "damping"):
+            if body[name] is not None:
+                allowed = "allowed beside a stiffness alone, for a velocity moves any body"
+                raise InputError(name, body[name], allowed)
+        return None
+    if body["stiffness"] == 0.0:
+        allowed = f"allowed is a number above 0 and at most {LARGEST_BODY:g}"
+        raise InputError("stiffness", stiffness, allowed)
+    return Drive(None, body["stiffness"], body["mass"] or 0.0, body["damping"] or 0.0)
+
+
+def checked_request(
+    tolerance: float | None, cells: int | None, steps: int | None
+) -> tuple[float | None, int | None, int | None]:
+    """Tolerance, if any, and imposed resolution; raises InputError naming the argument at fault."""
+    cells, steps = _count("cells", cells, 4), _count("steps", steps, 8)
+    if tolerance is not None:
+        tolerance = real("tolerance", tolerance, SMALLEST_TOLERANCE, 0.1)
+    return tolerance, cells, steps
+
+
+def refuse_bounds(**given) -> None:
+    """Raise InputError for a bound, None or a number, that is not above 0."""
+    for name, value in given.items():
+        if value is not None and not (is_real(value) and value > 0.0):
+            raise InputError(name, value, "allowed is a number above 0")
+
+
+def _count(name, value, low):
+    return None if value is None else count(name, value, low, most=LARGEST[name], even=True)

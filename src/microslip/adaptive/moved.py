@@ -1,0 +1,109 @@
+"""The friction of a contact that is moved forward at a given velocity."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import partial
+
+from microslip.adaptive.asked import TOLERANCE, Asked, refuse_free, verdict
+from microslip.adaptive.choice import choose_model
+from microslip.adaptive.closed_forms import closed_form, no_vibration
+from microslip.adaptive.continuation import run_safely
+from microslip.adaptive.refinement import certify
+from microslip.adaptive.resolutions import plan
+from microslip.adaptive.result import Result, of_closed_form
+from microslip.motions.by_name import read_otherwise
+from microslip.motions.motion import Motion
+from microslip.solver.method_names import SHIPPED
+from microslip.solver.problem import Problem
+from microslip.solver.run import Settings
+from microslip.solver.simulate import simulate
+from microslip.solver.static_run import simulate_static
+
+PERIODICITY_SHARE = 0.07
+"""Share of the tolerance that the distance from the periodic state may take."""
+CLOSED_FORM = "closed-form"
+
+
+def known_exactly(asked: Asked) -> Result | None:
+    """The Result where nothing has to be computed, else None."""
+    exact = no_vibration(asked.problem.motion, asked.problem.amplitude)
+    if exact is None and asked.chosen and asked.method == SHIPPED:
+        exact = _exact(asked.problem, asked.tolerance, asked.cells, asked.steps)
+    if exact is None:
+        return None
+    used = CLOSED_FORM if asked.chosen else asked.model
+    return of_closed_form(asked.point | {"model": used}, exact, asked.seconds)
+
+
+def solve_moved(asked: Asked) -> Result:
+    """The certified friction, a result.Result; see microslip.solve."""
+    exact = known_exactly(asked)
+    if exact is not None:
+        return exact
+    problem, motion, tolerance = asked.problem, asked.problem.motion, asked.accuracy
+    coarsest, axes = plan(problem, asked.model, tolerance, asked.cells, asked.steps)
+    if asked.tolerance is None:
+        refuse_free(axes)
+    share = PERIODICITY_SHARE * tolerance
+    settings = Settings(asked.how, budget=asked.budget)
+
+    def run(resolution, guess, problem=problem):
+        if asked.progress is not None:
+            asked.progress(resolution)
+        if problem.velocity == 0.0 and motion.periodic:
+            return simulate_static(problem, asked.model, resolution, share, settings)
+
+        def run_at(velocity, guess, tighter=False):
+            there = replace(problem, velocity=velocity)
+            how_so = replace(settings, tighter=tighter)
+            return simulate(there, asked.model, resolution, share, guess, how_so)
+
+        if asked.method != SHIPPED or not motion.periodic:
+            return run_at(problem.velocity, guess)
+        return run_safely(run_at, problem.velocity, guess)
+
+    readings = [
+        partial(run, problem=replace(problem, motion=other)) for other in read_otherwise(motion)
+    ]
+    certified = certify(run, coarsest, axes, tolerance, readings)
+    steady = not motion.periodic
+    return Result(
+        **asked.point,
+        model=asked.model,
+        mu_macro=_within(motion, certified.mu),
+        mu_macro_error=certified.error,
+        mu_torque=certified.torque if steady else None,
+        mu_torque_error=certified.torque_error + certified.errors["periodicity"]
+        if steady
+        else None,
+        **verdict(asked, certified, axes, asked.tolerance),
+    )
+
+
+def _within(motion, mu):
+    """A mean force brought to where it can be: what lies beyond is rounding and error."""
+    least = -1.0 if motion.drives else 0.0
+    return min(max(mu, least), 1.0) if math.isfinite(mu) else math.nan
+
+
+def refuse_choice(
+    motion: Motion, model: str, place: tuple, cells: int | None, steps: int | None
+) -> None:
+    """Raise InputError where a resolution would have to be chosen, and there is no tolerance to do
+    that; place: velocity, amplitude, poisson, and all as checked."""
+    problem = Problem(motion, *place)
+    exact = no_vibration(motion, problem.amplitude)
+    if exact is None and model == "auto":
+        exact = _exact(problem, None, cells, steps)
+    if exact is None:
+        name = choose_model(motion, problem.poisson, model)
+        refuse_free(plan(problem, name, TOLERANCE, cells, steps)[1])
+
+
+def _exact(problem, asked, cells, steps):
+    """As `closed_form`, but that an imposed resolution is to be run, if anything is marched."""
+    if problem.velocity > 0.0 and not (cells is None and steps is None):
+        return None
+    return closed_form(problem, asked or 0.0)

@@ -1,0 +1,259 @@
+"""The friction of a contact that a spring pulls, and the velocity of one that a force pulls."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import partial
+
+from microslip.adaptive.asked import Asked, refuse_free, verdict
+from microslip.adaptive.chains import Runs
+from microslip.adaptive.moved import CLOSED_FORM, PERIODICITY_SHARE, solve_moved
+from microslip.adaptive.refinement import certify
+from microslip.adaptive.resolutions import plan
+from microslip.adaptive.result import Result
+from microslip.adaptive.under_force import (
+    is_even,
+    oscillates,
+    refuse_steady,
+    runs_away,
+    steady_velocity,
+    velocity_near,
+    without_forward_motion,
+)
+from microslip.foundation.errors import InputError
+from microslip.models.registry import MODELS
+from microslip.motions.by_name import read_otherwise
+from microslip.motions.drive import Drive
+from microslip.solver.budget import Spent
+from microslip.solver.method_names import SHIPPED
+from microslip.solver.problem import Problem
+from microslip.solver.pulled_run import Accuracy, simulate_pulled
+from microslip.solver.run import Settings
+from microslip.solver.simulate import simulate
+
+STEADY_ERROR = 1e-9
+"""Of the velocity of a steady motion, over 1 and the velocity."""
+COARSE_TOLERANCE = 1e-2
+"""Of the runs that tell about which velocity a force belongs to."""
+FIRST_VELOCITY = 0.1
+"""For which these are planned."""
+SLOWEST_SHARE = 0.3
+"""Of the velocity of the contact that is moved: one that the force makes slower is not known so
+coarsely."""
+SCALE_SHARE = 0.9
+"""Of the velocity so found that the tolerance is taken over."""
+ROUGH_TOLERANCE = 3e-2
+"""Of a static limit that is far from the force."""
+GAP_MARGIN = 2.0
+"""Errors of the static limit above it at which the contact moves for certain."""
+
+
+def refuse_drive(problem: Problem, drive: Drive, model: str) -> None:
+    """Raise InputError where a model, by name, or a motion does not go with a drive."""
+    motion, pulls = problem.motion, "stiffness" if drive.force is None else "force"
+    if drive.force is not None and drive.force < 0.0 and not motion.drives:
+        allowed = f"allowed is a number of at least 0: {motion.name} drives nothing by itself"
+        raise InputError("force", drive.force, allowed)
+    if not MODELS[model].pulled:
+        raise InputError("model", model, f"does not know a {pulls}, a velocity alone")
+    if drive.force is not None:
+        if not motion.periodic:
+            refuse_steady(motion, drive.force)
+    elif motion.periodic and problem.velocity == 0.0 and not is_even(problem):
+        allowed = f"allowed is a number above 0 where a spring pulls {motion.name}"
+        raise InputError("velocity", 0.0, allowed)
+
+
+def refuse_pull(asked: Asked, drive: Drive) -> None:
+    """Raise InputError where what is asked does not go with a drive."""
+    refuse_drive(asked.problem, drive, asked.model)
+    if asked.method != SHIPPED:
+        pulls = "stiffness" if drive.force is None else "force"
+        raise InputError("method", asked.method, f"allowed is {SHIPPED} with a {pulls}")
+
+
+def solve_pulled(asked: Asked, drive: Drive) -> Result:
+    """The certified friction, or under a force the velocity, a result.Result; see microslip.solve.
+
+    It is for the caller to `refuse_pull` before.
+    """
+    if drive.force is not None:
+        return _under_force(asked, drive)
+    body = {"stiffness": drive.stiffness, "mass": drive.mass, "damping": drive.damping}
+    problem = asked.problem
+    if not problem.motion.periodic or problem.velocity == 0.0 or not oscillates(problem):
+        # what is steady stretches the spring to one length, whatever it is
+        return replace(solve_moved(asked), **body)
+    certified, axes = _certified(asked, drive, Accuracy(asked.accuracy))
+    return Result(
+        **asked.point,
+        **body,
+        model=asked.model,
+        mu_macro=_between(certified.mu, -1.0 if problem.motion.drives else 0.0, 1.0),
+        mu_macro_error=certified.error,
+        **verdict(asked, certified, axes, asked.tolerance),
+    )
+
+
+def _under_force(asked, drive):
+    """The velocity under a force."""
+    if drive.mass == 0.0 and asked.problem.motion.periodic:
+        asked = replace(asked, problem=without_forward_motion(asked.problem))
+    problem, force = asked.problem, drive.force
+    if force < 0.0 and not problem.motion.drives:  # a pull back is a pull forward, seen from behind
+        ahead = _under_force(asked, replace(drive, force=-force))
+        return replace(ahead, force=force, mu_macro=-ahead.mu_macro, velocity=-ahead.velocity)
+    away = runs_away(problem, drive)
+    if away:
+        return _known(asked, drive, math.nan, math.inf, away)
+    if not problem.motion.periodic:
+        velocity = steady_velocity(problem.motion, force)
+        return _known(asked, drive, velocity, STEADY_ERROR * max(1.0, velocity))
+    if not oscillates(problem):
+        return _known(asked, drive, 0.0, 0.0)
+    least = -math.inf
+    if is_even(problem):
+        static = _static(asked, force)
+        if force <= static.mu_macro - static.mu_macro_error:
+            return replace(
+                _known(asked, drive, 0.0, 0.0),
+                model=static.model,
+                cells=static.cells,
+                angles=static.angles,
+            )
+        if force <= static.mu_macro + static.mu_macro_error:
+            least = static.mu_macro + GAP_MARGIN * static.mu_macro_error
+    return _moving(asked, drive, max(force, least))
+
+
+def _static(asked, force):
+    """The Result of the static limit, no more exactly than the force needs to be told from it."""
+    at_rest = replace(asked, problem=replace(asked.problem, velocity=0.0))
+    if asked.tolerance is not None and asked.tolerance < ROUGH_TOLERANCE:
+        rough = solve_moved(replace(at_rest, tolerance=ROUGH_TOLERANCE))
+        if abs(force - rough.mu_macro) > rough.mu_macro_error:
+            return rough
+    return solve_moved(at_rest)
+
+
+def _known(asked, drive, velocity, error, reason=""):
+    """The Result where nothing has to be marched."""
+    return Result(
+        **asked.point | {"velocity": velocity},
+        **_pulling(drive),
+        model=CLOSED_FORM if asked.chosen else asked.model,
+        mu_macro=math.copysign(1.0, drive.force) if reason else drive.force,
+        mu_macro_error=0.0,
+        velocity_error=error,
+        converged=not reason and _good_enough(error, velocity, asked.tolerance),
+        periodic=not reason,
+        reason=reason,
+        solve_time_s=asked.seconds,
+    )
+
+
+def _good_enough(error, velocity, tolerance):
+    return tolerance is None or error <= tolerance * max(1.0, abs(velocity))
+
+
+def _pulling(drive):
+    """Fields that say how a force pulls."""
+    return {"force": drive.force} | ({"mass": drive.mass} if drive.mass > 0.0 else {})
+
+
+def _moving(asked, drive, marched):
+    """The Result of a contact that moves, marched under a force that it moves under for certain.
+
+    Where the static limit is not known well enough to tell whether it moves under the force that
+    was asked for, its velocity is between 0 and that one.
+    """
+    drive_marched = replace(drive, force=marched)
+    try:
+        near = _near(asked, drive_marched)
+    except Spent as spent:
+        return _given_up(asked, drive, str(spent))
+    asked = replace(asked, problem=replace(asked.problem, velocity=near.velocity))
+    accuracy = Accuracy(asked.accuracy * max(1.0, SCALE_SHARE * near.velocity), near.slope)
+    certified, axes = _certified(asked, drive_marched, accuracy)
+    velocity, error = float(certified.mu), float(certified.error)
+    if not asked.problem.motion.drives:
+        velocity = max(velocity, 0.0)  # what lies below is rounding and error
+    if marched > drive.force:
+        velocity, error = 0.5 * velocity, 0.5 * velocity + error
+        certified = replace(certified, errors=certified.errors | {"model": 0.5 * certified.mu})
+    largest = None if asked.tolerance is None else asked.tolerance * max(1.0, abs(velocity))
+    return Result(
+        **asked.point | {"velocity": velocity},
+        **_pulling(drive),
+        model=asked.model,
+        mu_macro=drive.force,
+        mu_macro_error=0.0,
+        velocity_error=error,
+        **verdict(asked, certified, axes, largest),
+    )
+
+
+def _near(asked, drive):
+    """The under_force.Near of what the force makes of the contact, by coarse runs.
+
+    Friction of the contact that is moved tells about where it is, and one run under the force more
+    exactly, unless it is so slow that this would take finer ones.
+    """
+    moving = replace(asked.problem, velocity=FIRST_VELOCITY)
+    coarsest, axes = plan(moving, asked.model, COARSE_TOLERANCE, asked.cells, asked.steps)
+    if asked.tolerance is None:
+        refuse_free(axes)
+    first = {axis.name: axis.first[0] for axis in axes}
+    coarse = Runs(None, coarsest, axes).resolution(**first)
+    settings = Settings(asked.how, budget=asked.budget)
+    if asked.progress is not None:
+        asked.progress(coarse)
+
+    def friction_at(velocity):
+        there = replace(moving, velocity=velocity)
+        return simulate(there, asked.model, coarse, COARSE_TOLERANCE, settings=settings).mu
+
+    near = velocity_near(moving, drive.force, friction_at)
+    place = replace(moving, velocity=near.velocity)
+    accuracy = Accuracy(COARSE_TOLERANCE * near.velocity, near.slope)
+    found = simulate_pulled(place, drive, asked.model, coarse, accuracy, settings)
+    if found.converged and found.velocity > SLOWEST_SHARE * near.velocity:
+        return near._replace(velocity=found.velocity)
+    return near
+
+
+def _given_up(asked, drive, reason):
+    """The Result of a point of which nothing is known yet."""
+    unknown = replace(_known(asked, drive, math.nan, math.inf, reason), model=asked.model)
+    return replace(
+        unknown, mu_macro=drive.force, exhausted=asked.budget.exhausted, **asked.budget.counts()
+    )
+
+
+def _certified(asked, drive, accuracy):
+    """The refinement.Certified to an accuracy, and what was refined."""
+    problem, tolerance = asked.problem, accuracy.tolerance
+    share = accuracy._replace(tolerance=PERIODICITY_SHARE * tolerance)
+    coarsest, axes = plan(problem, asked.model, tolerance, asked.cells, asked.steps)
+    if asked.tolerance is None:
+        refuse_free(axes)
+    settings = Settings(asked.how, budget=asked.budget)
+
+    def run(resolution, guess, problem=problem):
+        if asked.progress is not None:
+            asked.progress(resolution)
+        return simulate_pulled(
+            problem, drive, asked.model, resolution, share, settings, guess=guess
+        )
+
+    readings = [
+        partial(run, problem=replace(problem, motion=other))
+        for other in read_otherwise(problem.motion)
+    ]
+    quantity = "mu" if drive.force is None else "velocity"
+    return certify(run, coarsest, axes, tolerance, readings, quantity), axes
+
+
+def _between(value, least, most):
+    return min(max(value, least), most) if math.isfinite(value) else math.nan

@@ -1,0 +1,185 @@
+"""A contact that a force pulls: where it stays, where it runs away, and near which velocity it is.
+
+Friction never falls with the velocity (theory/bounds.py), whatever pulls.  So a constant force at
+which the contact could stay where it is, is one at which it comes to rest, and a force above one at
+which it moves, moves it faster.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from microslip.foundation.errors import InputError
+from microslip.motions.drive import Drive
+from microslip.motions.motion import Motion
+from microslip.solver.problem import Problem
+from microslip.theory import paper
+
+_LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
+RETURNED = 1e-12
+"""Share of the amplitude below which a forward oscillation is rounding."""
+
+FIRST_CREEP, FACTOR = 0.1, 4.0
+SLOWEST, FASTEST = 1e-6, 1e6
+"""Creep in a radian at which the search for a velocity begins, what it is multiplied by from one
+run to the next, and where it ends."""
+FLATTEST = 1e-6
+"""Least rise of friction that a pair of runs may tell, over the relative rise of the velocity."""
+HALVINGS = 2
+"""Of the last such interval, by its logarithm."""
+
+
+def without_forward_motion(problem: Problem) -> Problem:
+    """The problem, its contact not oscillating along the direction of the force.
+
+    A constant force on a contact without mass keeps the forward force of the contact constant: the
+    contact goes along with a forward oscillation, as if there were none.
+    """
+    motion = problem.motion
+    if not oscillates_forward(problem):
+        return problem
+
+    def displacement(phase, velocity, amplitude, poisson):
+        forward, lateral, angle = motion.displacement(phase, velocity, amplitude, poisson)
+        return forward - motion.displacement(phase, 0.0, amplitude, poisson)[0], lateral, angle
+
+    still = replace(
+        motion,
+        displacement=displacement,
+        turns=lambda velocity, amplitude: motion.turns(0.0, amplitude),
+        straight=False,
+        drives=False,
+        closed_form_of=None,
+    )
+    return replace(problem, motion=still)
+
+
+def oscillates_forward(problem: Problem) -> bool:
+    """Whether the oscillation alone moves the contact forward and back."""
+    forward = problem.oscillation(_LOOP)[0]
+    return float(np.ptp(forward)) > RETURNED * max(problem.amplitude, 1.0)
+
+
+def oscillates(problem: Problem) -> bool:
+    """Whether anything oscillates at all."""
+    parts = problem.oscillation(_LOOP)
+    moves = max(float(np.ptp(part)) for part in parts) > RETURNED * max(problem.amplitude, 1.0)
+    return moves or (problem.depth is not None and problem.amplitude > 0.0)
+
+
+def is_even(problem: Problem) -> bool:
+    """Whether the oscillation alone exerts no forward force at any time.
+
+    Then the contact does not tell a constant force from a velocity that vanishes, and moves from
+    the static limit on.
+    """
+    motion, pressure = problem.motion, problem.motion.pressure
+    if oscillates_forward(problem) or not motion.half_disc:
+        return False
+    if motion.rotates:
+        return pressure.is_round or (pressure.mirrored and motion.depth is None)
+    return pressure.is_round or pressure.mirrored or problem.poisson == 0.0
+
+
+def least_load(problem: Problem) -> float:
+    """Least normal load in a period, over its mean."""
+    if not problem.motion.periodic or problem.depth is None:
+        return 1.0
+    loads = problem.motion.pressure.total(np.asarray(problem.depth(_LOOP), dtype=float))
+    return max(float(loads.min()), 0.0) / problem.mean_load
+
+
+def runs_away(problem: Problem, drive: Drive) -> str:
+    """Why there is no mean velocity, as one line; "" if there is one."""
+    if abs(drive.force) >= 1.0:
+        return f"runs away: the force {drive.force:g} is all that friction can hold, or more"
+    least = least_load(problem)
+    if drive.mass == 0.0 and drive.force >= least:
+        return (
+            f"runs away: without mass it slides off where the normal load is least, {least:.3g} of "
+            "its mean, and friction holds no more than that"
+        )
+    return ""
+
+
+def refuse_steady(motion: Motion, force: float) -> None:
+    """Raise InputError where the velocity of a steady motion under a force has no closed form."""
+    if motion.name != "continuous-bore" or not motion.pressure.is_round:
+        place = f"{motion.name} under {motion.pressure.name}"
+        raise InputError("force", force, f"allowed is none for {place}, which has no closed form")
+
+
+def steady_velocity(motion: Motion, force: float) -> float:
+    """Velocity of a steady rotation under a force from 0 to below 1, from Eqs 17 and 21; it is for
+    the caller to `refuse_steady` before."""
+    from scipy.optimize import brentq  # only now: these take a while to load
+
+    from microslip.theory import axisymmetric
+
+    pressure = motion.pressure
+
+    def left(velocity):
+        if pressure.hertzian:
+            return float(paper.bore_forward(velocity)) - force
+        return float(axisymmetric.bore_of(pressure.bound, velocity)[0]) - force
+
+    high = 1.0
+    while left(high) < 0.0 and high < FASTEST:
+        high *= FACTOR
+    return float(brentq(left, 0.0, high, xtol=1e-14, rtol=1e-14)) if force > 0.0 else 0.0
+
+
+class Near(NamedTuple):
+    """A place on the curve of friction over velocity.
+
+    Attributes
+    ----------
+    velocity : float
+        In the unit of the motion.
+    slope : float
+        About how much friction rises there with the velocity.
+    """
+
+    velocity: float
+    slope: float
+
+
+def velocity_near(problem: Problem, force: float, friction_at: Callable[[float], float]) -> Near:
+    """Velocity at which a contact that is moved resists with a force, to a factor of about two.
+
+    It is where the search for a contact that is pulled begins, and what its path is cut into steps
+    for: no answer depends on it but by its error.
+
+    Parameters
+    ----------
+    problem : problem.Problem
+        What is moved.
+    force : float
+        Over mu times the mean normal load.
+    friction_at : callable
+        friction_at(velocity) -> mean forward force likewise, NaN where there is none.
+    """
+    unit = problem.motion.creep(1.0, problem.amplitude, problem.poisson)
+
+    @cache
+    def at(creep):
+        return friction_at(creep / unit)
+
+    low, high = FIRST_CREEP / FACTOR, FIRST_CREEP
+    while high < FASTEST and at(high) < force:
+        low, high = high, FACTOR * high
+    while low > SLOWEST and at(low) > force:
+        low, high = low / FACTOR, low
+    slope = (at(high) - at(low)) / (high - low) * unit
+    for _ in range(HALVINGS):
+        middle = float(np.sqrt(low * high))
+        if at(middle) < force:
+            low = middle
+        else:
+            high = middle
+    return Near(float(np.sqrt(low * high)) / unit, max(slope, FLATTEST / high * unit))

@@ -1,0 +1,142 @@
+"""One (half) period of a contact that is pulled, as a map of its state.
+
+The state is one row of numbers: the tractions, and where the body remembers (models/pull.py) how
+far it is ahead of the path, x, and how fast that grows, x'.  In the mirror image of half a period
+later these two are what they were.
+
+In one period a heavy body hardly notices that the forces on it do not balance, nor does a soft
+spring that the contact stays behind.  So the map moves the body on as if it were no heavier, and
+its spring no softer, than the contact is: by so many times what it moved.  What repeats itself is
+the same.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from microslip.models.contact import FORWARD, StepFailure, energy_norm, forces
+from microslip.models.coulomb import project
+from microslip.models.path import Path
+from microslip.models.pull import Body, PullsContact
+from microslip.solver.period_map import CreepRate, MarchInterval, PeriodicState, PeriodMap
+
+CAUTION = 0.3
+"""Share of the contact's stiffness that a softer spring counts as having: more would overshoot."""
+
+
+class PulledMap(PeriodMap):
+    """The map of a contact and a body over a path; see period_map.PeriodMap.
+
+    Parameters
+    ----------
+    contact : pull.PullsContact
+        What is marched.
+    path : path.Path
+        From which the body may stay behind or run ahead.
+    body : pull.Body
+        What is pulled, and by what.
+    creep_rate : period_map.CreepRate or None
+        Given where the motion may be slow and its velocity is known.
+    mirror : bool
+        Whether the second half of the period is the mirror image of the path.
+    """
+
+    def __init__(
+        self,
+        contact: PullsContact,
+        path: Path,
+        body: Body,
+        creep_rate: CreepRate | None = None,
+        mirror: bool = True,
+    ):
+        super().__init__(contact, path, creep_rate, mirror)
+        self.body = body
+        self._shape = (2, *np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape))
+        self._points = int(np.prod(self._shape))
+        spread = np.broadcast_to(contact.bound, self._shape[1:])
+        self._spread = spread / np.sum(contact.weight * spread)
+        interval, stiffness = path.phase[-1] - path.phase[0], contact.stiffness
+        self._mass = min(body.mass, stiffness * interval**2)
+        self._held = body.stiffness * min(1.0, body.stiffness / stiffness)
+        self._haste = np.ones(2)
+        slow = max(1.0, body.damping / (stiffness * interval))
+        if body.stiffness > 0.0:
+            self._haste[0] = max(1.0, CAUTION * stiffness / body.stiffness * slow)
+        if body.mass > 0.0:
+            self._haste[1] = max(1.0, body.mass / (self._mass * slow))
+
+    def __call__(self, state, step_tolerance, sensitivity=False):
+        """March once from `state`; steps are solved to `step_tolerance`.
+
+        Raises StepFailure where the tractions blow up.
+        """
+        tractions, start = self._parts(state)
+        self._march = march = self.contact.pulled_march(
+            self.path, tractions, step_tolerance, self.body, start, previous=self._march
+        )
+        self.marches += 1
+        self.iterations += march.iterations
+        self.solves += march.solves
+        image = self._hastened(tractions, start, march)
+        change = image - state
+        if not np.isfinite(change).all():
+            raise StepFailure("diverged: tractions are not finite")
+        return MarchInterval(state, image, change, self.size(change), march)
+
+    def _hastened(self, tractions, start, march):
+        """The state that the next interval begins with."""
+        image = self.image(march.state)
+        if not self.body.remembers and self._haste[0] > 1.0:
+            # by how far the body moved, for the force itself is known to the steps' tolerance alone
+            ahead = march.body[-1, 0] - march.body[0, 0]
+            force = march.forces[0, FORWARD] - self._haste[0] * self.body.stiffness * ahead
+            image[FORWARD] += (force - march.forces[-1, FORWARD]) * self._spread
+        return self.state(image, start + self._haste * (march.body[-1] - start))
+
+    def state(self, tractions: np.ndarray, moved: np.ndarray) -> np.ndarray:
+        """The state of tractions and of (x, x'), one row."""
+        return np.append(tractions.ravel(), moved) if self.body.remembers else tractions.ravel()
+
+    def _parts(self, state):
+        moved = state[self._points :] if self.body.remembers else np.zeros(2)
+        return state[: self._points].reshape(self._shape), moved
+
+    @property
+    def metric(self) -> np.ndarray:
+        points = np.broadcast_to(super().metric, self._shape)
+        return self.state(points, np.array([self._held, self._mass]))
+
+    def size(self, change: np.ndarray) -> float:
+        """Bound on the force that a change of a state carries, over mu F_z.
+
+        A soft spring changes its force by less than the contact would for the same displacement.
+        """
+        tractions, moved = self._parts(change)
+        held = self._held * moved[0] ** 2 + self._mass * moved[1] ** 2
+        if not self.body.remembers and self.body.stiffness > 0.0:
+            force = forces(self.contact, tractions)[FORWARD]
+            held = self._held * (force / self.body.stiffness) ** 2
+        squared = energy_norm(self.contact, tractions) ** 2 + self.contact.stiffness * held
+        return float(np.sqrt(squared))
+
+    def distance(self, interval: MarchInterval, proposal: np.ndarray) -> float:
+        """Estimated distance of an interval's state from the fixed point, given a better state."""
+        distance = max(self.size(proposal - interval.state), interval.residual)
+        if self.creep_rate is None:
+            return distance
+        march, tractions = interval.march, self._parts(interval.state)[0]
+        gained = float(abs(march.body[-1, 0] - march.body[0, 0])) * self.contact.stiffness
+        gained += energy_norm(self.contact, self.image(march.state) - tractions)
+        force = self.path.mean(march.forces[:, FORWARD])
+        return max(distance, self.creep_rate.force_error(gained, force))
+
+    def admissible(self, state: np.ndarray) -> np.ndarray:
+        """The state, its tractions projected on the friction bound."""
+        tractions, moved = self._parts(state)
+        return self.state(project(tractions, self.contact.bound), moved)
+
+    def result(self, interval, distance, converged, inverse=None) -> PeriodicState:
+        found = super().result(interval, distance, converged, inverse)
+        return replace(found, body=interval.march.body)

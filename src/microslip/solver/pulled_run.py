@@ -1,0 +1,206 @@
+"""One run at one resolution of a contact that a force or a spring pulls.
+
+It begins with the contact moved at a given velocity, whose tractions are near: that of the spring's
+far end, or under a force one that is about as slow.  From there an accelerated search goes on.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from microslip.models.contact import FORWARD, StepFailure, forces, forward_slip
+from microslip.models.coulomb import project
+from microslip.models.pull import Body
+from microslip.motions.drive import Drive
+from microslip.solver import anderson
+from microslip.solver.period_map import MOST_MARCHES, CreepRate, Goal
+from microslip.solver.problem import Problem, Resolution
+from microslip.solver.pulled_map import PulledMap
+from microslip.solver.run import Run, Settings, failed_run
+from microslip.solver.simulate import mean_forces, periods_of, simulate, step_share
+
+MARCHES = 2 * MOST_MARCHES
+"""Of a search: a body may swing."""
+LOOSEST_MOVED = 1e-4
+"""Force over mu F_z to which the state of a contact that is moved is found at least."""
+NOTHING_MOVED = failed_run("")
+MOST_SCALED = 4.0
+"""By how much the tractions of a contact that is moved are scaled to the force at most."""
+
+
+class Accuracy(NamedTuple):
+    """How exactly the periodic state is to be found.
+
+    Attributes
+    ----------
+    tolerance : float
+        Of the answer: a force over mu F_z, or under a force the mean velocity.
+    slope : float
+        About how much friction rises with the velocity, over mu times the mean normal load: what
+        an unbalanced force does to the velocity.
+    """
+
+    tolerance: float
+    slope: float = np.inf
+
+
+def simulate_pulled(
+    problem: Problem,
+    drive: Drive,
+    model: str,
+    resolution: Resolution,
+    accuracy: Accuracy,
+    settings: Settings,
+    *,
+    guess: Run | None = None,
+) -> Run:
+    """Run a model of a contact that is pulled to its periodic state.
+
+    Parameters
+    ----------
+    problem : problem.Problem
+        Its velocity is that of the spring's far end, or a guess of the one to be found.
+    drive : drive.Drive
+        What pulls.
+    model : str
+        Name in models.registry.MODELS, of a contact that may be pulled.
+    resolution : problem.Resolution
+        Of the model.
+    accuracy : Accuracy
+        Of the periodic state.
+    settings : run.Settings
+        How it is done; of the method the integrator counts.
+    guess : run.Run or None
+        Of the same point under the same drive; of use if cells and angles are the same, too.
+
+    Returns
+    -------
+    run.Run
+        Under a force `velocity` is what was asked for, and distance and solver_residual are
+        velocities.  Never raises for want of convergence.
+
+    Raises
+    ------
+    budget.Spent
+        Where the budget is.
+    """
+    pulled = _Pulled(problem, drive, model, resolution, settings)
+    pulled.slope = accuracy.slope
+    try:
+        return pulled.run(accuracy.tolerance * pulled.force_of_answer, guess)
+    except (StepFailure, ArithmeticError, np.linalg.LinAlgError) as failure:
+        return failed_run(str(failure))
+
+
+class _Pulled:
+    """The search for the periodic state of one run."""
+
+    def __init__(self, problem, drive, model, resolution, settings):
+        self.problem, self.drive, self.model = problem, drive, model
+        self.resolution, self.settings = resolution, settings
+        self.contact = settings.contact(problem, model, resolution)
+        self.path = problem.path(self.contact, resolution.steps, settings.method.integrator)
+        self.interval = self.path.phase[-1] - self.path.phase[0]
+        load = -drive.damping * problem.creep
+        if drive.force is not None:
+            load += drive.force * problem.mean_load
+        self.body = Body(drive.stiffness, drive.damping, drive.mass, load)
+        self.slope, self.moved = np.inf, None
+
+    @property
+    def force_of_answer(self):
+        """Force over mu F_z that stands for a unit of the answer, to judge states by.
+
+        A state that is wrong by a force is wrong by that over the stiffness in its displacement,
+        and a march that began with it, in the velocity by this over the interval.  A force that is
+        not balanced is wrong by what friction would rise by in the velocity.
+        """
+        if self.drive.force is None:
+            return self.problem.mean_load
+        unit = self.problem.motion.creep(1.0, self.problem.amplitude, self.problem.poisson)
+        stuck = self.contact.stiffness * self.interval * unit
+        return min(stuck, self.slope * self.problem.mean_load)
+
+    def run(self, tolerance, guess=None):
+        """The Run, to a tolerance that is a force over mu F_z; guess: see simulate_pulled."""
+        rate = self.contact.stiffness * self.problem.creep
+        step_tolerance = tolerance * step_share(rate, self.resolution.steps, False)
+        goal, done = Goal(tolerance, step_tolerance, MARCHES), []
+        for start, static_force in self._starts(tolerance, guess):
+            period_map = self._map(static_force, rate)
+            if not self._fits(start, period_map):
+                continue
+            done.append(anderson.search(period_map, start, goal))
+            if done[-1].converged:
+                break
+        return self._summary(done, static_force, step_tolerance)
+
+    def _map(self, static_force, rate):
+        creep_rate = None
+        if self.drive.force is None:
+            creep_rate = CreepRate(static_force, rate * self.interval)
+        mirror = self.problem.motion.half_period_mirror
+        return PulledMap(self.contact, self.path, self.body, creep_rate, mirror)
+
+    def _fits(self, start, period_map):
+        return start.shape == period_map.state(forward_slip(self.contact), np.zeros(2)).shape
+
+    def _starts(self, tolerance, guess):
+        """States to begin with, each with the force of the static limit, the nearest one first."""
+        if guess is not None and guess.converged:
+            yield guess.state, guess.static_force
+        self.moved = moved = self._moved(tolerance)
+        slipping = forward_slip(self.contact)
+        if moved.state is not None:
+            yield self._state(moved.state, moved.mu * self.problem.mean_load), moved.static_force
+        full = float(forces(self.contact, slipping)[FORWARD])
+        yield self._state(slipping, full), moved.static_force
+
+    def _moved(self, tolerance):
+        """The Run at a velocity that is given."""
+        share = max(tolerance, LOOSEST_MOVED) / self.problem.mean_load
+        return simulate(self.problem, self.model, self.resolution, share, settings=self.settings)
+
+    def _state(self, tractions, mean):
+        """State near tractions whose mean force in a period is about `mean`."""
+        if self.drive.force is not None:
+            wanted = self.drive.force * self.problem.mean_load
+            if mean > 0.0 and 0.0 <= wanted < MOST_SCALED * mean:
+                tractions = tractions * (wanted / mean)
+            tractions = project(tractions, self.contact.bound)
+        place = (self.body.load - mean) / self.drive.stiffness if self.drive.stiffness else 0.0
+        moved = np.array([place, 0.0]) if self.body.remembers else np.zeros(0)
+        return np.append(tractions.ravel(), moved)
+
+    def _summary(self, done, static_force, step_tolerance):
+        problem, unit, found = self.problem, self.force_of_answer, done[-1]
+        moved = self.moved or NOTHING_MOVED
+        forward, _, torque = mean_forces(self.contact, problem, self.path, found.forces)
+        stages = self.path.stages.shape[0] * self.path.stages.shape[1]
+        solved = found.solver_residual <= stages * step_tolerance
+        periods, reason = periods_of(sum(one.marches for one in done), problem.motion), ""
+        if not found.converged:
+            reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
+        elif not solved:
+            reason = f"a step was left unsolved: residual {found.solver_residual:.1e}"
+        ahead = float(found.body[-1, 0] - found.body[0, 0]) / self.interval
+        creep = problem.motion.creep(1.0, problem.amplitude, problem.poisson)
+        return Run(
+            mu=float(forward) / problem.mean_load,
+            torque=float(torque) / problem.motion.pressure.torque,
+            distance=found.distance / unit,
+            solver_residual=found.solver_residual / unit,
+            periods=periods + moved.periods,
+            iterations=sum(one.iterations for one in done) + moved.iterations,
+            solves=sum(one.solves for one in done) + moved.solves,
+            work=sum(one.solves for one in done) * found.start.size + moved.work,
+            effort=sum(one.iterations for one in done) * found.start.size + moved.effort,
+            converged=found.converged and solved,
+            reason=reason,
+            state=found.start,
+            static_force=static_force,
+            velocity=problem.velocity + ahead / creep,
+            retried=moved.retried,
+        )

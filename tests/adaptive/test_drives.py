@@ -1,0 +1,262 @@
+"""Points under a force, or pulled through a spring: limits, thresholds, models side by side."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import microslip
+from microslip.models.path import EULER
+from microslip.motions.by_name import motion_named
+from microslip.motions.drive import Drive
+from microslip.solver.method import Method
+from microslip.solver.problem import Problem, Resolution
+from microslip.solver.pulled_run import Accuracy, simulate_pulled
+from microslip.solver.run import Settings
+from microslip.theory import indenters, paper
+
+PLACES = {
+    "transverse": ("transverse", 0.1, 1.0),
+    "bore": ("bore", 0.2, 1.0),
+    "longitudinal": ("longitudinal", 0.1, 0.5),
+    "loops": ("elliptic:forward_cycles=2", 0.2, 1.0),
+}
+ENDLESS = {"stiff": {"stiffness": 1e6}, "heavy": {"stiffness": 0.1, "mass": 1e6}}
+
+
+def apart(one, other):
+    """How far two certified frictions are apart, over what their errors allow."""
+    return abs(one.mu_macro - other.mu_macro) / (one.mu_macro_error + other.mu_macro_error)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("body", ENDLESS)
+@pytest.mark.parametrize("place", PLACES)
+def test_what_does_not_give_way_has_the_friction_of_the_velocity(place, body):
+    moved = microslip.solve(*PLACES[place])
+    pulled = microslip.solve(*PLACES[place], **ENDLESS[body])
+    assert moved.converged and pulled.converged
+    assert apart(moved, pulled) < 1.0
+    assert abs(moved.mu_macro - pulled.mu_macro) < 1.5e-3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("place", ["transverse", "bore"])
+def test_the_softest_spring_is_a_force(place):
+    """A spring as soft as can be pulls with its mean force: that force has its velocity.
+
+    The velocity rises with the force, so that the errors of the force are those of the velocity at
+    both of its ends.
+    """
+    scene, velocity, amplitude = PLACES[place]
+    soft = microslip.solve(scene, velocity, amplitude, stiffness=1e-5)
+    assert soft.converged
+    ends = soft.mu_macro - soft.mu_macro_error, soft.mu_macro + soft.mu_macro_error
+    slow, fast = (microslip.solve(scene, amplitude=amplitude, force=force) for force in ends)
+    assert slow.converged and fast.converged
+    assert slow.velocity - slow.velocity_error <= velocity <= fast.velocity + fast.velocity_error
+    assert fast.velocity - slow.velocity < 0.05 * velocity
+
+
+LIMITS = {
+    "transverse": ("transverse", 0.5, "hertz", lambda: paper.static_limit_transverse(0.5)),
+    "bore": ("bore", 1.0, "hertz", lambda: paper.static_limit_bore(1.0)),
+    "a cone": (
+        "transverse",
+        0.5,
+        "power:exponent=1",
+        lambda: indenters.static_transverse(
+            motion_named("transverse", "power:exponent=1").pressure, 0.5
+        ),
+    ),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", LIMITS)
+def test_the_threshold_is_the_static_limit(name):
+    scene, amplitude, pressure, limit = LIMITS[name]
+    limit = float(limit())
+    below = microslip.solve(scene, amplitude=amplitude, force=limit - 1e-5, pressure=pressure)
+    assert (below.velocity, below.velocity_error, below.converged) == (0.0, 0.0, True)
+    assert below.mu_macro == limit - 1e-5
+    above = microslip.solve(
+        scene, amplitude=amplitude, force=limit + 0.08, pressure=pressure, tolerance=3e-4
+    )
+    assert above.converged
+    assert above.velocity > 2.0 * above.velocity_error
+
+
+@pytest.mark.parametrize("mass", [None, 1.0])
+def test_a_contact_under_less_than_the_limit_comes_to_rest(mass):
+    """Marched on its own, from a start that moves: what is answered without a march."""
+    limit = paper.static_limit_transverse(0.5)
+    problem = Problem(motion_named("transverse"), 0.01, 0.5, 0.0)
+    rest = moving_at(problem, Drive(force=limit - 0.03, mass=mass or 0.0))
+    assert abs(rest.velocity) < 1e-5
+    moves = moving_at(problem, Drive(force=limit + 0.05, mass=mass or 0.0))
+    assert moves.velocity > 1e-3
+
+
+def moving_at(problem, drive, cells=24, steps=64, method=None):
+    settings = Settings() if method is None else Settings(method)
+    found = simulate_pulled(
+        problem, drive, "radial", Resolution(cells, 1, steps), Accuracy(1e-5), settings
+    )
+    assert found.converged
+    return found
+
+
+def test_a_heavy_contact_that_oscillates_along_the_force_moves_from_its_static_limit_on():
+    """Without mass it goes along with the oscillation, and nothing below full friction moves it."""
+    limit = paper.static_limit_longitudinal(0.5)
+    heavy = {"amplitude": 0.5, "mass": 1e5}
+    below = microslip.solve("longitudinal", force=limit - 0.03, **heavy)
+    assert below.converged and below.velocity <= below.velocity_error
+    above = microslip.solve("longitudinal", force=limit + 0.03, **heavy)
+    assert above.converged and above.velocity > 3.0 * above.velocity_error
+    light = microslip.solve("longitudinal", amplitude=0.5, force=0.99)
+    assert (light.velocity, light.converged) == (0.0, True)
+
+
+def test_without_mass_only_what_is_across_the_force_counts():
+    """An ellipse with its forward part given way to is the transverse motion."""
+    loop = microslip.solve("elliptic:phase=37", amplitude=1.5, force=0.3)
+    line = microslip.solve("transverse", amplitude=1.5, force=0.3)
+    assert loop.velocity == pytest.approx(
+        line.velocity, abs=loop.velocity_error + line.velocity_error
+    )
+
+
+RISING = [(0.5, 0.75, 0.0244), (1.5, 0.30, 0.138), (1.5, 0.60, 0.399), (3.0, 0.30, 0.438)]
+
+
+@pytest.mark.parametrize("force", [0.3, 0.7])
+def test_large_transverse_amplitudes_are_those_of_a_rigid_contact(force):
+    """cos of the slip's direction is the force: v = P |w| / sqrt(1 - P^2), in the mean 2/pi A."""
+    rigid = 2.0 / np.pi * force / math.sqrt(1.0 - force**2)
+    found = [microslip.solve("transverse", amplitude=a, force=force) for a in (50.0, 400.0)]
+    left = [abs(one.velocity / one.amplitude - rigid) / rigid for one in found]
+    assert all(one.converged for one in found)
+    assert left[1] < 0.004 and left[1] < 0.4 * left[0]
+
+
+@pytest.mark.slow
+def test_large_bore_amplitudes_are_those_of_a_rigid_contact():
+    """Eq 21 at every instant, its velocity over that of the rotation, whose mean is 2/pi."""
+    steady = brentq(lambda v: paper.bore_forward(v) - 0.5, 0.1, 2.0)
+    found = [microslip.solve("bore", amplitude=a, force=0.5) for a in (30.0, 200.0)]
+    left = [abs(one.velocity - 2.0 / np.pi * steady) for one in found]
+    assert all(one.converged for one in found)
+    assert left[1] < 0.003 and left[1] < 0.5 * left[0]
+
+
+def test_a_force_on_a_steady_bore_inverts_equation_21():
+    found = microslip.solve("continuous-bore", force=0.6)
+    assert paper.bore_forward(found.velocity) == pytest.approx(0.6, abs=1e-9)
+    spring = microslip.solve("continuous-bore", 0.3, stiffness=0.1, mass=2.0)
+    assert spring.mu_macro == microslip.solve("continuous-bore", 0.3).mu_macro
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("drive", [{"velocity": 0.1, "stiffness": 0.5}, {"force": 0.5}])
+def test_rings_angular_points_and_squares_agree(drive):
+    found = {
+        model: microslip.solve("transverse", amplitude=1.0, model=model, tolerance=t, **drive)
+        for model, t in (("radial", 1e-3), ("polar", 1e-3), ("cartesian", 1e-2))
+    }
+    assert all(one.converged for one in found.values())
+    for name in ("polar", "cartesian"):
+        one, other = found["radial"], found[name]
+        if "force" in drive:
+            error = one.velocity_error + other.velocity_error
+            assert one.velocity == pytest.approx(other.velocity, abs=error)
+        else:
+            assert apart(one, other) < 1.0
+
+
+@pytest.mark.slow
+def test_half_a_disc_and_squares_agree_on_a_bore_under_a_force():
+    half = microslip.solve("bore", amplitude=1.0, force=0.6)
+    squares = microslip.solve("bore", amplitude=1.0, force=0.6, model="cartesian", tolerance=2e-2)
+    error = half.velocity_error + squares.velocity_error
+    assert half.velocity == pytest.approx(squares.velocity, abs=error)
+
+
+@pytest.mark.parametrize(("amplitude", "force", "velocity"), RISING)
+def test_a_force_moves_the_contact_faster_than_the_friction_of_a_velocity_says(
+    amplitude, force, velocity
+):
+    """Values of an independent prototype on 20 to 24 rings, to the percent that it is good for."""
+    found = microslip.solve("transverse", amplitude=amplitude, force=force, tolerance=1e-4)
+    assert found.velocity == pytest.approx(velocity, rel=0.01)
+    moved = microslip.solve("transverse", found.velocity, amplitude)
+    assert moved.mu_macro - moved.mu_macro_error > force
+
+
+SPRINGS = {
+    (0.1, 0.0): 0.498,
+    (0.3, 0.0): 0.502,
+    (1.0, 0.0): 0.509,
+    (3.0, 0.0): 0.517,
+    (10.0, 0.0): 0.523,
+    (100.0, 0.0): 0.526,
+    (0.1, 0.1): 0.486,
+    (0.1, 1.0): 0.544,
+    (0.1, 10.0): 0.529,
+    (0.1, 100.0): 0.527,
+}
+"""Friction by stiffness and mass, of the same prototype: backward Euler at 128 steps a period."""
+
+
+@pytest.mark.parametrize("body", SPRINGS)
+def test_friction_through_a_spring_is_that_of_the_prototype(body):
+    problem = Problem(motion_named("transverse"), 0.1, 1.0, 0.0)
+    euler = Method("backward Euler", integrator=EULER)
+    stiffness, mass = body
+    found = moving_at(problem, Drive(stiffness=stiffness, mass=mass), method=euler)
+    assert found.mu == pytest.approx(SPRINGS[body], rel=0.003)
+
+
+def test_a_fast_contact_is_where_its_friction_is_the_force():
+    """Friction hardly rises there, and a small force that is not balanced is a large velocity."""
+    place = {"amplitude": 15.0, "force": 0.93, "mass": 1.0}
+    found, finer = (microslip.solve("elliptic", **place, tolerance=t) for t in (2e-3, 1e-4))
+    assert found.converged and finer.converged
+    error = found.velocity_error + finer.velocity_error
+    assert found.velocity == pytest.approx(finer.velocity, abs=error)
+
+
+def test_what_runs_away_says_so():
+    for force in (1.0, 1.7):
+        found = microslip.solve("transverse", amplitude=0.5, force=force)
+        assert not found.converged and math.isnan(found.velocity)
+        assert found.reason.startswith("runs away: ")
+    light = microslip.solve("normal:lateral=1", amplitude=0.5, force=0.6)
+    assert light.reason.startswith("runs away: without mass")
+
+
+@pytest.mark.slow
+def test_a_mass_holds_on_where_the_load_is_least():
+    heavy = microslip.solve("normal:lateral=1", amplitude=0.5, force=0.6, mass=100.0)
+    assert heavy.converged and heavy.velocity > 0.0
+
+
+def test_the_error_of_the_static_limit_is_part_of_the_answer():
+    """Where it is not known whether the contact moves, its velocity is told from 0 on."""
+    limit = microslip.solve("transverse", 0.0, 0.5, model="radial")
+    assert limit.mu_macro_error > 1e-6
+    found = microslip.solve("transverse", amplitude=0.5, force=limit.mu_macro, model="radial")
+    assert found.converged
+    assert found.velocity - found.velocity_error <= 0.0 <= found.velocity
+
+
+def test_equal_questions_have_equal_answers():
+    one, other = (
+        microslip.solve("transverse", amplitude=1.5, force=0.3, mass=0.2).to_dict()
+        for _ in range(2)
+    )
+    one.pop("solve_time_s"), other.pop("solve_time_s")
+    assert one == other
+    assert (one["force"], one["mass"]) == (0.3, 0.2)

@@ -1,0 +1,167 @@
+"""Contacts that are pulled, march by march: against the plain reference, balances and limits."""
+
+import numpy as np
+import pytest
+from reference_pull import pulled_march
+
+from microslip.models.contact import forward_slip
+from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.models.polar.contact import PolarContact
+from microslip.models.pull import Body
+from microslip.models.rings.contact import RadialContact
+from microslip.models.squares.contact import CartesianContact
+from microslip.motions.by_name import motion_named
+
+CONTACTS = {
+    "rings": (lambda: RadialContact.resolved(5, 0.7), "transverse", 0.0),
+    "angular points": (lambda: PolarContact(4, 4, True, 0.3, 0.6), "bore", 0.3),
+    "angular points of a translation": (
+        lambda: PolarContact(4, 4, False, 0.3, 0.6),
+        "transverse",
+        0.3,
+    ),
+    "squares": (lambda: CartesianContact(5, 0.3), "bore", 0.3),
+}
+BODIES = {
+    "a soft spring": (0.5, 0.0, 0.0, 0.0),
+    "a stiff spring": (20.0, 0.0, 0.0, 0.0),
+    "a spring and a mass": (0.5, 0.0, 0.3, 0.0),
+    "a spring and a dashpot": (0.5, 0.7, 0.0, -0.1),
+    "a spring, a mass and a dashpot": (0.5, 0.2, 0.3, -0.1),
+    "a force and a mass": (0.0, 0.0, 0.3, 0.5),
+    "a force": (0.0, 0.0, 0.0, 0.5),
+}
+VELOCITY, AMPLITUDE, START = 0.3, 0.8, np.array([-0.2, 0.1])
+
+
+def moved(scene, poisson, contact):
+    """Displacement of the path, and of the points."""
+
+    def displacement(phase):
+        return scene.displacement(phase, VELOCITY, AMPLITUDE, poisson)
+
+    def of_points(phase):
+        forward, lateral, angle = displacement(phase)
+        turn = np.stack([contact.lateral_position, -contact.forward_position])
+        return np.array([forward, lateral])[:, None, None] + angle * turn
+
+    return displacement, of_points
+
+
+def plain(contact):
+    """Matrix, weights and bound as the reference takes them."""
+    shape = forward_slip(contact).shape
+    units = np.eye(int(np.prod(shape))).reshape(-1, *shape)
+    matrix = np.stack([contact.displacement(unit).ravel() for unit in units], axis=1)
+    return matrix, np.broadcast_to(contact.weight, shape[1:]), contact.bound
+
+
+@pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
+@pytest.mark.parametrize("body", BODIES)
+@pytest.mark.parametrize("name", CONTACTS)
+def test_a_pulled_march_is_the_plain_one(name, body, integrator):
+    build, motion, poisson = CONTACTS[name]
+    contact, scene, phases = build(), motion_named(motion), half_period_phases(5)
+    displacement, of_points = moved(scene, poisson, contact)
+    start, numbers = 0.5 * forward_slip(contact), BODIES[body]
+    stages = len(integrator.times)
+    expected, places = pulled_march(
+        plain(contact), of_points, phases, start, numbers, START, stages
+    )
+    path = make_path(displacement, phases, integrator)
+    found = contact.pulled_march(path, start, 1e-12, Body(*numbers), START)
+    assert found.state == pytest.approx(expected[-1], abs=2e-8)
+    assert found.body[:, 0] == pytest.approx(places, abs=2e-8)
+    assert found.forces[:, 0] == pytest.approx(
+        (contact.weight * expected[:, 0]).sum(axis=(1, 2)), abs=2e-8
+    )
+
+
+def start_again(contact, path, body, march):
+    """The same march once more, with the first as its guess."""
+    start = 0.5 * forward_slip(contact)
+    return contact.pulled_march(path, start, 1e-12, body, START, previous=march)
+
+
+@pytest.mark.parametrize("name", CONTACTS)
+def test_a_march_with_a_guess_is_the_same(name):
+    build, motion, poisson = CONTACTS[name]
+    contact, scene = build(), motion_named(motion)
+    path = make_path(moved(scene, poisson, contact)[0], half_period_phases(8))
+    body = Body(*BODIES["a spring and a mass"])
+    first = start_again(contact, path, body, None)
+    again = start_again(contact, path, body, first)
+    assert again.state == pytest.approx(first.state, abs=1e-9)
+    assert again.body == pytest.approx(first.body, abs=1e-9)
+
+
+@pytest.mark.parametrize("large", ["stiffness", "mass"])
+@pytest.mark.parametrize("name", CONTACTS)
+def test_what_does_not_give_way_moves_as_it_is_told(name, large):
+    """x is at most the force over the stiffness, or over the mass times half the time squared."""
+    build, motion, poisson = CONTACTS[name]
+    contact, scene = build(), motion_named(motion)
+    path = make_path(moved(scene, poisson, contact)[0], half_period_phases(8))
+    start, heavy = 0.5 * forward_slip(contact), 1e7
+    numbers = {"stiffness": 0.0, "damping": 0.0, "mass": 0.0, "load": 0.0} | {large: heavy}
+    found = contact.pulled_march(path, start, 1e-11, Body(**numbers), np.zeros(2))
+    told = contact.march(path, start, 1e-11)
+    assert np.abs(found.body[:, 0]).max() <= (0.5 * np.pi**2 if large == "mass" else 1.0) / heavy
+    # the contact follows a displacement by no more than its stiffness
+    assert found.forces[:, 0] == pytest.approx(told.forces[:, 0], abs=1e-5)
+
+
+@pytest.mark.parametrize("name", CONTACTS)
+def test_the_force_on_a_contact_without_mass_is_the_one_that_pulls(name):
+    build, motion, poisson = CONTACTS[name]
+    contact, scene = build(), motion_named(motion)
+    path = make_path(moved(scene, poisson, contact)[0], half_period_phases(8))
+    start = 0.5 * forward_slip(contact)
+    found = contact.pulled_march(path, start, 1e-11, Body(0.0, 0.0, 0.0, 0.6), START)
+    assert found.forces[1:, 0] == pytest.approx(0.6, abs=1e-10)
+    soft = contact.pulled_march(path, start, 1e-11, Body(0.5, 0.0, 0.0, 0.6), START)
+    assert soft.forces[:, 0] == pytest.approx(0.6 - 0.5 * soft.body[:, 0], abs=1e-10)
+
+
+@pytest.mark.parametrize("name", CONTACTS)
+def test_the_work_of_the_drive_is_stored_or_dissipated(name):
+    """A backward Euler step balances work exactly: the tractions at its end do the work, and each
+    point dissipates its bound times its slip."""
+    build, motion, poisson = CONTACTS[name]
+    contact, scene = build(), motion_named(motion)
+    displacement, of_points = moved(scene, poisson, contact)
+    phases = half_period_phases(1)
+    path = make_path(displacement, phases, EULER)
+    start, force = 0.5 * forward_slip(contact), 0.7
+    found = contact.pulled_march(path, start, 1e-12, Body(0.0, 0.0, 0.0, force), START)
+    q, travel = found.state, of_points(phases[1]) - of_points(phases[0])
+    strained = contact.displacement(q - start)
+    slip = travel - strained
+    slip[0] += found.body[1, 0]
+    ahead = np.diff(displacement(phases)[0])[0]
+    turned = travel - np.array([ahead, 0.0])[:, None, None]
+    forward = force * (ahead + found.body[1, 0])
+    work = forward + np.sum(contact.weight * q * turned)
+    stored = np.sum(contact.weight * q * strained)
+    dissipated = np.sum(contact.weight * contact.bound * np.hypot(*slip))
+    assert dissipated > 0.01
+    assert work == pytest.approx(stored + dissipated, abs=1e-9)
+
+
+@pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
+def test_a_body_on_a_stuck_contact_swings_as_an_oscillator_does(integrator):
+    """Far from slip the contact is a spring of its own stiffness; the order of the integrator."""
+    rings = RadialContact.resolved(8)
+    contact = RadialContact(rings.influence, rings.bound, rings.weight)  # as stiff as its matrix
+    spring, mass, place = 0.5, 0.2, 1e-9
+    rate = np.sqrt((spring + contact.stiffness) / mass)
+    ends = []
+    swung, unit = np.array([np.sin(2.0 * rate), np.cos(2.0 * rate)]), place * np.array([1.0, rate])
+    for steps in (100, 200):
+        phases = np.linspace(0.0, 2.0, steps + 1)
+        path = make_path(lambda phase: np.zeros((3, *np.shape(phase))), phases, integrator)
+        start, at = np.zeros((2, 1, 8)), np.array([0.0, place * rate])
+        found = contact.pulled_march(path, start, 1e-22, Body(spring, 0.0, mass, 0.0), at)
+        ends.append(np.hypot(*(found.body[-1] / unit - swung)))
+    assert ends[1] < 0.2
+    assert np.log2(ends[0] / ends[1]) == pytest.approx(integrator.order, abs=0.35)

@@ -1,0 +1,41 @@
+"""Velocities under a force, against the friction that they are to balance at every instant."""
+
+import numpy as np
+import pytest
+
+from microslip.theory.creep import bore_creep, transverse_creep
+from microslip.theory.paper import bore_forward
+
+PHASES = (np.arange(2000) + 0.5) * np.pi / 2000
+
+
+@pytest.mark.parametrize("force", [0.01, 0.3, 0.6, 0.95])
+def test_a_rigid_contact_feels_the_force_at_every_instant_sideways(force):
+    """Moving in proportion to the vibration, with the mean that the closed form tells."""
+    amplitude = 3.0
+    vibration = amplitude * np.abs(np.cos(PHASES))
+    velocity = transverse_creep(force, amplitude) * vibration / vibration.mean()
+    assert velocity / np.hypot(velocity, vibration) == pytest.approx(force, rel=1e-6)
+
+
+@pytest.mark.parametrize("force", [0.01, 0.3, 0.6, 0.95])
+def test_a_rigid_contact_feels_the_force_at_every_instant_boring(force):
+    rotation = np.abs(np.cos(PHASES))  # over its largest
+    velocity = bore_creep(force, 1.0) * rotation / rotation.mean()
+    assert bore_forward(velocity / rotation) == pytest.approx(force, rel=1e-6)
+
+
+def test_amplitudes_and_forces_broadcast():
+    forces, amplitudes = np.array([0.2, 0.5]), np.array([[1.0], [2.0]])
+    sideways, boring = transverse_creep(forces, amplitudes), bore_creep(forces, amplitudes)
+    assert sideways.shape == boring.shape == (2, 2)
+    assert sideways[1] == pytest.approx(2.0 * sideways[0])
+    assert np.array_equal(boring[0], boring[1])  # in the unit of that motion
+
+
+@pytest.mark.parametrize("creep", [transverse_creep, bore_creep])
+def test_ends(creep):
+    assert creep(0.0, 1.0) == 0.0
+    assert np.isinf(creep(1.0, 1.0)) and np.isinf(creep(1.5, 1.0))
+    with pytest.raises(ValueError, match="force = -0.1"):
+        creep(-0.1, 1.0)
