@@ -11,6 +11,7 @@ TIMES = (
     *(("s", 1.0), ("ms", 1e-3), ("us", 1e-6)),
 )
 LENGTHS = (("m", 1.0), ("mm", 1e-3), ("um", 1e-6), ("nm", 1e-9))
+FREQUENCIES = (("MHz", 1e6), ("kHz", 1e3), ("Hz", 1.0))
 
 
 def line(title: str, text: str) -> str:
@@ -59,8 +60,8 @@ def groups_of_drive(found: Prediction) -> list[str]:
     if found.regime is not None:
         lines.append(line("regime", REGIMES[found.regime]))
     if found.natural_frequency is not None:
-        hertz = found.natural_frequency * found.frequency_Hz
-        lines.append(line("natural frequency", f"{hertz:.4g} Hz, of the mass on a stuck contact"))
+        text = _in_units(found.natural_frequency * found.frequency_Hz, FREQUENCIES)
+        lines.append(line("natural frequency", f"{text}, of the mass on a contact that sticks"))
     return lines
 
 
