@@ -35,7 +35,7 @@ with job_log(snakemake.log[0]) as log:
         configuration.of_sweep(name),
     )
     with xr.open_dataset(snakemake.output[0]) as data:
-        lines = list(sweep_dataset.report(data, grid.group and name))
+        lines = list(sweep_dataset.report(data, name if grid.group or grid.drives else None))
         for line in lines:
             log.info(line)
         dataset_page.write(snakemake.output.summary, data, lines)

@@ -15,7 +15,6 @@ from microslip.adaptive.checks import (
 )
 from microslip.adaptive.choice import choose_model, method_refusal
 from microslip.adaptive.moved import solve_moved
-from microslip.adaptive.pulled import refuse_pull, solve_pulled
 from microslip.adaptive.result import Result
 from microslip.foundation.errors import InputError
 from microslip.solver.budget import Budget
@@ -128,6 +127,8 @@ def solve(
     )
     if drive is None:
         return solve_moved(asked)
+    from microslip.adaptive.pulled import refuse_pull, solve_pulled  # only now: it takes a while
+
     refuse_pull(asked, drive)
     return solve_pulled(asked, drive)
 

@@ -21,6 +21,7 @@ SETS_CORES = re.compile(r"-[cje]|--(cores|jobs|executor|profile|workflow-profile
 TARGETS = {
     "all": "the datasets and figures of the configuration's sweeps (unless said otherwise)",
     "extended": "the same of other motions and pressures, its key extended",
+    "drives": "datasets of contacts that a force or a spring pulls, its key drives",
     "accuracy": "what accuracy costs, for all models and methods",
     "stability": "where methods fail",
     "claims": "what the paper says, judged",

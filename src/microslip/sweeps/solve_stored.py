@@ -75,7 +75,8 @@ def solve_stored(
     if drive is not None:
         refuse_drive(Problem(kind, place, amplitude, poisson), drive, chosen)
     if tolerance is None:
-        refuse_choice(kind, model, (place, amplitude, poisson), cells, steps)
+        moving = place if force is None else 1.0  # under a force it is the velocity that is asked
+        refuse_choice(kind, model, (moving, amplitude, poisson), cells, steps)
     grid = Sweep(
         name=kind.name,
         scene=kind.name,

@@ -1,0 +1,135 @@
+"""The key `drives`: sweeps of what a force or a spring pulls, from the file to the dataset."""
+
+import pytest
+import xarray as xr
+
+import microslip
+from microslip.config import load
+from microslip.datasets import sweep_dataset
+from microslip.datasets.query import accessor
+from microslip.sweeps import batches
+from microslip.sweeps.cache import Store
+from microslip.sweeps.evaluate import plain
+
+PAPER = {"transverse": {"velocity": [1], "amplitude": [1]}}
+WEIGHTS = {"scene": "transverse", "amplitude": [0.5, 1], "force": [0.2, 0.6, 1.0]}
+SPRINGS = {"scene": "transverse", "amplitude": [1], "velocity": [0.1, 0.5], "stiffness": [0.1, 10]}
+
+
+def configured(**drives):
+    return load.from_mapping({"sweeps": PAPER, "drives": drives})
+
+
+def test_axes_and_numbers_become_requests_in_the_order_of_the_dataset():
+    sweep = configured(springs=SPRINGS | {"mass": 2}).drives["springs"]
+    requests = batches.PointRequests(sweep)
+    asked = [(r["stiffness"], r["velocity"]) for r in requests]
+    assert asked == [("0.1", "0.1"), ("0.1", "0.5"), ("10", "0.1"), ("10", "0.5")]
+    assert {r["mass"] for r in requests} == {"2"}
+    assert not any("force" in r or "damping" in r for r in requests)
+
+
+def test_a_force_stands_in_the_place_of_the_velocity():
+    requests = batches.PointRequests(configured(weights=WEIGHTS).drives["weights"])
+    assert [(r["amplitude"], r["force"], r["velocity"]) for r in requests][2:4] == [
+        ("0.5", "1", None),
+        ("1", "0.2", None),
+    ]
+
+
+def test_what_is_moved_is_asked_for_as_before():
+    """Names of results are hashes of requests: no drive leaves no trace in one."""
+    (request,) = batches.PointRequests(load.from_mapping({"sweeps": PAPER}).sweeps["transverse"])
+    names = {"kind", "scene", "model", "tolerance", "cells", "steps"}
+    assert set(request) == names | {"poisson", "amplitude", "velocity"}
+    assert "drives" not in load.from_mapping({"sweeps": PAPER}).of_sweep("transverse")["sweep"]
+
+
+BAD = [
+    ({"scene": "transverse", "amplitude": [1], "velocity": [1]}, "required: force or stiffness"),
+    (WEIGHTS | {"velocity": [1]}, "force: 0.2: allowed is a force or a velocity, not both"),
+    (WEIGHTS | {"stiffness": 1}, "stiffness: 1.0: allowed is none beside a force"),
+    (SPRINGS | {"stiffness": [0, 1]}, "stiffness: 0.0: allowed is a number above 0"),
+    (SPRINGS | {"stiffness": [1, 1]}, "stiffness: 1 occurs twice"),
+    (SPRINGS | {"mass": -1}, "mass: -1 is not allowed"),
+    (SPRINGS | {"mass": "heavy"}, "mass: "),
+    (SPRINGS | {"model": "rigid"}, "model: 'rigid': does not know a stiffness"),
+    (SPRINGS | {"group": "g"}, "group"),
+    ({"scene": "transverse", "amplitude": [1], "stiffness": 1}, "velocity: None: allowed is"),
+    (SPRINGS | {"scene": "longitudinal", "velocity": [0, 1]}, "velocity: 0.0: allowed is a number"),
+    ({"scene": "transverse", "force": [0.1]}, "amplitude: missing"),
+]
+
+
+@pytest.mark.parametrize(("given", "said"), BAD, ids=[said for _, said in BAD])
+def test_what_does_not_go_together_is_refused_in_a_line(given, said):
+    with pytest.raises(load.ConfigError) as refused:
+        configured(bad=given)
+    line = str(refused.value)
+    assert line.startswith("configuration: drives.bad") and "\n" not in line
+    assert said in line
+
+
+def test_a_name_is_taken_once():
+    extended = {"line": {"scene": "longitudinal", "group": "g", "velocity": [1], "amplitude": [1]}}
+    given = {"sweeps": PAPER, "extended": extended, "drives": {"line": SPRINGS}}
+    with pytest.raises(load.ConfigError, match="drives.line: another result has this name"):
+        load.from_mapping(given)
+
+
+def written(tmp_path, name, given):
+    configuration = configured(**{name: given | {"tolerance": 1e-2}})
+    sweep, store = configuration.drives[name], Store(tmp_path / "results")
+    records = [batches.answer(r, store)[0] for r in batches.PointRequests(sweep)]
+    path = tmp_path / f"{name}.nc"
+    sweep_dataset.write_sweep(path, sweep, records, [], configuration.of_sweep(name))
+    return path
+
+
+@pytest.mark.slow
+def test_a_dataset_under_forces_holds_velocities(tmp_path):
+    with xr.open_dataset(written(tmp_path, "weights", WEIGHTS)) as data:
+        assert data.velocity.dims == data.mu_macro.dims == ("amplitude", "force")
+        assert data.drive == "force"
+        point = data.sel(amplitude=0.5, force=0.6)
+        asked = microslip.solve("transverse", amplitude=0.5, force=0.6, tolerance=1e-2)
+        assert float(point.velocity) == asked.velocity > 0.0
+        assert float(point.velocity_error) == asked.velocity_error
+        assert float(point.mu_macro) == 0.6
+        # the static limits stand beside it, and nothing that is said of a velocity
+        assert float(point.mu_static) > 0.5 and "mu_slider" not in data
+        assert float(data.velocity.sel(amplitude=0.5, force=0.2)) == 0.0
+        away = data.sel(force=1.0)
+        assert not away.converged.any() and away.velocity.isnull().all()
+        assert all(text.startswith("runs away") for text in away.reason.values)
+        with pytest.raises(ValueError, match=r"is pulled \(force\)"):
+            accessor.Friction(data)
+
+
+@pytest.mark.slow
+def test_a_dataset_over_springs_has_their_axis(tmp_path):
+    with xr.open_dataset(written(tmp_path, "springs", SPRINGS | {"mass": 2})) as data:
+        assert data.mu_macro.dims == ("stiffness", "amplitude", "velocity")
+        assert float(data.mass) == 2.0 and data.drive == "mass, stiffness"
+        found = data.mu_macro.interp(stiffness=10.0, velocity=0.5, amplitude=1.0)
+        asked = microslip.solve("transverse", 0.5, 1.0, stiffness=10, mass=2, tolerance=1e-2)
+        assert float(found) == pytest.approx(asked.mu_macro, abs=1e-12)
+        assert data.stiffness.attrs["formula"] == "k u_lim / (mu F_z)"
+
+
+@pytest.mark.slow
+def test_a_point_that_is_pulled_is_stored_and_found_again(tmp_path):
+    place = {"amplitude": 1.0, "tolerance": 1e-2}
+    pull = {"velocity": 0.1, "stiffness": 0.5, "damping": 0.1}
+    for given in ({"force": 0.4}, {"force": 1.5}, pull):
+        first, again = (
+            microslip.solve_stored("transverse", results=tmp_path, **place, **given).to_dict()
+            for _ in range(2)
+        )
+        asked = microslip.solve("transverse", **place, **given).to_dict()
+        for one in (first, again, asked):
+            one.pop("solve_time_s")
+        assert first.keys() >= {*given}
+        assert plain(first) == plain(again)
+        stored, fresh = plain(first), {k: v for k, v in plain(asked).items() if v is not None}
+        assert {name: stored[name] for name in fresh} == fresh
