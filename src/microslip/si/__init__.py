@@ -9,7 +9,6 @@
     print(found.mu_apparent, found.force_reduction, found.warnings)
 
 `quantities` reads texts with units, `materials` is a small table, `bodies` holds Hertz's theory for
-two bodies, `dimensionless` makes the paper's groups, `drives` reads what pulls and `regimes` says what
-that is as good as, `predict` asks the solver and `validity` says where an assumption of the theory
-breaks.
+two bodies, `dimensionless` makes the paper's groups, `drives` reads what pulls, `regimes` tells
+what that is as good as, `predict` asks the solver, and `validity` tells where the theory breaks.
 """
