@@ -2,12 +2,16 @@
 
 import json
 import math
+from dataclasses import replace
 
 import pytest
 
 import microslip
 from microslip.app import cli
+from microslip.app.predicted_text import walk
+from microslip.foundation.arguments import LARGEST_BODY
 from microslip.motions.drive import Drive
+from microslip.si import pulled
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealDrive, RealMotion, drive_groups, groups, speed_unit
 from microslip.si.materials import RIGID, Material
@@ -162,6 +166,33 @@ def test_all_of_friction_and_more_runs_away(force):
     assert found.reason.startswith("runs away")
 
 
+@pytest.mark.slow
+def test_at_the_threshold_the_error_leaves_open_whether_it_moves():
+    """A force that is above the threshold by less than the creep can be told: it says so."""
+    held = microslip.predict("transverse", amplitude=stroke(0.5), speed=0.0, **SIDEWAYS)
+    force = 1.0001 * held.force_threshold_N
+    found = microslip.predict("transverse", amplitude=stroke(0.5), force=force, **SIDEWAYS)
+    assert found.outcome == "undecided"
+    assert 0.0 <= found.speed_m_s <= found.speed_error_m_s
+    assert found.time_to_1_mm_s is None
+    assert "does not tell whether it moves" in "\n".join(walk(found))
+
+
+def test_a_force_that_the_solver_gives_up_on_says_why(monkeypatch, capsys):
+    def given_up(*given, **settings):
+        found = microslip.solve(*given, **settings)
+        lost = {"velocity": math.nan, "velocity_error": math.inf, "converged": False}
+        return replace(found, **lost, reason="lost on the way")
+
+    monkeypatch.setattr(pulled, "solve", given_up)
+    words = ["--radius", "5 mm", "--load", "10 N", "--mu", "0.3", "--material", "steel"]
+    words += ["--frequency", "20 kHz", "--amplitude", "0.1 um", "--force", "1 N"]
+    said_first = said(capsys, *words, code=1)
+    assert "NOT CONVERGED: lost on the way" in said_first and "outcome" not in said_first
+    found = json.loads(said(capsys, *words, "--json", code=1))
+    assert (found["outcome"], found["speed_m_s"]) == (None, None)
+
+
 def test_a_contact_without_mass_goes_along_with_what_shakes_it_along_the_force():
     found = microslip.predict("longitudinal", amplitude=stroke(3.0), force=2.9, **SIDEWAYS)
     assert (found.outcome, found.speed_m_s) == ("stays", 0.0)
@@ -243,6 +274,15 @@ def test_at_the_edge_of_a_regime_friction_is_as_its_words_say(
     assert found.converged
     assert found.mu_macro == pytest.approx(limits[expected], abs=SAME)
     assert abs(limits["velocity"] - limits["force"]) > SAME
+
+
+def test_a_body_beyond_what_the_solver_takes_swings_as_it_did():
+    """Scaled as one, so that k / m, the square of its own frequency, stays."""
+    asked = pulled.within_range({"stiffness": 4e9, "mass": 1e9, "damping": 3.0})
+    assert max(asked.values()) == LARGEST_BODY
+    assert asked["stiffness"] / asked["mass"] == pytest.approx(4.0)
+    as_given = {"stiffness": 4.0, "mass": 0.5}
+    assert pulled.within_range(as_given) == as_given
 
 
 def test_between_stiff_and_soft_it_may_resonate():

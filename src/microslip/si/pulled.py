@@ -44,7 +44,7 @@ def answer_of(
 
     def found(tolerance):
         settings = {"poisson": contact.poisson, "tolerance": tolerance}
-        return solve(motion.scene, velocity, size, **settings, **_within_range(pulling))
+        return solve(motion.scene, velocity, size, **settings, **within_range(pulling))
 
     answer = found(tolerance)
     if "force" not in pulling or not answer.converged:
@@ -55,7 +55,7 @@ def answer_of(
     return found(max(MARGIN * accepted, SMALLEST_TOLERANCE))
 
 
-def _within_range(pulling):
+def within_range(pulling: dict[str, float]) -> dict[str, float]:
     """The groups that the solver takes: beyond them a force is one that nothing holds, and a body
     hardly moves, whose parts are scaled as one so that it swings as it did."""
     body = {name: value for name, value in pulling.items() if name != "force"}
