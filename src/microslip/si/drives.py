@@ -66,7 +66,7 @@ def _read(given):
     return RealDrive(**values), texts
 
 
-def checked_groups(drive: RealDrive, motion: RealMotion, contact, given: dict) -> dict:
+def checked_drive_groups(drive: RealDrive, motion: RealMotion, contact, given: dict) -> dict:
     """drive_groups of a drive; raises InputError, with the value as it was given, for one that is
     beyond floating-point numbers.
 

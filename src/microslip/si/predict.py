@@ -10,8 +10,7 @@ from microslip.adaptive.point import Result, solve
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.si.dimensionless import groups
-from microslip.si.drives import checked_groups as checked_groups_of_drive
-from microslip.si.drives import read_drive
+from microslip.si.drives import checked_drive_groups, read_drive
 from microslip.si.inputs import read_body, read_contact, read_counterbody, read_motion
 from microslip.si.prediction import Prediction
 from microslip.si.pulled import about_drive, answer_of, with_speed
@@ -148,7 +147,7 @@ def predict(
         motion = motion_for(contact, motion, **settings)
     velocity, size = _checked_groups(contact, motion, speed, amplitude)
     given = {"force": force, "drive_stiffness": drive_stiffness, "mass": mass, "damping": damping}
-    pulling = checked_groups_of_drive(drive, motion, contact, given)
+    pulling = checked_drive_groups(drive, motion, contact, given)
     answer = answer_of(contact, motion, pulling, accepted.si)
     limit = None
     if size is not None:
