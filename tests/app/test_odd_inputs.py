@@ -57,8 +57,8 @@ def nothing_runs(monkeypatch):
     def work(*_, **__):
         raise AssertionError("work has started")
 
-    monkeypatch.setattr("microslip.si.predict.solve", work)
-    monkeypatch.setattr("microslip.si.reduction.solve", work)
+    for module in ("predict", "reduction", "pulled"):
+        monkeypatch.setattr(f"microslip.si.{module}.solve", work)
 
 
 @pytest.mark.parametrize(("changed", "part"), PREDICTIONS, ids=short)

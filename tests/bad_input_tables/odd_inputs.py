@@ -162,6 +162,58 @@ PREDICTIONS = [
     ({"density": "7.85"}, "--density = '7.85': 7.85 is a number without a unit"),
     ({"tolerance": "1e-3 N"}, "--tolerance = '1e-3 N'"),
     ({"tolerance": "none"}, "--tolerance = 'none'"),
+    ({"speed": None}, "--speed: needed, or a force in its place"),
+    ({"force": "1 N"}, "--force = '1 N': allowed is a force or a speed, not both"),
+    ({"speed": None, "force": "-1 N"}, "--force = '-1 N': allowed is a finite value above 0 N"),
+    ({"speed": None, "force": "0 N"}, "--force = '0 N': allowed is a finite value above 0 N"),
+    ({"speed": None, "force": "1"}, "--force = '1': 1 is a number without a unit"),
+    ({"speed": None, "force": "1 kg"}, "--force = '1 kg': the unit is kilogram"),
+    ({"speed": None, "force": "0,5 N"}, "--force = '0,5 N': read 0 and stopped at ',5 N'"),
+    (
+        {"speed": None, "force": "1 N", "drive_stiffness": "1 N/um"},
+        "--drive-stiffness = '1 N/um': allowed is none beside a force",
+    ),
+    (
+        {"speed": None, "force": "1 N", "damping": "1 N*s/m"},
+        "--damping = '1 N*s/m': allowed is none beside a force",
+    ),
+    (
+        {"speed": None, "force": "1 N", "amplitude": None, "reduction": "50 %"},
+        "--reduction = '50 %': allowed where a speed alone pulls",
+    ),
+    (
+        {"drive_stiffness": "1 N/um", "amplitude": None, "reduction": "50 %"},
+        "--reduction = '50 %': allowed where a speed alone pulls",
+    ),
+    ({"mass": "20 g"}, "--mass = '20 g': allowed beside a force or a drive_stiffness"),
+    ({"damping": "1 N*s/m"}, "--damping = '1 N*s/m': allowed beside a drive_stiffness"),
+    (
+        {"drive_stiffness": "0 N/um"},
+        "--drive-stiffness = '0 N/um': allowed is a finite value above",
+    ),
+    ({"drive_stiffness": "-1 N/um"}, "--drive-stiffness = '-1 N/um': allowed is a finite value"),
+    ({"drive_stiffness": "10 N"}, "--drive-stiffness = '10 N': the unit is newton"),
+    ({"drive_stiffness": "1 N/um", "mass": "-20 g"}, "--mass = '-20 g': allowed is a finite value"),
+    ({"drive_stiffness": "1 N/um", "mass": "20 N"}, "--mass = '20 N': the unit is newton"),
+    (
+        {"drive_stiffness": "1 N/um", "damping": "5"},
+        "--damping = '5': 5 is a number without a unit",
+    ),
+    (
+        {"drive_stiffness": "1 N/um", "mass": "1e308 kg"},
+        "--mass = '1e308 kg': over that of the contact, it is beyond the range",
+    ),
+    (
+        {"scene": "longitudinal", "speed": "0 m/s", "drive_stiffness": "1 N/um"},
+        "--speed = '0 m/s': allowed is a speed above 0 where a spring pulls",
+    ),
+    (
+        {
+            **{"scene": "continuous-bore", "amplitude": None, "frequency": None},
+            **{"rotation": "1 Hz", "drive_stiffness": "1 N/um"},
+        },
+        "--drive-stiffness = '1 N/um': allowed is none for continuous-bore, which is steady",
+    ),
     ({"scene": "Transverse"}, "SCENE = 'Transverse': allowed is one of transverse"),
     ({"scene": "transverse "}, "SCENE = 'transverse '"),
     ({"scene": "elliptic:forward=0.5"}, "SCENE = 'elliptic:forward=0.5'"),

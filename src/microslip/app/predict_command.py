@@ -6,6 +6,7 @@ import json
 import sys
 
 from microslip.app.command_line import Said
+from microslip.app.predicted_text import groups_of_drive, length, line, threshold, walk
 from microslip.app.terminal import complain
 from microslip.foundation.errors import shown
 from microslip.si.motions import MOTIONS
@@ -20,6 +21,7 @@ OPTIONS = {
     "load": ("F", "normal load, such as '10 N'"),
     "mu": ("MU", "coefficient of friction without vibration"),
     "speed": ("V", "forward speed, such as '1 mm/s'"),
+    "force": ("P", "instead of a speed: a constant force that pulls, such as '1 N'"),
     "amplitude": ("A", "half stroke, such as '1 um', or an angle for bore, such as '0.5 deg'"),
     "frequency": (
         "F",
@@ -31,18 +33,25 @@ OPTIONS = {
         "speed of the spin of continuous-bore, such as '60 rpm', '1 Hz' or '6 rad/s'",
     ),
     "reduction": ("SHARE", "instead of an amplitude: find the one that takes '50 %%' away"),
+    "drive-stiffness": ("K", "of a spring that pulls with the speed, such as '10 N/um'"),
+    "mass": ("M", "of the body that a spring or a force pulls, such as '20 g'"),
+    "damping": ("C", "of a dashpot on a body on a spring, such as '5 N*s/m'"),
     "hardness": ("H", "of the body, to warn of yielding, such as '7 GPa'"),
     "density": ("RHO", "of the body, to warn of inertia, such as '7850 kg/m^3'"),
     "counter-hardness": ("H2", "of the counterbody"),
     "counter-density": ("RHO2", "of the counterbody"),
-    "tolerance": ("T", "largest accepted error of the ratio mu_macro, absolute (1e-3)"),
+    "tolerance": (
+        "T",
+        "largest accepted error of the ratio mu_macro, absolute (1e-3); under a force of the "
+        "speed, relative (1e-2)",
+    ),
 }
-NEEDED = ("radius", "load", "mu", "speed")
+NEEDED = ("radius", "load", "mu")
 OTHER_NAMES = {"nu": ("--poisson",)}
 UNDERSTOOD = ("scene", "body", "counterbody", "radius", "counter_radius", "load", "mu", "speed")
+UNDERSTOOD += ("force", "drive_stiffness", "mass", "damping")
 UNDERSTOOD += ("amplitude", "frequency", "rotation", "reduction")
 """What a Prediction has understood, in the order of the answer."""
-WIDTH = 18
 
 
 def add_parser(commands) -> None:
@@ -100,25 +109,26 @@ def _complaint(error, typed):
 
 def _as_text(found):
     lines = [
-        _line(name.replace("_", " "), found.understood[name])
+        line(name.replace("_", " "), found.understood[name])
         for name in UNDERSTOOD
         if name in found.understood
     ]
     lines += [
         "",
-        _line("contact radius", _length(found.contact_radius_m)),
-        _line("indentation", _length(found.indentation_m)),
-        _line("u_lim", _length(found.u_lim_m)),
-        _line("largest pressure", f"{found.largest_pressure_Pa / 1e6:.4g} MPa"),
+        line("contact radius", length(found.contact_radius_m)),
+        line("indentation", length(found.indentation_m)),
+        line("u_lim", length(found.u_lim_m)),
+        line("largest pressure", f"{found.largest_pressure_Pa / 1e6:.4g} MPa"),
     ]
     if found.amplitude is not None:
         size = found.amplitude_si
-        real = f"{size:.4g} rad" if found.scene == "bore" else _length(size)
-        lines.append(_line("amplitude", f"{real}, dimensionless {found.amplitude:.4g}"))
-    if found.velocity is not None:
-        lines.append(_line("velocity", f"dimensionless {found.velocity:.4g}"))
-    lines += _friction(found)
-    if not found.converged:
+        real = f"{size:.4g} rad" if found.scene == "bore" else length(size)
+        lines.append(line("amplitude", f"{real}, dimensionless {found.amplitude:.4g}"))
+    if found.velocity is not None and found.force_N is None:
+        lines.append(line("velocity", f"dimensionless {found.velocity:.4g}"))
+    lines += groups_of_drive(found)
+    lines += _friction(found) if found.force_N is None else walk(found)
+    if not found.converged and found.outcome != "runs away":
         lines.append(f"NOT CONVERGED: {found.reason}")
     lines += [f"warning: {text}" for text in found.warnings]
     lines += [f"not checked: {text}" for text in found.not_checked]
@@ -132,29 +142,18 @@ def _friction(found):
     coefficient = f"{found.mu_apparent:.4f} +- {found.mu_apparent_error:.1g}"
     less = 100.0 * found.force_reduction
     lines = [
-        _line("mu_macro", f"{ratio}: ratio of friction with {added} to friction without"),
-        _line(
+        line("mu_macro", f"{ratio}: ratio of friction with {added} to friction without"),
+        line(
             "mu_apparent",
             f"{coefficient}: coefficient of friction with {added}, "
             f"instead of {found.understood['mu']}",
         ),
-        _line(
+        line(
             "friction force",
             f"{found.friction_force_N:.4g} N instead of {still:.4g} N: {less:.1f} % less",
         ),
     ]
     if found.mu_static is not None:
         text = f"{found.mu_static_apparent:.4f}: coefficient of friction at vanishing speed"
-        lines.append(_line("static friction", text))
-    return lines
-
-
-def _line(title, text):
-    return f"{title:<{WIDTH}}{text}"
-
-
-def _length(metres):
-    for unit, size in (("m", 1.0), ("mm", 1e-3), ("um", 1e-6)):
-        if metres >= size:
-            return f"{metres / size:.4g} {unit}"
-    return f"{metres / 1e-9:.4g} nm"
+        lines.append(line("static friction", text))
+    return lines + threshold(found)

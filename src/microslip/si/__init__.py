@@ -8,7 +8,7 @@
     )
     print(found.mu_apparent, found.force_reduction, found.warnings)
 
-`quantities` reads texts with units, `materials` is a small table, `contact` holds Hertz's theory
-for two bodies, `groups` makes the paper's dimensionless groups, `predict` asks the solver and
-`broken_assumptions` says where an assumption of the theory breaks.
+`quantities` reads texts with units, `materials` is a small table, `bodies` holds Hertz's theory for
+two bodies, `dimensionless` makes the paper's groups, `drives` reads what pulls, `regimes` tells
+what that is as good as, `predict` asks the solver, and `validity` tells where the theory breaks.
 """

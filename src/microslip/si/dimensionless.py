@@ -11,30 +11,41 @@ from microslip.theory import hertz
 @dataclass(frozen=True)
 class RealMotion:
     """A motion in SI units: forward speed, m/s; amplitude (half stroke), m or rad; frequency, Hz;
-    rotation, rad/s, of a steady bore.  What a scene does not have is None."""
+    rotation, rad/s, of a steady bore.  What a scene does not have is None, and so is a speed that a
+    force tells."""
 
     scene: str
-    speed: float
+    speed: float | None
     amplitude: float | None = None
     frequency: float | None = None
     rotation: float | None = None
 
 
-def groups(motion: RealMotion, contact) -> tuple[float, float | None]:
+def groups(motion: RealMotion, contact) -> tuple[float | None, float | None]:
     """(velocity, amplitude) as microslip.solve takes them (Eqs 2, 4, 13, 27, 28).
 
-    motion: RealMotion; contact: bodies.TwoBodies.  amplitude: None for a steady bore.
+    motion: RealMotion; contact: bodies.TwoBodies.  amplitude: None for a steady bore.  velocity:
+    None where the speed is.
     """
-    a, u_lim = contact.contact_radius, contact.u_lim
+    velocity = None if motion.speed is None else _over(motion.speed, speed_unit(motion, contact))
     if motion.scene == "continuous-bore":
-        return _over(motion.speed, motion.rotation * a), None
-    omega = 2.0 * math.pi * motion.frequency
+        return velocity, None
     if motion.scene == "bore":
         if motion.amplitude == 0.0:
-            return 0.0, 0.0
-        amplitude = float(hertz.bore_amplitude(motion.amplitude * a / u_lim, contact.poisson))
-        return _over(motion.speed, omega * motion.amplitude * a), amplitude
-    return _over(motion.speed, omega * u_lim), motion.amplitude / u_lim
+            return (None if velocity is None else 0.0), 0.0
+        angle = motion.amplitude * contact.contact_radius / contact.u_lim
+        return velocity, float(hertz.bore_amplitude(angle, contact.poisson))
+    return velocity, motion.amplitude / contact.u_lim
+
+
+def speed_unit(motion: RealMotion, contact) -> float:
+    """Forward speed whose group is 1, m/s; it may be rounded to nothing."""
+    if motion.scene == "continuous-bore":
+        return motion.rotation * contact.contact_radius
+    omega = 2.0 * math.pi * motion.frequency
+    if motion.scene == "bore":
+        return omega * motion.amplitude * contact.contact_radius
+    return omega * contact.u_lim
 
 
 def _over(speed, unit):
@@ -44,10 +55,52 @@ def _over(speed, unit):
     return speed / unit if unit > 0.0 else math.inf
 
 
+@dataclass(frozen=True)
+class RealDrive:
+    """What pulls a contact, in SI units.
+
+    Attributes
+    ----------
+    force : float or None
+        Constant, N; None: it does not pull.
+    stiffness : float or None
+        Of a spring whose far end has the speed of the motion, N/m; None: there is no spring.
+    mass, damping : float or None
+        Of the body that is pulled, kg, and of a dashpot on it, N s/m.
+    """
+
+    force: float | None = None
+    stiffness: float | None = None
+    mass: float | None = None
+    damping: float | None = None
+
+
+def drive_groups(drive: RealDrive, motion: RealMotion, contact) -> dict[str, float]:
+    """force, stiffness, mass and damping as microslip.solve takes them, those that are not None.
+
+    They are over mu F_z, mu F_z / u_lim, mu F_z / (u_lim omega^2) and mu F_z / (u_lim omega).
+    """
+    still = contact.mu * contact.load
+    stiffness = still / contact.u_lim
+    omega = motion.rotation
+    if motion.frequency is not None:
+        omega = 2.0 * math.pi * motion.frequency
+    found = {
+        "force": (drive.force, 1.0 / still),
+        "stiffness": (drive.stiffness, 1.0 / stiffness),
+        "mass": (drive.mass, omega * omega / stiffness),
+        "damping": (drive.damping, omega / stiffness),
+    }
+    return {name: value * unit for name, (value, unit) in found.items() if value is not None}
+
+
 def largest_slip_speed(motion: RealMotion, contact) -> float:
-    """Upper bound of the speed between the surfaces, m/s: rigid, at the edge."""
-    edge = contact.contact_radius
+    """Upper bound of the speed between the surfaces, m/s: rigid, at the edge.
+
+    NaN where the contact runs away.
+    """
+    edge, speed = contact.contact_radius, motion.speed
     if motion.scene == "continuous-bore":
-        return math.hypot(motion.speed, motion.rotation * edge)
+        return math.hypot(speed, motion.rotation * edge)
     swing = 2.0 * math.pi * motion.frequency * motion.amplitude
-    return motion.speed + swing * (edge if motion.scene == "bore" else 1.0)
+    return speed + swing * (edge if motion.scene == "bore" else 1.0)

@@ -183,7 +183,8 @@ def read_motion(
 ) -> tuple[RealMotion, dict]:
     """The motion, and a dict of texts of what was understood; raises InputError.
 
-    The amplitude of the motion is None where a reduction is given in its place.
+    The amplitude of the motion is None where a reduction is given in its place, and so is the speed
+    where none is given.
     """
     if not isinstance(scene, str) or scene not in MOTIONS:
         raise InputError("scene", scene, f"allowed is one of {', '.join(MOTIONS)}")
@@ -200,7 +201,9 @@ def read_motion(
     for name in needed:
         if given[name] is None and not (name == "amplitude" and reduction is not None):
             raise InputError(name, None, f"{scene} needs it")
-    found = {"speed": read("speed", speed, "m/s", low_open=False)}
+    found = {}
+    if speed is not None:
+        found["speed"] = read("speed", speed, "m/s", low_open=False)
     if steady:
         found["rotation"] = read("rotation", rotation, "rad/s")
     else:
@@ -208,6 +211,6 @@ def read_motion(
             unit = UNIT_OF_AMPLITUDE[scene]
             found["amplitude"] = read("amplitude", amplitude, unit, low_open=False)
         found["frequency"] = read("frequency", frequency, "Hz")
-    motion = RealMotion(scene, **{name: one.si for name, one in found.items()})
+    motion = RealMotion(scene, **{"speed": None} | {name: one.si for name, one in found.items()})
     texts = {"scene": f"{scene}: the sphere {MOTIONS[scene]}"}
     return motion, texts | {name: one.text for name, one in found.items()}

@@ -3,111 +3,25 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, field
+from dataclasses import replace
 
 from microslip.adaptive.checks import SMALLEST_TOLERANCE
 from microslip.adaptive.point import Result, solve
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.si.dimensionless import groups
+from microslip.si.drives import checked_drive_groups, read_drive
 from microslip.si.inputs import read_body, read_contact, read_counterbody, read_motion
+from microslip.si.prediction import Prediction
+from microslip.si.pulled import about_drive, answer_of, with_speed
 from microslip.si.quantities import read
-from microslip.si.reduction import friction_of, motion_for
+from microslip.si.reduction import motion_for
 from microslip.si.validity import broken_assumptions, unchecked
 
 LARGEST_TOLERANCE = 0.1
-"""Of mu_macro; what is larger is no answer."""
-
-
-@dataclass(frozen=True)
-class Prediction:
-    """Friction of a vibrated contact in SI units.
-
-    Attributes
-    ----------
-    understood : dict of str
-        What was asked, each by the name of its argument and as it was given, with the value in the
-        SI behind it where that is another kind of measure ("1200 rpm = 20 Hz"); what was not given
-        and counts is said ("rigid, as none was given").  Not compared by ==.
-    scene : str
-        The motion.
-    counterbody : str
-        The body opposite, as in `understood`.  Not compared by ==.
-    contact_radius_m, indentation_m, largest_pressure_Pa : float
-        Hertz's contact.
-    u_lim_m : float
-        Displacement at which the whole contact slides, m.
-    poisson : float
-        Poisson's ratio of the one half-space that stands for both bodies, dimensionless.
-    speed_m_s : float
-        Forward speed, m/s.
-    amplitude_si : float or None
-        Half stroke of the oscillation, m, or rad for a bore; None for steady motions.
-    frequency_Hz : float or None
-        Cyclic frequency of the oscillation, Hz; None for steady motions.
-    rotation_rad_s : float or None
-        Angular speed of a continuous bore, rad/s; None for motions that oscillate.
-    velocity, amplitude : float or None
-        The dimensionless groups of the motion; amplitude: None for steady motions; velocity: None
-        for a bore of amplitude 0, which it is measured by.
-    mu_macro, mu_macro_error : float
-        A ratio, dimensionless: mean forward force with vibration over that without, mu F_z.
-    mu_apparent, mu_apparent_error : float
-        A coefficient of friction, dimensionless: the one that is felt, mu mu_macro.
-    friction_force_N, friction_force_still_N : float
-        Mean forward force with and without vibration, N.
-    force_reduction : float
-        1 - mu_macro, dimensionless.
-    mu_static, mu_static_error : float or None
-        A ratio: mu_macro in the limit of vanishing speed; None for steady motions.
-    mu_static_apparent : float or None
-        The coefficient of friction there, mu mu_static; None for steady motions.
-    model : str
-        Contact model that gave mu_macro, or "closed-form".
-    converged, reason : bool, str
-        Whether the error is within the tolerance, and why not; NaN has its reason there, too.
-    warnings : tuple of str
-        Where an assumption of the theory breaks.
-    not_checked : tuple of str
-        What was not looked at, and why.
-    """
-
-    scene: str
-    contact_radius_m: float
-    indentation_m: float
-    u_lim_m: float
-    largest_pressure_Pa: float
-    poisson: float
-    speed_m_s: float
-    amplitude_si: float | None
-    frequency_Hz: float | None
-    rotation_rad_s: float | None
-    velocity: float | None
-    amplitude: float | None
-    mu_macro: float
-    mu_macro_error: float
-    mu_apparent: float
-    mu_apparent_error: float
-    friction_force_N: float
-    friction_force_still_N: float
-    force_reduction: float
-    mu_static: float | None
-    mu_static_error: float | None
-    mu_static_apparent: float | None
-    model: str
-    converged: bool
-    reason: str
-    warnings: tuple
-    not_checked: tuple
-    counterbody: str = field(compare=False)
-    understood: dict = field(compare=False)
-
-    def to_dict(self) -> dict:
-        """Fields as a plain dict."""
-        return asdict(self) | {
-            "warnings": list(self.warnings),
-            "not_checked": list(self.not_checked),
-        }
+"""Of mu_macro, and relative of a speed; what is larger is no answer."""
+TOLERANCE, TOLERANCE_OF_SPEED = 1e-3, 1e-2
+"""Unless told otherwise: of mu_macro, and under a force of the speed."""
 
 
 def predict(
@@ -116,7 +30,8 @@ def predict(
     radius: object,
     load: object,
     mu: object,
-    speed: object,
+    speed: object = None,
+    force: object = None,
     young: object = None,
     nu: object = None,
     material: object = None,
@@ -126,11 +41,14 @@ def predict(
     frequency: object = None,
     rotation: object = None,
     reduction: object = None,
+    drive_stiffness: object = None,
+    mass: object = None,
+    damping: object = None,
     hardness: object = None,
     density: object = None,
     counter_hardness: object = None,
     counter_density: object = None,
-    tolerance: object = 1e-3,
+    tolerance: object = None,
 ) -> Prediction:
     """Friction of a sphere on a flat (or on a second sphere) under vibration.
 
@@ -146,7 +64,9 @@ def predict(
     radius, load, mu : quantity
         Radius of the sphere, m; normal force, N; coefficient of friction without vibration.
     speed : quantity
-        Forward speed of sliding, m/s.
+        Forward speed of sliding, m/s; of the far end of a spring, if there is one.
+    force : quantity
+        Instead of the speed, the constant force that pulls, N: the speed is asked for.
     young, nu : quantity
         Young's modulus, Pa, and Poisson's ratio of the body.
     material : str or Material
@@ -164,11 +84,16 @@ def predict(
         Angular speed of a continuous bore, in the same units.  A number is in rad/s.
     reduction : quantity, optional
         Instead of the amplitude, the share of friction to be taken away, 0 to 1 or in per cent: the
-        least amplitude that does it is looked for.
+        least amplitude that does it is looked for.  A speed alone pulls then.
+    drive_stiffness, mass, damping : quantity, optional
+        Of a spring between what has the speed and the body, N/m, of the body, kg, and of a dashpot
+        on it, N s/m.  A mass may be under a force, too.
     hardness, density, counter_hardness, counter_density : quantity, optional
         Of the body and the counterbody, Pa and kg/m^3, for the warnings alone.
     tolerance : quantity
-        Largest accepted error of the ratio mu_macro, absolute.
+        Largest accepted error of the ratio mu_macro, absolute, 1e-3 if not given; under a force
+        relative of the speed, 1e-2 if not given, and of a thousandth of its unit (omega u_lim, or
+        that of the scene) where it is slower.
 
     Returns
     -------
@@ -190,6 +115,16 @@ def predict(
         rotation=rotation,
         reduction=reduction,
     )
+    drive, pulls = read_drive(
+        motion,
+        speed=speed,
+        force=force,
+        drive_stiffness=drive_stiffness,
+        mass=mass,
+        damping=damping,
+    )
+    if tolerance is None:
+        tolerance = TOLERANCE if force is None else TOLERANCE_OF_SPEED
     accepted = read(
         "tolerance", tolerance, "", low=SMALLEST_TOLERANCE, low_open=False, high=LARGEST_TOLERANCE
     )
@@ -201,25 +136,34 @@ def predict(
         load=load,
         mu=mu,
     )
-    about = understood | asked
+    about = understood | asked | pulls
     if reduction is not None:
+        if pulls:
+            allowed = "allowed where a speed alone pulls: without a force and a drive_stiffness"
+            raise InputError("reduction", reduction, allowed)
         share = read("reduction", reduction, "", high=1.0)
         about["reduction"] = share.text
         settings = {"share": share.si, "tolerance": accepted.si, "given": reduction}
         motion = motion_for(contact, motion, **settings)
     velocity, size = _checked_groups(contact, motion, speed, amplitude)
-    answer = friction_of(contact, motion, accepted.si)
+    given = {"force": force, "drive_stiffness": drive_stiffness, "mass": mass, "damping": damping}
+    pulling = checked_drive_groups(drive, motion, contact, given)
+    answer = answer_of(contact, motion, pulling, accepted.si)
     limit = None
     if size is not None:
-        limit = solve(scene, 0.0, size, poisson=contact.poisson, tolerance=accepted.si)
-    return _prediction(contact, motion, velocity, answer, limit, about)
+        exactly = min(accepted.si, TOLERANCE) if force is not None else accepted.si
+        limit = solve(scene, 0.0, size, poisson=contact.poisson, tolerance=exactly)
+    pulled = about_drive(contact, motion, drive, pulling, answer, limit)
+    if velocity is None:
+        velocity, motion = answer.velocity, with_speed(motion, contact, answer)
+    return replace(_prediction(contact, motion, velocity, answer, limit, about), **pulled)
 
 
 def _checked_groups(contact, motion, speed, amplitude):
     """velocity and amplitude as groups gives them; raises InputError for what the solver cannot
     take, in terms of the speed and the amplitude as they were given."""
     velocity, size = groups(motion, contact)
-    if not math.isfinite(velocity):
+    if velocity is not None and not math.isfinite(velocity):
         problem = "over that of the vibration, it is beyond the range of floating-point numbers"
         raise InputError("speed", speed, f"{problem}; allowed is what a laboratory can have")
     if size is not None and not size <= LARGEST["amplitude"]:

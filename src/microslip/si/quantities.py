@@ -29,6 +29,9 @@ EXAMPLES = {
     "rad": "0.5 deg",
     "rad/s": "60 rpm",
     "kg/m^3": "7850 kg/m^3",
+    "N/m": "10 N/um",
+    "kg": "20 g",
+    "N*s/m": "5 N*s/m",
     "": "0.3",
 }
 """What a value in each unit may look like."""

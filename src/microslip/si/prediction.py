@@ -1,0 +1,137 @@
+"""The answer for a real contact."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """Friction of a vibrated contact in SI units.
+
+    Attributes
+    ----------
+    understood : dict of str
+        What was asked, each by the name of its argument and as it was given, with the value in the
+        SI behind it where that is another kind of measure ("1200 rpm = 20 Hz"); what was not given
+        and counts is said ("rigid, as none was given").  Not compared by ==.
+    scene : str
+        The motion.
+    counterbody : str
+        The body opposite, as in `understood`.  Not compared by ==.
+    contact_radius_m, indentation_m, largest_pressure_Pa : float
+        Hertz's contact.
+    u_lim_m : float
+        Displacement at which the whole contact slides, m.
+    poisson : float
+        Poisson's ratio of the one half-space that stands for both bodies, dimensionless.
+    speed_m_s : float
+        Forward speed, m/s; under a force the mean one that comes out, NaN where it runs away.
+    amplitude_si : float or None
+        Half stroke of the oscillation, m, or rad for a bore; None for steady motions.
+    frequency_Hz : float or None
+        Cyclic frequency of the oscillation, Hz; None for steady motions.
+    rotation_rad_s : float or None
+        Angular speed of a continuous bore, rad/s; None for motions that oscillate.
+    velocity, amplitude : float or None
+        The dimensionless groups of the motion; amplitude: None for steady motions; velocity: None
+        for a bore of amplitude 0, which it is measured by.
+    mu_macro, mu_macro_error : float
+        A ratio, dimensionless: mean forward force with vibration over that without, mu F_z.
+    mu_apparent, mu_apparent_error : float
+        A coefficient of friction, dimensionless: the one that is felt, mu mu_macro.
+    friction_force_N, friction_force_still_N : float
+        Mean forward force with and without vibration, N.
+    force_reduction : float
+        1 - mu_macro, dimensionless.
+    mu_static, mu_static_error : float or None
+        A ratio: mu_macro in the limit of vanishing speed; None for steady motions.
+    mu_static_apparent : float or None
+        The coefficient of friction there, mu mu_static; None for steady motions.
+    model : str
+        Contact model that gave mu_macro, or "closed-form".
+    converged, reason : bool, str
+        Whether the error is within the tolerance, and why not; NaN has its reason there, too.
+    warnings : tuple of str
+        Where an assumption of the theory breaks.
+    not_checked : tuple of str
+        What was not looked at, and why.
+    force_N, drive_stiffness_N_m, mass_kg, damping_N_s_m : float or None
+        What pulls, where it is not the speed alone.
+    force, stiffness, mass, damping : float or None
+        The same as dimensionless groups, as microslip.solve takes them.
+    outcome : str or None
+        Under a force "moves", "stays", "runs away", or "undecided" where the error does not tell
+        whether it moves; None where a speed was given, or the solver has no answer.
+    speed_error_m_s, velocity_error : float or None
+        Largest error that speed and velocity may have under a force, by estimate.
+    displacement_per_cycle_m : float or None
+        Mean forward displacement in a period of the oscillation, m; None for steady motions.
+    time_to_1_mm_s, time_to_contact_radius_s : float or None
+        How long a contact that a force moves takes to walk so far, s.
+    force_threshold_N, force_threshold_error_N : float or None
+        Constant force from which on the contact moves, N; None where it is not known.
+    safety_factor : float or None
+        That threshold over the force; None without a force.
+    regime : str or None
+        A key of regimes.REGIMES, of what is pulled through a spring or has a mass; else None.
+    natural_frequency : float or None
+        Of that mass on its spring and the contact that sticks, over the frequency; None without
+        either.
+    """
+
+    scene: str
+    contact_radius_m: float
+    indentation_m: float
+    u_lim_m: float
+    largest_pressure_Pa: float
+    poisson: float
+    speed_m_s: float
+    amplitude_si: float | None
+    frequency_Hz: float | None
+    rotation_rad_s: float | None
+    velocity: float | None
+    amplitude: float | None
+    mu_macro: float
+    mu_macro_error: float
+    mu_apparent: float
+    mu_apparent_error: float
+    friction_force_N: float
+    friction_force_still_N: float
+    force_reduction: float
+    mu_static: float | None
+    mu_static_error: float | None
+    mu_static_apparent: float | None
+    model: str
+    converged: bool
+    reason: str
+    warnings: tuple
+    not_checked: tuple
+    counterbody: str = field(compare=False)
+    understood: dict = field(compare=False)
+    force_N: float | None = None
+    drive_stiffness_N_m: float | None = None
+    mass_kg: float | None = None
+    damping_N_s_m: float | None = None
+    force: float | None = None
+    stiffness: float | None = None
+    mass: float | None = None
+    damping: float | None = None
+    outcome: str | None = None
+    speed_error_m_s: float | None = None
+    velocity_error: float | None = None
+    displacement_per_cycle_m: float | None = None
+    time_to_1_mm_s: float | None = None
+    time_to_contact_radius_s: float | None = None
+    force_threshold_N: float | None = None
+    force_threshold_error_N: float | None = None
+    safety_factor: float | None = None
+    regime: str | None = None
+    natural_frequency: float | None = None
+
+    def to_dict(self) -> dict:
+        """Fields as a plain dict."""
+        return asdict(self) | {
+            "warnings": list(self.warnings),
+            "not_checked": list(self.not_checked),
+        }

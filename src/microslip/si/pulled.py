@@ -1,0 +1,152 @@
+"""The solver asked for a contact that something pulls, and its answer in SI units."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from microslip.adaptive.checks import LARGEST_FORCE, SMALLEST_TOLERANCE
+from microslip.adaptive.point import Result, solve
+from microslip.adaptive.under_force import oscillates_forward
+from microslip.foundation.arguments import LARGEST, LARGEST_BODY
+from microslip.motions.by_name import motion_named
+from microslip.motions.drive import Drive
+from microslip.si.bodies import TwoBodies
+from microslip.si.dimensionless import RealDrive, RealMotion, groups, speed_unit
+from microslip.si.reduction import friction_of
+from microslip.si.regimes import natural_frequency, regime
+from microslip.solver.problem import Problem
+
+SLOWEST = 1e-3
+"""Velocity, in the unit of the scene, below which the accepted error is no longer relative."""
+MARGIN = 0.8
+"""Of the accepted error that a second answer is asked for with: its velocity may be less."""
+MILLIMETRE = 1e-3
+
+
+def answer_of(
+    contact: TwoBodies, motion: RealMotion, pulling: dict[str, float], tolerance: float
+) -> Result:
+    """What microslip.solve says of a motion.
+
+    Parameters
+    ----------
+    pulling : dict of float
+        What dimensionless.drive_groups gives.
+    tolerance : float
+        Accepted error: of mu_macro, or under a force of the velocity, relative down to SLOWEST.
+    """
+    if not pulling:
+        return friction_of(contact, motion, tolerance)
+    velocity, size = groups(motion, contact)
+    if velocity is not None:
+        velocity = min(velocity, LARGEST["velocity"])
+
+    def found(tolerance):
+        settings = {"poisson": contact.poisson, "tolerance": tolerance}
+        return solve(motion.scene, velocity, size, **settings, **within_range(pulling))
+
+    answer = found(tolerance)
+    if "force" not in pulling or not answer.converged:
+        return answer
+    accepted = tolerance * max(answer.velocity, SLOWEST)
+    if answer.velocity_error <= accepted:
+        return answer
+    return found(max(MARGIN * accepted, SMALLEST_TOLERANCE))
+
+
+def within_range(pulling: dict[str, float]) -> dict[str, float]:
+    """The groups that the solver takes: beyond them a force is one that nothing holds, and a body
+    hardly moves, whose parts are scaled as one so that it swings as it did."""
+    body = {name: value for name, value in pulling.items() if name != "force"}
+    scale = max(1.0, max(body.values(), default=0.0) / LARGEST_BODY)
+    asked = {name: value / scale for name, value in body.items()}
+    if "force" in pulling:
+        asked["force"] = min(pulling["force"], LARGEST_FORCE)
+    return asked
+
+
+def about_drive(
+    contact: TwoBodies,
+    motion: RealMotion,
+    drive: RealDrive,
+    pulling: dict[str, float],
+    answer: Result,
+    limit: Result | None,
+) -> dict:
+    """Fields of a prediction.Prediction that say what pulls, and what comes of it.
+
+    limit: the answer for a vanishing speed, None for a steady motion.
+    """
+    still = contact.mu * contact.load
+    share, error = _threshold(motion, contact, pulling, limit)
+    fields = {
+        "force_N": drive.force,
+        "drive_stiffness_N_m": drive.stiffness,
+        "mass_kg": drive.mass,
+        "damping_N_s_m": drive.damping,
+        "force_threshold_N": None if share is None else still * share,
+        "force_threshold_error_N": None if share is None else still * error,
+        **pulling,
+    }
+    if motion.speed is not None and motion.frequency is not None:
+        fields["displacement_per_cycle_m"] = motion.speed / motion.frequency
+    if drive.force is not None:
+        if share is not None:
+            fields["safety_factor"] = still * share / drive.force
+        fields |= _walk(contact, motion, pulling["force"], answer)
+    body = {name: value for name, value in pulling.items() if name != "force"}
+    if body:
+        working = Drive(**body)
+        fields["regime"] = regime(motion.scene, answer.amplitude, working)
+        fields["natural_frequency"] = natural_frequency(working)
+    return fields
+
+
+def _threshold(motion, contact, pulling, limit):
+    """Force over mu F_z from which on a constant force moves the contact, and its error; None
+    where it is not known.
+
+    It is the friction at vanishing speed, where the oscillation exerts no forward force.  Where it
+    does, a contact without mass goes along, and all of friction holds it.
+    """
+    if limit is None:
+        return 0.0, 0.0  # a steady spin turns all of friction aside
+    _, size = groups(motion, contact)
+    problem = Problem(motion_named(motion.scene, "hertz"), 0.0, size, contact.poisson)
+    if not oscillates_forward(problem):
+        return limit.mu_macro, limit.mu_macro_error
+    return (None, None) if pulling.get("mass") else (1.0, 0.0)
+
+
+def _walk(contact, motion, force, answer):
+    """What a force makes of the contact."""
+    unit = speed_unit(motion, contact)
+    velocity, error = answer.velocity, answer.velocity_error
+    speed = velocity * unit
+    fields = {"velocity_error": error, "speed_error_m_s": error * unit if unit else 0.0}
+    fields["outcome"] = _outcome(force, velocity, error)
+    if motion.frequency is not None:
+        fields["displacement_per_cycle_m"] = speed / motion.frequency
+    if fields["outcome"] == "moves":
+        fields["time_to_1_mm_s"] = MILLIMETRE / speed
+        fields["time_to_contact_radius_s"] = contact.contact_radius / speed
+    return fields
+
+
+def _outcome(force, velocity, error):
+    if force >= 1.0:
+        return "runs away"
+    if not math.isfinite(velocity):
+        return None
+    if velocity == error == 0.0:
+        return "stays"
+    return "moves" if velocity > error else "undecided"
+
+
+def with_speed(motion: RealMotion, contact: TwoBodies, answer: Result) -> RealMotion:
+    """The motion with the speed that a force makes, unless it has one."""
+    if motion.speed is not None:
+        return motion
+    unit = speed_unit(motion, contact)
+    return replace(motion, speed=answer.velocity * unit if unit else answer.velocity)

@@ -1,0 +1,318 @@
+"""A contact in SI units that a force or a spring pulls: groups, scaling laws, limits, regimes."""
+
+import json
+import math
+from dataclasses import replace
+
+import pytest
+
+import microslip
+from microslip.app import cli
+from microslip.app.predicted_text import walk
+from microslip.foundation.arguments import LARGEST_BODY
+from microslip.motions.drive import Drive
+from microslip.si import pulled
+from microslip.si.bodies import TwoBodies
+from microslip.si.dimensionless import RealDrive, RealMotion, drive_groups, groups, speed_unit
+from microslip.si.materials import RIGID, Material
+from microslip.si.regimes import SAME, natural_frequency, regime
+from microslip.theory import paper
+
+BALL = {"radius": "5 mm", "load": "10 N", "mu": 0.3, "young": "210 GPa", "nu": 0.0}
+SIDEWAYS = BALL | {"frequency": "20 kHz"}
+CONTACT = TwoBodies(Material(210e9, 0.0), RIGID, 0.005, 10.0, 0.3)
+STILL = 3.0
+"""Newtons, mu F_z of the ball."""
+
+
+def stroke(share):
+    """An amplitude in metres, by its group."""
+    return share * CONTACT.u_lim
+
+
+# Groups
+
+
+def test_the_groups_of_a_drive_by_hand():
+    """With a stiffness 2 G* a of the contact at rest, which is 1.5 mu F_z / u_lim (PHYSICS, Hertz):
+    a spring of it is 1.5, a mass that is in resonance with it 1.5, a dashpot likewise."""
+    motion = RealMotion("transverse", 1e-3, 1e-6, 20e3)
+    stiffness, omega = 2.0 * CONTACT.G_star * CONTACT.contact_radius, 2.0 * math.pi * 20e3
+    drive = RealDrive(None, stiffness, stiffness / omega**2, stiffness / omega)
+    found = drive_groups(drive, motion, CONTACT)
+    assert found == pytest.approx({"stiffness": 1.5, "mass": 1.5, "damping": 1.5})
+    assert drive_groups(RealDrive(force=1.5), motion, CONTACT) == pytest.approx({"force": 0.5})
+    assert drive_groups(RealDrive(), motion, CONTACT) == {}
+
+
+@pytest.mark.parametrize(
+    "motion",
+    [
+        RealMotion("transverse", 1e-3, 1e-6, 20e3),
+        RealMotion("bore", 1e-3, 0.01, 50.0),
+        RealMotion("continuous-bore", 1e-3, rotation=3.0),
+    ],
+    ids=lambda motion: motion.scene,
+)
+def test_the_unit_of_a_speed_undoes_its_group(motion):
+    velocity, _ = groups(motion, CONTACT)
+    assert velocity * speed_unit(motion, CONTACT) == pytest.approx(1e-3)
+
+
+LENGTH, TIME, MASS = 7.0, 0.3, 11.0
+"""Factors between two problems that are one in other sizes."""
+DIMENSIONS = {
+    **{"radius": (1, 0, 0), "amplitude": (1, 0, 0), "speed": (1, -1, 0), "frequency": (0, -1, 0)},
+    **{"load": (1, -2, 1), "force": (1, -2, 1), "young": (-1, -2, 1), "mass": (0, 0, 1)},
+    **{"drive_stiffness": (0, -2, 1), "damping": (0, -1, 1), "mu": (0, 0, 0), "nu": (0, 0, 0)},
+}
+"""Exponents of length, time and mass in the unit of each argument."""
+SIZES = {"radius": 5e-3, "load": 10.0, "young": 210e9, "nu": 0.3, "frequency": 20e3, "mu": 0.3}
+SIZES |= {"amplitude": 3e-7}
+
+
+def scaled(sizes):
+    """The same problem in other sizes."""
+    found = {}
+    for name, value in sizes.items():
+        length, time, mass = DIMENSIONS[name]
+        found[name] = value * LENGTH**length * TIME**time * MASS**mass
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "pulls",
+    [
+        {"force": 1.9},
+        {"force": 1.9, "mass": 1e-4},
+        {"speed": 0.01, "drive_stiffness": 1e7, "mass": 1e-3, "damping": 20.0},
+    ],
+    ids=lambda pulls: "-".join(pulls),
+)
+def test_answers_know_no_units(pulls):
+    """In other units of length, time and mass every number of the answer goes with its own
+    dimension, and the groups stay."""
+    one = microslip.predict("transverse", **SIZES | pulls).to_dict()
+    other = microslip.predict("transverse", **scaled(SIZES | pulls)).to_dict()
+    dimensions = {
+        **{"speed_m_s": (1, -1, 0), "displacement_per_cycle_m": (1, 0, 0)},
+        **{"friction_force_N": (1, -2, 1), "force_threshold_N": (1, -2, 1)},
+        **dict.fromkeys(("velocity", "mu_macro", "stiffness", "mass", "damping"), (0, 0, 0)),
+        **dict.fromkeys(("force", "natural_frequency", "safety_factor"), (0, 0, 0)),
+    }
+    for name, (length, time, mass) in dimensions.items():
+        factor = LENGTH**length * TIME**time * MASS**mass
+        assert one[name] is None or other[name] == pytest.approx(one[name] * factor, rel=1e-6), name
+    assert (one["outcome"], one["regime"]) == (other["outcome"], other["regime"])
+
+
+# Under a force
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("amplitude", "force", "velocity", "digits"),
+    [
+        (0.5, 0.75, 0.0244, 3e-4),
+        (1.5, 0.30, 0.138, 1.5e-3),
+        (1.5, 0.60, 0.399, 4e-3),
+        (3.0, 0.30, 0.438, 4e-3),
+    ],
+)
+def test_creep_under_a_force_is_that_of_a_second_program(amplitude, force, velocity, digits):
+    """Numbers of a prototype on some twenty rings by backward Euler, which are coarse."""
+    found = microslip.predict(
+        "transverse", amplitude=stroke(amplitude), force=force * STILL, **SIDEWAYS
+    )
+    unit = 2.0 * math.pi * 20e3 * CONTACT.u_lim
+    assert found.outcome == "moves" and found.converged
+    assert found.speed_m_s == pytest.approx(velocity * unit, abs=digits * unit)
+    assert found.speed_error_m_s <= 1.01e-2 * found.speed_m_s
+    assert found.speed_m_s * found.time_to_1_mm_s == pytest.approx(1e-3)
+    assert found.speed_m_s * found.time_to_contact_radius_s == pytest.approx(found.contact_radius_m)
+    assert found.displacement_per_cycle_m * 20e3 == pytest.approx(found.speed_m_s)
+    assert found.mu_macro == pytest.approx(force)
+
+
+@pytest.mark.slow
+def test_at_a_large_stroke_the_contact_creeps_as_a_rigid_one():
+    """(2/pi) A P / sqrt(1 - P^2) in closed form; elastic contacts creep less, by about 1/A."""
+    found = microslip.predict("transverse", amplitude=stroke(100.0), force=0.6 * STILL, **SIDEWAYS)
+    rigid = 2.0 / math.pi * 100.0 * 0.6 / 0.8 * 2.0 * math.pi * 20e3 * CONTACT.u_lim
+    assert 0.97 * rigid < found.speed_m_s < rigid
+
+
+@pytest.mark.parametrize("share", [0.9, 0.5, 1e-3])
+def test_a_force_below_the_threshold_moves_nothing(share):
+    """The threshold is the friction at vanishing speed, which is asked for by a speed of 0."""
+    held = microslip.predict("transverse", amplitude=stroke(0.5), speed=0.0, **SIDEWAYS)
+    threshold = held.friction_force_N
+    found = microslip.predict(
+        "transverse", amplitude=stroke(0.5), force=share * threshold, **SIDEWAYS
+    )
+    assert (found.outcome, found.speed_m_s, found.speed_error_m_s) == ("stays", 0.0, 0.0)
+    assert found.force_threshold_N == pytest.approx(threshold)
+    assert held.force_threshold_N == pytest.approx(threshold)
+    assert found.safety_factor == pytest.approx(1.0 / share)
+    assert found.time_to_1_mm_s is None and found.converged
+
+
+@pytest.mark.parametrize("force", [3.0, 50.0, 1e12])
+def test_all_of_friction_and_more_runs_away(force):
+    found = microslip.predict("transverse", amplitude=stroke(0.5), force=force, **SIDEWAYS)
+    assert found.outcome == "runs away" and not found.converged
+    assert math.isnan(found.speed_m_s) and found.time_to_1_mm_s is None
+    assert found.reason.startswith("runs away")
+
+
+@pytest.mark.slow
+def test_at_the_threshold_the_error_leaves_open_whether_it_moves():
+    """A force that is above the threshold by less than the creep can be told: it says so."""
+    held = microslip.predict("transverse", amplitude=stroke(0.5), speed=0.0, **SIDEWAYS)
+    force = 1.0001 * held.force_threshold_N
+    found = microslip.predict("transverse", amplitude=stroke(0.5), force=force, **SIDEWAYS)
+    assert found.outcome == "undecided"
+    assert 0.0 <= found.speed_m_s <= found.speed_error_m_s
+    assert found.time_to_1_mm_s is None
+    assert "does not tell whether it moves" in "\n".join(walk(found))
+
+
+def test_a_force_that_the_solver_gives_up_on_says_why(monkeypatch, capsys):
+    def given_up(*given, **settings):
+        found = microslip.solve(*given, **settings)
+        lost = {"velocity": math.nan, "velocity_error": math.inf, "converged": False}
+        return replace(found, **lost, reason="lost on the way")
+
+    monkeypatch.setattr(pulled, "solve", given_up)
+    words = ["--radius", "5 mm", "--load", "10 N", "--mu", "0.3", "--material", "steel"]
+    words += ["--frequency", "20 kHz", "--amplitude", "0.1 um", "--force", "1 N"]
+    said_first = said(capsys, *words, code=1)
+    assert "NOT CONVERGED: lost on the way" in said_first and "outcome" not in said_first
+    found = json.loads(said(capsys, *words, "--json", code=1))
+    assert (found["outcome"], found["speed_m_s"]) == (None, None)
+
+
+def test_a_contact_without_mass_goes_along_with_what_shakes_it_along_the_force():
+    found = microslip.predict("longitudinal", amplitude=stroke(3.0), force=2.9, **SIDEWAYS)
+    assert (found.outcome, found.speed_m_s) == ("stays", 0.0)
+    assert found.force_threshold_N == pytest.approx(STILL)
+    heavy = SIDEWAYS | {"amplitude": stroke(3.0), "force": 1.0, "mass": "1 kg"}
+    found = microslip.predict("longitudinal", **heavy)
+    assert found.outcome == "moves"
+    assert (found.force_threshold_N, found.safety_factor) == (None, None)
+
+
+def test_a_steady_spin_gives_way_to_any_force():
+    """Where the velocity belongs to the force by Eq 21."""
+    found = microslip.predict("continuous-bore", rotation="10 Hz", force=0.5 * STILL, **BALL)
+    assert float(paper.bore_forward(found.velocity)) == pytest.approx(0.5, abs=1e-8)
+    edge = 2.0 * math.pi * 10.0 * found.contact_radius_m
+    assert found.speed_m_s == pytest.approx(found.velocity * edge)
+    assert (found.outcome, found.force_threshold_N) == ("moves", 0.0)
+    assert found.displacement_per_cycle_m is None
+
+
+# Through a spring
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "spring",
+    [
+        {"drive_stiffness": 1e20},
+        {"drive_stiffness": "10 N/um", "mass": 1e15},
+        {"drive_stiffness": 1e15, "mass": 1.0, "damping": 1e3},
+    ],
+    ids=["stiff", "heavy", "stiff-with-a-body"],
+)
+def test_a_stiff_or_heavy_drive_is_a_speed(spring):
+    asked = SIDEWAYS | {"amplitude": stroke(1.0), "speed": "10 mm/s"}
+    moved, pulled = (microslip.predict("transverse", **asked | drive) for drive in ({}, spring))
+    assert pulled.regime == "velocity" and moved.regime is None
+    error = pulled.mu_macro_error + moved.mu_macro_error
+    assert pulled.mu_macro == pytest.approx(moved.mu_macro, abs=error)
+
+
+@pytest.mark.slow
+def test_a_soft_and_light_drive_is_a_force():
+    """The speed that the mean force of a soft spring makes, as a constant one, is the spring's."""
+    asked = SIDEWAYS | {"amplitude": stroke(1.5)}
+    pulled = microslip.predict("transverse", speed=5e-3, drive_stiffness=1e4, mass=1e-9, **asked)
+    assert pulled.regime == "force"
+    forced = microslip.predict("transverse", force=pulled.friction_force_N, **asked)
+    assert forced.speed_m_s == pytest.approx(5e-3, rel=0.02)
+
+
+EDGES = [
+    ("velocity", "transverse", 0.1, 1.0, 15.1, 0.0),
+    ("velocity", "transverse", 0.5, 3.0, 15.1, 0.0),
+    ("velocity", "transverse", 0.3, 1.5, 0.03, 3.8),
+    ("velocity", "zigzag", 0.3, 1.5, 15.1, 0.0),
+    ("velocity", "longitudinal", 0.1, 1.0, 151.0, 0.0),
+    ("velocity", "longitudinal", 0.1, 1.0, 0.1, 151.0),
+    ("force", "transverse", 1.0, 0.5, 0.029, 0.0),
+    ("force", "transverse", 0.824, 0.58, 1e-3, 0.0074),
+    ("force", "transverse", 2.0, 10.0, 0.0029, 0.0),
+    ("force", "transverse", 1.28, 0.743, 1e-3, 0.0074),
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("expected", "scene", "velocity", "amplitude", "stiffness", "mass"), EDGES)
+def test_at_the_edge_of_a_regime_friction_is_as_its_words_say(
+    expected, scene, velocity, amplitude, stiffness, mass
+):
+    """Just within a limit of the rule, where it matters: between a velocity and a force friction
+    differs by more than SAME.  Along the direction of the pull a force leaves all of friction."""
+    drive = Drive(None, stiffness, mass)
+    assert regime(scene, amplitude, drive) == expected
+    found = microslip.solve(scene, velocity, amplitude, stiffness=stiffness, mass=mass)
+    limits = {"velocity": microslip.solve(scene, velocity, amplitude).mu_macro, "force": 1.0}
+    if scene != "longitudinal":
+        limits["force"] = microslip.solve(scene, velocity, amplitude, stiffness=1e-4).mu_macro
+    assert found.converged
+    assert found.mu_macro == pytest.approx(limits[expected], abs=SAME)
+    assert abs(limits["velocity"] - limits["force"]) > SAME
+
+
+def test_a_body_beyond_what_the_solver_takes_swings_as_it_did():
+    """Scaled as one, so that k / m, the square of its own frequency, stays."""
+    asked = pulled.within_range({"stiffness": 4e9, "mass": 1e9, "damping": 3.0})
+    assert max(asked.values()) == LARGEST_BODY
+    assert asked["stiffness"] / asked["mass"] == pytest.approx(4.0)
+    as_given = {"stiffness": 4.0, "mass": 0.5}
+    assert pulled.within_range(as_given) == as_given
+
+
+def test_between_stiff_and_soft_it_may_resonate():
+    assert regime("transverse", 1.0, Drive(None, 1.0, 1.0)) == "between"
+    # stiff as they are, a spring and a mass that are in step with twice the vibration give way
+    assert regime("transverse", 1.0, Drive(None, 400.0, 100.0)) == "between"
+    assert regime("transverse", 1.0, Drive(None, 400.0, 100.0, 50.0)) == "velocity"
+    assert natural_frequency(Drive(None, 2.5, 1.0)) == 2.0
+    assert natural_frequency(Drive(None, 2.5)) is None
+
+
+# In words
+
+
+def said(capsys, *words, code=0):
+    assert cli.main(["predict", "transverse", *words]) == code
+    return capsys.readouterr().out
+
+
+def test_the_command_line_says_what_comes_of_a_force(capsys):
+    words = ["--radius", "5 mm", "--load", "10 N", "--mu", "0.3", "--young", "210 GPa", "--nu", "0"]
+    words += ["--frequency", "20 kHz", "--amplitude", f"{stroke(0.5)!r} m"]
+    stays = said(capsys, *words, "--force", "1 N")
+    assert "it stays: the force is below the threshold" in stays and "walks" not in stays
+    moves = said(capsys, *words, "--force", "2.5 N")
+    assert "it moves, cycle by cycle" in moves and "1 mm in " in moves
+    away = said(capsys, *words, "--force", "4 N", code=1)
+    assert "it runs away: friction holds no more than 3 N" in away and "CONVERGED" not in away
+    words += ["--speed", "1 mm/s", "--drive-stiffness", "10 N/um", "--mass", "20 g"]
+    assert "stiff or heavy: the velocity is as good as constant" in said(capsys, *words)
+    found = json.loads(said(capsys, *words, "--json"))
+    assert (found["mass_kg"], found["drive_stiffness_N_m"]) == (0.02, 1e7)
+    assert found["regime"] == "velocity" and found["outcome"] is None
