@@ -14,11 +14,24 @@ LARGEST_FORCE = 1e6
 
 
 def checked_point(
-    scene: str, velocity: float, amplitude: float | None, poisson: float, pressure: str = "hertz"
+    scene: str,
+    velocity: float,
+    amplitude: float | None,
+    poisson: float,
+    pressure: str = "hertz",
+    *,
+    backward: bool = False,
 ) -> tuple[Motion, float, float | None, float]:
-    """Motion record and numbers of a point; raises InputError naming the argument at fault."""
+    """Motion record and numbers of a point; raises InputError naming the argument at fault.
+
+    backward: whether the velocity may be below 0 where the motion drives.
+    """
     motion = motion_named(scene, pressure)
-    velocity = real("velocity", velocity, 0.0, LARGEST["velocity"])
+    slowest = -LARGEST["velocity"] if backward and motion.drives else 0.0
+    velocity = real("velocity", velocity, slowest, LARGEST["velocity"])
+    if velocity < 0.0 and not motion.pressure.mirrored:
+        allowed = f"allowed is a number of at least 0 under {motion.pressure.name}"
+        raise InputError("velocity", velocity, f"{allowed}, which need not be symmetric")
     poisson = real("poisson", poisson, 0.0, 0.5)
     if motion.periodic:
         if amplitude is None:
