@@ -21,7 +21,7 @@ _WHERE = {
     "History": "microslip.adaptive.history",
     "traction_field": "microslip.adaptive.history",
     "drive": "microslip.adaptive.driving",
-    "DrivingLine": "microslip.adaptive.driving",
+    "DrivingLine": "microslip.adaptive.driving_line",
     "period": "microslip.adaptive.period",
     "Period": "microslip.adaptive.period",
 }

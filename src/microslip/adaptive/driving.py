@@ -28,7 +28,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -36,6 +36,7 @@ import numpy as np
 from microslip.adaptive.asked import TOLERANCE, Asked
 from microslip.adaptive.checks import checked_point, checked_request
 from microslip.adaptive.choice import choose_model
+from microslip.adaptive.driving_line import DrivingLine
 from microslip.adaptive.moved import marched
 from microslip.adaptive.no_load import NoLoad, no_load
 from microslip.adaptive.point import MOST_WORK, MOST_WORK_OF_OTHERS
@@ -49,71 +50,6 @@ from microslip.solver.problem import Problem
 
 POINTS, MOST_POINTS = 9, 1000
 _LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class DrivingLine:
-    """What a motion drives, from stall to no load; dimensionless but for the time.
-
-    Forces are over mu times the mean normal load, velocities in the unit of the motion's own
-    velocity, powers over mu times the mean normal load, u_lim and omega.  Every error is the
-    largest that the number before it may have, by estimate.
-
-    Attributes
-    ----------
-    scene, pressure, model : str
-        What moves, how the load is spread, and the contact model.
-    amplitude, poisson, tolerance : float
-        As asked for.
-    stall_force, stall_force_error : float
-        Load that stops the motion, 0 where it drives nothing; below 0 where it drives backward.
-    no_load_velocity, no_load_velocity_error : float
-        Velocity without a load, with the same sign.
-    velocity, force, force_error : np.ndarray, shape (points,)
-        From 0 to the no-load velocity in equal parts, and the force that is pulled with there.  No
-        points where nothing is driven.
-    power_out, power_out_error : np.ndarray, shape (points,)
-        force times velocity.
-    power_in, power_in_error : np.ndarray, shape (points,)
-        Mean work of the oscillation.
-    efficiency, efficiency_error : np.ndarray, shape (points,)
-        Power out over power in.
-    converged : bool
-        Whether the forces and powers are within the tolerance; of powers over the mean speed of the
-        oscillation.
-    reason : str
-        Why not, or why nothing is driven; else empty.
-    solve_time_s : float
-        Seconds by the wall clock.
-    """
-
-    scene: str
-    pressure: str
-    model: str
-    amplitude: float
-    poisson: float
-    tolerance: float
-    stall_force: float
-    stall_force_error: float
-    no_load_velocity: float
-    no_load_velocity_error: float
-    velocity: np.ndarray
-    force: np.ndarray
-    force_error: np.ndarray
-    power_out: np.ndarray
-    power_out_error: np.ndarray
-    power_in: np.ndarray
-    power_in_error: np.ndarray
-    efficiency: np.ndarray
-    efficiency_error: np.ndarray
-    converged: bool
-    reason: str
-    solve_time_s: float
-
-    def to_dict(self) -> dict:
-        """Fields as a plain dict, arrays as lists."""
-        fields = vars(self)
-        return {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in fields.items()}
 
 
 def drive(
@@ -209,6 +145,17 @@ class _Contact:
         moves = np.diff(np.stack(asked.problem.oscillation(_LOOP)), axis=1)
         self.speed = float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
 
+    @property
+    def creep(self):
+        """Creep in a radian at the velocity 1."""
+        problem = self.asked.problem
+        return problem.motion.creep(1.0, problem.amplitude, problem.poisson)
+
+    @property
+    def first(self):
+        """Velocity as fast as the oscillation, where a search may begin."""
+        return self.speed / self.creep
+
     def reversed(self):
         """The mirror image, which moves forward where this one moves back."""
         problem = self.asked.problem
@@ -290,7 +237,8 @@ def _line(contact, points):
             f"to {ahead.value:.3g}"
         )
     stall_error = max(ahead.error - ahead.value, back.error - back.value, 0.0)
-    spread = max(no_load(one.friction, 1.0).error for one in (contact, behind))
+    uncertain = [c for c, k in ((contact, ahead), (behind, back)) if k.value < k.error]
+    spread = max((no_load(one.friction, one.first).error for one in uncertain), default=0.0)
     found = NoLoad(0.0, spread, "")
     return _record(contact, Known(0.0, stall_error, ""), found, np.zeros(0), (converged, reason))
 
@@ -300,10 +248,7 @@ def _moving(contact, points):
     stall, found = contact.friction(0.0), NoLoad(math.nan, math.inf, "")
     velocity = np.zeros(0)
     if math.isfinite(stall.value):
-        first = contact.speed / contact.asked.problem.motion.creep(
-            1.0, contact.asked.problem.amplitude, contact.asked.problem.poisson
-        )
-        found = no_load(contact.friction, first)
+        found = no_load(contact.friction, contact.first)
     if math.isfinite(found.velocity):
         velocity = np.linspace(0.0, found.velocity, points)
     reason = stall.reason or found.reason
@@ -313,13 +258,12 @@ def _moving(contact, points):
 def _record(contact, stall, found, velocity, verdict):
     asked, sign = contact.asked, contact.sign
     problem, (converged, reason) = asked.problem, verdict
-    creep = problem.motion.creep(1.0, problem.amplitude, problem.poisson)
     friction = [contact.friction(v) for v in velocity]
     power = [contact.power(v) for v in velocity]
     force, error = (np.array([known[k] for known in friction]) for k in (0, 1))
     power_in, power_in_error = (np.array([known[k] for known in power]) for k in (0, 1))
-    force, power_out = -force, -force * velocity * creep
-    power_out_error = error * velocity * creep
+    force, power_out = -force, -force * velocity * contact.creep
+    power_out_error = error * velocity * contact.creep
     efficiency = power_out / power_in
     least = np.maximum(power_in - power_in_error, np.finfo(float).tiny)
     efficiency_error = (power_out_error + np.abs(efficiency) * power_in_error) / least
