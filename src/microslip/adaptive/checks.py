@@ -42,6 +42,23 @@ def checked_point(
     return motion, velocity, amplitude, poisson
 
 
+def checked_driving(
+    scene: str, amplitude: float, poisson: float, pressure: str = "hertz"
+) -> tuple[Motion, float, float]:
+    """Motion record and numbers of a motion that may drive; raises InputError naming the argument
+    at fault."""
+    motion = motion_named(scene, pressure)
+    if not motion.drives:
+        allowed = "allowed is a motion that drives, such as elliptic:forward_cycles=2,phase=0 or "
+        raise InputError("scene", scene, f"{allowed}normal:forward=1,phase=90")
+    motion, _, amplitude, poisson = checked_point(scene, 0.0, amplitude, poisson, pressure)
+    if not motion.pressure.mirrored:
+        raise InputError("pressure", pressure, "allowed is one that is its own mirror image")
+    if amplitude == 0.0:
+        raise InputError("amplitude", amplitude, "allowed is a number above 0")
+    return motion, amplitude, poisson
+
+
 def checked_drive(
     velocity: float | None,
     force: float | None,

@@ -34,7 +34,7 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.adaptive.asked import TOLERANCE, Asked
-from microslip.adaptive.checks import checked_point, checked_request
+from microslip.adaptive.checks import checked_driving, checked_request
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.driving_line import DrivingLine
 from microslip.adaptive.moved import marched
@@ -92,14 +92,7 @@ def drive(
         For bad input; it names the argument.
     """
     started = time.perf_counter()
-    motion, _, amplitude, poisson = checked_point(scene, 0.0, amplitude, poisson, pressure)
-    if not motion.drives:
-        allowed = "allowed is a motion that drives, such as elliptic:forward_cycles=2,phase=0 or "
-        raise InputError("scene", scene, f"{allowed}normal:forward=1,phase=90")
-    if not motion.pressure.mirrored:
-        raise InputError("pressure", pressure, "allowed is one that is its own mirror image")
-    if amplitude == 0.0:
-        raise InputError("amplitude", amplitude, "allowed is a number above 0")
+    motion, amplitude, poisson = checked_driving(scene, amplitude, poisson, pressure)
     if tolerance is None:
         raise InputError("tolerance", tolerance, "allowed is a number")
     tolerance, _, _ = checked_request(tolerance, None, None)

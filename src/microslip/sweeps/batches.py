@@ -40,6 +40,7 @@ FOLDERS = {
     "scaling": "scaling",
     "run": "runs",
     "patches": "patches",
+    "drive": "driving_lines",
 }
 
 
