@@ -2,9 +2,9 @@
 motions drive.
 
 `ladders` says in which resolutions a model is run; `accuracy_cost`, `stability`, `claims` and
-`driving` say what is asked; `fronts` picks and fits, `verdicts` judges; the modules with `dataset` in their name
-turn the answers into datasets. What is asked is plain data that imports nothing heavy, since the
-workflow reads it whenever it is parsed.
+`driving` say what is asked; `fronts` picks and fits, `verdicts` judges; the modules with `dataset`
+in their name turn the answers into datasets. What is asked is plain data that imports nothing
+heavy, since the workflow reads it whenever it is parsed.
 """
 
 from collections.abc import Callable, Iterator

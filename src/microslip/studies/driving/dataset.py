@@ -86,7 +86,5 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
 
 def _padded(result, name, count):
     """The numbers of a line, NaN where it has no points."""
-    found = result.get(name) or []
-    return np.array(
-        [*(np.nan if v is None else v for v in found)] + [np.nan] * (count - len(found))
-    )
+    found = [np.nan if value is None else value for value in result.get(name) or []]
+    return np.array(found + [np.nan] * (count - len(found)))

@@ -7,7 +7,10 @@ LINES_TOGETHER = 2
 
 
 def line(study, motion) -> dict:
-    """The request for the line of a motion; study: records.Driving, motion: records.DrivingMotion."""
+    """The request for the line of a motion.
+
+    study: records.Driving. motion: records.DrivingMotion.
+    """
     return {
         "kind": "drive",
         "scene": motion.scene,
