@@ -16,7 +16,6 @@ from microslip.adaptive.checks import (
 )
 from microslip.adaptive.choice import choose_model, method_refusal
 from microslip.adaptive.moved import solve_moved
-from microslip.adaptive.pulled import refuse_pull, solve_pulled
 from microslip.adaptive.result import Result
 from microslip.foundation.errors import InputError
 from microslip.motions.mirror_image import mirror_image
@@ -137,6 +136,8 @@ def solve(
 def _answer(asked, drive):
     if drive is None:
         return solve_moved(asked)
+    from microslip.adaptive.pulled import refuse_pull, solve_pulled  # only now: it takes a while
+
     refuse_pull(asked, drive)
     return solve_pulled(asked, drive)
 

@@ -230,7 +230,9 @@ def _certified(asked, drive, accuracy):
     def run(resolution, guess, problem=problem):
         if asked.progress is not None:
             asked.progress(resolution)
-        return simulate_pulled(problem, drive, asked.model, resolution, share, settings)
+        return simulate_pulled(
+            problem, drive, asked.model, resolution, share, settings, guess=guess
+        )
 
     readings = [
         partial(run, problem=replace(problem, motion=other))

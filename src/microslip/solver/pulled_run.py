@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from microslip.models.contact import StepFailure
+from microslip.models.contact import FORWARD, StepFailure, forces, forward_slip
 from microslip.models.coulomb import project
 from microslip.models.pull import Body
 from microslip.motions.drive import Drive
@@ -23,6 +23,9 @@ from microslip.solver.simulate import mean_forces, periods_of, simulate, step_sh
 
 MARCHES = 2 * MOST_MARCHES
 """Of a search: a body may swing."""
+LOOSEST_MOVED = 1e-4
+"""Force over mu F_z to which the state of a contact that is moved is found at least."""
+NOTHING_MOVED = failed_run("")
 MOST_SCALED = 4.0
 """By how much the tractions of a contact that is moved are scaled to the force at most."""
 
@@ -50,6 +53,8 @@ def simulate_pulled(
     resolution: Resolution,
     accuracy: Accuracy,
     settings: Settings,
+    *,
+    guess: Run | None = None,
 ) -> Run:
     """Run a model of a contact that is pulled to its periodic state.
 
@@ -66,7 +71,9 @@ def simulate_pulled(
     accuracy : Accuracy
         Of the periodic state.
     settings : run.Settings
-        How it is done; the method is what ships.
+        How it is done; of the method the integrator counts.
+    guess : run.Run or None
+        Of the same point under the same drive; of use if cells and angles are the same, too.
 
     Returns
     -------
@@ -82,7 +89,7 @@ def simulate_pulled(
     pulled = _Pulled(problem, drive, model, resolution, settings)
     pulled.slope = accuracy.slope
     try:
-        return pulled.run(accuracy.tolerance * pulled.force_of_answer)
+        return pulled.run(accuracy.tolerance * pulled.force_of_answer, guess)
     except (StepFailure, ArithmeticError, np.linalg.LinAlgError) as failure:
         return failed_run(str(failure))
 
@@ -94,13 +101,13 @@ class _Pulled:
         self.problem, self.drive, self.model = problem, drive, model
         self.resolution, self.settings = resolution, settings
         self.contact = settings.contact(problem, model, resolution)
-        self.path = problem.path(self.contact, resolution.steps)
+        self.path = problem.path(self.contact, resolution.steps, settings.method.integrator)
         self.interval = self.path.phase[-1] - self.path.phase[0]
         load = -drive.damping * problem.creep
         if drive.force is not None:
             load += drive.force * problem.mean_load
         self.body = Body(drive.stiffness, drive.damping, drive.mass, load)
-        self.slope = np.inf
+        self.slope, self.moved = np.inf, None
 
     @property
     def force_of_answer(self):
@@ -116,42 +123,64 @@ class _Pulled:
         stuck = self.contact.stiffness * self.interval * unit
         return min(stuck, self.slope * self.problem.mean_load)
 
-    def run(self, tolerance):
-        """The Run, to a tolerance that is a force over mu F_z."""
-        moved = self._moved(tolerance)
+    def run(self, tolerance, guess=None):
+        """The Run, to a tolerance that is a force over mu F_z; guess: see simulate_pulled."""
         rate = self.contact.stiffness * self.problem.creep
         step_tolerance = tolerance * step_share(rate, self.resolution.steps, False)
+        goal, done = Goal(tolerance, step_tolerance, MARCHES), []
+        for start, static_force in self._starts(tolerance, guess):
+            period_map = self._map(static_force, rate)
+            if not self._fits(start, period_map):
+                continue
+            done.append(anderson.search(period_map, start, goal))
+            if done[-1].converged:
+                break
+        return self._summary(done, static_force, step_tolerance)
+
+    def _map(self, static_force, rate):
         creep_rate = None
         if self.drive.force is None:
-            creep_rate = CreepRate(moved.static_force, rate * self.interval)
+            creep_rate = CreepRate(static_force, rate * self.interval)
         mirror = self.problem.motion.half_period_mirror
-        period_map = PulledMap(self.contact, self.path, self.body, creep_rate, mirror)
-        goal = Goal(tolerance, step_tolerance, MARCHES)
-        found = anderson.search(period_map, self._start(moved, period_map), goal)
-        return self._summary(found, moved, step_tolerance)
+        return PulledMap(self.contact, self.path, self.body, creep_rate, mirror)
+
+    def _fits(self, start, period_map):
+        return start.shape == period_map.state(forward_slip(self.contact), np.zeros(2)).shape
+
+    def _starts(self, tolerance, guess):
+        """States to begin with, each with the force of the static limit, the nearest one first."""
+        if guess is not None and guess.converged:
+            yield guess.state, guess.static_force
+        self.moved = moved = self._moved(tolerance)
+        slipping = forward_slip(self.contact)
+        if moved.state is not None:
+            yield self._state(moved.state, moved.mu * self.problem.mean_load), moved.static_force
+        full = float(forces(self.contact, slipping)[FORWARD])
+        yield self._state(slipping, full), moved.static_force
 
     def _moved(self, tolerance):
         """The Run at a velocity that is given."""
-        share = max(tolerance, 1e-4) / self.problem.mean_load
+        share = max(tolerance, LOOSEST_MOVED) / self.problem.mean_load
         return simulate(self.problem, self.model, self.resolution, share, settings=self.settings)
 
-    def _start(self, moved, period_map):
-        """State near that of the contact that is moved."""
-        tractions, mean = moved.state, moved.mu * self.problem.mean_load
+    def _state(self, tractions, mean):
+        """State near tractions whose mean force in a period is about `mean`."""
         if self.drive.force is not None:
             wanted = self.drive.force * self.problem.mean_load
             if mean > 0.0 and 0.0 <= wanted < MOST_SCALED * mean:
                 tractions = tractions * (wanted / mean)
             tractions = project(tractions, self.contact.bound)
         place = (self.body.load - mean) / self.drive.stiffness if self.drive.stiffness else 0.0
-        return period_map.state(tractions, np.array([place, 0.0]))
+        moved = np.array([place, 0.0]) if self.body.remembers else np.zeros(0)
+        return np.append(tractions.ravel(), moved)
 
-    def _summary(self, found, moved, step_tolerance):
-        problem, unit = self.problem, self.force_of_answer
+    def _summary(self, done, static_force, step_tolerance):
+        problem, unit, found = self.problem, self.force_of_answer, done[-1]
+        moved = self.moved or NOTHING_MOVED
         forward, _, torque = mean_forces(self.contact, problem, self.path, found.forces)
         stages = self.path.stages.shape[0] * self.path.stages.shape[1]
         solved = found.solver_residual <= stages * step_tolerance
-        periods, reason = periods_of(found.marches, problem.motion), ""
+        periods, reason = periods_of(sum(one.marches for one in done), problem.motion), ""
         if not found.converged:
             reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
         elif not solved:
@@ -164,12 +193,14 @@ class _Pulled:
             distance=found.distance / unit,
             solver_residual=found.solver_residual / unit,
             periods=periods + moved.periods,
-            iterations=found.iterations + moved.iterations,
-            solves=found.solves + moved.solves,
-            work=found.solves * found.start.size + moved.work,
-            effort=found.iterations * found.start.size + moved.effort,
+            iterations=sum(one.iterations for one in done) + moved.iterations,
+            solves=sum(one.solves for one in done) + moved.solves,
+            work=sum(one.solves for one in done) * found.start.size + moved.work,
+            effort=sum(one.iterations for one in done) * found.start.size + moved.effort,
             converged=found.converged and solved,
             reason=reason,
+            state=found.start,
+            static_force=static_force,
             velocity=problem.velocity + ahead / creep,
             retried=moved.retried,
         )

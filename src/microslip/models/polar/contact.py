@@ -30,7 +30,6 @@ from microslip.models.polar.angular_modes import (
     shifted_inverse,
     unfold,
 )
-from microslip.models.polar.pulled_march import PulledStages, pulled_march
 from microslip.models.pull import PulledMarch
 from microslip.models.rings.contact import RadialContact
 from microslip.models.rings.mesh import make_rings
@@ -160,6 +159,11 @@ class PolarContact:
 
     def pulled_march(self, path, state, tolerance, body, start, previous=None) -> PulledMarch:
         """March from which a body may stay behind or run ahead; see models.pull.PullsContact."""
+        from microslip.models.polar.pulled_march import (  # only now: it takes a while to load
+            PulledStages,
+            pulled_march,
+        )
+
         shape = path.stages.shape[:2]
         if previous is None:
             stages = np.empty((2, *shape, *state.shape)), np.zeros(shape)

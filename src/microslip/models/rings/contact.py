@@ -17,7 +17,6 @@ from microslip.models.pull import PulledMarch
 from microslip.models.rings import march as ring_march
 from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import make_rings
-from microslip.models.rings.pulled_march import pulled_march
 from microslip.models.rings.tangent import RingSystem, cholesky
 from microslip.models.varying_load import Growth, load_on_rings
 from microslip.pressures.by_name import HERTZ
@@ -180,6 +179,8 @@ class RadialContact:
 
     def pulled_march(self, path, state, tolerance, body, start, previous=None) -> PulledMarch:
         """March from which a body may stay behind or run ahead; see models.pull.PullsContact."""
+        from microslip.models.rings.pulled_march import pulled_march  # only now: it takes a while
+
         stages = path.stages.shape[0] * path.stages.shape[1]
         known = None if previous is None else previous.stages
         if known is None or known[0].shape != (1 + stages, 2, len(self.bound)):

@@ -10,7 +10,6 @@ from microslip.models.interrupts import unbroken
 from microslip.models.pull import PulledMarch
 from microslip.models.squares import march as square_march
 from microslip.models.squares.convolution import convolve, square_convolution, workspace
-from microslip.models.squares.pulled_march import pulled_march
 from microslip.pressures.by_name import HERTZ
 
 MAX_REMEMBERED = 4_000_000
@@ -92,6 +91,8 @@ class CartesianContact:
 
     def pulled_march(self, path, state, tolerance, body, start, previous=None) -> PulledMarch:
         """March from which a body may stay behind or run ahead; see models.pull.PullsContact."""
+        from microslip.models.squares.pulled_march import pulled_march  # only now: as for rings
+
         state, moved, forces, residual, iterations = unbroken(
             pulled_march,
             self.squares(),

@@ -6,6 +6,7 @@ import xarray as xr
 import microslip
 from microslip.config import load
 from microslip.datasets import sweep_dataset
+from microslip.datasets.query import accessor
 from microslip.sweeps import batches
 from microslip.sweeps.cache import Store
 from microslip.sweeps.evaluate import plain
@@ -101,8 +102,8 @@ def test_a_dataset_under_forces_holds_velocities(tmp_path):
         away = data.sel(force=1.0)
         assert not away.converged.any() and away.velocity.isnull().all()
         assert all(text.startswith("runs away") for text in away.reason.values)
-        with pytest.raises((ValueError, AttributeError)):
-            data.friction.at(0.1, 0.5)
+        with pytest.raises(ValueError, match=r"is pulled \(force\)"):
+            accessor.Friction(data)
 
 
 @pytest.mark.slow
