@@ -3,6 +3,7 @@
 A file is one process's, since its tests share what is slow to make (--dist loadfile).
 """
 
+import gc
 import os
 import shutil
 import signal
@@ -14,6 +15,11 @@ from hypothesis import settings
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.load_profile("repeatable")
 """Whoever runs the tests sees the same random inputs; campaigns look at others."""
+
+for library in ("OMP", "OPENBLAS", "MKL"):
+    # As in jobs of the workflow: each process has a core, and threads that wait would take another.
+    # NumPy, which reads this when it is loaded, is not loaded yet.
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell starts what runs in its background so, and processes that tests interrupt inherit it.
@@ -46,6 +52,13 @@ def pytest_collection_modifyitems(items):
         return next(found, len(LONG))
 
     items.sort(key=place)
+
+
+def pytest_collection_finish(session):
+    """What is loaded by now stays: to look through it again and again for garbage takes long."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(20_000, 20, 50)
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -93,3 +106,11 @@ def finished(tmp_path_factory):
 def project(finished, tmp_path):
     """A copy of the finished project to edit."""
     return finished.copied(tmp_path / "copy")
+
+
+@pytest.fixture
+def unplaced(monkeypatch):
+    """Figures are drawn without looking for room for what they hold, which takes the longest."""
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+    monkeypatch.setattr(ConstrainedLayoutEngine, "execute", lambda engine, figure: None)

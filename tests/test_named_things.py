@@ -71,6 +71,7 @@ def is_there(owner, name, modules):
     return not name[0].isupper()
 
 
+@pytest.mark.slow
 def test_classes_and_constants_named_in_prose_exist(modules):
     gone = [
         f"{path.relative_to(ROOT)}: line {line}: {match[0]}"

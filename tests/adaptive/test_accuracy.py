@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from microslip.adaptive.chains import EXTRAPOLATION_SHARE, Axis
+from microslip.adaptive.chains import EXTRAPOLATED_SHARES, Axis
 from microslip.adaptive.refinement import MOST_REBASED, RESOLVED, certify
 from microslip.solver.budget import Spent
 from microslip.solver.problem import Resolution
@@ -105,7 +105,7 @@ def test_second_order_in_cells_is_extrapolated_to_the_exact_value(coefficient):
     # most of what was extrapolated stays as error
     finest = max(fake.asked)
     assert found.finest == finest
-    share = EXTRAPOLATION_SHARE * abs(fake.excess(finest))
+    share = EXTRAPOLATED_SHARES[0] * abs(fake.excess(finest))
     expected = max(share, RESOLVED * 1e-4)
     assert found.errors["space"] == pytest.approx(expected, rel=1e-9)
 

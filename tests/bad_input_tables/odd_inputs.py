@@ -11,10 +11,8 @@ from math import pi
 
 import numpy as np
 import pandas as pd
-import pint
 import xarray as xr
-
-Q = pint.UnitRegistry().Quantity
+from bad_input_tables.odd_quantities import Q
 
 # Quantities
 

@@ -12,6 +12,7 @@ import numpy as np
 import pint
 
 Q = pint.UnitRegistry().Quantity
+"""Of one registry for all tests, since to load one takes a while."""
 
 
 class Uncertain:

@@ -13,6 +13,7 @@ import math
 import os
 import re
 import shutil
+import stat
 import subprocess
 import sys
 import sysconfig
@@ -23,6 +24,8 @@ from pathlib import Path
 
 import pytest
 import yaml
+from stubs import job_server
+from stubs.workflow_project import ENVIRONMENT
 
 import microslip
 from microslip.config import load
@@ -157,12 +160,29 @@ def make_place(page, folder, results):
         shutil.copytree(ROOT / "src", folder / "src")
     else:
         (folder / "src").symlink_to(ROOT / "src")
-    (folder / ".venv").symlink_to(Path(sysconfig.get_path("scripts")).parent)
+    scripts = folder / ".venv" / "bin"
+    if changes_sources:
+        (folder / ".venv").symlink_to(Path(sysconfig.get_path("scripts")).parent)
+    else:
+        make_scripts(scripts)
     (folder / "path" / "to").mkdir(parents=True)
     (folder / "path" / "to" / "microslip").symlink_to(ROOT)
     shutil.copytree(results, folder / "results")
-    path = f"{sysconfig.get_path('scripts')}:/usr/local/bin:/usr/bin:/bin"
+    path = f"{scripts}:/usr/local/bin:/usr/bin:/bin"
     return os.environ | {"PATH": path} | ({"PYTHONPATH": "src"} if changes_sources else {})
+
+
+def make_scripts(folder):
+    """The commands of this environment; those of Python are forks of one that has its libraries."""
+    own = Path(sysconfig.get_path("scripts"))
+    python = job_server.python(tuple(sorted(ENVIRONMENT.items())))
+    folder.mkdir(parents=True)
+    for path in own.iterdir():
+        (folder / path.name).symlink_to(python if path.name.startswith("python") else path)
+    for name in ("microslip", "snakemake"):
+        (folder / name).unlink()
+        (folder / name).write_text(f'#!/bin/sh\nexec {python} {own / name} "$@"\n')
+        (folder / name).chmod(stat.S_IRWXU)
 
 
 # Running a block

@@ -240,6 +240,7 @@ def test_points_that_are_not_converged_are_hatched_and_hollow(datasets):
     assert any("4 of 81" in text.get_text() for text in figure.findobj(Text))
 
 
+@pytest.mark.usefixtures("unplaced")
 def test_history_mean_and_phase(datasets):
     dataset = datasets["transverse"].copy()
     (mean,) = artists(drawing.draw("fig1_force_history", {"transverse": dataset}), "mean")
@@ -250,6 +251,7 @@ def test_history_mean_and_phase(datasets):
     assert artists(figure, "forward")[0].get_xdata()[-1] == pytest.approx(4.0)
 
 
+@pytest.mark.usefixtures("unplaced")
 @pytest.mark.parametrize(
     ("scene", "name", "label"),
     [
@@ -285,6 +287,7 @@ def test_all_of_poissons_ratios_in_a_sweep_are_drawn(datasets, key, name):
     assert said.count(r"computed, $\nu = 0.5$") == 2
 
 
+@pytest.mark.usefixtures("unplaced")
 def test_of_many_of_poissons_ratios_it_is_said_how_many_are_drawn(datasets):
     given = at_ratios(datasets["bore"], *np.linspace(0, 0.5, 11))
     figure = drawing.draw("fig6_bore_map", {"bore": given})
@@ -320,6 +323,7 @@ def test_what_poissons_ratio_changes(datasets):
             drawing.draw("poisson", bad)
 
 
+@pytest.mark.usefixtures("unplaced")
 def test_a_theory_curve_may_have_a_finer_axis_of_its_own(datasets):
     fine = np.linspace(0, 1, 50)
     line = xr.DataArray(1 - fine**1.5, {"amplitude_fine": fine}, "amplitude_fine")

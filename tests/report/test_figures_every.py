@@ -11,6 +11,7 @@ import test_figures
 import test_figures_groups as groups
 import test_figures_studies as of_studies
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_pdf import PdfFile
 from matplotlib.text import Text
 from PIL import Image
 
@@ -50,8 +51,10 @@ def figures():
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_saves_whole_and_reproducibly(name, figures, tmp_path):
+def test_saves_whole_and_reproducibly(name, figures, tmp_path, monkeypatch):
     """Drawn twice it gives the same pixels; as a PDF it is whole, too, and bears no date."""
+    # To cut fonts down takes longer than to draw: that is for the test below.
+    monkeypatch.setattr(PdfFile, "writeFonts", lambda f: f.writeObject(f.fontObject, {}))
     again = drawing.draw(*GIVEN[name])
     pictures = [
         drawing.save(f, tmp_path / f"{k}.png") for k, f in enumerate((figures[name], again))

@@ -70,6 +70,7 @@ def motions(count=3):
 # Which datasets a figure is drawn from
 
 
+@pytest.mark.usefixtures("unplaced")
 def test_a_group_is_drawn_from_its_own_datasets_in_their_order():
     given = {"s": static("still"), "b": spanning("second"), "a": spanning("first")}
     figure = drawing.draw("extended_motions", given)
@@ -114,6 +115,7 @@ def test_any_number_of_maps_has_room(count):
     assert min(small) >= 7.0
 
 
+@pytest.mark.usefixtures("unplaced")
 def test_maps_share_one_scale_and_their_labels():
     figure = drawing.draw("extended_motions", motions(3))
     (bar,) = [axes for axes in figure.axes if axes.get_label() == "<colorbar>"]
@@ -138,6 +140,7 @@ def test_friction_below_zero_widens_the_scale_of_all():
     check_nothing_cut_off(drawing.draw("extended_motions", given))
 
 
+@pytest.mark.usefixtures("unplaced")
 def test_what_did_not_converge_is_hatched_and_said_once():
     given = motions(2)
     for dataset in given.values():
@@ -154,6 +157,7 @@ def at_two_ratios(first):
     return xr.concat([first, other], "poisson", data_vars="all", combine_attrs="override")
 
 
+@pytest.mark.usefixtures("unplaced")
 def test_all_of_poissons_ratios_are_drawn_whatever_else_is_in_the_group():
     figure = drawing.draw(
         "extended_motions", {"a": at_two_ratios(spanning("a")), "b": spanning("b")}
@@ -241,6 +245,7 @@ def test_lines_show_the_limit_and_marks_the_smallest_velocity():
     assert "marks: velocity $0.001$" in words(figure)
 
 
+@pytest.mark.usefixtures("unplaced")
 def test_a_limit_from_theory_is_drawn_on_its_finer_axis():
     fine = np.linspace(0, 1.2, 50)
     curve = ("amplitude_curve", np.maximum(1 - fine, 0))
@@ -254,6 +259,7 @@ def test_a_limit_from_theory_is_drawn_on_its_finer_axis():
     assert len(line.get_xdata()) == 7
 
 
+@pytest.mark.usefixtures("unplaced")
 def test_marks_that_did_not_converge_are_hollow():
     dataset = static("a")
     dataset["converged"][3, 1] = 0
@@ -262,6 +268,7 @@ def test_marks_that_did_not_converge_are_hollow():
     assert faces == [lines.LOOKS[0][0], "white"]
 
 
+@pytest.mark.usefixtures("unplaced")
 def test_a_steady_motion_is_drawn_over_its_velocity():
     velocity = np.geomspace(0.01, 100, 9)
     force = paper.bore_forward(velocity)

@@ -383,23 +383,21 @@ def test_curves_hold_every_trial(name, cost, datasets, figures):
     for axes, trials in one_panel_each(figures[name], dataset):
         bottom, top = axes.get_ylim()
         found = 0
-        columns = (trials[f"trial_{n}"].values for n in ("model", "method"))
-        for model, method in set(zip(*columns, strict=True)):
-            rows = trials.isel(
-                trial=(trials["trial_model"].values == model)
-                & (trials["trial_method"].values == method)
-            ).sortby("trial_level")
+        trials = trials.sortby("trial_level")
+        models, methods = (trials[f"trial_{n}"].values for n in ("model", "method"))
+        costs, errors = (trials[n].values for n in (cost, "error"))
+        for model, method in set(zip(models, methods, strict=True)):
+            mine = (models == model) & (methods == method) & np.isfinite(errors)
             (line,) = artists(axes, f"{model} {method}")
             assert (line.get_linestyle() == "None") == (method != "shipped")
-            rows = rows.isel(trial=np.isfinite(rows["error"].values))
             found += line.get_xdata().size
-            above_zero = rows[cost].values > 0
+            above_zero = costs[mine] > 0
             x, y = line.get_xdata()[above_zero], line.get_ydata()[above_zero]
-            np.testing.assert_array_equal(x, rows[cost].values[above_zero])
-            inside = rows["error"].values[above_zero] > 1e-4  # surely above the bottom strip
-            np.testing.assert_array_equal(y[inside], rows["error"].values[above_zero][inside])
+            np.testing.assert_array_equal(x, costs[mine][above_zero])
+            inside = errors[mine][above_zero] > 1e-4  # surely above the bottom strip
+            np.testing.assert_array_equal(y[inside], errors[mine][above_zero][inside])
             assert np.all((bottom < y) & (y < top))
-        assert found == np.isfinite(trials["error"].values).sum()
+        assert found == np.isfinite(errors).sum()
 
 
 def test_panels_share_their_axes_and_show_all_that_is_drawn(figures, datasets):
@@ -470,6 +468,7 @@ def test_errors_too_small_and_costs_of_zero_get_an_arrow_at_the_edge(datasets, f
     assert not artists(figures["accuracy_vs_cost"].axes[0], "left")
 
 
+@pytest.mark.usefixtures("unplaced")
 def test_an_exact_trial_does_not_stretch_the_axis(small):
     dataset = small["accuracy_cost"].copy(deep=True)
     dataset["reference_error"][:] = 0.0
@@ -494,6 +493,7 @@ def test_the_references_error_is_hatched_from_the_bottom_up(datasets, figures):
             assert band.get_y() + band.get_height() == pytest.approx(known)
 
 
+@pytest.mark.usefixtures("unplaced")
 def test_an_unknown_error_of_the_reference_draws_no_band(small):
     dataset = small["accuracy_cost"].copy(deep=True)
     dataset["reference_error"][0] = np.nan
@@ -625,6 +625,7 @@ def test_the_map_colours_and_names_the_cheapest_models(datasets, figures):
     }
 
 
+@pytest.mark.usefixtures("unplaced")
 def test_every_region_of_the_map_is_named_where_it_is():
     maps = fake_maps()
     names = np.full((9, 13), "polar", "<U9")
@@ -683,6 +684,7 @@ def test_scaling_shows_the_sizes_and_the_exponents(datasets, figures):
     assert sizes == ["64 x 64", "128 x 128", "128 x 128"]
 
 
+@pytest.mark.usefixtures("unplaced")
 def test_an_exponent_that_could_not_be_fitted_is_left_out(small):
     dataset = small["accuracy_cost"].copy(deep=True)
     dataset["scaling_exponent_memory"][1] = np.nan

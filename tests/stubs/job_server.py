@@ -3,7 +3,7 @@
 Snakemake starts a Python for every script, and most of what that does is to import libraries.  The
 process knows nothing of this package: each job reads the sources of its own project.  `python` is
 what Snakemake starts in the place of Python; it asks the process here for a fork that has its
-folder, its environment and its streams, and ends as that does.
+folder, its environment and its streams, and ends as that does.  Commands of pages start it, too.
 """
 
 import atexit
@@ -18,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 
@@ -44,23 +45,26 @@ raise SystemExit(int(server.recv(9) or b"1"))
 """
 
 
-def start(environment):
-    """Start the process; the path of what Snakemake is to start in the place of Python."""
+@cache
+def python(environment):
+    """Start the process; the path of what Snakemake is to start in the place of Python.
+
+    environment: its variables, a tuple of pairs; jobs have those that they are started with.
+    """
     folder = tempfile.TemporaryDirectory(prefix="jobs-")
     atexit.register(folder.cleanup)
-    client, python = Path(folder.name, "client.py"), Path(folder.name, "python")
+    client, started = Path(folder.name, "client.py"), Path(folder.name, "python")
     client.write_text(CLIENT)
     address = f"{folder.name}/socket"
     one = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
-    running = subprocess.Popen(
-        [sys.executable, __file__, address], env={**environment, **one}, stdin=subprocess.PIPE
-    )
+    command = [sys.executable, __file__, address, str(started)]
+    running = subprocess.Popen(command, env=dict(environment) | one, stdin=subprocess.PIPE)
     atexit.register(running.kill)
-    python.write_text(f'#!/bin/sh\nexec {sys.executable} -I -S {client} {address} "$@"\n')
-    python.chmod(stat.S_IRWXU)
+    started.write_text(f'#!/bin/sh\nexec {sys.executable} -I -S {client} {address} "$@"\n')
+    started.chmod(stat.S_IRWXU)
     while not os.path.exists(address) and running.poll() is None:
         threading.Event().wait(0.02)
-    return str(python)
+    return str(started)
 
 
 # What the process does
@@ -100,14 +104,25 @@ def _run(connection):
     os.chdir(asked["folder"])
     os.environ.clear()
     os.environ.update(asked["environment"])
-    sys.argv = asked["arguments"]
+    sys.executable = sys.argv[2]  # which jobs start others by
     given = asked["environment"].get("PYTHONPATH", "").split(os.pathsep)
-    sys.path[:0] = [os.path.dirname(sys.argv[0]), *filter(None, given)]
+    sys.path[:0] = filter(None, given)
     threading.Thread(target=_end_with, args=[connection], daemon=True).start()
     forked.end_with(
-        lambda: runpy.run_path(sys.argv[0], run_name="__main__"),
-        lambda code: connection.sendall(str(code).encode()),
+        lambda: _do(asked["arguments"]), lambda code: connection.sendall(str(code).encode())
     )
+
+
+def _do(arguments):
+    """What Python does with these arguments, which begin with a script or with -m."""
+    is_module = arguments[0] == "-m"
+    sys.argv = arguments[is_module:]
+    if is_module:
+        sys.path.insert(0, os.getcwd())
+        runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)
+    else:
+        sys.path.insert(0, os.path.dirname(sys.argv[0]))
+        runpy.run_path(sys.argv[0], run_name="__main__")
 
 
 def _end_with(connection):

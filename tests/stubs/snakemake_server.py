@@ -41,8 +41,8 @@ class _Server:
     def __init__(self, environment):
         self.lock = threading.Lock()
         self.process = subprocess.Popen(
-            [sys.executable, __file__, job_server.start(environment)],
-            env=environment,
+            [sys.executable, __file__, job_server.python(environment)],
+            env=dict(environment),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
@@ -57,7 +57,7 @@ class _Server:
 
 @cache
 def _server(environment):
-    return _Server(dict(environment))
+    return _Server(environment)
 
 
 # What the process does

@@ -1,11 +1,11 @@
 """Bad input to the workflow: real runs of Snakemake that end with one line, before any job."""
 
-import os
 from pathlib import Path
 
 import pytest
 from bad_input_tables.bad_configurations import EXTENDED, FILES, GOOD, KEYS, changed
 from stubs import snakemake_server
+from stubs.workflow_project import ENVIRONMENT
 
 ROOT = Path(__file__).parents[2]
 pytestmark = pytest.mark.slow
@@ -86,8 +86,7 @@ MODES = {case: ["-n"] if index % 2 else ["-j1"] for index, case in enumerate(CAS
 
 
 def snakemake(folder, *arguments):
-    environment = {"PATH": "/usr/bin:/bin", "HOME": os.environ.get("HOME", str(folder))}
-    return snakemake_server.start(arguments, folder, environment, timeout=120)
+    return snakemake_server.start(arguments, folder, ENVIRONMENT, timeout=120)
 
 
 def project(folder, prepare):

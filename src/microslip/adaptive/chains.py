@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 
 from microslip.solver.problem import Resolution
 
-EXTRAPOLATION_SHARE = 0.6
-CHANGE_SHARE = 0.5
-"""Errors of cells over the last extrapolation, and over the change of the extrapolated value."""
+EXTRAPOLATED_SHARES = 0.6, 0.5
+"""Errors of regular axes over the last extrapolation, and over the change of the extrapolated
+value."""
 READING_CAUTION = 2.5
 """Error over the sum of what the readings of a pressure change: a peak or an edge that falls
 between the points of a grid shows in none of them in full."""
@@ -37,8 +37,16 @@ class Axis:
     imposed : bool
         The last level is what was asked for, and its error, the spread of the last three again, is
         only reported.
+    projected : bool
+        The error falls about so, but irregularly: each of the last differences tells how far the
+        value would still go at the second power, and the largest is believed, but not added.
     caution : float
-        Errors of irregular axes over their spread.
+        Errors of irregular axes over that, or over their spread.
+    shares : tuple of float
+        See EXTRAPOLATED_SHARES.
+    scatter : float
+        Share of the correction along an irregular axis that its scatter may do to the differences
+        of other chains.
     tied : tuple or None
         Name and levels of what is refined together with it, where neither converges without the
         other.
@@ -50,7 +58,10 @@ class Axis:
     first: tuple[int, ...]
     regular: bool = False
     imposed: bool = False
+    projected: bool = False
     caution: float = 1.0
+    shares: tuple[float, float] = EXTRAPOLATED_SHARES
+    scatter: float = 0.5
     tied: tuple[str, tuple[int, ...]] | None = None
 
     @property
@@ -144,18 +155,30 @@ class Chain:
     def error(self, name: str) -> float:
         """Estimated error after the correction."""
         values, levels = self.values(name), self.levels
-        if not self.axis.regular:
-            last = values[-len(self.axis.first) :]
-            return self.axis.caution * (max(last) - min(last))
-        beyond = _extrapolation(values, levels)
-        before = _extrapolation(values[:-1], levels[:-1])
-        change = values[-1] + beyond - values[-2] - before
-        return EXTRAPOLATION_SHARE * abs(beyond) + CHANGE_SHARE * abs(change)
+        if self.axis.regular:
+            beyond = _extrapolation(values, levels)
+            before = _extrapolation(values[:-1], levels[:-1])
+            change = values[-1] + beyond - values[-2] - before
+            share, share_of_change = self.axis.shares
+            return share * abs(beyond) + share_of_change * abs(change)
+        last = slice(-len(self.axis.first), None)
+        values, levels = values[last], levels[last]
+        if self.axis.projected:
+            return self.axis.caution * _largest_projection(values, levels)
+        return self.axis.caution * (max(values) - min(values))
 
 
 def _extrapolation(values, levels):
     """What second-order convergence would still add to the last of the values."""
     return (values[-1] - values[-2]) / ((levels[-1] / levels[-2]) ** 2 - 1.0)
+
+
+def _largest_projection(values, levels):
+    """How far the last value may be off, as each of the differences tells it."""
+    return max(
+        abs(_extrapolation(values[:end], levels[:end])) * (levels[end - 1] / levels[-1]) ** 2
+        for end in range(2, len(values) + 1)
+    )
 
 
 def refines_cells(chains: dict[str, Chain]) -> str | None:

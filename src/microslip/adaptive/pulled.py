@@ -43,6 +43,8 @@ SLOWEST_SHARE = 0.3
 coarsely."""
 SCALE_SHARE = 0.9
 """Of the velocity so found that the tolerance is taken over."""
+ROUGH_TOLERANCE = 3e-2
+"""Of a static limit that is far from the force."""
 GAP_MARGIN = 2.0
 """Errors of the static limit above it at which the contact moves for certain."""
 
@@ -112,7 +114,7 @@ def _under_force(asked, drive):
         return _known(asked, drive, 0.0, 0.0)
     least = -math.inf
     if is_even(problem):
-        static = solve_moved(replace(asked, problem=replace(problem, velocity=0.0)))
+        static = _static(asked, force)
         if force <= static.mu_macro - static.mu_macro_error:
             return replace(
                 _known(asked, drive, 0.0, 0.0),
@@ -120,8 +122,19 @@ def _under_force(asked, drive):
                 cells=static.cells,
                 angles=static.angles,
             )
-        least = static.mu_macro + GAP_MARGIN * static.mu_macro_error
+        if force <= static.mu_macro + static.mu_macro_error:
+            least = static.mu_macro + GAP_MARGIN * static.mu_macro_error
     return _moving(asked, drive, max(force, least))
+
+
+def _static(asked, force):
+    """The Result of the static limit, no more exactly than the force needs to be told from it."""
+    at_rest = replace(asked, problem=replace(asked.problem, velocity=0.0))
+    if asked.tolerance is not None and asked.tolerance < ROUGH_TOLERANCE:
+        rough = solve_moved(replace(at_rest, tolerance=ROUGH_TOLERANCE))
+        if abs(force - rough.mu_macro) > rough.mu_macro_error:
+            return rough
+    return solve_moved(at_rest)
 
 
 def _known(asked, drive, velocity, error, reason=""):

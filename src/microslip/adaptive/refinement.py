@@ -8,11 +8,13 @@ time scatter in the differences of other chains) that counts as error too, and i
 one the base itself is refined.
 
 - cells: the error falls smoothly with about the second power, so the last difference is
-  extrapolated; 0.6 of that extrapolation stays as error, and half of the change that the last run
-  made to the extrapolated value.
-- angles: the error falls fast but irregularly, so the spread of the last three runs is the error.
+  extrapolated; a share of that extrapolation stays as error, and another of the change that the
+  last run made to the extrapolated value.
+- angles: the error falls fast but irregularly, so nothing is extrapolated, and the spread of the
+  last three runs is the error; of rotating motions the larger of two projections: how far the value
+  would still go by each of the last two differences.
 - steps: the error scatters about its trend, since a ring starts to slip somewhere within a step; so
-  the spread of the last three runs is the error here, too, and nothing is extrapolated.
+  it is taken as over the angles.
 - readings: where the pressure is known on a grid alone, the finest run along the cells is done
   again for every other pressure that the same numbers may stand for; how far these are apart is an
   error that no refinement removes.
@@ -33,8 +35,6 @@ from microslip.solver.run import Run
 
 RESOLVED = 0.125
 """Share of the tolerance below which no axis claims its error to be: nothing was run to see it."""
-SCATTER = 0.5
-"""Share of the correction in time that its scatter may do to the differences of other chains."""
 LARGEST_OPEN = 0.5
 """Share of the tolerance that the readings may take for runs to be refined for what is left."""
 MOST_REBASED = 6
@@ -175,7 +175,8 @@ class _Refinement:
         left = {name: c.error(asked) for name, c in chains.items() if not c.axis.imposed}
         hidden = {"steps": 0.0, "angles": abs(mixed_difference(runs, chains, asked))}
         if "steps" in chains and len(chains) > 1:
-            hidden["steps"] = SCATTER * abs(chains["steps"].correction(asked))
+            scatter = chains["steps"].axis.scatter
+            hidden["steps"] = scatter * abs(chains["steps"].correction(asked))
         errors = _errors(runs, chains, hidden, self.tolerance)
         reason = next((r.reason for r in runs.done.values() if not r.converged), "")
         return Estimate(errors, left, hidden, reason)

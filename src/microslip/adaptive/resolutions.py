@@ -2,38 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
+from microslip.adaptive.cells_policies import RINGS, cells_axis, levels_finer
 from microslip.adaptive.chains import Axis
 from microslip.models.registry import MODELS
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.static_limit import at_turning_points
 
-RINGS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
-SQUARES = (8, 16, 32, 64, 128)
-STATIC_SQUARES = (16, 24, 32, 48, 64, 96, 128, 192)
 ANGLES = (2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)
-STEPS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768)
-"""Levels: rings (squares along a side), angles on half the disc, steps in half a period."""
+STEPS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024, 1536, 2048)
+"""Levels: angles on half the disc, steps in half a period."""
 BASE_RINGS, BASE_ANGLES, BASE_STEPS = 8, 6, 16
-SLOW_CREEP = 3e-3
-"""Creep in a radian (u_lim) below which the layer at the stick radius is thin: the coarsest rings
-agree with each other there before they see it, and prove nothing."""
-SWEEPING_CENTRE = (0.1, 1.0)
-"""Velocities of a bore at which the centre of rotation sweeps through the contact and stays in it
-for a good part of the period: the coarsest rings agree there, too, without having seen it."""
+RADIAL_STEPS, RADIAL_CAUTION = 32, 1.5
+"""Steps at the tolerance 1e-3 where rings alone are marched, to and fro, and the error in time over
+the spread of the runs: few unknowns pay for finer runs, which do not agree by chance."""
 TURNING_CAUTION = 2.0
 """Error in time over the spread of the runs where the contact turns or slides back: the first step
 after a turning point, in which all points stick and slip again, errs to one side whatever its
 length."""
+PROJECTED_CAUTION = {"angles": 1.3, "steps": 1.8}
+PROJECTED_SCATTER = 0.3
+"""See chains.Axis."""
 SWEEPING_STEPS = 4
 """Steps in half a period over rings where the edge of the contact sweeps over these.  They join it
 one by one, and the error scatters unless both are refined together."""
 SWEEPING_CAUTION = 1.5
-EDGE_CAUTION = 1.25
-"""Error over the spread of four runs where each gathers its rings at a stick radius that it finds
-by itself, to the width of a ring."""
 LONGEST_STROKE = 16.0
 """Stroke in u_lim beyond which more steps are left to the estimate of the error."""
 
@@ -65,149 +59,17 @@ def plan(
     if sweeps:
         axes.append(_sweeping(problem, tolerance))
     elif "cells" in resolved:
-        axes.append(_cells(problem, model) if cells is None else _imposed("cells", cells))
+        axes.append(
+            cells_axis(problem, model, tolerance) if cells is None else _imposed("cells", cells)
+        )
     if "angles" in resolved:
         # only nu > 0 makes tractions of a translation depend on the angle, and only a little
-        base = ANGLES.index(BASE_ANGLES) + (not motion.periodic) - (not motion.rotates)
-        axes.append(Axis("angles", ANGLES, base, (base - 1, base, base + 1)))
+        axes.append(_angles(problem, tolerance))
     if marches and not sweeps:
-        axes.append(_steps(problem, tolerance) if steps is None else _imposed("steps", steps // 2))
+        axes.append(
+            _steps(problem, model, tolerance) if steps is None else _imposed("steps", steps // 2)
+        )
     return Resolution(cells=1, angles=1, steps=STEPS[0]), tuple(axes)
-
-
-@dataclass(frozen=True)
-class CellsPolicy:
-    """Which cells a point begins with.
-
-    Attributes
-    ----------
-    reason : str
-        Why with these.
-    applies : callable
-        applies(problem, model) -> whether the policy is for such a point.
-    base : int
-        Cells at which the angles and the steps are refined.
-    first : tuple of int
-        Cells of the coarsest and of the finest of the runs to start with.
-    levels : tuple of int
-        Cells there may be.
-    regular, caution
-        See chains.Axis.
-    """
-
-    reason: str
-    applies: Callable[[Problem, str], bool]
-    base: int
-    first: tuple[int, int]
-    levels: tuple[int, ...] = RINGS
-    regular: bool = True
-    caution: float = 1.0
-
-    def axis(self) -> Axis:
-        """The Axis to refine."""
-        coarsest, finest = (self.levels.index(cells) for cells in self.first)
-        first = tuple(range(coarsest, finest + 1))
-        base = self.levels.index(self.base)
-        return Axis("cells", self.levels, base, first, regular=self.regular, caution=self.caution)
-
-
-def _is_slow(problem):
-    """Whether the layer at the stick radius is thin."""
-    return problem.motion.periodic and 0.0 < problem.creep < SLOW_CREEP
-
-
-def _is_static(problem):
-    return problem.motion.periodic and problem.velocity == 0.0
-
-
-def _sweeps_the_centre(problem):
-    least, most = SWEEPING_CENTRE
-    return problem.motion.rotates and least <= problem.velocity < most
-
-
-CELLS_POLICIES = (
-    CellsPolicy(
-        "static limit: cells come and go at the edge; nothing is marched, so more are cheap",
-        lambda problem, model: model == "cartesian" and problem.velocity == 0.0,
-        base=32,
-        first=(16, 64),
-        levels=STATIC_SQUARES,
-        regular=False,
-    ),
-    CellsPolicy(
-        "squares, slow: the layer at the stick radius is thin",
-        lambda problem, model: model == "cartesian" and _is_slow(problem),
-        base=32,
-        first=(16, 64),
-        levels=SQUARES,
-    ),
-    CellsPolicy(
-        "squares: doubled from run to run, since cells come and go at the edge",
-        lambda problem, model: model == "cartesian",
-        base=16,
-        first=(8, 32),
-        levels=SQUARES,
-    ),
-    CellsPolicy(
-        "springs know nothing of each other, and slip one by one",
-        lambda problem, model: model == "mdr",
-        base=16,
-        first=(12, 24),
-        regular=False,
-    ),
-    CellsPolicy(
-        "steady: the centre of rotation stays where it is, and only fine rings see it",
-        lambda problem, model: not problem.motion.periodic,
-        base=12,
-        first=(8, 16),
-    ),
-    CellsPolicy(
-        "static limit on a loop: each run finds the edge of what sticks by itself",
-        lambda problem, model: _is_static(problem) and not at_turning_points(problem.motion),
-        base=24,
-        first=(16, 48),
-        regular=False,
-        caution=EDGE_CAUTION,
-    ),
-    CellsPolicy(
-        "static limit: a stick zone that is not circular cuts rings, and the corners are steep",
-        lambda problem, model: _is_static(problem),
-        base=16,
-        first=(8, 48),
-        regular=False,
-    ),
-    CellsPolicy(
-        "rotation whose layer at the stick radius is thin, or whose centre sweeps the contact",
-        lambda problem, model: (
-            problem.motion.rotates and (_is_slow(problem) or _sweeps_the_centre(problem))
-        ),
-        base=8,
-        first=(6, 12),
-    ),
-    CellsPolicy(
-        "rotation: with angles there are many unknowns, so as few rings as will do",
-        lambda problem, model: problem.motion.rotates,
-        base=8,
-        first=(4, 8),
-    ),
-    CellsPolicy(
-        "translation at nu > 0: the front of slip is oval, which rings are not",
-        lambda problem, model: problem.poisson > 0.0,
-        base=12,
-        first=(8, 16),
-    ),
-    CellsPolicy(
-        "translation at nu = 0: few unknowns",
-        lambda problem, model: True,
-        base=8,
-        first=(6, 12),
-    ),
-)
-"""The first that applies is taken."""
-
-
-def _cells(problem, model):
-    return next(policy for policy in CELLS_POLICIES if policy.applies(problem, model)).axis()
 
 
 def _imposed(name, count):
@@ -232,11 +94,51 @@ def _step_levels(problem, counts):
     return tuple(2 * round(0.5 * count * motion.cycles * stroke**0.5) for count in counts)
 
 
-def _steps(problem, tolerance):
-    # second order in time
-    wanted = BASE_STEPS * max(1.0, (1e-3 / tolerance) ** 0.5)
-    base = next(k for k, count in enumerate(STEPS) if count >= wanted)
-    turns = problem.motion.rotates or not problem.motion.half_period_mirror
-    caution = TURNING_CAUTION if turns else 1.0
+class Coarsest(NamedTuple):
+    """Angles and steps that a point begins with where errors over both are projected: the many
+    unknowns make each run cost more, and what corrections lack that are found at so few is measured
+    as their mixed difference."""
+
+    angles: int
+    steps: int
+
+
+def _coarsest(problem):
+    """The Coarsest of a problem, None where errors are the spread of runs."""
+    motion = problem.motion
+    if not motion.periodic or problem.velocity == 0.0:
+        return None
+    if motion.rotates:
+        return Coarsest(angles=4, steps=12)
+    if problem.poisson > 0.0 and motion.half_period_mirror:
+        return Coarsest(angles=2, steps=16)  # tractions depend on the angle a little only
+    return None
+
+
+def _angles(problem, tolerance):
+    motion, coarsest = problem.motion, _coarsest(problem)
+    if coarsest is None:
+        # only nu > 0 makes tractions of a translation depend on the angle, and only a little
+        base = ANGLES.index(BASE_ANGLES) + (not motion.periodic) - (not motion.rotates)
+        return Axis("angles", ANGLES, base, (base - 1, base, base + 1))
+    base = ANGLES.index(coarsest.angles) + levels_finer(1e-3 / tolerance)
+    first, caution = (base, base + 1, base + 2), PROJECTED_CAUTION["angles"]
+    return Axis("angles", ANGLES, base, first, projected=True, caution=caution)
+
+
+def _steps(problem, model, tolerance):
+    motion, levels, coarsest = problem.motion, _step_levels(problem, STEPS), _coarsest(problem)
+    if coarsest is None:
+        few_unknowns = model == "radial" and motion.half_period_mirror
+        wanted = RADIAL_STEPS if few_unknowns else BASE_STEPS
+        # second order in time
+        wanted *= (1e-3 / tolerance) ** 0.5
+        base = next(k for k, count in enumerate(STEPS) if count >= max(wanted, BASE_STEPS))
+        caution = RADIAL_CAUTION if few_unknowns else 1.0
+        if not motion.half_period_mirror:
+            caution = TURNING_CAUTION
+        return Axis("steps", levels, base, (base - 2, base - 1, base), caution=caution)
+    base = STEPS.index(coarsest.steps) + levels_finer(1e-3 / tolerance) // 2
+    caution, scatter = PROJECTED_CAUTION["steps"], PROJECTED_SCATTER
     first = (base - 2, base - 1, base)
-    return Axis("steps", _step_levels(problem, STEPS), base, first, caution=caution)
+    return Axis("steps", levels, base, first, projected=True, caution=caution, scatter=scatter)

@@ -9,7 +9,7 @@ functions that ask it, and by nothing else: the workflow reads this whenever it 
 from collections.abc import Iterable
 
 from microslip.config import axes
-from microslip.config.records import TAKEN, ConfigError
+from microslip.config.records import TAKEN, ConfigError, Sweep
 from microslip.foundation import named_files
 from microslip.foundation.errors import InputError
 
@@ -186,7 +186,7 @@ def _ask_of_drive(sweep, scene):
         refuse_drive(problem, drive, model)
 
 
-def solver_names(sweep) -> tuple[str, str]:
+def solver_names(sweep: Sweep) -> tuple[str, str]:
     """Names of a Sweep's scene and pressure as the solver writes them, however they were given.
 
     Equal ones are written alike, so that their points are found again.

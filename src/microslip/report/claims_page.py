@@ -8,6 +8,7 @@ import os
 from html import escape
 
 import numpy as np
+import xarray as xr
 import yaml
 
 from microslip.studies.claims.static_limits import FORMULAS, SPLIT
@@ -29,7 +30,7 @@ PARTS_OF_SHIFT = ("from_velocity", "from_resolution")
 MOTIONS = {"transverse": "Transverse oscillation", "bore": "Oscillating bore"}
 
 
-def write(path: str | os.PathLike, dataset, lines: list[str]) -> None:
+def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:
     """Write the page of the xarray.Dataset; lines: list of what its report says.
 
     Raises CacheError as `sealed_files.writing_beside` does.
@@ -38,7 +39,7 @@ def write(path: str | os.PathLike, dataset, lines: list[str]) -> None:
         beside.write_text(page(dataset, lines), encoding="utf-8", newline="\n")
 
 
-def page(dataset, lines: list[str]) -> str:
+def page(dataset: xr.Dataset, lines: list[str]) -> str:
     """The page as text; it depends on its arguments alone."""
     data = {name: dataset[name].values for name in dataset.variables}
     title = escape(dataset.attrs.get("title", ""))

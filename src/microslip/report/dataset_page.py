@@ -4,6 +4,7 @@ import json
 import os
 from html import escape
 
+import xarray as xr
 import yaml
 
 from microslip.sweeps.sealed_files import writing_beside
@@ -13,7 +14,7 @@ RANGES = ("mu_macro", "mu_macro_error", "mu_torque", "reference_error", "seconds
 MOST_LINES = 40
 
 
-def write(path: str | os.PathLike, dataset, lines: list[str]) -> None:
+def write(path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:
     """Write the page of an xarray.Dataset; lines: list of what its report says.
 
     Raises CacheError as `sealed_files.writing_beside` does.
@@ -26,7 +27,7 @@ def write(path: str | os.PathLike, dataset, lines: list[str]) -> None:
         beside.write_text(f"{head}\n<pre>{text}</pre></html>\n", encoding="utf-8", newline="\n")
 
 
-def page(dataset, lines: list[str]) -> str:
+def page(dataset: xr.Dataset, lines: list[str]) -> str:
     """Return the text of the page; it depends on its arguments alone."""
     attributes = dict(dataset.attrs)
     parts = [attributes.pop("title", ""), "", *lines[:MOST_LINES]]

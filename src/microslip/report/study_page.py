@@ -2,13 +2,15 @@
 
 import os
 
+import xarray as xr
+
 from microslip.report import claims_page, dataset_page
 
 _PAGES = {"claims": claims_page}
 """Those that have a page of their own."""
 
 
-def write(study: str, path: str | os.PathLike, dataset, lines: list[str]) -> None:
+def write(study: str, path: str | os.PathLike, dataset: xr.Dataset, lines: list[str]) -> None:
     """Write the page about a study's dataset; lines: those of its report.
 
     Raises CacheError as `sealed_files.writing_beside` does.

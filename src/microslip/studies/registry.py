@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import asdict
 from importlib import import_module
 
+from microslip.config.records import Configuration
 from microslip.studies.accuracy import accuracy_cost
 from microslip.studies.claims import claims
 from microslip.studies.driving import driving
@@ -32,17 +33,17 @@ _ASKED = {
 }
 
 
-def pieces(study: str, configuration) -> tuple[list, list]:
+def pieces(study: str, configuration: Configuration) -> tuple[list, list]:
     """What one job each answers: two lists of lists of requests, those that take long first."""
     return _ASKED[study].pieces(getattr(configuration, study))
 
 
-def settings(study: str, configuration) -> dict:
+def settings(study: str, configuration: Configuration) -> dict:
     """All settings that the dataset of a study depends on, as a dict for JSON."""
     return asdict(getattr(configuration, study))
 
 
-def build(study: str, configuration, answer: Callable) -> object:
+def build(study: str, configuration: Configuration, answer: Callable) -> object:
     """Assemble the xarray.Dataset of a study.
 
     configuration: records.Configuration. answer(request) -> record, see microslip.sweeps.batches.

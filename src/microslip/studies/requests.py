@@ -8,8 +8,9 @@
 - scaling: what a step costs at one size.
 """
 
+from microslip.config.records import StudyPoint
 from microslip.foundation.canonical import number
-from microslip.studies.ladders import exact_model
+from microslip.studies.ladders import Level, exact_model
 
 RINGS_TOLERANCE, TOLERANCE = 1e-6, 3e-5
 """Of references: with rings alone, which are cheap, and with angular points."""
@@ -17,7 +18,7 @@ MOST_WORK = 5_000_000
 """Step solves x unknowns that a probe may take: several times what the shipped method needs."""
 
 
-def of_point(point) -> dict:
+def of_point(point: StudyPoint) -> dict:
     """The part of a request that says where: point is a records.StudyPoint."""
     return {
         "scene": point.scene,
@@ -27,7 +28,9 @@ def of_point(point) -> dict:
     }
 
 
-def trial(point, model: str, method: str, level, tolerance: float, repeats: int) -> dict:
+def trial(
+    point: StudyPoint, model: str, method: str, level: Level, tolerance: float, repeats: int
+) -> dict:
     """One timed run; level: ladders.Level.  A steady motion takes no steps."""
     return of_point(point) | {
         "kind": "trial",
@@ -41,14 +44,18 @@ def trial(point, model: str, method: str, level, tolerance: float, repeats: int)
     }
 
 
-def choice(point, tolerance: float, repeats: int) -> dict:
+def choice(point: StudyPoint, tolerance: float, repeats: int) -> dict:
     """One timed solve, as anybody would call it."""
     kind = {"kind": "choice", "tolerance": number(tolerance), "repeats": repeats}
     return of_point(point) | kind
 
 
 def probe(
-    point, method: str, tolerance: float, cells: int | None = None, steps: int | None = None
+    point: StudyPoint,
+    method: str,
+    tolerance: float,
+    cells: int | None = None,
+    steps: int | None = None,
 ) -> dict:
     """One solve with another method, on a budget; cells, steps: imposed resolution, None: by the
     tolerance."""
@@ -57,7 +64,7 @@ def probe(
     return of_point(point) | kind | {"cells": cells, "steps": steps} | budget
 
 
-def reference(point, tolerance: float | None = None) -> dict:
+def reference(point: StudyPoint, tolerance: float | None = None) -> dict:
     """An ordinary point; tolerance: None for what a reference is worth."""
     if tolerance is None:
         rings = exact_model(point.scene, point.poisson) == "radial"

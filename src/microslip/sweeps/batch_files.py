@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import re
+from collections.abc import Iterable
 from pathlib import Path
 
 from microslip.sweeps.cache import line_of, record_in
@@ -18,7 +19,7 @@ NOT_FINAL = b" not final\n"
 """How the last line of a batch ends whose results need not last."""
 
 
-def write_batch(path, records, final=True):
+def write_batch(path: Path, records: Iterable[dict], final: bool = True) -> None:
     """Write records to the file of a batch, all of them or nothing.
 
     Each line is as in the file of a single result; the last one is the checksum of all before it.
@@ -29,7 +30,7 @@ def write_batch(path, records, final=True):
     write_atomically(path, with_checksum(content, final))
 
 
-def read_batch(path):
+def read_batch(path: Path) -> list[dict] | None:
     """The records in the file of a batch, in their order, a list; None if it is damaged.
 
     Raises CacheError if there is no such file or reading is not allowed.
@@ -39,7 +40,7 @@ def read_batch(path):
     return records if records and None not in records else None
 
 
-def why_not_whole(path):
+def why_not_whole(path: Path) -> str:
     """Why the file of a batch has to be made again, in a few words; "" if it has not.
 
     Raises CacheError as `read_batch` does.
@@ -79,7 +80,7 @@ class Records:
                 self._places[KEY.match(line)[1].decode()] = path, begin, len(line)
                 begin += len(line)
 
-    def get(self, key):
+    def get(self, key: str) -> dict | None:
         """The record with this key, None if there is none."""
         if key not in self._places:
             return None
@@ -93,13 +94,13 @@ KEY = re.compile(rb'{"checksum":"[0-9a-f]{64}","record":{"key":"([0-9a-f]{64})"'
 """How the line of a record begins."""
 
 
-def with_checksum(content, final=True):
+def with_checksum(content: bytes, final: bool = True) -> bytes:
     """Lines, bytes, and one more that holds their checksum, and whether they are final."""
     checksum = hashlib.sha256(content).hexdigest().encode()
     return content + checksum + (b"\n" if final else NOT_FINAL)
 
 
-def without_checksum(text):
+def without_checksum(text: bytes) -> tuple[bytes, bool]:
     """What `with_checksum` was given: lines, bytes, none if they are damaged; and `final`."""
     end = text.rfind(b"\n", 0, -1) + 1
     final = not text.endswith(NOT_FINAL)

@@ -11,14 +11,16 @@ import logging
 import math
 import platform
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
 
 from microslip.config.axes import DRIVES
 from microslip.config.extended import solver_names
-from microslip.config.records import HISTORIES_OF_SWEEP
+from microslip.config.records import HISTORIES_OF_SWEEP, Configuration
 from microslip.foundation import source_digest
 from microslip.foundation.canonical import number
 from microslip.sweeps import batch_files, evaluate
+from microslip.sweeps.cache import Store
 from microslip.sweeps.keys import batch_name, result_key
 from microslip.sweeps.sealed_files import CacheError
 
@@ -85,7 +87,7 @@ class PointRequests(Sequence):
         return self._common | {name: at[name] for name in self._axes}
 
 
-def history_requests(configuration, name):
+def history_requests(configuration: Configuration, name: str) -> list[dict]:
     """List the requests for the single runs that go into the dataset of the sweep `name`; none for
     one of `extended`."""
     given = configuration.histories
@@ -107,29 +109,29 @@ def _single(kind, scene, settings, **more):
     return {"kind": kind, "scene": scene} | settings | numbers | more
 
 
-def key_of(request):
+def key_of(request: dict) -> str:
     """Name of the result that answers a request with the code that is running."""
     return result_key(request, source_digest.of_request(request))
 
 
-def batches(requests, size):
+def batches(requests: Sequence[dict], size: int) -> dict[str, Sequence[dict]]:
     """Cut requests into lists of `size` and return them by name; the name tells the content."""
     cuts = (requests[i : i + size] for i in range(0, len(requests), size))
     return {name_of_batch(cut): cut for cut in cuts}
 
 
-def name_of_batch(requests):
+def name_of_batch(requests: Sequence[dict]) -> str:
     """Name of the batch that answers these requests with the code that is running."""
     return batch_name([key_of(request) for request in requests])
 
 
-def group(request):
+def group(request: dict) -> str:
     """Name the subfolder of the store that a request's result goes to."""
     scene = request.get("scene", request.get("model"))
     return "/".join([FOLDERS[request["kind"]], scene.partition(":")[0]])  # numbers apart
 
 
-def answer(request, store, time_limit=None):
+def answer(request: dict, store: Store, time_limit: float | None = None) -> dict:
     """Return the record that answers `request` and the CPU seconds that the solver took for it.
 
     It comes from the store if that has it (0 seconds), else it is computed and stored. The record
@@ -175,7 +177,9 @@ class SourcesEdited(CacheError):
         self.record = record
 
 
-def run_batch(requests, store, progress=iter, name=None):
+def run_batch(
+    requests: Sequence[dict], store: Store, progress: Callable = iter, name: str | None = None
+) -> tuple[list[dict], dict]:
     """Answer every request; return the records (list) and statistics of the batch (dict).
 
     progress: wraps the list of requests and yields them one by one, such as tqdm. The records
@@ -198,7 +202,7 @@ def run_batch(requests, store, progress=iter, name=None):
     return records, statistics
 
 
-def records_in(paths):
+def records_in(paths: Iterable[Path]) -> Iterator[tuple[str, dict]]:
     """Records in the files of batches, one by one in their order.
 
     Raises CacheError, one line that says what to do, for a file that is damaged.
@@ -210,7 +214,7 @@ def records_in(paths):
         yield from records
 
 
-def records_for(requests, paths):
+def records_for(requests: Iterable[dict], paths: Iterable[Path]) -> Iterator[dict]:
     """Records in the files of batches, one by one, each the answer to the next of the requests.
 
     They may lie in any order, and others between them. Raises CacheError as `records_in` does, and
@@ -227,13 +231,13 @@ def records_for(requests, paths):
         yield record
 
 
-def lookup(records):
+def lookup(records: Iterable[dict]) -> Callable[[dict], dict]:
     """A function that finds the record that answers a request among these."""
     found = {record["key"]: record for record in records}
     return lambda request: found[key_of(request)]
 
 
-def label(request):
+def label(request: dict) -> str:
     """Describe a request in a few words, for messages."""
     names = ["pressure", "poisson", "amplitude", "velocity", *DRIVES, "start"]
     if request["kind"] != "point":

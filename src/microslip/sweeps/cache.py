@@ -25,11 +25,11 @@ class Store:
         self.folder = Path(folder)
         self._tried = False
 
-    def path(self, group, key):
+    def path(self, group: str, key: str) -> Path:
         """Path of the result `key`; group is a subfolder that keeps scenes apart."""
         return self.folder / group / key[:2] / f"{key}.json"
 
-    def read(self, group, key):
+    def read(self, group: str, key: str) -> dict | None:
         """Return the record (dict) stored under `key`, or None if there is none to be trusted.
 
         A damaged file is reported through logging. Raises CacheError if reading is not allowed.
@@ -47,7 +47,7 @@ class Store:
             return None
         return record
 
-    def write(self, group, key, record):
+    def write(self, group: str, key: str, record: dict) -> Path:
         """Store `record`, a dict of plain JSON values without NaN, and return its path.
 
         The same key always holds the same answer, so a file that is there is replaced. Raises
@@ -69,13 +69,13 @@ class Store:
         self._tried = True
 
 
-def line_of(record):
+def line_of(record: dict) -> bytes:
     """The line, bytes, that holds a record with its checksum."""
     checksum = sha256(canonical_json(record))
     return f"{canonical_json({'checksum': checksum, 'record': record})}\n".encode()
 
 
-def record_in(text):
+def record_in(text: bytes) -> dict | None:
     """The record in such a line; None if it is anything else than what its record writes."""
     try:
         record = json.loads(text)["record"]

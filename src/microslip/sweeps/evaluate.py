@@ -6,6 +6,7 @@ See microslip.sweeps.batches for what a request is. The solver is imported only 
 import logging
 import math
 import time
+from collections.abc import Callable
 from statistics import median
 
 import microslip
@@ -22,7 +23,7 @@ FIRST_COUNTS = 8.0
 """CPU seconds of a first call from which on it is the only one; loading kernels takes some 0.1."""
 
 
-def computed(request, time_limit=None):
+def computed(request: dict, time_limit: float | None = None) -> dict:
     """Ask the solver; the result as a dict of values that JSON can hold.
 
     time_limit: of a point, as for microslip.solve. Whatever is raised is an answer, too: a result
@@ -43,7 +44,7 @@ def computed(request, time_limit=None):
         return {"converged": False, "crashed": True, "reason": reason}
 
 
-def is_final(result):
+def is_final(result: dict) -> bool:
     """Whether equal requests have this result for ever.
 
     Not so what ran out of time or of memory, or fell over what the next version of a library or of
@@ -52,7 +53,7 @@ def is_final(result):
     return not result.get("crashed") and result.get("exhausted") != "time"
 
 
-def timed(run, repeats):
+def timed(run: Callable, repeats: int) -> tuple[object, float]:
     """Return what `run()` gives and the CPU seconds that it takes, compiled and with warm caches.
 
     The first call is not counted, unless it takes so long that compiling is next to nothing of it.
@@ -250,7 +251,7 @@ def _timed(run, repeats):
     return dict(result) | {"seconds": seconds}
 
 
-def plain(value):
+def plain(value: object) -> object:
     """Python values that JSON can hold, from NumPy's or a dict of them; NaN becomes None."""
     if isinstance(value, dict):
         return {str(name): plain(item) for name, item in value.items()}

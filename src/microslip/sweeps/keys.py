@@ -9,13 +9,15 @@ Each result records them instead.
 Imports nothing but the standard library, since the workflow reads it whenever it is parsed.
 """
 
+from collections.abc import Iterable
+
 from microslip.foundation.canonical import canonical_json, sha256
 
 # Raise it when the content of a record changes without any change in the solver.
 RECORD_FORMAT = 1
 
 
-def result_key(request, digest):
+def result_key(request: dict, digest: str) -> str:
     """Name of the result that answers `request` when the code has this digest.
 
     request: dict of canonical strings, integers and None, see sweeps.batches; digest: of the
@@ -25,6 +27,6 @@ def result_key(request, digest):
     return sha256(canonical_json(content))
 
 
-def batch_name(keys):
+def batch_name(keys: Iterable[str]) -> str:
     """Name of a batch that holds the results with these keys, in this order."""
     return sha256("\n".join(keys))[:16]

@@ -17,7 +17,7 @@ DECIMALS = 7
 HISTORIES = ("phase", "forward", "lateral", "angle", "force_forward", "force_lateral", "torque")
 
 
-def packed(period, angles):
+def packed(period, angles: int) -> dict:
     """A period.Period as a dict of plain values and texts; angles: points on half a ring.
 
     Of a scene whose second half of a period is the mirror image of the first.
@@ -48,7 +48,7 @@ def packed(period, angles):
     }
 
 
-def unpacked_half(result):
+def unpacked_half(result: dict) -> tuple[np.ndarray, np.ndarray]:
     """Tractions in steps of bound/127 (int8) and slips (bool) as kept: half the disc and period.
 
     Shapes (steps/2 + 1, 2, angles, cells), forward and lateral, and (steps/2 + 1, angles, cells).
@@ -60,13 +60,13 @@ def unpacked_half(result):
     return shares, bits.astype(bool).reshape(shape)
 
 
-def text_of(values):
+def text_of(values: np.ndarray) -> str:
     """The bytes of an array as base64; little end first, whatever the machine."""
     ordered = np.ascontiguousarray(values)
     ordered = ordered.astype(ordered.dtype.newbyteorder("<"), copy=False)
     return base64.b64encode(ordered.tobytes()).decode("ascii")
 
 
-def values_of(text, kind):
+def values_of(text: str, kind: str) -> np.ndarray:
     """The array that `text_of` made a text of, flat; kind: its type."""
     return np.frombuffer(base64.b64decode(text), np.dtype(kind).newbyteorder("<"))

@@ -8,6 +8,7 @@ import logging
 import os
 import time
 import uuid
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -25,7 +26,7 @@ BEGINNINGS = {".nc": b"\x89HDF", ".png": b"\x89PNG", ".pdf": b"%PDF"}
 ABANDONED = 3600.0
 
 
-def refuse_no_folder(folder):
+def refuse_no_folder(folder: Path) -> None:
     """Raise CacheError for what is not the name of a folder: nothing, what is no text, and a ~ that
     no shell has replaced, which would become a folder of that name."""
     named = isinstance(folder, str | os.PathLike) and isinstance(os.fspath(folder), str)
@@ -37,7 +38,7 @@ def refuse_no_folder(folder):
         raise CacheError(f"{shown(name)} is not allowed; {home}")
 
 
-def refuse_unusable(folders, files):
+def refuse_unusable(folders: Iterable[Path], files: Iterable[Path]) -> None:
     """Raise CacheError where a file is in the place of a folder, or a folder in that of a file.
 
     folders, files: to be made in time, with all folders above them. Makes nothing itself.
@@ -54,7 +55,7 @@ def refuse_unusable(folders, files):
         raise CacheError(advice("use", folder, error)) from error
 
 
-def write_atomically(path, content):
+def write_atomically(path: Path, content: bytes) -> None:
     """Write bytes to `path` so that it holds all of them or what it held before.
 
     Raises CacheError, one line that says what to do, where the system refuses.
@@ -64,7 +65,7 @@ def write_atomically(path, content):
 
 
 @contextmanager
-def writing_beside(path, sealed=False):
+def writing_beside(path: Path, sealed: bool = False) -> Iterator[Path]:
     """Context that yields a Path beside `path` to write to, and puts it in place at its end.
 
     The file is flushed to disk before it is renamed; sealed: with its checksum, see `is_damaged`.
@@ -119,7 +120,7 @@ def _cause(error, beside):
     return error
 
 
-def check_room(folder):
+def check_room(folder: Path) -> None:
     """Write a small file to a folder and remove it; raises OSError where that is refused."""
     trial = _unique_beside(Path(folder, "room"))
     try:
@@ -132,7 +133,7 @@ def check_room(folder):
             trial.unlink()
 
 
-def clear_abandoned(folder):
+def clear_abandoned(folder: Path) -> list[Path]:
     """Remove what processes that were killed have left half written; return the paths.
 
     A file that has been written to within the last hour is left alone, and so is one whose process
@@ -163,7 +164,7 @@ def _may_run(path):
 # Seals: a checksum beside a file, and what the file is made of
 
 
-def seal_of(path):
+def seal_of(path: Path) -> Path:
     """Path of the seal that stands beside a file."""
     path = Path(path)
     return path.with_name(f".{path.name}.sha256")
@@ -192,7 +193,7 @@ def _set_aside(path):
         log.warning("%s was not as the workflow made it: it is kept as %s", path, aside)
 
 
-def mark(paths, fingerprint):
+def mark(paths: Iterable[Path], fingerprint: str) -> None:
     """Add to the seals of files what they are made of; fingerprint: see keys.fingerprint.
 
     Raises CacheError as `writing_beside` does.
@@ -201,7 +202,7 @@ def mark(paths, fingerprint):
         _write_seal(path, *_seal(path)[:1], fingerprint)
 
 
-def is_made_of(path, fingerprint):
+def is_made_of(path: Path, fingerprint: str) -> bool:
     """Whether a file is whole, and of these inputs by this code; False where there is no file."""
     try:
         return _seal(path)[1:] == [fingerprint] and Path(path).exists() and not is_damaged(path)
@@ -209,7 +210,7 @@ def is_made_of(path, fingerprint):
         raise CacheError(advice("read", path, error)) from error
 
 
-def is_damaged(path):
+def is_damaged(path: Path) -> bool:
     """Whether a file is not what was sealed, or without a seal not what its name says.
 
     False where there is no file.
@@ -226,7 +227,7 @@ def is_damaged(path):
         raise CacheError(advice("read", path, error)) from error
 
 
-def advice(verb, path, error):
+def advice(verb: str, path: Path, error: OSError) -> str:
     """One line: what could not be done, why, and what to do about it."""
     reason = getattr(error, "strerror", None) or error
     return (

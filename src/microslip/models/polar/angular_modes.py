@@ -26,6 +26,9 @@ FUSED = {"fastmath": {"contract"}}
 LARGEST_DENSE = 96
 """Unknowns in a sector up to which its dense matrix is faster than its modes."""
 
+SHARED_MODES = (9, 17, 33)
+"""Modes that kernels are averaged for together, so that runs at 4, 6 and 8 angles share them."""
+
 
 class Sectors(NamedTuple):
     """An operator on folded tractions (4, M/2, N), for compiled code.
@@ -168,6 +171,31 @@ def _mode_blocks(keys, near, far, kappa, ratio):
     return members, blocks
 
 
+def _modes_to_know(angles):
+    """Modes to average the kernels for: those of more angles too, as runs differ in these alone."""
+    return next((most for most in SHARED_MODES if angles < most), angles + 1)
+
+
+@lru_cache(maxsize=8)
+def _shared_influence(psi, n_modes, coupled, modulus):
+    """Mode matrices of rings with the edges `psi`, see ring_influence."""
+    return ring_influence(np.array(psi), n_modes, coupled, modulus=modulus)
+
+
+@lru_cache
+def _transforms(angles, rotates, coupled):
+    """Keys of the modes of every sector, and their values at the points and the inverse of these,
+    (sectors, Z, Z) each."""
+    groups = waves(angles, rotates, coupled)
+    z = len(groups[0])
+    to_points = np.zeros((len(groups), z, z))
+    for s, group in enumerate(groups):
+        rows = [part for part in range(4) if any(wave[part].any() for _, wave in group)]
+        to_points[s] = np.stack([wave[rows].ravel() for _, wave in group], axis=1)
+    keys = [[key for key, _ in group] for group in groups]
+    return keys, to_points, np.linalg.inv(to_points)
+
+
 @lru_cache(maxsize=32)
 def influence_sectors(
     cells: int,
@@ -180,16 +208,12 @@ def influence_sectors(
     """The operator (a Sectors that keeps its modes) and the self-influence of each ring (N,)."""
     kappa = poisson / (2.0 - poisson)
     rings = make_rings(cells, focus, pressure)
-    near, far = ring_influence(rings.psi, angles + 1, poisson > 0.0, modulus=pressure.G_star)
+    near, far = _shared_influence(
+        tuple(rings.psi), _modes_to_know(angles), poisson > 0.0, pressure.G_star
+    )
     ratio = rings.area[:, None] / rings.area[None, :]  # the transpose in the area-weighted product
-    groups = waves(angles, rotates, poisson > 0.0)
-    z = len(groups[0])
-    to_points = np.zeros((len(groups), z, z))
-    found = []
-    for s, group in enumerate(groups):
-        rows = [part for part in range(4) if any(wave[part].any() for _, wave in group)]
-        to_points[s] = np.stack([wave[rows].ravel() for _, wave in group], axis=1)
-        found.append(_mode_blocks([key for key, _ in group], near, far, kappa, ratio))
+    groups, to_points, to_modes = _transforms(angles, rotates, poisson > 0.0)
+    found = [_mode_blocks(keys, near, far, kappa, ratio) for keys in groups]
     most = max(len(members) for members, _ in found)
     size = max(len(block) for _, blocks in found for block in blocks)
     members = np.full((len(groups), most, 2), -1)
@@ -199,7 +223,7 @@ def influence_sectors(
         for k, block in enumerate(blocks):
             packed[s, k, : len(block), : len(block)] = block.T
     none = np.zeros((0, 0, 0))
-    operator = Sectors(none, np.linalg.inv(to_points), to_points, members, packed)
+    operator = Sectors(none, to_modes, to_points, members, packed)
     return operator, np.ascontiguousarray(np.diag(near[0]))
 
 
@@ -223,16 +247,21 @@ def quickest(operator: Sectors) -> Sectors:
     """The same operator in the form that is applied fastest at its size."""
     sectors, z = operator.to_modes.shape[:2]
     rings = operator.blocks.shape[2] // (1 if (operator.members[:, :, 1] < 0).all() else 2)
-    size = z * rings
-    if size > LARGEST_DENSE:
+    if z * rings > LARGEST_DENSE:
         return operator
-    dense = np.empty((sectors, size, size))
-    unit = np.zeros((4, sectors * z // 4, rings))
-    image = np.empty_like(unit)
-    for s in range(sectors):
-        for j in range(size):
-            unit[:] = 0.0
-            unit.reshape(sectors, size)[s, j] = 1.0
-            apply_sectors(operator, unit, image)
-            dense[s, j] = image.reshape(sectors, size)[s]
+    dense = np.empty((sectors, z * rings, z * rings))
+    _columns(operator, np.zeros((4, sectors * z // 4, rings)), dense)
     return operator._replace(dense=dense)
+
+
+@kernel
+def _columns(operator, unit, dense):
+    """Fill dense, (sectors, n, n), with the images of unit tractions; unit: zeros, folded."""
+    image = np.empty_like(unit)
+    flat, images = unit.reshape(dense.shape[:2]), image.reshape(dense.shape[:2])
+    for s in range(dense.shape[0]):
+        for j in range(dense.shape[1]):
+            flat[s, j] = 1.0
+            apply_sectors(operator, unit, image)
+            flat[s, j] = 0.0
+            dense[s, j] = images[s]

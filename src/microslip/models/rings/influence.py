@@ -18,6 +18,7 @@ friction, motion or time.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -161,6 +162,7 @@ def _all_pairs(averaging, near, far):
                 _close_pair(averaging, j, i, near, far)
 
 
+@lru_cache
 def _unit_gauss(n, power):
     """Gauss-Legendre rule on [0, 1], clustered at 0 by t -> t^power."""
     x, w = np.polynomial.legendre.leggauss(n)
@@ -168,6 +170,7 @@ def _unit_gauss(n, power):
     return t**power, w * power * t ** (power - 1)
 
 
+@lru_cache
 def _smooth_ends_gauss(n):
     """Gauss-Legendre rule on [0, 1], clustered at both ends (t -> 3 t^2 - 2 t^3)."""
     x, w = np.polynomial.legendre.leggauss(n)

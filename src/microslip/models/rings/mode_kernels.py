@@ -6,6 +6,9 @@ import numpy as np
 
 from microslip.foundation.compiled import kernel
 
+MOST_GROWTH = 2.5
+"""Of a rounding error in an upward recurrence, as half the exponent: e^5 times."""
+
 
 @kernel
 def _elliptic_ke(kc):
@@ -42,7 +45,7 @@ def toroidal_kernels(r: float, s: float, out: np.ndarray) -> None:
     chi_minus_1 = (r - s) ** 2 / (2.0 * r * s)
     chi = 1.0 + chi_minus_1
     decay = np.log1p(chi_minus_1 + np.sqrt(chi_minus_1 * (chi + 1.0)))
-    if decay * n < 1.0:
+    if decay * n < MOST_GROWTH:
         modulus = 2.0 * np.sqrt(r * s) / (r + s)
         q1 = chi * modulus * big_k - np.sqrt(2.0 * (chi + 1.0)) * big_e
         out[1] = q1 / (np.pi * np.sqrt(r * s))

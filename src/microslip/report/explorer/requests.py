@@ -1,5 +1,6 @@
 """Which periods the page needs: one for every point of the maps that moves and oscillates."""
 
+from microslip.config.records import Configuration
 from microslip.foundation.canonical import number
 
 MAPS = ("transverse", "bore")
@@ -11,7 +12,7 @@ MOST_POINTS = 5000
 """Points of a map on a page; one takes some 260 bytes of it."""
 
 
-def maps_of(configuration) -> list[str]:
+def maps_of(configuration: Configuration) -> list[str]:
     """Names of the sweeps that the page shows as maps, a list."""
     return [
         name
@@ -20,7 +21,7 @@ def maps_of(configuration) -> list[str]:
     ]
 
 
-def refusal(configuration) -> str | None:
+def refusal(configuration: Configuration) -> str | None:
     """Why there can be no page for a configuration, one line; None if there can."""
     names = maps_of(configuration)
     if not names:
@@ -39,7 +40,7 @@ def refusal(configuration) -> str | None:
     return None
 
 
-def period_requests(configuration, name: str) -> list[dict]:
+def period_requests(configuration: Configuration, name: str) -> list[dict]:
     """List the requests for periods of the points of a map, amplitude by amplitude.
 
     Where there are more points than a page can hold, every second, third, ... of both axes has

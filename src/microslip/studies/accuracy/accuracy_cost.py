@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from itertools import groupby
 
 from microslip.config.load import StudyPoint
+from microslip.config.records import Accuracy
 from microslip.solver.method_names import SHIPPED
 from microslip.studies import requests
 from microslip.studies.ladders import ladder, models_for
@@ -37,7 +38,7 @@ LARGE, LONE_SIZES = 64, 4
 many of the sizes one job can measure together."""
 
 
-def trials(study, point: StudyPoint) -> Iterator[tuple[int, dict]]:
+def trials(study: Accuracy, point: StudyPoint) -> Iterator[tuple[int, dict]]:
     """Yield (level, request) for the trials of one point, the choices of `solve` at the end.
 
     study: records.Accuracy. The level of a choice counts its tolerances.
@@ -59,7 +60,7 @@ def truth(point: StudyPoint) -> dict | None:
     return requests.reference(point) if point.amplitude is not None else None
 
 
-def map_points(study, scene: str) -> list[StudyPoint]:
+def map_points(study: Accuracy, scene: str) -> list[StudyPoint]:
     """The points of a map as records.StudyPoint, amplitude by amplitude, the velocity fastest."""
     return [
         StudyPoint("", scene, velocity, amplitude, 0.0, "")
@@ -68,7 +69,7 @@ def map_points(study, scene: str) -> list[StudyPoint]:
     ]
 
 
-def map_trials(study, point: StudyPoint) -> list[dict]:
+def map_trials(study: Accuracy, point: StudyPoint) -> list[dict]:
     """Requests of the trials at one point of a map, all models with the shipped method."""
     repeats = min(study.repeats, MAP_REPEATS)
     return [
@@ -79,18 +80,18 @@ def map_trials(study, point: StudyPoint) -> list[dict]:
     ]
 
 
-def map_truth(study, point: StudyPoint) -> dict:
+def map_truth(study: Accuracy, point: StudyPoint) -> dict:
     """The request that the trials at a point of a map are compared with."""
     return requests.reference(point, TRUTH_SHARE * min(study.map_tolerance))
 
 
-def scaling(study, model: str) -> list[dict]:
+def scaling(study: Accuracy, model: str) -> list[dict]:
     """Requests for the sizes of a model, two at least."""
     sizes = SCALING_SIZES[model][: max(study.levels, 2)]
     return [requests.scaling(model, cells, angles, SCALING_STEPS) for cells, angles in sizes]
 
 
-def pieces(study) -> tuple[list, list]:
+def pieces(study: Accuracy) -> tuple[list, list]:
     """What one job each answers: two lists of lists of requests, those that take long first."""
     points = list(study.points.values())
     long = [[request] for request in map(truth, points) if request is not None]

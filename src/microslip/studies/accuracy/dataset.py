@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from microslip.config.quantities import MU_MACRO
+from microslip.config.records import Accuracy
 from microslip.studies.accuracy import accuracy_cost as study
 from microslip.studies.accuracy import profiles
 from microslip.studies.accuracy.fronts import cheapest, confirmed, exponent, on_front
@@ -58,7 +59,7 @@ TRIAL_VARIABLES = {
 }
 
 
-def build(settings, answer: Callable) -> xr.Dataset:
+def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
     """Assemble the Dataset.
 
     settings: records.Accuracy. answer(request) -> record, such as batches.answer with a store.

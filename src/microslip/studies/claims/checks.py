@@ -8,20 +8,25 @@ from itertools import pairwise
 
 import numpy as np
 
+from microslip.config.records import Claims
 from microslip.studies.claims import claims as asked
 from microslip.studies.claims import statements as criteria
-from microslip.studies.claims.runs import friction
+from microslip.studies.claims.runs import Runs, friction
 from microslip.studies.claims.verdicts import Check
 from microslip.studies.tables import value_of
 from microslip.theory import paper as theory
 
 
-def check(value: float, against: float, margin: float, error: np.ndarray, runs, **place) -> Check:
+def check(
+    value: float, against: float, margin: float, error: np.ndarray, runs: Runs, **place
+) -> Check:
     numbers = (float(value), float(against), float(margin), float(error))
     return Check(*numbers, tuple(run.key for run in runs), tuple(place.items()))
 
 
-def within(limit: float, value: float, against: float, error: np.ndarray, runs, **place) -> Check:
+def within(
+    limit: float, value: float, against: float, error: np.ndarray, runs: Runs, **place
+) -> Check:
     """Holds where value and against are no more than `limit` apart."""
     return check(value, against, limit - abs(value - against), error, runs, **place)
 
@@ -42,12 +47,12 @@ def _map(study, runs, scene, formula, judge, chosen=lambda amplitude: True):
 # Transverse oscillation
 
 
-def rigid_below(study, runs) -> list[Check]:
+def rigid_below(study: Claims, runs: Runs) -> list[Check]:
     formula = theory.large_amplitude_transverse
     return _map(study, runs, "transverse", formula, lambda mu, eq: mu - eq)
 
 
-def rigid_below_squares(study, runs) -> list[Check]:
+def rigid_below_squares(study: Claims, runs: Runs) -> list[Check]:
     """The paper's run claims no error: it is what the certified point next to it tells."""
     found = []
     for amplitude in asked.sliding(study):
@@ -62,7 +67,7 @@ def rigid_below_squares(study, runs) -> list[Check]:
     return found
 
 
-def rigid_near(study, runs) -> list[Check]:
+def rigid_near(study: Claims, runs: Runs) -> list[Check]:
     formula = theory.large_amplitude_transverse
     return _map(study, runs, "transverse", formula, lambda mu, eq: criteria.SLIGHT - abs(mu - eq))
 
@@ -84,15 +89,15 @@ def _settles(runs, quantity, against):
     return found
 
 
-def force_settles(study, runs) -> list[Check]:
+def force_settles(study: Claims, runs: Runs) -> list[Check]:
     return _settles(runs, "force_forward", theory.bore_forward(asked.TRANSIENT_VELOCITY))
 
 
-def torque_settles(study, runs) -> list[Check]:
+def torque_settles(study: Claims, runs: Runs) -> list[Check]:
     return _settles(runs, "torque", theory.bore_torque(asked.TRANSIENT_VELOCITY))
 
 
-def force_steady(study, runs) -> list[Check]:
+def force_steady(study: Claims, runs: Runs) -> list[Check]:
     found = []
     for velocity, request in zip(asked.STEADY_VELOCITIES, asked.steady(study), strict=True):
         run = runs(request)
@@ -125,11 +130,11 @@ def _fields(runs, index, judge):
     return found
 
 
-def on_bound(study, runs) -> list[Check]:
+def on_bound(study: Claims, runs: Runs) -> list[Check]:
     return _fields(runs, 0, lambda share: (criteria.ON_BOUND, share - criteria.ON_BOUND))
 
 
-def aligned(study, runs) -> list[Check]:
+def aligned(study: Claims, runs: Runs) -> list[Check]:
     return _fields(runs, 1, lambda angle: (criteria.ALIGNED, criteria.ALIGNED - angle))
 
 
@@ -147,15 +152,15 @@ def _steady_near(study, runs, chosen):
     return _map(study, runs, "bore", _steady_formula, judge, chosen)
 
 
-def steady_near(study, runs) -> list[Check]:
+def steady_near(study: Claims, runs: Runs) -> list[Check]:
     return _steady_near(study, runs, lambda amplitude: amplitude >= criteria.LARGE_BORE)
 
 
-def steady_near_below(study, runs) -> list[Check]:
+def steady_near_below(study: Claims, runs: Runs) -> list[Check]:
     return _steady_near(study, runs, lambda amplitude: amplitude < criteria.LARGE_BORE)
 
 
-def steady_nears(study, runs) -> list[Check]:
+def steady_nears(study: Claims, runs: Runs) -> list[Check]:
     found = []
     for before, amplitude in pairwise(study.amplitude["bore"]):
         for velocity in asked.velocities(study):
@@ -193,7 +198,7 @@ def _periods(study, runs, judge):
     return found
 
 
-def some_sticks(study, runs) -> list[Check]:
+def some_sticks(study: Claims, runs: Runs) -> list[Check]:
     def judge(right, left, cell):
         least = (right + left).min()
         return least, cell, least - cell
@@ -201,7 +206,7 @@ def some_sticks(study, runs) -> list[Check]:
     return _periods(study, runs, judge)
 
 
-def alternates(study, runs) -> list[Check]:
+def alternates(study: Claims, runs: Runs) -> list[Check]:
     def judge(right, left, _):
         half = right.size // 2
         least = int(np.argmin((right + left)[:half]))
@@ -234,14 +239,14 @@ def _rows(study, runs, scene):
             ]
 
 
-def rises_transverse(study, runs) -> list[Check]:
+def rises_transverse(study: Claims, runs: Runs) -> list[Check]:
     return _rises(_rows(study, runs, "transverse"))
 
 
-def rises_bore(study, runs) -> list[Check]:
+def rises_bore(study: Claims, runs: Runs) -> list[Check]:
     return _rises(_rows(study, runs, "bore"))
 
 
-def rises_continuous_bore(study, runs) -> list[Check]:
+def rises_continuous_bore(study: Claims, runs: Runs) -> list[Check]:
     row = [({"velocity": float(r["velocity"])}, runs(r)) for r in asked.steady(study)]
     return _rises([row])

@@ -3,11 +3,12 @@
 As in checks.py: one function for each part, (study, runs) -> list of verdicts.Check.
 """
 
+from microslip.config.records import Claims
 from microslip.studies.claims import claims as asked
 from microslip.studies.claims import statements as criteria
 from microslip.studies.claims import static_limits as static
 from microslip.studies.claims.checks import check, within
-from microslip.studies.claims.runs import friction
+from microslip.studies.claims.runs import Runs, friction
 from microslip.theory import paper
 
 
@@ -36,11 +37,11 @@ def _formula_above(study, runs, scene, formula, chosen):
     return _at_limit(study, runs, scene, judge, chosen)
 
 
-def slider_above(study, runs) -> list:
+def slider_above(study: Claims, runs: Runs) -> list:
     return _formula_above(study, runs, "transverse", paper.static_slider, _below_one)
 
 
-def zone_nearer(study, runs) -> list:
+def zone_nearer(study: Claims, runs: Runs) -> list:
     def judge(amplitude, limit):
         zone = paper.static_transverse(amplitude)
         return zone, abs(paper.static_slider(amplitude) - limit) - abs(zone - limit)
@@ -48,11 +49,11 @@ def zone_nearer(study, runs) -> list:
     return _at_limit(study, runs, "transverse", judge, _below_one)
 
 
-def zone_above(study, runs) -> list:
+def zone_above(study: Claims, runs: Runs) -> list:
     return _formula_above(study, runs, "transverse", paper.static_transverse, _below_one)
 
 
-def slider_above_march(study, runs) -> list:
+def slider_above_march(study: Claims, runs: Runs) -> list:
     return _above_march(study, runs, "transverse", paper.static_slider, _below_one)
 
 
@@ -86,21 +87,21 @@ def _bore_zone(study, runs, judge, chosen):
     return _at_limit(study, runs, "bore", of, chosen)
 
 
-def bore_zone_near(study, runs) -> list:
+def bore_zone_near(study: Claims, runs: Runs) -> list:
     return _bore_zone(study, runs, lambda eq, mu: criteria.GOOD - abs(eq - mu), _above_turning)
 
 
-def bore_zone_relative(study, runs) -> list:
+def bore_zone_relative(study: Claims, runs: Runs) -> list:
     return _bore_zone(
         study, runs, lambda eq, mu: criteria.RELATIVE * mu - abs(eq - mu), _above_turning
     )
 
 
-def bore_zone_above(study, runs) -> list:
+def bore_zone_above(study: Claims, runs: Runs) -> list:
     return _formula_above(study, runs, "bore", paper.static_bore, _below_turning)
 
 
-def bore_zone_printed(study, runs) -> list:
+def bore_zone_printed(study: Claims, runs: Runs) -> list:
     def judge(amplitude, limit):
         printed = paper.static_bore_printed(amplitude)
         return printed, criteria.GOOD - abs(printed - limit)
@@ -108,11 +109,11 @@ def bore_zone_printed(study, runs) -> list:
     return _at_limit(study, runs, "bore", judge, _above_turning)
 
 
-def bore_zone_above_march(study, runs) -> list:
+def bore_zone_above_march(study: Claims, runs: Runs) -> list:
     return _above_march(study, runs, "bore", paper.static_bore, _below_turning)
 
 
-def bore_zone_seen(study, runs) -> list:
+def bore_zone_seen(study: Claims, runs: Runs) -> list:
     found = []
     for amplitude in filter(_above_turning, asked.limited(study, "bore")):
         run = runs(asked.point(study, "bore", asked.PAPER_VELOCITY, amplitude))
@@ -125,12 +126,12 @@ def bore_zone_seen(study, runs) -> list:
 # Whether anything is left, at any amplitude
 
 
-def limit_positive(study, runs) -> list:
+def limit_positive(study: Claims, runs: Runs) -> list:
     asked_for = [asked.point(study, "bore", 0.0, a) for a in study.amplitude["bore"]]
     return _positive(runs, asked_for)
 
 
-def limit_positive_rings(study, runs) -> list:
+def limit_positive_rings(study: Claims, runs: Runs) -> list:
     amplitudes = asked.limited(study, "bore")
     return _positive(runs, [asked.resolved_limit(study, "bore", a) for a in amplitudes])
 
@@ -146,7 +147,7 @@ def _positive(runs, asked_for):
     return found
 
 
-def limit_asymptote(study, runs) -> list:
+def limit_asymptote(study: Claims, runs: Runs) -> list:
     found = []
     for amplitude in study.amplitude["bore"]:
         if amplitude < criteria.FAR:

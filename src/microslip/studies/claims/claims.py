@@ -6,6 +6,7 @@ own numbers or a look inside are wanted there are single runs.
 """
 
 from microslip.config.load import STATIC_AMPLITUDES, StudyPoint
+from microslip.config.records import Claims
 from microslip.foundation.canonical import number
 from microslip.studies import requests
 from microslip.studies.ladders import exact_model
@@ -34,13 +35,13 @@ FEW = 2
 """Runs of the paper in one job."""
 
 
-def velocities(study) -> list[float]:
+def velocities(study: Claims) -> list[float]:
     """Velocities of the study and the paper's smallest one, ascending; study: records.Claims."""
     return sorted({*study.velocity, PAPER_VELOCITY})
 
 
 def point(
-    study,
+    study: Claims,
     scene: str,
     velocity: float,
     amplitude: float | None = None,
@@ -53,12 +54,12 @@ def point(
     return requests.of_point(place) | kind | {"cells": cells, "steps": None}
 
 
-def resolved_limit(study, scene: str, amplitude: float) -> dict:
+def resolved_limit(study: Claims, scene: str, amplitude: float) -> dict:
     """The static limit on rings: the oscillation's tractions computed, no closed form in it."""
     return point(study, scene, 0.0, amplitude, exact_model(scene, 0.0))
 
 
-def limit_on_squares(study, scene: str, amplitude: float) -> dict:
+def limit_on_squares(study: Claims, scene: str, amplitude: float) -> dict:
     """The static limit on the paper's squares."""
     return point(study, scene, 0.0, amplitude, "cartesian", PAPER_SQUARES)
 
@@ -87,7 +88,7 @@ def field(velocity: float, cells: str) -> dict:
     return {"kind": "field", "cells": CELLS[cells]} | place
 
 
-def period(study, velocity: float, amplitude: float, coarse: bool = False) -> dict:
+def period(study: Claims, velocity: float, amplitude: float, coarse: bool = False) -> dict:
     """A period of the oscillating bore from inside, or the same with half as many rings."""
     cells = 2 * (study.cells // 4) if coarse else study.cells
     place = StudyPoint("", "bore", velocity, amplitude, 0.0, "")
@@ -95,24 +96,24 @@ def period(study, velocity: float, amplitude: float, coarse: bool = False) -> di
     return requests.of_point(place) | {"kind": "patches"} | sizes
 
 
-def limited(study, scene: str) -> list[float]:
+def limited(study: Claims, scene: str) -> list[float]:
     """Amplitudes at which there is static friction that the paper's maps show."""
     return [a for a in study.amplitude[scene] if a <= STATIC_AMPLITUDES[scene]]
 
 
-def sliding(study) -> list[float]:
+def sliding(study: Claims) -> list[float]:
     """The largest transverse amplitude, in a list, if the contact slides in every stroke there."""
     largest = study.amplitude["transverse"][-1]
     return [largest] if largest > STATIC_AMPLITUDES["transverse"] else []
 
 
-def periods(study) -> list[tuple[float, float]]:
+def periods(study: Claims) -> list[tuple[float, float]]:
     """(velocity, amplitude) of the periods that are looked into, those near static friction."""
     slow = [v for v in velocities(study) if v <= NEAR_STATIC]
     return [(v, a) for v in slow[-2:] for a in limited(study, "bore")]
 
 
-def rows(study) -> list[list[dict]]:
+def rows(study: Claims) -> list[list[dict]]:
     """Certified points, a list for each scene and amplitude, from the static limit upwards."""
     return [
         [point(study, scene, v, amplitude) for v in (0.0, *velocities(study))]
@@ -121,12 +122,12 @@ def rows(study) -> list[list[dict]]:
     ]
 
 
-def steady(study) -> list[dict]:
+def steady(study: Claims) -> list[dict]:
     """Certified points of the continuous bore, resolved though Eq 21 is exact."""
     return [point(study, "continuous-bore", v, model="polar") for v in STEADY_VELOCITIES]
 
 
-def pieces(study) -> tuple[list, list]:
+def pieces(study: Claims) -> tuple[list, list]:
     """What one job each answers: two lists of lists of requests, those that take long first."""
     of_paper = [paper_run("transverse", amplitude) for amplitude in sliding(study)]
     of_paper += [paper_run(scene, a) for scene in study.amplitude for a in limited(study, scene)]

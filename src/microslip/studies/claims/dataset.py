@@ -6,6 +6,7 @@ from dataclasses import asdict
 import numpy as np
 import xarray as xr
 
+from microslip.config.records import Claims
 from microslip.studies.claims import checks, checks_static, static_limits, verdicts
 from microslip.studies.claims import claims as asked
 from microslip.studies.claims.runs import Runs, command, friction, made_by, resolution
@@ -42,7 +43,7 @@ BOUNDARY = 181
 """Angles at which the edge of the alternating patches is given."""
 
 
-def build(settings, answer: Callable) -> xr.Dataset:
+def build(settings: Claims, answer: Callable) -> xr.Dataset:
     """Assemble the Dataset.
 
     settings: records.Claims. answer(request) -> record, such as batches.answer with a store.
@@ -60,7 +61,7 @@ def build(settings, answer: Callable) -> xr.Dataset:
     return finished(variables, coords, title, runs, asdict(settings), comment=ABOUT)
 
 
-def collected(name: str, settings, runs) -> list:
+def collected(name: str, settings: Claims, runs: Runs) -> list:
     """The checks of a part by its name: list of verdicts.Check."""
     module = checks if hasattr(checks, name) else checks_static
     return getattr(module, name)(settings, runs)

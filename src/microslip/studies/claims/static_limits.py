@@ -10,8 +10,9 @@ import numpy as np
 from scipy.special import j0
 
 from microslip.config.load import STATIC_AMPLITUDES
+from microslip.config.records import Claims
 from microslip.studies.claims import claims as asked
-from microslip.studies.claims.runs import friction
+from microslip.studies.claims.runs import Runs, friction
 from microslip.studies.tables import value_of, variable
 from microslip.theory import hertz
 from microslip.theory import paper as theory
@@ -42,7 +43,7 @@ class Limit:
     runs: tuple
 
 
-def limit(study, runs, scene: str, amplitude: np.ndarray) -> Limit:
+def limit(study: Claims, runs: Runs, scene: str, amplitude: np.ndarray) -> Limit:
     """The Limit at an amplitude: the closed form, its error its distance from the limit on rings
     and what that claims as its own error."""
     closed = runs(asked.point(study, scene, 0.0, amplitude))
@@ -81,7 +82,7 @@ def left_share(scene: str, radius: np.ndarray, amplitude: np.ndarray) -> np.ndar
     return np.sqrt((1.0 - used) * (1.0 + used))
 
 
-def variables(study, runs) -> dict:
+def variables(study: Claims, runs: Runs) -> dict:
     """Variables of the dataset about the static limit of both scenes, as a dict."""
     found = {}
     for scene in study.amplitude:

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from microslip.config.quantities import MU_MACRO
+from microslip.config.records import Stability
 from microslip.solver import method_names
 from microslip.studies.stability import stability as study
 from microslip.studies.tables import Answers, finished, flags, value_of, variable
@@ -52,7 +53,7 @@ def outcome(result: dict, reference: float, reference_error: float, imposed: boo
     return CONVERGED if abs(mu - reference) <= claimed + reference_error else WRONG
 
 
-def build(settings, answer: Callable) -> xr.Dataset:
+def build(settings: Stability, answer: Callable) -> xr.Dataset:
     """Assemble the Dataset.
 
     settings: records.Stability. answer(request) -> record, such as batches.answer with a store.

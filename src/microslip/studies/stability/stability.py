@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from microslip.config.load import StudyPoint
+from microslip.config.records import Stability
 from microslip.foundation.canonical import canonical_json, number
 from microslip.solver.method_names import SHIPPED, split
 from microslip.studies import requests
@@ -151,17 +152,17 @@ BLOCKS_TOGETHER = 5
 """Blocks that one job sends a method to."""
 
 
-def axes(study) -> list[Axis]:
+def axes(study: Stability) -> list[Axis]:
     """The blocks that a records.Stability asks for, in the order of AXES."""
     return [axis for axis in AXES if study.axes is None or axis.name in study.axes]
 
 
-def cases(study) -> list[tuple]:
+def cases(study: Stability) -> list[tuple]:
     """List (axis, value, overrides) of all blocks, in the order of the dataset."""
     return [(axis, *case) for axis in axes(study) for case in axis.cases]
 
 
-def probe(study, method: str, axis: Axis, value: float, overrides: dict) -> dict | None:
+def probe(study: Stability, method: str, axis: Axis, value: float, overrides: dict) -> dict | None:
     """The request that sends a method to a case; None if the axis does not apply to the method."""
     if axis.parameters:
         base, _ = split(method)
@@ -173,12 +174,12 @@ def probe(study, method: str, axis: Axis, value: float, overrides: dict) -> dict
     return requests.probe(_point(overrides), method, study.tolerance, **imposed)
 
 
-def reference(study, overrides: dict) -> dict:
+def reference(study: Stability, overrides: dict) -> dict:
     """The request that the probes of a case are compared with: as shipped, nothing imposed."""
     return requests.reference(_point(overrides), TRUTH_SHARE * study.tolerance)
 
 
-def pieces(study) -> tuple[list, list]:
+def pieces(study: Stability) -> tuple[list, list]:
     """What one job each answers: two lists of lists of requests, those that take long first."""
     asked = [list(block) for _, block in groupby(cases(study), key=lambda case: case[0].name)]
     known, long, short = set(), [], []

@@ -1,0 +1,183 @@
+"""Which cells a point begins with: a table of policies, each with its reason."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from microslip.adaptive.chains import EXTRAPOLATED_SHARES, Axis
+from microslip.solver.problem import Problem
+from microslip.solver.static_limit import at_turning_points
+
+RINGS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
+SQUARES = (8, 16, 32, 64, 128)
+STATIC_SQUARES = (16, 24, 32, 48, 64, 96, 128, 192)
+"""Levels: rings, or squares along a side."""
+SLOW_CREEP = 3e-3
+"""Creep in a radian (u_lim) below which the layer at the stick radius is thin: the coarsest rings
+agree with each other there before they see it, and prove nothing."""
+EDGE_CAUTION = 1.25
+"""Error over the spread of four runs where each gathers its rings at a stick radius that it finds
+by itself, to the width of a ring."""
+PROJECTED_SHARES = 0.35, 0.45
+"""See chains.Axis: where errors over angles and steps are projected, those of cells are bounded
+more closely, too."""
+
+
+def levels_finer(tighter: float) -> int:
+    """Levels by which a point begins finer at a tolerance so many times tighter."""
+    return max(round(2.0 * np.log10(tighter)), 0)
+
+
+@dataclass(frozen=True)
+class CellsPolicy:
+    """Which cells a point begins with.
+
+    Attributes
+    ----------
+    reason : str
+        Why with these.
+    applies : callable
+        applies(problem, model) -> whether the policy is for such a point.
+    base : int
+        Cells at which the angles and the steps are refined.
+    first : tuple of int
+        Cells of the coarsest and of the finest of the runs to start with.
+    levels : tuple of int
+        Cells there may be.
+    regular, caution, shares
+        See chains.Axis.
+    made_for : float or None
+        Tolerance that all of them are for, which are finer where it is; None: whatever it is.
+    """
+
+    reason: str
+    applies: Callable[[Problem, str], bool]
+    base: int
+    first: tuple[int, int]
+    levels: tuple[int, ...] = RINGS
+    regular: bool = True
+    caution: float = 1.0
+    shares: tuple[float, float] = EXTRAPOLATED_SHARES
+    made_for: float | None = None
+
+    def axis(self, tolerance: float) -> Axis:
+        """The Axis to refine."""
+        finer = 0 if self.made_for is None else levels_finer(self.made_for / tolerance)
+        coarsest, finest = (self.levels.index(cells) + finer for cells in self.first)
+        return Axis(
+            "cells",
+            self.levels,
+            base=self.levels.index(self.base) + finer,
+            first=tuple(range(coarsest, finest + 1)),
+            regular=self.regular,
+            caution=self.caution,
+            shares=self.shares,
+        )
+
+
+def _is_slow(problem):
+    """Whether the layer at the stick radius is thin."""
+    return problem.motion.periodic and 0.0 < problem.creep < SLOW_CREEP
+
+
+def _is_static(problem):
+    return problem.motion.periodic and problem.velocity == 0.0
+
+
+CELLS_POLICIES = (
+    CellsPolicy(
+        "static limit: cells come and go at the edge; nothing is marched, so more are cheap",
+        lambda problem, model: model == "cartesian" and problem.velocity == 0.0,
+        base=32,
+        first=(16, 64),
+        levels=STATIC_SQUARES,
+        regular=False,
+    ),
+    CellsPolicy(
+        "squares, slow: the layer at the stick radius is thin",
+        lambda problem, model: model == "cartesian" and _is_slow(problem),
+        base=32,
+        first=(16, 64),
+        levels=SQUARES,
+    ),
+    CellsPolicy(
+        "squares: doubled from run to run, since cells come and go at the edge",
+        lambda problem, model: model == "cartesian",
+        base=16,
+        first=(8, 32),
+        levels=SQUARES,
+    ),
+    CellsPolicy(
+        "springs know nothing of each other, and slip one by one",
+        lambda problem, model: model == "mdr",
+        base=16,
+        first=(12, 24),
+        regular=False,
+    ),
+    CellsPolicy(
+        "steady: the centre of rotation stays where it is, and only fine rings see it",
+        lambda problem, model: not problem.motion.periodic,
+        base=12,
+        first=(8, 16),
+    ),
+    CellsPolicy(
+        "static limit on a loop: each run finds the edge of what sticks by itself",
+        lambda problem, model: _is_static(problem) and not at_turning_points(problem.motion),
+        base=24,
+        first=(16, 48),
+        regular=False,
+        caution=EDGE_CAUTION,
+    ),
+    CellsPolicy(
+        "static limit: a stick zone that is not circular cuts rings, and the corners are steep",
+        lambda problem, model: _is_static(problem),
+        base=16,
+        first=(8, 48),
+        regular=False,
+    ),
+    CellsPolicy(
+        "rotation: with angles there are many unknowns, so as few rings as will do",
+        lambda problem, model: problem.motion.rotates,
+        base=6,
+        first=(6, 12),
+        shares=PROJECTED_SHARES,
+        made_for=1e-3,
+    ),
+    CellsPolicy(
+        "translation to and fro at nu > 0: the front of slip is oval, which rings are not",
+        lambda problem, model: problem.poisson > 0.0 and problem.motion.half_period_mirror,
+        base=8,
+        first=(8, 16),
+        shares=PROJECTED_SHARES,
+        made_for=1e-3,
+    ),
+    CellsPolicy(
+        "translation on a loop at nu > 0",
+        lambda problem, model: problem.poisson > 0.0,
+        base=12,
+        first=(8, 16),
+    ),
+    CellsPolicy(
+        "translation at nu = 0: few unknowns, so enough of them that no two runs agree by chance",
+        lambda problem, model: model == "radial" and problem.motion.half_period_mirror,
+        base=8,
+        first=(6, 12),
+        made_for=1e-2,
+    ),
+    CellsPolicy(
+        "all else: springs of a slider, translation on a loop at nu = 0",
+        lambda problem, model: True,
+        base=8,
+        first=(6, 12),
+    ),
+)
+"""The first that applies is taken."""
+
+
+def cells_axis(problem: Problem, model: str, tolerance: float) -> Axis:
+    """The chains.Axis of cells of a problem.Problem under a model, for a tolerance."""
+    policy = next(policy for policy in CELLS_POLICIES if policy.applies(problem, model))
+    return policy.axis(tolerance)
