@@ -79,7 +79,7 @@ def test_no_load_by_a_heavy_body_without_a_force():
     free = microslip.solve(EIGHT, amplitude=1.0, force=0.0, mass=1e3)
     assert free.converged
     errors = line.no_load_velocity_error + free.velocity_error
-    assert abs(free.velocity - line.no_load_velocity) <= errors + 1e-3
+    assert abs(free.velocity - line.no_load_velocity) <= errors + 1e-3  # forces up to 1 swing it so far
 
 
 @pytest.mark.slow
@@ -101,6 +101,34 @@ def test_what_goes_in_and_not_out_is_dissipated(scene, amplitude):
     assert np.all(line.efficiency < 1.0) and line.efficiency[1] > 0.0
     # the same without the power out would not do
     assert line.power_out[1] > 0.01 * lost
+
+
+@pytest.mark.parametrize("amplitude", [0.9, 1.5])  # 1.5: contact is lost
+def test_an_oscillating_load_does_no_work_over_a_period(amplitude):
+    """Work of the elastic normal contact, by the trapezoidal rule, against that of one way in."""
+    motion = motion_named("normal:indentation=1,load=1,forward=1,phase=40")
+    depth = motion.depth(np.linspace(0.0, 2.0 * np.pi, 20001), amplitude, motion.pressure)
+    load = motion.pressure.total(depth)
+    middle = 0.5 * (load[1:] + load[:-1])
+    work = middle * np.diff(depth)
+    assert abs(work.sum()) < 1e-9 * np.abs(work).sum()
+    assert np.abs(work).sum() > 1.0
+
+
+@pytest.mark.slow
+def test_two_models_drive_alike():
+    """At nu = 0 rings alone and rings with angles are two models of one contact."""
+    rings, modes = (
+        microslip.drive(EIGHT, 1.0, model=model, tolerance=1e-2, points=3)
+        for model in ("radial", "polar")
+    )
+    errors = rings.no_load_velocity_error + modes.no_load_velocity_error
+    assert abs(rings.no_load_velocity - modes.no_load_velocity) <= errors
+    for name in ("force", "power_in", "efficiency"):
+        one, other = getattr(rings, name), getattr(modes, name)
+        allowed = getattr(rings, f"{name}_error") + getattr(modes, f"{name}_error")
+        # each at its own velocities: none of these changes by more than the velocity does
+        assert np.all(np.abs(one - other) <= allowed + errors)
 
 
 @pytest.mark.slow
