@@ -162,12 +162,20 @@ def _refuse_method(motion, model, method, how):
         )
 
 
-def warm_up() -> None:
+def warm_up(pulled: bool = False) -> None:
     """Compile the kernels of the automatic models (and leave them in Numba's cache).
 
     Takes a while the first time; squares are compiled when they are first used.
+
+    Parameters
+    ----------
+    pulled : bool
+        Whether those for contacts that a force or a spring pulls are among them.
     """
     solve("transverse", 0.5, 0.5, tolerance=1e-2)
     solve("transverse", 0.5, 0.5, poisson=0.3, tolerance=1e-2)
     solve("bore", 0.5, 0.5, tolerance=1e-2)
     solve("continuous-bore", 0.5, model="polar", tolerance=1e-2)
+    if pulled:
+        solve("transverse", 0.5, 0.5, stiffness=1.0, tolerance=1e-2)
+        solve("bore", 0.5, 0.5, stiffness=1.0, tolerance=1e-2)
