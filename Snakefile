@@ -9,11 +9,11 @@
 # figures, captions and what made them.
 #
 # Two studies compare methods: snakemake accuracy, snakemake stability; a third one judges what the
-# paper says: snakemake claims.
+# paper says: snakemake claims. A fourth one shows what motions drive: snakemake driving.
 #
-#   methods, points --> pieces --> solve_batch --+--> results/batches/{accuracy,stability,claims}*/
+#   methods, points --> pieces --> solve_batch --+--> results/batches/{accuracy,stability,claims,driving}*/
 #                                                +--> results/{points,trials,probes,scaling,...}
-#   pieces of a study --> collect_study --> results/{accuracy_cost,stability,claims}.nc
+#   pieces of a study --> collect_study --> results/{accuracy_cost,stability,claims,driving}.nc
 #   datasets --> draw_figure
 #
 # Sweeps of other motions and pressures, those under `extended`, come the same way: snakemake extended
@@ -104,6 +104,12 @@ rule stability:
     input:
         datasets_of(["stability"]),
         figures_of(["stability"]),
+
+
+rule driving:
+    input:
+        datasets_of(["driving"]),
+        figures_of(["driving"]),
 
 
 rule claims:

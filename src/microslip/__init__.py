@@ -20,6 +20,8 @@ _WHERE = {
     "history": "microslip.adaptive.history",
     "History": "microslip.adaptive.history",
     "traction_field": "microslip.adaptive.history",
+    "drive": "microslip.adaptive.driving",
+    "DrivingLine": "microslip.adaptive.driving_line",
     "period": "microslip.adaptive.period",
     "Period": "microslip.adaptive.period",
 }

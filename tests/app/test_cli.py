@@ -91,6 +91,31 @@ def test_text_says_what_was_found():
     assert "closed-form" in done.stdout and "NOT CONVERGED" not in done.stdout
 
 
+@pytest.mark.slow
+def test_drive_says_what_the_function_does():
+    words = ("drive", "elliptic", "--path", "forward_cycles=2,phase=0", "--amplitude", "1")
+    words += ("--points", "3", "--tolerance", "1e-2")
+    done = run(*words, "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    scene = "elliptic:forward_cycles=2,phase=0"
+    line = microslip.drive(scene, 1.0, points=3, tolerance=1e-2)
+    fields, expected = json.loads(done.stdout), line.to_dict()
+    for answer in (fields, expected):
+        answer.pop("solve_time_s")
+    assert fields == expected
+    text = run(*words).stdout
+    assert f"stall_force = {line.stall_force:.6g} +- " in text
+    assert f"no_load_velocity = {line.no_load_velocity:.6g} +- " in text
+    assert len(text.splitlines()) == 8 and text.splitlines()[4].split()[0] == "velocity"
+
+
+@pytest.mark.slow
+def test_a_contact_may_be_pushed_back_where_it_drives():
+    words = ("point", "elliptic", "--path", "forward_cycles=2,phase=0", "--velocity", "-0.5")
+    fields = json.loads(run(*words, "--amplitude", "1", "--json").stdout)
+    assert fields["velocity"] == -0.5 and fields["converged"] and fields["mu_macro"] < -0.2
+
+
 def test_tolerance_out_of_reach_is_exit_code_1():
     arguments = ["continuous-bore", "--velocity", 0.5, "--model", "rigid", "--tolerance", 1e-6]
     done = run("point", *arguments, "--json")
@@ -145,8 +170,9 @@ def test_model_that_does_not_apply_says_to_which_scene():
     [
         (
             (),
-            ["point", "friction", "vibrated", "dimensionless", "sweep", "predict", SPIN],
+            ["point", "friction", "vibrated", "dimensionless", "sweep", "predict", "drive", SPIN],
         ),
+        (("drive",), ["stall force", "no-load velocity", "--points", "--path", "heavy body"]),
         (("point",), [*MOTIONS, *FAMILIES, "mu F_z", "ratio", "mu_apparent", SPIN]),
         (("sweep",), [*sweep_command.TARGETS, "--cores", "--report", SPIN]),
         (

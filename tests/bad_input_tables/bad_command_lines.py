@@ -8,6 +8,7 @@ BORE = "point bore --velocity 0.5 --amplitude 0.5"
 STEADY = "point continuous-bore --velocity 0.5"
 
 PULLED = "point transverse --amplitude 0.5"
+DRIVEN = "drive elliptic --path forward_cycles=2,phase=0"
 
 FINITE = "a finite number of at least 0"
 RATIO = "at least 0 and at most 0.5"
@@ -139,8 +140,8 @@ NAMES = [
 ]
 
 OPTIONS = [
-    ("", "COMMAND is missing", "allowed: point, sweep, gc, predict"),
-    ("solve", "COMMAND = 'solve'", "point, sweep, gc, predict"),
+    ("", "COMMAND is missing", "allowed: point, sweep, gc, predict, drive"),
+    ("solve", "COMMAND = 'solve'", "point, sweep, gc, predict, drive"),
     ("pont", "COMMAND = 'pont'", "did you mean point?"),
     ("--json", "--json", "COMMAND before other options"),
     ("point --poisson 0.3", "--poisson", "SCENE before other options"),
@@ -150,6 +151,19 @@ OPTIONS = [
     ("point bores --velocity 1", "SCENE = 'bores'", "did you mean bore?"),
     ("point transverse --speed 1 --amplitude 1", "option --speed;", "did you mean --velocity?"),
     ("point transverse -speed=1 --amplitude 1", "option -speed;", "did you mean --velocity?"),
+    ("drive", "required: SCENE, --amplitude"),
+    (DRIVEN, "required: --amplitude"),
+    (f"{DRIVEN} --velocity 1 --amplitude 1", "unknown option --velocity;", "allowed: --help"),
+    (f"{DRIVEN} --amplitude much", "--amplitude = 'much'", "allowed is a number"),
+    (f"{DRIVEN} --amplitude 0", "--amplitude = '0'", "a number above 0"),
+    (f"{DRIVEN} --amplitude 1 --points 1", "--points = '1'", "at least 2"),
+    (f"{DRIVEN} --amplitude 1 --points 2.5", "--points = '2.5'", "a whole number"),
+    (f"{DRIVEN} --amplitude 1 --tolerance 0", "--tolerance = '0'", "at least 1e-06"),
+    (f"{DRIVEN} --amplitude 1 --nu 0.6", "--nu = '0.6'", "at most 0.5"),
+    (f"{DRIVEN} --amplitude 1 --nu 0.3 --model radial", "--model = 'radial'", "elliptic"),
+    ("drive transverse --amplitude 1", "SCENE = 'transverse'", "a motion that drives, such as"),
+    ("drive elliptic --path phase=0 --amplitude 1", "--path = 'phase=0'", "a motion that drives"),
+    ("drive eliptic --amplitude 1", "SCENE = 'eliptic'", "allowed is one of transverse"),
     ("predict transverse --velocity 1", "option --velocity;", "did you mean --speed?"),
     ("point sideways --velocity 1", "SCENE", "'sideways'", "zigzag"),
     ("point continuous_bore --velocity 1", "'continuous_bore'", "continuous-bore"),

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
-from stubs import claims_stub, studies_stub
+from stubs import claims_stub, driving_stub, studies_stub
 from stubs.sweep_stub import Solver
 
 import microslip
@@ -41,6 +41,7 @@ RECORDS = {
     "A real contact": Prediction,
     "Forces from a start": microslip.History,
     "A period of the periodic state": microslip.Period,
+    "The line of a motion that drives": microslip.DrivingLine,
 }
 
 
@@ -93,6 +94,12 @@ def test_every_variable_of_the_claims_is_in_their_table_and_no_other():
     answer, _ = claims_stub.answered()
     data = registry.build("claims", claims_stub.configured(), answer)
     assert set(section("The claims")) == set(map(str, data.variables))
+
+
+def test_every_variable_of_driving_is_in_its_table_and_no_other():
+    answer, _ = studies_stub.answered(driving_stub.driving_result)
+    data = registry.build("driving", driving_stub.configured(), answer)
+    assert set(section("The study of driving")) == set(map(str, data.variables))
 
 
 def test_work_effort_and_periods_mean_one_thing_each():

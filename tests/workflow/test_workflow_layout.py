@@ -32,7 +32,13 @@ def test_every_figure_has_a_caption_of_its_own(figure):
 
 @pytest.mark.parametrize(
     "wildcards",
-    [{"sweep": "bore"}, {"sweep": "circle"}, {"dataset": "stability"}, {"dataset": "claims"}],
+    [
+        {"sweep": "bore"},
+        {"sweep": "circle"},
+        {"dataset": "stability"},
+        {"dataset": "claims"},
+        {"dataset": "driving"},
+    ],
 )
 def test_every_dataset_has_a_caption(wildcards):
     assert "``results/any.nc``" in rendered("dataset", **wildcards)

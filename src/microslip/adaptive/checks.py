@@ -14,11 +14,24 @@ LARGEST_FORCE = 1e6
 
 
 def checked_point(
-    scene: str, velocity: float, amplitude: float | None, poisson: float, pressure: str = "hertz"
+    scene: str,
+    velocity: float,
+    amplitude: float | None,
+    poisson: float,
+    pressure: str = "hertz",
+    *,
+    backward: bool = False,
 ) -> tuple[Motion, float, float | None, float]:
-    """Motion record and numbers of a point; raises InputError naming the argument at fault."""
+    """Motion record and numbers of a point; raises InputError naming the argument at fault.
+
+    backward: whether the velocity may be below 0 where the motion drives.
+    """
     motion = motion_named(scene, pressure)
-    velocity = real("velocity", velocity, 0.0, LARGEST["velocity"])
+    slowest = -LARGEST["velocity"] if backward and motion.drives else 0.0
+    velocity = real("velocity", velocity, slowest, LARGEST["velocity"])
+    if velocity < 0.0 and not motion.pressure.mirrored:
+        allowed = f"allowed is a number of at least 0 under {motion.pressure.name}"
+        raise InputError("velocity", velocity, f"{allowed}, which need not be symmetric")
     poisson = real("poisson", poisson, 0.0, 0.5)
     if motion.periodic:
         if amplitude is None:
@@ -27,6 +40,23 @@ def checked_point(
     elif amplitude is not None:
         raise InputError("amplitude", amplitude, f"{motion.name} has no amplitude")
     return motion, velocity, amplitude, poisson
+
+
+def checked_driving(
+    scene: str, amplitude: float, poisson: float, pressure: str = "hertz"
+) -> tuple[Motion, float, float]:
+    """Motion record and numbers of a motion that may drive; raises InputError naming the argument
+    at fault."""
+    motion = motion_named(scene, pressure)
+    if not motion.drives:
+        allowed = "allowed is a motion that drives, such as elliptic:forward_cycles=2,phase=0 or "
+        raise InputError("scene", scene, f"{allowed}normal:forward=1,phase=90")
+    motion, _, amplitude, poisson = checked_point(scene, 0.0, amplitude, poisson, pressure)
+    if not motion.pressure.mirrored:
+        raise InputError("pressure", pressure, "allowed is one that is its own mirror image")
+    if amplitude == 0.0:
+        raise InputError("amplitude", amplitude, "allowed is a number above 0")
+    return motion, amplitude, poisson
 
 
 def checked_drive(

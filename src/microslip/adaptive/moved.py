@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from typing import NamedTuple
 
 from microslip.adaptive.asked import TOLERANCE, Asked, refuse_free, verdict
+from microslip.adaptive.chains import Axis
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.closed_forms import closed_form, no_vibration
 from microslip.adaptive.continuation import run_safely
@@ -16,7 +19,7 @@ from microslip.adaptive.result import Result, of_closed_form
 from microslip.motions.by_name import read_otherwise
 from microslip.motions.motion import Motion
 from microslip.solver.method_names import SHIPPED
-from microslip.solver.problem import Problem
+from microslip.solver.problem import Problem, Resolution
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
@@ -37,11 +40,29 @@ def known_exactly(asked: Asked) -> Result | None:
     return of_closed_form(asked.point | {"model": used}, exact, asked.seconds)
 
 
-def solve_moved(asked: Asked) -> Result:
-    """The certified friction, a result.Result; see microslip.solve."""
-    exact = known_exactly(asked)
-    if exact is not None:
-        return exact
+class Marched(NamedTuple):
+    """What refinement.certify asks for, of a contact that is moved.
+
+    Attributes
+    ----------
+    run : callable
+        run(resolution, guess) -> run.Run.
+    coarsest : problem.Resolution
+        For what is not refined.
+    axes : tuple of chains.Axis
+        To be refined.
+    readings : list of callable
+        Like `run`, for other pressures that the same numbers may stand for.
+    """
+
+    run: Callable
+    coarsest: Resolution
+    axes: tuple[Axis, ...]
+    readings: list[Callable]
+
+
+def marched(asked: Asked) -> Marched:
+    """The Marched of a point with a velocity of at least 0."""
     problem, motion, tolerance = asked.problem, asked.problem.motion, asked.accuracy
     coarsest, axes = plan(problem, asked.model, tolerance, asked.cells, asked.steps)
     if asked.tolerance is None:
@@ -67,7 +88,16 @@ def solve_moved(asked: Asked) -> Result:
     readings = [
         partial(run, problem=replace(problem, motion=other)) for other in read_otherwise(motion)
     ]
-    certified = certify(run, coarsest, axes, tolerance, readings)
+    return Marched(run, coarsest, axes, readings)
+
+
+def solve_moved(asked: Asked) -> Result:
+    """The certified friction, a result.Result; see microslip.solve."""
+    exact = known_exactly(asked)
+    if exact is not None:
+        return exact
+    motion, (run, coarsest, axes, readings) = asked.problem.motion, marched(asked)
+    certified = certify(run, coarsest, axes, asked.accuracy, readings)
     steady = not motion.periodic
     return Result(
         **asked.point,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 from microslip.adaptive.asked import TOLERANCE, Asked
 from microslip.adaptive.checks import (
@@ -17,6 +18,7 @@ from microslip.adaptive.choice import choose_model, method_refusal
 from microslip.adaptive.moved import solve_moved
 from microslip.adaptive.result import Result
 from microslip.foundation.errors import InputError
+from microslip.motions.mirror_image import mirror_image
 from microslip.solver.budget import Budget
 from microslip.solver.method_names import SHIPPED, method_named, refuse_missing
 from microslip.solver.problem import Problem
@@ -57,7 +59,8 @@ def solve(
         name takes.
     velocity : float or None
         The paper's dimensionless group, in units of the pressure's own u_lim; 0: the limit v -> 0;
-        None: what is asked for, under a force.
+        None: what is asked for, under a force.  Below 0, for a contact that is pushed back, where
+        the motion drives: else friction at -v is that at v with the other sign.
     amplitude : float or None
         The paper's dimensionless group likewise; None for continuous-bore.
     force : float or None
@@ -102,7 +105,7 @@ def solve(
     """
     drive = checked_drive(velocity, force, stiffness, mass, damping)
     motion, velocity, amplitude, poisson = checked_point(
-        scene, 0.0 if velocity is None else velocity, amplitude, poisson, pressure
+        scene, 0.0 if velocity is None else velocity, amplitude, poisson, pressure, backward=True
     )
     tolerance, cells, steps = checked_request(tolerance, cells, steps)
     refuse_bounds(most_work=most_work, time_limit=time_limit)
@@ -125,12 +128,26 @@ def solve(
         progress=progress,
         started=time.perf_counter(),
     )
+    if velocity < 0.0:
+        return _seen_from_behind(asked, drive)
+    return _answer(asked, drive)
+
+
+def _answer(asked, drive):
     if drive is None:
         return solve_moved(asked)
     from microslip.adaptive.pulled import refuse_pull, solve_pulled  # only now: it takes a while
 
     refuse_pull(asked, drive)
     return solve_pulled(asked, drive)
+
+
+def _seen_from_behind(asked, drive):
+    """The answer at a velocity below 0: that of the mirror image at the opposite one."""
+    problem = asked.problem
+    behind = replace(problem, motion=mirror_image(problem.motion), velocity=-problem.velocity)
+    answer = _answer(replace(asked, problem=behind), drive)
+    return replace(answer, velocity=problem.velocity, mu_macro=-answer.mu_macro)
 
 
 def _refuse_method(motion, model, method, how):

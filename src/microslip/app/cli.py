@@ -6,7 +6,7 @@ import json
 import sys
 
 from microslip import __version__
-from microslip.app import command_line, predict_command, sweep_command, terminal
+from microslip.app import command_line, drive_command, predict_command, sweep_command, terminal
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
 
@@ -45,6 +45,7 @@ def build_parser(asked: str | None = None) -> command_line.OneLineParser:
     else:
         point.add_argument("scene", metavar="SCENE")
     predict_command.add_parser(commands)
+    drive_command.add_parser(commands)
     return parser
 
 
@@ -68,7 +69,8 @@ def _add_motions(parser):
         scene.add_argument(
             "--velocity",
             metavar="V",
-            help=f"{record.velocity_label}; 0: v -> 0; left out under a force",
+            help=f"{record.velocity_label}; 0: v -> 0; below 0 where the motion drives; left out "
+            "under a force",
         )
         if periodic:
             scene.add_argument(
@@ -166,6 +168,8 @@ def main(arguments: list[str] | None = None) -> int:
     options = build_parser(next(iter(arguments), None)).parse_args(command_line.joined(arguments))
     if options.command == "predict":
         return predict_command.run(options)
+    if options.command == "drive":
+        return drive_command.run(options)
     from microslip.sweeps.evaluate import plain  # only now: --help and bad options need no solver
     from microslip.sweeps.sealed_files import CacheError
 

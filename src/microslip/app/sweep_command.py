@@ -25,6 +25,7 @@ TARGETS = {
     "accuracy": "what accuracy costs, for all models and methods",
     "stability": "where methods fail",
     "claims": "what the paper says, judged",
+    "driving": "what motions that drive pull with, from stall to no load",
     "explorer": "one page that shows what is behind every point of the maps",
 }
 """What can be made by name: the rules of the workflow without wildcards that people ask for."""

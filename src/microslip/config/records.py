@@ -16,10 +16,10 @@ HISTORIES_OF_SWEEP = {
     "continuous_bore": ("field", "transients"),
 }
 # Names that no other sweep may have: of datasets, and of folders of batches.
-TAKEN = (*SCENE_OF_SWEEP, "accuracy", "accuracy_cost", "stability", "claims")
+TAKEN = (*SCENE_OF_SWEEP, "accuracy", "accuracy_cost", "stability", "claims", "driving")
 TAKEN += tuple(f"{name}_histories" for name in SCENE_OF_SWEEP)
 TAKEN += tuple(f"{name}_periods" for name in SCENE_OF_SWEEP)
-TAKEN += tuple(f"{study}_first" for study in ("accuracy", "stability", "claims"))
+TAKEN += tuple(f"{study}_first" for study in ("accuracy", "stability", "claims", "driving"))
 # What models.registry refuses, which takes too long to import here; a test keeps them the same.
 MODELS_OF_SCENE = {
     "transverse": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
@@ -112,6 +112,27 @@ class Claims:
 
 
 @dataclass(frozen=True)
+class DrivingMotion:
+    """A motion that may drive the contact. All numbers are dimensionless."""
+
+    name: str
+    scene: str
+    amplitude: float
+    poisson: float
+    panel: str  # heading of the panels that show it
+    title: str
+
+
+@dataclass(frozen=True)
+class Driving:
+    """What is asked to see what motions drive."""
+
+    tolerance: float
+    points: int
+    motions: dict  # name -> DrivingMotion
+
+
+@dataclass(frozen=True)
 class Configuration:
     """A checked configuration with its defaults filled in and its axes expanded."""
 
@@ -124,6 +145,7 @@ class Configuration:
     accuracy: Accuracy
     stability: Stability
     claims: Claims
+    driving: Driving
 
     @property
     def grids(self) -> dict[str, Sweep]:

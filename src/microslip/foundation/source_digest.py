@@ -35,6 +35,7 @@ ANSWERED_BY = {
     "scaling": ("adaptive/single_run",),
     "run": ("adaptive/single_run",),
     "patches": ("adaptive/stick_area",),
+    "drive": ("adaptive/driving",),
 }
 """Kinds of requests (see sweeps.batches) and the modules that `answers` asks for them."""
 

@@ -69,6 +69,9 @@ class Run:
         Mean forward force of the static limit, also for other runs.
     velocity : float
         Mean forward velocity, in the unit of the motion, where a force pulls; else NaN.
+    power : float
+        Mean work of the oscillation in a radian, over u_lim, see power.oscillation_power; NaN where
+        that is not told.
     retried : int
         1 if the run is a second attempt, see continuation.run_safely.
     """
@@ -88,6 +91,7 @@ class Run:
     inverse: np.ndarray | None = None
     static_force: float = 0.0
     velocity: float = np.nan
+    power: float = np.nan
     retried: int = 0
 
 

@@ -11,6 +11,7 @@ from microslip.models.coulomb import project
 from microslip.models.path import Path
 from microslip.motions.motion import Motion
 from microslip.solver.period_map import MOST_MARCHES, CreepRate, Goal, PeriodMap
+from microslip.solver.power import oscillation_power
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run
 from microslip.solver.static_limit import static_state
@@ -113,6 +114,7 @@ def _extrapolated(fine, coarse):
         fine,
         mu=2.0 * fine.mu - coarse.mu,
         torque=2.0 * fine.torque - coarse.torque,
+        power=2.0 * fine.power - coarse.power,
         distance=2.0 * fine.distance + coarse.distance,
         solver_residual=2.0 * fine.solver_residual + coarse.solver_residual,
         periods=fine.periods + coarse.periods,
@@ -224,6 +226,7 @@ class _Search:
             state=found.start,
             inverse=found.inverse,
             static_force=self.creep_rate.static_force,
+            power=oscillation_power(self.problem, self.path, found.forces),
         )
 
 

@@ -10,6 +10,7 @@ from microslip.models.contact import FORWARD, StepFailure, forces
 from microslip.models.rings.mesh import Focus
 from microslip.solver import anderson
 from microslip.solver.period_map import Goal, PeriodMap
+from microslip.solver.power import oscillation_power
 from microslip.solver.problem import STRONGEST_FOCUS, Problem, Resolution
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run
 from microslip.solver.simulate import STEP_SHARE, mean_forces, periods_of
@@ -134,5 +135,7 @@ def _on_these_points(contact, problem, path, tolerance):
         effort=found.iterations * found.start.size,
         converged=near,
         reason=reason,
+        # a constant traction does no work on a motion that returns
+        power=oscillation_power(problem, path, found.forces),
     )
     return run, left

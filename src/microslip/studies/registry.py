@@ -1,9 +1,10 @@
-"""Studies: how accuracy is paid for, where methods fail, and which of the paper's claims hold.
+"""Studies: how accuracy is paid for, where methods fail, which of the paper's claims hold, and what
+motions drive.
 
-`ladders` says in which resolutions a model is run; `accuracy_cost`, `stability` and `claims` say
-what is asked; `fronts` picks and fits, `verdicts` judges; the modules with `dataset` in their name
-turn the answers into datasets. What is asked is plain data that imports nothing heavy, since the
-workflow reads it whenever it is parsed.
+`ladders` says in which resolutions a model is run; `accuracy_cost`, `stability`, `claims` and
+`driving` say what is asked; `fronts` picks and fits, `verdicts` judges; the modules with `dataset`
+in their name turn the answers into datasets. What is asked is plain data that imports nothing
+heavy, since the workflow reads it whenever it is parsed.
 """
 
 from collections.abc import Callable, Iterator
@@ -13,12 +14,23 @@ from importlib import import_module
 from microslip.config.records import Configuration
 from microslip.studies.accuracy import accuracy_cost
 from microslip.studies.claims import claims
+from microslip.studies.driving import driving
 from microslip.studies.stability import stability
 
 # Studies, named as in the configuration, and their datasets.
-DATASETS = {"accuracy": "accuracy_cost", "stability": "stability", "claims": "claims"}
+DATASETS = {
+    "accuracy": "accuracy_cost",
+    "stability": "stability",
+    "claims": "claims",
+    "driving": "driving",
+}
 
-_ASKED = {"accuracy": accuracy_cost, "stability": stability, "claims": claims}
+_ASKED = {
+    "accuracy": accuracy_cost,
+    "stability": stability,
+    "claims": claims,
+    "driving": driving,
+}
 
 
 def pieces(study: str, configuration: Configuration) -> tuple[list, list]:

@@ -4,6 +4,7 @@
 - choice: one timed solve at a tolerance, which picks its own model and resolution;
 - probe: one solve with a method exchanged, with nothing timed;
 - point: an ordinary point of a sweep, solved tightly, that the others are compared with;
+- drive: the line of a motion that drives, from stall to no load;
 - scaling: what a step costs at one size.
 """
 

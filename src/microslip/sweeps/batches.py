@@ -42,6 +42,7 @@ FOLDERS = {
     "scaling": "scaling",
     "run": "runs",
     "patches": "patches",
+    "drive": "driving_lines",
 }
 
 

@@ -169,6 +169,15 @@ def _patches(request):
     return _found(lambda: patches(**_at(request)))
 
 
+def _drive(request):
+    """The line of a motion that drives."""
+    given = {name: float(request[name]) for name in ("poisson", "tolerance")}
+    amplitude = float(request["amplitude"])
+    line = microslip.drive(request["scene"], amplitude, points=request["points"], **given).to_dict()
+    line.pop("solve_time_s")
+    return line
+
+
 _KINDS = {
     "point": _point,
     "history": _history,
@@ -180,6 +189,7 @@ _KINDS = {
     "scaling": _scaling,
     "run": _run,
     "patches": _patches,
+    "drive": _drive,
 }
 
 

@@ -44,6 +44,7 @@ _DRAWN: dict[str, tuple[str, ...]] = {
     "stability_atlas": ("atlas", "stability"),
     "claims_static": ("claims_static", "claims"),
     "claims_patches": ("claims_patches", "claims"),
+    "driving": ("driving", "driving"),
 }
 """Every figure: the module beside this one that draws it, and the datasets it is drawn from."""
 _MODULES = {name: module for name, (module, *_) in _DRAWN.items()}

@@ -1,0 +1,287 @@
+"""A motion that drives: the force that it pulls with, from stall to no load, and what that costs.
+
+Signs.  The sphere is what moves; its forward velocity v is held, as of a body so heavy that it does
+not feel a single period.  Friction mu(v) is the mean forward force that it takes to move it, so
+that the contact pulls its own body forward by the force -mu(v), against a load that pulls it back:
+
+    force(v) = -mu(v)             power out = force v, the work on the load
+    stall force = force(v -> 0)   the load that stops it
+    no-load velocity: force = 0   as fast as it gets without a load
+
+Power in is the mean work of the oscillation on the contact: of whatever moves the sphere to and fro
+relative to its body.  An oscillating normal load adds nothing to it over a period.  Elastic energy
+returns, and so
+
+    power in - power out = dissipation >= 0.
+
+Friction never falls with the velocity (theory/bounds.py), so that the line falls from stall to no
+load, and two velocities at which the sign of friction is certain enclose the no-load velocity.
+A motion may drive backward as well: then velocities and forces of the line are below 0.  Where
+friction keeps a body at rest against a small force in either direction, the motion drives nothing.
+
+A body without mass under a constant load is another case: it goes along with a forward oscillation,
+and nothing drives (see under_force.without_forward_motion).
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from microslip.adaptive.asked import TOLERANCE, Asked
+from microslip.adaptive.checks import checked_driving, checked_request
+from microslip.adaptive.choice import choose_model
+from microslip.adaptive.driving_line import DrivingLine
+from microslip.adaptive.moved import marched
+from microslip.adaptive.no_load import NoLoad, no_load
+from microslip.adaptive.point import MOST_WORK, MOST_WORK_OF_OTHERS
+from microslip.adaptive.refinement import certify
+from microslip.foundation.arguments import count
+from microslip.foundation.errors import InputError
+from microslip.motions.mirror_image import mirror_image
+from microslip.solver.budget import Budget
+from microslip.solver.method_names import SHIPPED, method_named
+from microslip.solver.problem import Problem
+
+POINTS, MOST_POINTS = 9, 1000
+_LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
+
+
+def drive(
+    scene: str,
+    amplitude: float,
+    *,
+    pressure: str = "hertz",
+    poisson: float = 0.0,
+    model: str = "auto",
+    tolerance: float = TOLERANCE,
+    points: int = POINTS,
+    progress: Callable | None = None,
+) -> DrivingLine:
+    """The line from stall force to no-load velocity of a motion that drives.
+
+    Parameters
+    ----------
+    scene : str
+        A motion that may drive by itself: "elliptic:..." or "normal:forward=1,..." without the
+        symmetry that keeps it from that.
+    amplitude : float
+        As for `microslip.solve`, above 0.
+    pressure, poisson, model
+        As for `microslip.solve`.
+    tolerance : float
+        Absolute, on every force; on powers times the mean speed of the oscillation.
+    points : int
+        On the line, its ends included.
+    progress : callable or None
+        As for `microslip.solve`.
+
+    Returns
+    -------
+    DrivingLine
+        For signs and units see there and the docstring of this module.
+
+    Raises
+    ------
+    InputError
+        For bad input; it names the argument.
+    """
+    started = time.perf_counter()
+    motion, amplitude, poisson = checked_driving(scene, amplitude, poisson, pressure)
+    if tolerance is None:
+        raise InputError("tolerance", tolerance, "allowed is a number")
+    tolerance, _, _ = checked_request(tolerance, None, None)
+    points = count("points", points, 2, most=MOST_POINTS)
+    name = choose_model(motion, poisson, model)
+    asked = Asked(
+        problem=Problem(motion, 0.0, amplitude, poisson),
+        model=name,
+        chosen=False,
+        method=SHIPPED,
+        how=method_named(SHIPPED),
+        tolerance=tolerance,
+        cells=None,
+        steps=None,
+        budget=Budget(math.inf, math.inf),
+        progress=progress,
+        started=started,
+    )
+    return _line(_Contact(asked), points)
+
+
+class Known(NamedTuple):
+    """What is known at a velocity.
+
+    Attributes
+    ----------
+    value, error : float
+        The number, and the largest error that it may have.
+    reason : str
+        Why it is not within the tolerance, else empty.
+    """
+
+    value: float
+    error: float
+    reason: str
+
+
+class _Contact:
+    """Friction and power of a motion at any velocity of at least 0; no run is done twice."""
+
+    def __init__(self, asked):
+        self.asked, self.done, self.sign = asked, {}, 1
+        moves = np.diff(np.stack(asked.problem.oscillation(_LOOP)), axis=1)
+        self.speed = float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
+
+    @property
+    def creep(self):
+        """Creep in a radian at the velocity 1."""
+        problem = self.asked.problem
+        return problem.motion.creep(1.0, problem.amplitude, problem.poisson)
+
+    @property
+    def first(self):
+        """Velocity as fast as the oscillation, where a search may begin."""
+        return self.speed / self.creep
+
+    def reversed(self):
+        """The mirror image, which moves forward where this one moves back."""
+        problem = self.asked.problem
+        behind = replace(problem, motion=mirror_image(problem.motion))
+        image = _Contact(replace(self.asked, problem=behind))
+        image.sign = -self.sign
+        return image
+
+    def friction(self, velocity):
+        return self._certified(velocity, "mu")
+
+    def power(self, velocity):
+        """Mean work of the oscillation: its error is that of a force times the mean speed."""
+        found = self._certified(velocity, "power")
+        return Known(self.speed * found.value, self.speed * found.error, found.reason)
+
+    def _certified(self, velocity, quantity):
+        if (velocity, quantity) not in self.done:
+            run, coarsest, axes, readings = self._marched(velocity)
+            if quantity == "power":
+                run = self._power_as_force(run)
+                readings = [self._power_as_force(other) for other in readings]
+            found = certify(run, coarsest, axes, self.asked.tolerance, readings)
+            reason = found.reason
+            if found.converged and found.error > self.asked.tolerance:
+                reason = f"the estimated error of its {quantity} is {found.error:.1e}"
+            if reason:
+                reason = f"velocity = {self.sign * velocity:g}: {reason}"
+            self.done[velocity, quantity] = Known(float(found.mu), float(found.error), reason)
+        return self.done[velocity, quantity]
+
+    def _marched(self, velocity):
+        if velocity not in self.done:
+            name = self.asked.model
+            there = replace(
+                self.asked,
+                problem=replace(self.asked.problem, velocity=velocity),
+                budget=Budget(MOST_WORK.get(name, MOST_WORK_OF_OTHERS), math.inf),
+            )
+            plan = marched(there)
+            readings = [_remembered(run) for run in plan.readings]
+            self.done[velocity] = plan._replace(run=_remembered(plan.run), readings=readings)
+        return self.done[velocity]
+
+    def _power_as_force(self, run):
+        return lambda *asked: _with_power(run(*asked), self.speed)
+
+
+def _with_power(run, speed):
+    return replace(run, mu=run.power / speed)
+
+
+def _remembered(run):
+    """The same runs, each done once: what one quantity needs is there for the other."""
+    done = {}
+
+    def again(resolution, guess):
+        if resolution not in done:
+            done[resolution] = run(resolution, guess)
+        return done[resolution]
+
+    return again
+
+
+def _line(contact, points):
+    """The DrivingLine of the motion, forward or back."""
+    ahead = contact.friction(0.0)
+    if ahead.value < 0.0 or not math.isfinite(ahead.value):
+        return _moving(contact, points)
+    behind = contact.reversed()
+    back = behind.friction(0.0)
+    if back.value < 0.0 or not math.isfinite(back.value):
+        return _moving(behind, points)
+    reason = ahead.reason or back.reason
+    converged = not reason
+    if converged:
+        reason = (
+            f"drives nothing: friction holds a body at rest against forces from {-back.value:.3g} "
+            f"to {ahead.value:.3g}"
+        )
+    stall_error = max(ahead.error - ahead.value, back.error - back.value, 0.0)
+    uncertain = [c for c, k in ((contact, ahead), (behind, back)) if k.value < k.error]
+    spread = max((no_load(one.friction, one.first).error for one in uncertain), default=0.0)
+    found = NoLoad(0.0, spread, "")
+    return _record(contact, Known(0.0, stall_error, ""), found, np.zeros(0), (converged, reason))
+
+
+def _moving(contact, points):
+    """The DrivingLine of a motion that drives in its own forward direction."""
+    stall, found = contact.friction(0.0), NoLoad(math.nan, math.inf, "")
+    velocity = np.zeros(0)
+    if math.isfinite(stall.value):
+        found = no_load(contact.friction, contact.first)
+    if math.isfinite(found.velocity):
+        velocity = np.linspace(0.0, found.velocity, points)
+    reason = stall.reason or found.reason
+    return _record(contact, stall, found, velocity, (not reason, reason))
+
+
+def _record(contact, stall, found, velocity, verdict):
+    asked, sign = contact.asked, contact.sign
+    problem, (converged, reason) = asked.problem, verdict
+    friction = [contact.friction(v) for v in velocity]
+    power = [contact.power(v) for v in velocity]
+    force, error = (np.array([known[k] for known in friction]) for k in (0, 1))
+    power_in, power_in_error = (np.array([known[k] for known in power]) for k in (0, 1))
+    force, power_out = -force, -force * velocity * contact.creep
+    power_out_error = error * velocity * contact.creep
+    efficiency = power_out / power_in
+    least = np.maximum(power_in - power_in_error, np.finfo(float).tiny)
+    efficiency_error = (power_out_error + np.abs(efficiency) * power_in_error) / least
+    reason = reason or next((known.reason for known in friction + power if known.reason), "")
+    return DrivingLine(
+        scene=problem.motion.name,
+        pressure=problem.motion.pressure.name,
+        model=asked.model,
+        amplitude=problem.amplitude,
+        poisson=problem.poisson,
+        tolerance=asked.tolerance,
+        stall_force=sign * -stall.value + 0.0,
+        stall_force_error=stall.error,
+        no_load_velocity=sign * found.velocity,
+        no_load_velocity_error=found.error,
+        velocity=sign * velocity + 0.0,  # no zero has a sign
+        force=sign * force,
+        force_error=error,
+        power_out=power_out,
+        power_out_error=power_out_error,
+        power_in=power_in,
+        power_in_error=power_in_error,
+        efficiency=efficiency,
+        efficiency_error=efficiency_error,
+        converged=converged and (not reason or not len(velocity)),
+        reason=reason,
+        solve_time_s=asked.seconds,
+    )

@@ -1,0 +1,72 @@
+"""The answer for a motion that drives: a line from stall force to no-load velocity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class DrivingLine:
+    """What a motion drives, from stall to no load; dimensionless but for the time.
+
+    Forces are over mu times the mean normal load, velocities in the unit of the motion's own
+    velocity, powers over mu times the mean normal load, u_lim and omega.  Every error is the
+    largest that the number before it may have, by estimate.
+
+    Attributes
+    ----------
+    scene, pressure, model : str
+        What moves, how the load is spread, and the contact model.
+    amplitude, poisson, tolerance : float
+        As asked for.
+    stall_force, stall_force_error : float
+        Load that stops the motion, 0 where it drives nothing; below 0 where it drives backward.
+    no_load_velocity, no_load_velocity_error : float
+        Velocity without a load, with the same sign.
+    velocity, force, force_error : np.ndarray, shape (points,)
+        From 0 to the no-load velocity in equal parts, and the force that is pulled with there.  No
+        points where nothing is driven.
+    power_out, power_out_error : np.ndarray, shape (points,)
+        force times velocity.
+    power_in, power_in_error : np.ndarray, shape (points,)
+        Mean work of the oscillation.
+    efficiency, efficiency_error : np.ndarray, shape (points,)
+        Power out over power in.
+    converged : bool
+        Whether the forces and powers are within the tolerance; of powers over the mean speed of the
+        oscillation.
+    reason : str
+        Why not, or why nothing is driven; else empty.
+    solve_time_s : float
+        Seconds by the wall clock.
+    """
+
+    scene: str
+    pressure: str
+    model: str
+    amplitude: float
+    poisson: float
+    tolerance: float
+    stall_force: float
+    stall_force_error: float
+    no_load_velocity: float
+    no_load_velocity_error: float
+    velocity: np.ndarray
+    force: np.ndarray
+    force_error: np.ndarray
+    power_out: np.ndarray
+    power_out_error: np.ndarray
+    power_in: np.ndarray
+    power_in_error: np.ndarray
+    efficiency: np.ndarray
+    efficiency_error: np.ndarray
+    converged: bool
+    reason: str
+    solve_time_s: float
+
+    def to_dict(self) -> dict:
+        """Fields as a plain dict, arrays as lists."""
+        fields = dict(vars(self))
+        return {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in fields.items()}

@@ -1,0 +1,102 @@
+"""`microslip drive`: what a motion that drives pulls with, from stall to no load."""
+
+from __future__ import annotations
+
+import json
+
+from microslip.app.command_line import Said
+from microslip.app.terminal import complain
+
+OPTIONS = {
+    "amplitude": ("A", "of the oscillation, in the motion's own unit, as for point"),
+    "path": (
+        "NUMBERS",
+        "of the motion, such as forward_cycles=2,phase=0; see microslip point SCENE --help",
+    ),
+    "pressure": ("NAME", "how the load is spread, as for point (hertz)"),
+    "poisson": ("NU", "Poisson's ratio, 0 to 0.5 (0)"),
+    "model": ("NAME", "auto, rigid, radial, polar or cartesian, as for point (auto)"),
+    "tolerance": ("T", "largest accepted error of a force, absolute (1e-3)"),
+    "points": ("N", "on the line, its ends included (9)"),
+}
+OTHER_NAMES = {"poisson": ("--nu",)}
+REALS = ("amplitude", "poisson", "tolerance")
+COLUMNS = ("velocity", "force", "power_out", "power_in", "efficiency")
+WIDTH = 12
+
+
+def add_parser(commands) -> None:
+    """Add the parser of `drive` to those of the other commands."""
+    parser = commands.add_parser(
+        "drive",
+        allow_abbrev=False,
+        help="a motion that drives: stall force, no-load velocity, efficiency",
+        description="Some motions drive the contact forward by themselves: a loop that is not its "
+        "own image after half a period, or a load that is higher on the way back.  The line from "
+        "the stall force, the load that stops it, to the no-load velocity; forces over mu times "
+        "the mean normal load, powers over that, u_lim and omega.  A heavy body moves at the "
+        "velocity; below 0 the motion drives backward.",
+    )
+    parser.add_argument(
+        "scene", metavar="SCENE", help="elliptic or normal, with --path or a colon and its numbers"
+    )
+    for name, (metavar, text) in OPTIONS.items():
+        parser.add_argument(
+            *(f"--{name}", *OTHER_NAMES.get(name, ())),
+            action=Said,
+            metavar=metavar,
+            help=text,
+            required=name == "amplitude",
+        )
+    parser.add_argument(
+        "--json", action="store_true", help="print one JSON object and nothing else"
+    )
+
+
+def run(options) -> int:
+    """Answer; returns the exit code: 0 converged, 1 not converged, 2 bad input."""
+    from microslip import drive
+    from microslip.foundation import spec
+    from microslip.foundation.errors import InputError
+    from microslip.sweeps.evaluate import plain
+
+    said = getattr(options, "said", {})
+    given = {name: getattr(options, name) for name in said}
+    path = given.pop("path", None)
+    scene = options.scene if path is None else f"{options.scene}:{path}"
+    try:
+        for name in given.keys() & {*REALS, "points"}:
+            given[name] = spec.read(name, given[name], whole=name == "points")
+        line = drive(scene, given.pop("amplitude"), **given)
+    except InputError as error:
+        named = error.renamed(*_as_given(options, said, error.argument))
+        complain(f"microslip drive {options.scene}: {named}")
+        return 2
+    print(json.dumps(plain(line.to_dict())) if options.json else _as_text(line))
+    return 0 if line.converged else 1
+
+
+def _as_given(options, said, argument):
+    """Name of the option for an argument of `drive`, and its value on the command line."""
+    if argument == "scene":
+        return ("SCENE", options.scene) if options.path is None else ("--path", options.path)
+    return said.get(argument, f"--{argument}"), getattr(options, argument, None)
+
+
+def _as_text(line):
+    lines = [
+        f"stall_force = {line.stall_force:.6g} +- {line.stall_force_error:.1g}",
+        f"no_load_velocity = {line.no_load_velocity:.6g} +- {line.no_load_velocity_error:.1g}",
+    ]
+    if line.velocity.size:
+        best = line.efficiency.argmax()
+        largest, error = line.efficiency[best], line.efficiency_error[best]
+        lines.append(f"largest efficiency of these points = {largest:.4g} +- {error:.1g}")
+        lines += ["", "".join(f"{name:>{WIDTH}}" for name in COLUMNS)]
+        rows = zip(*(getattr(line, name) for name in COLUMNS), strict=True)
+        lines += ["".join(f"{value:{WIDTH}.4g}" for value in row) for row in rows]
+    if not line.converged:
+        lines.append(f"NOT CONVERGED: {line.reason}")
+    elif line.reason:
+        lines.append(line.reason)
+    return "\n".join(lines)

@@ -1,0 +1,67 @@
+"""The study of motions that drive: its settings, checked."""
+
+from collections.abc import Iterable
+
+from microslip.config.records import ConfigError, Driving, DrivingMotion
+from microslip.foundation.canonical import number
+from microslip.foundation.errors import InputError
+
+MOST_LINES = 8
+"""That a panel can tell apart."""
+MOST_PANELS = 4
+
+
+def study(given: dict, where: str, ask_solver: bool) -> Driving:
+    """The Driving of settings with defaults filled in.
+
+    where: how messages begin, file and key. ask_solver: whether the solver is to say that these
+    motions may drive. Raises ConfigError.
+    """
+    motions = [_motion(name, settings) for name, settings in given["motions"].items()]
+    _refuse_crowd(motions, where)
+    found = Driving(
+        tolerance=float(number(given["tolerance"])),
+        points=given["points"],
+        motions={motion.name: motion for motion in motions},
+    )
+    if ask_solver:
+        _refuse_what_drives_nothing(motions, f"{where}.motions")
+    return found
+
+
+def _motion(name: str, given: dict) -> DrivingMotion:
+    return DrivingMotion(
+        name=str(name),
+        scene=given["scene"],
+        amplitude=float(number(given["amplitude"])),
+        poisson=float(number(given["poisson"])),
+        panel=given["panel"],
+        title=given["title"] or str(name),
+    )
+
+
+def _refuse_crowd(motions: Iterable[DrivingMotion], where: str) -> None:
+    panels = {}
+    for motion in motions:
+        panels.setdefault(motion.panel, []).append(motion.name)
+        if len(panels[motion.panel]) > MOST_LINES:
+            raise ConfigError(
+                f"{where}.motions.{motion.name}.panel: {motion.panel} has more than {MOST_LINES} "
+                "lines; allowed: another panel"
+            )
+        if len(panels) > MOST_PANELS:
+            raise ConfigError(
+                f"{where}.motions.{motion.name}.panel: {motion.panel} is one of more than "
+                f"{MOST_PANELS}; allowed: {', '.join(list(panels)[:-1])}"
+            )
+
+
+def _refuse_what_drives_nothing(motions: Iterable[DrivingMotion], where: str) -> None:
+    from microslip.adaptive.checks import checked_driving
+
+    for motion in motions:
+        try:
+            checked_driving(motion.scene, motion.amplitude, motion.poisson)
+        except InputError as error:  # its arguments have the names of the keys
+            line = f"{where}.{motion.name}.{error.argument}: {error.value!r}: {error.allowed}"
+            raise ConfigError(" ".join(line.split())) from None

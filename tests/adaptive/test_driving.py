@@ -1,0 +1,221 @@
+"""Motions that drive: rigid limits, balances of energy, and a contact that is pushed back."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+import microslip
+from microslip.foundation.errors import InputError
+from microslip.models.contact import FORWARD, forward_slip
+from microslip.models.path import make_path, phases_between
+from microslip.motions.by_name import motion_named
+from microslip.solver.problem import Problem, Resolution, build_contact
+
+EIGHT = "elliptic:forward_cycles=2,phase=0"
+
+
+def rigid_eight(velocity):
+    """Friction of a rigid contact on a figure of eight of amplitude 1, and power in."""
+
+    def rates(t):
+        return 2.0 * np.cos(2.0 * t), np.cos(t)
+
+    def forward(t):
+        ahead, aside = rates(t)
+        return (velocity + ahead) / np.hypot(velocity + ahead, aside)
+
+    def work(t):
+        ahead, aside = rates(t)
+        return (ahead * (velocity + ahead) + aside**2) / np.hypot(velocity + ahead, aside)
+
+    inside = np.linspace(0.0, 2.0 * np.pi, 9)[1:-1]
+    return tuple(
+        quad(part, 0.0, 2.0 * np.pi, points=inside, limit=400)[0] / (2.0 * np.pi)
+        for part in (forward, work)
+    )
+
+
+def rigid_pressed(velocity, reach, load):
+    """The same under a load 1 + load sin(t), forward rate -reach sin(t), by hand: the contact
+    slides forward while sin(t) < velocity / reach."""
+    share = velocity / reach
+    return 2.0 / np.pi * (np.arcsin(share) - load * np.sqrt(1.0 - share**2))
+
+
+@pytest.mark.slow
+def test_a_rigid_contact_on_an_eight():
+    stall, _ = rigid_eight(0.0)
+    fastest = brentq(lambda v: rigid_eight(v)[0], 0.0, 2.0)
+    sign = -1.0 if stall > 0.0 else 1.0
+    scene = EIGHT if sign > 0.0 else "elliptic:forward_cycles=2,phase=180"
+    line = microslip.drive(scene, 1.0, model="rigid", points=5)
+    assert line.converged, line.reason
+    assert abs(line.stall_force + stall) <= line.stall_force_error
+    assert abs(line.no_load_velocity - fastest) <= line.no_load_velocity_error
+    for index, velocity in enumerate(line.velocity):
+        friction, power = rigid_eight(velocity)
+        assert abs(line.force[index] + friction) <= line.force_error[index]
+        assert abs(line.power_in[index] - power) <= line.power_in_error[index]
+
+
+@pytest.mark.slow
+def test_a_stiff_contact_under_an_oscillating_load_in_closed_form():
+    """The path is forty times u_lim: an elastic contact is late by about one u_lim."""
+    line = microslip.drive("normal:forward=1,load=0.0125,phase=90", 40.0, points=3)
+    assert line.converged, line.reason
+    late = 2.0 / 40.0  # u_lim lost at each of two turns, over a half stroke
+    assert line.stall_force == pytest.approx(-rigid_pressed(0.0, 40.0, 0.5), abs=late)
+    fastest = brentq(lambda v: rigid_pressed(v, 40.0, 0.5), 0.0, 40.0)
+    assert line.no_load_velocity == pytest.approx(fastest, rel=2.0 * late)
+
+
+@pytest.mark.slow
+def test_no_load_by_a_heavy_body_without_a_force():
+    """A body so heavy that it does not feel a period moves under no force at that velocity."""
+    line = microslip.drive(EIGHT, 1.0, points=2)
+    free = microslip.solve(EIGHT, amplitude=1.0, force=0.0, mass=1e3)
+    assert free.converged
+    swing = 1e-3  # of the velocity, by forces up to 1
+    errors = line.no_load_velocity_error + free.velocity_error
+    assert abs(free.velocity - line.no_load_velocity) <= errors + swing
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("scene", "amplitude"), [(EIGHT, 1.0), ("normal:forward=1,phase=225", 0.8)]
+)
+def test_what_goes_in_and_not_out_is_dissipated(scene, amplitude):
+    """Slip times traction, summed over the points of another model."""
+    line = microslip.drive(scene, amplitude, points=3)
+    assert line.converged, line.reason
+    velocity = float(line.velocity[1])
+    there = microslip.period(scene, velocity, amplitude, cells=16, angles=4, steps=256)
+    slip = np.array([there.slip_forward, there.slip_lateral])[:, 1:]
+    traction = np.array([there.traction_forward, there.traction_lateral])[:, 1:]
+    dissipated = float(np.sum(there.area * traction * slip)) / (2.0 * np.pi)
+    lost = line.power_in[1] - line.power_out[1]
+    assert dissipated == pytest.approx(lost, rel=0.02)
+    assert np.all(line.power_in - line.power_out > 0.0)
+    assert np.all(line.efficiency < 1.0) and line.efficiency[1] > 0.0
+    # the same without the power out would not do
+    assert line.power_out[1] > 0.01 * lost
+
+
+@pytest.mark.parametrize("amplitude", [0.9, 1.5])  # 1.5: contact is lost
+def test_an_oscillating_load_does_no_work_over_a_period(amplitude):
+    """Work of the elastic normal contact, by the trapezoidal rule, against that of one way in."""
+    motion = motion_named("normal:indentation=1,load=1,forward=1,phase=40")
+    depth = motion.depth(np.linspace(0.0, 2.0 * np.pi, 20001), amplitude, motion.pressure)
+    load = motion.pressure.total(depth)
+    middle = 0.5 * (load[1:] + load[:-1])
+    work = middle * np.diff(depth)
+    assert abs(work.sum()) < 1e-9 * np.abs(work).sum()
+    assert np.abs(work).sum() > 1.0
+
+
+@pytest.mark.slow
+def test_two_models_drive_alike():
+    """At nu = 0 rings alone and rings with angles are two models of one contact."""
+    rings, modes = (
+        microslip.drive(EIGHT, 1.0, model=model, tolerance=1e-2, points=3)
+        for model in ("radial", "polar")
+    )
+    errors = rings.no_load_velocity_error + modes.no_load_velocity_error
+    assert abs(rings.no_load_velocity - modes.no_load_velocity) <= errors
+    for name in ("force", "power_in", "efficiency"):
+        one, other = getattr(rings, name), getattr(modes, name)
+        allowed = getattr(rings, f"{name}_error") + getattr(modes, f"{name}_error")
+        # each at its own velocities: none of these changes by more than the velocity does
+        assert np.all(np.abs(one - other) <= allowed + errors)
+
+
+@pytest.mark.slow
+def test_stall_is_the_limit_of_slow_velocities():
+    line = microslip.drive(EIGHT, 1.2, points=2)
+    slow = [-microslip.solve(EIGHT, v, 1.2).mu_macro for v in (4e-3, 1e-3)]
+    assert line.stall_force > slow[1] > slow[0]
+    assert slow[1] == pytest.approx(line.stall_force, abs=3e-3)
+
+
+@pytest.mark.slow
+def test_a_reversed_loop_drives_backward():
+    ahead = microslip.drive("elliptic:forward_cycles=2,phase=20", 1.0, points=4)
+    back = microslip.drive("elliptic:forward_cycles=2,phase=200", 1.0, points=4)
+    assert ahead.stall_force > 0.0 > back.stall_force
+    errors = ahead.stall_force_error + back.stall_force_error
+    assert abs(ahead.stall_force + back.stall_force) <= errors
+    errors = ahead.no_load_velocity_error + back.no_load_velocity_error
+    assert abs(ahead.no_load_velocity + back.no_load_velocity) <= errors
+    assert np.all(back.velocity <= 0.0) and np.all(back.power_out >= -back.power_out_error)
+
+
+@pytest.mark.slow
+def test_friction_grows_through_zero_velocity():
+    """Pushed back against the way in which it drives, a contact resists more than at a stall."""
+    force = [microslip.solve(EIGHT, v, 1.0).mu_macro for v in (-0.5, -0.1, 0.1, 0.5)]
+    assert np.all(np.diff(force) > 0.0)
+    assert force[0] < -microslip.drive(EIGHT, 1.0, points=2).stall_force
+    fast = microslip.solve(EIGHT, -3.0, 0.1)
+    assert fast.mu_macro == pytest.approx(-1.0, abs=1e-2)
+
+
+def test_marched_back_without_a_mirror():
+    """Period after period on a path that leads back, from no tractions."""
+    velocity, phases = -0.3, phases_between((-0.5 * np.pi, 0.5 * np.pi, 1.5 * np.pi), 64)
+    problem = Problem(motion_named("elliptic:forward_cycles=2,phase=20"), 0.3, 1.0, 0.0)
+    contact = build_contact(problem, "radial", Resolution(24, 1, 64))
+    path = make_path(replace(problem, velocity=velocity).displacement, phases)
+    state = 0.0 * forward_slip(contact)
+    for _ in range(4):
+        march = contact.march(path, state, 1e-8)
+        state = march.state
+    found = microslip.solve(problem.motion.name, velocity, 1.0)
+    mean = float(path.mean(march.forces)[FORWARD])
+    assert abs(found.mu_macro - mean) <= found.mu_macro_error + 1e-3  # its own steps and rings
+
+
+def test_a_rigid_contact_pushed_back():
+    found = microslip.solve(EIGHT, -0.7, 1.0, model="rigid")
+    assert abs(found.mu_macro - rigid_eight(-0.7)[0]) <= found.mu_macro_error
+    assert found.velocity == -0.7
+
+
+@pytest.mark.slow
+def test_a_contact_that_sticks_drives_nothing():
+    """So small an oscillation leaves friction enough to hold a body against either direction."""
+    line = microslip.drive(EIGHT, 0.1)
+    assert line.converged
+    assert line.stall_force == line.no_load_velocity == 0.0
+    assert line.velocity.size == line.efficiency.size == 0
+    assert line.reason.startswith("drives nothing: friction holds")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (("transverse", 1.0), "scene = 'transverse': allowed is a motion that drives"),
+        (("elliptic", 1.0), "scene = 'elliptic': allowed is a motion that drives"),
+        ((EIGHT, 0.0), "amplitude = 0.0: allowed is a number above 0"),
+        ((EIGHT, -1.0), "amplitude = -1.0"),
+        ((EIGHT, None), "amplitude = None"),
+    ],
+)
+def test_what_does_not_drive_is_refused(arguments, named):
+    with pytest.raises(InputError, match=named):
+        microslip.drive(*arguments)
+
+
+def test_points_and_tolerance_are_checked():
+    with pytest.raises(InputError, match="points = 1: "):
+        microslip.drive(EIGHT, 1.0, points=1)
+    with pytest.raises(InputError, match="tolerance = None: "):
+        microslip.drive(EIGHT, 1.0, tolerance=None)
+
+
+@pytest.mark.parametrize("scene", ["transverse", "bore", "elliptic"])
+def test_what_is_odd_in_the_velocity_is_not_asked_for_below_zero(scene):
+    with pytest.raises(InputError, match="velocity = -0.1: allowed is a finite number of at least"):
+        microslip.solve(scene, -0.1, 1.0)

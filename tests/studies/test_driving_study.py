@@ -1,0 +1,107 @@
+"""The study of motions that drive: what is asked, its dataset and its figure."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from stubs import driving_stub, studies_stub
+
+from microslip.config import load
+from microslip.config.records import ConfigError
+from microslip.datasets import netcdf, sweep_dataset
+from microslip.report.figures import drawing
+from microslip.studies import registry
+from microslip.sweeps import batches
+from microslip.sweeps.cache import Store
+
+
+@pytest.fixture(scope="module")
+def data():
+    answer, _ = studies_stub.answered(driving_stub.driving_result)
+    return registry.build("driving", driving_stub.configured(), answer)
+
+
+def test_every_line_is_asked_for_once():
+    again = driving_stub.DRIVING["motions"] | {"twin": driving_stub.EIGHT}
+    given = driving_stub.configured(motions=again)
+    asked = studies_stub.asked("driving", given)
+    assert len(asked) == len(set(asked)) == 3
+    answer, seen = studies_stub.answered(driving_stub.driving_result)
+    built = registry.build("driving", given, answer)
+    assert set(seen) == set(asked)
+    assert built.sizes == {"line": 4, "point": 3}
+
+
+def test_the_dataset_holds_what_was_answered_and_outlives_its_file(data, tmp_path):
+    sweep_dataset.write(data, tmp_path / "driving.nc", registry.groups("driving"))
+    found = netcdf.whole(tmp_path / "driving.nc")
+    assert found["stall_force"].values.tolist() == [0.2, -0.2, 0.0]
+    middle = found.sel(line="back").isel(point=1)  # of the line through (0, 0.2) and (0.5, 0)
+    assert float(middle["velocity"]) == -0.25
+    assert float(middle["force"]) == -0.1
+    assert float(middle["power_out"]) == pytest.approx(0.025)
+    assert np.isnan(found["velocity"].sel(line="still")).all()
+    assert all(found[name].attrs["long_name"] for name in found.variables)
+
+
+def test_the_report_says_what_each_drives(data):
+    eight, back, still = registry.report("driving", data)
+    assert eight == "eight: stall force 0.2, no-load velocity 0.5, efficiency up to 0.25"
+    assert "stall force -0.2, no-load velocity -0.5" in back
+    assert still == "still: drives nothing: friction holds"
+
+
+@pytest.mark.slow
+def test_the_figure_draws_every_line_and_computes_nothing(data):
+    figure = drawing.draw("driving", {"driving": data})
+    above, beside, below, _ = figure.axes
+    for axes, name in ((above, "force"), (below, "efficiency")):
+        found = [line for line in axes.get_lines() if line.get_gid() == name]
+        lines = [line for line in found if line.get_linestyle() != "None"]  # no caps of errors
+        assert len(lines) == 2
+        for index, line in enumerate(lines):
+            assert line.get_xdata().tolist() == data["velocity"].values[index].tolist()
+            assert line.get_ydata().tolist() == data[name].values[index].tolist()
+    shown = [text.get_text() for text in figure.axes[3].get_legend().get_texts()]
+    assert shown == [r"at \$ rest"]  # a dollar begins no formula
+    assert "normal" in beside.get_title(loc="left")
+
+
+@pytest.mark.slow
+def test_a_line_is_kept_and_found_again(tmp_path):
+    motion = {"only": driving_stub.EIGHT}
+    given = driving_stub.configured(motions=motion, tolerance=1e-2, points=2)
+    (request,) = registry.pieces("driving", given)[1][0]
+    first, _ = batches.answer(request, Store(tmp_path))
+    again, seconds = batches.answer(request, Store(tmp_path))
+    assert again == first and seconds == 0.0
+    assert first["result"]["converged"] and len(first["result"]["velocity"]) == 2
+    assert list(tmp_path.glob("driving_lines/elliptic/**/*.json"))
+
+
+@pytest.mark.parametrize(
+    ("motion", "said"),
+    [
+        ({"scene": "elliptic"}, "driving.motions.odd.scene: 'elliptic': allowed is a motion that"),
+        ({"scene": "eliptic"}, "driving.motions.odd.scene: 'eliptic'"),
+        ({"amplitude": 0}, "driving.motions.odd.amplitude: 0"),
+        ({"panel": " "}, "driving.motions.odd.panel"),
+    ],
+)
+def test_a_motion_that_cannot_be_asked_is_refused(motion, said):
+    with pytest.raises(ConfigError, match=said):
+        driving_stub.configured(motions={"odd": driving_stub.EIGHT | motion})
+
+
+def test_more_lines_than_a_panel_can_tell_apart_are_refused():
+    many = {f"line{i}": driving_stub.EIGHT for i in range(9)}
+    with pytest.raises(ConfigError, match="line8.panel: loops has more than 8 lines"):
+        driving_stub.configured(motions=many)
+    many = {f"line{i}": driving_stub.EIGHT | {"panel": f"p{i}"} for i in range(5)}
+    with pytest.raises(ConfigError, match="line4.panel: p4 is one of more than 4; allowed: p0, p1"):
+        driving_stub.configured(motions=many)
+
+
+def test_the_study_need_not_be_given():
+    shipped = load.load(Path(__file__).parents[2] / "config" / "config.yaml")
+    assert load.from_mapping({"sweeps": studies_stub.SWEEPS}).driving == shipped.driving
