@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.adaptive import continuation, point
+from microslip.adaptive import continuation, moved
 from microslip.solver import simulate
 
 
@@ -93,7 +93,7 @@ def test_these_points_need_it(monkeypatch):
     scene, poisson, velocity, amplitude, tolerance = HARD[2]
     settings = {"poisson": poisson, "tolerance": tolerance}
     assert microslip.solve(scene, velocity, amplitude, **settings).retried > 0
-    monkeypatch.setattr(point, "run_safely", lambda run_at, v, guess: run_at(v, guess))
+    monkeypatch.setattr(moved, "run_safely", lambda run_at, v, guess: run_at(v, guess))
     answer = microslip.solve(scene, velocity, amplitude, **settings)
     assert not answer.converged
     assert "no periodic state" in answer.reason

@@ -14,9 +14,11 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_pdf import PdfFile
 from matplotlib.text import Text
 from PIL import Image
+from stubs import drives_stub, driving_stub, studies_stub
 
 from microslip.report.figures import drawing
 from microslip.report.figures import style as look
+from microslip.studies import registry
 
 pytestmark = pytest.mark.slow  # for drawing takes a second or two
 
@@ -31,6 +33,11 @@ def given() -> dict[str, tuple[str, dict]]:
     scenes |= {"continuous_bore": test_figures.fake_continuous_bore()} | of_studies.few()
     found = {name: (name, scenes) for name in drawing.FIGURES} | {"poisson": ("poisson", two)}
     found |= {f"two {name}": (name, two) for name in ("fig2_transverse_map", "fig6_bore_map")}
+    maps = {f"creep_{scene}": drives_stub.creep(scene) for scene in ("transverse", "bore")}
+    found |= {"creep_maps": ("creep_maps", maps), "drives": ("drives", drives_stub.pulled())}
+    answer, _ = studies_stub.answered(driving_stub.driving_result)
+    driving = registry.build("driving", driving_stub.configured(), answer)
+    found["driving"] = "driving", {"driving": driving}
     found["maps"] = "extended_motions", groups.motions(3)
     found["lines"] = "extended_static", {"a": groups.static("a"), "b": groups.static("b")}
     return found

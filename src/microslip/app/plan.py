@@ -6,6 +6,7 @@ workflow is parsed by every job.
 
 from __future__ import annotations
 
+import math
 from functools import cache, cached_property
 from pathlib import PurePosixPath
 
@@ -259,7 +260,14 @@ def _figures(configuration, of_studies):
 
 
 def _is_drawable(figure, names, configuration):
-    """Whether there is enough of a map for the figures that show maps."""
+    """Whether there is enough of a map for the figures that show maps, and whether what is compared
+    is of the same amplitude and velocity."""
+    if figure == "drives":
+        moved, *pulled, body = (configuration.grids[name] for name in names)
+        same = {grid.amplitude for grid in (*pulled, body)} == {body.amplitude}
+        return (
+            same and _has(moved.amplitude, body.amplitude) and _has(moved.velocity, body.velocity)
+        )
     if figure not in ("fig2_transverse_map", "fig6_bore_map", "poisson"):
         return True
     grids = [configuration.sweeps[name] for name in names]
@@ -267,3 +275,8 @@ def _is_drawable(figure, names, configuration):
         return False
     few = all(1 < len(grid.poisson) <= drawing.MOST_POISSONS for grid in grids)
     return few or figure != "poisson"
+
+
+def _has(axis, wanted):
+    """Whether one value is wanted, and an axis has it but for rounding."""
+    return len(wanted) == 1 and any(math.isclose(value, wanted[0]) for value in axis)

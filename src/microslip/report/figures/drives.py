@@ -72,7 +72,7 @@ def _over_mass(axes: Axes, given: dict[str, xr.Dataset]) -> None:
     """A mass on springs at one velocity, and what a constant velocity gives there."""
     bodies = _one(given["drive_body"])
     amplitude, velocity = float(bodies["amplitude"]), float(bodies["velocity"])
-    moved = float(_moved(given, amplitude)["mu_macro"].sel(velocity=velocity, method="nearest"))
+    moved = float(_at(_moved(given, amplitude), "velocity", velocity)["mu_macro"])
     axes.axhspan(moved * (1 - GOOD), moved * (1 + GOOD), color=look.PALE, label="within 1 %")
     axes.axhline(moved, color=look.BLACK, linewidth=1.3, label="constant velocity", gid="velocity")
     for part, (color, marker) in _by_stiffness(bodies):
@@ -99,5 +99,13 @@ def _by_stiffness(dataset: xr.Dataset) -> list[tuple[xr.Dataset, tuple[str, str]
 
 
 def _moved(given: dict[str, xr.Dataset], amplitude: float) -> xr.Dataset:
-    """The cut of the map of the paper at an amplitude that it has."""
-    return at_one_poisson(given["transverse"])[0].sel(amplitude=amplitude, method="nearest")
+    """The cut of the map of the paper at an amplitude."""
+    return _at(at_one_poisson(given["transverse"])[0], "amplitude", amplitude)
+
+
+def _at(dataset: xr.Dataset, dim: str, value: float) -> xr.Dataset:
+    """A dataset at a value that it has, but for rounding; raises ValueError if it has not."""
+    same = np.flatnonzero(np.isclose(dataset[dim].values, value, rtol=1e-9, atol=0.0))
+    if not same.size:
+        raise ValueError(f"the sweep transverse has no {dim} {value:g}, as the drives have")
+    return dataset.isel({dim: same[0]})
