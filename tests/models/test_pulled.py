@@ -3,25 +3,14 @@
 import numpy as np
 import pytest
 from reference_pull import pulled_march
+from stubs.small_contacts import CONTACTS
 
 from microslip.models.contact import forward_slip
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
-from microslip.models.polar.contact import PolarContact
 from microslip.models.pull import Body
 from microslip.models.rings.contact import RadialContact
-from microslip.models.squares.contact import CartesianContact
 from microslip.motions.by_name import motion_named
 
-CONTACTS = {
-    "rings": (lambda: RadialContact.resolved(5, 0.7), "transverse", 0.0),
-    "angular points": (lambda: PolarContact(4, 4, True, 0.3, 0.6), "bore", 0.3),
-    "angular points of a translation": (
-        lambda: PolarContact(4, 4, False, 0.3, 0.6),
-        "transverse",
-        0.3,
-    ),
-    "squares": (lambda: CartesianContact(5, 0.3), "bore", 0.3),
-}
 BODIES = {
     "a soft spring": (0.5, 0.0, 0.0, 0.0),
     "a stiff spring": (20.0, 0.0, 0.0, 0.0),

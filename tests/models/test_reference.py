@@ -3,26 +3,17 @@
 import numpy as np
 import pytest
 from reference_march import march, periodic
+from stubs import small_contacts
 
 from microslip.models.contact import forward_slip
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
-from microslip.models.polar.contact import PolarContact
 from microslip.models.rings.contact import RadialContact
-from microslip.models.squares.contact import CartesianContact
 from microslip.motions.by_name import motion_named
 from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
 
-CONTACTS = {
-    "rings": (lambda: RadialContact.resolved(5, 0.7), "transverse", 0.0),
+CONTACTS = small_contacts.CONTACTS | {
     "rings, ahead and aside": (lambda: RadialContact.resolved(5, 0.7), "elliptic", 0.0),
-    "angular points": (lambda: PolarContact(4, 4, True, 0.3, 0.6), "bore", 0.3),
-    "angular points of a translation": (
-        lambda: PolarContact(4, 4, False, 0.3, 0.6),
-        "transverse",
-        0.3,
-    ),
-    "squares": (lambda: CartesianContact(5, 0.3), "bore", 0.3),
 }
 VELOCITY, AMPLITUDE = 0.3, 0.8
 

@@ -1,0 +1,17 @@
+"""One small contact of every kind that marches, each with a motion that it knows."""
+
+from microslip.models.polar.contact import PolarContact
+from microslip.models.rings.contact import RadialContact
+from microslip.models.squares.contact import CartesianContact
+
+CONTACTS = {
+    "rings": (lambda: RadialContact.resolved(5, 0.7), "transverse", 0.0),
+    "angular points": (lambda: PolarContact(4, 4, True, 0.3, 0.6), "bore", 0.3),
+    "angular points of a translation": (
+        lambda: PolarContact(4, 4, False, 0.3, 0.6),
+        "transverse",
+        0.3,
+    ),
+    "squares": (lambda: CartesianContact(5, 0.3), "bore", 0.3),
+}
+"""A function that builds it, the name of the motion, and Poisson's ratio."""
