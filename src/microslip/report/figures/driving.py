@@ -15,7 +15,7 @@ VARIABLES = ("velocity", "force", "force_error", "efficiency", "efficiency_error
 VARIABLES += ("panel", "title")
 ROWS = (
     ("force", r"force  $F/(\mu F_z)$"),
-    ("efficiency", "efficiency, power out over in  (dimensionless)"),
+    ("efficiency", "efficiency  (dimensionless)"),
 )
 """What the rows show, and their labels."""
 WIDTH, HEIGHT = 2.36, 5.2
