@@ -156,10 +156,11 @@ CELLS_POLICIES = (
         regular=False,
     ),
     CellsPolicy(
-        "rotation under another pressure: its peak or kink falls between the coarsest rings",
+        "rotation under another pressure: its peak falls between rings, and no trend is safe",
         lambda problem, model: problem.motion.rotates and not _like_a_sphere(problem),
         base=8,
         first=(8, 16),
+        regular=False,
         made_for=1e-3,
     ),
     CellsPolicy(

@@ -13,8 +13,9 @@ EXTRAPOLATED_SHARES = 0.6, 0.5
 """Errors of regular axes over the last extrapolation, and over the change of the extrapolated
 value."""
 CALIBRATED = 1.4
-"""Error over what is estimated by the second power, from shares or projections: 1.3 does for 999 in
-1,000 of the random points of benchmarks/certificates.py that it was chosen on."""
+"""Error over what is estimated by the second power, from shares or projections, and over the mixed
+difference: chosen on the random points of benchmarks/certificates.py, where 1 claim in 100 would
+not hold without."""
 READING_CAUTION = 2.5
 """Error over the sum of what the readings of a pressure change: a peak or an edge that falls
 between the points of a grid shows in none of them in full."""
