@@ -122,7 +122,9 @@ def solve(
     if most_work is None:
         most_work = MOST_WORK.get(name, MOST_WORK_OF_OTHERS)
     asked = Asked(
-        problem=body_of(Problem(motion, velocity, amplitude, poisson), contacts),
+        problem=body_of(
+            Problem(motion, velocity, amplitude, poisson), contacts, name if drive else None
+        ),
         model=name,
         chosen=model == "auto",
         method=method,

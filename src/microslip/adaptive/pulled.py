@@ -12,7 +12,7 @@ from microslip.adaptive.moved import CLOSED_FORM, PERIODICITY_SHARE
 from microslip.adaptive.refinement import certify
 from microslip.adaptive.resolutions import plan
 from microslip.adaptive.result import Result
-from microslip.adaptive.several import refuse_coupled, solve_each
+from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
     is_even,
     oscillates,
@@ -69,7 +69,6 @@ def refuse_drive(problem: Problem, drive: Drive, model: str) -> None:
 def refuse_pull(asked: Asked, drive: Drive) -> None:
     """Raise InputError where what is asked does not go with a drive."""
     refuse_drive(asked.problem, drive, asked.model)
-    refuse_coupled(asked.problem, asked.model)
     if asked.method != SHIPPED:
         pulls = "stiffness" if drive.force is None else "force"
         raise InputError("method", asked.method, f"allowed is {SHIPPED} with a {pulls}")

@@ -1,4 +1,4 @@
-"""Several contacts on one body at a given velocity: none feels the others, so each is asked alone."""
+"""Several contacts on one body: at a given velocity none feels the others, each is asked alone."""
 
 from __future__ import annotations
 
@@ -9,28 +9,28 @@ from microslip.adaptive.moved import CLOSED_FORM, solve_moved
 from microslip.adaptive.result import Result
 from microslip.foundation.errors import InputError
 from microslip.motions.body_contacts import contacts_of
-from microslip.solver.body_problem import BodyProblem, refuse_contacts
+from microslip.solver.body_problem import BodyProblem, why_not
 from microslip.solver.problem import Problem
 
 COUPLED_MODELS = ("slider", "mdr", "radial")
 """Those whose contacts may stand side by side, see models.rings.side_by_side."""
 
 
-def body_of(problem: Problem, contacts: str | None) -> Problem:
-    """The problem with the contacts that a text says, if there is one; raises InputError about
-    `contacts`."""
+def body_of(problem: Problem, contacts: str | None, pulled_in: str | None) -> Problem:
+    """The problem with the contacts that a text says, if there is one.
+
+    pulled_in: name of the model where a force or a spring pulls, else None.  Raises InputError
+    about `contacts` where these do not go with the problem or the model.
+    """
     if contacts is None:
         return problem
     body = BodyProblem(**vars(problem), contacts=contacts_of(contacts))
-    refuse_contacts(body)
+    refusal = why_not(body)
+    if not refusal and pulled_in is not None and pulled_in not in COUPLED_MODELS:
+        refusal = f"allowed is none where a force or a spring pulls in the model {pulled_in}"
+    if refusal:
+        raise InputError("contacts", contacts, refusal)
     return body
-
-
-def refuse_coupled(problem: Problem, model: str) -> None:
-    """Raise InputError where a body on several contacts cannot be pulled in a model, by name."""
-    if problem.parts and model not in COUPLED_MODELS:
-        allowed = f"allowed is none where a force or a spring pulls in the model {model}"
-        raise InputError("contacts", problem.written, allowed)
 
 
 def solve_each(asked: Asked) -> Result:

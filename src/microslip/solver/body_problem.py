@@ -19,7 +19,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from microslip.foundation.errors import InputError
 from microslip.models.path import SDIRK2, Path, make_path, phases_between
 from microslip.models.rings.side_by_side import BodyPath, RingsSideBySide
 from microslip.motions.body_contacts import BodyContact, written
@@ -86,9 +85,14 @@ class BodyProblem(Problem):
     @property
     def start(self) -> float:
         """Phase at which a march begins: the first turning point of the first contact."""
-        first = self.parts[0]
-        turns = first.problem.motion.turns(first.problem.velocity, first.problem.amplitude)
-        return turns[0] - first.lead
+        return self.turns_of(self.parts[0])[0]
+
+    def turns_of(self, part: Part) -> np.ndarray:
+        """Phases of the body at which a contact turns; where the body goes along with what all of
+        them do, the contacts turn with the oscillation alone."""
+        velocity = 0.0 if self.steadied else part.problem.velocity
+        turns = part.problem.motion.turns(velocity, part.problem.amplitude)
+        return np.array(turns) - part.lead
 
     @property
     def written(self) -> str:
@@ -151,25 +155,22 @@ def _opposite(one):
     return replace(one, phase=(one.phase + 180.0) % 360.0)
 
 
-def refuse_contacts(problem: BodyProblem) -> None:
-    """Raise InputError where a motion or a pressure does not go with several contacts."""
-    motion, text = problem.motion, problem.written
+def why_not(problem: BodyProblem) -> str:
+    """What is allowed where a motion or a pressure does not go with the contacts; "" if it does."""
+    motion = problem.motion
     if not motion.periodic:
-        raise InputError("contacts", text, f"allowed is none: {motion.name} does not oscillate")
+        return f"allowed is none: {motion.name} does not oscillate"
     if motion.depth is not None:
-        allowed = f"allowed is none under {motion.name}, whose normal load oscillates"
-        raise InputError("contacts", text, allowed)
+        return f"allowed is none under {motion.name}, whose normal load oscillates"
     if any(one.load != 1.0 for one in problem.contacts):
         if not motion.pressure.is_indenter:
-            allowed = f"allowed are equal loads: how {motion.pressure.name} grows is not known"
-            raise InputError("contacts", text, allowed)
+            return f"allowed are equal loads: how {motion.pressure.name} grows is not known"
         translation = problem.oscillation(_LOOP)[:2]
         if motion.rotates and max(np.ptp(along) for along in translation) > 0.0:
-            allowed = f"allowed are equal loads for {motion.name}, of which a part is an angle"
-            raise InputError("contacts", text, allowed)
+            return f"allowed are equal loads for {motion.name}, of which a part is an angle"
     if motion.rotates and any(one.amplitude == 0.0 for one in problem.contacts):
-        allowed = f"allowed are amplitudes above 0 for {motion.name}, which measure its velocity"
-        raise InputError("contacts", text, allowed)
+        return f"allowed are amplitudes above 0 for {motion.name}, which measure its velocity"
+    return ""
 
 
 @lru_cache(maxsize=32)
@@ -208,12 +209,7 @@ def _phases(problem, steps):
     """From where the first contact turns over half a period, or a whole one, in pieces from turning
     point to turning point of any contact."""
     interval = np.pi if problem.motion.half_period_mirror else 2.0 * np.pi
-    turns = [
-        np.array(part.problem.motion.turns(part.problem.velocity, part.problem.amplitude))
-        - part.lead
-        for part in problem.parts
-    ]
-    start = problem.start
+    turns, start = [problem.turns_of(part) for part in problem.parts], problem.start
     inner = np.sort(np.concatenate([(turn - start) % interval for turn in turns]))
     inside = inner[(inner > NEAREST_TURNS) & (inner < interval - NEAREST_TURNS)]
     kept = inside[np.diff(inside, prepend=0.0) > NEAREST_TURNS]

@@ -96,9 +96,7 @@ class Problem:
         """Contacts of a body that has several, see body_problem.Part; here none: it is the one."""
         return ()
 
-    def contact(
-        self, model: str, resolution: Resolution, focus: Focus | None = None
-    ) -> Contact:
+    def contact(self, model: str, resolution: Resolution, focus: Focus | None = None) -> Contact:
         """The contact at a resolution, see build_contact."""
         return build_contact(self, model, resolution, focus)
 

@@ -51,15 +51,12 @@ class RingsSideBySide(RadialContact):
     def __init__(
         self, contacts: Sequence[RadialContact], shares: Sequence[float], extents: Sequence[float]
     ):
-        stiffness = sum(
-            one.stiffness * share / extent
-            for one, share, extent in zip(contacts, shares, extents, strict=True)
-        )
+        scaled = list(zip(contacts, shares, extents, strict=True))
         super().__init__(
-            block_diag(*(one.influence * extent for one, extent in zip(contacts, extents))),
+            block_diag(*(one.influence * extent for one, _, extent in scaled)),
             np.concatenate([one.bound for one in contacts]),
-            np.concatenate([one.weight * share for one, share in zip(contacts, shares)]),
-            stiffness,
+            np.concatenate([one.weight * share for one, share, _ in scaled]),
+            sum(one.stiffness * share / extent for one, share, extent in scaled),
         )
         self._cells = [len(one.bound) for one in contacts]
         self._ahead = None, None
