@@ -192,6 +192,12 @@ CELLS_POLICIES = (
         made_for=1e-2,
     ),
     CellsPolicy(
+        "contacts that turn work against each other on one body: few rings scatter as the steps do",
+        lambda problem, model: bool(problem.parts),
+        base=16,
+        first=(12, 24),
+    ),
+    CellsPolicy(
         "all else: springs of a slider, translation on a loop at nu = 0",
         lambda problem, model: True,
         base=8,
