@@ -16,6 +16,8 @@ _WHERE = {
     "warm_up": "microslip.adaptive.point",
     "solve_stored": "microslip.sweeps.solve_stored",
     "predict": "microslip.si.predict",
+    "fit": "microslip.si.fitting.fit",
+    "Fit": "microslip.si.fitting.fitted",
     "open_map": "microslip.datasets.query.open_map",
     "history": "microslip.adaptive.history",
     "History": "microslip.adaptive.history",
