@@ -141,8 +141,7 @@ SEEDS = 200
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("known", [True, False], ids=["errors given", "errors unknown"])
-@pytest.mark.parametrize("confidence", [0.68, 0.95])
+@pytest.mark.parametrize(("known", "confidence"), [(True, 0.68), (False, 0.95)])
 def test_intervals_cover_the_truth_as_often_as_they_say(closed, known, confidence):
     """Counts of 200 seeds lie where a binomial one of that chance does but once in 10^4."""
     table, sigma = conditions(12), 0.05
@@ -188,9 +187,9 @@ def test_chi_square_tells_errors_that_are_too_small(closed):
 
 
 def test_rows_on_the_plateau_tell_mu_alone(closed):
-    """Fast and small: friction is mu times the load whatever u_lim, as long as that is large."""
+    """Of small amplitudes, friction is mu times the load whatever u_lim, if that is large."""
     table = {
-        "speed": np.geomspace(3.0, 30.0, 8) * OMEGA * U_LIM,
+        "speed": np.geomspace(0.01, 0.1, 8) * OMEGA * U_LIM,
         "amplitude": np.full(8, 0.02 * U_LIM),
     }
     noise = 0.01 * np.random.default_rng(1).standard_normal(8)
@@ -290,4 +289,5 @@ def test_the_solver_finds_the_truth_that_it_made():
     assert found.u_lim_m == pytest.approx(contact.u_lim, rel=0.01)
     again = microslip.fit("transverse", table, **SHARED, nu=0.0)
     assert again.u_lim_m == pytest.approx(found.u_lim_m, rel=2e-3)
-    assert microslip.fit("transverse", table, **SHARED, nu=0.0).to_dict() == again.to_dict()
+    once_more = microslip.fit("transverse", table, **SHARED, nu=0.0)
+    assert str(once_more.to_dict()) == str(again.to_dict())  # to the last bit; NaN is NaN
