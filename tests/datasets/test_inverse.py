@@ -3,13 +3,10 @@
 import numpy as np
 import pytest
 import xarray as xr
-from test_query import made_up
+from stubs.eq6_map import eq6_map
 
-from microslip.datasets.query import open_map as opened  # noqa: F401  registers the accessor
 from microslip.datasets.query.inverse import OUTCOMES
 from microslip.foundation.errors import InputError
-
-FINE = {"velocity": np.geomspace(0.02, 10, 41), "amplitude": np.linspace(0.1, 4, 41)}
 
 
 def outcome(answer):
@@ -35,7 +32,7 @@ def peaked(error=0.0):
 @pytest.mark.slow
 @pytest.mark.parametrize("sought", ["velocity", "amplitude"])
 def test_the_answer_put_into_the_map_gives_what_was_wanted(sought):
-    dataset = made_up(**FINE, error=1e-3)
+    dataset = eq6_map(1e-3)
     known = {"amplitude": 1.2} if sought == "velocity" else {"velocity": 0.5}
     wanted = np.array([0.5, 0.7, 0.9])
     answer = dataset.friction.solve_for(wanted, **known)
@@ -91,7 +88,7 @@ def test_an_interval_that_the_range_cuts_off_says_so():
 
 @pytest.mark.slow
 def test_questions_of_many_dimensions_are_each_their_own():
-    dataset = made_up(**FINE, error=1e-4)
+    dataset = eq6_map(1e-4)
     velocity = xr.DataArray([0.2, 0.5, 1.0], dims="case", coords={"case": list("abc")})
     answer = dataset.friction.solve_for([0.6, 0.8], velocity=velocity)
     assert answer.amplitude.dims == ("wanted", "case", "root")
@@ -134,4 +131,4 @@ def test_a_steady_motion_has_a_velocity_to_look_for():
 )
 def test_bad_questions_are_refused(question, said):
     with pytest.raises(InputError, match=said):
-        made_up().friction.solve_for(0.5, **question)
+        eq6_map(0.0).friction.solve_for(0.5, **question)

@@ -75,7 +75,7 @@ def test_what_all_rows_share_is_given_once(tmp_path):
     assert found.texts == {"frequency": "20 kHz", "load": "10 N"}
     assert (found.load == 10.0).all() and (found.frequency == 2e4).all()
     assert not found.has_errors and found.distinct == 2
-    with pytest.raises(InputError, match="load is missing"):
+    with pytest.raises(InputError, match="load = None: it is missing"):
         microslip.fit("transverse", path, frequency="20 kHz")
-    with pytest.raises(InputError, match="speed is both a column"):
+    with pytest.raises(InputError, match="speed = '1 mm/s': it is both a column"):
         microslip.fit("transverse", path, **shared | {"speed": "1 mm/s"})

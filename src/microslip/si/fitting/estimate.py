@@ -17,6 +17,8 @@ import numpy as np
 SCANNED = 61
 """Values of the scale between its bounds from which the best one is looked for."""
 MOST_STARTS = 3
+GUESSED_MU = 0.3
+PASSES = 3
 STILL = 1e-10
 """Change of theta that is none."""
 FIRST_STEP = 0.1
@@ -25,12 +27,12 @@ DOUBLINGS = 12
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Rows that a model is fitted to: value = mu weight ratio(mu, scale) + error.
+    """Rows that a model is fitted to: value = mu weight ratio + error.
 
     Attributes
     ----------
-    ratio : callable
-        (mu, scale) to an array, shape (n,).
+    ratios : callable
+        thetas, shape (k, 2), to an array, shape (k, n).
     value, weight, error : np.ndarray, shape (n,)
         error: the standard error, or what all rows have in common, in any unit.
     absolute : bool
@@ -39,7 +41,7 @@ class Rows:
         Bounds of theta.
     """
 
-    ratio: Callable
+    ratios: Callable
     value: np.ndarray
     weight: np.ndarray
     error: np.ndarray
@@ -49,13 +51,8 @@ class Rows:
 
     def residuals(self, theta: np.ndarray) -> np.ndarray:
         """Value minus model over the error, shape (n,)."""
-        mu, scale = np.exp(theta)
-        return (self.value - mu * self.weight * self.ratio(mu, scale)) / self.error
-
-    def squares(self, theta: np.ndarray) -> float:
-        """Their sum of squares."""
-        found = self.residuals(theta)
-        return float(found @ found)
+        (ratio,) = self.ratios(theta[None])
+        return (self.value - np.exp(theta[0]) * self.weight * ratio) / self.error
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,23 +86,20 @@ def best_near(rows: Rows, theta: np.ndarray) -> Best:
 
 def starts(rows: Rows) -> list[np.ndarray]:
     """Where to start from: the best places of a scan over all scales, the best one first."""
-    scales = np.linspace(rows.lower[1], rows.upper[1], SCANNED)
-    thetas = [np.array([_best_mu(rows, scale), scale]) for scale in scales]
-    squares = np.array([rows.squares(theta) for theta in thetas])
+    thetas = np.empty((SCANNED, 2))
+    thetas[:, 0] = np.clip(np.log(GUESSED_MU), rows.lower[0], rows.upper[0])
+    thetas[:, 1] = np.linspace(rows.lower[1], rows.upper[1], SCANNED)
+    measured = rows.value / rows.error
+    for _ in range(PASSES):  # mu by linear least squares, for the ratios that belong to the last mu
+        slopes = rows.weight / rows.error * rows.ratios(thetas)
+        mu = slopes @ measured / np.maximum((slopes * slopes).sum(axis=1), np.finfo(float).tiny)
+        mu = np.maximum(mu, np.finfo(float).tiny)
+        thetas[:, 0] = np.clip(np.log(mu), rows.lower[0], rows.upper[0])
+    squares = ((measured - np.exp(thetas[:, :1]) * slopes) ** 2).sum(axis=1)
     padded = np.pad(squares, 1, constant_values=np.inf)
     lowest = np.flatnonzero((squares <= padded[:-2]) & (squares <= padded[2:]))
     order = lowest[np.argsort(squares[lowest], kind="stable")][:MOST_STARTS]
     return [thetas[k] for k in order]
-
-
-def _best_mu(rows, scale):
-    """ln mu for a scale: linear least squares, again for the ratios that belong to it."""
-    log_mu = float(np.clip(np.log(0.3), rows.lower[0], rows.upper[0]))
-    for _ in range(3):
-        slope = rows.weight * rows.ratio(np.exp(log_mu), np.exp(scale)) / rows.error
-        mu = (slope @ (rows.value / rows.error)) / max(slope @ slope, np.finfo(float).tiny)
-        log_mu = float(np.clip(np.log(max(mu, 1e-300)), rows.lower[0], rows.upper[0]))
-    return log_mu
 
 
 def threshold(rows: Rows, best: Best, confidence: float, model: np.ndarray) -> float:

@@ -11,7 +11,7 @@ from microslip.si.fitting.conclusions import Settled, concluded
 from microslip.si.fitting.fitted import Fit
 from microslip.si.fitting.friction_models import LEAST, MOST, MapFriction, SolvedFriction
 from microslip.si.fitting.measured import Measured, read_measured
-from microslip.si.fitting.scales import Displacement, Modulus
+from microslip.si.fitting.scales import Displacement, Modulus, Points
 from microslip.si.inputs import LARGEST_MU
 from microslip.si.motions import UNIT_OF_AMPLITUDE
 from microslip.si.quantities import read
@@ -140,9 +140,15 @@ def _scale(scene, rows, nu, radius, counterbody):
 
 def _rows(rows: Measured, scale, model, ends):
     """What the least squares is asked."""
+
+    def ratios(thetas):
+        """Of all guesses at once, for a map takes as long for one."""
+        parts = zip(*(scale.points(*np.exp(theta)) for theta in thetas), strict=True)
+        return model.at(Points(*(np.concatenate(part) for part in parts))).reshape(len(thetas), -1)
+
     common = max(float(np.abs(rows.value).max()), np.finfo(float).tiny)
     return estimate.Rows(
-        ratio=lambda mu, size: model.at(scale.points(mu, size)),
+        ratios=ratios,
         value=rows.value,
         weight=rows.weight,
         error=rows.error if rows.has_errors else np.full_like(rows.value, common),

@@ -35,7 +35,10 @@ class FrictionModel(Protocol):
     """What answers for rows: mu_macro and the largest error it may have, shape (n,) each."""
 
     def at(self, points: Points) -> np.ndarray:
-        """mu_macro for a guess; an error of it only bends the way to the answer."""
+        """mu_macro of all rows for one guess after the other.
+
+        An error of it only bends the way to the answer.
+        """
 
     def anchor(self, points: Points) -> None:
         """Take these points for the best guess so far, and be as right as can be around them."""
@@ -143,7 +146,8 @@ class SolvedFriction:
         self._map, self._off, self._errors = None, 0.0, np.full(count, np.inf)
 
     def at(self, points: Points) -> np.ndarray:
-        return np.where(points.amplitude > 0.0, self._coarse(points) + self._off, 1.0)
+        off = np.resize(self._off, len(points.amplitude))  # of each row, for every guess
+        return np.where(points.amplitude > 0.0, self._coarse(points) + off, 1.0)
 
     def anchor(self, points: Points) -> None:
         found = [self._solved(v, a) for v, a in zip(*points, strict=True)]

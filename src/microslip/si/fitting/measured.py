@@ -80,8 +80,8 @@ def read_measured(scene: str, given: object, **shared: object) -> Measured:
     for name in CONDITIONS:
         if (name in table) == (shared[name] is not None):
             where = "both a column and given for all rows" if name in table else "missing"
-            allowed = f"{name} is {where}; allowed is a column, or one value for all rows"
-            raise InputError("measured" if name in table else name, given, allowed)
+            allowed = f"it is {where}; allowed is a column, or one value for all rows"
+            raise InputError(name, shared[name], allowed)
         if name in table:
             columns[name] = table[name]
         else:
