@@ -94,7 +94,7 @@ def concluded(settled: Settled, confidence: float, texts: dict) -> Fit:
         degrees_of_freedom=free,
         told=("mu", name) if 1 in told else ("mu",),
         reason="" if 1 in told else _open(scale, np.exp(ends[1])),
-        warnings=tuple(_warnings(settled, allowed, chance)),
+        warnings=tuple(_warnings(settled, allowed if 1 in told else 0.0, chance)),
         understood=texts,
         speed_m_s=measured.speed,
         amplitude_si=measured.amplitude,
@@ -161,6 +161,7 @@ def _open(scale, ends):
 
 
 def _warnings(settled, allowed, chance):
+    """Texts; allowed: of the sum of squares, 0 where one number is open anyway."""
     scale, best = settled.scale, settled.best
     if chance is not None and chance < UNLIKELY:
         yield (
