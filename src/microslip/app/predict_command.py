@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import math
 import sys
 
 from microslip.app.command_line import Said
 from microslip.app.predicted_text import groups_of_drive, length, line, threshold, walk
 from microslip.app.terminal import complain
 from microslip.foundation.errors import shown
-from microslip.si.motions import MOTIONS
+from microslip.si.motions import COMBINED, MOTIONS
 
 OPTIONS = {
     "young": ("E", "Young's modulus of the body, such as '210 GPa'"),
@@ -18,11 +19,18 @@ OPTIONS = {
     "counterbody": ("BODY", "rigid (if not given), a material, or E and nu as in '70 GPa, 0.22'"),
     "radius": ("R", "radius of the sphere, such as '5 mm'"),
     "counter-radius": ("R2", "radius of the counterbody, negative if hollow; flat if not given"),
+    "radius-across": ("R", "another radius across the forward direction: an ellipse is touched"),
+    "contact-radius": ("A", "in place of radii: half the longer side of a contact that is known"),
+    "pressure": ("NAME", "over that contact, such as ring:inner=0.5 or file:FILE (hertz)"),
     "load": ("F", "normal load, such as '10 N'"),
     "mu": ("MU", "coefficient of friction without vibration"),
     "speed": ("V", "forward speed, such as '1 mm/s'"),
     "force": ("P", "instead of a speed: a constant force that pulls, such as '1 N'"),
     "amplitude": ("A", "half stroke, such as '1 um', or an angle for bore, such as '0.5 deg'"),
+    "forward-amplitude": ("A", "half stroke along the forward direction, of elliptic and normal"),
+    "rotation-amplitude": ("A", "half stroke in spin, an angle, of transverse-bore and normal"),
+    "load-amplitude": ("A", "half stroke of the load, of normal, such as '5 N'"),
+    "phase": ("P", "of these against the rest, an angle, such as '90 deg' (0)"),
     "frequency": (
         "F",
         "of the oscillation: cyclic, such as '20 kHz', or angular, such as '1200 rpm' or "
@@ -46,11 +54,13 @@ OPTIONS = {
         "speed, relative (1e-2)",
     ),
 }
-NEEDED = ("radius", "load", "mu")
+NEEDED = ("load", "mu")
 OTHER_NAMES = {"nu": ("--poisson",)}
-UNDERSTOOD = ("scene", "body", "counterbody", "radius", "counter_radius", "load", "mu", "speed")
+UNDERSTOOD = ("scene", "body", "counterbody", "radius", "counter_radius", "radius_across")
+UNDERSTOOD += ("contact_radius", "pressure", "load", "mu", "speed")
 UNDERSTOOD += ("force", "drive_stiffness", "mass", "damping")
-UNDERSTOOD += ("amplitude", "frequency", "rotation", "reduction")
+UNDERSTOOD += ("amplitude", "forward_amplitude", "rotation_amplitude", "load_amplitude", "phase")
+UNDERSTOOD += ("frequency", "rotation", "reduction")
 """What a Prediction has understood, in the order of the answer."""
 
 
@@ -116,14 +126,12 @@ def _as_text(found):
     lines += [
         "",
         line("contact radius", length(found.contact_radius_m)),
-        line("indentation", length(found.indentation_m)),
+        *_indentation(found),
         line("u_lim", length(found.u_lim_m)),
         line("largest pressure", f"{found.largest_pressure_Pa / 1e6:.4g} MPa"),
     ]
     if found.amplitude is not None:
-        size = found.amplitude_si
-        real = f"{size:.4g} rad" if found.scene == "bore" else length(size)
-        lines.append(line("amplitude", f"{real}, dimensionless {found.amplitude:.4g}"))
+        lines.append(line("amplitude", f"{_size(found)}dimensionless {found.amplitude:.4g}"))
     if found.velocity is not None and found.force_N is None:
         lines.append(line("velocity", f"dimensionless {found.velocity:.4g}"))
     lines += groups_of_drive(found)
@@ -133,6 +141,19 @@ def _as_text(found):
     lines += [f"warning: {text}" for text in found.warnings]
     lines += [f"not checked: {text}" for text in found.not_checked]
     return "\n".join(lines)
+
+
+def _indentation(found):
+    depth = found.indentation_m
+    return [] if math.isnan(depth) else [line("indentation", length(depth))]
+
+
+def _size(found):
+    """The amplitude with its unit and a comma; of several the dimensionless one is the largest."""
+    if found.scene in COMBINED:
+        return "the largest is "
+    size = found.amplitude_si
+    return f"{size:.4g} rad, " if found.scene == "bore" else f"{length(size)}, "
 
 
 def _friction(found):

@@ -28,7 +28,7 @@ class Prediction:
     speed_m_s : float
         Forward speed, m/s; under a force the mean one that comes out, NaN where it runs away.
     amplitude_si : float or None
-        Half stroke of the oscillation, m, or rad for a bore; None for steady motions.
+        Half stroke of the oscillation, m, or rad for a bore; None where there is none.
     frequency_Hz : float or None
         Cyclic frequency of the oscillation, Hz; None for steady motions.
     rotation_rad_s : float or None
@@ -78,6 +78,10 @@ class Prediction:
     natural_frequency : float or None
         Of that mass on its spring and the contact that sticks, over the frequency; None without
         either.
+    pressure : str
+        How the load is spread, as microslip.solve takes it.
+    forward_amplitude_m, rotation_amplitude_rad, load_amplitude_N, phase_rad : float or None
+        Of scenes that oscillate in several ways: further half strokes, and a phase.
     """
 
     scene: str
@@ -128,6 +132,11 @@ class Prediction:
     safety_factor: float | None = None
     regime: str | None = None
     natural_frequency: float | None = None
+    pressure: str = "hertz"
+    forward_amplitude_m: float | None = None
+    rotation_amplitude_rad: float | None = None
+    load_amplitude_N: float | None = None
+    phase_rad: float | None = None
 
     def to_dict(self) -> dict:
         """Fields as a plain dict."""

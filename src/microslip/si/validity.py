@@ -56,9 +56,9 @@ def _steep(contact, motion):
 
 
 def _far(contact, motion):
-    if motion.frequency is None or motion.scene == "bore":
+    if motion.frequency is None:
         return
-    ratio = motion.amplitude / contact.contact_radius
+    ratio = motion.swing[0] / contact.contact_radius
     if ratio > SMALL:
         yield (
             f"the amplitude is {ratio:.2g} of the contact radius: tractions are carried along by "
