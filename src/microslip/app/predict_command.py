@@ -87,6 +87,9 @@ def add_parser(commands) -> None:
             required=name in NEEDED,
         )
     parser.add_argument(
+        "--power", action="store_true", help="says what it takes to vibrate the contact, too"
+    )
+    parser.add_argument(
         "--json", action="store_true", help="print one JSON object and nothing else"
     )
 
@@ -99,7 +102,8 @@ def run(options) -> int:
 
     typed = getattr(options, "said", {})
     try:
-        found = predict(options.scene, **{name: getattr(options, name) for name in typed})
+        given = {name: getattr(options, name) for name in typed}
+        found = predict(options.scene, **given, power=options.power)
     except InputError as error:
         complain(f"microslip predict: {_complaint(error, typed)}")
         return 2
@@ -136,11 +140,28 @@ def _as_text(found):
         lines.append(line("velocity", f"dimensionless {found.velocity:.4g}"))
     lines += groups_of_drive(found)
     lines += _friction(found) if found.force_N is None else walk(found)
+    lines += _energy(found)
     if not found.converged and found.outcome != "runs away":
         lines.append(f"NOT CONVERGED: {found.reason}")
     lines += [f"warning: {text}" for text in found.warnings]
     lines += [f"not checked: {text}" for text in found.not_checked]
     return "\n".join(lines)
+
+
+def _energy(found):
+    """Lines of torque and power, where they are known and more than the force tells."""
+    if found.vibration_power_W is None:
+        return []
+    error = found.vibration_power_error_W
+    lines = [
+        line("power", f"{found.vibration_power_W:.4g} +- {error:.1g} W for the vibration"),
+        line("", f"{found.drag_power_W:.4g} W for the drag"),
+        line("energy", f"{found.energy_per_cycle_J:.4g} J a cycle turn into heat"),
+    ]
+    if found.torque_N_m is not None:
+        text = f"{found.torque_N_m:.4g} +- {found.torque_error_N_m:.1g} N m"
+        lines.insert(0, line("torque", text))
+    return lines
 
 
 def _indentation(found):

@@ -11,6 +11,7 @@ from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.si.dimensionless import groups, solver_scene
 from microslip.si.drives import checked_drive_groups, read_drive
+from microslip.si.energy import energy_fields, vibration_fields
 from microslip.si.inputs import read_body, read_contact, read_counterbody, read_motion
 from microslip.si.motions import COMBINED
 from microslip.si.prediction import Prediction
@@ -59,6 +60,7 @@ def predict(
     counter_hardness: object = None,
     counter_density: object = None,
     tolerance: object = None,
+    power: bool = False,
 ) -> Prediction:
     """Friction of a sphere on a flat, on a second sphere, or of another contact under vibration.
 
@@ -115,6 +117,8 @@ def predict(
         Largest accepted error of the ratio mu_macro, absolute, 1e-3 if not given; under a force
         relative of the speed, 1e-2 if not given, and of a thousandth of its unit (omega u_lim, or
         that of the scene) where it is slower.
+    power : bool
+        Whether to ask the solver, too, what it takes to vibrate the contact.
 
     Returns
     -------
@@ -128,6 +132,8 @@ def predict(
         what is missing, ambiguous or out of range, for bodies that fit so closely that the contact
         is half as wide as one of them, and where no amplitude takes that much friction away.
     """
+    if not isinstance(power, bool):
+        raise InputError("power", power, "allowed is True or False")
     motion, asked = read_motion(
         scene,
         speed=speed,
@@ -191,6 +197,9 @@ def predict(
     pulled = about_drive(contact, motion, drive, pulling, answer, limit)
     if velocity is None:
         velocity, motion = answer.velocity, with_speed(motion, contact, answer)
+    if answer.converged:
+        pulled |= energy_fields(contact, motion, answer)
+        pulled |= vibration_fields(contact, motion, answer, accepted.si) if power else {}
     return replace(_prediction(contact, motion, velocity, answer, limit, about), **pulled)
 
 

@@ -82,6 +82,16 @@ class Prediction:
         How the load is spread, as microslip.solve takes it.
     forward_amplitude_m, rotation_amplitude_rad, load_amplitude_N, phase_rad : float or None
         Of scenes that oscillate in several ways: further half strokes, and a phase.
+    torque_N_m, torque_error_N_m : float or None
+        Torque that a steady spin takes, N m, and its error; None for motions that oscillate.
+    drag_power_W : float or None
+        Mean work of the forward force in a second, W.
+    vibration_power_W, vibration_power_error_W : float or None
+        Mean work of the oscillation, or of the spin, in a second, W; of oscillations where it was
+        asked for.
+    dissipated_power_W, energy_per_cycle_J : float or None
+        Both powers together, W, which friction turns into heat, and what a period or a turn of it
+        costs, J.
     """
 
     scene: str
@@ -137,6 +147,13 @@ class Prediction:
     rotation_amplitude_rad: float | None = None
     load_amplitude_N: float | None = None
     phase_rad: float | None = None
+    torque_N_m: float | None = None
+    torque_error_N_m: float | None = None
+    drag_power_W: float | None = None
+    vibration_power_W: float | None = None
+    vibration_power_error_W: float | None = None
+    dissipated_power_W: float | None = None
+    energy_per_cycle_J: float | None = None
 
     def to_dict(self) -> dict:
         """Fields as a plain dict."""
