@@ -16,6 +16,7 @@ _WHERE = {
     "warm_up": "microslip.adaptive.point",
     "solve_stored": "microslip.sweeps.solve_stored",
     "predict": "microslip.si.predict",
+    "predict_table": "microslip.si.table",
     "fit": "microslip.si.fitting.fit",
     "Fit": "microslip.si.fitting.fitted",
     "open_map": "microslip.datasets.query.open_map",

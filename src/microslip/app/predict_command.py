@@ -44,7 +44,7 @@ OPTIONS = {
     "drive-stiffness": ("K", "of a spring that pulls with the speed, such as '10 N/um'"),
     "mass": ("M", "of the body that a spring or a force pulls, such as '20 g'"),
     "damping": ("C", "of a dashpot on a body on a spring, such as '5 N*s/m'"),
-    "hardness": ("H", "of the body, to warn of yielding, such as '7 GPa'"),
+    "hardness": ("H", "of the body, to warn of yielding, such as '7 GPa', '700 HV' or '60 HRC'"),
     "density": ("RHO", "of the body, to warn of inertia, such as '7850 kg/m^3'"),
     "counter-hardness": ("H2", "of the counterbody"),
     "counter-density": ("RHO2", "of the counterbody"),

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from microslip.foundation.errors import InputError
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealMotion
+from microslip.si.hardness import read_hardness
 from microslip.si.materials import RIGID, Material, material_named
 from microslip.si.motions import COMBINED, MOTIONS, PARTS, TAKES, UNIT_OF_AMPLITUDE
 from microslip.si.quantities import read
@@ -42,16 +43,23 @@ class Body:
     def completed(self, side: str, hardness: object, density: object) -> Body:
         """With what is given of hardness and density; side: "counter_" or nothing, for messages."""
         body = self
-        for name, value, unit in (("hardness", hardness, "Pa"), ("density", density, "kg/m^3")):
+        for name, value, read_as in (
+            ("hardness", hardness, read_hardness),
+            ("density", density, _read_density),
+        ):
             if value is None:
                 continue
             if self.material.rigid:
                 allowed = "allowed for an elastic body, not a rigid one"
                 raise InputError(f"{side}{name}", value, allowed)
-            given = read(f"{side}{name}", value, unit)
+            given = read_as(f"{side}{name}", value)
             material = replace(body.material, **{name: given.si})
             body = Body(material, f"{body.text}, {name} {given.text}")
         return body
+
+
+def _read_density(name, value):
+    return read(name, value, "kg/m^3")
 
 
 def read_body(young: object, nu: object, material: object) -> Body:

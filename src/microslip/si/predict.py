@@ -112,7 +112,8 @@ def predict(
         Of a spring between what has the speed and the body, N/m, of the body, kg, and of a dashpot
         on it, N s/m.  A mass may be under a force, too.
     hardness, density, counter_hardness, counter_density : quantity, optional
-        Of the body and the counterbody, Pa and kg/m^3, for the warnings alone.
+        Of the body and the counterbody, Pa (or as in "700 HV", "60 HRC") and kg/m^3, for the
+        warnings alone.
     tolerance : quantity
         Largest accepted error of the ratio mu_macro, absolute, 1e-3 if not given; under a force
         relative of the speed, 1e-2 if not given, and of a thousandth of its unit (omega u_lim, or
