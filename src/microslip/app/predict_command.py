@@ -10,12 +10,13 @@ from microslip.app.command_line import Said
 from microslip.app.predicted_text import groups_of_drive, length, line, threshold, walk
 from microslip.app.terminal import complain
 from microslip.foundation.errors import shown
+from microslip.si.materials import MATERIALS
 from microslip.si.motions import COMBINED, MOTIONS
 
 OPTIONS = {
     "young": ("E", "Young's modulus of the body, such as '210 GPa'"),
     "nu": ("NU", "Poisson's ratio of the body"),
-    "material": ("NAME", "instead of both: steel, stainless-steel, aluminium or glass"),
+    "material": ("NAME", f"instead of both: one of {', '.join(MATERIALS)}"),
     "counterbody": ("BODY", "rigid (if not given), a material, or E and nu as in '70 GPa, 0.22'"),
     "radius": ("R", "radius of the sphere, such as '5 mm'"),
     "counter-radius": ("R2", "radius of the counterbody, negative if hollow; flat if not given"),
@@ -140,12 +141,25 @@ def _as_text(found):
         lines.append(line("velocity", f"dimensionless {found.velocity:.4g}"))
     lines += groups_of_drive(found)
     lines += _friction(found) if found.force_N is None else walk(found)
-    lines += _energy(found)
+    lines += _spread(found) + _energy(found)
     if not found.converged and found.outcome != "runs away":
         lines.append(f"NOT CONVERGED: {found.reason}")
     lines += [f"warning: {text}" for text in found.warnings]
     lines += [f"not checked: {text}" for text in found.not_checked]
     return "\n".join(lines)
+
+
+def _spread(found):
+    """The line of what follows from the spreads of what was given."""
+    if found.mu_apparent_spread is None:
+        return []
+    if found.force_N is not None:
+        return [
+            line("spread", f"{found.speed_spread_m_s:.2g} m/s of the speed, from what was given")
+        ]
+    of_mu = f"{found.mu_apparent_spread:.2g} of mu_apparent"
+    of_force = f"{found.friction_force_spread_N:.2g} N of the force"
+    return [line("spread", f"{of_mu}, {of_force}, from the spreads of what was given")]
 
 
 def _energy(found):

@@ -18,6 +18,7 @@ from microslip.si.prediction import Prediction
 from microslip.si.pulled import about_drive, answer_of, with_speed
 from microslip.si.quantities import read
 from microslip.si.reduction import motion_for
+from microslip.si.uncertain import with_spreads
 from microslip.si.validity import broken_assumptions, unchecked
 
 LARGEST_TOLERANCE = 0.1
@@ -28,6 +29,7 @@ TOLERANCE_OF_LIMIT = 1e-2
 """Of mu_static where several oscillations meet: it takes a minute and more to know it better."""
 
 
+@with_spreads
 def predict(
     scene: str,
     *,
@@ -65,8 +67,9 @@ def predict(
     """Friction of a sphere on a flat, on a second sphere, or of another contact under vibration.
 
     A quantity is a text of one number and one unit ("5 mm"), a pint quantity, or a number in the
-    unit of the SI.  Texts are read strictly: what is not understood to its last character is
-    refused.
+    unit of the SI.  Loads, radii, speeds, forces, mu, young and nu may have a spread, their
+    standard uncertainty: "10 N +- 5 %".  Texts are read strictly: what is not understood to its
+    last character is refused.
 
     Parameters
     ----------

@@ -92,6 +92,8 @@ class Prediction:
     dissipated_power_W, energy_per_cycle_J : float or None
         Both powers together, W, which friction turns into heat, and what a period or a turn of it
         costs, J.
+    mu_macro_spread, mu_apparent_spread, friction_force_spread_N, speed_spread_m_s : float or None
+        Standard uncertainties that follow from those of what was given; None where none was.
     """
 
     scene: str
@@ -154,6 +156,10 @@ class Prediction:
     vibration_power_error_W: float | None = None
     dissipated_power_W: float | None = None
     energy_per_cycle_J: float | None = None
+    mu_macro_spread: float | None = None
+    mu_apparent_spread: float | None = None
+    friction_force_spread_N: float | None = None
+    speed_spread_m_s: float | None = None
 
     def to_dict(self) -> dict:
         """Fields as a plain dict."""
