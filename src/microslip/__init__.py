@@ -19,6 +19,7 @@ _WHERE = {
     "predict_table": "microslip.si.table",
     "fit": "microslip.si.fitting.fit",
     "Fit": "microslip.si.fitting.fitted",
+    "to_xarray": "microslip.datasets.of_records",
     "open_map": "microslip.datasets.query.open_map",
     "history": "microslip.adaptive.history",
     "History": "microslip.adaptive.history",
