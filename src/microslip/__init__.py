@@ -20,6 +20,8 @@ _WHERE = {
     "fit": "microslip.si.fitting.fit",
     "Fit": "microslip.si.fitting.fitted",
     "to_xarray": "microslip.datasets.of_records",
+    "predict_driving": "microslip.si.driving",
+    "RealDrivingLine": "microslip.si.driving",
     "open_map": "microslip.datasets.query.open_map",
     "history": "microslip.adaptive.history",
     "History": "microslip.adaptive.history",

@@ -219,3 +219,27 @@ def test_points_and_tolerance_are_checked():
 def test_what_is_odd_in_the_velocity_is_not_asked_for_below_zero(scene):
     with pytest.raises(InputError, match="velocity = -0.1: allowed is a finite number of at least"):
         microslip.solve(scene, -0.1, 1.0)
+
+
+def test_a_line_that_would_take_too_long_is_given_up():
+    """Before anything is known there are no points, and the reason says what ran out."""
+    late = microslip.drive(EIGHT, 1.0, points=3, time_limit=1e-9)
+    assert not late.converged and len(late.velocity) == 0
+    assert "the time limit of 1e-09 s is over" in late.reason
+    idle = microslip.drive(EIGHT, 1.0, points=3, most_work=1e3)
+    assert not idle.converged
+    assert "the work that the point may take, 1e+03, is spent" in idle.reason
+    assert np.isinf(idle.stall_force_error) and np.isinf(late.no_load_velocity_error)
+    for bound in ("most_work", "time_limit"):
+        with pytest.raises(InputError, match=f"{bound} = 0: allowed is a number above 0"):
+            microslip.drive(EIGHT, 1.0, **{bound: 0})
+
+
+@pytest.mark.slow
+def test_a_line_within_its_bounds_is_the_same():
+    free, bound = (
+        microslip.drive(EIGHT, 1.0, tolerance=1e-2, points=3, **given).to_dict()
+        for given in ({}, {"most_work": 1e12, "time_limit": 1e6})
+    )
+    free.pop("solve_time_s"), bound.pop("solve_time_s")
+    assert free == bound

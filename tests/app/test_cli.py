@@ -282,3 +282,15 @@ def test_a_time_limit_ends_a_point_as_not_converged(capsys):
     assert cli.main([*slow, "--tolerance", "1e-6", "--time-limit", "1e-9"]) == 1
     said = json.loads(capsys.readouterr().out)
     assert said["exhausted"] == "time" and "time limit" in said["reason"]
+
+
+def test_point_knows_several_contacts(capsys):
+    words = ["point", "longitudinal", "--amplitude", "0.5", "--force", "0.3", "--json"]
+    assert cli.main([*words, "--contacts", "phase=0;phase=180"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["velocity"] == 0.0
+    assert said["contacts"] == "load=1,phase=0,amplitude=1;load=1,phase=180,amplitude=1"
+    for more in (["phase=0;"], ["phase=0", "--results", "somewhere"]):
+        assert cli.main([*words, "--contacts", *more]) == 2
+        line = capsys.readouterr().err
+        assert line.count("\n") == 1 and f"--contacts = '{more[0]}': allowed" in line

@@ -43,6 +43,7 @@ RECORDS = {
     "Forces from a start": microslip.History,
     "A period of the periodic state": microslip.Period,
     "The line of a motion that drives": microslip.DrivingLine,
+    "A motion that drives, in units": microslip.RealDrivingLine,
 }
 
 

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
-from microslip.theory.creep import bore_creep, transverse_creep
+from microslip.theory.creep import antiphase_creep, bore_creep, transverse_creep
+from microslip.theory.hertz import mindlin_force
 from microslip.theory.paper import bore_forward
 
 PHASES = (np.arange(2000) + 0.5) * np.pi / 2000
@@ -39,3 +41,15 @@ def test_ends(creep):
     assert np.isinf(creep(1.0, 1.0)) and np.isinf(creep(1.5, 1.0))
     with pytest.raises(ValueError, match="force = -0.1"):
         creep(-0.1, 1.0)
+
+
+@pytest.mark.parametrize("force", [0.02, 0.3, 0.8])
+def test_two_spheres_that_work_against_each_other_move_from_their_static_limit_on(force):
+    """The limit is 1 - force, loaded to: x with 1 - (1 - x)^(3/2), the force of a first loading."""
+    limit = brentq(lambda amplitude: 1.0 - float(mindlin_force(amplitude)) - force, 0.0, 1.0)
+    assert antiphase_creep(force, limit) == pytest.approx(0.0, abs=1e-12)
+    assert antiphase_creep(force, 0.99 * limit) == 0.0
+    # from there on all of the stroke is way: 4 amplitudes in a period for one sphere and the other
+    grown = antiphase_creep(force, limit + 1.0) - antiphase_creep(force, limit)
+    assert 2.0 * np.pi * grown == pytest.approx(4.0)
+    assert np.isinf(antiphase_creep(1.0, 1.0))

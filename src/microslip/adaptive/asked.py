@@ -66,7 +66,8 @@ class Asked:
     def point(self) -> dict:
         """Fields of a result.Result that say what was asked."""
         motion = self.problem.motion
-        return {
+        contacts = {"contacts": self.problem.written} if self.problem.parts else {}
+        return contacts | {
             "scene": motion.name,
             "pressure": motion.pressure.name,
             "velocity": self.problem.velocity,

@@ -8,11 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from microslip.adaptive.chains import EXTRAPOLATED_SHARES, Axis
+from microslip.pressures.by_name import HERTZ
 from microslip.solver.problem import Problem
 from microslip.solver.static_limit import at_turning_points
 
 RINGS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
 SQUARES = (8, 16, 32, 64, 128)
+SLOW_SQUARES = (12, 24, 48, 96, 192)
 STATIC_SQUARES = (16, 24, 32, 48, 64, 96, 128, 192)
 """Levels: rings, or squares along a side."""
 SLOW_CREEP = 3e-3
@@ -21,6 +23,7 @@ agree with each other there before they see it, and prove nothing."""
 EDGE_CAUTION = 1.25
 """Error over the spread of four runs where each gathers its rings at a stick radius that it finds
 by itself, to the width of a ring."""
+ROUNDED = 1e-9
 PROJECTED_SHARES = 0.35, 0.45
 """See chains.Axis; of translations to and fro, whose rings fall into line soon."""
 
@@ -82,11 +85,26 @@ def _is_slow(problem):
     return problem.motion.periodic and 0.0 < problem.creep < SLOW_CREEP
 
 
+def _like_a_sphere(problem):
+    """Whether the load is as far from the centre, in the mean, as that of a sphere."""
+    return abs(problem.motion.pressure.torque - HERTZ.torque) < ROUNDED
+
+
 def _is_static(problem):
     return problem.motion.periodic and problem.velocity == 0.0
 
 
 CELLS_POLICIES = (
+    CellsPolicy(
+        "static limit on a loop: cells come and go at the edge, and a period is marched",
+        lambda problem, model: (
+            model == "cartesian" and _is_static(problem) and not at_turning_points(problem.motion)
+        ),
+        base=24,
+        first=(16, 48),
+        levels=STATIC_SQUARES,
+        regular=False,
+    ),
     CellsPolicy(
         "static limit: cells come and go at the edge; nothing is marched, so more are cheap",
         lambda problem, model: model == "cartesian" and problem.velocity == 0.0,
@@ -98,9 +116,9 @@ CELLS_POLICIES = (
     CellsPolicy(
         "squares, slow: the layer at the stick radius is thin",
         lambda problem, model: model == "cartesian" and _is_slow(problem),
-        base=32,
-        first=(16, 64),
-        levels=SQUARES,
+        base=24,
+        first=(12, 48),
+        levels=SLOW_SQUARES,
     ),
     CellsPolicy(
         "squares: doubled from run to run, since cells come and go at the edge",
@@ -138,6 +156,14 @@ CELLS_POLICIES = (
         regular=False,
     ),
     CellsPolicy(
+        "rotation under another pressure: its peak falls between rings, and no trend is safe",
+        lambda problem, model: problem.motion.rotates and not _like_a_sphere(problem),
+        base=8,
+        first=(8, 16),
+        regular=False,
+        made_for=1e-3,
+    ),
+    CellsPolicy(
         "rotation: with angles there are many unknowns, so as few rings as will do",
         lambda problem, model: problem.motion.rotates,
         base=6,
@@ -164,6 +190,12 @@ CELLS_POLICIES = (
         base=8,
         first=(6, 12),
         made_for=1e-2,
+    ),
+    CellsPolicy(
+        "contacts that turn work against each other on one body: few rings scatter as the steps do",
+        lambda problem, model: bool(problem.parts),
+        base=16,
+        first=(12, 24),
     ),
     CellsPolicy(
         "all else: springs of a slider, translation on a loop at nu = 0",

@@ -34,7 +34,7 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.adaptive.asked import TOLERANCE, Asked
-from microslip.adaptive.checks import checked_driving, checked_request
+from microslip.adaptive.checks import checked_driving, checked_request, refuse_bounds
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.driving_line import DrivingLine
 from microslip.adaptive.moved import marched
@@ -61,6 +61,8 @@ def drive(
     model: str = "auto",
     tolerance: float = TOLERANCE,
     points: int = POINTS,
+    most_work: float | None = None,
+    time_limit: float | None = None,
     progress: Callable | None = None,
 ) -> DrivingLine:
     """The line from stall force to no-load velocity of a motion that drives.
@@ -78,6 +80,11 @@ def drive(
         Absolute, on every force; on powers times the mean speed of the oscillation.
     points : int
         On the line, its ends included.
+    most_work : float or None
+        As for `microslip.solve`, at every velocity that is looked at.
+    time_limit : float or None
+        Seconds by the wall clock after which the line is given up, looked at between marches; None:
+        never.
     progress : callable or None
         As for `microslip.solve`.
 
@@ -97,7 +104,10 @@ def drive(
         raise InputError("tolerance", tolerance, "allowed is a number")
     tolerance, _, _ = checked_request(tolerance, None, None)
     points = count("points", points, 2, most=MOST_POINTS)
+    refuse_bounds(most_work=most_work, time_limit=time_limit)
     name = choose_model(motion, poisson, model)
+    if most_work is None:
+        most_work = MOST_WORK.get(name, MOST_WORK_OF_OTHERS)
     asked = Asked(
         problem=Problem(motion, 0.0, amplitude, poisson),
         model=name,
@@ -107,7 +117,7 @@ def drive(
         tolerance=tolerance,
         cells=None,
         steps=None,
-        budget=Budget(math.inf, math.inf),
+        budget=Budget(most_work, math.inf if time_limit is None else time_limit),
         progress=progress,
         started=started,
     )
@@ -182,11 +192,10 @@ class _Contact:
 
     def _marched(self, velocity):
         if velocity not in self.done:
-            name = self.asked.model
             there = replace(
                 self.asked,
                 problem=replace(self.asked.problem, velocity=velocity),
-                budget=Budget(MOST_WORK.get(name, MOST_WORK_OF_OTHERS), math.inf),
+                budget=self.asked.budget.renewed(),
             )
             plan = marched(there)
             readings = [_remembered(run) for run in plan.readings]

@@ -90,6 +90,8 @@ def _certain(friction, velocity, sign, slope):
     """The velocity next to another at which the sign of friction is certain; 0 below the lowest
     such one, None above the highest."""
     step = WIDENING * friction(velocity).error / slope
+    if not math.isfinite(step):
+        return 0.0 if sign < 0.0 else None
     for _ in range(MOST_WIDENINGS):
         place = velocity + sign * step
         if place <= 0.0:

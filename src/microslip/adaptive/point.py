@@ -15,8 +15,8 @@ from microslip.adaptive.checks import (
     refuse_bounds,
 )
 from microslip.adaptive.choice import choose_model, method_refusal
-from microslip.adaptive.moved import solve_moved
 from microslip.adaptive.result import Result
+from microslip.adaptive.several import body_of, solve_each
 from microslip.foundation.errors import InputError
 from microslip.motions.mirror_image import mirror_image
 from microslip.solver.budget import Budget
@@ -39,6 +39,7 @@ def solve(
     stiffness: float | None = None,
     mass: float | None = None,
     damping: float | None = None,
+    contacts: str | None = None,
     pressure: str = "hertz",
     poisson: float = 0.0,
     model: str = "auto",
@@ -69,6 +70,11 @@ def solve(
         A spring pulls with the velocity at its far end, over mu F_z / u_lim, a body of a mass, over
         mu F_z / (u_lim omega^2), which a dashpot holds, over mu F_z / (u_lim omega).  A mass may be
         under a force, too.
+    contacts : str or None
+        Of a body that several contacts carry, such as "phase=0;phase=180": the load of each, over
+        that of another, its phase in degrees, and its share of the amplitude, all 1, 0 and 1 if not
+        given.  Velocity and amplitude are in units of u_lim of the contact with the mean load, and
+        forces over mu times the load of all.
     pressure : str
         "hertz", "power:exponent=1", "file:measured.csv", see microslip.pressures.by_name.
     poisson : float
@@ -116,7 +122,9 @@ def solve(
     if most_work is None:
         most_work = MOST_WORK.get(name, MOST_WORK_OF_OTHERS)
     asked = Asked(
-        problem=Problem(motion, velocity, amplitude, poisson),
+        problem=body_of(
+            Problem(motion, velocity, amplitude, poisson), contacts, name if drive else None
+        ),
         model=name,
         chosen=model == "auto",
         method=method,
@@ -135,7 +143,7 @@ def solve(
 
 def _answer(asked, drive):
     if drive is None:
-        return solve_moved(asked)
+        return solve_each(asked)
     from microslip.adaptive.pulled import refuse_pull, solve_pulled  # only now: it takes a while
 
     refuse_pull(asked, drive)

@@ -8,10 +8,11 @@ from functools import partial
 
 from microslip.adaptive.asked import Asked, refuse_free, verdict
 from microslip.adaptive.chains import Runs
-from microslip.adaptive.moved import CLOSED_FORM, PERIODICITY_SHARE, solve_moved
+from microslip.adaptive.moved import CLOSED_FORM, PERIODICITY_SHARE
 from microslip.adaptive.refinement import certify
 from microslip.adaptive.resolutions import plan
 from microslip.adaptive.result import Result
+from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
     is_even,
     oscillates,
@@ -25,12 +26,12 @@ from microslip.foundation.errors import InputError
 from microslip.models.registry import MODELS
 from microslip.motions.by_name import read_otherwise
 from microslip.motions.drive import Drive
+from microslip.solver.body_run import simulate_each
 from microslip.solver.budget import Spent
 from microslip.solver.method_names import SHIPPED
 from microslip.solver.problem import Problem
 from microslip.solver.pulled_run import Accuracy, simulate_pulled
 from microslip.solver.run import Settings
-from microslip.solver.simulate import simulate
 
 STEADY_ERROR = 1e-9
 """Of the velocity of a steady motion, over 1 and the velocity."""
@@ -84,7 +85,7 @@ def solve_pulled(asked: Asked, drive: Drive) -> Result:
     problem = asked.problem
     if not problem.motion.periodic or problem.velocity == 0.0 or not oscillates(problem):
         # what is steady stretches the spring to one length, whatever it is
-        return replace(solve_moved(asked), **body)
+        return replace(solve_each(asked), **body)
     certified, axes = _certified(asked, drive, Accuracy(asked.accuracy))
     return Result(
         **asked.point,
@@ -131,10 +132,10 @@ def _static(asked, force):
     """The Result of the static limit, no more exactly than the force needs to be told from it."""
     at_rest = replace(asked, problem=replace(asked.problem, velocity=0.0))
     if asked.tolerance is not None and asked.tolerance < ROUGH_TOLERANCE:
-        rough = solve_moved(replace(at_rest, tolerance=ROUGH_TOLERANCE))
+        rough = solve_each(replace(at_rest, tolerance=ROUGH_TOLERANCE))
         if abs(force - rough.mu_macro) > rough.mu_macro_error:
             return rough
-    return solve_moved(at_rest)
+    return solve_each(at_rest)
 
 
 def _known(asked, drive, velocity, error, reason=""):
@@ -212,7 +213,7 @@ def _near(asked, drive):
 
     def friction_at(velocity):
         there = replace(moving, velocity=velocity)
-        return simulate(there, asked.model, coarse, COARSE_TOLERANCE, settings=settings).mu
+        return simulate_each(there, asked.model, coarse, COARSE_TOLERANCE, settings).mu
 
     near = velocity_near(moving, drive.force, friction_at)
     place = replace(moving, velocity=near.velocity)

@@ -28,7 +28,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from microslip.adaptive.chains import Axis, Chain, Readings, Runs, mixed_difference, refines_cells
+from microslip.adaptive.chains import (
+    CALIBRATED,
+    Axis,
+    Chain,
+    Readings,
+    Runs,
+    mixed_difference,
+    refines_cells,
+)
 from microslip.solver.budget import Spent
 from microslip.solver.problem import Resolution
 from microslip.solver.run import Run
@@ -173,7 +181,8 @@ class _Refinement:
         runs()  # the base first: its state is a guess for others
         asked = runs.quantity
         left = {name: c.error(asked) for name, c in chains.items() if not c.axis.imposed}
-        hidden = {"steps": 0.0, "angles": abs(mixed_difference(runs, chains, asked))}
+        mixed = CALIBRATED * abs(mixed_difference(runs, chains, asked))
+        hidden = {"steps": 0.0, "angles": mixed}
         if "steps" in chains and len(chains) > 1:
             scatter = chains["steps"].axis.scatter
             hidden["steps"] = scatter * abs(chains["steps"].correction(asked))

@@ -21,6 +21,10 @@ TURNING_CAUTION = 2.0
 """Error in time over the spread of the runs where the contact turns or slides back: the first step
 after a turning point, in which all points stick and slip again, errs to one side whatever its
 length."""
+COUPLED_STEPS, COUPLED_RUNS = 48, 5
+"""Steps at the tolerance 1e-3 where contacts that turn work against each other on one body, and the
+runs whose spread is the error: which of them slides changes within a step, and where in it that
+comes to lie scatters from run to run."""
 PROJECTED_CAUTION = {"angles": 1.3, "steps": 1.8}
 PROJECTED_SCATTER = 0.3
 """See chains.Axis."""
@@ -130,14 +134,17 @@ def _steps(problem, model, tolerance):
     motion, levels, coarsest = problem.motion, _step_levels(problem, STEPS), _coarsest(problem)
     if coarsest is None:
         few_unknowns = model == "radial" and motion.half_period_mirror
-        wanted = RADIAL_STEPS if few_unknowns else BASE_STEPS
+        wanted, runs = RADIAL_STEPS if few_unknowns else BASE_STEPS, 3
+        if problem.parts and not motion.half_period_mirror:
+            wanted, runs = COUPLED_STEPS, COUPLED_RUNS
         # second order in time
         wanted *= (1e-3 / tolerance) ** 0.5
         base = next(k for k, count in enumerate(STEPS) if count >= max(wanted, BASE_STEPS))
         caution = RADIAL_CAUTION if few_unknowns else 1.0
         if not motion.half_period_mirror:
             caution = TURNING_CAUTION
-        return Axis("steps", levels, base, (base - 2, base - 1, base), caution=caution)
+        first = tuple(range(base + 1 - runs, base + 1))
+        return Axis("steps", levels, base, first, caution=caution)
     base = STEPS.index(coarsest.steps) + levels_finer(1e-3 / tolerance) // 2
     caution, scatter = PROJECTED_CAUTION["steps"], PROJECTED_SCATTER
     first = (base - 2, base - 1, base)

@@ -25,6 +25,8 @@ class Result:
         Largest error that it may have then, by estimate; None where the velocity was given.
     force, stiffness, mass, damping : float or None
         What pulls, see motions.drive.Drive; None: not that.
+    contacts : str or None
+        Those that the body is on, see motions.body_contacts; None: one.
     poisson : float
         Poisson's ratio.
     model : str
@@ -93,6 +95,7 @@ class Result:
     mass: float | None = None
     damping: float | None = None
     velocity_error: float | None = None
+    contacts: str | None = None
     mu_macro: float
     mu_macro_error: float
     error_space: float = 0.0

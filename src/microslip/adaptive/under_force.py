@@ -43,6 +43,8 @@ def without_forward_motion(problem: Problem) -> Problem:
     motion = problem.motion
     if not oscillates_forward(problem):
         return problem
+    if problem.parts and not problem.moves_together:
+        return replace(problem, steadied=True)
 
     def displacement(phase, velocity, amplitude, poisson):
         forward, lateral, angle = motion.displacement(phase, velocity, amplitude, poisson)
@@ -60,13 +62,17 @@ def without_forward_motion(problem: Problem) -> Problem:
 
 
 def oscillates_forward(problem: Problem) -> bool:
-    """Whether the oscillation alone moves the contact forward and back."""
+    """Whether the oscillation alone moves the contact, or one of several, forward and back."""
+    if problem.parts:
+        return any(oscillates_forward(part.problem) for part in problem.parts)
     forward = problem.oscillation(_LOOP)[0]
     return float(np.ptp(forward)) > RETURNED * max(problem.amplitude, 1.0)
 
 
 def oscillates(problem: Problem) -> bool:
     """Whether anything oscillates at all."""
+    if problem.parts:
+        return any(oscillates(part.problem) for part in problem.parts)
     parts = problem.oscillation(_LOOP)
     moves = max(float(np.ptp(part)) for part in parts) > RETURNED * max(problem.amplitude, 1.0)
     return moves or (problem.depth is not None and problem.amplitude > 0.0)
@@ -76,8 +82,11 @@ def is_even(problem: Problem) -> bool:
     """Whether the oscillation alone exerts no forward force at any time.
 
     Then the contact does not tell a constant force from a velocity that vanishes, and moves from
-    the static limit on.
+    the static limit on.  So do several contacts on a body, each of which exerts none, or has an
+    opposite that exerts the same force the other way.
     """
+    if problem.parts:
+        return all(is_even(part.problem) for part in problem.parts) or problem.is_balanced
     motion, pressure = problem.motion, problem.motion.pressure
     if oscillates_forward(problem) or not motion.half_disc:
         return False

@@ -97,6 +97,11 @@ OPTIONS = {
     "stiffness": ("K", "of a spring whose far end has the velocity, over mu F_z / u_lim"),
     "mass": ("M", "of what the spring or the force pulls, over mu F_z / (u_lim omega^2) (0)"),
     "damping": ("C", "of a dashpot beside the spring, over mu F_z / (u_lim omega) (0)"),
+    "contacts": (
+        "TEXT",
+        "of a body on several, such as 'phase=0;phase=180': load (1, over that of another), phase "
+        "in degrees (0) and amplitude (1, over A) of each",
+    ),
     "pressure": (
         "NAME",
         "hertz (a sphere), power:exponent=1 (a cone; any power), punch:flat=0.8 (rounded edge), "
@@ -233,6 +238,11 @@ def _answer(options, progress):
     path = getattr(options, "path", None)
     settings = {"pressure": options.pressure, "model": options.model, **numbers}
     settings["scene"] = f"{options.scene}:{path}" if path else options.scene
+    if options.contacts is not None:
+        settings["contacts"] = options.contacts
+        if options.results is not None:
+            allowed = "allowed is none with --results, which keeps points of single contacts"
+            raise InputError("contacts", options.contacts, allowed)
     if options.results is None:
         return solve(**settings, method=options.method, progress=progress)
     return solve_stored(**settings, results=options.results)

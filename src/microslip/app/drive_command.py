@@ -18,9 +18,10 @@ OPTIONS = {
     "model": ("NAME", "auto, rigid, radial, polar or cartesian, as for point (auto)"),
     "tolerance": ("T", "largest accepted error of a force, absolute (1e-3)"),
     "points": ("N", "on the line, its ends included (9)"),
+    "time-limit": ("SECONDS", "give up after so long, looked at between two marches"),
 }
 OTHER_NAMES = {"poisson": ("--nu",)}
-REALS = ("amplitude", "poisson", "tolerance")
+REALS = ("amplitude", "poisson", "tolerance", "time_limit")
 COLUMNS = ("velocity", "force", "power_out", "power_in", "efficiency")
 WIDTH = 12
 
@@ -43,6 +44,7 @@ def add_parser(commands) -> None:
     for name, (metavar, text) in OPTIONS.items():
         parser.add_argument(
             *(f"--{name}", *OTHER_NAMES.get(name, ())),
+            dest=name.replace("-", "_"),
             action=Said,
             metavar=metavar,
             help=text,
@@ -80,7 +82,7 @@ def _as_given(options, said, argument):
     """Name of the option for an argument of `drive`, and its value on the command line."""
     if argument == "scene":
         return ("SCENE", options.scene) if options.path is None else ("--path", options.path)
-    return said.get(argument, f"--{argument}"), getattr(options, argument, None)
+    return said.get(argument, f"--{argument.replace('_', '-')}"), getattr(options, argument, None)
 
 
 def _as_text(line):

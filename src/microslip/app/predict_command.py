@@ -6,10 +6,11 @@ import json
 import math
 import sys
 
+from microslip.app import predicted_driving
 from microslip.app.command_line import Said
 from microslip.app.predicted_text import groups_of_drive, length, line, threshold, walk
 from microslip.app.terminal import complain
-from microslip.foundation.errors import shown
+from microslip.foundation.errors import InputError, shown
 from microslip.si.materials import MATERIALS
 from microslip.si.motions import COMBINED, MOTIONS
 
@@ -54,6 +55,7 @@ OPTIONS = {
         "largest accepted error of the ratio mu_macro, absolute (1e-3); under a force of the "
         "speed, relative (1e-2)",
     ),
+    "points": ("N", "with --driving: on the line, its ends included (9)"),
 }
 NEEDED = ("load", "mu")
 OTHER_NAMES = {"nu": ("--poisson",)}
@@ -91,27 +93,42 @@ def add_parser(commands) -> None:
         "--power", action="store_true", help="says what it takes to vibrate the contact, too"
     )
     parser.add_argument(
+        "--driving",
+        action="store_true",
+        help="ask what a motion that drives by itself pulls with, such as "
+        "elliptic:forward_cycles=2,phase=0: stall force, no-load speed, power and efficiency",
+    )
+    parser.add_argument(
         "--json", action="store_true", help="print one JSON object and nothing else"
     )
 
 
 def run(options) -> int:
     """Answer; returns the exit code: 0 converged, 1 not converged, 2 bad input."""
-    from microslip import predict
-    from microslip.foundation.errors import InputError
     from microslip.sweeps.evaluate import plain
 
     typed = getattr(options, "said", {})
     try:
-        given = {name: getattr(options, name) for name in typed}
-        found = predict(options.scene, **given, power=options.power)
+        found = _found(options, {name: getattr(options, name) for name in typed})
     except InputError as error:
         complain(f"microslip predict: {_complaint(error, typed)}")
         return 2
-    text = json.dumps(plain(found.to_dict())) if options.json else _as_text(found)
+    as_text = predicted_driving.as_text if options.driving else _as_text
+    text = json.dumps(plain(found.to_dict())) if options.json else as_text(found)
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"  # units may be no letters of it
     print(text.encode(encoding, "backslashreplace").decode(encoding))
     return 0 if found.converged else 1
+
+
+def _found(options, given):
+    """The answer to the options that were given, a dict; raises InputError."""
+    from microslip import predict
+
+    if options.driving:
+        return predicted_driving.ask(options.scene, given)
+    if "points" in given:
+        raise InputError("points", given["points"], "allowed with --driving alone")
+    return predict(options.scene, **given, power=options.power)
 
 
 def _complaint(error, typed):

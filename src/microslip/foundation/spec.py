@@ -53,9 +53,16 @@ def split(text: str, what: str, names: Iterable[str]) -> tuple[str, dict[str, fl
         near = difflib.get_close_matches(name, names, n=1)
         hint = f"did you mean {near[0]}? " if near else ""
         raise InputError(what, text, f"{hint}allowed is one of {', '.join(names)}")
+    numbers = numbers_in(rest, text, what, f"{name}:key=0.5") if colon else {}
+    return name, numbers
+
+
+def numbers_in(part: str, text: str, what: str, example: str) -> dict[str, float]:
+    """Numbers by their names in a part of a text, such as "forward=0.5,phase=90"; raises InputError
+    about `what` with the whole text and an example if they cannot be read."""
     numbers = {}
-    for part in rest.split(",") if colon else ():
-        key, equals, value = (word.strip() for word in part.partition("="))
+    for one in part.split(","):
+        key, equals, value = (word.strip() for word in one.partition("="))
         if key in numbers:
             raise InputError(what, text, f"{key} occurs twice; allowed: each number once")
         try:
@@ -63,8 +70,8 @@ def split(text: str, what: str, names: Iterable[str]) -> tuple[str, dict[str, fl
         except InputError:
             numbers[key] = math.nan
         if not (key and equals and math.isfinite(numbers[key])):
-            raise InputError(what, text, f"allowed are numbers as in {name}:key=0.5")
-    return name, numbers
+            raise InputError(what, text, f"allowed are numbers as in {example}")
+    return numbers
 
 
 def refuse_unknown(text: str, what: str, numbers: dict[str, float], known: Iterable[str]) -> None:

@@ -17,6 +17,8 @@ from microslip.si.validity import SENSELESS
 
 LARGEST_MU = 10.0
 """No pair of bodies in elastic contact has more; what is larger is a slip of the pen."""
+SHAPES = ("radius", "counter_radius", "radius_across", "contact_radius", "pressure")
+"""What tells where two bodies touch."""
 LARGEST_PHASE = 1e3
 """rad; what is larger is a slip, too."""
 OUT_OF_RANGE = (
@@ -135,8 +137,9 @@ def read_contact(
 ) -> tuple[TwoBodies, dict]:
     """The contact, and a dict of texts of what was understood; raises InputError.
 
-    shape: radius, counter_radius, radius_across, contact_radius and pressure, each may be None.
+    shape: radius, counter_radius, radius_across, contact_radius and pressure, as far as given.
     """
+    shape = dict.fromkeys(SHAPES) | shape
     if shape["pressure"] is not None or shape["contact_radius"] is not None:
         return _of_size(body, other, load, mu, shape)
     if shape["radius"] is None:

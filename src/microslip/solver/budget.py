@@ -41,6 +41,12 @@ class Budget:
         self.exhausted = ""
         self._began = time.monotonic()
 
+    def renewed(self) -> Budget:
+        """Another one that may take as much work; the time goes on from where this one began."""
+        other = Budget(self.most_work, self.time_limit)
+        other._began = self._began
+        return other
+
     def metered(self, contact: Contact) -> Contact:
         """The contact, whose marches count from now on."""
         return _Metered(contact, self)

@@ -91,6 +91,15 @@ class Problem:
         """How much shorter steps are at the turning points (see path.turning_point_grading)."""
         return turning_point_grading(self.creep, self.motion.stroke(self.amplitude, self.poisson))
 
+    @property
+    def parts(self) -> tuple:
+        """Contacts of a body that has several, see body_problem.Part; here none: it is the one."""
+        return ()
+
+    def contact(self, model: str, resolution: Resolution, focus: Focus | None = None) -> Contact:
+        """The contact at a resolution, see build_contact."""
+        return build_contact(self, model, resolution, focus)
+
     def path(self, contact: Contact, steps: int, integrator: Integrator = SDIRK2) -> Path:
         """The path to march, in steps that suit the motion, or the contact if it has a say in it.
 

@@ -15,11 +15,12 @@ from microslip.models.coulomb import project
 from microslip.models.pull import Body
 from microslip.motions.drive import Drive
 from microslip.solver import anderson
+from microslip.solver.body_run import simulate_each
 from microslip.solver.period_map import MOST_MARCHES, CreepRate, Goal
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.pulled_map import PulledMap
 from microslip.solver.run import Run, Settings, failed_run
-from microslip.solver.simulate import mean_forces, periods_of, simulate, step_share
+from microslip.solver.simulate import mean_forces, periods_of, step_share
 
 MARCHES = 2 * MOST_MARCHES
 """Of a search: a body may swing."""
@@ -161,7 +162,7 @@ class _Pulled:
     def _moved(self, tolerance):
         """The Run at a velocity that is given."""
         share = max(tolerance, LOOSEST_MOVED) / self.problem.mean_load
-        return simulate(self.problem, self.model, self.resolution, share, settings=self.settings)
+        return simulate_each(self.problem, self.model, self.resolution, share, self.settings)
 
     def _state(self, tractions, mean):
         """State near tractions whose mean force in a period is about `mean`."""

@@ -9,7 +9,6 @@ import numpy as np
 from microslip.models.contact import Contact
 from microslip.solver.budget import Budget
 from microslip.solver.method import SHIPPED, Method
-from microslip.solver.problem import build_contact
 
 
 @dataclass(frozen=True)
@@ -32,7 +31,7 @@ class Settings:
 
     def contact(self, problem, model: str, resolution, focus=None) -> Contact:
         """The contact of a problem with the method's steps, whose marches count."""
-        contact = self.method.dressed(build_contact(problem, model, resolution, focus))
+        contact = self.method.dressed(problem.contact(model, resolution, focus))
         return contact if self.budget is None else self.budget.metered(contact)
 
 

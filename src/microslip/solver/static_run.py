@@ -18,13 +18,14 @@ from microslip.solver.snapshots import bounds_at_phases, frames
 from microslip.solver.static_limit import STEPS, at_turning_points, static_state
 from microslip.solver.static_loop import largest_shift
 
-SMALLEST_DISTANCE = 1e-10
-"""From the periodic state of the oscillation alone: what is left of the bound there, the force in
-the limit feels by its square root, so that the tolerance is squared, down to this."""
+FELT = 4.0
+"""How much more than the distance from the periodic state of the oscillation alone the limit may
+feel: three times were seen.  Where points slip, every step puts them on the bound, so that no
+shift is left to them however far the state is from periodic."""
 MARCHES, MOST_ROUNDS = 120, 3
 """Of a search for it, and how often it starts again: rounding may stall an accelerated one."""
-ENOUGH = 64.0
-"""Squared share of the tolerance that does where rounding leaves no more to be had."""
+ENOUGH = 4.0
+"""Times the distance that was asked for, which does where rounding leaves no more to be had."""
 MOST_PASSES = 4
 NOTHING_LEFT = 1e-2
 """Share of the largest bound that a ring outside of the stick radius may seem to have left."""
@@ -99,7 +100,7 @@ def _stick_radius(contact, left):
 def _on_these_points(contact, problem, path, tolerance):
     """The Run on one contact, and which points have something left to resist with, if any has."""
     mirror = problem.motion.half_period_mirror
-    distance = max(tolerance**2, SMALLEST_DISTANCE)
+    distance = tolerance / FELT
     shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
     period_map = PeriodMap(contact, path, mirror=mirror)
     start, inner = np.zeros((2, *shape)), STEP_SHARE * distance
@@ -119,14 +120,14 @@ def _on_these_points(contact, problem, path, tolerance):
         shift = largest_shift(tractions, bounds)
         force += float(np.sum(contact.weight * shift))
         left = shift > NOTHING_LEFT * bounds.max()
-    near = found.converged or found.distance <= ENOUGH * tolerance**2  # and its error is told
+    near = found.converged or found.distance <= ENOUGH * distance  # and its error is told
     periods, reason = periods_of(found.marches, problem.motion), ""
     if not near:
         reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
     run = Run(
         mu=float(force) / problem.mean_load,
         torque=0.0,
-        distance=float(np.sqrt(found.distance)) / problem.mean_load,
+        distance=FELT * found.distance / problem.mean_load,
         solver_residual=found.solver_residual / problem.mean_load,
         periods=periods,
         iterations=found.iterations,

@@ -60,3 +60,22 @@ def _steady_bore(force):
     if force >= 1.0:
         return np.inf
     return brentq(lambda velocity: float(bore_forward(velocity)) - force, 0.0, _FASTEST, xtol=1e-14)
+
+
+def antiphase_creep(force: np.ndarray | float, amplitude: np.ndarray | float) -> np.ndarray | float:
+    """Mean velocity of two spheres on one body that oscillate along its way against each other,
+    (2/pi) (A - 1 + P^(2/3)) where that is above 0.
+
+    The body has no mass, nu = 0, and the loads are equal.  While one sphere slides at its bound the
+    other one sticks under 2 P - 1 of its own bound, and the body follows it without strain.  Where
+    the way turns, the two change their parts: the forces of both change by 2 - 2 P, for which each
+    is strained by twice the displacement of a first loading to 1 - P, 2 (1 - P^(2/3)), one forward
+    and one back (Masing, Cattaneo and Mindlin), while the body stays.  What is left of the stroke
+    is the way of the body.  It moves from P = (1 - A)^(3/2) on, the static limit of each alone, and
+    a rigid one at (2/pi) A under any force.
+
+    Arguments, result and errors as `transverse_creep`; at P = 0 it is the limit of a small force.
+    """
+    force, amplitude = checked("force", force), checked("amplitude", amplitude)
+    moved = np.maximum(amplitude - 1.0 + force ** (2.0 / 3.0), 0.0)
+    return 2.0 / np.pi * np.where(force < 1.0, moved, np.inf)[()]

@@ -179,8 +179,16 @@ class RadialContact:
 
     def pulled_march(self, path, state, tolerance, body, start, previous=None) -> PulledMarch:
         """March from which a body may stay behind or run ahead; see models.pull.PullsContact."""
+        bounds = self.bound[None] if path.depth is None else self.bounds_along(path)
+        imposed = path.under(bounds), np.empty((0, 2, 0))
+        return self._pulled_along(path, imposed, state, tolerance, (body, start), previous)
+
+    def _pulled_along(self, path, imposed, state, tolerance, pulled, previous):
+        """The PulledMarch along a path that is imposed, see pulled_march.py; pulled: a pull.Body
+        and where it is."""
         from microslip.models.rings.pulled_march import pulled_march  # only now: it takes a while
 
+        body, start = pulled
         stages = path.stages.shape[0] * path.stages.shape[1]
         known = None if previous is None else previous.stages
         if known is None or known[0].shape != (1 + stages, 2, len(self.bound)):
@@ -188,7 +196,7 @@ class RadialContact:
         end, tractions, places, moved, forces, residual, iterations = unbroken(
             pulled_march,
             self._system,
-            path.under(self.bound[None] if path.depth is None else self.bounds_along(path)),
+            imposed,
             body.along(path, start),
             np.ascontiguousarray(state[:, 0]),
             known,

@@ -24,16 +24,26 @@ def _guessed_place(places, at, known, moved):
     return places[0]
 
 
+@kernel(inline="always")
+def _add(rows, ahead, at, sign):
+    """Add sign times what `ahead` has of a stage, if it has any, to rows (2, n)."""
+    if len(ahead) > 0:
+        for c in range(2):
+            subtract(rows[c], -sign, ahead[at, c])
+
+
 @kernel
-def pulled_march(rings, path, pull, state, known, settings) -> tuple:
+def pulled_march(rings, imposed, pull, state, known, settings) -> tuple:
     """March along a path from which the contact may stay behind, or run ahead.
 
     Parameters
     ----------
     rings : tangent.RingSystem
         The contact.
-    path : models.path.LoadingPath
-        Its integrator ends with the step.
+    imposed : tuple
+        models.path.LoadingPath, whose integrator ends with the step; by how much the weighted
+        displacement that is imposed on each ring is ahead of that, (1 + steps stages, 2, n), at the
+        start and at every stage, or (0, 2, 0) where all rings follow the path.
     pull : models.pull.Pull
         What pulls.
     state : np.ndarray, shape (2, n)
@@ -51,6 +61,7 @@ def pulled_march(rings, path, pull, state, known, settings) -> tuple:
         (steps + 1, 2), forces (steps + 1, 3), residual sum, iterations, whether it was interrupted,
         which makes the rest worthless.
     """
+    path, ahead = imposed
     n, steps, stages = len(rings.weight), path.stages.shape[0], path.stages.shape[1]
     weight, carry, bounds = rings.weight, path.carry, path.bounds
     (tolerance, holding), (known_tractions, known_places) = settings, known
@@ -65,6 +76,7 @@ def pulled_march(rings, path, pull, state, known, settings) -> tuple:
     place, rate = starting_place(pull, forces[0, 0]), pull.start[1]
     z = remembered(rings, moved[0], q, b)
     subtract(z[0], place, weight)
+    _add(z, ahead, 0, -1.0)
     copy(tractions[0], q)
     places[0], body[0, 0], body[0, 1] = place, place, rate
     total, spent, iterations, at = 0.0, 0.0, 0, 0
@@ -83,6 +95,7 @@ def pulled_march(rings, path, pull, state, known, settings) -> tuple:
                     subtract(b[0], -past_place, weight)
                 for j in range(s):
                     subtract(b[c], carry[s, j], slips[j, c])
+            _add(b, ahead, at, 1.0)
             guess(q, bounds, moved, at, known_tractions, tractions)
             pulled = PulledStep(
                 Step(b, bound_at(bounds, at), tolerance),
@@ -111,4 +124,5 @@ def pulled_march(rings, path, pull, state, known, settings) -> tuple:
                 z[c, i] = b[c, i] - slips[stages - 1, c, i] - weight[i] * moved[at, c]
                 forces[k + 1, c] += weight[i] * q[c, i]
         subtract(z[0], past_place, weight)
+        _add(z, ahead, at, -1.0)
     return q, tractions, places, body, forces, total, iterations, False

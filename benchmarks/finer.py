@@ -1,0 +1,78 @@
+"""The same point four times as fine: a reference that shares no run with what it is to judge.
+
+Four times the rings, angles and steps that the point was certified with (no more than 192 rings or
+squares, 64 angles and 2048 steps in half a period), each refined by itself from a base that is
+finer than any certificate starts from, every periodic state searched for from scratch, to a tenth
+of the tolerance.  What is left of its own error is estimated from the run with half of the
+refinement.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from microslip.adaptive.choice import choose_model
+from microslip.solver.problem import Resolution
+from microslip.solver.simulate import simulate
+from microslip.solver.static_run import simulate_static
+
+SWEPT = {"radial": ((96, 1), (192, 1)), "polar": ((64, 12), (96, 24))}
+SWEPT_STEPS = 4
+"""Rings and angles of their reference, and steps in half a period over rings: all are refined
+together."""
+FINER = 4
+BASE = {"radial": Resolution(32, 1, 48), "polar": Resolution(24, 12, 32)}
+LEAST = {"radial": Resolution(64, 1, 96), "polar": Resolution(48, 16, 64)}
+BASE["cartesian"], LEAST["cartesian"] = Resolution(32, 1, 32), Resolution(96, 1, 64)
+MOST = Resolution(192, 64, 2048)
+"""Resolutions (steps in half a period) of the reference: its base, and bounds of its finest."""
+PERIODICITY = 0.1
+"""Distance of the reference from its periodic states, over the tolerance."""
+
+
+def reference(problem, tolerance, certified):
+    """(mu, uncertainty) four times as fine as the ``certified`` Result."""
+    kind = problem.motion
+    model = choose_model(kind, problem.poisson)
+    stroke = min(max(kind.stroke(problem.amplitude, problem.poisson), 1.0), 16.0) ** 0.5
+    stroke *= kind.cycles
+
+    def run(resolution):
+        if problem.velocity == 0.0:
+            share = PERIODICITY * tolerance
+            return simulate_static(problem, model, resolution, share)
+        return simulate(problem, model, resolution, PERIODICITY * tolerance)
+
+    if kind.depth is not None:
+        coarse, fine = (
+            run(Resolution(rings, angles, 2 * round(0.5 * SWEPT_STEPS * rings * stroke)))
+            for rings, angles in SWEPT[model]
+        )
+        return fine.mu, abs(fine.mu - coarse.mu)
+    base = replace(BASE[model], steps=2 * round(0.5 * BASE[model].steps * stroke))
+
+    left = []  # distances from the periodic states
+
+    def mean(**changes):
+        at = replace(base, **changes)
+        found = run(at)
+        left.append(found.distance)
+        return found.mu
+
+    at_base, mu, uncertainty = mean(), 0.0, 0.0
+    used = Resolution(certified.cells, certified.angles, certified.steps_per_period // 2)
+    for axis in ("cells", "angles", "steps"):
+        if axis == "angles" and model != "polar":
+            continue
+        finest = max(FINER * getattr(used, axis), getattr(LEAST[model], axis))
+        finest = min(finest, getattr(MOST, axis))
+        coarse, fine = mean(**{axis: finest // 2}), mean(**{axis: finest})
+        beyond = (fine - coarse) / 3.0  # second order
+        mu += fine + beyond - at_base
+        uncertainty += abs(beyond)
+    if model == "polar":  # what rings and angles do together
+        twice = {"cells": 2 * base.cells, "angles": 2 * base.angles}
+        one, other = (mean(**{axis: count}) for axis, count in twice.items())
+        mixed = mean(**twice) - one - other + at_base
+        mu, uncertainty = mu + mixed, uncertainty + 0.5 * abs(mixed)
+    return at_base + mu, uncertainty + max(left)

@@ -1,0 +1,68 @@
+"""Several contacts on one body: at a given velocity none feels the others, each is asked alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from microslip.adaptive.asked import Asked
+from microslip.adaptive.moved import CLOSED_FORM, solve_moved
+from microslip.adaptive.result import Result
+from microslip.foundation.errors import InputError
+from microslip.motions.body_contacts import contacts_of
+from microslip.solver.body_problem import BodyProblem, why_not
+from microslip.solver.problem import Problem
+
+COUPLED_MODELS = ("slider", "mdr", "radial")
+"""Those whose contacts may stand side by side, see models.rings.side_by_side."""
+
+
+def body_of(problem: Problem, contacts: str | None, pulled_in: str | None) -> Problem:
+    """The problem with the contacts that a text says, if there is one.
+
+    pulled_in: name of the model where a force or a spring pulls, else None.  Raises InputError
+    about `contacts` where these do not go with the problem or the model.
+    """
+    if contacts is None:
+        return problem
+    body = BodyProblem(**vars(problem), contacts=contacts_of(contacts))
+    refusal = why_not(body)
+    if not refusal and pulled_in is not None and pulled_in not in COUPLED_MODELS:
+        refusal = f"allowed is none where a force or a spring pulls in the model {pulled_in}"
+    if refusal:
+        raise InputError("contacts", contacts, refusal)
+    return body
+
+
+def solve_each(asked: Asked) -> Result:
+    """As moved.solve_moved, of a body on several contacts, too: the mean over these."""
+    problem = asked.problem
+    if not problem.parts:
+        return solve_moved(asked)
+    alone = {}
+    for part in problem.parts:
+        if part.problem not in alone:
+            alone[part.problem] = solve_moved(replace(asked, problem=part.problem))
+    results = list(alone.values())
+
+    def weighted(name):
+        return sum(part.share * getattr(alone[part.problem], name) for part in problem.parts)
+
+    def most(name):
+        return max(getattr(result, name) for result in results)
+
+    marched = [result for result in results if result.model != CLOSED_FORM]
+    summed = ("iterations", "work", "effort", "retried")
+    means = ("mu_macro", "mu_macro_error", "error_space", "error_time")
+    means += ("error_periodicity", "error_solver", "error_model")
+    return Result(
+        **asked.point,
+        model=marched[0].model if marched else results[0].model,
+        **{name: float(weighted(name)) for name in means},
+        converged=all(result.converged for result in results),
+        periodic=all(result.periodic for result in results),
+        reason=next((result.reason for result in results if result.reason), ""),
+        **{name: most(name) for name in ("cells", "angles", "steps_per_period", "periods")},
+        **{name: sum(getattr(result, name) for result in results) for name in summed},
+        exhausted=asked.budget.exhausted,
+        solve_time_s=asked.seconds,
+    )

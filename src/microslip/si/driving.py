@@ -1,0 +1,191 @@
+"""What a motion that drives pulls with, in newtons, metres a second and watts."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from microslip.adaptive.checks import checked_driving
+from microslip.adaptive.driving import POINTS, drive
+from microslip.foundation.arguments import LARGEST
+from microslip.foundation.errors import InputError
+from microslip.si.dimensionless import RealMotion
+from microslip.si.inputs import read_body, read_contact, read_counterbody
+from microslip.si.quantities import read
+from microslip.si.validity import broken_assumptions, unchecked
+
+TOLERANCE = 1e-2
+"""Unless told otherwise: of a force, over mu times the mean load."""
+
+
+@dataclass(frozen=True, eq=False)
+class RealDrivingLine:
+    """The line from stall force to no-load speed of a real contact.
+
+    Every error is the largest that the number before it may have, by estimate.  Negative forces and
+    speeds are backward.
+
+    Attributes
+    ----------
+    understood : dict of str
+        What was asked, as in prediction.Prediction.
+    scene : str
+        The motion.
+    contact_radius_m, u_lim_m : float
+        Of Hertz's contact, and the displacement at which all of it slides, m.
+    amplitude_m, frequency_Hz : float
+        Of the oscillation.
+    amplitude : float
+        The same over u_lim.
+    stall_force_N, stall_force_error_N : float
+        Load that stops the motion, N.
+    no_load_speed_m_s, no_load_speed_error_m_s : float
+        Speed without a load, m/s.
+    speed_m_s, force_N, force_error_N : np.ndarray, shape (points,)
+        From 0 to the no-load speed, m/s, and the force that is pulled with there, N.
+    power_out_W, power_out_error_W : np.ndarray, shape (points,)
+        Work on the load a second, W.
+    power_in_W, power_in_error_W : np.ndarray, shape (points,)
+        Work of the oscillation a second, W.
+    efficiency, efficiency_error : np.ndarray, shape (points,)
+        Power out over power in, dimensionless.
+    converged, reason : bool, str
+        As in driving_line.DrivingLine.
+    warnings, not_checked : tuple of str
+        Where an assumption of the theory breaks, and what was not looked at.
+    """
+
+    understood: dict = field(repr=False)
+    scene: str
+    contact_radius_m: float
+    u_lim_m: float
+    amplitude_m: float
+    frequency_Hz: float
+    amplitude: float
+    stall_force_N: float
+    stall_force_error_N: float
+    no_load_speed_m_s: float
+    no_load_speed_error_m_s: float
+    speed_m_s: np.ndarray
+    force_N: np.ndarray
+    force_error_N: np.ndarray
+    power_out_W: np.ndarray
+    power_out_error_W: np.ndarray
+    power_in_W: np.ndarray
+    power_in_error_W: np.ndarray
+    efficiency: np.ndarray
+    efficiency_error: np.ndarray
+    converged: bool
+    reason: str
+    warnings: tuple
+    not_checked: tuple
+
+    def to_dict(self) -> dict:
+        """Fields as a plain dict, arrays as lists."""
+        fields = dict(vars(self))
+        return {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in fields.items()}
+
+
+def predict_driving(
+    scene: str,
+    *,
+    radius: object,
+    load: object,
+    mu: object,
+    amplitude: object,
+    frequency: object,
+    young: object = None,
+    nu: object = None,
+    material: object = None,
+    counterbody: object = None,
+    counter_radius: object = None,
+    hardness: object = None,
+    density: object = None,
+    counter_hardness: object = None,
+    counter_density: object = None,
+    tolerance: object = TOLERANCE,
+    points: int = POINTS,
+) -> RealDrivingLine:
+    """What a sphere on a flat (or on a second sphere) pulls with whose motion drives.
+
+    Parameters
+    ----------
+    scene : str
+        A motion that drives, as for `microslip.drive`, without a rotation.
+    amplitude : quantity
+        A length: what a share 1 of the motion oscillates by to either side, m.  Where the normal
+        load oscillates, `load` is that without oscillation, and its share counts by the amplitude
+        over u_lim.
+    tolerance : quantity
+        Largest accepted error of a force, over mu times the mean load.
+    points : int
+        On the line, its ends included.
+
+    The rest is as for `microslip.predict`.
+
+    Returns
+    -------
+    RealDrivingLine
+        The line of `microslip.drive`, with units.
+
+    Raises
+    ------
+    InputError
+        For bad input; it names the argument.
+    """
+    for name, value in (("amplitude", amplitude), ("frequency", frequency)):
+        if value is None:
+            raise InputError(name, None, "needed")
+    size = read("amplitude", amplitude, "m")
+    rate = read("frequency", frequency, "Hz")
+    accepted = read("tolerance", tolerance, "", low_open=False)
+    contact, understood = read_contact(
+        read_body(young, nu, material).completed("", hardness, density),
+        read_counterbody(counterbody).completed("counter_", counter_hardness, counter_density),
+        radius=radius,
+        counter_radius=counter_radius,
+        load=load,
+        mu=mu,
+    )
+    group = size.si / contact.u_lim
+    if not group <= LARGEST["amplitude"]:
+        allowed = f"{group:.3g} times u_lim; allowed is at most {LARGEST['amplitude']:g} times"
+        raise InputError("amplitude", amplitude, allowed)
+    motion, _, _ = checked_driving(scene, group, contact.poisson)
+    if motion.rotates:
+        raise InputError("scene", scene, "allowed is a motion without a rotation")
+    line = drive(scene, group, poisson=contact.poisson, tolerance=accepted.si, points=points)
+    said = {"scene": scene, "amplitude": size.text, "frequency": rate.text}
+    mean_load = contact.load * float(motion.mean_load(group, motion.pressure))
+    newtons, speed = contact.mu * mean_load, 2.0 * math.pi * rate.si * contact.u_lim
+    watts = newtons * speed
+    fastest = speed * float(np.max(np.abs(line.velocity), initial=0.0))
+    real = RealMotion(scene, fastest, size.si, rate.si)
+    return RealDrivingLine(
+        understood=understood | said,
+        scene=scene,
+        contact_radius_m=contact.contact_radius,
+        u_lim_m=contact.u_lim,
+        amplitude_m=size.si,
+        frequency_Hz=rate.si,
+        amplitude=group,
+        stall_force_N=newtons * line.stall_force,
+        stall_force_error_N=newtons * line.stall_force_error,
+        no_load_speed_m_s=speed * line.no_load_velocity,
+        no_load_speed_error_m_s=speed * line.no_load_velocity_error,
+        speed_m_s=speed * line.velocity,
+        force_N=newtons * line.force,
+        force_error_N=newtons * line.force_error,
+        power_out_W=watts * line.power_out,
+        power_out_error_W=watts * line.power_out_error,
+        power_in_W=watts * line.power_in,
+        power_in_error_W=watts * line.power_in_error,
+        efficiency=line.efficiency,
+        efficiency_error=line.efficiency_error,
+        converged=line.converged,
+        reason=line.reason,
+        warnings=tuple(broken_assumptions(contact, real)),
+        not_checked=tuple(unchecked(contact)),
+    )

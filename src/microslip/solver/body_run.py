@@ -1,0 +1,85 @@
+"""The contacts of a body that is moved at a given velocity, one by one: none feels the others."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.models.path import make_path
+from microslip.solver.problem import Problem, Resolution
+from microslip.solver.run import AS_SHIPPED, Run, Settings
+from microslip.solver.simulate import simulate
+
+LEAD_STEPS = 8
+"""Steps in which a contact is marched to the phase at which the others begin."""
+LEAD_TOLERANCE = 1e-6
+"""Of each of them, a force over mu F_z."""
+
+
+def simulate_each(
+    problem: Problem,
+    model: str,
+    resolution: Resolution,
+    tolerance: float,
+    settings: Settings = AS_SHIPPED,
+) -> Run:
+    """As simulate.simulate, of a body on several contacts, too.
+
+    Its forces are the means of those of the contacts, weighted with their loads; its state has the
+    tractions of all of them where the path of the body begins, side by side, and is None where one
+    was not found.
+    """
+    if not problem.parts:
+        return simulate(problem, model, resolution, tolerance, settings=settings)
+    alone = {}
+    for part in problem.parts:
+        if part.problem not in alone:
+            alone[part.problem] = simulate(
+                part.problem, model, resolution, tolerance, settings=settings
+            )
+    runs, shares = list(alone.values()), [part.share for part in problem.parts]
+    state = None
+    if all(run.state is not None for run in runs):
+        states = [
+            _led(problem, part, model, resolution, (alone[part.problem], settings))
+            for part in problem.parts
+        ]
+        state = np.concatenate(states, axis=-1)
+
+    def weighted(name):
+        values = [getattr(alone[part.problem], name) for part in problem.parts]
+        return float(np.dot(shares, values))
+
+    return Run(
+        mu=weighted("mu"),
+        torque=weighted("torque"),
+        distance=max(run.distance for run in runs),
+        solver_residual=max(run.solver_residual for run in runs),
+        periods=max(run.periods for run in runs),
+        iterations=sum(run.iterations for run in runs),
+        solves=sum(run.solves for run in runs),
+        work=sum(run.work for run in runs),
+        effort=sum(run.effort for run in runs),
+        converged=all(run.converged for run in runs),
+        reason=next((run.reason for run in runs if run.reason), ""),
+        state=state,
+        static_force=weighted("static_force"),
+        retried=sum(run.retried for run in runs),
+    )
+
+
+def _led(problem, part, model, resolution, found):
+    """Tractions of a contact where the path of the body begins, from its own periodic state."""
+    run, settings = found
+    alone = part.problem
+    contact = settings.contact(alone, model, resolution)
+    first = alone.motion.turns(alone.velocity, alone.amplitude)[0]
+    ahead = problem.start + part.lead - first
+    interval = np.pi if alone.motion.half_period_mirror else 2.0 * np.pi
+    times, left = divmod(ahead, interval)
+    state = run.state
+    if left > 0.0:
+        phases = first + np.linspace(0.0, left, LEAD_STEPS + 1)
+        path = make_path(alone.displacement, phases)
+        state = contact.march(path, state, LEAD_TOLERANCE).state
+    mirrored = alone.motion.half_period_mirror and int(times) % 2 == 1
+    return contact.mirrored(state) if mirrored else state

@@ -1,0 +1,99 @@
+"""A motion that drives in SI units: groups by hand, powers that balance, other sizes, bad input."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip.app import cli
+from microslip.foundation.errors import InputError
+
+EIGHT = "elliptic:forward_cycles=2,phase=0"
+PRESSED = "normal:forward=1,phase=150"
+BALL = {"radius": 5e-3, "load": 10.0, "mu": 0.3, "young": 210e9, "nu": 0.0}
+CONTACT_RADIUS = (0.75 * 10.0 * 5e-3 / 210e9) ** (1.0 / 3.0)
+U_LIM = 3.0 * 0.3 * 10.0 / (4.0 * 2.0 * 105e9 * CONTACT_RADIUS)
+"""Hertz's a, and 3 mu F / (4 G* a), G* = 4 G / (2 - nu) = 2 G and G = E / 2 at nu = 0."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("scene", "share"), [(EIGHT, 1.0), (PRESSED, 0.9)])
+def test_the_line_is_that_of_the_groups(scene, share):
+    """Newtons are mu F_z, metres a second omega u_lim, watts their product; the mean load of what
+    oscillates by less than itself is the load."""
+    frequency = 20e3
+    given = {"amplitude": share * U_LIM, "frequency": frequency, "points": 3}
+    real = microslip.predict_driving(scene, **BALL, **given)
+    line = microslip.drive(scene, share, tolerance=1e-2, points=3)
+    assert real.converged and line.converged
+    speed = 2.0 * math.pi * frequency * U_LIM
+    assert real.amplitude == pytest.approx(share, rel=1e-9)
+    assert real.stall_force_N == pytest.approx(3.0 * line.stall_force, rel=1e-6)
+    assert real.no_load_speed_m_s == pytest.approx(speed * line.no_load_velocity, rel=1e-6)
+    assert real.force_N == pytest.approx(3.0 * line.force, rel=1e-6, abs=1e-9)
+    assert real.power_in_W == pytest.approx(3.0 * speed * line.power_in, rel=1e-6)
+    assert real.power_out_W == pytest.approx(real.force_N * real.speed_m_s)
+    assert real.efficiency == pytest.approx(real.power_out_W / real.power_in_W)
+    assert np.all(real.power_in_W > real.power_out_W)
+
+
+@pytest.mark.slow
+def test_twice_as_fast_takes_twice_the_power():
+    """Friction does not know how fast it goes."""
+    slow, fast = (
+        microslip.predict_driving(EIGHT, **BALL, amplitude=U_LIM, frequency=f, points=3)
+        for f in ("20 kHz", "40 kHz")
+    )
+    assert fast.force_N == pytest.approx(slow.force_N)
+    assert fast.speed_m_s == pytest.approx(2.0 * slow.speed_m_s)
+    assert fast.power_in_W == pytest.approx(2.0 * slow.power_in_W)
+
+
+def words(scene, **more):
+    given = {"radius": "5 mm", "load": "10 N", "mu": "0.3", "young": "210 GPa", "nu": "0"}
+    given |= {"amplitude": f"{U_LIM} m", "frequency": "20 kHz"} | more
+    named = [f"--{name}={value}" for name, value in given.items() if value is not None]
+    return ["predict", scene, "--driving", *named]
+
+
+@pytest.mark.slow
+def test_the_command_line_says_the_same(capsys):
+    assert cli.main([*words(EIGHT, points="3"), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    found = microslip.predict_driving(EIGHT, **BALL, amplitude=U_LIM, frequency=20e3, points=3)
+    assert said["force_N"] == pytest.approx(found.force_N.tolist())
+    assert cli.main(words(EIGHT, points="3")) == 0
+    text = capsys.readouterr().out
+    assert f"stall force       {found.stall_force_N:.4g} +- " in text
+    assert f"{1e3 * found.no_load_speed_m_s:.4g} +- " in text
+    middle = f"{1e3 * found.speed_m_s[1]:13.4g}{found.force_N[1]:13.4g}"
+    assert f"{middle}{found.power_out_W[1]:13.4g}{found.power_in_W[1]:13.4g}" in text
+
+
+REFUSED = {
+    "no drive": ("transverse", {}, "SCENE = 'transverse': allowed is a motion that drives"),
+    "a speed": (EIGHT, {"speed": "1 mm/s"}, "--speed = '1 mm/s': allowed is none with --driving"),
+    "no amplitude": (EIGHT, {"amplitude": None}, "--amplitude: needed"),
+    "no length": (EIGHT, {"amplitude": "1 deg"}, "--amplitude = '1 deg': "),
+    "no points": (EIGHT, {"points": "1"}, "--points = 1: allowed is a whole number"),
+    "a rotation": (
+        "normal:forward=1,angle=1,phase=90",
+        {},
+        "SCENE = 'normal:forward=1,angle=1,phase=90': allowed is a motion without a rotation",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_bad_input_gets_one_line(name, capsys):
+    scene, more, expected = REFUSED[name]
+    assert cli.main(words(scene, **more)) == 2
+    line = capsys.readouterr().err
+    assert line.count("\n") == 1 and expected in line
+
+
+def test_an_amplitude_beyond_all_sizes_is_refused():
+    with pytest.raises(InputError, match="times u_lim; allowed is at most"):
+        microslip.predict_driving(EIGHT, **BALL, amplitude="1 m", frequency="1 Hz")

@@ -1,0 +1,95 @@
+"""What goes into a contact and its drive in a period is what slip and the dashpot take.
+
+Elastic, kinetic and spring energy return with the state.  The vibration works on the contact, and
+what pulls works on the body: a force where the body is, a spring at its far end.  Slip takes its
+friction bound times its way, point by point, from tractions that are marched step by step.
+"""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from microslip.models.contact import forces
+from microslip.models.path import make_path
+from microslip.models.pull import Body
+from microslip.motions.by_name import motion_named
+from microslip.motions.drive import Drive
+from microslip.solver.problem import Problem, Resolution
+from microslip.solver.pulled_run import Accuracy, simulate_pulled
+from microslip.solver.run import AS_SHIPPED
+
+DRIVES = {
+    "a force": Drive(force=0.4),
+    "a force on a mass": Drive(force=0.4, mass=0.5),
+    "a spring": Drive(stiffness=0.3),
+    "a spring, a mass and a dashpot": Drive(stiffness=0.3, mass=0.5, damping=0.4),
+}
+PLACES = {
+    "rings": ("transverse", 0.2, 1.2, 0.0, "radial", Resolution(16, 1, 192)),
+    "angular modes": ("bore", 0.3, 1.5, 0.3, "polar", Resolution(8, 8, 96)),
+    "rings on a loop": (
+        "elliptic:forward_cycles=2,phase=0",
+        0.2,
+        1.0,
+        0.0,
+        "radial",
+        Resolution(12, 1, 192),
+    ),
+}
+
+
+def travel_of(contact, problem, phase):
+    """Displacement of all points of the sphere, without what the body is ahead."""
+    forward, lateral, angle = problem.displacement(phase)
+    turn = np.stack([contact.lateral_position, -contact.forward_position])
+    return np.array([forward, lateral])[:, None, None] + angle * turn
+
+
+def balance(problem, drive, model, resolution):
+    """Mean powers: of the vibration, of what pulls, of slip and of the dashpot."""
+    found = simulate_pulled(problem, drive, model, resolution, Accuracy(1e-6, 1.0), AS_SHIPPED)
+    assert found.converged, found.reason
+    contact = problem.contact(model, resolution)
+    load = (drive.force or 0.0) - drive.damping * problem.creep
+    body = Body(drive.stiffness, drive.damping, drive.mass, load)
+    shape = (2, *np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape))
+    points = int(np.prod(shape))
+    q, at = found.state[:points].reshape(shape), np.append(found.state[points:], np.zeros(2))[:2]
+    if drive.stiffness > 0.0 and not body.remembers:
+        at = np.array([(load - forces(contact, q)[0]) / drive.stiffness, 0.0])
+    phases = problem.path(contact, resolution.steps).phase
+    vibration = pulled = slipped = damped = 0.0
+    for begin, end in pairwise(phases):
+        step = make_path(problem.displacement, np.array([begin, end]))
+        march = contact.pulled_march(step, q, 1e-11, body, at)
+        ahead = march.body[1, 0] - march.body[0, 0]
+        moved = travel_of(contact, problem, end) - travel_of(contact, problem, begin)
+        moved[0] += ahead
+        slip = moved - contact.displacement(march.state - q)
+        slipped += np.sum(contact.weight * contact.bound * np.hypot(*slip))
+        swung = np.diff([problem.oscillation(phase) for phase in (begin, end)], axis=0)[0]
+        vibration += 0.5 * (forces(contact, q) + forces(contact, march.state)) @ swung
+        length, places = end - begin, march.body[:, 0]
+        if drive.force is None:
+            pulled += -drive.stiffness * places.mean() * problem.creep * length
+        else:
+            pulled += drive.force * (ahead + problem.creep * length)
+        damped += drive.damping * np.mean((problem.creep + march.body[:, 1]) ** 2) * length
+        q = march.state
+        at = march.body[1] if body.remembers else np.array([places[1], 0.0])
+    return np.array([vibration, pulled, slipped, damped]) / (phases[-1] - phases[0])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize("place", PLACES)
+def test_what_goes_in_is_dissipated(place, drive):
+    scene, velocity, amplitude, poisson, model, resolution = PLACES[place]
+    problem = Problem(motion_named(scene), velocity, amplitude, poisson)
+    vibration, pulled, slipped, damped = balance(problem, DRIVES[drive], model, resolution)
+    assert slipped + damped == pytest.approx(vibration + pulled, rel=5e-4)
+    # none of them could be left out
+    least = 0.015 * slipped
+    assert vibration > least and pulled > least
+    assert damped > 0.0 if DRIVES[drive].damping else damped == 0.0
