@@ -140,8 +140,8 @@ NAMES = [
 ]
 
 OPTIONS = [
-    ("", "COMMAND is missing", "allowed: point, sweep, gc, predict, drive"),
-    ("solve", "COMMAND = 'solve'", "point, sweep, gc, predict, drive"),
+    ("", "COMMAND is missing", "allowed: point, sweep, gc, predict, fit, drive"),
+    ("solve", "COMMAND = 'solve'", "point, sweep, gc, predict, fit, drive"),
     ("pont", "COMMAND = 'pont'", "did you mean point?"),
     ("--json", "--json", "COMMAND before other options"),
     ("point --poisson 0.3", "--poisson", "SCENE before other options"),

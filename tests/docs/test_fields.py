@@ -39,6 +39,7 @@ def section(title):
 RECORDS = {
     "One point": microslip.Result,
     "A real contact": Prediction,
+    "A fit": microslip.Fit,
     "Forces from a start": microslip.History,
     "A period of the periodic state": microslip.Period,
     "The line of a motion that drives": microslip.DrivingLine,

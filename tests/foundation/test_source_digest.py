@@ -227,6 +227,7 @@ NAMES = ("solver/methods/", "motions/", "pressures/")
 BY_LISTING = {
     "theory/masing.py",
     "theory/oscillating_load.py",
+    "foundation/csv_text.py",
     "foundation/named_files.py",
     *source_digest.NAMES_ONLY,
 }

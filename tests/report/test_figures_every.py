@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_pdf import PdfFile
 from matplotlib.text import Text
 from PIL import Image
-from stubs import drives_stub, driving_stub, studies_stub
+from stubs import drives_stub, driving_stub, fit_stub, studies_stub
 
 from microslip.report.figures import drawing
 from microslip.report.figures import style as look
@@ -38,6 +38,7 @@ def given() -> dict[str, tuple[str, dict]]:
     answer, _ = studies_stub.answered(driving_stub.driving_result)
     driving = registry.build("driving", driving_stub.configured(), answer)
     found["driving"] = "driving", {"driving": driving}
+    found["fit"] = "fit", {"fit": fit_stub.fitted()}
     found["maps"] = "extended_motions", groups.motions(3)
     found["lines"] = "extended_static", {"a": groups.static("a"), "b": groups.static("b")}
     return found
@@ -112,7 +113,7 @@ def test_every_axis_has_a_quantity_and_its_unit(figures):
             for text in filter(None, texts):
                 words = re.sub(r"\$[^$]*\$", "", text)
                 assert re.search("[a-z]{3}", words) or name == "maps", (name, text)
-                has_unit = re.search(r"\((s|bytes|dimensionless|degrees)\)", text)
+                has_unit = re.search(r"\((s|bytes|dimensionless|degrees|m?N|mm/s)\)", text)
                 ratio = re.search(r"\$[^$]*/[^$]*\$", text) or "$t/t" in text
                 symbol = "two" in name and text.startswith(("forward velocity", "amplitude"))
                 less = "less that at" in text  # a difference of ratios

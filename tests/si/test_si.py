@@ -11,7 +11,9 @@ from microslip.foundation.errors import InputError
 from microslip.si import quantities
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealMotion, groups
+from microslip.si.hardness import read_hardness
 from microslip.si.materials import MATERIALS, RIGID, Material
+from microslip.si.validity import broken_assumptions
 from microslip.theory import hertz
 
 STEEL = Material(210e9, 0.3)
@@ -251,6 +253,10 @@ WARNED = {
     "shear wave crosses": {"density": "7850 kg/m^3", "frequency": "20 MHz"},
     "slip speed": {"density": "7850 kg/m^3", "speed": "400 m/s"},
     "beta": {"counterbody": "rigid"},
+    "mu is 1.2": {"mu": 1.2},
+    "clean smooth surfaces adhere": {"load": "10 mN"},
+    "distance of atoms": {"amplitude": "0.1 nm"},
+    "no metal, ceramic or glass": {"load": "40 kN"},
 }
 
 
@@ -266,6 +272,43 @@ def test_nothing_is_warned_of_without_reason():
 def test_what_breaks_is_warned_of(word, monkeypatch):
     found = microslip.predict("transverse", **MILD | WARNED[word])
     assert sum(word in text for text in found.warnings) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "pressure"),
+    [
+        ("700 HV", 700 * 9.80665e6 / math.sin(math.radians(68.0))),  # faces at 136 degrees
+        ("60 HRC", 697 * 9.80665e6 / math.sin(math.radians(68.0))),
+        ("62.5HRC", 764.5 * 9.80665e6 / math.sin(math.radians(68.0))),
+        ("7 GPa", 7e9),
+        (7e9, 7e9),
+    ],
+)
+def test_a_hardness_is_a_pressure_on_any_scale(text, pressure):
+    assert read_hardness("hardness", text).si == pytest.approx(pressure, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [("80 HRC", "20 to 68 HRC"), ("HV", "the text is empty"), ("-3 HV", "above 0"), ("7", "unit")],
+)
+def test_a_hardness_that_is_none_is_refused(text, said):
+    with pytest.raises(InputError, match=said) as caught:
+        read_hardness("hardness", text)
+    assert caught.value.value == text
+
+
+def test_small_spheres_adhere_by_derjaguin_and_large_soft_ones_by_johnson():
+    """2 pi R W for a small hard sphere, 3/2 pi R W for a large soft one."""
+    motion = RealMotion("transverse", 1e-3, 1e-8, 1e3)
+    for young, radius, share, theory in (
+        (210e9, 1e-8, 2.0, "DMT"),
+        (1e6, 1e-2, 1.5, "JKR"),
+    ):
+        contact = TwoBodies(Material(young, 0.3), RIGID, radius, 1e-9, 0.3)
+        said = [text for text in broken_assumptions(contact, motion) if "adhere" in text]
+        pull = share * math.pi * radius * 0.05
+        assert len(said) == 1 and f"about {pull:.2g} N" in said[0] and f": {theory})" in said[0]
 
 
 def test_a_rigid_counterbody_has_no_hardness():

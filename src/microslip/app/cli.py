@@ -6,7 +6,14 @@ import json
 import sys
 
 from microslip import __version__
-from microslip.app import command_line, drive_command, predict_command, sweep_command, terminal
+from microslip.app import (
+    command_line,
+    drive_command,
+    fit_command,
+    predict_command,
+    sweep_command,
+    terminal,
+)
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
 
@@ -45,6 +52,7 @@ def build_parser(asked: str | None = None) -> command_line.OneLineParser:
     else:
         point.add_argument("scene", metavar="SCENE")
     predict_command.add_parser(commands)
+    fit_command.add_parser(commands)
     drive_command.add_parser(commands)
     return parser
 
@@ -173,6 +181,8 @@ def main(arguments: list[str] | None = None) -> int:
     options = build_parser(next(iter(arguments), None)).parse_args(command_line.joined(arguments))
     if options.command == "predict":
         return predict_command.run(options)
+    if options.command == "fit":
+        return fit_command.run(options)
     if options.command == "drive":
         return drive_command.run(options)
     from microslip.sweeps.evaluate import plain  # only now: --help and bad options need no solver

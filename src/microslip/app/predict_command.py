@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import sys
 
 from microslip.app import predicted_driving
@@ -10,20 +11,28 @@ from microslip.app.command_line import Said
 from microslip.app.predicted_text import groups_of_drive, length, line, threshold, walk
 from microslip.app.terminal import complain
 from microslip.foundation.errors import InputError, shown
-from microslip.si.motions import MOTIONS
+from microslip.si.materials import MATERIALS
+from microslip.si.motions import COMBINED, MOTIONS
 
 OPTIONS = {
     "young": ("E", "Young's modulus of the body, such as '210 GPa'"),
     "nu": ("NU", "Poisson's ratio of the body"),
-    "material": ("NAME", "instead of both: steel, stainless-steel, aluminium or glass"),
+    "material": ("NAME", f"instead of both: one of {', '.join(MATERIALS)}"),
     "counterbody": ("BODY", "rigid (if not given), a material, or E and nu as in '70 GPa, 0.22'"),
     "radius": ("R", "radius of the sphere, such as '5 mm'"),
     "counter-radius": ("R2", "radius of the counterbody, negative if hollow; flat if not given"),
+    "radius-across": ("R", "another radius across the forward direction: an ellipse is touched"),
+    "contact-radius": ("A", "in place of radii: half the longer side of a contact that is known"),
+    "pressure": ("NAME", "over that contact, such as ring:inner=0.5 or file:FILE (hertz)"),
     "load": ("F", "normal load, such as '10 N'"),
     "mu": ("MU", "coefficient of friction without vibration"),
     "speed": ("V", "forward speed, such as '1 mm/s'"),
     "force": ("P", "instead of a speed: a constant force that pulls, such as '1 N'"),
     "amplitude": ("A", "half stroke, such as '1 um', or an angle for bore, such as '0.5 deg'"),
+    "forward-amplitude": ("A", "half stroke along the forward direction, of elliptic and normal"),
+    "rotation-amplitude": ("A", "half stroke in spin, an angle, of transverse-bore and normal"),
+    "load-amplitude": ("A", "half stroke of the load, of normal, such as '5 N'"),
+    "phase": ("P", "of these against the rest, an angle, such as '90 deg' (0)"),
     "frequency": (
         "F",
         "of the oscillation: cyclic, such as '20 kHz', or angular, such as '1200 rpm' or "
@@ -37,7 +46,7 @@ OPTIONS = {
     "drive-stiffness": ("K", "of a spring that pulls with the speed, such as '10 N/um'"),
     "mass": ("M", "of the body that a spring or a force pulls, such as '20 g'"),
     "damping": ("C", "of a dashpot on a body on a spring, such as '5 N*s/m'"),
-    "hardness": ("H", "of the body, to warn of yielding, such as '7 GPa'"),
+    "hardness": ("H", "of the body, to warn of yielding, such as '7 GPa', '700 HV' or '60 HRC'"),
     "density": ("RHO", "of the body, to warn of inertia, such as '7850 kg/m^3'"),
     "counter-hardness": ("H2", "of the counterbody"),
     "counter-density": ("RHO2", "of the counterbody"),
@@ -48,11 +57,13 @@ OPTIONS = {
     ),
     "points": ("N", "with --driving: on the line, its ends included (9)"),
 }
-NEEDED = ("radius", "load", "mu")
+NEEDED = ("load", "mu")
 OTHER_NAMES = {"nu": ("--poisson",)}
-UNDERSTOOD = ("scene", "body", "counterbody", "radius", "counter_radius", "load", "mu", "speed")
+UNDERSTOOD = ("scene", "body", "counterbody", "radius", "counter_radius", "radius_across")
+UNDERSTOOD += ("contact_radius", "pressure", "load", "mu", "speed")
 UNDERSTOOD += ("force", "drive_stiffness", "mass", "damping")
-UNDERSTOOD += ("amplitude", "frequency", "rotation", "reduction")
+UNDERSTOOD += ("amplitude", "forward_amplitude", "rotation_amplitude", "load_amplitude", "phase")
+UNDERSTOOD += ("frequency", "rotation", "reduction")
 """What a Prediction has understood, in the order of the answer."""
 
 
@@ -78,6 +89,9 @@ def add_parser(commands) -> None:
             help=text,
             required=name in NEEDED,
         )
+    parser.add_argument(
+        "--power", action="store_true", help="says what it takes to vibrate the contact, too"
+    )
     parser.add_argument(
         "--driving",
         action="store_true",
@@ -114,7 +128,7 @@ def _found(options, given):
         return predicted_driving.ask(options.scene, given)
     if "points" in given:
         raise InputError("points", given["points"], "allowed with --driving alone")
-    return predict(options.scene, **given)
+    return predict(options.scene, **given, power=options.power)
 
 
 def _complaint(error, typed):
@@ -134,23 +148,64 @@ def _as_text(found):
     lines += [
         "",
         line("contact radius", length(found.contact_radius_m)),
-        line("indentation", length(found.indentation_m)),
+        *_indentation(found),
         line("u_lim", length(found.u_lim_m)),
         line("largest pressure", f"{found.largest_pressure_Pa / 1e6:.4g} MPa"),
     ]
     if found.amplitude is not None:
-        size = found.amplitude_si
-        real = f"{size:.4g} rad" if found.scene == "bore" else length(size)
-        lines.append(line("amplitude", f"{real}, dimensionless {found.amplitude:.4g}"))
+        lines.append(line("amplitude", f"{_size(found)}dimensionless {found.amplitude:.4g}"))
     if found.velocity is not None and found.force_N is None:
         lines.append(line("velocity", f"dimensionless {found.velocity:.4g}"))
     lines += groups_of_drive(found)
     lines += _friction(found) if found.force_N is None else walk(found)
+    lines += _spread(found) + _energy(found)
     if not found.converged and found.outcome != "runs away":
         lines.append(f"NOT CONVERGED: {found.reason}")
     lines += [f"warning: {text}" for text in found.warnings]
     lines += [f"not checked: {text}" for text in found.not_checked]
     return "\n".join(lines)
+
+
+def _spread(found):
+    """The line of what follows from the spreads of what was given."""
+    if found.mu_apparent_spread is None:
+        return []
+    if found.force_N is not None:
+        return [
+            line("spread", f"{found.speed_spread_m_s:.2g} m/s of the speed, from what was given")
+        ]
+    of_mu = f"{found.mu_apparent_spread:.2g} of mu_apparent"
+    of_force = f"{found.friction_force_spread_N:.2g} N of the force"
+    return [line("spread", f"{of_mu}, {of_force}, from the spreads of what was given")]
+
+
+def _energy(found):
+    """Lines of torque and power, where they are known and more than the force tells."""
+    if found.vibration_power_W is None:
+        return []
+    error = found.vibration_power_error_W
+    lines = [
+        line("power", f"{found.vibration_power_W:.4g} +- {error:.1g} W for the vibration"),
+        line("", f"{found.drag_power_W:.4g} W for the drag"),
+        line("energy", f"{found.energy_per_cycle_J:.4g} J a cycle turn into heat"),
+    ]
+    if found.torque_N_m is not None:
+        text = f"{found.torque_N_m:.4g} +- {found.torque_error_N_m:.1g} N m"
+        lines.insert(0, line("torque", text))
+    return lines
+
+
+def _indentation(found):
+    depth = found.indentation_m
+    return [] if math.isnan(depth) else [line("indentation", length(depth))]
+
+
+def _size(found):
+    """The amplitude with its unit and a comma; of several the dimensionless one is the largest."""
+    if found.scene in COMBINED:
+        return "the largest is "
+    size = found.amplitude_si
+    return f"{size:.4g} rad, " if found.scene == "bore" else f"{length(size)}, "
 
 
 def _friction(found):

@@ -9,6 +9,8 @@ from microslip.foundation.errors import InputError
 from microslip.foundation.spec import read
 
 REFUSED = ("speed", "force", "rotation", "reduction", "drive_stiffness", "mass", "damping")
+REFUSED += ("radius_across", "contact_radius", "pressure", "forward_amplitude")
+REFUSED += ("rotation_amplitude", "load_amplitude", "phase")
 """Of predict, what has no meaning where the motion itself pulls."""
 COLUMNS = ("speed mm/s", "force N", "power out W", "power in W", "efficiency")
 WIDTH = 13
@@ -24,7 +26,7 @@ def ask(scene: str, given: dict) -> object:
             raise InputError(name, given[name], allowed)
     if "points" in given:
         given = given | {"points": read("points", given["points"], whole=True)}
-    missing = dict.fromkeys(("amplitude", "frequency"))
+    missing = dict.fromkeys(("radius", "amplitude", "frequency"))
     return predict_driving(scene, **missing | given)
 
 

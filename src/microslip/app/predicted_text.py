@@ -16,7 +16,7 @@ FREQUENCIES = (("MHz", 1e6), ("kHz", 1e3), ("Hz", 1.0))
 
 def line(title: str, text: str) -> str:
     """A line of the answer."""
-    return f"{title:<{WIDTH}}{text}"
+    return f"{title:<{WIDTH - 1}} {text}"
 
 
 def length(metres: float) -> str:

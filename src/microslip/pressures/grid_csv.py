@@ -6,17 +6,11 @@ import re
 
 import numpy as np
 
+from microslip.foundation import csv_text
 from microslip.pressures import grid_units
 from microslip.pressures.grid_units import COLUMNS, MOST_POINTS
 
-SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
-HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\])?")
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I | re.A)
-SPREADSHEET_ERROR = re.compile(r"#(N/A|NV|[A-Z/0]+[!?])")
-"""What spreadsheets write into a cell without a value, such as #N/A and #DIV/0!."""
-GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+", re.A)
-"""A number with points between thousands, or with three decimals."""
-UNGROUPED = re.compile(r"[+-]?[1-9]\d{0,2}", re.A)
 SAME = 1e-9
 """Coordinates that differ by less than this share of their range are the same one."""
 ALLOWED = "forward,lateral,pressure in any order, with units such as forward [mm] if at all"
@@ -33,12 +27,12 @@ def grid(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     ValueError
         For anything else; the message begins with the line.
     """
-    lines = _lines(content)
+    lines = csv_text.lines(content)
     where, heading = next(lines, (1, ""))
     separator, order, units = _columns(where, heading)
-    rows, places, thousands = [], [], _Thousands(separator)
+    rows, places, thousands = [], [], csv_text.Thousands(separator, COLUMNS)
     for where, line in lines:
-        words = _row(where, line, separator, order)
+        words = csv_text.row(where, line, separator, order)
         rows.append([_number(where, *word) for word in zip(COLUMNS, words, strict=True)])
         places.append(where)
         thousands.see(where, words)
@@ -50,53 +44,15 @@ def grid(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return _filled(table, places)
 
 
-def _lines(content):
-    """Number and text of each line that counts."""
-    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise ValueError("line 1: UTF-16; allowed: UTF-8")
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        raise ValueError(f"line {line}: byte 0x{content[error.start]:02x} is not UTF-8") from None
-    if "\0" in text:
-        line = text.count("\n", 0, text.index("\0")) + 1
-        raise ValueError(f"line {line}: not text; allowed: CSV or netCDF")
-    text = text.replace("\r\n", "\n").replace("\r", "\n")
-    for number, line in enumerate(text.split("\n"), 1):
-        text = line.strip()
-        if text and (not text.startswith("#") or SPREADSHEET_ERROR.match(text)):
-            yield number, line.rstrip()
-
-
-def _words(line, separator):
-    return [word.strip().strip("\"'").strip() for word in line.split(separator)]
-
-
 def _columns(where, heading):
     """Separator, place of each of COLUMNS, and their units (None: none given)."""
-    for separator in SEPARATORS:
-        found = [HEADING.fullmatch(word) for word in _words(heading, separator)]
+    for separator in csv_text.SEPARATORS:
+        found = [csv_text.HEADING.fullmatch(word) for word in csv_text.words(heading, separator)]
         names = [match and match[1].lower() for match in found]
         if set(names) == set(COLUMNS) and len(names) == len(COLUMNS):
             order = [names.index(name) for name in COLUMNS]
             return separator, order, [found[i][2] for i in order]
     raise ValueError(f"line {where}: the heading is {heading[:80]!r}; allowed: {ALLOWED}")
-
-
-def _row(where, line, separator, order):
-    """Words of a line, in the order of COLUMNS."""
-    words = _words(line, separator)
-    if separator != "," and "," in line:
-        word = next(word for word in words if "," in word)
-        raise ValueError(f"line {where}: {word!r} has a decimal comma; allowed: a decimal point")
-    if len(words) != len(order):
-        hint = "; decimal commas are not allowed" if len(words) > len(order) else ""
-        raise ValueError(
-            f"line {where}: {len(words)} values; allowed: {len(order)}, parted by a "
-            f"{SEPARATORS[separator]} as in the heading{hint}"
-        )
-    return [words[i] for i in order]
 
 
 def _number(where, name, word):
@@ -107,38 +63,6 @@ def _number(where, name, word):
         allowed = "a finite number" + (", 0 or above" if name == "pressure" else "")
         raise ValueError(f"line {where}: {name} is {word.lower()}; allowed: {allowed}")
     return value
-
-
-class _Thousands:
-    """Finds columns in which points may part thousands, beside numbers that have none.
-
-    Where commas are decimal, 900 and 1.100 may be 900 and 1100, and then none is a decimal number.
-    Commas as separators tell that they are not decimal.
-    """
-
-    def __init__(self, separator):
-        self.possible = dict.fromkeys(COLUMNS if separator != "," else ())
-        self.plain = set()
-
-    def see(self, where, words):
-        for name, word in zip(COLUMNS, words, strict=True):
-            if name not in self.possible:
-                continue
-            if UNGROUPED.fullmatch(word):
-                self.plain.add(name)
-            elif GROUPED.fullmatch(word):
-                self.possible[name] = self.possible[name] or (where, word)
-            elif word not in ("0", "-0", "+0"):
-                del self.possible[name]
-
-    def refuse(self):
-        for name, first in self.possible.items():
-            if first and name in self.plain:
-                where, word = first
-                raise ValueError(
-                    f"line {where}: {name} is {word!r} beside whole numbers, so that its point may "
-                    "part thousands; allowed: no such points, and as many decimals in all lines"
-                )
 
 
 def _filled(table, places):

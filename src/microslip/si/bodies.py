@@ -43,6 +43,8 @@ class TwoBodies:
     load: float
     mu: float
     radii: tuple = ()
+    pressure = "hertz"
+    """How the load is spread, as microslip.solve takes it."""
 
     def __post_init__(self):
         for name in ("radius", "load", "mu"):

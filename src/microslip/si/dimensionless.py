@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from microslip.si.motions import COMBINED, PARTS
 from microslip.theory import hertz
 
 
@@ -12,13 +13,57 @@ from microslip.theory import hertz
 class RealMotion:
     """A motion in SI units: forward speed, m/s; amplitude (half stroke), m or rad; frequency, Hz;
     rotation, rad/s, of a steady bore.  What a scene does not have is None, and so is a speed that a
-    force tells."""
+    force tells.  Scenes that oscillate in several ways have further half strokes: forward, m,
+    in rotation, rad, of the load, N; and a phase, rad, see `solver_scene`."""
 
     scene: str
     speed: float | None
     amplitude: float | None = None
     frequency: float | None = None
     rotation: float | None = None
+    forward_amplitude: float | None = None
+    rotation_amplitude: float | None = None
+    load_amplitude: float | None = None
+    phase: float | None = None
+
+    @property
+    def steady(self) -> bool:
+        """Whether nothing oscillates."""
+        return self.scene == "continuous-bore"
+
+    @property
+    def swing(self) -> tuple[float, float]:
+        """Half strokes along the surface, m, and in rotation, rad, each at its largest."""
+        if self.scene == "bore":
+            return 0.0, self.amplitude or 0.0
+        along = math.hypot(self.amplitude or 0.0, self.forward_amplitude or 0.0)
+        return along, self.rotation_amplitude or 0.0
+
+
+def parts(motion: RealMotion, contact) -> dict[str, float]:
+    """Amplitudes of a scene that oscillates in several ways, in the solver's groups, by the names
+    of their shares."""
+    unit = {"lateral": contact.u_lim, "forward": contact.u_lim, "load": contact.load}
+    found = {}
+    for name, (share, _) in PARTS.items():
+        size = getattr(motion, name)
+        if size is not None and share == "angle":
+            angle = size * contact.contact_radius / contact.u_lim
+            found[share] = float(hertz.bore_amplitude(angle, contact.poisson))
+        elif size is not None:
+            found[share] = size / unit[share]
+    return found
+
+
+def solver_scene(motion: RealMotion, contact) -> str:
+    """The scene as microslip.solve takes it: of several amplitudes, their shares of the largest."""
+    if motion.scene not in COMBINED:
+        return motion.scene
+    found = parts(motion, contact)
+    largest = max(found.values()) or 1.0
+    shares = {name: size / largest for name, size in found.items()}
+    shares["phase"] = math.degrees(motion.phase or 0.0)
+    return f"{motion.scene}:{','.join(f'{name}={value!r}' for name, value in shares.items())}"
 
 
 def groups(motion: RealMotion, contact) -> tuple[float | None, float | None]:
@@ -35,6 +80,8 @@ def groups(motion: RealMotion, contact) -> tuple[float | None, float | None]:
             return (None if velocity is None else 0.0), 0.0
         angle = motion.amplitude * contact.contact_radius / contact.u_lim
         return velocity, float(hertz.bore_amplitude(angle, contact.poisson))
+    if motion.scene in COMBINED:
+        return velocity, max(parts(motion, contact).values())
     return velocity, motion.amplitude / contact.u_lim
 
 
@@ -102,5 +149,5 @@ def largest_slip_speed(motion: RealMotion, contact) -> float:
     edge, speed = contact.contact_radius, motion.speed
     if motion.scene == "continuous-bore":
         return math.hypot(speed, motion.rotation * edge)
-    swing = 2.0 * math.pi * motion.frequency * motion.amplitude
-    return speed + swing * (edge if motion.scene == "bore" else 1.0)
+    along, turned = motion.swing
+    return speed + 2.0 * math.pi * motion.frequency * (along + edge * turned)

@@ -6,7 +6,6 @@ import math
 
 from microslip.foundation.errors import InputError
 from microslip.si.dimensionless import RealDrive, RealMotion, drive_groups
-from microslip.si.motions import UNIT_OF_AMPLITUDE
 from microslip.si.quantities import read
 
 SPRING = "a drive_stiffness"
@@ -30,7 +29,7 @@ def read_drive(
         raise InputError("speed", None, "needed, or a force in its place")
     if speed is not None and force is not None:
         raise InputError("force", force, "allowed is a force or a speed, not both")
-    steady = motion.scene not in UNIT_OF_AMPLITUDE
+    steady = motion.steady
     for name, value in given.items():
         if value is not None and steady:
             allowed = f"allowed is none for {motion.scene}, which is steady: nothing swings"

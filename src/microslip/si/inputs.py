@@ -8,13 +8,19 @@ from dataclasses import dataclass, replace
 from microslip.foundation.errors import InputError
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealMotion
+from microslip.si.hardness import read_hardness
 from microslip.si.materials import RIGID, Material, material_named
-from microslip.si.motions import MOTIONS, UNIT_OF_AMPLITUDE
+from microslip.si.motions import COMBINED, MOTIONS, PARTS, TAKES, UNIT_OF_AMPLITUDE
 from microslip.si.quantities import read
+from microslip.si.shapes import elliptic, of_size
 from microslip.si.validity import SENSELESS
 
 LARGEST_MU = 10.0
 """No pair of bodies in elastic contact has more; what is larger is a slip of the pen."""
+SHAPES = ("radius", "counter_radius", "radius_across", "contact_radius", "pressure")
+"""What tells where two bodies touch."""
+LARGEST_PHASE = 1e3
+"""rad; what is larger is a slip, too."""
 OUT_OF_RANGE = (
     "no contact that floating-point numbers can describe; allowed are sizes of real bodies"
 )
@@ -39,16 +45,23 @@ class Body:
     def completed(self, side: str, hardness: object, density: object) -> Body:
         """With what is given of hardness and density; side: "counter_" or nothing, for messages."""
         body = self
-        for name, value, unit in (("hardness", hardness, "Pa"), ("density", density, "kg/m^3")):
+        for name, value, read_as in (
+            ("hardness", hardness, read_hardness),
+            ("density", density, _read_density),
+        ):
             if value is None:
                 continue
             if self.material.rigid:
                 allowed = "allowed for an elastic body, not a rigid one"
                 raise InputError(f"{side}{name}", value, allowed)
-            given = read(f"{side}{name}", value, unit)
+            given = read_as(f"{side}{name}", value)
             material = replace(body.material, **{name: given.si})
             body = Body(material, f"{body.text}, {name} {given.text}")
         return body
+
+
+def _read_density(name, value):
+    return read(name, value, "kg/m^3")
 
 
 def read_body(young: object, nu: object, material: object) -> Body:
@@ -120,9 +133,65 @@ def _numbers(body):
 
 
 def read_contact(
-    body: Body, other: Body, *, radius: object, counter_radius: object, load: object, mu: object
+    body: Body, other: Body, *, load: object, mu: object, **shape: object
 ) -> tuple[TwoBodies, dict]:
-    """The contact, and a dict of texts of what was understood; raises InputError."""
+    """The contact, and a dict of texts of what was understood; raises InputError.
+
+    shape: radius, counter_radius, radius_across, contact_radius and pressure, as far as given.
+    """
+    shape = dict.fromkeys(SHAPES) | shape
+    if shape["pressure"] is not None or shape["contact_radius"] is not None:
+        return _of_size(body, other, load, mu, shape)
+    if shape["radius"] is None:
+        raise InputError("radius", None, "needed, or a contact_radius in its place")
+    contact, texts = _of_spheres(body, other, load, mu, shape)
+    across = shape["radius_across"]
+    if across is not None:
+        if shape["counter_radius"] is not None:
+            allowed = "allowed is none beside a counter_radius: give the relative curvatures"
+            raise InputError("radius_across", across, allowed)
+        second = read("radius_across", across, "m")
+        contact, texts["radius_across"] = elliptic(contact, second.si), second.text
+        _refuse_senseless(contact, shape["radius"], across, load)
+    return contact, texts
+
+
+def _of_size(body, other, load, mu, shape):
+    """A contact whose size is given, and not the shape of the bodies."""
+    for name in ("radius", "counter_radius", "radius_across"):
+        if shape[name] is not None:
+            raise InputError(name, shape[name], "allowed is none beside a contact_radius")
+    if shape["contact_radius"] is None:
+        allowed = "needed beside a pressure: half the longer side of the contact"
+        raise InputError("contact_radius", None, allowed)
+    size = read("contact_radius", shape["contact_radius"], "m")
+    pressure = "hertz" if shape["pressure"] is None else shape["pressure"]
+    force, coefficient = read("load", load, "N"), read("mu", mu, "", high=LARGEST_MU)
+    _refuse_rigid(body, other)
+    plain = TwoBodies(body.material, other.material, 1.0, force.si, coefficient.si)
+    try:
+        contact = of_size(plain, size.si, pressure)
+        good = all(0.0 < one < math.inf for one in (contact.u_lim, contact.largest_pressure))
+    except (ArithmeticError, ValueError) as error:
+        if isinstance(error, InputError) and error.argument == "pressure":
+            raise
+        good = False
+    if not good:
+        raise InputError("contact_radius", shape["contact_radius"], OUT_OF_RANGE)
+    texts = {"body": body.text, "counterbody": other.text, "contact_radius": size.text}
+    texts |= {"pressure": pressure, "load": force.text, "mu": coefficient.text}
+    return contact, texts
+
+
+def _refuse_rigid(body, other):
+    if body.material.rigid and other.material.rigid:
+        allowed = "allowed is an elastic body where the counterbody is rigid"
+        raise InputError("material", "rigid", allowed)
+
+
+def _of_spheres(body, other, load, mu, shape):
+    """Hertz's contact of a sphere with a flat or a second sphere."""
+    radius, counter_radius = shape["radius"], shape["counter_radius"]
     first = read("radius", radius, "m")
     given = {"radius": first, "load": read("load", load, "N")}
     given["mu"] = read("mu", mu, "", high=LARGEST_MU)
@@ -141,9 +210,7 @@ def read_contact(
     if not curvature > 0.0:
         allowed = "allowed is a hollow wider than the sphere"
         raise InputError("counter_radius", counter_radius, allowed)
-    if body.material.rigid and other.material.rigid:
-        allowed = "allowed is an elastic body where the counterbody is rigid"
-        raise InputError("material", "rigid", allowed)
+    _refuse_rigid(body, other)
     contact = TwoBodies(
         body.material, other.material, 1.0 / curvature, given["load"].si, given["mu"].si, radii
     )
@@ -180,22 +247,25 @@ def read_motion(
     frequency: object,
     rotation: object,
     reduction: object,
+    **others: object,
 ) -> tuple[RealMotion, dict]:
     """The motion, and a dict of texts of what was understood; raises InputError.
 
     The amplitude of the motion is None where a reduction is given in its place, and so is the speed
-    where none is given.
+    where none is given.  others: what scenes that oscillate in several ways take besides, see
+    motions.TAKES.
     """
     if not isinstance(scene, str) or scene not in MOTIONS:
         raise InputError("scene", scene, f"allowed is one of {', '.join(MOTIONS)}")
-    steady = scene not in UNIT_OF_AMPLITUDE
-    given = {"amplitude": amplitude, "frequency": frequency, "rotation": rotation}
-    needed = ("rotation",) if steady else ("amplitude", "frequency")
+    steady = scene == "continuous-bore"
+    given = {"amplitude": amplitude, "frequency": frequency, "rotation": rotation, **others}
+    needed = ("rotation",) if steady else (*COMBINED.get(scene, ("amplitude",)), "frequency")
     for name, value in given.items():
-        if name not in needed and value is not None:
+        if name not in (*needed, *TAKES.get(scene, ())) and value is not None:
             raise InputError(name, value, f"{scene} has none")
-    if reduction is not None and steady:
-        raise InputError("reduction", reduction, f"{scene} has no amplitude to look for")
+    if reduction is not None and (steady or scene in COMBINED):
+        what = "no amplitude" if steady else "several amplitudes"
+        raise InputError("reduction", reduction, f"{scene} has {what} to look for")
     if reduction is not None and amplitude is not None:
         raise InputError("reduction", reduction, "allowed without an amplitude")
     for name in needed:
@@ -207,10 +277,16 @@ def read_motion(
     if steady:
         found["rotation"] = read("rotation", rotation, "rad/s")
     else:
-        if amplitude is not None:
-            unit = UNIT_OF_AMPLITUDE[scene]
-            found["amplitude"] = read("amplitude", amplitude, unit, low_open=False)
+        for name, (_, unit) in PARTS.items():
+            if given.get(name) is not None:
+                wanted = UNIT_OF_AMPLITUDE.get(scene, unit)
+                found[name] = read(name, given[name], wanted, low_open=name == "load_amplitude")
+        if given.get("phase") is not None:
+            found["phase"] = read("phase", given["phase"], "rad", low=-LARGEST_PHASE)
         found["frequency"] = read("frequency", frequency, "Hz")
     motion = RealMotion(scene, **{"speed": None} | {name: one.si for name, one in found.items()})
     texts = {"scene": f"{scene}: the sphere {MOTIONS[scene]}"}
+    sizes = [found[name].si for name in PARTS if name in found]
+    if scene in COMBINED and max(sizes) == 0.0:
+        raise InputError(needed[0], given[needed[0]], "allowed is above 0 where no other one is")
     return motion, texts | {name: one.text for name, one in found.items()}

@@ -68,6 +68,9 @@ MATERIALS = {
     "steel": Material(210e9, 0.3, 7850.0, source="EN 1993-1-1, 3.2.6; EN 1991-1-1, Table A.4"),
     "stainless-steel": Material(200e9, 0.3, 7900.0, source="EN 1993-1-4, 2.1.3; EN 10088-1"),
     "aluminium": Material(70e9, 0.3, 2700.0, source="EN 1999-1-1, 3.2.5"),
+    "cast-iron": Material(110e9, 0.26, 7200.0, source="EN 1561, Annex A: EN-GJL-250, middle of E"),
+    "titanium": Material(113.8e9, 0.342, 4430.0, source="ASM Handbook, Vol. 2: Ti-6Al-4V"),
+    "concrete": Material(33e9, 0.2, 2400.0, source="EN 1992-1-1, Table 3.1: C30/37; EN 1991-1-1"),
     "glass": Material(70e9, 0.2, 2500.0, 6e9, source="EN 572-1, Table 1: soda lime; Knoop"),
     "rigid": RIGID,
 }

@@ -9,27 +9,33 @@ from microslip.adaptive.checks import SMALLEST_TOLERANCE
 from microslip.adaptive.point import Result, solve
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
-from microslip.si.dimensionless import groups
+from microslip.si.dimensionless import groups, solver_scene
 from microslip.si.drives import checked_drive_groups, read_drive
+from microslip.si.energy import energy_fields, vibration_fields
 from microslip.si.inputs import read_body, read_contact, read_counterbody, read_motion
+from microslip.si.motions import COMBINED
 from microslip.si.prediction import Prediction
 from microslip.si.pulled import about_drive, answer_of, with_speed
 from microslip.si.quantities import read
 from microslip.si.reduction import motion_for
+from microslip.si.uncertain import with_spreads
 from microslip.si.validity import broken_assumptions, unchecked
 
 LARGEST_TOLERANCE = 0.1
 """Of mu_macro, and relative of a speed; what is larger is no answer."""
 TOLERANCE, TOLERANCE_OF_SPEED = 1e-3, 1e-2
 """Unless told otherwise: of mu_macro, and under a force of the speed."""
+TOLERANCE_OF_LIMIT = 1e-2
+"""Of mu_static where several oscillations meet: it takes a minute and more to know it better."""
 
 
+@with_spreads
 def predict(
     scene: str,
     *,
-    radius: object,
     load: object,
     mu: object,
+    radius: object = None,
     speed: object = None,
     force: object = None,
     young: object = None,
@@ -37,7 +43,14 @@ def predict(
     material: object = None,
     counterbody: object = None,
     counter_radius: object = None,
+    radius_across: object = None,
+    contact_radius: object = None,
+    pressure: object = None,
     amplitude: object = None,
+    forward_amplitude: object = None,
+    rotation_amplitude: object = None,
+    load_amplitude: object = None,
+    phase: object = None,
     frequency: object = None,
     rotation: object = None,
     reduction: object = None,
@@ -49,12 +62,14 @@ def predict(
     counter_hardness: object = None,
     counter_density: object = None,
     tolerance: object = None,
+    power: bool = False,
 ) -> Prediction:
-    """Friction of a sphere on a flat (or on a second sphere) under vibration.
+    """Friction of a sphere on a flat, on a second sphere, or of another contact under vibration.
 
     A quantity is a text of one number and one unit ("5 mm"), a pint quantity, or a number in the
-    unit of the SI.  Texts are read strictly: what is not understood to its last character is
-    refused.
+    unit of the SI.  Loads, radii, speeds, forces, mu, young and nu may have a spread, their
+    standard uncertainty: "10 N +- 5 %".  Texts are read strictly: what is not understood to its
+    last character is refused.
 
     Parameters
     ----------
@@ -75,8 +90,19 @@ def predict(
         "rigid", a material, or E and nu as in "70 GPa, 0.22"; rigid if not given.
     counter_radius : quantity, optional
         Radius of the counterbody, m, negative if hollow; flat if not given.
+    radius_across : quantity, optional
+        Another radius of curvature across the forward direction, m: the contact is an ellipse.
+    contact_radius, pressure : quantity, str, optional
+        In place of all radii: half the longer side of a contact that is known, m, and how the load
+        is spread over it, as microslip.solve takes it: "ring:inner=0.5", "file:pad.csv"; "hertz" if
+        not given.
     amplitude : quantity
-        Half stroke of the oscillation: a length, or for a bore an angle.
+        Half stroke of the oscillation: a length, or for a bore an angle; of scenes that oscillate
+        in several ways the one across.
+    forward_amplitude, rotation_amplitude, load_amplitude, phase : quantity, optional
+        Of such scenes: half strokes along, m, in spin, rad, and of the load, N; and a phase, rad:
+        elliptic moves by sin(omega t + phase) forward, transverse-bore turns by it, normal does all
+        but the load by it, and the rest goes with sin(omega t).
     frequency : quantity
         Frequency of the oscillation: cyclic (Hz, cps), or angular (rad/s, deg/s, rpm, turn/s),
         which is converted, 2 pi rad/s being 1 Hz.  A number is in Hz.
@@ -89,11 +115,14 @@ def predict(
         Of a spring between what has the speed and the body, N/m, of the body, kg, and of a dashpot
         on it, N s/m.  A mass may be under a force, too.
     hardness, density, counter_hardness, counter_density : quantity, optional
-        Of the body and the counterbody, Pa and kg/m^3, for the warnings alone.
+        Of the body and the counterbody, Pa (or as in "700 HV", "60 HRC") and kg/m^3, for the
+        warnings alone.
     tolerance : quantity
         Largest accepted error of the ratio mu_macro, absolute, 1e-3 if not given; under a force
         relative of the speed, 1e-2 if not given, and of a thousandth of its unit (omega u_lim, or
         that of the scene) where it is slower.
+    power : bool
+        Whether to ask the solver, too, what it takes to vibrate the contact.
 
     Returns
     -------
@@ -107,6 +136,8 @@ def predict(
         what is missing, ambiguous or out of range, for bodies that fit so closely that the contact
         is half as wide as one of them, and where no amplitude takes that much friction away.
     """
+    if not isinstance(power, bool):
+        raise InputError("power", power, "allowed is True or False")
     motion, asked = read_motion(
         scene,
         speed=speed,
@@ -114,6 +145,10 @@ def predict(
         frequency=frequency,
         rotation=rotation,
         reduction=reduction,
+        forward_amplitude=forward_amplitude,
+        rotation_amplitude=rotation_amplitude,
+        load_amplitude=load_amplitude,
+        phase=phase,
     )
     drive, pulls = read_drive(
         motion,
@@ -133,9 +168,15 @@ def predict(
         read_counterbody(counterbody).completed("counter_", counter_hardness, counter_density),
         radius=radius,
         counter_radius=counter_radius,
+        radius_across=radius_across,
+        contact_radius=contact_radius,
+        pressure=pressure,
         load=load,
         mu=mu,
     )
+    if motion.load_amplitude is not None and motion.load_amplitude > contact.load:
+        allowed = "allowed is at most the load: beyond it the bodies part"
+        raise InputError("load_amplitude", load_amplitude, allowed)
     about = understood | asked | pulls
     if reduction is not None:
         if pulls:
@@ -152,10 +193,17 @@ def predict(
     limit = None
     if size is not None:
         exactly = min(accepted.si, TOLERANCE) if force is not None else accepted.si
-        limit = solve(scene, 0.0, size, poisson=contact.poisson, tolerance=exactly)
+        if scene in COMBINED:
+            exactly = max(exactly, TOLERANCE_OF_LIMIT)
+        settings = {"poisson": contact.poisson, "pressure": contact.pressure}
+        named = solver_scene(motion, contact)
+        limit = solve(named, 0.0, size, tolerance=exactly, **settings)
     pulled = about_drive(contact, motion, drive, pulling, answer, limit)
     if velocity is None:
         velocity, motion = answer.velocity, with_speed(motion, contact, answer)
+    if answer.converged:
+        pulled |= energy_fields(contact, motion, answer)
+        pulled |= vibration_fields(contact, motion, answer, accepted.si) if power else {}
     return replace(_prediction(contact, motion, velocity, answer, limit, about), **pulled)
 
 
@@ -189,6 +237,11 @@ def _prediction(contact, motion, velocity, answer: Result, limit: Result | None,
         poisson=contact.poisson,
         speed_m_s=motion.speed,
         amplitude_si=motion.amplitude,
+        forward_amplitude_m=motion.forward_amplitude,
+        rotation_amplitude_rad=motion.rotation_amplitude,
+        load_amplitude_N=motion.load_amplitude,
+        phase_rad=motion.phase,
+        pressure=contact.pressure,
         frequency_Hz=motion.frequency,
         rotation_rad_s=motion.rotation,
         velocity=None if motion.scene == "bore" and not motion.amplitude else velocity,

@@ -28,7 +28,7 @@ class Prediction:
     speed_m_s : float
         Forward speed, m/s; under a force the mean one that comes out, NaN where it runs away.
     amplitude_si : float or None
-        Half stroke of the oscillation, m, or rad for a bore; None for steady motions.
+        Half stroke of the oscillation, m, or rad for a bore; None where there is none.
     frequency_Hz : float or None
         Cyclic frequency of the oscillation, Hz; None for steady motions.
     rotation_rad_s : float or None
@@ -78,6 +78,22 @@ class Prediction:
     natural_frequency : float or None
         Of that mass on its spring and the contact that sticks, over the frequency; None without
         either.
+    pressure : str
+        How the load is spread, as microslip.solve takes it.
+    forward_amplitude_m, rotation_amplitude_rad, load_amplitude_N, phase_rad : float or None
+        Of scenes that oscillate in several ways: further half strokes, and a phase.
+    torque_N_m, torque_error_N_m : float or None
+        Torque that a steady spin takes, N m, and its error; None for motions that oscillate.
+    drag_power_W : float or None
+        Mean work of the forward force in a second, W.
+    vibration_power_W, vibration_power_error_W : float or None
+        Mean work of the oscillation, or of the spin, in a second, W; of oscillations where it was
+        asked for.
+    dissipated_power_W, energy_per_cycle_J : float or None
+        Both powers together, W, which friction turns into heat, and what a period or a turn of it
+        costs, J.
+    mu_macro_spread, mu_apparent_spread, friction_force_spread_N, speed_spread_m_s : float or None
+        Standard uncertainties that follow from those of what was given; None where none was.
     """
 
     scene: str
@@ -128,6 +144,22 @@ class Prediction:
     safety_factor: float | None = None
     regime: str | None = None
     natural_frequency: float | None = None
+    pressure: str = "hertz"
+    forward_amplitude_m: float | None = None
+    rotation_amplitude_rad: float | None = None
+    load_amplitude_N: float | None = None
+    phase_rad: float | None = None
+    torque_N_m: float | None = None
+    torque_error_N_m: float | None = None
+    drag_power_W: float | None = None
+    vibration_power_W: float | None = None
+    vibration_power_error_W: float | None = None
+    dissipated_power_W: float | None = None
+    energy_per_cycle_J: float | None = None
+    mu_macro_spread: float | None = None
+    mu_apparent_spread: float | None = None
+    friction_force_spread_N: float | None = None
+    speed_spread_m_s: float | None = None
 
     def to_dict(self) -> dict:
         """Fields as a plain dict."""

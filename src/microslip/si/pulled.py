@@ -12,7 +12,7 @@ from microslip.foundation.arguments import LARGEST, LARGEST_BODY
 from microslip.motions.by_name import motion_named
 from microslip.motions.drive import Drive
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealDrive, RealMotion, groups, speed_unit
+from microslip.si.dimensionless import RealDrive, RealMotion, groups, solver_scene, speed_unit
 from microslip.si.reduction import friction_of
 from microslip.si.regimes import natural_frequency, regime
 from microslip.solver.problem import Problem
@@ -44,7 +44,9 @@ def answer_of(
 
     def found(tolerance):
         settings = {"poisson": contact.poisson, "tolerance": tolerance}
-        return solve(motion.scene, velocity, size, **settings, **within_range(pulling))
+        settings["pressure"] = contact.pressure
+        scene = solver_scene(motion, contact)
+        return solve(scene, velocity, size, **settings, **within_range(pulling))
 
     answer = found(tolerance)
     if "force" not in pulling or not answer.converged:
@@ -113,7 +115,8 @@ def _threshold(motion, contact, pulling, limit):
     if limit is None:
         return 0.0, 0.0  # a steady spin turns all of friction aside
     _, size = groups(motion, contact)
-    problem = Problem(motion_named(motion.scene, "hertz"), 0.0, size, contact.poisson)
+    named = motion_named(solver_scene(motion, contact), contact.pressure)
+    problem = Problem(named, 0.0, size, contact.poisson)
     if not oscillates_forward(problem):
         return limit.mu_macro, limit.mu_macro_error
     return (None, None) if pulling.get("mass") else (1.0, 0.0)

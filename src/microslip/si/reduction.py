@@ -9,7 +9,7 @@ from microslip.adaptive.point import Result, solve
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealMotion, groups
+from microslip.si.dimensionless import RealMotion, groups, solver_scene
 
 LARGEST_AMPLITUDE = 1e4
 """Dimensionless amplitude beyond which no smaller friction is looked for."""
@@ -25,7 +25,8 @@ def friction_of(contact: TwoBodies, motion: RealMotion, tolerance: float) -> Res
     """What microslip.solve says of a motion."""
     velocity, size = groups(motion, contact)
     fast = min(velocity, LARGEST["velocity"])  # beyond, the vibration does nothing
-    return solve(motion.scene, fast, size, poisson=contact.poisson, tolerance=tolerance)
+    settings = {"poisson": contact.poisson, "pressure": contact.pressure, "tolerance": tolerance}
+    return solve(solver_scene(motion, contact), fast, size, **settings)
 
 
 def motion_for(

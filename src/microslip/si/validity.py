@@ -9,6 +9,20 @@ from microslip.si.dimensionless import largest_slip_speed
 YIELDS_AT = 0.57
 """Largest Hertz pressure over hardness at which plastic flow sets in below the surface: 1.6 of the
 yield stress, with a hardness of 2.8 times that (K. L. Johnson, Contact Mechanics, 6.1 and 6.3)."""
+HARDEST = 0.1
+"""Hardness over Young's modulus that no metal, ceramic or glass is above: it is 2.8 times the yield
+stress, which is a few per cent of the modulus at most."""
+RUBBERY = 0.45
+"""Poisson's ratio from which on a body is taken for a rubber, which does not yield."""
+ADHESION = 0.05
+"""Work of adhesion of clean smooth surfaces that only van der Waals forces hold, N/m, of that order
+(J. N. Israelachvili, Intermolecular and Surface Forces)."""
+RANGE = 0.2e-9
+"""Of these forces, m; and the distance of atoms, of that order."""
+SHORT, LONG = 5.0, 0.1
+"""Tabor's numbers above which JKR's theory holds, and below which DMT's does (K. L. Johnson and
+J. A. Greenwood, J. Colloid Interface Sci. 192, 1997)."""
+LARGE_MU = 1.0
 SMALL = 0.1
 """A ratio that the theory takes to vanish."""
 STEEP = 0.2
@@ -45,6 +59,53 @@ def _plastic(contact, motion):
         )
 
 
+def _too_hard(contact, motion):
+    """Of bodies without a hardness: whether any one would do."""
+    pressure = contact.largest_pressure
+    for body in contact.bodies:
+        known = body.hardness is not None or body.rigid or body.poisson >= RUBBERY
+        if not known and pressure > YIELDS_AT * HARDEST * body.young:
+            share = pressure / body.young
+            yield (
+                f"the largest pressure, {pressure:.2g} Pa, is {share:.2g} of Young's modulus: "
+                "no metal, ceramic or glass is so hard that it stays elastic"
+            )
+            return
+
+
+def _adhesive(contact, motion):
+    strength = ADHESION**2 * contact.radius / (contact.E_star**2 * RANGE**3)
+    tabor = strength ** (1.0 / 3.0)
+    share = 1.5 if tabor > SHORT else 2.0
+    pull = share * math.pi * ADHESION * contact.radius
+    if pull <= SMALL * contact.load:
+        return
+    theory = "JKR" if tabor > SHORT else "DMT" if tabor < LONG else "between JKR and DMT"
+    share = pull / contact.load
+    yield (
+        f"clean smooth surfaces adhere with about {pull:.2g} N, {share:.2g} of the load "
+        f"(Tabor's number {tabor:.2g}, Maugis's {1.157 * tabor:.2g}: {theory}): adhesion counts"
+    )
+
+
+def _atomic(contact, motion):
+    sizes = {"u_lim": contact.u_lim, "the amplitude": motion.swing[0]}
+    for name, size in sizes.items():
+        if 0.0 < size < RANGE:
+            yield (
+                f"{name} is {size:.2g} m, less than the distance of atoms: the surfaces are no "
+                "continua there"
+            )
+
+
+def _rough_mu(contact, motion):
+    if contact.mu > LARGE_MU:
+        yield (
+            f"mu is {contact.mu:.3g}: above {LARGE_MU:g} it is rare but for rubber and clean "
+            "metals that weld, of which Coulomb's law is a poor picture"
+        )
+
+
 def _steep(contact, motion):
     a, radius = contact.contact_radius, contact.radius
     whose = "radius of relative curvature"
@@ -56,9 +117,9 @@ def _steep(contact, motion):
 
 
 def _far(contact, motion):
-    if motion.frequency is None or motion.scene == "bore":
+    if motion.frequency is None:
         return
-    ratio = motion.amplitude / contact.contact_radius
+    ratio = motion.swing[0] / contact.contact_radius
     if ratio > SMALL:
         yield (
             f"the amplitude is {ratio:.2g} of the contact radius: tractions are carried along by "
@@ -89,4 +150,5 @@ def _mismatched(contact, motion):
         )
 
 
-_CHECKS = (_plastic, _steep, _far, _inertia, _mismatched)
+_CHECKS = (_plastic, _too_hard, _steep, _far, _inertia, _mismatched)
+_CHECKS += (_adhesive, _atomic, _rough_mu)

@@ -13,6 +13,7 @@ import xarray as xr
 from microslip.config.quantities import MU_MACRO
 from microslip.datasets.query import beyond
 from microslip.datasets.query.coordinates import labelled
+from microslip.datasets.query.inverse import Inverse
 from microslip.datasets.query.nodes import SAME, nodes_of, refuse_negative
 from microslip.datasets.query.within import refuse_beyond, within
 from microslip.foundation.arguments import is_real, real
@@ -38,7 +39,7 @@ SOURCES = (
 
 
 @xr.register_dataset_accessor("friction")
-class Friction:
+class Friction(Inverse):
     """Friction at any point of a scene, from a dataset of one of its sweeps.
 
     Raises ValueError where the dataset is none of a sweep.

@@ -47,11 +47,13 @@ _DRAWN: dict[str, tuple[str, ...]] = {
     "driving": ("driving", "driving"),
 }
 """Every figure: the module beside this one that draws it, and the datasets it is drawn from."""
-_MODULES = {name: module for name, (module, *_) in _DRAWN.items()}
+_MODULES = {name: module for name, (module, *_) in _DRAWN.items()} | {"fit": "fit"}
 FIGURES = {name: tuple(datasets) for name, (_, *datasets) in _DRAWN.items()}
 """Every figure and its datasets, but for those of groups in `extended`, which have the names that
 `figure_of` gives and all the datasets of their group."""
 
+ON_DEMAND = {"fit": ("fit",)}
+"""Figures that commands draw of answers of their own, and no workflow makes; likewise."""
 MOST_POISSONS = 4
 """Lines that the figure of Poisson's ratios can tell apart."""
 
@@ -81,10 +83,10 @@ def modules_of(name: str) -> tuple[str, ...]:
 def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     """Draw one figure.
 
-    name: a key of `FIGURES`, or what `figure_of` gives for a group. datasets: at least those that
-    `FIGURES[name]` lists, by their key, or all of that group; others are ignored. Raises ValueError
-    if the name is unknown, a dataset is of another scene, or a dataset, variable or dimension the
-    figure needs is missing. The figure belongs to no window and no global state.
+    name: a key of `FIGURES` or `ON_DEMAND`, or what `figure_of` gives for a group. datasets: at
+    least those that these list, by their key, or all of that group; others are ignored. Raises
+    ValueError if the name is unknown, a dataset is of another scene, or a dataset, variable or
+    dimension the figure needs is missing. The figure belongs to no window and no global state.
     """
     keys = _keys_of(name, datasets)
     missing = [key for key in keys if key not in datasets]
@@ -112,8 +114,8 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
 
 def _keys_of(name: str, datasets: Mapping[str, xr.Dataset]) -> tuple[str, ...]:
     """Keys of the datasets that a figure is drawn from."""
-    if name in FIGURES:
-        return FIGURES[name]
+    if known := FIGURES.get(name) or ON_DEMAND.get(name):
+        return known
     groups = {key: dataset.attrs.get("group") for key, dataset in datasets.items()}
     keys = tuple(key for key, group in groups.items() if group and figure_of(group) == name)
     if not keys:

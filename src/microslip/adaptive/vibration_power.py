@@ -1,0 +1,115 @@
+"""What it takes to vibrate a contact: mean work of the oscillation, with an error estimate.
+
+What drags the contact forward does the work mu_macro v besides, and elastic energy returns, so that
+both together are what friction dissipates.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from microslip.adaptive.asked import TOLERANCE, Asked
+from microslip.adaptive.checks import checked_point, checked_request
+from microslip.adaptive.choice import choose_model
+from microslip.adaptive.moved import marched
+from microslip.adaptive.point import MOST_WORK, MOST_WORK_OF_OTHERS
+from microslip.adaptive.refinement import certify
+from microslip.foundation.errors import InputError
+from microslip.solver.budget import Budget
+from microslip.solver.method_names import SHIPPED, method_named
+from microslip.solver.problem import Problem
+
+_LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
+
+
+class VibrationPower(NamedTuple):
+    """Mean work of an oscillation on the contact.
+
+    Attributes
+    ----------
+    value, error : float
+        Work in a radian of phase over mu times the mean normal load and u_lim, and the largest
+        error that it may have, by estimate.
+    reason : str
+        Why that is not within the tolerance, else empty.
+    """
+
+    value: float
+    error: float
+    reason: str
+
+
+def vibration_power(
+    scene: str,
+    velocity: float,
+    amplitude: float,
+    *,
+    pressure: str = "hertz",
+    poisson: float = 0.0,
+    tolerance: float = TOLERANCE,
+) -> VibrationPower:
+    """Mean work that an oscillation does on the contact.
+
+    Parameters
+    ----------
+    scene, velocity, amplitude, pressure, poisson
+        As for `microslip.solve`: a motion that oscillates, velocity and amplitude above 0.
+    tolerance : float
+        Accepted error, over the mean speed of the oscillation.
+
+    Returns
+    -------
+    VibrationPower
+        In working units.
+
+    Raises
+    ------
+    InputError
+        For bad input; it names the argument.
+    """
+    motion, velocity, amplitude, poisson = checked_point(
+        scene, velocity, amplitude, poisson, pressure
+    )
+    for name, value in (("velocity", velocity), ("amplitude", amplitude)):
+        if not value:
+            raise InputError(name, value, "allowed is a number above 0, for work to be done")
+    tolerance, _, _ = checked_request(tolerance, None, None)
+    name = choose_model(motion, poisson, "auto")
+    problem = Problem(motion, velocity, amplitude, poisson)
+    asked = Asked(
+        problem=problem,
+        model=name,
+        chosen=False,
+        method=SHIPPED,
+        how=method_named(SHIPPED),
+        tolerance=tolerance,
+        cells=None,
+        steps=None,
+        budget=Budget(MOST_WORK.get(name, MOST_WORK_OF_OTHERS), math.inf),
+        progress=None,
+        started=time.perf_counter(),
+    )
+    moves = np.diff(np.stack(problem.oscillation(_LOOP)), axis=1)
+    speed = float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
+
+    def power_as_force(run):
+        """Runs whose friction is their power over the mean speed: what is certified is that."""
+
+        def of_resolution(*resolution):
+            found = run(*resolution)
+            return replace(found, mu=found.power / speed)
+
+        return of_resolution
+
+    plan = marched(asked)
+    readings = [power_as_force(one) for one in plan.readings]
+    found = certify(power_as_force(plan.run), plan.coarsest, plan.axes, tolerance, readings)
+    reason = found.reason
+    if found.converged and found.error > tolerance:
+        reason = f"the estimated error of the power is {found.error * speed:.1e}"
+    return VibrationPower(float(speed * found.mu), float(speed * found.error), reason)

@@ -1,0 +1,253 @@
+"""Where a map has a wanted friction: `dataset.friction.solve_for(...)`.
+
+A map is known to within its error, so what it answers is an interval: all places whose friction may
+be the wanted one, and in it the place where the map's own value is.  Friction may be the same at
+several places, and then there are as many intervals.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from microslip.datasets.query.coordinates import labelled
+from microslip.foundation.errors import InputError
+
+OUTCOMES = (
+    "found",
+    "several",
+    "possible",
+    "friction is larger everywhere",
+    "friction is smaller everywhere",
+)
+"""What comes of a question, by its code in the variable `outcome`; possible: within the error, but
+the map's own value is nowhere the wanted one."""
+(FOUND, SEVERAL, POSSIBLE, LARGER, SMALLER) = range(len(OUTCOMES))
+EVEN, GEOMETRIC = 65, 97
+"""Places that are looked at first, in equal steps and in equal ratios; between two of them friction
+is taken to cross what is wanted once at most."""
+DECADES = 6
+"""That the smallest of the latter is below the largest."""
+AT_A_TIME = 1000
+"""Questions, which bounds the memory."""
+ACCURACY = {"xrtol": 1e-10, "xatol": 1e-14}
+
+
+class Inverse:
+    """Adds questions the other way round to what has a method `at`."""
+
+    def solve_for(
+        self,
+        wanted: object,
+        *,
+        velocity: object = None,
+        amplitude: object = None,
+        poisson: float | None = None,
+        within: tuple[float, float] | None = None,
+    ) -> xr.Dataset:
+        """Amplitude or velocity at which friction is the wanted one, with its interval.
+
+        Parameters
+        ----------
+        wanted : number, sequence or DataArray
+            The wanted friction mu_macro, at least 0; a sequence becomes a dimension of this name.
+        velocity, amplitude : number, sequence or DataArray
+            The one that is known; the other one is looked for.  continuous-bore has no amplitude,
+            and its velocity is looked for.
+        poisson : number, optional
+            As for `at`.
+        within : two numbers, optional
+            Where to look; the range of the dataset if not given.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over the dimensions of what was given and `root`: the place where the map has this
+            friction (NaN: none), and `_low` and `_high` of it, between which friction is the wanted
+            one to within the map's error; `bounded`, whether both ends lie inside of the range.
+            Without `root`: `outcome`, an index into OUTCOMES.
+
+        Raises
+        ------
+        InputError
+            For both or neither of the two, and as `at`.
+        """
+        periodic = self._motion.periodic
+        known = {"velocity": velocity, "amplitude": amplitude}
+        known = {name: value for name, value in known.items() if value is not None}
+        if len(known) != (1 if periodic else 0):
+            allowed = "one of velocity and amplitude, the other one is looked for"
+            allowed = allowed if periodic else "none, the velocity is looked for"
+            raise InputError("solve_for", sorted(known), f"allowed is {allowed}")
+        sought = "velocity" if "velocity" not in known else "amplitude"
+        ends = _ends(self._dataset, sought, within)
+
+        def at(place, other):
+            points = {sought: xr.DataArray(place, dims="point")}
+            points |= {name: xr.DataArray(other, dims="point") for name in known}
+            found = self.at(**points, poisson=poisson)
+            return found["mu_macro"].values, found["mu_macro_error"].values
+
+        parts = [labelled("wanted", wanted)]
+        parts += [labelled(name, value) for name, value in known.items()]
+        parts = xr.broadcast(*parts)
+        wanted, other = (part.values.ravel().astype(float) for part in (parts[0], parts[-1]))
+        found = [
+            _answers(_Questions(at, wanted[k : k + AT_A_TIME], other[k : k + AT_A_TIME]), *ends)
+            for k in range(0, len(wanted), AT_A_TIME)
+        ]
+        return _dataset(sought, parts[0], found, self._scene)
+
+
+class _Questions(NamedTuple):
+    """Some questions: at(places, others) gives friction and its error; shapes (n,)."""
+
+    at: Callable
+    wanted: np.ndarray
+    other: np.ndarray
+
+    def missing(self, place, row):
+        """Friction less the wanted one."""
+        row = np.asarray(row, int)
+        return self.at(place, self.other[row])[0] - self.wanted[row]
+
+    def beyond(self, place, row):
+        """How much further than its error friction is from the wanted one."""
+        row = np.asarray(row, int)
+        value, error = self.at(place, self.other[row])
+        return np.abs(value - self.wanted[row]) - error
+
+
+def _ends(dataset, sought, within):
+    """The range that is looked through."""
+    if within is None:
+        return float(dataset[sought].min()), float(dataset[sought].max())
+    try:
+        low, high = labelled("within", within).values.astype(float)
+    except (TypeError, ValueError):
+        low, high = 0.0, 0.0
+    if not low < high:
+        raise InputError("within", within, "allowed are two numbers >= 0, the smaller one first")
+    return float(low), float(high)
+
+
+def _places(low, high):
+    least = max(low, high * 10.0**-DECADES)
+    both = np.linspace(low, high, EVEN), np.geomspace(least, high, GEOMETRIC)
+    return np.unique(np.clip(np.concatenate(both), low, high))
+
+
+def _answers(asked, low, high):
+    """Rows of (question, place or NaN, low end, high end, bounded), and the outcome of each."""
+    places = _places(low, high)
+    count = len(asked.wanted)
+    value, error = (
+        part.reshape(count, -1)
+        for part in asked.at(np.tile(places, count), np.repeat(asked.other, len(places)))
+    )
+    off = value - asked.wanted[:, None]
+    inside = ~(np.abs(off) > error)  # what is not known may be anything
+    crosses = np.sign(off[:, :-1]) * np.sign(off[:, 1:]) < 0.0
+    intervals = [(row, *one) for row in range(count) for one in _runs(inside[row], crosses[row])]
+    outcome = np.where(off[:, 0] > 0.0, LARGER, SMALLER)
+    if not intervals:
+        return np.empty((0, 5)), outcome
+    row, first, last = np.array(intervals).T
+    place = _roots(asked, places, off, crosses, (row, first, last))
+    ends = []
+    for node, step in ((first, 1), (last, -1)):
+        # The neighbour is within the error, or else the crossing is between both.
+        near = inside[row, np.clip(node + step, 0, len(places) - 1)]
+        inner = np.where(near, places[np.clip(node + step, 0, len(places) - 1)], place)
+        outer = places[node]
+        at_end = inside[row, node]
+        ends.append(np.where(at_end, outer, _end(asked, outer, inner, row, at_end)))
+    bounded = ~inside[row, first] & ~inside[row, last]
+    for k in range(count):
+        own = place[row == k]
+        if own.size:
+            known = np.isfinite(own).any()
+            outcome[k] = (SEVERAL if own.size > 1 else FOUND) if known else POSSIBLE
+    return np.stack([row, place, *ends, bounded], axis=1), outcome
+
+
+def _runs(inside, crosses):
+    """Pairs of the first and the last node around what may have the wanted friction.
+
+    The nodes of a pair are outside, unless the range ends there.
+    """
+    touched = inside[:-1] | inside[1:] | crosses
+    cells = np.flatnonzero(touched)
+    if not cells.size:
+        return
+    # Two cells belong together where the node between them is inside.
+    breaks = np.flatnonzero((np.diff(cells) > 1) | ~inside[cells[1:]])
+    for part in np.split(cells, breaks + 1):
+        yield int(part[0]), int(part[-1]) + 1
+
+
+def _roots(asked, places, off, crosses, runs):
+    """In each run the place where friction is the wanted one, NaN: none; the middle one of many."""
+    from scipy.optimize.elementwise import find_root
+
+    found = np.full(len(runs[0]), np.nan)
+    cells = []
+    for k, (row, first, last) in enumerate(zip(*runs, strict=True)):
+        exact = first + np.flatnonzero(off[row, first : last + 1] == 0.0)
+        own = first + np.flatnonzero(crosses[row, first:last])
+        if exact.size:
+            found[k] = places[exact[len(exact) // 2]]
+        elif own.size:
+            cells.append((k, row, own[len(own) // 2]))
+    if cells:
+        which, row, cell = np.array(cells).T
+        bracket = places[cell], places[cell + 1]
+        answer = find_root(asked.missing, bracket, args=(row.astype(float),), tolerances=ACCURACY)
+        found[which] = answer.x
+    return found
+
+
+def _end(asked, outer, inner, row, skip):
+    """Where friction comes within the error, between a place outside and one inside."""
+    from scipy.optimize.elementwise import find_root
+
+    end = np.where(np.isnan(inner), outer, inner)
+    if skip.all():
+        return end
+    left, right = np.minimum(outer, end)[~skip], np.maximum(outer, end)[~skip]
+    rows = row[~skip].astype(float)
+    answer = find_root(asked.beyond, (left, right), args=(rows,), tolerances=ACCURACY)
+    end[~skip] = np.where(answer.success, answer.x, end[~skip])  # an error of 0 leaves no room
+    return end
+
+
+def _dataset(sought, shape, found, scene):
+    """The answers of all questions as arrays of the shape of what was asked."""
+    offsets = np.cumsum([0] + [len(outcome) for _, outcome in found])
+    rows = np.concatenate(
+        [part + np.array([k, 0, 0, 0, 0]) for (part, _), k in zip(found, offsets, strict=False)]
+    )
+    outcome = np.concatenate([part for _, part in found])
+    row = rows[:, 0].astype(int)
+    first = np.searchsorted(row, row)  # rows of one question follow one another
+    root = np.arange(len(row)) - first
+    most = int(root.max(initial=0)) + 1
+    table = np.full((4, len(outcome), most), np.nan)
+    table[:, row, root] = rows[:, 1:].T
+    dims = (*shape.dims, "root")
+    size = (*shape.shape, most)
+    about = {"units": "1"}
+    names = (sought, f"{sought}_low", f"{sought}_high")
+    values = {
+        name: (dims, part.reshape(size), about) for name, part in zip(names, table, strict=False)
+    }
+    values["bounded"] = dims, (table[3] == 1.0).reshape(size)
+    flags = {
+        "flag_values": np.arange(len(OUTCOMES), dtype=np.int8),
+        "flag_meanings": " ".join(name.replace(" ", "_") for name in OUTCOMES),
+    }
+    values["outcome"] = shape.dims, outcome.astype(np.int8).reshape(shape.shape), flags
+    return xr.Dataset(values, coords=shape.coords, attrs={"scene": scene})

@@ -1,0 +1,157 @@
+"""A fit: measured friction and what the fitted contact has, and what is left between them."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from microslip.report.figures import style as look
+from microslip.report.figures.data import finite_or_nan, require
+from microslip.report.figures.lines import LOOKS
+
+CONDITIONS = {
+    "speed_m_s": ("speed", "m/s"),
+    "amplitude_si": ("amplitude", "m"),
+    "row_load_N": ("load", "N"),
+    "frequency_Hz": ("frequency", "Hz"),
+}
+"""What may differ from row to row: its name and its unit in the SI."""
+MEASURED = {"friction": ("friction force", "N"), "mu": ("coefficient of friction", "")}
+PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
+VARIABLES = ("measured", "measured_error", "fitted", "fitted_error", "residual", *CONDITIONS)
+BAND = 2.0
+"""Standard errors within which about 95 % of the residuals are."""
+WIDE = 10.0
+"""Ratio of the ends of an axis from which on it is logarithmic."""
+
+
+def draw(name: str, dataset: xr.Dataset) -> Figure:
+    """Draw measured and fitted friction above, residuals below.
+
+    The abscissa is the condition with the most values; rows that differ in another one have a look
+    of their own.  What the model may be off is a band around its line.
+    """
+    require(name, "fit", dataset, VARIABLES)
+    abscissa = max(CONDITIONS, key=lambda each: len(np.unique(dataset[each].values)))
+    figure = look.new_figure(look.SINGLE, 4.0)
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
+    along, label = _scaled(abscissa, dataset)
+    what, unit = MEASURED[dataset.attrs["quantity"]]
+    factor, unit = _prefix(dataset["measured"].values, unit) if unit else (1.0, "dimensionless")
+    for (title, chosen), style in zip(_series(dataset, abscissa), LOOKS, strict=False):
+        _rows(upper, dataset.isel(row=chosen), along[chosen], factor, style, title)
+        color, marker, _ = style
+        left = dataset["residual"].values[chosen]
+        lower.plot(along[chosen], left, marker, color=color, markersize=3.2, gid="residual")
+    lower.axhspan(-BAND, BAND, color=look.PALE, linewidth=0, zorder=0.4)
+    lower.axhline(0.0, color=look.GREY, linewidth=0.7, zorder=0.5)
+    if along.min() > 0.0 and along.max() > WIDE * along.min():
+        lower.set_xscale("log")
+    upper.set_ylabel(f"{what} ({unit})")
+    lower.set_ylabel("residual, standard\nerrors (dimensionless)")
+    lower.set_xlabel(label)
+    upper.legend(loc="best", fontsize=look.SMALLEST)
+    look.letter(upper, "a", _found(dataset), look.SINGLE - 0.6)
+    look.letter(lower, "b")
+    return figure
+
+
+def _rows(
+    axes: Axes,
+    rows: xr.Dataset,
+    along: np.ndarray,
+    factor: float,
+    style: tuple,
+    title: str,
+) -> None:
+    """Marks with error bars for what was measured, a line with its band for what was fitted."""
+    color, marker, linestyle = style
+    order = np.argsort(along, kind="stable")
+    fitted, off = (rows[name].values[order] / factor for name in ("fitted", "fitted_error"))
+    band = {"color": color, "alpha": 0.2, "linewidth": 0, "gid": "model-error"}
+    axes.fill_between(along[order], fitted - off, fitted + off, **band)
+    axes.plot(along[order], fitted, color=color, linestyle=linestyle, linewidth=1.0, gid="fitted")
+    axes.errorbar(
+        along,
+        rows["measured"].values / factor,
+        yerr=finite_or_nan(rows["measured_error"].values) / factor,
+        color=color,
+        marker=marker,
+        markersize=3.2,
+        linestyle="none",
+        elinewidth=0.7,
+        capsize=1.5,
+        label=title or "measured; line: fitted",
+        gid="measured",
+    )
+
+
+def _series(dataset: xr.Dataset, abscissa: str) -> list[tuple[str, np.ndarray]]:
+    """Titles and rows of what differs in another condition than the abscissa.
+
+    Of more than there are looks all rows are one series.
+    """
+    others = [
+        each for each in CONDITIONS if each != abscissa and len(np.unique(dataset[each].values)) > 1
+    ]
+    everything = [("", np.arange(dataset.sizes["row"]))]
+    if not others:
+        return everything
+    table = np.stack([dataset[each].values for each in others], axis=1)
+    kinds, which = np.unique(table, axis=0, return_inverse=True)
+    if len(kinds) > len(LOOKS):
+        return everything
+    which = which.reshape(-1)
+    titles = [
+        ", ".join(_value(each, value, dataset) for each, value in zip(others, kind, strict=True))
+        for kind in kinds
+    ]
+    return [(title, np.flatnonzero(which == k)) for k, title in enumerate(titles)]
+
+
+def _unit(condition: str, dataset: xr.Dataset) -> str:
+    """Of a condition in the SI; the amplitude may be an angle."""
+    if condition == "amplitude_si" and dataset.attrs.get("scene") == "bore":
+        return "rad"
+    return CONDITIONS[condition][1]
+
+
+def _scaled(condition: str, dataset: xr.Dataset) -> tuple[np.ndarray, str]:
+    """Values of a condition in the unit that suits them, and their label."""
+    values = dataset[condition].values
+    factor, unit = _prefix(values, _unit(condition, dataset))
+    return values / factor, f"{CONDITIONS[condition][0]} ({unit})"
+
+
+def _value(condition: str, value: float, dataset: xr.Dataset) -> str:
+    factor, unit = _prefix(np.array([value]), _unit(condition, dataset))
+    return f"{CONDITIONS[condition][0]} {value / factor:.3g} {unit}"
+
+
+def _prefix(values: np.ndarray, unit: str) -> tuple[float, str]:
+    """A power of ten that suits the values, and the unit with its prefix."""
+    largest = float(np.max(np.abs(values), initial=0.0))
+    fitting = [one for one in PREFIXES if one[0] <= largest * (1.0 + 1e-9)]
+    factor, prefix = fitting[0] if fitting else PREFIXES[-1] if largest else (1.0, "")
+    return factor, f"{prefix}{unit}"
+
+
+def _found(dataset: xr.Dataset) -> str:
+    """Both numbers with the halves of their intervals."""
+    parts = []
+    for symbol, name, unit in (
+        (r"\mu", "mu{}", ""),
+        (r"u_\mathrm{lim}", "u_lim{}_m", "m"),
+        ("G", "shear_modulus{}_Pa", "Pa"),
+    ):
+        names = [name.format(part) for part in ("", "_low", "_high")]
+        if not all(each in dataset for each in names):
+            continue
+        value, low, high = (float(dataset[each]) for each in names)
+        if np.isfinite([value, low, high]).all():
+            factor, unit = _prefix(np.array([value]), unit) if unit else (1.0, "")
+            shown = (value / factor, low / factor, high / factor)
+            parts.append("${} = {:.3g}$ ({:.3g} to {:.3g}) {}".format(symbol, *shown, unit).strip())
+    return ", ".join(parts)

@@ -1,0 +1,62 @@
+"""Torque, powers and the energy that a cycle costs, in SI units."""
+
+from __future__ import annotations
+
+import math
+
+from microslip.adaptive.point import Result
+from microslip.adaptive.vibration_power import vibration_power
+from microslip.foundation.arguments import LARGEST
+from microslip.foundation.errors import InputError
+from microslip.pressures.by_name import pressure_named
+from microslip.si.bodies import TwoBodies
+from microslip.si.dimensionless import RealMotion, groups, solver_scene
+
+
+def energy_fields(contact: TwoBodies, motion: RealMotion, answer: Result) -> dict:
+    """Fields of a Prediction that follow from the answer: drag, and torque of a steady spin."""
+    still = contact.mu * contact.load
+    drag = still * answer.mu_macro * motion.speed
+    found = {"drag_power_W": drag}
+    if answer.mu_torque is None:
+        return found
+    unit = still * contact.contact_radius * pressure_named(contact.pressure).torque
+    torque = unit * answer.mu_torque
+    spin = torque * motion.rotation
+    return found | {
+        "torque_N_m": torque,
+        "torque_error_N_m": unit * answer.mu_torque_error,
+        "vibration_power_W": spin,
+        "vibration_power_error_W": unit * answer.mu_torque_error * motion.rotation,
+        "dissipated_power_W": drag + spin,
+        "energy_per_cycle_J": (drag + spin) * 2.0 * math.pi / motion.rotation,
+    }
+
+
+def vibration_fields(
+    contact: TwoBodies, motion: RealMotion, answer: Result, tolerance: float
+) -> dict:
+    """... and what it takes to vibrate the contact, which the solver is asked for.
+
+    Raises InputError where nothing slides on and on, or the pull is no speed.
+    """
+    if motion.steady:
+        return {}
+    if answer.force is not None or answer.stiffness is not None:
+        raise InputError("power", True, "allowed where a speed alone pulls")
+    velocity, size = groups(motion, contact)
+    for name, value in (("speed", velocity), ("amplitude", size)):
+        if not value:
+            raise InputError(name, 0.0, "allowed is more than 0 where the power is asked for")
+    point = min(velocity, LARGEST["velocity"]), size
+    settings = {"poisson": contact.poisson, "pressure": contact.pressure, "tolerance": tolerance}
+    found = vibration_power(solver_scene(motion, contact), *point, **settings)
+    unit = contact.mu * contact.load * contact.u_lim * 2.0 * math.pi * motion.frequency
+    drag = contact.mu * contact.load * answer.mu_macro * motion.speed
+    total = drag + unit * found.value
+    return {
+        "vibration_power_W": unit * found.value,
+        "vibration_power_error_W": unit * found.error,
+        "dissipated_power_W": total,
+        "energy_per_cycle_J": total / motion.frequency,
+    }

@@ -1,0 +1,6 @@
+"""What measured friction tells about a contact: its coefficient of friction, and u_lim or G.
+
+`measured_csv` and `measured` read and check the table, `scales` turns its rows into dimensionless
+points for a guess of both numbers, `friction_models` answers for the points, `estimate` is the
+least squares with its intervals, `fit` puts them together and `fitted` holds the answer.
+"""

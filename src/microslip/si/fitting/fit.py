@@ -1,0 +1,171 @@
+"""mu and u_lim, or the shear modulus, of a contact whose friction was measured."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.adaptive.checks import SMALLEST_TOLERANCE
+from microslip.foundation.errors import InputError
+from microslip.si.fitting import estimate
+from microslip.si.fitting.conclusions import Settled, concluded
+from microslip.si.fitting.fitted import Fit
+from microslip.si.fitting.friction_models import LEAST, MOST, MapFriction, SolvedFriction
+from microslip.si.fitting.measured import Measured, read_measured
+from microslip.si.fitting.scales import Displacement, Modulus, Points
+from microslip.si.inputs import LARGEST_MU
+from microslip.si.motions import UNIT_OF_AMPLITUDE
+from microslip.si.quantities import read
+
+SMALLEST_MU = 1e-5
+TOLERANCE, LARGEST_TOLERANCE = 1e-3, 0.02
+"""Of mu_macro, where the solver answers."""
+CONFIDENCE = 0.95
+MOST_PASSES = 6
+SETTLED = 5e-4
+"""Relative change of both numbers from pass to pass."""
+
+
+def fit(
+    scene: str,
+    measured: object,
+    *,
+    map: object = None,
+    speed: object = None,
+    amplitude: object = None,
+    frequency: object = None,
+    load: object = None,
+    nu: object = None,
+    radius: object = None,
+    counterbody: object = None,
+    confidence: object = None,
+    tolerance: object = None,
+) -> Fit:
+    """What measured friction tells: mu, and u_lim or the shear modulus.
+
+    Without a radius u_lim is looked for, and nothing need be known of the bodies but Poisson's
+    ratio.  With one it is the shear modulus, by Hertz's theory.  Rows under several loads are
+    brought together by Hertz's theory in both cases.
+
+    Parameters
+    ----------
+    scene : str
+        "transverse", "longitudinal", "zigzag" or "bore"; a bore needs a radius.
+    measured : path or mapping
+        A CSV file with a heading such as `speed [mm/s],amplitude [um],friction [N]`, or columns in
+        the SI by these names: speed, amplitude, frequency, load; friction (the mean forward force)
+        or mu (the same over the load); friction_error or mu_error, standard errors, if known.
+    map : xarray.Dataset, optional
+        Of a sweep of this motion, see open_map: it answers at once.  Without it the solver does.
+    speed, amplitude, frequency, load : quantity, optional
+        What all rows have in common, in place of a column.
+    nu : quantity, optional
+        Poisson's ratio of the one half-space that stands for both bodies; that of the map or 0 if
+        not given.  With a radius it is needed: that of the bodies.
+    radius : quantity, optional
+        Radius of relative curvature, m: of a sphere on a flat its own.
+    counterbody : str, optional
+        Beside a radius "rigid", which it is if not given, or "same": as the first body.
+    confidence : quantity, optional
+        Of the intervals, 0.95 if not given.
+    tolerance : quantity, optional
+        Largest accepted error of mu_macro where the solver answers, 1e-3 if not given.
+
+    Returns
+    -------
+    Fit
+        Both numbers with intervals, or mu alone and the reason.
+
+    Raises
+    ------
+    InputError
+        For a table that cannot be read, fewer rows than it takes, rows of one condition, and rows
+        that do not even tell mu.
+    """
+    if not isinstance(scene, str) or scene not in UNIT_OF_AMPLITUDE:
+        raise InputError("scene", scene, f"allowed is one of {', '.join(UNIT_OF_AMPLITUDE)}")
+    shared = {"speed": speed, "amplitude": amplitude, "frequency": frequency, "load": load}
+    rows = read_measured(scene, measured, **shared)
+    _refuse_too_few(rows, measured)
+    scale, texts = _scale(scene, rows, nu, radius, counterbody)
+    accepted = CONFIDENCE if confidence is None else read("confidence", confidence, "").si
+    if accepted >= 1.0:
+        raise InputError("confidence", confidence, "allowed is a number above 0 and below 1")
+    ends = scale.bounds(LEAST, MOST)
+    if map is not None:
+        model = MapFriction(map, scene, None if nu is None else scale.poisson)
+    else:
+        limits = {"low": SMALLEST_TOLERANCE, "low_open": False, "high": LARGEST_TOLERANCE}
+        given = TOLERANCE if tolerance is None else read("tolerance", tolerance, "", **limits).si
+        reached = [scale.points(0.3, end) for end in ends]
+        model = SolvedFriction(scene, scale.poisson, given, reached)
+    rows_to_fit = _rows(rows, scale, model, ends)
+    best, others = _best(rows_to_fit, scale, model)
+    settled = Settled(scene, scale, model, rows_to_fit, best, others)
+    return concluded(settled, accepted, texts | rows.texts)
+
+
+def _refuse_too_few(rows, given):
+    least = 2 if rows.has_errors else 3
+    given = given if isinstance(given, str) else None
+    if len(rows.value) < least:
+        more = "" if rows.has_errors else ", or two with errors of their own"
+        allowed = f"{len(rows.value)} rows; two numbers take at least {least}{more}"
+        raise InputError("measured", given, allowed)
+    if rows.distinct < 2:
+        allowed = "all rows are of one condition, which tells one number; allowed: two or more"
+        raise InputError("measured", given, allowed)
+
+
+def _scale(scene, rows, nu, radius, counterbody):
+    """The second unknown, and texts of what was understood."""
+    texts = {"scene": scene}
+    ratio = None if nu is None else read("nu", nu, "", low_open=False, high=0.5)
+    if ratio is not None:
+        texts["nu"] = ratio.text
+    if radius is None:
+        if scene == "bore":
+            raise InputError("radius", None, "bore needs it: its amplitude is an angle")
+        if counterbody is not None:
+            raise InputError("counterbody", counterbody, "allowed beside a radius")
+        return Displacement(rows, 0.0 if ratio is None else ratio.si), texts
+    if ratio is None:
+        raise InputError("nu", None, "needed beside a radius")
+    if counterbody not in (None, "rigid", "same"):
+        raise InputError("counterbody", counterbody, "allowed is rigid or same")
+    texts["counterbody"] = "rigid, as none was given" if counterbody is None else counterbody
+    size = read("radius", radius, "m")
+    texts["radius"] = size.text
+    return Modulus(rows, scene == "bore", ratio.si, counterbody == "same", size.si), texts
+
+
+def _rows(rows: Measured, scale, model, ends):
+    """What the least squares is asked."""
+
+    def ratios(thetas):
+        """Of all guesses at once, for a map takes as long for one."""
+        parts = zip(*(scale.points(*np.exp(theta)) for theta in thetas), strict=True)
+        return model.at(Points(*(np.concatenate(part) for part in parts))).reshape(len(thetas), -1)
+
+    common = max(float(np.abs(rows.value).max()), np.finfo(float).tiny)
+    return estimate.Rows(
+        ratios=ratios,
+        value=rows.value,
+        weight=rows.weight,
+        error=rows.error if rows.has_errors else np.full_like(rows.value, common),
+        absolute=rows.has_errors,
+        lower=np.log([SMALLEST_MU, ends[0]]),
+        upper=np.log([LARGEST_MU, ends[1]]),
+    )
+
+
+def _best(rows, scale, model):
+    """The best fit, and others that were tried, the best one first."""
+    tried = [estimate.best_near(rows, start) for start in estimate.starts(rows)]
+    tried.sort(key=lambda one: one.squares)
+    best = tried[0]
+    for _ in range(MOST_PASSES):
+        model.anchor(scale.points(*np.exp(best.theta)))
+        last, best = best, estimate.best_near(rows, best.theta)
+        if np.abs(best.theta - last.theta).max() <= SETTLED:
+            break
+    return best, tried[1:]

@@ -1,0 +1,143 @@
+"""What a fit has found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Fit:
+    """Coefficient of friction and u_lim of a contact, from measured friction.
+
+    Intervals hold the scatter of the rows, at the confidence that was asked for, and on top of it
+    the largest error that the model may have, which is not a matter of chance.
+
+    Attributes
+    ----------
+    scene : str
+        The motion.
+    quantity : str
+        What was measured: "friction", a force in N, or "mu", a coefficient.
+    mu, mu_low, mu_high : float
+        Coefficient of friction without vibration, dimensionless, and its interval.
+    u_lim_m, u_lim_low_m, u_lim_high_m : float or None
+        Displacement that lets the whole contact slide under the mean load, m, and its interval;
+        None where the rows do not tell it, or leave it open to that side.
+    shear_modulus_Pa, shear_modulus_low_Pa, shear_modulus_high_Pa : float or None
+        Of the bodies, Pa, likewise; None unless their radius was given.
+    load_N : float
+        The mean load, N.
+    confidence : float
+        Of the intervals, 0 to 1.
+    mu_model_share, scale_model_share : float
+        How far errors of the model can move mu, and u_lim or the shear modulus: the relative part
+        of the intervals that is not scatter.
+    standard_error : float or None
+        Of one row, from what the fit leaves, in the unit of the rows; None where the rows have
+        errors of their own.
+    chi_square, p_value : float or None
+        Of rows with errors of their own: sum of squares, and how likely a larger one is by chance.
+    degrees_of_freedom : int
+        Rows less two.
+    told : tuple of str
+        What the rows tell: "mu", and "u_lim" or "shear_modulus".
+    reason : str
+        Why not both of them.
+    warnings : tuple of str
+        What makes the answer doubtful.
+    understood : dict of str
+        What was asked.
+    speed_m_s, amplitude_si, frequency_Hz, row_load_N : np.ndarray, shape (rows,)
+        Conditions of each row; the amplitude in m, or rad for a bore.
+    velocity, amplitude : np.ndarray, shape (rows,)
+        The same as dimensionless groups at the best fit, as microslip.solve takes them.
+    measured, measured_error : np.ndarray, shape (rows,)
+        N or dimensionless; the error NaN where none was given.
+    fitted, fitted_error : np.ndarray, shape (rows,)
+        What the model says, and the largest error that it may have there, in the same unit.
+    residual : np.ndarray, shape (rows,)
+        Measured less fitted over the standard error, dimensionless.
+    """
+
+    scene: str
+    quantity: str
+    mu: float
+    mu_low: float
+    mu_high: float
+    u_lim_m: float | None
+    u_lim_low_m: float | None
+    u_lim_high_m: float | None
+    shear_modulus_Pa: float | None
+    shear_modulus_low_Pa: float | None
+    shear_modulus_high_Pa: float | None
+    load_N: float
+    confidence: float
+    mu_model_share: float
+    scale_model_share: float
+    standard_error: float | None
+    chi_square: float | None
+    p_value: float | None
+    degrees_of_freedom: int
+    told: tuple
+    reason: str
+    warnings: tuple
+    understood: dict = field(repr=False)
+    speed_m_s: np.ndarray = field(repr=False)
+    amplitude_si: np.ndarray = field(repr=False)
+    frequency_Hz: np.ndarray = field(repr=False)
+    row_load_N: np.ndarray = field(repr=False)
+    velocity: np.ndarray = field(repr=False)
+    amplitude: np.ndarray = field(repr=False)
+    measured: np.ndarray = field(repr=False)
+    measured_error: np.ndarray = field(repr=False)
+    fitted: np.ndarray = field(repr=False)
+    fitted_error: np.ndarray = field(repr=False)
+    residual: np.ndarray = field(repr=False)
+
+    def to_dict(self) -> dict:
+        """Fields as a plain dict, arrays and tuples as lists."""
+
+        def plain(value):
+            if isinstance(value, np.ndarray):
+                return value.tolist()
+            return list(value) if isinstance(value, tuple) else value
+
+        return {each.name: plain(getattr(self, each.name)) for each in fields(self)}
+
+    def to_xarray(self) -> xr.Dataset:
+        """Rows as variables over `row`, other numbers without a dimension, texts as attributes."""
+        import xarray as xr
+
+        units = self._units()
+        found, about = {}, {}
+        for name, value in ((each.name, getattr(self, each.name)) for each in fields(self)):
+            if isinstance(value, np.ndarray):
+                found[name] = ("row", value, {"units": units[name]})
+            elif isinstance(value, dict):
+                about[name] = "; ".join(f"{key}: {text}" for key, text in value.items())
+            elif isinstance(value, tuple):
+                about[name] = "; ".join(value)
+            elif isinstance(value, str):
+                about[name] = value
+            else:
+                number = np.nan if value is None else value
+                found[name] = ((), number, {"units": units.get(name, _unit_of_name(name))})
+        return xr.Dataset(found, attrs=about)
+
+    def _units(self):
+        measured = "N" if self.quantity == "friction" else "1"
+        names = ("measured", "measured_error", "fitted", "fitted_error", "standard_error")
+        size = {"amplitude_si": "rad" if self.scene == "bore" else "m"}
+        rows = {"speed_m_s": "m s-1", "frequency_Hz": "Hz", "row_load_N": "N"}
+        pure = dict.fromkeys(("velocity", "amplitude", "residual"), "1")
+        return rows | pure | size | dict.fromkeys(names, measured)
+
+
+def _unit_of_name(name):
+    return next((unit for unit in ("Pa", "N", "m") if name.endswith(f"_{unit}")), "1")

@@ -1,0 +1,210 @@
+"""What answers for the rows of a fit: a finished map, or the solver by way of a coarse map.
+
+A fit asks for the same rows hundreds of times, at other guesses of both unknowns.  The solver
+answers once for a coarse map, which tells how friction changes from guess to guess, and then for
+the rows themselves at the best guess so far, which tells how far the coarse map is off there.  What
+is left of the coarse map's error at the end is of second order.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from microslip.adaptive.point import solve
+from microslip.foundation.arguments import LARGEST
+from microslip.foundation.errors import InputError
+from microslip.si.fitting.scales import Points
+
+LEAST, MOST = 0.03, 20.0
+"""Amplitudes beyond which more or less of it tells nothing: nearly all of the contact sticks, and
+nearly all of it slides all the time."""
+SLOWEST, FASTEST = 1e-3, 20.0
+"""Likewise of the velocity over the amplitude, or of the velocity of a bore."""
+PROVED = ("transverse", "bore")
+"""Motions that a map answers for beyond its own range, for Poisson's ratio 0."""
+NODES_A_DECADE = {"amplitude": 5, "ratio": 4}
+COARSE = {"poisson": 0.0, "tolerance": 5e-3}
+"""Of the coarse map: a Poisson's ratio costs time, and hardly changes how friction changes."""
+MOST_SOLVED = 200
+"""Rows that the solver answers for one by one."""
+
+
+class FrictionModel(Protocol):
+    """What answers for rows: mu_macro and the largest error it may have, shape (n,) each."""
+
+    def at(self, points: Points) -> np.ndarray:
+        """mu_macro of all rows for one guess after the other.
+
+        An error of it only bends the way to the answer.
+        """
+
+    def anchor(self, points: Points) -> None:
+        """Take these points for the best guess so far, and be as right as can be around them."""
+
+    def errors(self, points: Points) -> np.ndarray:
+        """Largest error of `at` next to the points of the last anchor."""
+
+
+class MapFriction:
+    """A dataset of a sweep with its accessor `friction`, see datasets.query.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of the motion that is asked for.
+    poisson : float
+        Poisson's ratio.
+
+    Raises
+    ------
+    InputError
+        For what is no such dataset, or does not know that ratio.
+    """
+
+    def __init__(self, dataset: object, scene: str, poisson: float):
+        attributes = getattr(dataset, "attrs", {})
+        if attributes.get("scene") != scene or attributes.get("pressure", "hertz") != "hertz":
+            what = attributes.get("scene") or type(dataset).__name__
+            raise InputError("map", what, f"allowed is the dataset of a sweep of {scene}")
+        self._dataset, self._poisson = dataset, poisson
+        self._ends = {
+            name: (
+                float(dataset[name].where(dataset[name] > 0.0).min()),
+                float(dataset[name].max()),
+            )
+            for name in ("velocity", "amplitude")
+        }
+        self._proved = scene in PROVED and poisson == 0.0
+
+    def at(self, points: Points) -> np.ndarray:
+        if not self._proved:  # what is asked on the way may lie anywhere
+            parts = zip(
+                points, (self._ends[name] for name in ("velocity", "amplitude")), strict=True
+            )
+            points = Points(*(np.clip(part, *ends) for part, ends in parts))
+        return self._answer(points)[0]
+
+    def anchor(self, points: Points) -> None:
+        """Nothing to do: a map is as right everywhere."""
+
+    def errors(self, points: Points) -> np.ndarray:
+        try:
+            return self._answer(points)[1]
+        except ValueError as error:
+            problem = f"does not hold the rows at the best fit: {error}"
+            raise InputError("map", self._dataset.attrs.get("scene"), problem) from None
+
+    def _answer(self, points):
+        from xarray import DataArray
+
+        velocity, amplitude = (DataArray(part, dims="row") for part in points)
+        try:
+            found = self._dataset.friction.at(velocity, amplitude, poisson=self._poisson)
+        except InputError as error:
+            if error.argument == "poisson":
+                raise error.renamed("nu") from None
+            raise
+        return found.mu_macro.values, found.mu_macro_error.values
+
+
+class SolvedFriction:
+    """The solver by way of a coarse map over the logarithms of amplitude and ratio.
+
+    The ratio is the velocity over the amplitude, which of a motion along a line does not depend on
+    u_lim; of a bore the velocity is such a ratio itself.
+
+    Parameters
+    ----------
+    scene : str
+        The motion.
+    poisson, tolerance : float
+        As microslip.solve takes them.
+    ends : list of Points
+        Points of the rows at both ends of what may be guessed.
+
+    Raises
+    ------
+    InputError
+        For more rows than the solver answers for.
+    """
+
+    def __init__(self, scene: str, poisson: float, tolerance: float, ends: list[Points]):
+        count = len(ends[0].velocity)
+        if count > MOST_SOLVED:
+            allowed = f"rows; allowed are at most {MOST_SOLVED}, or any number with a map"
+            raise InputError("measured", count, allowed)
+        self._scene, self._settings = scene, {"poisson": poisson, "tolerance": tolerance}
+        self._known = {}
+        coordinates = [self._coordinates(points) for points in ends]
+        axes = [np.concatenate([each[k] for each in coordinates]) for k in (0, 1)]
+        self._axes = [
+            _axis(values, NODES_A_DECADE[name])
+            for values, name in zip(axes, ("amplitude", "ratio"), strict=True)
+        ]
+        self._map, self._off, self._errors = None, 0.0, np.full(count, np.inf)
+
+    def at(self, points: Points) -> np.ndarray:
+        off = np.resize(self._off, len(points.amplitude))  # of each row, for every guess
+        return np.where(points.amplitude > 0.0, self._coarse(points) + off, 1.0)
+
+    def anchor(self, points: Points) -> None:
+        found = [self._solved(v, a) for v, a in zip(*points, strict=True)]
+        values, self._errors = np.array(found).T
+        self._off = values - self._coarse(points)
+
+    def errors(self, points: Points) -> np.ndarray:
+        return self._errors
+
+    def _coordinates(self, points):
+        """Logarithms of amplitude and ratio, within the range of the coarse map."""
+        velocity, amplitude = points
+        moving = amplitude > 0.0
+        size = np.clip(amplitude, LEAST, MOST)
+        over = 1.0 if self._scene == "bore" else amplitude
+        ratio = np.divide(velocity, over, out=np.full_like(size, FASTEST), where=moving)
+        return np.log(size), np.log(np.clip(ratio, SLOWEST, FASTEST))
+
+    def _coarse(self, points):
+        if self._map is None:
+            self._map = self._coarse_map()
+        return self._map(*self._coordinates(points), grid=False)
+
+    def _coarse_map(self):
+        from scipy.interpolate import RectBivariateSpline
+
+        sizes, ratios = (np.exp(axis) for axis in self._axes)
+        over = np.ones_like(sizes) if self._scene == "bore" else sizes
+        values = [
+            [_solution(self._scene, ratio * unit, size, COARSE)[0] for ratio in ratios]
+            for size, unit in zip(sizes, over, strict=True)
+        ]
+        return RectBivariateSpline(*self._axes, np.array(values), s=0)
+
+    def _solved(self, velocity, amplitude):
+        """mu_macro and its error by the solver, each point once."""
+        point = float(velocity), float(amplitude)
+        if point not in self._known:
+            self._known[point] = _solution(self._scene, *point, self._settings)
+        return self._known[point]
+
+
+def _solution(scene, velocity, amplitude, settings):
+    """mu_macro and its error by the solver."""
+    if amplitude == 0.0:
+        return 1.0, 0.0
+    point = (min(part, LARGEST["velocity"]) for part in (velocity, amplitude))
+    found = solve(scene, *point, **settings)
+    if not np.isfinite(found.mu_macro):
+        where = f"velocity {velocity:.3g} and amplitude {amplitude:.3g}"
+        problem = f"no answer at {where}: {found.reason}"
+        raise InputError("tolerance", settings["tolerance"], problem)
+    return found.mu_macro, found.mu_macro_error
+
+
+def _axis(values, a_decade):
+    """Nodes from the least to the largest of some logarithms, at least four."""
+    low, high = values.min() - 0.1, values.max() + 0.1
+    count = max(4, 1 + int(np.ceil((high - low) / np.log(10.0) * a_decade)))
+    return np.linspace(low, high, count)

@@ -1,0 +1,155 @@
+"""The rows of a table of measured friction, completed by what is the same for all of them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from microslip.foundation.errors import InputError
+from microslip.si.fitting.measured_csv import COLUMNS, MOST_ROWS, read_table
+from microslip.si.motions import UNIT_OF_AMPLITUDE
+from microslip.si.quantities import read
+
+CONDITIONS = ("speed", "amplitude", "frequency", "load")
+"""What has to be known of every row."""
+ABOVE_ZERO = ("amplitude", "frequency", "load")
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """Measured friction, shape (n,) each.
+
+    Attributes
+    ----------
+    speed, amplitude, frequency, load : np.ndarray
+        m/s, m (rad for a bore), Hz and N.
+    value, error : np.ndarray
+        What was measured, N or dimensionless, and its standard error; NaN where none was given.
+    quantity : str
+        "friction", a force in N, or "mu", a coefficient.
+    texts : dict of str
+        What was understood of what all rows share.
+    """
+
+    speed: np.ndarray
+    amplitude: np.ndarray
+    frequency: np.ndarray
+    load: np.ndarray
+    value: np.ndarray
+    error: np.ndarray
+    quantity: str
+    texts: dict
+
+    @property
+    def has_errors(self) -> bool:
+        return bool(np.isfinite(self.error).all())
+
+    @property
+    def weight(self) -> np.ndarray:
+        """What a coefficient of friction is multiplied with to be what was measured, (n,)."""
+        return self.load if self.quantity == "friction" else np.ones_like(self.load)
+
+    @property
+    def distinct(self) -> int:
+        """How many different conditions there are."""
+        return len(np.unique(np.stack([getattr(self, name) for name in CONDITIONS]), axis=1).T)
+
+
+def read_measured(scene: str, given: object, **shared: object) -> Measured:
+    """The rows of a CSV file or of a mapping of columns, checked; raises InputError.
+
+    Parameters
+    ----------
+    scene : str
+        One of motions.UNIT_OF_AMPLITUDE.
+    given : path or mapping
+        The file, see `measured_csv`, or columns in the SI by their names.
+    shared : quantity or None
+        speed, amplitude, frequency and load where they are no columns.
+    """
+    unit = UNIT_OF_AMPLITUDE[scene]
+    table = _table(given, unit)
+    count = len(next(iter(table.values())))
+    if count == 0:
+        raise InputError("measured", given, "no rows; allowed is a row for each measurement")
+    texts, columns = {}, {}
+    for name in CONDITIONS:
+        if (name in table) == (shared[name] is not None):
+            where = "both a column and given for all rows" if name in table else "missing"
+            allowed = f"it is {where}; allowed is a column, or one value for all rows"
+            raise InputError(name, shared[name], allowed)
+        if name in table:
+            columns[name] = table[name]
+        else:
+            wanted = unit if name == "amplitude" else COLUMNS[name]
+            one = read(name, shared[name], wanted, low_open=name in ABOVE_ZERO)
+            columns[name], texts[name] = np.full(count, one.si), one.text
+    if not (columns["amplitude"] > 0.0).any():
+        raise InputError("measured", given, "no row with an amplitude above 0; nothing vibrates")
+    quantity = _quantity(table, given)
+    error = table.get(f"{quantity}_error", np.full(count, np.nan))
+    return Measured(**columns, value=table[quantity], error=error, quantity=quantity, texts=texts)
+
+
+def _table(given, unit):
+    """Columns as arrays of floats."""
+    if isinstance(given, str | os.PathLike):
+        try:
+            return {k: np.array(v) for k, v in read_table(Path(given).read_bytes(), unit).items()}
+        except OSError as error:
+            problem = f"cannot be read ({error.strerror}); allowed is a file of CSV"
+            raise InputError("measured", str(given), problem) from None
+        except ValueError as error:
+            raise InputError("measured", str(given), str(error)) from None
+    if not isinstance(given, Mapping):
+        raise InputError("measured", given, "allowed is the path of a CSV file, or its columns")
+    strange = [name for name in given if name not in COLUMNS]
+    if strange or not given:
+        which = repr(strange[0]) if strange else "nothing"
+        allowed = f"a column {which}; allowed are some of {', '.join(COLUMNS)}"
+        raise InputError("measured", list(given), allowed)
+    table = {name: _column(name, values) for name, values in given.items()}
+    if len({len(column) for column in table.values()}) > 1:
+        raise InputError("measured", list(given), "columns of several lengths; allowed is one")
+    return table
+
+
+def _column(name, values):
+    try:
+        column = np.array(values)
+    except ValueError:
+        column = np.empty(0, object)
+    if column.ndim != 1 or column.dtype.kind not in "iuf":
+        raise InputError(name, values, f"allowed is a sequence of numbers, in {COLUMNS[name]}")
+    if len(column) > MOST_ROWS:
+        raise InputError(name, len(column), f"allowed are at most {MOST_ROWS} rows")
+    column = column.astype(float)
+    least = -np.inf if name in ("friction", "mu") else 0.0
+    zero = name in ("speed", "amplitude", "friction", "mu")
+    bad = ~np.isfinite(column) | (column < least) | ((column == 0.0) & (not zero))
+    if bad.any():
+        allowed = "finite numbers" + (
+            "" if least < 0.0 else " of at least 0" if zero else " above 0"
+        )
+        raise InputError(name, float(column[bad][0]), f"allowed are {allowed}")
+    return column
+
+
+def _quantity(table, given):
+    """Which of both was measured."""
+    there = [name for name in ("friction", "mu") if name in table]
+    if len(there) != 1:
+        many = "both friction and mu" if there else "neither friction nor mu"
+        raise InputError("measured", _named(given), f"has {many}; allowed is one of them")
+    for name in ("friction", "mu"):
+        if f"{name}_error" in table and name not in there:
+            raise InputError("measured", _named(given), f"has {name}_error without {name}")
+    return there[0]
+
+
+def _named(given):
+    return str(given) if isinstance(given, str | os.PathLike) else list(given)

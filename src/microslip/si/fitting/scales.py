@@ -1,0 +1,132 @@
+"""From a guess of both unknowns to the dimensionless points of all rows, and back.
+
+The unknowns are mu and a second one that sets the scale: u_lim at the mean load, which needs no
+knowledge of the bodies, or the shear modulus.  Under another load u_lim goes like
+its power 2/3 and the contact radius like its power 1/3 (Hertz).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from microslip.si.bodies import TwoBodies
+from microslip.si.fitting.measured import Measured
+from microslip.si.materials import RIGID, Material
+from microslip.theory import hertz
+
+
+class Points(NamedTuple):
+    """Where microslip.solve is asked, shape (n,) each: velocity and amplitude."""
+
+    velocity: np.ndarray
+    amplitude: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Displacement:
+    """The second unknown is u_lim at the mean load, m; for motions along a line.
+
+    Attributes
+    ----------
+    rows : Measured
+        The measurements.
+    poisson : float
+        Of the one half-space that stands for both bodies, dimensionless.
+    unit : str
+        Of the second unknown.
+    """
+
+    rows: Measured
+    poisson: float
+    unit = "m"
+
+    @property
+    def mean_load(self) -> float:
+        """N."""
+        return float(self.rows.load.mean())
+
+    def points(self, mu: float, scale: float) -> Points:
+        """Velocity and amplitude of each row."""
+        rows = self.rows
+        u_lim = scale * (rows.load / self.mean_load) ** (2.0 / 3.0)
+        omega = 2.0 * math.pi * rows.frequency
+        return Points(rows.speed / (omega * u_lim), rows.amplitude / u_lim)
+
+    def bounds(self, least: float, most: float) -> tuple[float, float]:
+        """Range of the second unknown that lets the amplitudes of some rows be within a range.
+
+        At its ends all that are not 0 are at most `least`, or at least `most`.
+        """
+        sizes = self.points(1.0, 1.0).amplitude
+        sizes = sizes[sizes > 0.0]
+        return float(sizes.min()) / most, float(sizes.max()) / least
+
+    def u_lim(self, mu: float, scale: float) -> float:
+        """At the mean load, m."""
+        return scale
+
+
+@dataclass(frozen=True, eq=False)
+class Modulus:
+    """The second unknown is the shear modulus, Pa: of one body on a rigid one, or of two alike.
+
+    Attributes
+    ----------
+    rows : Measured
+        The measurements.
+    spin : bool
+        Whether the amplitude is an angle, of a bore.
+    poisson : float
+        Of the bodies, dimensionless.
+    alike : bool
+        Whether both bodies have that modulus; else the second one is rigid.
+    radius : float
+        Of relative curvature, m.
+    """
+
+    rows: Measured
+    spin: bool
+    poisson: float
+    alike: bool
+    radius: float
+    unit = "Pa"
+
+    @property
+    def mean_load(self) -> float:
+        """N."""
+        return float(self.rows.load.mean())
+
+    def contact(self, mu: float, scale: float) -> TwoBodies:
+        """The contact under the mean load."""
+        body = Material(2.0 * scale * (1.0 + self.poisson), self.poisson)
+        other = body if self.alike else RIGID
+        return TwoBodies(body, other, self.radius, self.mean_load, mu)
+
+    def points(self, mu: float, scale: float) -> Points:
+        """Velocity and amplitude of each row."""
+        rows, contact = self.rows, self.contact(mu, scale)
+        share = rows.load / self.mean_load
+        u_lim = contact.u_lim * share ** (2.0 / 3.0)
+        omega = 2.0 * math.pi * rows.frequency
+        if not self.spin:
+            return Points(rows.speed / (omega * u_lim), rows.amplitude / u_lim)
+        arc = rows.amplitude * contact.contact_radius * share ** (1.0 / 3.0)
+        moving = arc > 0.0  # an angle of 0 leaves no unit for the velocity, and needs none
+        velocity = np.divide(rows.speed, omega * arc, out=np.zeros_like(arc), where=moving)
+        return Points(velocity, hertz.bore_amplitude(arc / u_lim, self.poisson))
+
+    def bounds(self, least: float, most: float) -> tuple[float, float]:
+        """Shear moduli of bodies that are pressed on one another, whatever the amplitudes."""
+        return SOFTEST, HARDEST
+
+    def u_lim(self, mu: float, scale: float) -> float:
+        """At the mean load, m."""
+        return self.contact(mu, scale).u_lim
+
+
+SOFTEST, HARDEST = 1e2, 1e13
+"""Of a weak gel, and beyond diamond, Pa."""

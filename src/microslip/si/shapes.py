@@ -1,0 +1,124 @@
+"""Contacts that are no spheres, in SI units: two principal radii, or a pressure of known size."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from microslip.foundation.errors import InputError
+from microslip.pressures.by_name import pressure_named
+from microslip.pressures.ellipse import SMALLEST_RATIO
+from microslip.si.bodies import TwoBodies
+
+ROUND = 1e-6
+"""Relative difference of two radii that make a circle."""
+SQUARES = 64
+"""Across a contact that the largest pressure is looked for on."""
+
+
+@dataclass(frozen=True)
+class ShapedContact(TwoBodies):
+    """Two bodies whose contact has a size and a pressure that are known.
+
+    Attributes
+    ----------
+    pressure : str
+        How the load is spread, as microslip.solve takes it.
+    size : float
+        a of that pressure, m: the outer radius, or half the longer side of what bounds it.
+    """
+
+    pressure: str = "hertz"
+    size: float = 0.0
+
+    @property
+    def contact_radius(self) -> float:
+        """As given, m."""
+        return self.size
+
+    @cached_property
+    def _record(self):
+        return pressure_named(self.pressure)
+
+    @property
+    def u_lim(self) -> float:
+        """Displacement at which the whole contact slides, m: that of full slip."""
+        return self.mu * self.load * self._record.G_star / (self.G_star * self.size)
+
+    @property
+    def indentation(self) -> float:
+        """u_lim G*/(mu E*), m, of an indenter; NaN where the load alone tells no approach."""
+        if not (self._record.is_indenter or self._record.hertzian):
+            return math.nan
+        return self.u_lim * self.G_star / (self.mu * self.E_star)
+
+    @property
+    def largest_pressure(self) -> float:
+        """Mean over the square of SQUARES across that has most of the load, Pa."""
+        side = 2.0 * self.size / SQUARES
+        return float(np.max(self._record.cell_loads(SQUARES))) * self.load / side**2
+
+
+def ellipse_of_radii(forward: float, lateral: float) -> tuple[float, float]:
+    """Ratio of the semi-axes of Hertz's ellipse, and the long one over that of a circle.
+
+    Parameters
+    ----------
+    forward, lateral : float
+        Radii of relative curvature along both axes, m.
+
+    Returns
+    -------
+    tuple of float
+        b/a <= 1, and a over (3 F R / (4 E*))^(1/3), R the larger radius (K. L. Johnson, Contact
+        Mechanics, 4.2).
+    """
+    from scipy.optimize import brentq
+    from scipy.special import ellipe, ellipk
+
+    long, short = max(forward, lateral), min(forward, lateral)
+    if long - short <= ROUND * long:
+        return 1.0, 1.0
+
+    def curvatures(ratio):
+        """That along the long axis over that along the short one."""
+        m = 1.0 - ratio**2
+        return ratio**2 * (ellipk(m) - ellipe(m)) / (ellipe(m) - ratio**2 * ellipk(m))
+
+    ratio = brentq(lambda k: curvatures(k) - short / long, 1e-8, 1.0 - 1e-9, xtol=1e-15)
+    m = 1.0 - ratio**2
+    # 1/(2 R) = p0/E* b/(a^2 m) (K - E) along the long axis, with p0 = 3 F/(2 pi a b)
+    return float(ratio), float((4.0 / math.pi * (ellipk(m) - ellipe(m)) / m) ** (1.0 / 3.0))
+
+
+def elliptic(contact: TwoBodies, radius_across: float) -> TwoBodies:
+    """The contact with another radius of relative curvature across the forward direction, m.
+
+    Raises InputError for an ellipse more slender than the solver knows.
+    """
+    ratio, stretch = ellipse_of_radii(contact.radius, radius_across)
+    if ratio < SMALLEST_RATIO:
+        problem = f"the contact would be an ellipse of ratio {ratio:.2g}"
+        allowed = f"{problem}; allowed is {SMALLEST_RATIO:g} or more"
+        raise InputError("radius_across", radius_across, allowed)
+    long = max(contact.radius, radius_across)
+    size = stretch * (0.75 * contact.load * long / contact.E_star) ** (1.0 / 3.0)
+    across = int(radius_across > contact.radius)
+    name = "hertz" if ratio == 1.0 else f"ellipse:ratio={ratio!r},across={across}"
+    radii = (*contact.radii, radius_across)
+    shared = (contact.first, contact.second, contact.radius, contact.load, contact.mu)
+    return ShapedContact(*shared, radii, pressure=name, size=size)
+
+
+def of_size(contact: TwoBodies, size: float, pressure: str) -> TwoBodies:
+    """The contact with a size, m, and a pressure that are known.
+
+    Its radius is that of the sphere which would touch as large an area under the same load.
+    """
+    radius = 4.0 * contact.E_star * size**3 / (3.0 * contact.load)
+    shared = (contact.first, contact.second, radius, contact.load, contact.mu)
+    name = pressure_named(pressure).name
+    return ShapedContact(*shared, pressure=name, size=size)

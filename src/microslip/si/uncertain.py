@@ -1,0 +1,96 @@
+"""Quantities that are known to within a spread: "0.3 +- 0.03", "10 N +- 5 %".
+
+A spread is a standard uncertainty.  Each is carried through by predictions at both of its ends,
+half of whose difference is its share; shares of independent quantities add up in squares (JCGM 100,
+Guide to the Expression of Uncertainty in Measurement, 5.1).
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+from collections.abc import Callable
+from dataclasses import replace
+
+from microslip.foundation.errors import InputError
+from microslip.si.quantities import read
+
+UNITS = {
+    "mu": "",
+    "load": "N",
+    "radius": "m",
+    "counter_radius": "m",
+    "radius_across": "m",
+    "contact_radius": "m",
+    "speed": "m/s",
+    "young": "Pa",
+    "nu": "",
+    "force": "N",
+}
+"""Arguments that may have a spread, and their SI units."""
+FIELDS = {
+    "mu_macro": "mu_macro_spread",
+    "mu_apparent": "mu_apparent_spread",
+    "friction_force_N": "friction_force_spread_N",
+    "speed_m_s": "speed_spread_m_s",
+}
+"""Fields of a Prediction that it is carried through to."""
+_SPREAD = re.compile(r"(.*?)\s*(?:\+-|\+/-|±)\s*(.*)", re.S)
+
+
+def with_spreads(predict: Callable) -> Callable:
+    """predict, of which arguments in UNITS may be texts with a spread."""
+
+    @functools.wraps(predict)
+    def asked(scene, **arguments):
+        spread, plain = {}, dict(arguments)
+        for name, unit in UNITS.items():
+            parts = _parts(arguments.get(name))
+            if parts is not None:
+                plain[name], spread[name] = parts[0], _ends(name, arguments[name], parts, unit)
+        found = predict(scene, **plain)
+        if not spread:
+            return found
+        squares = dict.fromkeys(FIELDS, 0.0)
+        for name, ends in spread.items():
+            low, high = (_predicted(predict, scene, plain, name, end) for end in ends)
+            for field in FIELDS:
+                squares[field] += (0.5 * (getattr(high, field) - getattr(low, field))) ** 2
+        texts = {name: " ".join(str(arguments[name]).split()) for name in spread}
+        spreads = {FIELDS[field]: math.sqrt(value) for field, value in squares.items()}
+        return replace(found, **spreads, understood=found.understood | texts)
+
+    return asked
+
+
+def _parts(value):
+    """Texts of a value and of its spread; None where there is no spread."""
+    match = _SPREAD.fullmatch(value) if isinstance(value, str) else None
+    return None if match is None else match.groups()
+
+
+def _ends(name, given, parts, unit):
+    """Both ends of a quantity in the SI; raises InputError for a spread that is none."""
+    text, spread = parts
+    low = -math.inf if name == "counter_radius" else 0.0
+    try:
+        value = read(name, text, unit, low=low).si
+        if spread.endswith("%") and unit:
+            size = abs(value) * read(name, spread, "", low_open=False).si
+        else:
+            size = read(name, spread, unit, low_open=False).si
+    except InputError as error:
+        allowed = f"in it {error.value!r}: {error.allowed}, as in '10 N +- 5 %'"
+        raise InputError(name, given, allowed) from None
+    if not size < abs(value):
+        raise InputError(name, given, "allowed is a spread below the value")
+    return value - size, value + size
+
+
+def _predicted(predict, scene, plain, name, end):
+    try:
+        return predict(scene, **plain | {name: end})
+    except InputError as error:
+        problem = f"at an end of its spread, {end:.6g}: {error.argument}: {error.allowed}"
+        raise InputError(name, plain[name], problem) from None

@@ -1,0 +1,48 @@
+"""The figure of a fit: every row is drawn where it is, in the unit that suits it."""
+
+import numpy as np
+import pytest
+from stubs.fit_stub import fitted
+
+from microslip.report.figures import drawing
+
+pytestmark = pytest.mark.slow  # for drawing takes a second
+
+
+def lines(axes, gid):
+    return [line for line in axes.get_lines() if line.get_gid() == gid]
+
+
+def test_rows_and_fit_are_drawn_where_they_are():
+    dataset = fitted()
+    upper, lower = drawing.draw("fit", {"fit": dataset}).axes
+    assert len(lines(upper, "fitted")) == 2 and lower.get_xscale() == "log"
+    drawn = np.concatenate([line.get_xydata() for line in lines(upper, "fitted")])
+    expected = np.stack([1e3 * dataset.speed_m_s, dataset.fitted], axis=1)  # mm/s and N
+    assert drawn == pytest.approx(expected)
+    assert lower.get_xlabel() == "speed (mm/s)" and upper.get_ylabel() == "friction force (N)"
+    left = np.concatenate([line.get_ydata() for line in lines(lower, "residual")])
+    assert left == pytest.approx(dataset.residual.values)
+    titles = [text.get_text() for text in upper.get_legend().get_texts()]
+    assert titles == ["amplitude 300 nm", "amplitude 600 nm"]
+    assert [len(axes.patches) for axes in (upper, lower)] == [0, 1]  # two standard errors
+    assert upper.get_title(loc="left").count("to") == 2  # both intervals
+
+
+def test_what_is_not_told_is_not_in_the_title():
+    dataset = fitted(errors=False).drop_vars(["u_lim_m"])
+    upper, _ = drawing.draw("fit", {"fit": dataset}).axes
+    assert "lim" not in upper.get_title(loc="left")
+
+
+def test_rows_of_more_conditions_than_looks_are_one_series():
+    dataset = fitted(20)
+    dataset["amplitude_si"] = "row", np.repeat(np.arange(1.0, 11.0), 2)
+    dataset["speed_m_s"] = "row", np.linspace(0.0, 1.0, 20)
+    upper, lower = drawing.draw("fit", {"fit": dataset}).axes
+    assert len(lines(upper, "fitted")) == 1 and lower.get_xscale() == "linear"
+
+
+def test_a_dataset_without_rows_is_refused():
+    with pytest.raises(ValueError, match="no variable 'residual'"):
+        drawing.draw("fit", {"fit": fitted().drop_vars("residual")})

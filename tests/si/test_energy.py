@@ -1,0 +1,87 @@
+"""Torque, power and energy of contacts in SI units: balances, limits, closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import microslip
+from microslip.adaptive.vibration_power import vibration_power
+from microslip.foundation.errors import InputError
+
+BALL = {"material": "steel", "counterbody": "steel", "radius": "5 mm", "load": "10 N", "mu": 0.3}
+SHAKEN = BALL | {"speed": "10 mm/s", "amplitude": "0.3 um", "frequency": "20 kHz"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", ["transverse", "longitudinal", "bore", "elliptic"])
+def test_drag_and_vibration_are_what_slip_dissipates(scene):
+    """The balance: work in over a period is traction times slip, summed over the whole disc."""
+    velocity, amplitude = 0.3, 1.2
+    power = vibration_power(scene, velocity, amplitude)
+    assert power.reason == "" and power.value > 0.0
+    found = microslip.solve(scene, velocity, amplitude)
+    period = microslip.period(scene, velocity, amplitude, cells=32, steps=256)
+    slipped = period.traction_forward * period.slip_forward
+    slipped = slipped + period.traction_lateral * period.slip_lateral
+    dissipated = float(np.sum(slipped[1:] @ period.area)) / (2.0 * math.pi)
+    creep = (period.forward[-1] - period.forward[0]) / (2.0 * math.pi)
+    # The period is of one resolution, whose error is of the order of 1e-3 of mu F_z times the path.
+    put_in = power.value + found.mu_macro * creep
+    assert put_in == pytest.approx(dissipated, abs=3e-3 * (amplitude + velocity))
+
+
+@pytest.mark.slow
+def test_a_rigid_contact_dissipates_its_way():
+    """At large amplitudes mu F_z times the mean speed, but for the elastic turns, of order u_lim.
+
+    In each of two turns in a period the contact sticks over no more than 2 u_lim.
+    """
+    power = vibration_power("transverse", 3.0, 30.0)
+    drag = 3.0 * microslip.solve("transverse", 3.0, 30.0).mu_macro
+    way = quad(lambda t: math.hypot(3.0, 30.0 * math.cos(t)), 0.0, 2.0 * math.pi)[0]
+    lost = way / (2.0 * math.pi) - (power.value + drag)
+    assert 0.0 < lost < 4.0 / (2.0 * math.pi)
+
+
+def test_a_steady_spin_takes_a_torque():
+    """v~ = 1/2: torque 1 - v^2 + 3/8 v^4 of (3 pi/16) mu F a, force (3 pi/8)(v - v^3/4)."""
+    at_rest = microslip.predict("continuous-bore", **BALL, speed="1 mm/s", rotation="1 rad/s")
+    a = at_rest.contact_radius_m
+    asked = BALL | {"speed": 0.5 * a * 100.0, "rotation": "100 rad/s"}
+    found = microslip.predict("continuous-bore", **asked)
+    whole = 3.0 * math.pi / 16.0 * 3.0 * a
+    assert found.torque_N_m == pytest.approx(whole * (1.0 - 0.25 + 0.375 * 0.5**4), rel=2e-3)
+    force = 3.0 * 3.0 * math.pi / 8.0 * (0.5 - 0.125 / 4.0)
+    assert found.drag_power_W == pytest.approx(force * 50.0 * a, rel=2e-3)
+    assert found.vibration_power_W == pytest.approx(100.0 * found.torque_N_m)
+    both = found.drag_power_W + found.vibration_power_W
+    assert found.energy_per_cycle_J == pytest.approx(both * 2.0 * math.pi / 100.0)
+
+
+@pytest.mark.slow
+def test_power_is_in_watts():
+    found = microslip.predict("transverse", **SHAKEN, power=True)
+    unit = 3.0 * found.u_lim_m * 2.0 * math.pi * 20e3
+    working = vibration_power("transverse", found.velocity, found.amplitude, poisson=found.poisson)
+    assert found.vibration_power_W == pytest.approx(unit * working.value, rel=1e-12)
+    assert found.drag_power_W == pytest.approx(found.friction_force_N * 0.01, rel=1e-12)
+    assert found.energy_per_cycle_J == pytest.approx(found.dissipated_power_W / 20e3, rel=1e-12)
+    plain = microslip.predict("transverse", **SHAKEN)
+    assert plain.vibration_power_W is None and plain.drag_power_W == found.drag_power_W
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"power": "yes"}, "power = 'yes': allowed is True or False"),
+        ({"speed": 0.0}, "speed = 0.0: allowed is more than 0"),
+        ({"amplitude": 0.0}, "amplitude = 0.0: allowed is more than 0"),
+        ({"drive_stiffness": "1 N/um"}, "power = True: allowed where a speed alone pulls"),
+    ],
+)
+def test_a_power_that_nothing_can_have_is_refused(change, said):
+    with pytest.raises(InputError, match=said):
+        microslip.predict("transverse", **SHAKEN | {"power": True} | change)

@@ -1,0 +1,293 @@
+"""Numbers from measured friction: known truth is found again, as often as the intervals say."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.stats import binom
+
+import microslip
+from microslip.foundation.errors import InputError
+from microslip.si.bodies import TwoBodies
+from microslip.si.dimensionless import RealMotion, groups
+from microslip.si.fitting import fit as fitting
+from microslip.si.fitting.friction_models import SolvedFriction
+from microslip.si.fitting.measured import Measured
+from microslip.si.fitting.scales import Displacement, Modulus, Points
+from microslip.si.materials import RIGID, Material
+from microslip.theory import paper
+
+MU, U_LIM, LOAD, FREQUENCY = 0.3, 2e-7, 10.0, 1e3
+OMEGA = 2.0 * math.pi * FREQUENCY
+
+
+class Closed(SolvedFriction):
+    """A friction that costs nothing: Eq 6 with an amplitude that counts more the larger it is."""
+
+    off = 0.0
+
+    def __init__(self, *asked):
+        self.count = len(asked[-1][0].velocity)
+
+    def at(self, points):
+        return ratio(points) + self.off
+
+    def anchor(self, points):
+        pass
+
+    def errors(self, points):
+        return np.full(self.count, 1e-6 + abs(self.off))
+
+
+def ratio(points):
+    amplitude = np.maximum(points.amplitude, 1e-12)
+    turned = amplitude**2 / (1.0 + amplitude)
+    return np.asarray(paper.large_amplitude_transverse(points.velocity, turned))
+
+
+@pytest.fixture
+def closed(monkeypatch):
+    monkeypatch.setattr(fitting, "SolvedFriction", Closed)
+
+
+def conditions(rows=16):
+    """Two amplitudes, from slow to fast."""
+    speed = np.tile(np.geomspace(0.03, 3.0, rows // 2), 2) * OMEGA * U_LIM
+    return {"speed": speed, "amplitude": np.repeat([0.7, 2.0], rows // 2) * U_LIM}
+
+
+def force(table, u_lim=U_LIM, load=LOAD):
+    scaled = table["speed"] / (OMEGA * u_lim), table["amplitude"] / u_lim
+    return MU * load * ratio(Points(*scaled))
+
+
+SHARED = {"frequency": FREQUENCY, "load": LOAD}
+
+
+def fitted(table, **more):
+    return microslip.fit("transverse", table, **SHARED | more)
+
+
+# The groups
+
+
+@pytest.mark.parametrize("scene", ["transverse", "bore"])
+@pytest.mark.parametrize("alike", [False, True])
+def test_rows_are_the_points_of_predict_under_every_load(scene, alike):
+    load, size = np.array([5.0, 10.0, 40.0]), np.array([1e-7, 3e-7, 1e-6])
+    size = size if scene == "transverse" else size * 1e4
+    speed, frequency = np.array([1e-3, 1e-2, 0.1]), np.array([10.0, 1e3, 2e4])
+    rows = Measured(speed, size, frequency, load, load, load, "friction", {})
+    scale = Modulus(rows, scene == "bore", 0.3, alike, 5e-3)
+    points = scale.points(0.25, 80e9)
+    body = Material(2.0 * 80e9 * 1.3, 0.3)
+    for k in range(3):
+        contact = TwoBodies(body, body if alike else RIGID, 5e-3, load[k], 0.25)
+        expected = groups(RealMotion(scene, speed[k], size[k], frequency[k]), contact)
+        assert (points.velocity[k], points.amplitude[k]) == pytest.approx(expected, rel=1e-12)
+
+
+def test_under_the_mean_load_u_lim_is_itself_and_goes_like_hertz():
+    load = np.array([2.0, 10.0, 18.0])
+    rows = Measured(load, np.ones(3), np.ones(3), load, load, load, "friction", {})
+    points = Displacement(rows, 0.0).points(0.3, 0.5)
+    assert points.amplitude[1] == pytest.approx(2.0, rel=1e-12)
+    assert points.amplitude[2] / points.amplitude[0] == pytest.approx(9.0 ** (-2 / 3), rel=1e-12)
+    contact = [TwoBodies(Material(1e9, 0.3), RIGID, 1.0, one, 0.3).u_lim for one in load]
+    assert points.amplitude[0] / points.amplitude[1] == pytest.approx(contact[1] / contact[0])
+
+
+# Without noise, and with it
+
+
+def test_rows_without_noise_give_the_truth(closed):
+    table = conditions()
+    found = fitted(table | {"friction": force(table)})
+    assert found.told == ("mu", "u_lim") and found.reason == ""
+    assert found.mu == pytest.approx(MU, rel=1e-5)
+    assert found.u_lim_m == pytest.approx(U_LIM, rel=1e-5)
+    assert found.mu_low <= MU <= found.mu_high and found.u_lim_low_m <= U_LIM <= found.u_lim_high_m
+    assert found.fitted == pytest.approx(force(table), rel=1e-4)
+
+
+def test_a_coefficient_and_a_force_are_one_measurement(closed):
+    table = conditions()
+    noisy = force(table) * (1.0 + 0.01 * np.cos(np.arange(16)))
+    by_force = fitted(table | {"friction": noisy})
+    by_mu = fitted(table | {"mu": noisy / LOAD})
+    assert by_force.mu == pytest.approx(by_mu.mu, rel=1e-6)
+    assert by_force.u_lim_m == pytest.approx(by_mu.u_lim_m, rel=1e-6)
+    assert by_force.standard_error == pytest.approx(LOAD * by_mu.standard_error, rel=1e-5)
+
+
+def test_rows_under_several_loads_are_brought_together(closed):
+    table = conditions()
+    loads = np.tile([5.0, 10.0, 15.0, 10.0], 4)
+    rows = [
+        force(
+            {k: v[i : i + 1] for k, v in table.items()},
+            U_LIM * (loads[i] / 10.0) ** (2 / 3),
+            loads[i],
+        )
+        for i in range(16)
+    ]
+    found = fitted(table | {"friction": np.concatenate(rows), "load": loads}, load=None)
+    assert found.load_N == 10.0
+    assert (found.mu, found.u_lim_m) == pytest.approx((MU, U_LIM), rel=1e-5)
+
+
+SEEDS = 200
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("known", "confidence"), [(True, 0.68), (False, 0.95)])
+def test_intervals_cover_the_truth_as_often_as_they_say(closed, known, confidence):
+    """Counts of 200 seeds lie where a binomial one of that chance does but once in 10^4."""
+    table, sigma = conditions(12), 0.05
+    true, held = force(table), {"mu": 0, "u_lim": 0}
+    for seed in range(SEEDS):
+        noise = sigma * np.random.default_rng(seed).standard_normal(12)
+        given = table | {"friction": true + noise}
+        if known:
+            given["friction_error"] = np.full(12, sigma)
+        found = fitted(given, confidence=confidence)
+        assert found.told == ("mu", "u_lim")
+        held["mu"] += found.mu_low <= MU <= found.mu_high
+        held["u_lim"] += found.u_lim_low_m <= U_LIM <= found.u_lim_high_m
+    low, high = binom.interval(1.0 - 1e-4, SEEDS, confidence)
+    assert all(low <= count <= high for count in held.values()), (held, low, high)
+
+
+def test_intervals_hold_what_the_model_is_off(closed, monkeypatch):
+    """A model that is off by 0.01 everywhere, and says so, still covers the truth."""
+    table = conditions()
+    given = table | {"friction": force(table)}
+    for off in (-0.01, 0.01):
+        monkeypatch.setattr(Closed, "off", off)
+        found = fitted(given)
+        assert abs(found.mu / MU - 1.0) > 1e-3  # it is off
+        assert found.mu_low <= MU <= found.mu_high
+        assert found.u_lim_low_m <= U_LIM <= found.u_lim_high_m
+        assert 0.0 < found.mu_model_share < 0.1
+
+
+def test_chi_square_tells_errors_that_are_too_small(closed):
+    table = conditions()
+    noise = 0.05 * np.random.default_rng(3).standard_normal(16)
+    given = table | {"friction": force(table) + noise}
+    good = fitted(given | {"friction_error": np.full(16, 0.05)})
+    bad = fitted(given | {"friction_error": np.full(16, 0.01)})
+    assert good.warnings == () and good.p_value > 1e-3
+    assert bad.chi_square == pytest.approx(25.0 * good.chi_square, rel=1e-3)
+    assert "larger than the errors of the rows allow" in bad.warnings[0]
+
+
+# What rows cannot tell
+
+
+def test_rows_on_the_plateau_tell_mu_alone(closed):
+    """Of small amplitudes, friction is mu times the load whatever u_lim, if that is large."""
+    table = {
+        "speed": np.geomspace(0.01, 0.1, 8) * OMEGA * U_LIM,
+        "amplitude": np.full(8, 0.02 * U_LIM),
+    }
+    noise = 0.01 * np.random.default_rng(1).standard_normal(8)
+    found = fitted(table | {"friction": MU * LOAD + noise})
+    assert found.told == ("mu",) and found.u_lim_m is None and found.u_lim_high_m is None
+    assert found.reason.startswith("the rows tell mu alone: any u_lim above")
+    assert found.u_lim_low_m < U_LIM
+    assert found.mu_low <= MU <= found.mu_high and found.mu_high < 1.02 * found.mu_low
+
+
+def test_large_amplitudes_tell_no_u_lim(closed):
+    """Far beyond u_lim friction follows Eq 6, which has no u_lim in it."""
+    table = {"amplitude": np.full(8, 1e-3), "speed": np.geomspace(0.1, 3.0, 8) * OMEGA * 1e-3}
+    noise = 0.02 * np.random.default_rng(2).standard_normal(8)
+    found = fitted(table | {"friction": force(table) + noise})
+    assert found.told == ("mu",) and found.u_lim_low_m is None
+    assert "any u_lim below" in found.reason
+    assert found.mu_low <= MU <= found.mu_high
+
+
+def test_rows_that_tell_neither_are_refused(closed):
+    table = {"speed": [1e-4, 1.0001e-4, 1.0002e-4], "amplitude": [U_LIM] * 3}
+    with pytest.raises(InputError, match="tell neither number"):
+        fitted(table | {"friction": [1.0, 1.1, 0.9]})
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"speed": [1e-3] * 2, "amplitude": [1e-7] * 2, "friction": [1.0, 1.1]}, "at least 3"),
+        ({"speed": [1e-3] * 4, "amplitude": [1e-7] * 4, "friction": [1.0] * 4}, "one condition"),
+        ({"friction": None}, "neither friction nor mu"),
+        ({"mu": [0.3] * 16}, "both friction and mu"),
+        ({"mu_error": [0.3] * 16}, "mu_error without mu"),
+        ({"friction": [1.0] * 15}, "several lengths"),
+        ({"friction": [1.0] * 15 + [math.nan]}, "finite numbers"),
+        ({"friction": ["1"] * 16}, "a sequence of numbers"),
+        ({"friction_error": [0.1] * 15 + [0.0]}, "above 0"),
+        ({"speed": -np.ones(16)}, "at least 0"),
+        ({"time": np.ones(16)}, "a column 'time'"),
+        ({"load": np.ones(16)}, "load = 10.0: it is both a column and given for all rows"),
+        ({"speed": None}, "speed = None: it is missing"),
+        ({"amplitude": np.zeros(16)}, "nothing vibrates"),
+    ],
+    ids=str,
+)
+def test_a_table_that_cannot_be_used_is_refused(closed, change, said):
+    table = conditions()
+    table |= {"friction": force(table)}
+    table = change if len(change) == 3 else table | change
+    with pytest.raises(InputError, match=said):
+        fitted({name: column for name, column in table.items() if column is not None})
+
+
+@pytest.mark.parametrize(
+    ("scene", "more", "said"),
+    [
+        ("bore", {}, "radius"),
+        ("continuous-bore", {}, "allowed is one of transverse"),
+        ("transverse", {"counterbody": "same"}, "beside a radius"),
+        ("transverse", {"radius": "5 mm"}, "nu"),
+        ("transverse", {"radius": "5 mm", "nu": 0.3, "counterbody": "glass"}, "rigid or same"),
+        ("transverse", {"confidence": 1.0}, "confidence"),
+        ("transverse", {"map": SimpleNamespace(attrs={"scene": "bore"})}, "a sweep of transverse"),
+    ],
+)
+def test_other_bad_input_is_refused(closed, scene, more, said):
+    table = conditions()
+    with pytest.raises(InputError, match=said):
+        microslip.fit(scene, table | {"friction": force(table)}, **SHARED | more)
+
+
+def test_more_rows_than_the_solver_answers_for_need_a_map():
+    table = {"speed": np.linspace(1e-3, 1.0, 201), "amplitude": np.full(201, 1e-7)}
+    with pytest.raises(InputError, match="with a map"):
+        fitted(table | {"friction": np.ones(201)})
+
+
+# By the solver
+
+
+@pytest.mark.slow
+def test_the_solver_finds_the_truth_that_it_made():
+    """Friction by the solver itself at a tolerance far below the noise; mu and G come back."""
+    contact = TwoBodies(Material(2.1e11, 0.0), RIGID, 5e-3, LOAD, MU)
+    table = {"speed": np.geomspace(0.03, 2.0, 6) * OMEGA * contact.u_lim}
+    table["amplitude"] = np.full(6, 1.5 * contact.u_lim)
+    points = [v / (OMEGA * contact.u_lim) for v in table["speed"]]
+    ratios = [microslip.solve("transverse", v, 1.5, tolerance=1e-4).mu_macro for v in points]
+    table["friction"] = MU * LOAD * np.array(ratios)
+    found = microslip.fit("transverse", table, **SHARED, nu=0.0, radius="5 mm")
+    assert found.told == ("mu", "shear_modulus")
+    # Within what an error of 1e-3 of mu_macro can move, which the intervals hold.
+    assert found.mu_low <= MU <= found.mu_high and found.mu_high < 1.01 * found.mu_low
+    assert found.shear_modulus_low_Pa <= contact.G <= found.shear_modulus_high_Pa
+    assert found.u_lim_low_m <= contact.u_lim <= found.u_lim_high_m
+    assert found.u_lim_m == pytest.approx(contact.u_lim, rel=0.01)
+    again = microslip.fit("transverse", table, **SHARED, nu=0.0)
+    assert again.u_lim_m == pytest.approx(found.u_lim_m, rel=2e-3)
+    once_more = microslip.fit("transverse", table, **SHARED, nu=0.0)
+    assert str(once_more.to_dict()) == str(again.to_dict())  # to the last bit; NaN is NaN

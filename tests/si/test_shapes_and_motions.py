@@ -1,0 +1,212 @@
+"""Contacts that are no spheres and motions that are no lines, in SI units."""
+
+import math
+
+import pytest
+from scipy.integrate import dblquad
+from scipy.special import ellipk
+
+import microslip
+from microslip.app import cli
+from microslip.foundation.errors import InputError
+from microslip.si.bodies import TwoBodies
+from microslip.si.dimensionless import RealMotion, groups, solver_scene
+from microslip.si.materials import RIGID, Material
+from microslip.si.shapes import ellipse_of_radii, elliptic, of_size
+
+STEEL = Material(210e9, 0.3)
+BALL = TwoBodies(STEEL, RIGID, 5e-3, 10.0, 0.3)
+ASKED = {"material": "steel", "load": "10 N", "mu": 0.3, "speed": "10 mm/s"}
+ASKED |= {"amplitude": "0.3 um", "frequency": "20 kHz"}
+SPHERE = ASKED | {"radius": "5 mm"}
+
+
+# Ellipses
+
+
+@pytest.mark.parametrize("across", [1e-3, 2e-2])
+def test_the_ellipse_of_two_radii_is_pressed_into_shape(across):
+    """Hertz's pressure on that ellipse, integrated over it, makes a surface of both curvatures.
+
+    1/(pi E*) times the integral of p/rho in polar coordinates about the point: there p is a
+    semicircle along every chord, so that it is p0 pi/2 times the chord's largest over its width.
+    """
+    contact = elliptic(BALL, across)
+    ratio = ellipse_of_radii(5e-3, across)[0]
+    along_forward = across < 5e-3
+    a = contact.contact_radius
+    axes = (a, ratio * a) if along_forward else (ratio * a, a)
+    p0 = 1.5 * contact.load / (math.pi * axes[0] * axes[1])
+
+    def displacement(x, y):
+        def integrand(_, angle):
+            c, s = math.cos(angle) / axes[0], math.sin(angle) / axes[1]
+            alpha = c * c + s * s
+            beta = c * x / axes[0] + s * y / axes[1]
+            gamma = 1.0 - (x / axes[0]) ** 2 - (y / axes[1]) ** 2
+            # the integral of sqrt(gamma - 2 beta s - alpha s^2) over the whole chord
+            return 0.5 * math.pi * (gamma + beta * beta / alpha) / math.sqrt(alpha)
+
+        found = dblquad(integrand, 0.0, math.pi, 0.0, 1.0, epsabs=0.0, epsrel=1e-10)[0]
+        return p0 * found / (math.pi * contact.E_star)
+
+    middle = displacement(0.0, 0.0)
+    assert contact.indentation == pytest.approx(middle, rel=1e-8)
+    for place, radius in (((0.5 * axes[0], 0.0), 5e-3), ((0.0, 0.5 * axes[1]), across)):
+        fall = sum(one * one for one in place) / (2.0 * radius)
+        assert middle - displacement(*place) == pytest.approx(fall, rel=1e-6)
+
+
+def test_an_ellipse_of_equal_radii_is_the_circle():
+    near = elliptic(BALL, 5e-3 * 1.0001)
+    for name in ("contact_radius", "u_lim", "indentation", "largest_pressure"):
+        tolerance = 1e-3 if name == "largest_pressure" else 1e-4
+        assert getattr(near, name) == pytest.approx(getattr(BALL, name), rel=tolerance)
+    same = elliptic(BALL, 5e-3)
+    assert same.pressure == "hertz" and same.u_lim == pytest.approx(BALL.u_lim, rel=1e-12)
+
+
+def test_u_lim_of_an_ellipse_is_what_full_slip_displaces_its_middle():
+    """mu times the displacement under the pressure, with G* in place of E*: K(m) and a by hand."""
+    contact = elliptic(BALL, 2e-2)
+    m = 1.0 - ellipse_of_radii(5e-3, 2e-2)[0] ** 2
+    by_hand = 1.5 * 0.3 * 10.0 * ellipk(m) / (math.pi * contact.G_star * contact.contact_radius)
+    assert contact.u_lim == pytest.approx(by_hand, rel=1e-10)
+
+
+# Sizes that are given
+
+
+def test_a_circle_of_given_size_is_the_sphere_that_makes_it():
+    contact = of_size(BALL, BALL.contact_radius, "hertz")
+    for name in ("radius", "u_lim", "indentation"):
+        assert getattr(contact, name) == pytest.approx(getattr(BALL, name), rel=1e-12)
+    assert contact.largest_pressure == pytest.approx(BALL.largest_pressure, rel=2e-3)
+
+
+def test_u_lim_of_a_cone_is_that_of_its_depth():
+    """A cone's load is E* a d (Sneddon), and u_lim = mu d E*/G* for every indenter."""
+    contact = of_size(BALL, 1e-4, "power:exponent=1")
+    depth = contact.load / (contact.E_star * 1e-4)
+    assert contact.indentation == pytest.approx(depth, rel=1e-6)
+    expected = contact.mu * depth * contact.E_star / contact.G_star
+    assert contact.u_lim == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_a_prediction_under_another_pressure_is_what_the_solver_says():
+    shape = {"contact_radius": "0.1 mm", "pressure": "power:exponent=4"}
+    found = microslip.predict("transverse", **ASKED | shape)
+    contact = of_size(
+        TwoBodies(Material(210e9, 0.3), RIGID, 1.0, 10.0, 0.3), 1e-4, shape["pressure"]
+    )
+    omega = 2.0 * math.pi * 20e3
+    point = 10e-3 / (omega * contact.u_lim), 0.3e-6 / contact.u_lim
+    settings = {"pressure": shape["pressure"], "poisson": 0.3}
+    assert found.mu_macro == microslip.solve("transverse", *point, **settings).mu_macro
+    assert found.pressure == shape["pressure"] and found.contact_radius_m == 1e-4
+
+
+# Motions in several ways
+
+
+@pytest.mark.parametrize(
+    ("scene", "sizes", "expected", "largest"),
+    [
+        ("elliptic", (2.0, 1.0, None, None), {"lateral": 1.0, "forward": 0.5}, 2.0),
+        ("elliptic", (0.0, 3.0, None, None), {"lateral": 0.0, "forward": 1.0}, 3.0),
+        ("transverse-bore", (1.0, None, 0.0, None), {"lateral": 1.0, "angle": 0.0}, 1.0),
+        ("normal", (0.2, None, None, 5.0), {"lateral": 0.4, "load": 1.0}, 0.5),
+        ("normal", (None, 0.5, None, 2.5), {"forward": 1.0, "load": 0.5}, 0.5),
+    ],
+)
+def test_amplitudes_are_shares_of_the_largest(scene, sizes, expected, largest):
+    along = [None if size is None else size * BALL.u_lim for size in sizes[:2]]
+    parts = {"forward_amplitude": along[1], "rotation_amplitude": sizes[2]}
+    parts |= {"load_amplitude": sizes[3], "phase": 0.5 * math.pi}
+    motion = RealMotion(scene, 1e-3, along[0], 1e3, **parts)
+    name, _, text = solver_scene(motion, BALL).partition(":")
+    found = {k: float(v) for k, v in (part.split("=") for part in text.split(","))}
+    assert name == scene and found.pop("phase") == pytest.approx(90.0)
+    assert found == pytest.approx(expected)
+    velocity, amplitude = groups(motion, BALL)
+    assert amplitude == pytest.approx(largest)
+    assert velocity == pytest.approx(1e-3 / (2e3 * math.pi * BALL.u_lim))
+
+
+@pytest.mark.slow
+def test_a_motion_in_several_ways_of_which_one_is_nothing_is_the_other():
+    plain = microslip.predict("transverse", **SPHERE)
+    for scene, other in (
+        ("elliptic", {"forward_amplitude": 0.0}),
+        ("transverse-bore", {"rotation_amplitude": "0 deg"}),
+    ):
+        found = microslip.predict(scene, **SPHERE | other)
+        error = plain.mu_macro_error + found.mu_macro_error
+        assert found.mu_macro == pytest.approx(plain.mu_macro, abs=error)
+        assert found.velocity == plain.velocity and found.amplitude == plain.amplitude
+
+
+@pytest.mark.slow
+def test_an_oscillating_load_alone_is_its_closed_form():
+    """Under a load that oscillates by half of itself, at vanishing speed: what is left is 1 - A."""
+    asked = {k: v for k, v in SPHERE.items() if k != "amplitude"}
+    found = microslip.predict("normal", **asked | {"load_amplitude": "5 N"})
+    assert found.mu_static == pytest.approx(0.5, abs=found.mu_static_error)
+    assert found.mu_macro > found.mu_static and found.load_amplitude_N == 5.0
+
+
+@pytest.mark.slow
+def test_the_command_line_takes_them_and_says_so(capsys):
+    words = [word for k, v in ASKED.items() for word in (f"--{k}", str(v))]
+    more = ["--contact-radius", "0.1 mm", "--pressure", "ring:inner=0.5", "--tolerance", "0.02"]
+    assert cli.main(["predict", "transverse", *words, *more]) == 0
+    said = capsys.readouterr().out
+    assert "\ncontact radius    0.1 mm\npressure          ring:inner=0.5\n" in said
+    assert "indentation" not in said  # which the load of a ring does not tell
+    more = ["--radius", "5 mm", "--rotation-amplitude", "0.3 deg", "--phase", "90 deg"]
+    assert cli.main(["predict", "transverse-bore", *words, *more, "--tolerance", "0.02"]) == 0
+    said = capsys.readouterr().out
+    assert "\nrotation amplitude 0.3 deg = 0.00523599 rad\nphase             90 deg" in said
+    assert "\namplitude         the largest is dimensionless " in said
+
+
+@pytest.mark.parametrize(
+    ("scene", "change", "named", "said"),
+    [
+        ("transverse", {"radius": None}, "radius", "or a contact_radius"),
+        ("transverse", {"contact_radius": "1 mm"}, "radius", "none beside a contact_radius"),
+        (
+            "transverse",
+            {"radius": None, "pressure": "hertz"},
+            "contact_radius",
+            "beside a pressure",
+        ),
+        ("transverse", {"radius_across": "1 um"}, "radius_across", "an ellipse of ratio"),
+        ("transverse", {"radius_across": "1 mm", "counter_radius": "1 m"}, "radius_across", "none"),
+        ("transverse", {"forward_amplitude": "1 um"}, "forward_amplitude", "transverse has none"),
+        ("elliptic", {}, "forward_amplitude", "elliptic needs it"),
+        ("elliptic", {"forward_amplitude": "1 deg"}, "forward_amplitude", "the unit is degree"),
+        ("elliptic", {"load_amplitude": "1 N"}, "load_amplitude", "elliptic has none"),
+        ("normal", {"load_amplitude": "11 N"}, "load_amplitude", "at most the load"),
+        ("normal", {"load_amplitude": "0 N"}, "load_amplitude", "above 0"),
+        ("elliptic", {"amplitude": 0, "forward_amplitude": 0}, "amplitude", "above 0"),
+        ("elliptic", {"forward_amplitude": 0, "phase": "1 m"}, "phase", "the unit is meter"),
+        (
+            "elliptic",
+            {"amplitude": None, "forward_amplitude": "1 um", "reduction": 0.5},
+            "reduction",
+            "several amplitudes",
+        ),
+    ],
+)
+def test_what_does_not_fit_together_is_refused(scene, change, named, said):
+    asked = {k: v for k, v in (SPHERE | change).items() if v is not None}
+    with pytest.raises(InputError) as caught:
+        microslip.predict(scene, **asked)
+    assert caught.value.argument == named and said in caught.value.allowed
+
+
+def test_an_unknown_pressure_is_refused():
+    with pytest.raises(InputError, match="pressure = 'rong'"):
+        microslip.predict("transverse", **ASKED, contact_radius="1 mm", pressure="rong")

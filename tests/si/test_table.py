@@ -1,0 +1,56 @@
+"""A table of contacts is each of its rows."""
+
+import math
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip.foundation.errors import InputError
+
+SHARED = {"material": "steel", "radius": "5 mm", "mu": 0.3, "frequency": "20 kHz"}
+CASES = {"load": ["10 N", "20 N"], "speed": [0.01, 0.1], "amplitude": ["1 um", "0.3 um"]}
+
+
+@pytest.mark.slow
+def test_each_case_is_its_prediction(tmp_path):
+    table = microslip.predict_table("transverse", CASES, **SHARED)
+    for case in range(2):
+        own = {name: values[case] for name, values in CASES.items()}
+        alone = microslip.predict("transverse", **SHARED, **own)
+        row = table.sel(case=case)
+        for name in ("mu_macro", "mu_apparent_error", "contact_radius_m", "u_lim_m", "velocity"):
+            assert float(row[name]) == getattr(alone, name)
+        assert str(row.warnings.values) == "; ".join(alone.warnings)
+        assert math.isnan(float(row.torque_N_m)) and bool(row.converged)
+    assert table.case_load.values.tolist() == ["10 N", "20 N"]
+    units = {"u_lim_m": "m", "speed_m_s": "m s-1", "torque_N_m": "N m", "mu_macro": "1"}
+    units |= {"rotation_rad_s": "rad s-1", "drive_stiffness_N_m": "N m-1", "drag_power_W": "W"}
+    assert {name: table[name].attrs["units"] for name in units} == units
+    table.to_netcdf(tmp_path / "table.nc", engine="netcdf4")
+
+
+@pytest.mark.slow
+def test_arrays_in_the_si_are_cases():
+    speed = np.geomspace(1e-3, 1.0, 3)
+    asked = SHARED | {"load": "10 N", "amplitude": "1 um"}
+    table = microslip.predict_table("transverse", {"speed": speed}, **asked)
+    assert table.speed_m_s.values == pytest.approx(speed)
+    assert (np.diff(table.mu_macro) > 0.0).all()  # friction rises with the velocity
+
+
+@pytest.mark.parametrize(
+    ("cases", "said"),
+    [
+        ({}, "a mapping of names to sequences"),
+        ([1.0], "a mapping of names to sequences"),
+        ({"load": "10 N"}, "a sequence with a value for each case"),
+        ({"load": ["10 N"], "speed": [0.1, 0.2]}, "columns of one length"),
+        ({"load": []}, "1 to 100000 cases"),
+        ({"mu": [0.3]}, "allowed once"),
+        (CASES | {"load": ["10 kg", "20 N"]}, "load = '10 kg': in case 0: the unit is kilogram"),
+    ],
+)
+def test_a_table_that_is_none_is_refused(cases, said):
+    with pytest.raises(InputError, match=said):
+        microslip.predict_table("transverse", cases, **SHARED)

@@ -1,0 +1,27 @@
+"""The rows of a made-up fit, with errors or without, at two amplitudes."""
+
+import numpy as np
+import xarray as xr
+
+
+def fitted(rows=12, errors=True):
+    """Friction that rises with the speed, and residuals of up to two standard errors."""
+    speed = np.tile(np.geomspace(1e-3, 0.3, rows // 2), 2)
+    amplitude = np.repeat([3e-7, 6e-7], rows // 2)
+    force = 3.0 * speed / (speed + 1e4 * amplitude)
+    residual = 2.0 * np.cos(3.0 * np.arange(rows))
+    found = {
+        "speed_m_s": speed,
+        "amplitude_si": amplitude,
+        "row_load_N": np.full(rows, 10.0),
+        "frequency_Hz": np.full(rows, 2e4),
+        "measured": force + 0.05 * residual,
+        "measured_error": np.full(rows, 0.05 if errors else np.nan),
+        "fitted": force,
+        "fitted_error": np.full(rows, 3e-3),
+        "residual": residual,
+    }
+    numbers = {"mu": 0.3, "mu_low": 0.29, "mu_high": 0.31}
+    numbers |= {"u_lim_m": 3e-7, "u_lim_low_m": 2.8e-7, "u_lim_high_m": 3.3e-7}
+    variables = {name: ("row", values) for name, values in found.items()} | numbers
+    return xr.Dataset(variables, attrs={"scene": "transverse", "quantity": "friction"})
