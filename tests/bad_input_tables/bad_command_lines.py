@@ -34,6 +34,7 @@ NUMBERS = [
     (f"{BORE} --amplitude 1e999", "--amplitude = '1e999'", FINITE),
     (f"{BORE} --amplitude 1e300", "--amplitude = '1e300'", "at most 1e+06"),
     (f"{BORE} --amplitude 30deg", "--amplitude = '30deg'", "allowed is a number"),
+    (f"{TRANSVERSE} --contacts mass=1", "--contacts = 'mass=1'", "allowed: load, phase, amplitude"),
     (f"{PULLED} --force -0.1", "--force = '-0.1'", "at least 0: transverse drives nothing"),
     (f"{PULLED} --force nan", "--force = 'nan'", "a finite number"),
     (f"{PULLED} --force 5N", "--force = '5N'", "allowed is a number"),

@@ -181,8 +181,7 @@ class _Refinement:
         runs()  # the base first: its state is a guess for others
         asked = runs.quantity
         left = {name: c.error(asked) for name, c in chains.items() if not c.axis.imposed}
-        mixed = CALIBRATED * abs(mixed_difference(runs, chains, asked))
-        hidden = {"steps": 0.0, "angles": mixed}
+        hidden = {"steps": 0.0, "angles": CALIBRATED * abs(mixed_difference(runs, chains, asked))}
         if "steps" in chains and len(chains) > 1:
             scatter = chains["steps"].axis.scatter
             hidden["steps"] = scatter * abs(chains["steps"].correction(asked))
@@ -283,8 +282,7 @@ def _summary(runs, chains, errors, others, reason):
         errors = errors | {"model": others.open(chains, runs.quantity)}
         torque_error += others.open(chains, "torque")
     done = [*runs.done.values(), *others.done.values()]
-    if not reason:
-        reason = next((r.reason for r in done if not r.converged), "")
+    reason = reason or next((r.reason for r in done if not r.converged), "")
     return Certified(
         mu=_corrected(runs, chains, runs.quantity),
         torque=_corrected(runs, chains, "torque"),
