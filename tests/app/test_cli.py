@@ -290,7 +290,6 @@ def test_point_knows_several_contacts(capsys):
     said = json.loads(capsys.readouterr().out)
     assert said["velocity"] == 0.0
     assert said["contacts"] == "load=1,phase=0,amplitude=1;load=1,phase=180,amplitude=1"
-    for more in (["phase=0;"], ["phase=0", "--results", "somewhere"]):
-        assert cli.main([*words, "--contacts", *more]) == 2
-        line = capsys.readouterr().err
-        assert line.count("\n") == 1 and f"--contacts = '{more[0]}': allowed" in line
+    assert cli.main([*words, "--contacts", "phase=0;"]) == 2
+    line = capsys.readouterr().err
+    assert line.count("\n") == 1 and "--contacts = 'phase=0;': allowed" in line

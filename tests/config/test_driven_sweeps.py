@@ -133,3 +133,34 @@ def test_a_point_that_is_pulled_is_stored_and_found_again(tmp_path):
         assert plain(first) == plain(again)
         stored, fresh = plain(first), {k: v for k, v in plain(asked).items() if v is not None}
         assert {name: stored[name] for name in fresh} == fresh
+
+
+PAIR = {
+    "scene": "longitudinal",
+    "amplitude": [0.3],
+    "force": [0.2],
+    "contacts": "load=2,phase=-180;load=2",
+}
+
+
+def test_several_contacts_are_part_of_every_request_and_of_the_dataset(tmp_path):
+    given = configured(pair=PAIR)
+    sweep, store = given.drives["pair"], Store(tmp_path)
+    (request,) = batches.PointRequests(sweep)
+    assert request["contacts"] == "load=1,phase=180,amplitude=1;load=1,phase=0,amplitude=1"
+    points = [batches.answer(request, store)[0]]
+    assert points[0]["result"]["velocity"] == 0.0  # below the static limit, 0.7^1.5
+    path = tmp_path / "pair.nc"
+    sweep_dataset.write_sweep(path, sweep, points, [], given.of_sweep("pair"))
+    with xr.open_dataset(path) as data:
+        assert data.attrs["contacts"] == PAIR["contacts"]
+        assert "mu_static" not in data and float(data["velocity"].squeeze()) == 0.0
+    stored = microslip.solve_stored(
+        "longitudinal", None, 0.3, force=0.2, contacts=PAIR["contacts"], results=tmp_path
+    )
+    assert stored.contacts == request["contacts"] and stored.converged
+    assert len(list(tmp_path.glob("points/*/*/*.json"))) == 1  # found, not computed again
+    with pytest.raises(load.ConfigError, match="pair.contacts: 'phase=': allowed are numbers"):
+        configured(pair=PAIR | {"contacts": "phase="})
+    with pytest.raises(load.ConfigError, match="in the model polar"):
+        configured(pair=PAIR | {"poisson": 0.3})

@@ -16,6 +16,7 @@ def test_loads_count_by_their_ratios():
     assert (one.load, other.load) == (0.5, 1.5)
     assert other.phase == 270.0
     assert contacts_of("load=1;load=3,phase=270") == (one, other)
+    assert {each.load for each in contacts_of(";".join(["load=0.1"] * 3))} == {1.0}
 
 
 def test_what_is_written_is_read_as_it_was():

@@ -240,9 +240,6 @@ def _answer(options, progress):
     settings["scene"] = f"{options.scene}:{path}" if path else options.scene
     if options.contacts is not None:
         settings["contacts"] = options.contacts
-        if options.results is not None:
-            allowed = "allowed is none with --results, which keeps points of single contacts"
-            raise InputError("contacts", options.contacts, allowed)
     if options.results is None:
         return solve(**settings, method=options.method, progress=progress)
     return solve_stored(**settings, results=options.results)

@@ -92,6 +92,7 @@ def pulled_sweeps(given: dict, where: str, others: Iterable) -> dict:
         if not drives:
             raise ConfigError(f"{at}: missing; required: force or stiffness")
         more = {"title": settings["title"] or name, "drives": drives}
+        more["contacts"] = settings["contacts"]
         more["pressure"] = _by_content(settings["pressure"])
         found[name] = axes.grid_of(name, settings["scene"], settings, at, **more)
     return found
@@ -173,6 +174,7 @@ def _ask_of_drive(sweep, scene):
     from microslip.adaptive.checks import checked_drive
     from microslip.adaptive.choice import choose_model
     from microslip.adaptive.pulled import refuse_drive
+    from microslip.adaptive.several import body_of
     from microslip.solver.problem import Problem
 
     drives = {name: values for name, values, _ in sweep.drives}
@@ -183,6 +185,7 @@ def _ask_of_drive(sweep, scene):
         drive = checked_drive(velocity, **given)
         model = choose_model(scene, sweep.poisson[-1], sweep.model)
         problem = Problem(scene, velocity or 0.0, amplitude, sweep.poisson[-1])
+        problem = body_of(problem, sweep.contacts, model)
         refuse_drive(problem, drive, model)
 
 

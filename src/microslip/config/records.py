@@ -52,6 +52,7 @@ class Sweep:
     group: str | None = None  # of the figure that shows it, None for the paper's
     title: str | None = None  # there
     drives: tuple = ()  # (name, values, whether they are an axis) of what pulls, as for solve()
+    contacts: str | None = None  # of a body that several carry, as it was given
 
     @property
     def spans_a_map(self) -> bool:
@@ -167,6 +168,8 @@ class Configuration:
         sweep = asdict(self.grids[name])
         if not sweep["drives"]:  # which goes without saying, as it did before there were any
             del sweep["drives"]
+        if sweep["contacts"] is None:
+            del sweep["contacts"]
         return {
             "sweep": sweep,
             "histories": {history: self.histories[history] for history in names},

@@ -71,6 +71,8 @@ def write_sweep(
         about["single_runs_failed"] = "; ".join(reasons)
     if sweep.drives:
         about["drive"] = ", ".join(name for name, _, _ in sweep.drives)
+    if sweep.contacts is not None:
+        about["contacts"] = sweep.contacts
     versions = {canonical_json(record["versions"]) for record in histories}
     with writing_beside(path, sealed=True) as beside:
         netcdf.write(beside, _root(sweep), _parts(sweep, histories))

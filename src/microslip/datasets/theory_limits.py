@@ -24,6 +24,8 @@ def formulas(scene: str, pressure: str = "hertz") -> dict:
 
 def _forms(sweep):
     """Those that hold for a records.Sweep: what is said of a velocity holds where one moves."""
+    if sweep.contacts is not None:
+        return {}  # they are of one contact
     found = formulas(*solver_names(sweep))
     if sweep.drives:
         found = {name: form for name, form in found.items() if form.arguments == ("amplitude",)}
@@ -34,6 +36,8 @@ def _creep_forms(sweep):
     """Those of the velocity under a force, where one pulls."""
     scene, pressure = solver_names(sweep)
     form = catalogue.CREEP_FORMS.get(scene)
+    if sweep.contacts is not None:
+        return {}
     is_map = [(name, is_axis) for name, _, is_axis in sweep.drives] == [("force", True)]
     known = is_map and form is not None and (form.any_pressure or pressure == "hertz")
     return {form.name: form} if known else {}

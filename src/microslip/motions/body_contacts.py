@@ -51,7 +51,8 @@ def contacts_of(text: str) -> tuple[BodyContact, ...]:
     if len(records) > MOST_CONTACTS:
         allowed = f"allowed are up to {MOST_CONTACTS} contacts, not {len(records)}"
         raise InputError("contacts", text, allowed)
-    mean = sum(record["load"] for record in records) / len(records)
+    loads = [record["load"] for record in records]
+    mean = sum(loads) / len(loads) if len(set(loads)) > 1 else loads[0]  # equal ones are 1 each
     return tuple(
         BodyContact(record["load"] / mean, record["phase"] % 360.0, record["amplitude"])
         for record in records

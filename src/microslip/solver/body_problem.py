@@ -116,10 +116,8 @@ class BodyProblem(Problem):
         reversed_at = max(float(np.ptp(a + b)) for a, b in zip(here, there, strict=True))
         if reversed_at > RETURNED * max(self.amplitude, 1.0):
             return False
-        left = list(self.contacts)
-        return all(_opposite(one) in left for one in self.contacts) and all(
-            left.count(one) == left.count(_opposite(one)) for one in self.contacts
-        )
+        count = self.contacts.count
+        return all(count(one) == count(_opposite(one)) for one in self.contacts)
 
     def contact(self, model: str, resolution, focus=None) -> RingsSideBySide:
         """All contacts at a resolution; each gathers its own rings."""

@@ -216,7 +216,7 @@ def _of_single_run(request):
 
 def _solved(request, **settings):
     place = _place(request)
-    names = ("cells", "steps", "most_work")
+    names = ("cells", "steps", "most_work", "contacts")
     settings |= {name: request[name] for name in names if name in request}
     settings |= {name: float(request[name]) for name in DRIVES if name in request}
     tolerance = request["tolerance"]

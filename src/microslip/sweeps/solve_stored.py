@@ -16,6 +16,7 @@ from microslip.adaptive.choice import choose_model
 from microslip.adaptive.moved import refuse_choice
 from microslip.adaptive.pulled import refuse_drive
 from microslip.adaptive.result import Result
+from microslip.adaptive.several import body_of
 from microslip.config.axes import DRIVES
 from microslip.config.records import Sweep
 from microslip.solver.problem import Problem
@@ -33,6 +34,7 @@ def solve_stored(
     stiffness=None,
     mass=None,
     damping=None,
+    contacts=None,
     pressure="hertz",
     poisson=0.0,
     model="auto",
@@ -72,8 +74,10 @@ def solve_stored(
     tolerance, cells, steps = checked_request(tolerance, cells, steps)
     refuse_bounds(time_limit=time_limit)
     chosen = choose_model(kind, poisson, model)
+    problem = Problem(kind, place, amplitude, poisson)
+    problem = body_of(problem, contacts, None if drive is None else chosen)
     if drive is not None:
-        refuse_drive(Problem(kind, place, amplitude, poisson), drive, chosen)
+        refuse_drive(problem, drive, chosen)
     if tolerance is None:
         moving = place if force is None else 1.0  # under a force it is the velocity that is asked
         refuse_choice(kind, model, (moving, amplitude, poisson), cells, steps)
@@ -89,6 +93,7 @@ def solve_stored(
         cells=cells,
         steps=steps,
         pressure=kind.pressure.name,
+        contacts=contacts,
         drives=_drives(force=force, stiffness=stiffness, mass=mass, damping=damping),
     )
     (request,) = batches.PointRequests(grid)
