@@ -3,8 +3,8 @@
     certified_transverse.nc     dims point, cell and node
 
 A cell is a rectangle in the coordinates of sweeps.map_coordinates, and friction in it the
-polynomial through its 5 x 5 points; cell_error is the bound of the error everywhere in it.  The same
-answers give the same bytes.
+polynomial through its 5 x 5 points; cell_error is the bound of the error everywhere in it.  The
+same answers give the same bytes.
 """
 
 from __future__ import annotations

@@ -100,7 +100,7 @@ class MapCoordinates(NamedTuple):
         if not self.kinks.velocity or fast <= CLEAR**2 * slow:
             return False
         at_ends = kink_velocity(self.kinks, np.array(self.amplitude))
-        return bool(np.any((at_ends > CLEAR * slow) & (at_ends < fast / CLEAR)))
+        return bool(at_ends.max() > CLEAR * slow and at_ends.min() < fast / CLEAR)
 
     def _cut_at(self, amplitude):
         slow, fast = self.velocity

@@ -21,7 +21,7 @@ from microslip.theory.kinks import kinks_of
 
 LEAST_PARTS = 4
 """Of a round, so that several cores have something to do."""
-SMALLEST_PART = 8
+SMALLEST_PART = 16
 """Points for which a process is worth its start."""
 MOST_ROUNDS = 64
 """More than halving all cells to the smallest takes."""

@@ -70,7 +70,8 @@ class Friction:
 
         Between the nodes of a map the error holds what interpolation leaves (see `interpolation`,
         between Poisson's ratios `nodes`) and what the nodes themselves may be off; that of a
-        certified map is the bound of its cell (see `cells`).  Beyond the map see `beyond`.  Next to a point that did not converge mu_macro is NaN, or its error infinite.
+        certified map is the bound of its cell (see `cells`).  Beyond the map see `beyond`.  Next to
+        a point that did not converge mu_macro is NaN, or its error infinite.
 
         The dataset may be a part of one, chosen or joined by xarray, lazy or not, as long as it has
         mu_macro, mu_macro_error, their coordinates and its attributes.  Without `converged`, nodes
@@ -227,7 +228,8 @@ class Friction:
         )
         source = np.full(len(value), MAP)
         last = (part[-1] for part in (table.values, table.errors))
-        far = beyond.distances(limits, table.columns.values, *last, below, widest)
+        far = np.zeros_like(value)
+        far[wide] = beyond.distances(limits, table.columns.values, *last, below[wide], widest)
         for where, code, rule, coordinates, end in (
             (amplitude < narrowest, NARROWER, beyond.narrower, (amplitude,), narrowest),
             (below < slowest, SLOWER, beyond.slower, (below, np.fmin(amplitude, widest)), slowest),
