@@ -78,6 +78,10 @@ NOT_RUN = {
     ("docs/explanation/accuracy.md", "python benchmarks/sweep_cost.py"): BENCHMARK,
     ("docs/explanation/accuracy.md", "python benchmarks/paper_method.py"): BENCHMARK,
     ("docs/explanation/accuracy.md", "python benchmarks/interpolation.py"): BENCHMARK,
+    ("docs/how-to/sweeps.md", "import microslip\n\nsideways = microslip.open_map("): (
+        f"{FULL}; certified maps are made and asked by tests/workflow/test_workflow_certified.py"
+    ),
+    ("docs/how-to/sweeps.md", "python benchmarks/certified.py"): BENCHMARK,
     ("docs/how-to/cluster.md", ".venv/bin/snakemake -j8"): FULL,
     ("docs/how-to/cluster.md", ".venv/bin/pip install -e '.[slurm]'"): CLUSTER,
     ("docs/how-to/cluster.md", "benchmarks/slurm_here.sh"): f"{CLUSTER} by a test: it installs one",
