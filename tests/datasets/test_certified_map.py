@@ -5,13 +5,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import xarray as xr
+from stubs import certified_stub
 
 import microslip
-from microslip.config import load
 from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import SOURCES
 from microslip.foundation.errors import InputError
-from microslip.sweeps import map_rounds
 from microslip.sweeps.batches import key_of
 from microslip.theory import paper
 
@@ -34,12 +33,8 @@ def record(request, result=None):
 def made():
     """A certified map of a made-up friction: its record, rounds and records."""
     axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": ERROR}}
-    (map_,) = load.from_mapping({"sweeps": {"transverse": axes}}).certified.values()
-    rounds, records = [], []
-    while not rounds or rounds[-1]["nodes"]:
-        known = map_rounds.answers_in(rounds, records)
-        rounds.append(map_rounds.next_round(map_, known, 50))
-        records += [record(request) for request in rounds[-1]["requests"]]
+    map_ = certified_stub.configured("transverse", **axes)
+    rounds, records = certified_stub.played(map_, record)
     return SimpleNamespace(map=map_, rounds=rounds, records=records)
 
 
