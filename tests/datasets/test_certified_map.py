@@ -8,11 +8,12 @@ import xarray as xr
 from stubs import certified_stub
 
 import microslip
+from microslip.config import load
 from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import SOURCES
 from microslip.foundation.errors import InputError
 from microslip.sweeps.batches import key_of
-from microslip.theory import paper
+from microslip.theory import masing, paper
 
 ERROR = 1e-2
 
@@ -166,3 +167,25 @@ def test_what_a_map_has_lost_is_named(dataset, name):
 def test_a_map_without_all_its_points_is_refused(dataset):
     with pytest.raises(InputError, match="all points"):
         dataset.isel(point=slice(0, 20)).friction.at(0.1, 1.0)
+
+
+def test_of_other_motions_the_map_answers_and_nothing_beyond():
+    """Along the motion friction is known in closed form, with a kink where nothing sticks."""
+    axes = {"velocity": [0.01, 1], "amplitude": [0.1, 0.9], "group": "lines"}
+    axes |= {"scene": "longitudinal", "adaptive": {"error": 0.03}}
+    paper_too = {"bore": {"velocity": [1], "amplitude": [1]}}
+    given = load.from_mapping({"sweeps": paper_too, "extended": {"along": axes}})
+    (map_,) = given.certified.values()
+
+    def answered(request):
+        place = float(request["velocity"]), float(request["amplitude"])
+        mu = float(masing.longitudinal(*place))
+        return record(request, {"mu_macro": mu, "mu_macro_error": 0.0, "converged": True})
+
+    data = certified_map.build(map_, *certified_stub.played(map_, answered))
+    answer = data.friction.at([0.02, 0.2, 0.9], [0.15, 0.5, 0.85])
+    truth = masing.longitudinal(*np.meshgrid(answer.velocity, answer.amplitude))
+    assert (abs(answer.mu_macro - truth) <= answer.mu_macro_error + 1e-9).all()
+    assert float(answer.mu_macro_error.max()) <= 0.03
+    with pytest.raises(ValueError, match="velocity = 2: allowed is 0.01 to 1"):
+        data.friction.at(2.0, 0.5)

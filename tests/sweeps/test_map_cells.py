@@ -211,6 +211,18 @@ def test_certified_maps_are_named_after_their_sweep_and_have_its_ranges():
     assert configured(adaptive=None).certified == {}
 
 
+def test_other_motions_and_pressures_are_certified_likewise():
+    cone = GIVEN | {"scene": "longitudinal", "pressure": "power:exponent=1", "group": "cones"}
+    given = {"sweeps": {"transverse": GIVEN | {"adaptive": None}}, "extended": {"cone": cone}}
+    (map_,) = load.from_mapping(given).certified.values()
+    assert map_.name == "certified_cone"
+    assert map_rounds.coordinates_of(map_).patches == (1, 1)  # no kink of it is known
+    request = map_rounds.next_round(map_, {}, 50)["requests"][0]
+    assert (request["scene"], request["pressure"]) == ("longitudinal", "power:exponent=1")
+    with pytest.raises(ConfigError, match="certified_cone: another result has this name"):
+        load.from_mapping(given | {"extended": {"cone": cone, "certified_cone": cone}})
+
+
 @pytest.mark.parametrize(
     "given, at_fault",
     [

@@ -10,6 +10,8 @@ ROUNDS = f"{RESULTS}/rounds/{{certified}}/{{chosen}}"
 
 def round_files(name):
     """Files of the rounds of a map, one by one; Snakemake goes on here when the next is there."""
+    if STORED_ELSEWHERE:
+        sys.exit(f"Error in {ORIGIN}: {name} needs a folder of results on this machine")
     for number in count():
         path = f"{placed(PLAN.rounds_folder(name))}/{number}.json"
         if workflow.is_main_process:

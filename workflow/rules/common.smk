@@ -166,7 +166,7 @@ def datasets_explored():
 wildcard_constraints:
     sweep="|".join(CONFIGURATION.grids),
     dataset="|".join(STUDIES),
-    certified="|".join(CONFIGURATION.certified),
+    certified="|".join(CONFIGURATION.certified) or "(?!)",  # nothing, where there is none
     chosen="[0-9a-f]+",
     round="[0-9]+",
     part="[0-9]+",

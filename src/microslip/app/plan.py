@@ -169,7 +169,8 @@ class Plan:
         """
         map_ = self.configuration.certified[name]
         code = source_digest.of_modules(*ROUND_CODE)
-        return f"rounds/{name}/{fingerprint(map_.settings, code, source_digest.of_solver())[:16]}"
+        solver = source_digest.of_request(sweep.PointRequests(map_.sweep)[0])
+        return f"rounds/{name}/{fingerprint(map_.settings, code, solver)[:16]}"
 
     def groups_of(self, dataset: str) -> list[str]:
         """Groups whose batches a dataset is made of."""

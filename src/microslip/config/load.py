@@ -154,7 +154,8 @@ def from_mapping(
         stability=_stability(filled["stability"], f"{source}: stability"),
         claims=_claims(filled["claims"], f"{source}: claims"),
         driving=driving.study(filled["driving"], f"{source}: driving", ask_solver),
-        certified=certified.maps(sweeps, filled["sweeps"], f"{source}: sweeps"),
+        certified=certified.maps(sweeps, filled["sweeps"], f"{source}: sweeps")
+        | certified.maps(others, filled["extended"], f"{source}: extended"),
     )
 
 

@@ -85,7 +85,7 @@ def build(map_: CertifiedMap, rounds: Sequence[dict], records: Iterable[dict]) -
     scene, pressure = solver_names(map_.sweep)
     versions = {canonical_json(record["versions"]) for record in records}
     about = sweep_dataset.provenance(
-        f"Certified friction of a vibrated Hertz contact, scene {scene}",
+        f"Certified friction of a vibrated contact, scene {scene}",
         map_.settings,
         versions,
         scene=scene,
