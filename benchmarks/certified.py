@@ -1,7 +1,7 @@
 """Do the errors of certified maps hold?  Random points solved, and uniform grids compared.
 
-    python benchmarks/certified.py [--results FOLDER] [--calibration N] [--test N] [--seed S]
-                                   [--output FILE] [--markdown FILE]
+    python benchmarks/certified.py [--results FOLDER] [--maps NAME ...] [--calibration N] [--test N]
+                                   [--seed S] [--output FILE] [--markdown FILE]
 
 Needs the certified maps of a run (snakemake certified).  Random points on each, uniform in the
 logarithm of the velocity and in the amplitude, are solved more strictly and compared with what the
@@ -126,6 +126,7 @@ def of_uniform_grid(dataset, count):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--results", type=Path, default=Path("results"))
+    parser.add_argument("--maps", nargs="+", choices=TOLERANCES, default=list(TOLERANCES))
     parser.add_argument("--calibration", type=int, default=1000)
     parser.add_argument("--test", type=int, default=2000)
     parser.add_argument("--seed", type=int, default=21)
@@ -133,7 +134,7 @@ def main():
     tables.add_markdown(parser)
     options = parser.parse_args()
     promises, grids = [], []
-    for scene in TOLERANCES:
+    for scene in options.maps:
         dataset = microslip.open_map(f"certified_{scene}", options.results).load()
         points = random_points(dataset, options.calibration + options.test, options.seed)
         truth = solved(dataset, points, options.output)
