@@ -33,7 +33,7 @@ import microslip
 from microslip.datasets.query.cells import cells_of
 from microslip.sweeps.map_cells import surpluses_of
 
-TOLERANCES = {"transverse": 1e-4, "bore": 4e-4}
+TOLERANCES = {"transverse": 1e-4, "bore": 2e-4}
 UNIFORM = (25, 49, 97, 193)
 """Nodes along each axis of the grids that a map is compared with."""
 
