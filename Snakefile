@@ -20,6 +20,11 @@
 # makes results/NAME.nc of each, and a figure extended_GROUP of each of their groups. So do those of
 # contacts that are pulled, under `drives`: snakemake drives makes results/NAME.nc of each.
 #
+# Maps with an error that holds everywhere, of those sweeps that say `adaptive`: snakemake certified.
+#
+#   answers so far --> next_round --> solve_round --> results/rounds --> ... --> collect_certified
+#                                                              --> results/certified_{transverse,bore}.nc
+#
 # snakemake explorer makes one page to look behind every point of the maps.
 #
 #   points of the maps --> periods, cut into batches --> solve_batch --> results/periods
@@ -60,6 +65,7 @@ include: "workflow/rules/common.smk"
 include: "workflow/rules/stale.smk"
 include: "workflow/rules/points.smk"
 include: "workflow/rules/datasets.smk"
+include: "workflow/rules/certified.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/explorer.smk"
 
@@ -80,6 +86,11 @@ rule all:
     input:
         datasets_of(CONFIGURATION.sweeps),
         figures_of(CONFIGURATION.sweeps),
+
+
+rule certified:
+    input:
+        in_results(f"{name}.nc" for name in CERTIFIED),
 
 
 rule extended:

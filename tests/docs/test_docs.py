@@ -24,12 +24,12 @@ from pathlib import Path
 
 import pytest
 import yaml
-from stubs import job_server
+from stubs import certified_stub, job_server
 from stubs.workflow_project import ENVIRONMENT
 
 import microslip
 from microslip.config import load
-from microslip.datasets import point_variables, sweep_dataset
+from microslip.datasets import certified_map, point_variables, sweep_dataset
 from microslip.models.registry import MODELS
 from microslip.report.figures import drawing
 from microslip.solver import method_names
@@ -77,6 +77,7 @@ NOT_RUN = {
     ("docs/explanation/accuracy.md", "python benchmarks/sweep_cost.py"): BENCHMARK,
     ("docs/explanation/accuracy.md", "python benchmarks/paper_method.py"): BENCHMARK,
     ("docs/explanation/accuracy.md", "python benchmarks/interpolation.py"): BENCHMARK,
+    ("docs/how-to/sweeps.md", "python benchmarks/certified.py"): BENCHMARK,
     ("docs/how-to/cluster.md", ".venv/bin/snakemake -j8"): FULL,
     ("docs/how-to/cluster.md", ".venv/bin/pip install -e '.[slurm]'"): CLUSTER,
     ("docs/how-to/cluster.md", "benchmarks/slurm_here.sh"): f"{CLUSTER} by a test: it installs one",
@@ -144,6 +145,11 @@ def computed(tmp_path_factory):
         sweep_dataset.write_sweep(place / f"{name}.nc", grid, points, [], settings)
         for file in (f"{name}.nc", f".{name}.nc.sha256"):
             shutil.copy(place / file, folder)
+    # coarse, so that it takes seconds
+    axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 0.1}}
+    map_ = certified_stub.configured("transverse", **axes)
+    found = certified_stub.played(map_, lambda request: batches.answer(request, store)[0])
+    certified_map.write(folder / f"{map_.name}.nc", certified_map.build(map_, *found))
     return folder
 
 

@@ -10,10 +10,10 @@ from stubs.sweep_stub import Solver
 
 import microslip
 from microslip.config import load
-from microslip.datasets import sweep_dataset
+from microslip.datasets import certified_map, sweep_dataset
 from microslip.si.predict import Prediction
 from microslip.studies import registry
-from microslip.sweeps import batches
+from microslip.sweeps import batches, map_rounds
 from microslip.sweeps.cache import Store
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "fields.md").read_text(encoding="utf-8")
@@ -76,6 +76,19 @@ def test_every_variable_of_a_sweep_is_in_the_table_and_no_other(tmp_path, monkey
     found = set().union(*(written(name, tmp_path) for name in GRIDS))
     fine = {name for name in found if name.removesuffix("_curve") in found and "_curve" in name}
     assert set(section("A sweep")) == found - fine
+
+
+def test_every_variable_of_a_certified_map_is_in_its_table_and_no_other():
+    axes = GRIDS["bore"] | {"adaptive": {"error": 0.1}}
+    (map_,) = load.from_mapping({"sweeps": {"bore": axes}}).certified.values()
+    first = map_rounds.next_round(map_, {}, 50)
+    flat = {"mu_macro": 0.5, "mu_macro_error": 0.0, "converged": True}
+    records = [
+        {"key": batches.key_of(request), "result": flat, "versions": {}}
+        for request in first["requests"]
+    ]
+    data = certified_map.build(map_, [first], records)
+    assert set(section("A certified map")) == set(map(str, data.variables))
 
 
 STUDIES = {

@@ -113,7 +113,7 @@ def datasets_for(figure):
     return in_results(f"{name}.nc" for name in FIGURES[figure])
 
 
-GROUPS = {"batches", "figures", "logs", "warm_up", *batches.FOLDERS.values()}
+GROUPS = {"batches", "rounds", "figures", "logs", "warm_up", *batches.FOLDERS.values()}
 
 with refused_in_one_line(ORIGIN):
     if workflow.is_main_process:
@@ -166,6 +166,10 @@ def datasets_explored():
 wildcard_constraints:
     sweep="|".join(CONFIGURATION.grids),
     dataset="|".join(STUDIES),
+    certified="|".join(CONFIGURATION.certified) or "(?!)",  # nothing, where there is none
+    chosen="[0-9a-f]+",
+    round="[0-9]+",
+    part="[0-9]+",
     group="|".join(PLAN.groups),
     early="|".join(EARLY),
     batch="[0-9a-f]+",

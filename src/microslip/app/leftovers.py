@@ -18,23 +18,33 @@ from microslip.app.plan import Plan
 from microslip.app.terminal import complain
 from microslip.config import load
 from microslip.config.records import ConfigError, Configuration
-from microslip.sweeps import batch_plans, batches, cache, sealed_files
+from microslip.sweeps import batch_plans, batches, cache, map_rounds, sealed_files
 
 RECORD = re.compile(r"[0-9a-f]{64}\.json")
 BATCH = re.compile(r"[0-9a-f]{16}\.(json|plan)")
+ROUND = re.compile(r"[0-9]+(-[0-9]+)?\.json")
 MADE = (".nc", ".html", ".png", ".pdf")
 FOLDERS_MADE = (".", "summaries", "figures")
 DEFAULT = "config/config.yaml"
 KINDS = ("points and single runs", "batches", "datasets, pages and figures")
 
 
-def asked_for(plans: Iterable[Plan]) -> set[str]:
-    """Paths, inside the folder of results, of all that some of the plans would make."""
+def asked_for(plans: Iterable[Plan], folder: Path = Path()) -> set[str]:
+    """Paths, inside the folder of results, of all that some of the plans would make.
+
+    Which points a certified map has is known from the rounds in that folder.
+    """
     found = set()
     for plan in plans:
         found |= {*plan.made_files(), *plan.batch_files(*plan.groups), *plan.plan_files()}
         for group in plan.groups:
             found |= {_path_of(request) for request in plan.requests_in(group)}
+        for name in plan.configuration.certified:
+            rounds = sorted((folder / plan.rounds_folder(name)).glob("*.json"))
+            found |= {path.relative_to(folder).as_posix() for path in rounds}
+            for path in rounds:
+                if path.stem.isdecimal():
+                    found |= {_path_of(r) for r in map_rounds.read_round(path)["requests"]}
     return found
 
 
@@ -61,6 +71,9 @@ def _named(folder):
     for path in sorted((folder / "batches").glob("*/*")):
         if BATCH.fullmatch(path.name):
             yield KINDS[1], path
+    for path in sorted((folder / "rounds").glob("*/*/*")):
+        if ROUND.fullmatch(path.name):
+            yield KINDS[1], path
     for place in FOLDERS_MADE:
         for path in sorted((folder / place).glob("*")):
             if path.suffix in MADE and sealed_files.seal_of(path).exists():
@@ -69,7 +82,7 @@ def _named(folder):
 
 def left_over(folder: Path, plans: Iterable[Plan]) -> dict[str, list[Path]]:
     """Files in a folder of results that none of the plans asks for, by their kind."""
-    wanted = asked_for(plans)
+    wanted = asked_for(plans, folder)
     found = {kind: [] for kind in KINDS}
     for kind, path in there(folder):
         if path.relative_to(folder).as_posix() not in wanted:

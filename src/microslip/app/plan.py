@@ -25,6 +25,9 @@ PERIODS_PER_JOB = 150
 DATASET_CODE = ("datasets/sweep_dataset.py", "report/dataset_page.py")
 """Modules that make the dataset of a sweep, besides what these import."""
 STUDY_CODE = ("datasets/sweep_dataset.py", "report/study_page.py", "studies")
+CERTIFIED_CODE = ("datasets/certified_map.py",)
+ROUND_CODE = ("sweeps/map_rounds.py",)
+"""What says which points of a certified map are next."""
 PAGE = "explorer.html"
 
 
@@ -159,6 +162,16 @@ class Plan:
             return fingerprint(self.batch_files(group))
         return fingerprint(batch_plans.packed(requests), source_digest.of_request(requests[0]))
 
+    def rounds_folder(self, name: str) -> str:
+        """Folder of the rounds of a certified map and of what answers them.
+
+        It is named by all that decides which points they have, so that they are never stale.
+        """
+        map_ = self.configuration.certified[name]
+        code = source_digest.of_modules(*ROUND_CODE)
+        solver = source_digest.of_request(sweep.PointRequests(map_.sweep)[0])
+        return f"rounds/{name}/{fingerprint(map_.settings, code, solver)[:16]}"
+
     def groups_of(self, dataset: str) -> list[str]:
         """Groups whose batches a dataset is made of."""
         if dataset in self.studies:
@@ -205,7 +218,8 @@ class Plan:
     def made_files(self) -> list[str]:
         """All files that are made to be kept: datasets, pages, figures."""
         names = self.datasets
-        return [*self.dataset_files(names), *self.figure_files(names), PAGE]
+        certified = (f"{name}.nc" for name in self.configuration.certified)
+        return [*self.dataset_files(names), *certified, *self.figure_files(names), PAGE]
 
     # What things are made of
 
@@ -216,6 +230,8 @@ class Plan:
             return explorer.digest()
         if path.parts[0] == "figures":
             return source_digest.of_modules(*drawing.modules_of(path.stem))
+        if path.stem in self.configuration.certified:
+            return source_digest.of_modules(*CERTIFIED_CODE)
         return source_digest.of_modules(
             *(STUDY_CODE if path.stem in self.studies else DATASET_CODE)
         )
@@ -241,6 +257,8 @@ class Plan:
             names, groups = self.explored, [f"{name}_periods" for name in self.explored]
         elif path.parts[0] == "figures":
             names, groups = self.figures[path.stem], ()
+        elif path.stem in self.configuration.certified:
+            return fingerprint(code, self.rounds_folder(path.stem))
         else:
             groups = [*self.groups_of(path.stem), *self.groups_beside(path.stem)]
             return fingerprint(code, self.settings_of(path.stem), [*map(self.points_of, groups)])

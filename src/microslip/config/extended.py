@@ -70,7 +70,7 @@ def sweeps(given: dict, where: str) -> dict:
     """
     found = {}
     for name, settings in given.items():
-        if name in TAKEN:
+        if name in TAKEN or name.removeprefix("certified_") in given.keys() - {name}:
             raise ConfigError(f"{where}.{name}: another result has this name; allowed: a new one")
         more = {"group": settings["group"], "title": settings["title"] or name}
         more["pressure"] = _by_content(settings["pressure"])

@@ -15,7 +15,7 @@ from pathlib import Path
 import yaml
 
 from microslip.config import axes as grids
-from microslip.config import driving, extended, schema
+from microslip.config import certified, driving, extended, schema
 from microslip.config.axes import axis_of, refuse_crowd
 from microslip.config.records import (
     SCENE_OF_SWEEP,
@@ -154,6 +154,8 @@ def from_mapping(
         stability=_stability(filled["stability"], f"{source}: stability"),
         claims=_claims(filled["claims"], f"{source}: claims"),
         driving=driving.study(filled["driving"], f"{source}: driving", ask_solver),
+        certified=certified.maps(sweeps, filled["sweeps"], f"{source}: sweeps")
+        | certified.maps(others, filled["extended"], f"{source}: extended"),
     )
 
 

@@ -4,7 +4,7 @@
 parsed.
 """
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 
 # Sweeps are named like their datasets, scenes as on the command line.
 SCENE_OF_SWEEP = {"transverse": "transverse", "bore": "bore", "continuous_bore": "continuous-bore"}
@@ -20,6 +20,7 @@ TAKEN = (*SCENE_OF_SWEEP, "accuracy", "accuracy_cost", "stability", "claims", "d
 TAKEN += tuple(f"{name}_histories" for name in SCENE_OF_SWEEP)
 TAKEN += tuple(f"{name}_periods" for name in SCENE_OF_SWEEP)
 TAKEN += tuple(f"{study}_first" for study in ("accuracy", "stability", "claims", "driving"))
+TAKEN += tuple(f"certified_{name}" for name in SCENE_OF_SWEEP)
 # What models.registry refuses, which takes too long to import here; a test keeps them the same.
 MODELS_OF_SCENE = {
     "transverse": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
@@ -66,6 +67,35 @@ class Sweep:
         if self.spans_a_map:
             return "velocity and amplitude"
         return "amplitude" if len(self.amplitude or ()) > 1 else "velocity"
+
+
+@dataclass(frozen=True)
+class CertifiedMap:
+    """A map whose points are chosen so that an error holds everywhere. All is dimensionless."""
+
+    name: str
+    sweep: Sweep  # whose ranges and settings it has; its axes and tolerance do not count
+    error: float
+    tolerance: float  # of the points
+
+    @property
+    def velocity(self) -> tuple[float, float]:
+        """The smallest velocity above 0, and the largest."""
+        positive = [velocity for velocity in self.sweep.velocity if velocity > 0]
+        return positive[0], positive[-1]
+
+    @property
+    def amplitude(self) -> tuple[float, float]:
+        """The smallest and the largest amplitude."""
+        return self.sweep.amplitude[0], self.sweep.amplitude[-1]
+
+    @property
+    def settings(self) -> dict:
+        """All that its points depend on, as a dict for JSON."""
+        kept = ("scene", "pressure", "poisson", "model")
+        found = {name: getattr(self.sweep, name) for name in kept}
+        ranges = {"velocity": self.velocity, "amplitude": self.amplitude}
+        return found | ranges | {"error": self.error, "tolerance": self.tolerance}
 
 
 @dataclass(frozen=True)
@@ -147,6 +177,7 @@ class Configuration:
     stability: Stability
     claims: Claims
     driving: Driving
+    certified: dict = field(default_factory=dict)  # name -> CertifiedMap
 
     @property
     def grids(self) -> dict[str, Sweep]:

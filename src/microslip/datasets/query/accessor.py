@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-import warnings
-from functools import cache
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 import xarray as xr
 
 from microslip.config.quantities import MU_MACRO
-from microslip.datasets.query import beyond
+from microslip.datasets.query import beyond, cells, lazily
 from microslip.datasets.query.coordinates import labelled
+from microslip.datasets.query.grid import axes_of_grid
 from microslip.datasets.query.inverse import Inverse
-from microslip.datasets.query.nodes import SAME, nodes_of, refuse_negative
+from microslip.datasets.query.nodes import nodes_of, poisson_within, refuse_negative
+from microslip.datasets.query.solver import solved
 from microslip.datasets.query.within import refuse_beyond, within
-from microslip.foundation.arguments import is_real, real
+from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
 from microslip.motions.by_name import motion_named
-from microslip.sweeps.sealed_files import CacheError
-from microslip.sweeps.solve_stored import solve_stored
 from microslip.theory.catalogue import FORMS
 
 SOURCES = (
@@ -73,8 +70,9 @@ class Friction(Inverse):
         """Friction and a bound of its error, whatever the point.
 
         Between the nodes of a map the error holds what interpolation leaves (see `interpolation`,
-        between Poisson's ratios `nodes`) and what the nodes themselves may be off; beyond the map
-        see `beyond`.  Next to a point that did not converge mu_macro is NaN, or its error infinite.
+        between Poisson's ratios `nodes`) and what the nodes themselves may be off; that of a
+        certified map is the bound of its cell (see `cells`).  Beyond the map see `beyond`.  Next to
+        a point that did not converge mu_macro is NaN, or its error infinite.
 
         The dataset may be a part of one, chosen or joined by xarray, lazy or not, as long as it has
         mu_macro, mu_macro_error, their coordinates and its attributes.  Without `converged`, nodes
@@ -84,7 +82,8 @@ class Friction(Inverse):
         ----------
         velocity, amplitude : number, sequence or DataArray
             >= 0, no amplitude for continuous-bore.  A sequence becomes a dimension of the answer;
-            DataArrays broadcast by their dimensions.
+            DataArrays broadcast by their dimensions.  Where one is in chunks of dask, so is the
+            answer, and what is asked is looked at when it is computed.
         poisson : number, optional
             Within the range of the dataset's; its only one unless told.
         tolerance : number, optional
@@ -104,10 +103,16 @@ class Friction(Inverse):
             what no limit is proved for: of other motions and pressures than the paper's, all beyond
             the map, unless there is a tolerance.
         """
-        nodes = nodes_of(self._dataset, periodic=self._motion.periodic, poisson=poisson)
+        if lazily.is_lazy(velocity, amplitude):
+            settings = {"poisson": poisson, "tolerance": tolerance}
+            return lazily.answered(self.at, *self._labelled(velocity, amplitude), **settings)
+        if cells.is_certified(self._dataset):
+            nodes = cells.cells_of(self._dataset)
+        else:
+            nodes = nodes_of(self._dataset, periodic=self._motion.periodic, poisson=poisson)
         if beyond.is_known(self._scene, self._pressure):
             refuse_negative(nodes)
-        nu = _poisson_within(nodes.poisson, poisson)
+        nu = poisson_within(nodes.poisson, poisson)
         velocity, amplitude = self._points(velocity, amplitude)
         flat_velocity = velocity.values.ravel().astype(float)
         flat_amplitude = np.full(len(flat_velocity), np.nan)
@@ -131,18 +136,48 @@ class Friction(Inverse):
             self._solve((value, error, source), point, nu, tolerance)
         return self._answer(velocity, value, error, source, nu)
 
+    def on_grid(self, velocity: object = 49, amplitude: object = 49, **settings) -> xr.Dataset:
+        """Friction and a bound of its error on a regular grid, for figures and plain xarray.
+
+        Parameters
+        ----------
+        velocity, amplitude : int or sequence
+            How many of them, over the range of the map, velocities in equal ratios and amplitudes
+            in equal steps; or which ones.  The amplitude does not count for continuous-bore.
+        **settings
+            poisson and tolerance, as for `at`.
+
+        Returns
+        -------
+        xarray.Dataset
+            As `at` gives it, dims (amplitude, velocity).
+
+        Raises
+        ------
+        InputError
+            As `at` does, and for less than two of them.
+        """
+        wanted = {"velocity": velocity}
+        if self._motion.periodic:
+            wanted["amplitude"] = amplitude
+        return self.at(**axes_of_grid(self._dataset, wanted), **settings)
+
     # The question
 
     def _points(self, velocity, amplitude):
+        velocity, amplitude = self._labelled(velocity, amplitude)
+        if amplitude is None:
+            return velocity, None
+        # An outer product has the order of the datasets.
+        amplitude, velocity = xr.broadcast(amplitude, velocity)
+        return velocity, amplitude
+
+    def _labelled(self, velocity, amplitude):
         if (amplitude is None) == self._motion.periodic:
             need = "none" if amplitude is not None else "a number"
             raise InputError("amplitude", amplitude, f"allowed for {self._scene} is {need}")
         velocity = labelled("velocity", velocity)
-        if amplitude is None:
-            return velocity, None
-        # An outer product has the order of the datasets.
-        amplitude, velocity = xr.broadcast(labelled("amplitude", amplitude), velocity)
-        return velocity, amplitude
+        return velocity, None if amplitude is None else labelled("amplitude", amplitude)
 
     def _table(self, nodes, nu, still=False):
         """The map for one Poisson's ratio, see Nodes.table."""
@@ -194,7 +229,8 @@ class Friction(Inverse):
         )
         source = np.full(len(value), MAP)
         last = (part[-1] for part in (table.values, table.errors))
-        far = beyond.distances(limits, table.columns.values, *last, below, widest)
+        far = np.zeros_like(value)
+        far[wide] = beyond.distances(limits, table.columns.values, *last, below[wide], widest)
         for where, code, rule, coordinates, end in (
             (amplitude < narrowest, NARROWER, beyond.narrower, (amplitude,), narrowest),
             (below < slowest, SLOWER, beyond.slower, (below, np.fmin(amplitude, widest)), slowest),
@@ -208,10 +244,12 @@ class Friction(Inverse):
                 source[where] = code
         value, error = beyond.within_the_balance(limits, value, error, velocity, amplitude)
         for where, code, known in (
-            (velocity == 0.0, STATIC, limits.static(amplitude)),
-            (amplitude == 0.0, STILL, np.ones_like(value)),
+            (velocity == 0.0, STATIC, limits.static),
+            (amplitude == 0.0, STILL, np.ones_like),
         ):
-            value[where], error[where], source[where] = known[where], beyond.ROUNDING, code
+            if where.any():
+                value[where], error[where] = known(amplitude[where]), beyond.ROUNDING
+                source[where] = code
         return value, error, source
 
     # The solver
@@ -225,7 +263,7 @@ class Friction(Inverse):
         for k in np.flatnonzero(~(error <= tolerance)):
             velocity, amplitude = (float(part[k]) for part in point)
             size = None if np.isnan(amplitude) else amplitude
-            found = _solved(folder, self._scene, velocity, size, **settings)
+            found = solved(folder, self._scene, velocity, size, **settings)
             source[k] = SOLVER
             value[k], error[k] = np.nan, np.inf
             if found.converged:
@@ -256,37 +294,3 @@ class Friction(Inverse):
             return answer
         about = {"long_name": "Poisson's ratio", "units": "1"}
         return answer.assign_coords(poisson=((), nu, about))
-
-
-def _poisson_within(known, poisson):
-    """The Poisson's ratio that is asked for, a float within the range of those known, ascending."""
-    low, high = float(known[0]), float(known[-1])
-    allowed = f"allowed is {low:g}" + (
-        f" to {high:g}" if high > low else ", the dataset's only one"
-    )
-    if poisson is None and high > low:
-        raise InputError("poisson", None, f"{allowed}: the dataset has {len(known)} of them")
-    if not (poisson is None or is_real(poisson)):
-        raise InputError("poisson", poisson, f"{allowed}, one number")
-    try:
-        nu = low if poisson is None else float(poisson)
-    except OverflowError:  # a whole number of more than 308 digits
-        nu = np.inf
-    if not low - SAME <= nu <= high + SAME:
-        raise InputError("poisson", poisson, f"{allowed}; microslip.solve computes any")
-    return nu
-
-
-def _solved(folder, *point, **settings):
-    """What solve_stored says, kept in the folder, or for now where that takes nothing."""
-    try:
-        return solve_stored(*point, results=folder, **settings)
-    except CacheError as error:
-        warnings.warn(f"answers are not kept: {error}", stacklevel=4)
-        return solve_stored(*point, results=_spare_folder().name, **settings)
-
-
-@cache
-def _spare_folder():
-    """A folder that is gone when Python ends."""
-    return TemporaryDirectory(prefix="microslip-")

@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 
 from microslip.datasets.query.interpolation import Axis, Table, largest_around
+from microslip.foundation.arguments import is_real
 from microslip.foundation.errors import InputError
 
 SAME = 1e-12
@@ -203,3 +204,22 @@ def _known(dataset):
         raise InputError(
             "tolerance", tolerance, "friction.at needs a number there, or the variable converged"
         ) from None
+
+
+def poisson_within(known: np.ndarray, poisson: float | None) -> float:
+    """The Poisson's ratio that is asked for, a float within the range of those known, ascending."""
+    low, high = float(known[0]), float(known[-1])
+    allowed = f"allowed is {low:g}" + (
+        f" to {high:g}" if high > low else ", the dataset's only one"
+    )
+    if poisson is None and high > low:
+        raise InputError("poisson", None, f"{allowed}: the dataset has {len(known)} of them")
+    if not (poisson is None or is_real(poisson)):
+        raise InputError("poisson", poisson, f"{allowed}, one number")
+    try:
+        nu = low if poisson is None else float(poisson)
+    except OverflowError:  # a whole number of more than 308 digits
+        nu = np.inf
+    if not low - SAME <= nu <= high + SAME:
+        raise InputError("poisson", poisson, f"{allowed}; microslip.solve computes any")
+    return nu

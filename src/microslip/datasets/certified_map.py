@@ -1,0 +1,124 @@
+"""The dataset of a certified map: its points, and the cells that answer between them.
+
+    certified_transverse.nc     dims point, cell and node
+
+A cell is a rectangle in the coordinates of sweeps.map_coordinates, and friction in it the
+polynomial through its 5 x 5 points; cell_error is the bound of the error everywhere in it.  The
+same answers give the same bytes.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+
+import numpy as np
+import xarray as xr
+
+from microslip.config.extended import solver_names
+from microslip.config.quantities import AMPLITUDE, MU_MACRO, VELOCITY
+from microslip.config.records import CertifiedMap
+from microslip.datasets import netcdf, sweep_dataset
+from microslip.foundation.canonical import canonical_json
+from microslip.sweeps import map_rounds
+from microslip.sweeps.map_coordinates import MapCoordinates
+from microslip.sweeps.sealed_files import writing_beside
+
+COORDINATES = "map_coordinates"
+"""Attribute that says how a map is cut, as JSON."""
+BORDERS = {
+    "cell_left": "scaled velocity where the cell begins",
+    "cell_right": "scaled velocity where the cell ends",
+    "cell_low": "scaled amplitude where the cell begins",
+    "cell_high": "scaled amplitude where the cell ends",
+}
+
+
+def build(map_: CertifiedMap, rounds: Sequence[dict], records: Iterable[dict]) -> xr.Dataset:
+    """Dataset of a certified map.
+
+    Parameters
+    ----------
+    map_ : CertifiedMap
+        What was asked for.
+    rounds : sequence of dict
+        All of its rounds, see map_rounds.
+    records : iterable of dict
+        That answer them, in any order.
+
+    Raises
+    ------
+    KeyError
+        If a request is not answered.
+    """
+    records = list(records)
+    known = map_rounds.answers_in(rounds, records)
+    found, coordinates = map_rounds.refinement_of(map_, known), map_rounds.coordinates_of(map_)
+    nodes = sorted(known)
+    index = {node: i for i, node in enumerate(nodes)}
+    velocity, amplitude = np.array([coordinates.place(*node) for node in nodes]).T
+    mu, error = np.array([known[node] for node in nodes]).T
+    picked = np.array([[index[node] for node in cell.nodes] for cell in found.cells], np.int32)
+    borders = np.array(found.cells)
+    cells = {
+        name: _variable("cell", borders[:, i], said)
+        for i, (name, said) in enumerate(BORDERS.items())
+    }
+    dataset = xr.Dataset(
+        {
+            "mu_macro": _variable("point", mu, MU_MACRO.description),
+            "mu_macro_error": _variable("point", error, "estimated error of mu_macro"),
+            **cells,
+            "cell_error": _variable("cell", found.errors, "bound of the error in the cell"),
+            "cell_node": (
+                ("cell", "node"),
+                picked,
+                {"long_name": "points of the cell, amplitude fastest"},
+            ),
+        },
+        coords={
+            "velocity": _variable("point", velocity, VELOCITY["transverse"].text),
+            "amplitude": _variable("point", amplitude, AMPLITUDE["transverse"].text),
+            "poisson": ((), map_.sweep.poisson[0], {"long_name": "Poisson's ratio", "units": "1"}),
+        },
+    )
+    scene, pressure = solver_names(map_.sweep)
+    versions = {canonical_json(record["versions"]) for record in records}
+    about = sweep_dataset.provenance(
+        f"Certified friction of a vibrated contact, scene {scene}",
+        map_.settings,
+        versions,
+        scene=scene,
+        pressure=pressure,
+        tolerance=map_.tolerance,
+        error=map_.error,
+        points=len(nodes),
+    )
+    return dataset.assign_attrs(about | {COORDINATES: coordinates.to_json()})
+
+
+def write(path: str | os.PathLike, dataset: xr.Dataset) -> None:
+    """Write the dataset to a netCDF-4 file, all of it or nothing; raises CacheError."""
+    with writing_beside(path, sealed=True) as beside:
+        netcdf.write(beside, dataset, {})
+
+
+def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
+    """Lines of text: how many points there are, what holds everywhere, and where it does not."""
+    errors, failed = dataset["cell_error"].values, int(dataset["mu_macro"].isnull().sum())
+    yield (
+        f"{name}: {dataset.points} points, {failed or 'none'} not converged; within "
+        f"{errors.max():.1e} everywhere"
+    )
+    over = int((errors > dataset.error).sum())
+    if over:
+        yield f"  {over} of {len(errors)} cells are not within {dataset.error:g}"
+
+
+def coordinates_in(dataset: xr.Dataset) -> MapCoordinates:
+    """How the map of a dataset is cut; raises KeyError and ValueError for one that does not say."""
+    return MapCoordinates.from_json(dataset.attrs[COORDINATES])
+
+
+def _variable(dim, values, long_name):
+    return dim, np.array(values, float), {"long_name": long_name, "units": "1"}

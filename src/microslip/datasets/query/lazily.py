@@ -1,0 +1,51 @@
+"""Answers to questions that lie in chunks of dask: chunk by chunk, when they are computed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import xarray as xr
+
+
+def is_lazy(*given: object) -> bool:
+    """Whether any of these is a DataArray in chunks."""
+    return any(isinstance(one, xr.DataArray) and one.chunks is not None for one in given)
+
+
+def answered(
+    at: Callable, velocity: xr.DataArray, amplitude: xr.DataArray | None, **settings
+) -> xr.Dataset:
+    """What `at` says, a Dataset in the chunks of the question.
+
+    Parameters
+    ----------
+    at : callable
+        Friction.at, for what is in memory.
+    velocity, amplitude : xarray.DataArray
+        The question; no amplitude for a steady motion.
+    **settings
+        poisson and tolerance, of `at`.
+    """
+    asked = [velocity] if amplitude is None else [amplitude, velocity]
+    # The names and attributes of an answer are those of any other one.
+    pattern = at(*(1.0 for _ in asked), **settings | {"tolerance": None})
+
+    def block(*places):
+        places = np.broadcast_arrays(*places)[::-1]
+        found = at(*(xr.DataArray(place.ravel(), dims="n") for place in places), **settings)
+        return tuple(found[name].values.reshape(places[0].shape) for name in pattern.data_vars)
+
+    parts = xr.apply_ufunc(
+        block,
+        *asked,
+        dask="parallelized",
+        output_core_dims=[[]] * len(pattern.data_vars),
+        output_dtypes=[pattern[name].dtype for name in pattern.data_vars],
+    )
+    named = {
+        name: part.assign_attrs(pattern[name].attrs)
+        for name, part in zip(pattern.data_vars, parts, strict=True)
+    }
+    rest = {name: c for name, c in pattern.coords.items() if name not in ("velocity", "amplitude")}
+    return xr.Dataset(named, attrs=pattern.attrs).assign_coords(rest)

@@ -1,0 +1,97 @@
+"""Rounds of a certified map: which points are solved next, from what is solved so far.
+
+A round is a plain dict, kept in a file: the nodes to solve in it, the requests for them, and how
+many parts they are cut into.  The round after the last one has no nodes.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from microslip.config.records import CertifiedMap
+from microslip.foundation.canonical import canonical_json
+from microslip.sweeps.batches import PointRequests, key_of
+from microslip.sweeps.map_cells import Answers, Refinement, refined
+from microslip.sweeps.map_coordinates import MapCoordinates
+from microslip.theory.kinks import kinks_of
+
+LEAST_PARTS = 4
+"""Of a round, so that several cores have something to do."""
+SMALLEST_PART = 16
+"""Points for which a process is worth its start."""
+MOST_ROUNDS = 64
+"""More than halving all cells to the smallest takes."""
+
+
+def coordinates_of(map_: CertifiedMap) -> MapCoordinates:
+    """The coordinates that a certified map is cut in."""
+    kinks = kinks_of(map_.sweep.scene, map_.sweep.pressure)
+    return MapCoordinates(map_.velocity, map_.amplitude, kinks)
+
+
+def next_round(map_: CertifiedMap, known: Answers, points_per_job: int) -> dict:
+    """What to solve next, a round.
+
+    known: answers of all rounds so far by node; points_per_job: at most so many are a part.
+    """
+    coordinates = coordinates_of(map_)
+    nodes = refined(coordinates, known, map_.error).missing
+    parts = max(
+        math.ceil(len(nodes) / points_per_job), min(LEAST_PARTS, len(nodes) // SMALLEST_PART), 1
+    )
+    return {
+        "nodes": [list(node) for node in nodes],
+        "requests": [_request(map_, *coordinates.place(*node)) for node in nodes],
+        "parts": parts if nodes else 0,
+    }
+
+
+def _request(map_, velocity, amplitude):
+    """The request for a point, as of a sweep that has it."""
+    point = {"velocity": (velocity,), "amplitude": (amplitude,), "tolerance": map_.tolerance}
+    return PointRequests(replace(map_.sweep, **point))[0]
+
+
+def part_of(round_: dict, part: int) -> list[dict]:
+    """Requests of a part of a round; what takes long lies close together, so each gets some."""
+    return round_["requests"][part :: round_["parts"]]
+
+
+def answers_in(rounds: Iterable[dict], records: Iterable[dict]) -> dict:
+    """Friction and its error by node, from rounds and the records that answer them.
+
+    NaN and infinity where a point did not converge.
+    """
+    results = {record["key"]: record["result"] for record in records}
+    found = {}
+    for round_ in rounds:
+        for (x, y), request in zip(round_["nodes"], round_["requests"], strict=True):
+            result = results[key_of(request)]
+            good = result.get("converged", False)
+            pair = (result["mu_macro"], result["mu_macro_error"]) if good else (math.nan, math.inf)
+            found[x, y] = pair
+    return found
+
+
+def refinement_of(map_: CertifiedMap, known: Answers) -> Refinement:
+    """Where a certified map stands with these answers."""
+    return refined(coordinates_of(map_), known, map_.error)
+
+
+def text_of(round_: dict) -> bytes:
+    """What the file of a round holds."""
+    return f"{canonical_json(round_)}\n".encode()
+
+
+def read_round(path: str | Path) -> dict:
+    """The round in a file."""
+    return json.loads(Path(path).read_text(encoding="utf-8"))
+
+
+def read_rounds(paths: Sequence[str | Path]) -> list[dict]:
+    """The rounds in files, in their order."""
+    return [read_round(path) for path in paths]

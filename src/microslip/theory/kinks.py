@@ -1,0 +1,56 @@
+"""Where the friction of a motion is not smooth: borders for whoever interpolates it.
+
+Across an amplitude that stops all sticking in the limit of slow sliding, and across the velocity
+above which nothing sticks at any time, friction goes on, and its slope or its curvature does not.
+A border need not be exact: what is left of a kink next to it is seen where friction is sampled.
+No stored result depends on this.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Kinks(NamedTuple):
+    """Where the friction of a motion has kinks; all dimensionless.
+
+    Attributes
+    ----------
+    amplitudes : tuple of float
+        At all velocities, sharpest at slow ones.
+    velocity : tuple of float
+        Of a kink at this velocity: () there is none; (v,) the same at all amplitudes;
+        (f, c0, c1, c2) at hypot(f, A^2 / (c0 + c1 A + c2 A^2)) of the amplitude A.
+    """
+
+    amplitudes: tuple[float, ...] = ()
+    velocity: tuple[float, ...] = ()
+
+
+KINKS = {
+    # At the amplitude 1 all of the contact slides sideways.  Above the velocity some of it no
+    # longer sticks at the turning points: read off the second differences of friction at the
+    # amplitudes 0.2, 0.5, 1, 2 and 3 (0.030, 0.113, 0.30, 0.56, 0.69), where it jumps.
+    "transverse": Kinks((1.0,), (0.02, 1.39, 0.975, 0.965)),
+    # The centre of rotation leaves the contact at the velocity 1.
+    "bore": Kinks((), (1.0,)),
+}
+
+
+def kinks_of(motion: str, pressure: str = "hertz") -> Kinks:
+    """What is known of a motion under a pressure, by their names; none of most."""
+    return KINKS.get(motion, Kinks()) if pressure == "hertz" else Kinks()
+
+
+def kink_velocity(kinks: Kinks, amplitude: np.ndarray) -> np.ndarray | None:
+    """Velocity of the kink at amplitudes >= 0, of their shape; None: there is none."""
+    if not kinks.velocity:
+        return None
+    first, *rest = kinks.velocity
+    amplitude = np.asarray(amplitude, float)
+    if not rest:
+        return np.full_like(amplitude, first)
+    c0, c1, c2 = rest
+    return np.hypot(first, amplitude**2 / (c0 + c1 * amplitude + c2 * amplitude**2))

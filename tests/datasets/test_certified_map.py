@@ -1,0 +1,191 @@
+"""Answers from certified maps and from grids of them, in memory and in chunks."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import xarray as xr
+from stubs import certified_stub
+
+import microslip
+from microslip.config import load
+from microslip.datasets import certified_map
+from microslip.datasets.query.accessor import SOURCES
+from microslip.foundation.errors import InputError
+from microslip.sweeps.batches import key_of
+from microslip.theory import masing, paper
+
+ERROR = 1e-2
+
+
+def friction(velocity, amplitude):
+    """Eq 6 with a stiffer amplitude: smooth, 1 at amplitude 0, rising with the velocity."""
+    return paper.large_amplitude_transverse(velocity, np.asarray(amplitude) ** 1.5)
+
+
+def record(request, result=None):
+    good = {"mu_macro_error": 1e-4, "converged": True}
+    place = float(request["velocity"]), float(request["amplitude"])
+    result = result or good | {"mu_macro": float(friction(*place))}
+    return {"key": key_of(request), "request": request, "result": result, "versions": {"x": "1"}}
+
+
+@pytest.fixture(scope="module")
+def made():
+    """A certified map of a made-up friction: its record, rounds and records."""
+    axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": ERROR}}
+    map_ = certified_stub.configured("transverse", **axes)
+    rounds, records = certified_stub.played(map_, record)
+    return SimpleNamespace(map=map_, rounds=rounds, records=records)
+
+
+@pytest.fixture(scope="module")
+def dataset(made, tmp_path_factory):
+    """The dataset of that map, through a file."""
+    path = tmp_path_factory.mktemp("certified") / "certified_transverse.nc"
+    certified_map.write(path, certified_map.build(made.map, made.rounds, made.records))
+    with microslip.open_map("certified_transverse", path.parent) as opened:
+        return opened.load()
+
+
+def places(count, seed=4, dim="n"):
+    rng = np.random.default_rng(seed)
+    return (
+        xr.DataArray(10 ** rng.uniform(-3, 1, count), dims=dim),
+        xr.DataArray(rng.uniform(0, 3, count), dims=dim),
+    )
+
+
+def test_answers_are_within_their_errors_and_these_within_what_was_asked(dataset):
+    velocity, amplitude = places(2000)
+    answer = dataset.friction.at(velocity, amplitude)
+    miss = abs(answer.mu_macro - friction(velocity.values, amplitude.values))
+    assert float((miss <= answer.mu_macro_error).mean()) >= 0.999
+    assert float(answer.mu_macro_error.max()) <= ERROR
+    assert set(answer.source.values) == {SOURCES.index("map")}
+    assert dataset.points == dataset.sizes["point"] == len(np.unique(dataset.cell_node))
+
+
+def test_at_a_node_the_answer_is_the_node(dataset):
+    node = dataset.isel(point=slice(None, None, 7))
+    answer = dataset.friction.at(node.velocity.drop_vars("velocity"), node.amplitude)
+    assert answer.mu_macro.values == pytest.approx(node.mu_macro.values, abs=1e-6)
+
+
+def test_beyond_the_map_the_limits_answer_as_from_any_map(dataset):
+    answer = dataset.friction.at([0.0, 1e-4, 20.0], [0.5, 6.0])
+    assert float(answer.mu_macro[0, 0]) == pytest.approx(paper.static_limit_transverse(0.5))
+    names = np.array(SOURCES)[answer.source.values]
+    assert names[0].tolist() == [
+        "static limit",
+        "between static limit and map",
+        "between map and fast sliding",
+    ]
+    assert set(names[1, 1:]) == {"between map and large amplitude"}
+    assert np.isfinite(answer.mu_macro_error).all()
+    assert float(dataset.friction.at(0.1, 0.0).mu_macro) == 1.0
+
+
+def test_equal_answers_give_equal_files(made, tmp_path):
+    for name, records in (("a.nc", made.records), ("b.nc", made.records[::-1])):
+        certified_map.write(tmp_path / name, certified_map.build(made.map, made.rounds, records))
+    assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
+
+
+def test_a_point_that_failed_leaves_its_cells_unanswered(made):
+    bad = made.records[60]["request"]
+    failed = [r if r["request"] != bad else record(bad, {"converged": False}) for r in made.records]
+    data = certified_map.build(made.map, made.rounds, failed)
+    there = float(bad["velocity"]) * 1.01, float(bad["amplitude"]) * 0.99
+    answer = data.friction.at(*there)
+    assert np.isnan(answer.mu_macro) and np.isinf(answer.mu_macro_error)
+    said = list(certified_map.report(data, "certified_transverse"))
+    assert "1 not converged" in said[0]
+    assert "cells are not within 0.01" in said[1]
+
+
+def test_in_chunks_the_answer_is_the_same_and_waits(dataset):
+    velocity, amplitude = places(1000)
+    at_once = dataset.friction.at(velocity, amplitude)
+    lazy = dataset.friction.at(velocity.chunk(n=300), amplitude.chunk(n=300))
+    assert {name: lazy[name].chunks for name in lazy.data_vars} == dict.fromkeys(
+        at_once.data_vars, ((300, 300, 300, 100),)
+    )
+    xr.testing.assert_identical(lazy.compute(), at_once)
+
+
+def test_in_chunks_questions_broadcast_by_their_dimensions(dataset):
+    velocity, _ = places(20, dim="v")
+    _, amplitude = places(30, dim="a")
+    lazy = dataset.friction.at(velocity.chunk(v=7), amplitude)
+    assert lazy.mu_macro.dims == ("a", "v")
+    xr.testing.assert_identical(lazy.compute(), dataset.friction.at(velocity, amplitude))
+
+
+def test_in_chunks_a_bad_question_is_refused_when_it_is_looked_at(dataset):
+    lazy = dataset.friction.at(xr.DataArray([1.0, -1.0], dims="n").chunk(n=2), 1.0)
+    with pytest.raises(InputError, match="velocity"):
+        lazy.compute()
+
+
+def test_a_grid_has_the_range_of_the_map_and_answers_as_points_do(dataset):
+    grid = dataset.friction.on_grid(velocity=5, amplitude=[0.5, 1.0])
+    assert grid.mu_macro.dims == ("amplitude", "velocity")
+    assert grid.velocity.values == pytest.approx([0.001, 0.01, 0.1, 1, 10])
+    xr.testing.assert_identical(grid, dataset.friction.at(grid.velocity.values, [0.5, 1.0]))
+    assert dataset.friction.on_grid().sizes == {"amplitude": 49, "velocity": 49}
+    # a grid is a map again, for whoever knows nothing of cells
+    plain = grid.assign_attrs(tolerance=ERROR)
+    assert np.isfinite(plain.friction.at(0.05, 0.7).mu_macro)
+
+
+def test_a_grid_of_a_plain_map_leaves_out_velocity_0():
+    dims = ("amplitude", "velocity")
+    velocity, amplitude = [0.0, 0.01, 0.1, 1.0], [0.0, 1.0, 2.0]
+    mu = [[float(friction(max(v, 1e-9), a)) for v in velocity] for a in amplitude]
+    plain = xr.Dataset(
+        {"mu_macro": (dims, mu), "mu_macro_error": (dims, np.full((3, 4), 1e-3))},
+        {"velocity": velocity, "amplitude": amplitude, "poisson": 0.0},
+        {"scene": "transverse", "tolerance": 1e-2},
+    )
+    grid = plain.friction.on_grid(3, 3)
+    assert grid.velocity.values == pytest.approx([0.01, 0.1, 1.0])
+    assert grid.amplitude.values == pytest.approx([0.0, 1.0, 2.0])
+
+
+def test_a_grid_of_one_is_refused(dataset):
+    with pytest.raises(InputError, match="velocity = 1: allowed is how many, 2 or more"):
+        dataset.friction.on_grid(velocity=1)
+
+
+@pytest.mark.parametrize("name", ["mu_macro", "cell_error", "cell_low", "poisson"])
+def test_what_a_map_has_lost_is_named(dataset, name):
+    with pytest.raises(InputError, match=f"{name} = None: friction.at needs it"):
+        dataset.drop_vars(name).friction.at(0.1, 1.0)
+
+
+def test_a_map_without_all_its_points_is_refused(dataset):
+    with pytest.raises(InputError, match="all points"):
+        dataset.isel(point=slice(0, 20)).friction.at(0.1, 1.0)
+
+
+def test_of_other_motions_the_map_answers_and_nothing_beyond():
+    """Along the motion friction is known in closed form, with a kink where nothing sticks."""
+    axes = {"velocity": [0.01, 1], "amplitude": [0.1, 0.9], "group": "lines"}
+    axes |= {"scene": "longitudinal", "adaptive": {"error": 0.03}}
+    paper_too = {"bore": {"velocity": [1], "amplitude": [1]}}
+    given = load.from_mapping({"sweeps": paper_too, "extended": {"along": axes}})
+    (map_,) = given.certified.values()
+
+    def answered(request):
+        place = float(request["velocity"]), float(request["amplitude"])
+        mu = float(masing.longitudinal(*place))
+        return record(request, {"mu_macro": mu, "mu_macro_error": 0.0, "converged": True})
+
+    data = certified_map.build(map_, *certified_stub.played(map_, answered))
+    answer = data.friction.at([0.02, 0.2, 0.9], [0.15, 0.5, 0.85])
+    truth = masing.longitudinal(*np.meshgrid(answer.velocity, answer.amplitude))
+    assert (abs(answer.mu_macro - truth) <= answer.mu_macro_error + 1e-9).all()
+    assert float(answer.mu_macro_error.max()) <= 0.03
+    with pytest.raises(ValueError, match="velocity = 2: allowed is 0.01 to 1"):
+        data.friction.at(2.0, 0.5)

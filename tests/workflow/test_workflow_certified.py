@@ -1,0 +1,85 @@
+"""Certified maps, made by Snakemake in a copy of the project."""
+
+import shutil
+
+import pytest
+from stubs.workflow_project import Project, jobs_in
+
+import microslip
+from microslip.app import leftovers
+from microslip.app.plan import Plan
+from microslip.config import load
+
+pytestmark = pytest.mark.slow
+
+# The rigid model: points that cost nothing.
+AXES = {"velocity": [0.1, 10], "amplitude": [0.5, 3], "model": "rigid", "tolerance": 0.01}
+TINY = {
+    "sweeps": {"transverse": {**AXES, "adaptive": {"error": 0.03}}},
+    "points_per_job": 1000,
+}
+
+
+def certified(project):
+    return (project.folder / "results" / "certified_transverse.nc").read_bytes()
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """A project with a certified map. To be left as it is."""
+    project = Project(tmp_path_factory.mktemp("certified"))
+    project.configure(TINY)
+    project.said = project.run("certified")
+    return project
+
+
+def test_one_command_makes_a_map_whose_error_holds_everywhere(finished):
+    data = microslip.open_map("certified_transverse", finished.folder / "results").load()
+    assert float(data.cell_error.max()) <= data.error == 0.03
+    assert data.points == len(finished.points()) > 25
+    answer = data.friction.at(velocity=0.7, amplitude=1.9)
+    rigid = microslip.solve("transverse", 0.7, 1.9, model="rigid", tolerance=0.01)
+    assert abs(float(answer.mu_macro) - rigid.mu_macro) <= float(answer.mu_macro_error)
+
+
+def test_a_second_run_has_nothing_to_do_and_a_plain_one_makes_no_map(finished):
+    assert "Nothing to be done" in finished.run("certified")
+    assert "collect_certified" not in finished.planned()
+
+
+def test_what_was_killed_goes_on_to_the_same_bytes(finished, tmp_path):
+    """What a kill leaves: rounds that are there in part, and no dataset."""
+    project = finished.copied(tmp_path / "killed")
+    (project.folder / "results" / "certified_transverse.nc").unlink()
+    (folder,) = project.folder.glob("results/rounds/certified_transverse/*")
+    last = max(int(path.stem) for path in folder.glob("*.json") if path.stem.isdecimal())
+    (folder / f"{last}.json").unlink()
+    for path in folder.glob(f"{last - 1}-*.json"):
+        path.unlink()
+    shutil.rmtree(project.folder / ".snakemake")
+    before = project.points()
+    project.run("certified")
+    assert certified(project) == certified(finished)
+    assert project.points() == before
+
+
+def test_a_looser_error_computes_nothing_anew(finished, tmp_path):
+    project = finished.copied(tmp_path / "looser")
+    looser = {**AXES, "adaptive": {"error": 0.1, "tolerance": 0.009}}
+    project.configure({**TINY, "sweeps": {"transverse": looser}})
+    before = project.points()
+    assert jobs_in(project.run("certified"))
+    data = microslip.open_map("certified_transverse", project.folder / "results").load()
+    assert data.error == 0.1
+    assert data.points <= len(before)
+    assert project.points() == before
+
+
+def test_nothing_of_a_map_is_left_over(finished):
+    results = finished.folder / "results"
+    plan = Plan(load.load(finished.folder / "tiny.yaml"))
+    assert not any(leftovers.left_over(results, [plan]).values())
+    without = {**TINY, "sweeps": {"transverse": AXES}}
+    left = leftovers.left_over(results, [Plan(load.from_mapping(without))])
+    assert len(left[leftovers.KINDS[0]]) == len(finished.points())
+    assert [path.name for path in left[leftovers.KINDS[2]]] == ["certified_transverse.nc"]
