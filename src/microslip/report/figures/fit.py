@@ -139,7 +139,7 @@ def _prefix(values: np.ndarray, unit: str) -> tuple[float, str]:
 
 
 def _found(dataset: xr.Dataset) -> str:
-    """Both numbers with the halves of their intervals."""
+    """Both numbers with the larger halves of their intervals."""
     parts = []
     for symbol, name, unit in (
         (r"\mu", "mu{}", ""),
@@ -152,6 +152,6 @@ def _found(dataset: xr.Dataset) -> str:
         value, low, high = (float(dataset[each]) for each in names)
         if np.isfinite([value, low, high]).all():
             factor, unit = _prefix(np.array([value]), unit) if unit else (1.0, "")
-            shown = (value / factor, low / factor, high / factor)
-            parts.append("${} = {:.3g}$ ({:.3g} to {:.3g}) {}".format(symbol, *shown, unit).strip())
+            half = float(f"{max(high - value, value - low) / factor:.2g}")
+            parts.append(rf"${symbol} = {value / factor:.3g} \pm {half:g}$ {unit}".strip())
     return ", ".join(parts)
