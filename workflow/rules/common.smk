@@ -1,5 +1,7 @@
 # What the rules share: the checked configuration, and the batches it leads to.
 
+from itertools import count
+
 from snakemake.io import get_flag_value
 from snakemake.logging import logger as snakemake_log
 
@@ -10,7 +12,7 @@ from microslip.app.progress import Watch
 from microslip.config import schema
 from microslip.foundation import canonical, source_digest
 from microslip.report.explorer import explorer
-from microslip.sweeps import batch_plans, batches, cache
+from microslip.sweeps import batch_plans, batches, cache, map_rounds
 
 # In a module the files are those of another workflow, which may hold more than this one knows.
 FILES = [os.path.relpath(file) for file in workflow.configfiles] if MAIN else []
@@ -105,6 +107,38 @@ def batches_for(dataset):
 def histories_for(name):
     """Files of the batches of the single runs beside a sweep."""
     return whole_batches(*PLAN.groups_beside(name))
+
+
+def round_files(name):
+    """Files of the rounds of a map, one by one; Snakemake goes on here when the next is there."""
+    if STORED_ELSEWHERE:
+        sys.exit(f"Error in {ORIGIN}: {name} needs a folder of results on this machine")
+    for number in count():
+        path = f"{placed(PLAN.rounds_folder(name))}/{number}.json"
+        if workflow.is_main_process:
+            chosen = os.path.basename(PLAN.rounds_folder(name))
+            checkpoints.next_round.get(certified=name, chosen=chosen, round=number)
+        yield path
+
+
+def answered_rounds(name, most):
+    """Files of the rounds of a map that have points, `most` of them at most; and of the batches
+    that answer them."""
+    rounds, batches_there = [], []
+    for number, path in zip(range(most), round_files(name)):
+        parts = map_rounds.read_round(path)["parts"]
+        if not parts:
+            break
+        folder = f"{RESULTS}/{PLAN.rounds_folder(name)}"
+        rounds.append(f"{folder}/{number}.json")
+        batches_there += [f"{folder}/{number}-{part}.json" for part in range(parts)]
+    return {"rounds": rounds, "batches": batches_there}
+
+
+def all_rounds(wildcards):
+    """All that a map is made of."""
+    look_after(f"{wildcards.certified}.nc")
+    return answered_rounds(wildcards.certified, map_rounds.MOST_ROUNDS)
 
 
 def datasets_for(figure):
