@@ -22,6 +22,7 @@ TARGETS = {
     "all": "the datasets and figures of the configuration's sweeps (unless said otherwise)",
     "extended": "the same of other motions and pressures, its key extended",
     "drives": "datasets of contacts that a force or a spring pulls, its key drives",
+    "certified": "maps with an error that holds everywhere, of the sweeps that say adaptive",
     "accuracy": "what accuracy costs, for all models and methods",
     "stability": "where methods fail",
     "claims": "what the paper says, judged",
