@@ -116,12 +116,15 @@ def summary(lines: list[dict]) -> str:
     misses = [line for line in claimed if failed(line)]
     n, x = len(claimed), len(misses)
     bound = beta.ppf(CONFIDENCE, x + 1, n - x) if x < n else 1.0
+    factor = factor_for([ratio(line) for line in claimed])
+    calibrated = f"Claims times {factor:.2f} would cover {COVERED:.1%} of them."
+    if math.isinf(factor):
+        calibrated = f"They are too few to tell what would cover {COVERED:.1%} of them."
     text = [
         tables.markdown(rows),
         "",
         f"{n} claims, {x} of which do not hold: with {CONFIDENCE:.0%} confidence no more than"
-        f" {bound:.2%} of such points fail. Claims times"
-        f" {factor_for([ratio(line) for line in claimed]):.2f} would cover {COVERED:.1%} of them.",
+        f" {bound:.2%} of such points fail. {calibrated}",
     ]
     for line in sorted(misses, key=ratio, reverse=True):
         text.append(
