@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
-from stubs.eq6_map import eq6_map
+from stubs.eq6_map import eq6_map, map_of
 
 from microslip.datasets.query.inverse import OUTCOMES
 from microslip.foundation.errors import InputError
@@ -17,16 +17,7 @@ def peaked(error=0.0):
     """A friction with a peak, made up: 1 - 4 (amplitude - 1)^2 / 9, whatever the velocity."""
     amplitude, velocity = np.linspace(0.0, 2.5, 26), np.array([0.1, 0.3, 1.0, 3.0])
     mu = np.repeat(1.0 - (2.0 * (amplitude[:, None] - 1.0) / 3.0) ** 2, 4, axis=1)
-    dims = ("amplitude", "velocity")
-    return xr.Dataset(
-        {
-            "mu_macro": (dims, mu),
-            "mu_macro_error": (dims, np.full(mu.shape, error)),
-            "converged": (dims, np.ones(mu.shape, bool)),
-        },
-        {"velocity": velocity, "amplitude": amplitude, "poisson": 0.0},
-        {"scene": "longitudinal"},
-    )
+    return map_of(mu, velocity, amplitude, error, scene="longitudinal")
 
 
 @pytest.mark.slow

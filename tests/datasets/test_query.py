@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from stubs.eq6_map import map_of
 
 import microslip
 from microslip.datasets.query import beyond
@@ -24,17 +25,7 @@ AMPLITUDE = np.linspace(0, 3, 13)
 def made_up(velocity=VELOCITY, amplitude=AMPLITUDE, error=0.0, **more):
     """A map of Eq 6 with a stiffer amplitude: smooth, 1 at amplitude 0, rising with velocity."""
     v, a = np.meshgrid(velocity, amplitude)
-    mu = paper.large_amplitude_transverse(v, a**1.5)
-    dims = ("amplitude", "velocity")
-    return xr.Dataset(
-        {
-            "mu_macro": (dims, mu),
-            "mu_macro_error": (dims, np.full(mu.shape, error)),
-            "converged": (dims, np.ones(mu.shape, bool)),
-        },
-        {"velocity": velocity, "amplitude": amplitude, "poisson": 0.0},
-        {"scene": "transverse"} | more,
-    )
+    return map_of(paper.large_amplitude_transverse(v, a**1.5), velocity, amplitude, error, **more)
 
 
 # Interpolation

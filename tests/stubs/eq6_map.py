@@ -13,6 +13,11 @@ def eq6_map(error, velocity=FINE["velocity"], amplitude=FINE["amplitude"]):
     """Friction that rises with the velocity and falls with the amplitude."""
     v, a = np.meshgrid(velocity, amplitude)
     mu = paper.large_amplitude_transverse(v, a**2 / (1.0 + a))  # Eq 6 itself for large ones
+    return map_of(mu, velocity, amplitude, error)
+
+
+def map_of(mu, velocity, amplitude, error=0.0, **attributes):
+    """The dataset of friction (amplitudes, velocities), all converged, known to within an error."""
     dims = ("amplitude", "velocity")
     return xr.Dataset(
         {
@@ -21,5 +26,5 @@ def eq6_map(error, velocity=FINE["velocity"], amplitude=FINE["amplitude"]):
             "converged": (dims, np.ones(mu.shape, bool)),
         },
         {"velocity": velocity, "amplitude": amplitude, "poisson": 0.0},
-        {"scene": "transverse"},
+        {"scene": "transverse"} | attributes,
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -9,17 +10,23 @@ from dataclasses import dataclass, replace
 from microslip.adaptive.chains import Axis
 from microslip.adaptive.refinement import Certified
 from microslip.foundation.errors import InputError
+from microslip.solver import method_names
 from microslip.solver.budget import Budget
-from microslip.solver.method import Method
+from microslip.solver.method import SHIPPED, Method
 from microslip.solver.problem import Problem
 
 TOLERANCE = 1e-3
 """Unless told otherwise; and how strict the search for a periodic state is where none is meant."""
+MOST_WORK = {"polar": 2e9, "cartesian": 2e9}
+MOST_WORK_OF_OTHERS = 2e8
+"""Work, by model, beyond which a point is given up unless told otherwise: more than ten times what
+the slowest points of the paper's range take at the tolerance 1e-4.  Rings have few unknowns, and
+each of them takes longer."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Asked:
-    """A point, checked.
+    """A point, checked; unless told otherwise under a model that was named, by the method shipped.
 
     Attributes
     ----------
@@ -47,14 +54,14 @@ class Asked:
 
     problem: Problem
     model: str
-    chosen: bool
-    method: str
-    how: Method
+    chosen: bool = False
+    method: str = method_names.SHIPPED
+    how: Method = SHIPPED
     tolerance: float | None
-    cells: int | None
-    steps: int | None
+    cells: int | None = None
+    steps: int | None = None
     budget: Budget
-    progress: Callable | None
+    progress: Callable | None = None
     started: float
 
     @property
@@ -81,6 +88,15 @@ class Asked:
     def seconds(self) -> float:
         """By the wall clock, so far."""
         return time.perf_counter() - self.started
+
+
+def budget_for(
+    model: str, most_work: float | None = None, time_limit: float | None = None
+) -> Budget:
+    """The budget.Budget of a point under a model, by its name; None: MOST_WORK, no time limit."""
+    if most_work is None:
+        most_work = MOST_WORK.get(model, MOST_WORK_OF_OTHERS)
+    return Budget(most_work, math.inf if time_limit is None else time_limit)
 
 
 def refuse_free(axes: Sequence[Axis]) -> None:

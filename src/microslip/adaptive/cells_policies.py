@@ -24,6 +24,7 @@ EDGE_CAUTION = 1.25
 """Error over the spread of four runs where each gathers its rings at a stick radius that it finds
 by itself, to the width of a ring."""
 ROUNDED = 1e-9
+"""Difference of two torques below which they are one number."""
 PROJECTED_SHARES = 0.35, 0.45
 """See chains.Axis; of translations to and fro, whose rings fall into line soon."""
 

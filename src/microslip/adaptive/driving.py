@@ -33,23 +33,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from microslip.adaptive.asked import TOLERANCE, Asked
+from microslip.adaptive.asked import TOLERANCE, Asked, budget_for
 from microslip.adaptive.checks import checked_driving, checked_request, refuse_bounds
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.driving_line import DrivingLine
 from microslip.adaptive.moved import marched
 from microslip.adaptive.no_load import NoLoad, no_load
-from microslip.adaptive.point import MOST_WORK, MOST_WORK_OF_OTHERS
 from microslip.adaptive.refinement import certify
 from microslip.foundation.arguments import count
 from microslip.foundation.errors import InputError
 from microslip.motions.mirror_image import mirror_image
-from microslip.solver.budget import Budget
-from microslip.solver.method_names import SHIPPED, method_named
+from microslip.motions.motion import LOOP
 from microslip.solver.problem import Problem
 
 POINTS, MOST_POINTS = 9, 1000
-_LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
 
 
 def drive(
@@ -106,18 +103,11 @@ def drive(
     points = count("points", points, 2, most=MOST_POINTS)
     refuse_bounds(most_work=most_work, time_limit=time_limit)
     name = choose_model(motion, poisson, model)
-    if most_work is None:
-        most_work = MOST_WORK.get(name, MOST_WORK_OF_OTHERS)
     asked = Asked(
         problem=Problem(motion, 0.0, amplitude, poisson),
         model=name,
-        chosen=False,
-        method=SHIPPED,
-        how=method_named(SHIPPED),
         tolerance=tolerance,
-        cells=None,
-        steps=None,
-        budget=Budget(most_work, math.inf if time_limit is None else time_limit),
+        budget=budget_for(name, most_work, time_limit),
         progress=progress,
         started=started,
     )
@@ -145,7 +135,7 @@ class _Contact:
 
     def __init__(self, asked):
         self.asked, self.done, self.sign = asked, {}, 1
-        moves = np.diff(np.stack(asked.problem.oscillation(_LOOP)), axis=1)
+        moves = np.diff(np.stack(asked.problem.oscillation(LOOP)), axis=1)
         self.speed = float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
 
     @property

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable
 from dataclasses import replace
 
-from microslip.adaptive.asked import TOLERANCE, Asked
+from microslip.adaptive.asked import TOLERANCE, Asked, budget_for
 from microslip.adaptive.checks import (
     checked_drive,
     checked_point,
@@ -19,15 +18,8 @@ from microslip.adaptive.result import Result
 from microslip.adaptive.several import body_of, solve_each
 from microslip.foundation.errors import InputError
 from microslip.motions.mirror_image import mirror_image
-from microslip.solver.budget import Budget
 from microslip.solver.method_names import SHIPPED, method_named, refuse_missing
 from microslip.solver.problem import Problem
-
-MOST_WORK = {"polar": 2e9, "cartesian": 2e9}
-MOST_WORK_OF_OTHERS = 2e8
-"""Work, by model, beyond which a point is given up unless told otherwise: more than ten times what
-the slowest points of the paper's range take at the tolerance 1e-4.  Rings have few unknowns, and
-each of them takes longer."""
 
 
 def solve(
@@ -119,8 +111,6 @@ def solve(
         raise InputError("progress", progress, "allowed is a function of one argument")
     name, how = choose_model(motion, poisson, model), method_named(method)
     _refuse_method(motion, name, method, how)
-    if most_work is None:
-        most_work = MOST_WORK.get(name, MOST_WORK_OF_OTHERS)
     asked = Asked(
         problem=body_of(
             Problem(motion, velocity, amplitude, poisson), contacts, name if drive else None
@@ -132,7 +122,7 @@ def solve(
         tolerance=tolerance,
         cells=cells,
         steps=steps,
-        budget=Budget(most_work, math.inf if time_limit is None else time_limit),
+        budget=budget_for(name, most_work, time_limit),
         progress=progress,
         started=time.perf_counter(),
     )

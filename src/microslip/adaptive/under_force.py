@@ -16,11 +16,10 @@ import numpy as np
 
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Drive
-from microslip.motions.motion import Motion
+from microslip.motions.motion import LOOP, Motion
 from microslip.solver.problem import Problem
 from microslip.theory import paper
 
-_LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
 RETURNED = 1e-12
 """Share of the amplitude below which a forward oscillation is rounding."""
 
@@ -65,7 +64,7 @@ def oscillates_forward(problem: Problem) -> bool:
     """Whether the oscillation alone moves the contact, or one of several, forward and back."""
     if problem.parts:
         return any(oscillates_forward(part.problem) for part in problem.parts)
-    forward = problem.oscillation(_LOOP)[0]
+    forward = problem.oscillation(LOOP)[0]
     return float(np.ptp(forward)) > RETURNED * max(problem.amplitude, 1.0)
 
 
@@ -73,7 +72,7 @@ def oscillates(problem: Problem) -> bool:
     """Whether anything oscillates at all."""
     if problem.parts:
         return any(oscillates(part.problem) for part in problem.parts)
-    parts = problem.oscillation(_LOOP)
+    parts = problem.oscillation(LOOP)
     moves = max(float(np.ptp(part)) for part in parts) > RETURNED * max(problem.amplitude, 1.0)
     return moves or (problem.depth is not None and problem.amplitude > 0.0)
 
@@ -99,7 +98,7 @@ def least_load(problem: Problem) -> float:
     """Least normal load in a period, over its mean."""
     if not problem.motion.periodic or problem.depth is None:
         return 1.0
-    loads = problem.motion.pressure.total(np.asarray(problem.depth(_LOOP), dtype=float))
+    loads = problem.motion.pressure.total(np.asarray(problem.depth(LOOP), dtype=float))
     return max(float(loads.min()), 0.0) / problem.mean_load
 
 

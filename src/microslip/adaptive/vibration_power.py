@@ -6,25 +6,20 @@ both together are what friction dissipates.
 
 from __future__ import annotations
 
-import math
 import time
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from microslip.adaptive.asked import TOLERANCE, Asked
+from microslip.adaptive.asked import TOLERANCE, Asked, budget_for
 from microslip.adaptive.checks import checked_point, checked_request
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.moved import marched
-from microslip.adaptive.point import MOST_WORK, MOST_WORK_OF_OTHERS
 from microslip.adaptive.refinement import certify
 from microslip.foundation.errors import InputError
-from microslip.solver.budget import Budget
-from microslip.solver.method_names import SHIPPED, method_named
+from microslip.motions.motion import LOOP
 from microslip.solver.problem import Problem
-
-_LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
 
 
 class VibrationPower(NamedTuple):
@@ -84,17 +79,11 @@ def vibration_power(
     asked = Asked(
         problem=problem,
         model=name,
-        chosen=False,
-        method=SHIPPED,
-        how=method_named(SHIPPED),
         tolerance=tolerance,
-        cells=None,
-        steps=None,
-        budget=Budget(MOST_WORK.get(name, MOST_WORK_OF_OTHERS), math.inf),
-        progress=None,
+        budget=budget_for(name),
         started=time.perf_counter(),
     )
-    moves = np.diff(np.stack(problem.oscillation(_LOOP)), axis=1)
+    moves = np.diff(np.stack(problem.oscillation(LOOP)), axis=1)
     speed = float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
 
     def power_as_force(run):

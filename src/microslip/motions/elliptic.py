@@ -12,7 +12,7 @@ import numpy as np
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
-from microslip.motions.motion import HALF_PERIOD, Motion, stick_focus
+from microslip.motions.motion import HALF_PERIOD, LOOP, Motion, stick_focus
 
 SUMMARY = "sliding forward while oscillating along two directions"
 HELP = (
@@ -28,7 +28,6 @@ DEFAULTS = {
 }
 MOST_CYCLES = 20
 WHOLE_PERIOD = (*HALF_PERIOD, 1.5 * np.pi)
-_LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
 
 
 def motion(
@@ -53,7 +52,7 @@ def motion(
         across = amplitude * lateral * np.sin(lateral_cycles * phase)
         return along, across, np.zeros_like(phase)
 
-    ahead, aside, _ = displacement(_LOOP, 0.0, 1.0, 0.0)
+    ahead, aside, _ = displacement(LOOP, 0.0, 1.0, 0.0)
     reach = float(np.hypot(ahead, aside).max())
     mirrored = lateral_cycles % 2 == 1 and (forward == 0.0 or forward_cycles % 2 == 0)
     both_odd = forward_cycles % 2 == lateral_cycles % 2 == 1

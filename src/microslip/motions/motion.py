@@ -18,6 +18,8 @@ FOCUS_RANGE = (0.05, 0.9995)
 """Radii that rings may gather at; a stick zone smaller than the first carries next to no load."""
 
 
+LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
+"""Phases of a period, close enough to see where an oscillation goes."""
 HALF_PERIOD = (-np.pi / 2, np.pi / 2)
 """From one turning point of a sine to the next."""
 

@@ -22,9 +22,9 @@ import numpy as np
 from microslip.models.path import SDIRK2, Path, make_path, phases_between
 from microslip.models.rings.side_by_side import BodyPath, RingsSideBySide
 from microslip.motions.body_contacts import BodyContact, written
+from microslip.motions.motion import LOOP
 from microslip.solver.problem import Problem, build_contact
 
-_LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
 RETURNED = 1e-12
 """Share of the amplitude below which an oscillation is rounding."""
 NEAREST_TURNS = 1e-6
@@ -102,7 +102,7 @@ class BodyProblem(Problem):
     @cached_property
     def moves_together(self) -> bool:
         """Whether all contacts oscillate alike along the direction of the forward motion."""
-        ahead = np.array([part.oscillation(_LOOP)[0] for part in self.parts])
+        ahead = np.array([part.oscillation(LOOP)[0] for part in self.parts])
         return float(np.ptp(ahead, axis=0).max()) <= RETURNED * max(self.amplitude, 1.0)
 
     @cached_property
@@ -111,8 +111,8 @@ class BodyProblem(Problem):
 
         Each has an opposite then, and at rest the two of them exert no forward force together.
         """
-        there = self.oscillation(_LOOP + np.pi)
-        here = self.oscillation(_LOOP)
+        there = self.oscillation(LOOP + np.pi)
+        here = self.oscillation(LOOP)
         reversed_at = max(float(np.ptp(a + b)) for a, b in zip(here, there, strict=True))
         if reversed_at > RETURNED * max(self.amplitude, 1.0):
             return False
@@ -163,7 +163,7 @@ def why_not(problem: BodyProblem) -> str:
     if any(one.load != 1.0 for one in problem.contacts):
         if not motion.pressure.is_indenter:
             return f"allowed are equal loads: how {motion.pressure.name} grows is not known"
-        translation = problem.oscillation(_LOOP)[:2]
+        translation = problem.oscillation(LOOP)[:2]
         if motion.rotates and max(np.ptp(along) for along in translation) > 0.0:
             return f"allowed are equal loads for {motion.name}, of which a part is an angle"
     if motion.rotates and any(one.amplitude == 0.0 for one in problem.contacts):
