@@ -120,7 +120,7 @@ _solve = solve
 
 def solve(scene, velocity, amplitude=None, **settings):
     result = _solve(scene, velocity, amplitude, **settings)
-    return replace(result, mu_macro=math.nan, converged=False, reason="stalled")
+    return replace(result, mu_macro=float("nan"), converged=False, reason="stalled")
 """
 
 
