@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from microslip.si.dimensionless import largest_slip_speed
+from microslip.si.bodies import TwoBodies
+from microslip.si.dimensionless import RealMotion, largest_slip_speed
 
 YIELDS_AT = 0.57
 """Largest Hertz pressure over hardness at which plastic flow sets in below the surface: 1.6 of the
@@ -35,12 +36,12 @@ surface is tilted by 30 degrees at the edge, and a sphere is 7 % deeper there th
 Hertz takes for it."""
 
 
-def broken_assumptions(contact, motion) -> list[str]:
+def broken_assumptions(contact: TwoBodies, motion: RealMotion) -> list[str]:
     """List of warnings; contact: bodies.TwoBodies, motion: dimensionless.RealMotion."""
     return [text for check in _CHECKS for text in check(contact, motion)]
 
 
-def unchecked(contact) -> list[str]:
+def unchecked(contact: TwoBodies) -> list[str]:
     """What could not be checked, for want of which property: list of texts."""
     missing = []
     for name, what in (("hardness", "whether the bodies stay elastic"), ("density", "inertia")):
