@@ -7,33 +7,30 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from microslip.config.quantities import MU_MACRO
 from microslip.datasets.query import beyond, cells, lazily
+from microslip.datasets.query.answers import (
+    EXACT,
+    FASTER,
+    MAP,
+    NARROWER,
+    SLOWER,
+    SOLVER,
+    STATIC,
+    STILL,
+    WIDER,
+    answered,
+)
 from microslip.datasets.query.coordinates import labelled
 from microslip.datasets.query.grid import axes_of_grid
 from microslip.datasets.query.inverse import Inverse
 from microslip.datasets.query.nodes import poisson_within, refuse_negative
 from microslip.datasets.query.nodes_once import NodesOnce
-from microslip.datasets.query.solver import solved
+from microslip.datasets.query.solver import pulled_by, solved
 from microslip.datasets.query.within import refuse_beyond, within
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
 from microslip.motions.by_name import motion_named
 from microslip.theory.catalogue import FORMS
-
-SOURCES = (
-    "map",
-    "no vibration",
-    "static limit",
-    "between static limit and map",
-    "between map and fast sliding",
-    "between map and large amplitude",
-    "between map and no vibration",
-    "closed form",
-    "solver",
-)
-"""Where an answer comes from, by its code in the variable `source`."""
-(MAP, STILL, STATIC, SLOWER, FASTER, WIDER, NARROWER, EXACT, SOLVER) = range(len(SOURCES))
 
 
 @xr.register_dataset_accessor("friction")
@@ -50,14 +47,17 @@ class Friction(Inverse):
             raise ValueError(
                 "no scene of microslip: allowed is the dataset of a sweep, with its attributes"
             ) from None
-        if "drive" in dataset.attrs:
+        if "force" in dataset.attrs.get("drive", ""):
             raise ValueError(
-                f"the contact of this dataset is pulled ({dataset.attrs['drive']}): allowed is one "
-                "that is moved at a velocity, and sel and interp for this one"
+                "the contact of this dataset is pulled by a force, which is friction itself: "
+                "allowed is one that is moved at a velocity or by a spring, and sel and interp here"
             )
         self._dataset = dataset
         self._scene = self._motion.name
         self._pressure = dataset.attrs.get("pressure", "hertz")
+        # What is proved is so of one contact at a given velocity.
+        alone = not {"drive", "contacts"} & set(dataset.attrs)
+        self._limits_known = alone and beyond.is_known(self._scene, self._pressure)
         self._nodes = NodesOnce()
         self._tables = {}  # by what they are made of: a dataset may be changed in place
 
@@ -113,7 +113,7 @@ class Friction(Inverse):
         else:
             periodic = self._motion.periodic
             nodes = self._nodes.of(self._dataset, periodic=periodic, poisson=poisson)
-        if beyond.is_known(self._scene, self._pressure):
+        if self._limits_known:
             refuse_negative(nodes)
         nu = poisson_within(nodes.poisson, poisson)
         velocity, amplitude = self._points(velocity, amplitude)
@@ -121,7 +121,7 @@ class Friction(Inverse):
         flat_amplitude = np.full(len(flat_velocity), np.nan)
         if amplitude is not None:
             flat_amplitude = amplitude.values.ravel().astype(float)
-        if not beyond.is_known(self._scene, self._pressure):
+        if not self._limits_known:
             answer = self._map_alone(nodes, flat_velocity, flat_amplitude, nu, tolerance)
         elif self._table(nodes, nu) is None:
             raise InputError("velocity", 0.0, "friction.at needs nodes above 0 in the dataset")
@@ -137,7 +137,7 @@ class Friction(Inverse):
                 raise InputError("tolerance", tolerance, "allowed is a number above 0")
             point = flat_velocity, flat_amplitude
             self._solve((value, error, source), point, nu, tolerance)
-        return self._answer(velocity, value, error, source, nu)
+        return answered(self._scene, velocity, (value, error, source), nu)
 
     def on_grid(self, velocity: object = 49, amplitude: object = 49, **settings) -> xr.Dataset:
         """Friction and a bound of its error on a regular grid, for figures and plain xarray.
@@ -196,6 +196,8 @@ class Friction(Inverse):
         tables = self._table(nodes, nu), self._table(nodes, nu, still=True)
         if tolerance is None:
             what = self._scene if self._pressure == "hertz" else f"pressure {self._pressure}"
+            if {"drive", "contacts"} & set(self._dataset.attrs):
+                what = f"{what} under a spring or of several contacts"
             refuse_beyond(*tables, velocity, rows, what)
         value, error = within(*tables, velocity, rows)
         return value, error, np.full(len(value), MAP)
@@ -262,6 +264,7 @@ class Friction(Inverse):
         value, error, source = answer
         path = self._dataset.encoding.get("source")
         settings = {"poisson": nu, "tolerance": tolerance, "pressure": self._pressure}
+        settings |= pulled_by(self._dataset)
         folder = str(Path(path).parent) if path else "results"
         for k in np.flatnonzero(~(error <= tolerance)):
             velocity, amplitude = (float(part[k]) for part in point)
@@ -271,29 +274,3 @@ class Friction(Inverse):
             value[k], error[k] = np.nan, np.inf
             if found.converged:
                 value[k], error[k] = found.mu_macro, found.mu_macro_error
-
-    # The answer
-
-    def _answer(self, shape, value, error, source, nu):
-        def variable(values, long_name, **more):
-            attributes = {"long_name": long_name} | more
-            return shape.dims, values.reshape(shape.shape), attributes
-
-        answer = xr.Dataset(
-            {
-                "mu_macro": variable(value, MU_MACRO.description, units="1"),
-                "mu_macro_error": variable(error, "bound of its error", units="1"),
-                "source": variable(
-                    source.astype(np.int8),
-                    "where the answer comes from",
-                    flag_values=np.arange(len(SOURCES), dtype=np.int8),
-                    flag_meanings=" ".join(name.replace(" ", "_") for name in SOURCES),
-                ),
-            },
-            coords=shape.coords,
-            attrs={"scene": self._scene},
-        )
-        if "poisson" in answer.dims:
-            return answer
-        about = {"long_name": "Poisson's ratio", "units": "1"}
-        return answer.assign_coords(poisson=((), nu, about))

@@ -18,7 +18,8 @@ import xarray as xr
 
 from microslip.config.records import SCENE_OF_SWEEP
 from microslip.datasets.netcdf import group_names
-from microslip.datasets.query.accessor import SOURCES, Friction
+from microslip.datasets.query.accessor import Friction
+from microslip.datasets.query.answers import SOURCES
 from microslip.foundation.errors import InputError
 from microslip.sweeps.sealed_files import CacheError, is_damaged, refuse_no_folder
 

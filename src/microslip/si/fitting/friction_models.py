@@ -68,6 +68,9 @@ class MapFriction:
         if attributes.get("scene") != scene or attributes.get("pressure", "hertz") != "hertz":
             what = attributes.get("scene") or type(dataset).__name__
             raise InputError("map", what, f"allowed is the dataset of a sweep of {scene}")
+        if {"drive", "contacts"} & set(attributes):
+            allowed = "allowed is that of one contact that is moved at a velocity"
+            raise InputError("map", scene, f"it is pulled or has several contacts; {allowed}")
         self._dataset, self._poisson = dataset, poisson
         self._ends = {
             name: (
