@@ -28,6 +28,9 @@ LOWER_ORDER = 0.25
 """Of the third differences, which count where fourth ones happen to cancel."""
 LOW_DEGREE = 2.0
 """Factor of second differences: of degree 2 a polynomial misses a larger share of what it adds."""
+RESOLVED = 0.05
+"""Largest surplus that says how wrong a cell may be.  Of a larger one, which only a loose error
+would accept, the share that is missed can be a multiple of SHARE, so the cell is halved anyway."""
 SMALLEST = 2.0**-9
 """Width of a cell, in patches, that is not halved again."""
 
@@ -112,7 +115,8 @@ def refined(coordinates: MapCoordinates, known: Answers, error: float) -> Refine
         surpluses = surpluses_of(values.reshape([n + 1 for n in degrees]))
         bound = errors.max() + SHARE * sum(surpluses)
         worst = _worst(cell, surpluses)
-        if bound > error and worst is not None:
+        is_good = bound <= error and sum(surpluses) <= RESOLVED
+        if not is_good and worst is not None:
             pending.extend(cell.halves(worst)[::-1])
         else:
             done.append((cell, float(bound) if np.isfinite(bound) else np.inf))
