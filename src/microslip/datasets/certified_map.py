@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 
 from microslip.config.extended import solver_names
-from microslip.config.quantities import AMPLITUDE, MU_MACRO, VELOCITY
+from microslip.config.quantities import MU_MACRO
 from microslip.config.records import CertifiedMap
 from microslip.datasets import netcdf, sweep_dataset
 from microslip.foundation.canonical import canonical_json
@@ -37,11 +37,6 @@ SCALED = {
     "velocity": "scaled velocity",
     "amplitude": "scaled amplitude",
     "poisson": "scaled Poisson's ratio",
-}
-ABOUT = {
-    "velocity": VELOCITY["transverse"].text,
-    "amplitude": AMPLITUDE["transverse"].text,
-    "poisson": "Poisson's ratio",
 }
 
 
@@ -67,15 +62,15 @@ def build(map_: CertifiedMap, rounds: Sequence[dict], records: Iterable[dict]) -
     found, coordinates = map_rounds.refinement_of(map_, known), map_rounds.coordinates_of(map_)
     nodes = sorted(known)
     index = {node: i for i, node in enumerate(nodes)}
-    degrees, places = coordinates.degrees, zip(*map(coordinates.place, nodes), strict=True)
+    degrees, places = coordinates.degrees, [coordinates.place(node) for node in nodes]
     mu, error = np.array([known[node] for node in nodes]).T
     picked = np.array([[index[n] for n in cell.nodes(degrees)] for cell in found.cells], np.int32)
     axes = {
-        name: _variable("point", values, ABOUT[name])
-        for name, values in zip(coordinates.directions, places, strict=True)
+        name: ("point", np.array(values))
+        for name, values in zip(coordinates.directions, zip(*places, strict=True), strict=True)
     }
     if "poisson" not in axes:
-        axes["poisson"] = _variable((), map_.sweep.poisson[0], ABOUT["poisson"])
+        axes["poisson"] = ((), map_.sweep.poisson[0])
     dataset = xr.Dataset(
         {
             "mu_macro": _variable("point", mu, MU_MACRO.description),
@@ -90,6 +85,7 @@ def build(map_: CertifiedMap, rounds: Sequence[dict], records: Iterable[dict]) -
         },
         coords=axes,
     )
+    sweep_dataset.describe_axes(dataset, map_.sweep)
     scene, pressure = solver_names(map_.sweep)
     versions = {canonical_json(record["versions"]) for record in records}
     about = sweep_dataset.provenance(
@@ -100,7 +96,7 @@ def build(map_: CertifiedMap, rounds: Sequence[dict], records: Iterable[dict]) -
         pressure=pressure,
         tolerance=map_.tolerance,
         error=map_.error,
-        points=len(nodes),
+        points=len(set(places)),  # a place where slow and fast cells meet can be two nodes
         directions=" ".join(coordinates.directions),
         degrees=np.array(degrees, np.int32),
     )
