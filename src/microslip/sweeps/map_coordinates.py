@@ -1,11 +1,11 @@
 """Coordinates in which a map is even: kinks at borders of patches, velocities by their powers.
 
 A map over velocity and amplitude, and perhaps Poisson's ratio, is cut into patches at the kinks
-that its motion is known to have (theory.kinks).  In the scaled coordinates patches are unit boxes.
-Where velocities are slower than the kink they are even in the power 1/3, half of that with which
-friction comes close to its static limit; amplitudes are cut at their kinks and gather there, and
-where the oscillation sets in.  Where they are faster, velocities are even in the logarithm, and
-amplitudes, whose kinks are gone, in that of 1 + 2 A.
+that its motion is known to have (theory.kinks); one of the static limit has no velocity.  In the
+scaled coordinates patches are boxes.  Where velocities are slower than the kink they are even in
+the power 1/3, half of that with which friction comes close to its static limit; amplitudes are cut
+at their kinks and gather there, and where the oscillation sets in.  Where they are faster,
+velocities are even in the logarithm, and amplitudes, whose kinks are gone, in that of 1 + 2 A.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class MapCoordinates(NamedTuple):
     Attributes
     ----------
     velocity : tuple of float
-        Smallest and largest, above 0.
+        Smallest and largest, above 0; () for the static limit, where it is no direction of the map.
     amplitude : tuple of float
         Smallest and largest, >= 0.
     kinks : theory.kinks.Kinks
@@ -54,7 +54,7 @@ class MapCoordinates(NamedTuple):
         Smallest and largest Poisson's ratio; () where it is no direction of the map.
     """
 
-    velocity: tuple[float, float]
+    velocity: tuple[float, ...]
     amplitude: tuple[float, float]
     kinks: Kinks = Kinks()
     poisson: tuple[float, ...] = ()
@@ -62,7 +62,7 @@ class MapCoordinates(NamedTuple):
     @property
     def directions(self) -> tuple[str, ...]:
         """Names of the quantities that the map is over, in the order of scaled coordinates."""
-        return ("velocity", "amplitude", "poisson")[: 3 if self.poisson else 2]
+        return tuple(name for name in DEGREES if getattr(self, name))
 
     @property
     def degrees(self) -> tuple[int, ...]:
@@ -72,11 +72,12 @@ class MapCoordinates(NamedTuple):
     @property
     def patches(self) -> list[Box]:
         """Boxes in scaled coordinates that cover the map, those of slow velocities first."""
-        flat = [((0.0, float(row)), (1.0, row + 1.0)) for row in range(len(self._borders) - 1)]
+        rows = [((float(row),), (row + 1.0,)) for row in range(len(self._borders) - 1)]
+        flat = [((0.0, *low), (1.0, *high)) for low, high in rows] if self.velocity else rows
         if self._is_cut:
             ends = [FAST + i / FAST_PATCHES for i in range(FAST_PATCHES + 1)]
             flat += [((x, 0.0), (right, 1.0)) for x, right in zip(ends, ends[1:], strict=False)]
-        deep = len(self.directions) - 2
+        deep = len(self.directions) - len(flat[0][0])
         return [(begin + (0.0,) * deep, end + (1.0,) * deep) for begin, end in flat]
 
     @classmethod
@@ -98,7 +99,11 @@ class MapCoordinates(NamedTuple):
 
         places: by direction, velocities first, shape (n,) each.
         """
-        v, a, *rest = (np.asarray(part, float) for part in places)
+        places = [np.asarray(part, float) for part in places]
+        deep = [_share(places.pop(), self.poisson)] if self.poisson else []
+        if not self.velocity:
+            return np.stack([self._rows(*places), *deep], axis=-1)
+        v, a = places
         x, y = _share(np.log(v), np.log(self.velocity)), self._rows(a)
         if self._is_cut:
             middle, (slow, fast) = self._cut_at(a), self.velocity
@@ -107,11 +112,17 @@ class MapCoordinates(NamedTuple):
             above = FAST + _share(np.log(v), (np.log(middle), np.log(fast)))
             x = np.where(is_slow, below, above)
             y = np.where(is_slow, y, _share(_spread(a), _spread(np.array(self.amplitude))))
-        return np.stack([x, y, *(_share(nu, self.poisson) for nu in rest)], axis=-1)
+        return np.stack([x, y, *deep], axis=-1)
 
     def place(self, node: tuple[float, ...]) -> tuple[float, ...]:
-        """Velocity, amplitude and what else is a direction at scaled coordinates, in DIGITS."""
-        x, y, *rest = node
+        """What the directions are at scaled coordinates, in DIGITS digits."""
+        *node, nu = [*node] if self.poisson else [*node, 0.0]
+        deep = [_between(nu, self.poisson)] if self.poisson else []
+        flat = self._place(*node) if self.velocity else (self._amplitude_at(*node),)
+        return tuple(_rounded(value) for value in (*flat, *deep))
+
+    def _place(self, x, y):
+        """Velocity and amplitude."""
         slow, fast = self.velocity
         if self._is_cut and x >= FAST:
             amplitude = _gathered_small(_between(y, _spread(np.array(self.amplitude))))
@@ -123,8 +134,7 @@ class MapCoordinates(NamedTuple):
         else:
             amplitude = self._amplitude_at(y)
             velocity = np.exp(_between(x, np.log(self.velocity)))
-        found = velocity, amplitude, *(_between(z, self.poisson) for z in rest)
-        return tuple(_rounded(value) for value in found)
+        return velocity, amplitude
 
     @property
     def _borders(self):
@@ -133,8 +143,10 @@ class MapCoordinates(NamedTuple):
 
     @property
     def _is_cut(self):
+        if not (self.velocity and self.kinks.velocity):
+            return False
         slow, fast = self.velocity
-        if not self.kinks.velocity or fast <= CLEAR**2 * slow:
+        if fast <= CLEAR**2 * slow:
             return False
         at_ends = kink_velocity(self.kinks, np.array(self.amplitude))
         return bool(at_ends.max() > CLEAR * slow and at_ends.min() < fast / CLEAR)
