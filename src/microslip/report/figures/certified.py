@@ -16,7 +16,7 @@ from microslip.report.figures.formulas import mathtext
 from microslip.report.figures.map_panel import fill
 from microslip.report.figures.small_maps import CONTOURS, LABELLED
 
-BOUND = "bound of the error, thousandths  (dimensionless)"
+BOUND = "bound of the error,\nthousandths  (dimensionless)"
 INKS = look.BLUE, look.VERMILLION
 NODES, LINE = 97, 201
 """Velocities and amplitudes at which the map is asked for the picture of it, a map or a line."""
