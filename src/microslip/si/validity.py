@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from microslip.si.dimensionless import largest_slip_speed
+from microslip.si.bodies import TwoBodies
+from microslip.si.dimensionless import RealMotion, largest_slip_speed
 
 YIELDS_AT = 0.57
 """Largest Hertz pressure over hardness at which plastic flow sets in below the surface: 1.6 of the
@@ -13,7 +14,8 @@ HARDEST = 0.1
 """Hardness over Young's modulus that no metal, ceramic or glass is above: it is 2.8 times the yield
 stress, which is a few per cent of the modulus at most."""
 RUBBERY = 0.45
-"""Poisson's ratio from which on a body is taken for a rubber, which does not yield."""
+"""Poisson's ratio from which on a body is taken for a rubber, which does not yield but loses energy
+inside: its modulus rises with the frequency (K. A. Grosch, Proc. R. Soc. A 274, 1963)."""
 ADHESION = 0.05
 """Work of adhesion of clean smooth surfaces that only van der Waals forces hold, N/m, of that order
 (J. N. Israelachvili, Intermolecular and Surface Forces)."""
@@ -35,12 +37,12 @@ surface is tilted by 30 degrees at the edge, and a sphere is 7 % deeper there th
 Hertz takes for it."""
 
 
-def broken_assumptions(contact, motion) -> list[str]:
+def broken_assumptions(contact: TwoBodies, motion: RealMotion) -> list[str]:
     """List of warnings; contact: bodies.TwoBodies, motion: dimensionless.RealMotion."""
     return [text for check in _CHECKS for text in check(contact, motion)]
 
 
-def unchecked(contact) -> list[str]:
+def unchecked(contact: TwoBodies) -> list[str]:
     """What could not be checked, for want of which property: list of texts."""
     missing = []
     for name, what in (("hardness", "whether the bodies stay elastic"), ("density", "inertia")):
@@ -71,6 +73,15 @@ def _too_hard(contact, motion):
                 "no metal, ceramic or glass is so hard that it stays elastic"
             )
             return
+
+
+def _lossy(contact, motion):
+    if any(body.poisson >= RUBBERY and not body.rigid for body in contact.bodies):
+        yield (
+            f"Poisson's ratio from {RUBBERY:g} on is that of rubber, whose modulus rises with the "
+            "frequency and whose losses inside rub too: give Young's modulus at this frequency; "
+            "the losses are left out"
+        )
 
 
 def _adhesive(contact, motion):
@@ -151,4 +162,4 @@ def _mismatched(contact, motion):
 
 
 _CHECKS = (_plastic, _too_hard, _steep, _far, _inertia, _mismatched)
-_CHECKS += (_adhesive, _atomic, _rough_mu)
+_CHECKS += (_adhesive, _atomic, _rough_mu, _lossy)
