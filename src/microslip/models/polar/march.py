@@ -13,7 +13,7 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 from microslip.models.coulomb import coulomb_residual, extended, shrink
 from microslip.models.interrupts import BETWEEN_LOOKS, interrupted
-from microslip.models.point_fields import rigid_displacement, sum_forces
+from microslip.models.point_fields import add, copy, rigid_displacement, sum_forces
 from microslip.models.polar.angular_modes import Sectors, apply_sectors, fold, unfold
 
 MAX_ITERATIONS = 4000
@@ -117,24 +117,6 @@ def project_relaxed(free, bound, q, dual) -> None:
             q[1, j, i] = f * lateral
             dual[0, j, i] = forward - f * forward
             dual[1, j, i] = lateral - f * lateral
-
-
-@kernel
-def copy(out, values) -> None:
-    """out[:] = values for shape (2, M, N); see rings.tangent.copy."""
-    for c in range(2):
-        for j in range(out.shape[1]):
-            for i in range(out.shape[2]):
-                out[c, j, i] = values[c, j, i]
-
-
-@kernel
-def add(out, factor, values) -> None:
-    """out += factor values for shape (2, M, N)."""
-    for c in range(2):
-        for j in range(out.shape[1]):
-            for i in range(out.shape[2]):
-                out[c, j, i] += factor * values[c, j, i]
 
 
 class Step(NamedTuple):

@@ -18,7 +18,13 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 from microslip.models.coulomb import coulomb_residual
 from microslip.models.interrupts import BETWEEN_LOOKS, interrupted
-from microslip.models.point_fields import rigid_displacement, sum_forces
+from microslip.models.point_fields import (
+    add,
+    copy,
+    move_forward,
+    rigid_displacement,
+    sum_forces,
+)
 from microslip.models.polar.angular_modes import apply_sectors, fold, unfold
 from microslip.models.polar.march import (
     FEWEST_BETWEEN,
@@ -28,8 +34,6 @@ from microslip.models.polar.march import (
     Scratch,
     Step,
     Unknowns,
-    add,
-    copy,
     fill_slip,
     project_relaxed,
     shrink_onto,
@@ -94,7 +98,7 @@ def _residual(points, step, equation, place, state, scratch) -> float:
     """Fill slip at a place; returns how far both laws are from being kept, as a force."""
     (q, _), slip = state
     fill_slip(points.influence, step.b, q, scratch.folded, scratch.image, slip)
-    slip[0] += place
+    move_forward(slip, place)
     left = coulomb_residual(q, slip, step.bound, points.weight, points.penalty)
     return left + abs(equation.load - equation.stiffness * place - _forward(points.weight, q))
 
@@ -220,7 +224,7 @@ def pulled_march(points, path, pull, state, known, settings) -> tuple:
     add(z, -2.0, z)
     sum_forces(q, weight, positions, forces[0])
     body[0, 0], body[0, 1] = starting_place(pull, forces[0, 0]), pull.start[1]
-    z[0] -= body[0, 0]
+    move_forward(z, -body[0, 0])
     total, iterations, spent = 0.0, 0, 0.0
     for k in range(path.stages.shape[0]):
         length = pull.lengths[k]
@@ -233,7 +237,7 @@ def pulled_march(points, path, pull, state, known, settings) -> tuple:
                 add(b, -path.carry[s, j], slips[j])
                 past_place += path.carry[s, j] * known.advances[k, j]
                 past_rate += path.carry[s, j] * rates[j]
-            b[0] += past_place
+            move_forward(b, past_place)
             copy(before, q)
             if known.known:
                 add(q, 1.0, known.added[k, s])
@@ -268,6 +272,6 @@ def pulled_march(points, path, pull, state, known, settings) -> tuple:
         copy(z, b)
         add(z, -1.0, slips[stages - 1])
         add(z, -1.0, rigid)
-        z[0] -= past_place
+        move_forward(z, -past_place)
         sum_forces(q, weight, positions, forces[k + 1])
     return q, total, iterations, False

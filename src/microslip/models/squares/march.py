@@ -15,7 +15,7 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 from microslip.models.coulomb import extended, shrink
 from microslip.models.interrupts import BETWEEN_LOOKS, interrupted
-from microslip.models.point_fields import rigid_displacement, sum_forces
+from microslip.models.point_fields import add, copy, rigid_displacement, sum_forces
 from microslip.models.squares.convolution import Convolution, convolve
 
 MAX_ITERATIONS = 5000
@@ -119,18 +119,19 @@ def march(squares, positions, path, state, tolerance, guide) -> tuple:
     length = 1.0 / squares.scale
     convolve(squares.operator, squares.workspace, q, z)
     rigid_displacement(path.positions[0], positions, rigid)
-    z -= rigid
+    add(z, -1.0, rigid)
     sum_forces(q, weight, positions, forces[0])
     total, iterations, spent = 0.0, 0, 0.0
     for k in range(steps):
         for s in range(stages):
             rigid_displacement(path.stages[k, s], positions, rigid)
-            b[:] = z + rigid
+            copy(b, z)
+            add(b, 1.0, rigid)
             for j in range(s):
-                b -= path.carry[s, j] * slips[j]
+                add(b, -path.carry[s, j], slips[j])
             if guide.given:  # what the other march added in this stage is added here, too
                 extrapolate(q, guide.known[k, s], last_guide, bound, q)
-                last_guide[:] = guide.known[k, s]
+                copy(last_guide, guide.known[k, s])
             elif k > 1:
                 extrapolate(before[0, s], before[0, s], before[1, s], bound, q)
             count, residual, length = solve_step(squares, b, q, slips[s], length, tolerance)
@@ -141,14 +142,14 @@ def march(squares, positions, path, state, tolerance, guide) -> tuple:
                 spent = 0.0
             iterations += count
             total += residual
-            before[1, s] = before[0, s]
-            before[0, s] = q
-            guide.found[min(k, len(guide.found) - 1), s] = q
-        b -= slips[stages - 1] + rigid
+            copy(before[1, s], before[0, s])
+            copy(before[0, s], q)
+            copy(guide.found[min(k, len(guide.found) - 1), s], q)
         for c in range(2):
             for i in range(q.shape[1]):
                 for j in range(q.shape[2]):
-                    z[c, i, j] = extended(z[c, i, j], b[c, i, j], end)
+                    now = b[c, i, j] - (slips[stages - 1, c, i, j] + rigid[c, i, j])
+                    z[c, i, j] = extended(z[c, i, j], now, end)
                     at_end[c, i, j] = extended(at_end[c, i, j], q[c, i, j], end)
         sum_forces(at_end, weight, positions, forces[k + 1])
     return at_end, forces, total, iterations, False

@@ -14,7 +14,13 @@ import numpy as np
 
 from microslip.foundation.compiled import kernel
 from microslip.models.interrupts import BETWEEN_LOOKS, interrupted
-from microslip.models.point_fields import rigid_displacement, sum_forces
+from microslip.models.point_fields import (
+    add,
+    copy,
+    move_forward,
+    rigid_displacement,
+    sum_forces,
+)
 from microslip.models.pull import stage_load, stage_stiffness, starting_place
 from microslip.models.squares.convolution import convolve
 from microslip.models.squares.march import extrapolate, solve_step
@@ -69,11 +75,12 @@ def solve_pulled_step(squares, b, state, equation, tolerance) -> tuple:
         Iterations, residual, last length, place; -1 iterations: interrupted.
     """
     (q, slip, length), steepest = state, equation.stiffness + equation.holding
-    imposed, place, slope = b.copy(), equation.place, steepest
+    imposed, place, slope = np.empty_like(b), equation.place, steepest
     low, high, before, last_gap = -np.inf, np.inf, np.nan, np.nan
     iterations, left = 0, np.inf
     for _ in range(MOST_PLACES):
-        imposed[0] = b[0] + place
+        copy(imposed, b)
+        move_forward(imposed, place)
         count, residual, length = solve_step(squares, imposed, q, slip, length, INNER * tolerance)
         if count < 0:
             return -1, residual, length, place
@@ -131,21 +138,22 @@ def pulled_march(squares, positions, path, pull, state, settings) -> tuple:
     length = 1.0 / squares.scale
     convolve(squares.operator, squares.workspace, q, z)
     rigid_displacement(path.positions[0], positions, rigid)
-    z -= rigid
+    add(z, -1.0, rigid)
     sum_forces(q, weight, positions, forces[0])
     body[0, 0], body[0, 1] = starting_place(pull, forces[0, 0]), pull.start[1]
-    z[0] -= body[0, 0]
+    move_forward(z, -body[0, 0])
     total, iterations, spent = 0.0, 0, 0.0
     for k in range(steps):
         for s in range(stages):
             rigid_displacement(path.stages[k, s], positions, rigid)
             past_place, past_rate = body[k, 0], body[k, 1]
-            b[:] = z + rigid
+            copy(b, z)
+            add(b, 1.0, rigid)
             for j in range(s):
-                b -= path.carry[s, j] * slips[j]
+                add(b, -path.carry[s, j], slips[j])
                 past_place += path.carry[s, j] * advances[j]
                 past_rate += path.carry[s, j] * rates[j]
-            b[0] += past_place
+            move_forward(b, past_place)
             if k > 1:
                 extrapolate(before[0, s], before[0, s], before[1, s], bound, q)
             equation = Equation(
@@ -165,11 +173,13 @@ def pulled_march(squares, positions, path, pull, state, settings) -> tuple:
                 spent = 0.0
             iterations += count
             total += residual
-            before[1, s] = before[0, s]
-            before[0, s] = q
+            copy(before[1, s], before[0, s])
+            copy(before[0, s], q)
         body[k + 1, 0] = past_place + advances[stages - 1]
         body[k + 1, 1] = advances[stages - 1] / pull.lengths[k]
-        z[:] = b - slips[stages - 1] - rigid
-        z[0] -= past_place
+        copy(z, b)
+        add(z, -1.0, slips[stages - 1])
+        add(z, -1.0, rigid)
+        move_forward(z, -past_place)
         sum_forces(q, weight, positions, forces[k + 1])
     return q, body, forces, total, iterations, False
