@@ -26,7 +26,7 @@ PERIODS_PER_JOB = 150
 DATASET_CODE = ("datasets/sweep_dataset.py", "report/dataset_page.py")
 """Modules that make the dataset of a sweep, besides what these import."""
 STUDY_CODE = ("datasets/sweep_dataset.py", "report/study_page.py", "studies")
-CERTIFIED_CODE = ("datasets/certified_map.py",)
+CERTIFIED_CODE = ("datasets/certified_map.py", "report/dataset_page.py")
 ROUND_CODE = ("sweeps/map_rounds.py",)
 """What says which points of a certified map are next."""
 PAGE = "explorer.html"
@@ -217,9 +217,8 @@ class Plan:
 
     def made_files(self) -> list[str]:
         """All files that are made to be kept: datasets, pages, figures."""
-        names = self.datasets
-        certified = (f"{name}.nc" for name in self.configuration.certified)
-        return [*self.dataset_files(names), *certified, *self.figure_files(names), PAGE]
+        names = [*self.datasets, *self.configuration.certified]
+        return [*self.dataset_files(names), *self.figure_files(names), PAGE]
 
     # What things are made of
 
@@ -275,6 +274,7 @@ def _figures(configuration, of_studies):
             yield figure, names
     for group, names in configuration.groups.items():
         yield drawing.figure_of(group), names
+    yield from ((name, (name,)) for name in configuration.certified)
 
 
 def _is_drawable(figure, names, configuration):

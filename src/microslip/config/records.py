@@ -79,10 +79,10 @@ class CertifiedMap:
     tolerance: float  # of the points
 
     @property
-    def velocity(self) -> tuple[float, float]:
-        """The smallest velocity above 0, and the largest."""
+    def velocity(self) -> tuple[float, ...]:
+        """The smallest velocity above 0, and the largest; () for a map of the static limit."""
         positive = [velocity for velocity in self.sweep.velocity if velocity > 0]
-        return positive[0], positive[-1]
+        return (positive[0], positive[-1]) if self.sweep.spans_a_map else ()
 
     @property
     def amplitude(self) -> tuple[float, float]:
@@ -90,10 +90,17 @@ class CertifiedMap:
         return self.sweep.amplitude[0], self.sweep.amplitude[-1]
 
     @property
+    def poisson(self) -> tuple[float, ...]:
+        """The smallest and the largest Poisson's ratio; () for a map of one."""
+        ratios = self.sweep.poisson
+        return (ratios[0], ratios[-1]) if len(ratios) > 1 else ()
+
+    @property
     def settings(self) -> dict:
         """All that its points depend on, as a dict for JSON."""
-        kept = ("scene", "pressure", "poisson", "model")
+        kept = ("scene", "pressure", "model")
         found = {name: getattr(self.sweep, name) for name in kept}
+        found["poisson"] = self.poisson or self.sweep.poisson
         ranges = {"velocity": self.velocity, "amplitude": self.amplitude}
         return found | ranges | {"error": self.error, "tolerance": self.tolerance}
 

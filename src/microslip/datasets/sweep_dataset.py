@@ -99,7 +99,7 @@ def _root(sweep):
         coords["poisson"] = ((), sweep.poisson[0])
     coords |= {name: ((), values[0]) for name, values, _ in sweep.drives if name not in coords}
     dataset = xr.Dataset(theory_limits.variables(sweep), coords)
-    _describe_axes(dataset, sweep)
+    describe_axes(dataset, sweep)
     return dataset
 
 
@@ -164,7 +164,7 @@ def _axes(sweep):
     return axes | ({"velocity": sweep.velocity} if sweep.velocity else {"force": force})
 
 
-def _describe_axes(dataset, sweep):
+def describe_axes(dataset: xr.Dataset, sweep: Sweep) -> None:
     """Name the axes; `formula` is what a coordinate is, in the words of the scene."""
     scene = motion_named(sweep.scene)
     axes = [(VELOCITY, scene.velocity_label)] if sweep.velocity else []

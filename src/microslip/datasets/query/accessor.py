@@ -107,12 +107,12 @@ class Friction(Inverse):
         """
         if lazily.is_lazy(velocity, amplitude):
             settings = {"poisson": poisson, "tolerance": tolerance}
-            return lazily.answered(self.at, *self._labelled(velocity, amplitude), **settings)
+            asked = self._labelled(velocity, amplitude)
+            return lazily.answered(self.at, self._dataset, *asked, **settings)
         if cells.is_certified(self._dataset):
             nodes = cells.cells_of(self._dataset)
         else:
-            periodic = self._motion.periodic
-            nodes = self._nodes.of(self._dataset, periodic=periodic, poisson=poisson)
+            nodes = self._nodes.of(self._dataset, periodic=self._motion.periodic, poisson=poisson)
         if self._limits_known:
             refuse_negative(nodes)
         nu = poisson_within(nodes.poisson, poisson)
@@ -121,7 +121,7 @@ class Friction(Inverse):
         flat_amplitude = np.full(len(flat_velocity), np.nan)
         if amplitude is not None:
             flat_amplitude = amplitude.values.ravel().astype(float)
-        if not self._limits_known:
+        if not self._limits_known or cells.is_static(self._dataset):
             answer = self._map_alone(nodes, flat_velocity, flat_amplitude, nu, tolerance)
         elif self._table(nodes, nu) is None:
             raise InputError("velocity", 0.0, "friction.at needs nodes above 0 in the dataset")
@@ -146,7 +146,8 @@ class Friction(Inverse):
         ----------
         velocity, amplitude : int or sequence
             How many of them, over the range of the map, velocities in equal ratios and amplitudes
-            in equal steps; or which ones.  The amplitude does not count for continuous-bore.
+            in equal steps; or which ones.  No amplitude counts for continuous-bore, and no velocity
+            for a certified map of the static limit.
         **settings
             poisson and tolerance, as for `at`.
 
@@ -160,7 +161,7 @@ class Friction(Inverse):
         InputError
             As `at` does, and for less than two of them.
         """
-        wanted = {"velocity": velocity}
+        wanted = {"velocity": [0.0] if cells.is_static(self._dataset) else velocity}
         if self._motion.periodic:
             wanted["amplitude"] = amplitude
         return self.at(**axes_of_grid(self._dataset, wanted), **settings)
