@@ -24,6 +24,8 @@ FITTED, JUDGED = 3, 4
 FITTED_SHARES = 0.75, 1.0
 """Errors of fitted axes over the largest projection, and over the scatter about the line: chosen on
 random bores, of which none is off by more than that and the share below which no claim goes."""
+RESOLVED = 0.125
+"""Share of the tolerance below which no axis claims its error to be: nothing was run to see it."""
 READING_CAUTION = 2.5
 """Error over the sum of what the readings of a pressure change: a peak or an edge that falls
 between the points of a grid shows in none of them in full."""
@@ -67,7 +69,7 @@ class Axis:
         its levels, but for a scatter: a line through the last FITTED of the values tells what is
         left.
     resolved : float
-        Share of the tolerance below which it claims no error: nothing was run to see it.
+        See RESOLVED.
     """
 
     name: str
@@ -82,7 +84,7 @@ class Axis:
     scatter: float = 0.5
     tied: tuple[tuple[str, tuple[int, ...]], ...] = ()
     fitted: bool = False
-    resolved: float = 0.125
+    resolved: float = RESOLVED
 
     @property
     def refines(self) -> tuple[str, ...]:
