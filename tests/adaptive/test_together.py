@@ -69,6 +69,7 @@ def test_all_levels_are_refined_at_once_each_run_from_the_one_before():
     assert (found.finest.cells, found.finest.angles, found.finest.steps) == expected[-1]
 
 
+@pytest.mark.slow
 def test_scattered_errors_are_covered_nearly_always():
     draw, held = np.random.default_rng(5), []
     for seed in range(400):
@@ -94,6 +95,7 @@ def test_axes_are_apart_elsewhere(scene, tolerance, imposed):
     assert [axis.name for axis in axes] == ["cells", "angles", "steps"]
 
 
+@pytest.mark.slow
 def test_no_claim_goes_below_a_share_of_the_tolerance():
     for tolerance in (TOGETHER_FROM, 2e-4):
         result = microslip.solve("bore", 3.0, 0.5, tolerance=tolerance)
@@ -137,7 +139,7 @@ def test_turning_slip_is_interpolated_between_angles():
 
 
 def test_a_run_from_a_coarser_one_ends_where_it_would_by_itself():
-    fine = Resolution(16, 8, 16)
+    fine = Resolution(24, 8, 16)
     coarse = simulate(BORE, "polar", Resolution(8, 6, 12), 1e-6)
     alone, led = (simulate(BORE, "polar", fine, 1e-6, guess) for guess in (None, coarse))
     assert alone.converged and led.converged and led.iterations < alone.iterations

@@ -42,6 +42,9 @@ ROTATING_RINGS = 12
 contact does, and the best augmentation lies between the two: it grows with the root of their
 number."""
 
+FEWEST_PROLONGED = 16
+"""Rings below which tractions of a coarser contact are no better a start than the static limit."""
+
 
 class PolarContact:
     """Rings times points on half the disc (see models.contact.Contact); states: (2, angles, cells).
@@ -127,11 +130,13 @@ class PolarContact:
 
     def prolonged(self, state: np.ndarray) -> np.ndarray | None:
         """Tractions of the same contact on other rings and angles, (2, angles, cells) of these,
-        brought to the points of this one; None where it does not turn, or its load changes.
+        brought to the points of this one; None where it does not turn, its load changes, or its
+        rings are too few for that to be of use.
 
         What is interpolated is the share of the friction bound.
         """
-        if not self.rotates or self.loaded is not None:
+        few = len(self.rings.radius) < FEWEST_PROLONGED
+        if few or not self.rotates or self.loaded is not None:
             return None
         _, focus, pressure = self._made_of
         rings, count = make_rings(state.shape[2], focus, pressure), state.shape[1]
