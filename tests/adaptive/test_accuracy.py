@@ -12,8 +12,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from microslip.adaptive.chains import CALIBRATED, EXTRAPOLATED_SHARES, Axis
-from microslip.adaptive.refinement import MOST_REBASED, RESOLVED, certify
+from microslip.adaptive.chains import CALIBRATED, EXTRAPOLATED_SHARES, RESOLVED, Axis
+from microslip.adaptive.refinement import MOST_REBASED, certify
 from microslip.solver.budget import Spent
 from microslip.solver.problem import Resolution
 from microslip.solver.simulate import Run

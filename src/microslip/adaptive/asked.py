@@ -117,7 +117,7 @@ def verdict(
     """
     if asked.budget.exhausted:
         certified = replace(certified, **asked.budget.counts())
-    names = [axis.name for axis in axes]
+    names = [name for axis in axes for name in axis.refines]
     within = largest is None or certified.error <= largest
     reason = certified.reason
     if certified.converged and not within:

@@ -86,7 +86,7 @@ def _is_slow(problem):
     return problem.motion.periodic and 0.0 < problem.creep < SLOW_CREEP
 
 
-def _like_a_sphere(problem):
+def like_a_sphere(problem: Problem) -> bool:
     """Whether the load is as far from the centre, in the mean, as that of a sphere."""
     return abs(problem.motion.pressure.torque - HERTZ.torque) < ROUNDED
 
@@ -158,7 +158,7 @@ CELLS_POLICIES = (
     ),
     CellsPolicy(
         "rotation under another pressure: its peak falls between rings, and no trend is safe",
-        lambda problem, model: problem.motion.rotates and not _like_a_sphere(problem),
+        lambda problem, model: problem.motion.rotates and not like_a_sphere(problem),
         base=8,
         first=(8, 16),
         regular=False,

@@ -6,6 +6,9 @@ See microslip.adaptive.refinement for how an answer is made of them.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
 
 from microslip.solver.problem import Resolution
 
@@ -16,6 +19,13 @@ CALIBRATED = 1.4
 """Error over what is estimated by the second power, from shares or projections, and over the mixed
 difference: chosen on the random points of benchmarks/certificates.py, where 1 claim in 100 would
 not hold without."""
+FITTED, JUDGED = 3, 4
+"""Runs that a fitted value is extrapolated from, and those that its error is seen by."""
+FITTED_SHARES = 0.75, 1.0
+"""Errors of fitted axes over the largest projection, and over the scatter about the line: chosen on
+random bores, of which none is off by more than that and the share below which no claim goes."""
+RESOLVED = 0.125
+"""Share of the tolerance below which no axis claims its error to be: nothing was run to see it."""
 READING_CAUTION = 2.5
 """Error over the sum of what the readings of a pressure change: a peak or an edge that falls
 between the points of a grid shows in none of them in full."""
@@ -51,9 +61,15 @@ class Axis:
     scatter : float
         Share of the correction along an irregular axis that its scatter may do to the differences
         of other chains.
-    tied : tuple or None
-        Name and levels of what is refined together with it, where neither converges without the
-        other.
+    tied : tuple of (str, tuple of int)
+        Names and levels of what is refined together with it, where none converges without the
+        others.
+    fitted : bool
+        What it refines is all that there is, and the error of that falls with the second power of
+        its levels, but for a scatter: a line through the last FITTED of the values tells what is
+        left.
+    resolved : float
+        See RESOLVED.
     """
 
     name: str
@@ -66,12 +82,14 @@ class Axis:
     caution: float = 1.0
     shares: tuple[float, float] = EXTRAPOLATED_SHARES
     scatter: float = 0.5
-    tied: tuple[str, tuple[int, ...]] | None = None
+    tied: tuple[tuple[str, tuple[int, ...]], ...] = ()
+    fitted: bool = False
+    resolved: float = RESOLVED
 
     @property
     def refines(self) -> tuple[str, ...]:
         """Names of what it refines: itself, and what is tied to it."""
-        return (self.name,) if self.tied is None else (self.name, self.tied[0])
+        return self.name, *(name for name, _ in self.tied)
 
 
 class Runs:
@@ -90,16 +108,22 @@ class Runs:
         """The base with some indices replaced, as a problem.Resolution."""
         at = self.base | indices
         levels = {name: self.axes[name].levels[index] for name, index in at.items()}
-        tied = ((self.axes[name].tied, index) for name, index in at.items())
-        levels |= {pair[0]: pair[1][index] for pair, index in tied if pair is not None}
+        for name, index in at.items():
+            levels |= {other: counts[index] for other, counts in self.axes[name].tied}
         return replace(self.coarsest, **levels)
 
     def __call__(self, **indices):
         resolution = self.resolution(**indices)
         if resolution not in self.done:
-            guess = self.done.get(self.resolution())
-            self.done[resolution] = self.run(resolution, guess)
+            self.done[resolution] = self.run(resolution, self._guess(indices))
         return self.done[resolution]
+
+    def _guess(self, indices):
+        """A run near that at some indices: at the base, or one level coarser on a fitted axis."""
+        coarser = {
+            name: index - 1 for name, index in indices.items() if self.axes[name].fitted and index
+        }
+        return self.done.get(self.resolution(**coarser))
 
 
 class Readings:
@@ -154,6 +178,8 @@ class Chain:
         added = values[-1] - getattr(self.runs(), name)
         if self.axis.regular:
             added += _extrapolation(values, self.levels)
+        if self.axis.fitted:
+            added += _line(values[-FITTED:], self.levels[-FITTED:]).limit - values[-1]
         return added
 
     def error(self, name: str) -> float:
@@ -165,8 +191,12 @@ class Chain:
             change = values[-1] + beyond - values[-2] - before
             share, share_of_change = self.axis.shares
             return CALIBRATED * (share * abs(beyond) + share_of_change * abs(change))
-        last = slice(-len(self.axis.first), None)
+        last = slice(-JUDGED if self.axis.fitted else -len(self.axis.first), None)
         values, levels = values[last], levels[last]
+        if self.axis.fitted:
+            share, share_of_scatter = FITTED_SHARES
+            scatter = _line(values, levels).scatter
+            return share * _largest_projection(values, levels) + share_of_scatter * scatter
         if self.axis.projected:
             return CALIBRATED * self.axis.caution * _largest_projection(values, levels)
         return self.axis.caution * (max(values) - min(values))
@@ -183,6 +213,31 @@ def _largest_projection(values, levels):
         abs(_extrapolation(values[:end], levels[:end])) * (levels[end - 1] / levels[-1]) ** 2
         for end in range(2, len(values) + 1)
     )
+
+
+class _Line(NamedTuple):
+    """A line through values over the inverse square of their levels.
+
+    Attributes
+    ----------
+    limit : float
+        Where it says that they go.
+    scatter : float
+        Of a value at the last level about it: what is scattered falls as the error does.
+    """
+
+    limit: float
+    scatter: float
+
+
+def _line(values, levels):
+    scale = (np.array(levels) / levels[-1]) ** 2
+    # each value times its scale, so that all of them scatter alike
+    terms = np.stack([scale, np.ones(len(levels))], axis=1)
+    given = scale * np.array(values)
+    (limit, slope), *_ = np.linalg.lstsq(terms, given, rcond=None)
+    missed = given - terms @ [limit, slope]
+    return _Line(float(limit), float(np.sqrt(missed @ missed / (len(levels) - 2))))
 
 
 def refines_cells(chains: dict[str, Chain]) -> str | None:

@@ -64,7 +64,7 @@ class Marched(NamedTuple):
 def marched(asked: Asked) -> Marched:
     """The Marched of a point with a velocity of at least 0."""
     problem, motion, tolerance = asked.problem, asked.problem.motion, asked.accuracy
-    coarsest, axes = plan(problem, asked.model, tolerance, asked.cells, asked.steps)
+    coarsest, axes = plan(problem, asked.model, tolerance, asked.cells, asked.steps, together=True)
     if asked.tolerance is None:
         refuse_free(axes)
     share = PERIODICITY_SHARE * tolerance

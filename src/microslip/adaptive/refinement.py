@@ -15,6 +15,8 @@ one the base itself is refined.
   would still go by each of the last two differences.
 - steps: the error scatters about its trend, since a ring starts to slip somewhere within a step; so
   it is taken as over the angles.
+- all together, of bores at tight tolerances: a line through the last runs is extrapolated; a share
+  of the largest projection, and the scatter about the line, stay as error.
 - readings: where the pressure is known on a grid alone, the finest run along the cells is done
   again for every other pressure that the same numbers may stand for; how far these are apart is an
   error that no refinement removes.
@@ -41,8 +43,6 @@ from microslip.solver.budget import Spent
 from microslip.solver.problem import Resolution
 from microslip.solver.run import Run
 
-RESOLVED = 0.125
-"""Share of the tolerance below which no axis claims its error to be: nothing was run to see it."""
 LARGEST_OPEN = 0.5
 """Share of the tolerance that the readings may take for runs to be refined for what is left."""
 MOST_REBASED = 6
@@ -262,7 +262,7 @@ def _errors(runs, chains, hidden, tolerance):
     """Errors of mu by source."""
     errors = {"space": hidden["angles"], "time": hidden["steps"]}
     for name, chain in chains.items():
-        floor = 0.0 if chain.axis.imposed else RESOLVED * tolerance
+        floor = 0.0 if chain.axis.imposed else chain.axis.resolved * tolerance
         errors[SOURCES[name]] += max(chain.error(runs.quantity), floor)
     done = runs.done.values()
     errors["periodicity"] = float(max(r.distance for r in done))

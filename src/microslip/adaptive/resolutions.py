@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from microslip.adaptive.cells_policies import RINGS, cells_axis, levels_finer
-from microslip.adaptive.chains import Axis
+from microslip.adaptive.cells_policies import RINGS, cells_axis, levels_finer, like_a_sphere
+from microslip.adaptive.chains import JUDGED, Axis
 from microslip.models.registry import MODELS
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.static_limit import at_turning_points
@@ -28,6 +28,10 @@ comes to lie scatters from run to run."""
 PROJECTED_CAUTION = {"angles": 1.3, "steps": 1.8}
 PROJECTED_SCATTER = 0.3
 """See chains.Axis."""
+TOGETHER_FROM, TOGETHER_RESOLVED = 5e-4, 0.8
+"""Tolerance from which on rings, angles and steps of a bore are refined together, and the share of
+it below which none of these points claims its error to be: the few runs of a point may come to lie
+on a line by chance."""
 SWEEPING_STEPS = 4
 """Steps in half a period over rings where the edge of the contact sweeps over these.  They join it
 one by one, and the error scatters unless both are refined together."""
@@ -42,6 +46,8 @@ def plan(
     tolerance: float,
     cells: int | None = None,
     steps: int | None = None,
+    *,
+    together: bool = False,
 ) -> tuple[Resolution, tuple[Axis, ...]]:
     """Resolution of what is not refined, and the axes to refine (see refinement.certify).
 
@@ -55,8 +61,13 @@ def plan(
         Absolute, on the friction.
     cells, steps : int or None
         Impose a resolution instead; steps in a full period.
+    together : bool
+        Whether rings, angles and steps may be refined together, where that is cheaper.
     """
     motion = problem.motion
+    free = cells is None and steps is None and tolerance <= TOGETHER_FROM
+    if together and free and _falls_smoothly(problem, model):
+        return Resolution(cells=1, angles=1, steps=STEPS[0]), (_all_together(problem, tolerance),)
     resolved, axes = MODELS[model].axes(motion), []
     marches = motion.periodic and (problem.velocity > 0.0 or not at_turning_points(motion))
     sweeps = motion.depth is not None and marches and cells is None and steps is None
@@ -82,13 +93,31 @@ def _imposed(name, count):
     return Axis(name, levels, 2, (0, 1, 2), imposed=True)
 
 
+def _falls_smoothly(problem, model):
+    """Whether the error of a contact that oscillates falls smoothly if all is refined together."""
+    motion = problem.motion
+    oscillates = motion.periodic and motion.rotates and motion.depth is None
+    return model == "polar" and oscillates and like_a_sphere(problem) and problem.velocity > 0.0
+
+
+def _all_together(problem, tolerance):
+    """Rings, angles and steps: a point that starts to slip between two rings, two angles or two
+    steps makes the value scatter along each axis, the more, the coarser the others are."""
+    rings = RINGS[: len(ANGLES)]
+    tied = ("angles", ANGLES), ("steps", _step_levels(problem, STEPS[1 : len(ANGLES) + 1]))
+    start = levels_finer(1e-2 / tolerance) // 2
+    first = tuple(range(start, start + JUDGED))
+    resolved = TOGETHER_RESOLVED
+    return Axis("cells", rings, start, first, tied=tied, fitted=True, resolved=resolved)
+
+
 def _sweeping(problem, tolerance):
     """Steps and rings together."""
     rings = RINGS[RINGS.index(BASE_RINGS) :]
     levels = _step_levels(problem, [SWEEPING_STEPS * count for count in rings])
     base = 1 if tolerance >= 5e-3 else 2
     first = tuple(range(base - 1, base + 3))
-    return Axis("steps", levels, base, first, caution=SWEEPING_CAUTION, tied=("cells", rings))
+    return Axis("steps", levels, base, first, caution=SWEEPING_CAUTION, tied=(("cells", rings),))
 
 
 def _step_levels(problem, counts):

@@ -20,6 +20,9 @@ period changed, and to LOOSEST at first: more would be wasted on a start that is
 DEPTH = 12
 NOISE = 0.1
 """Share of a period's change that its steps may leave unsolved."""
+LOOSEST_NEAR, QUIET = 1e-5, 0.25
+"""The same from a start that is near, and the share of NOISE that steps are to leave there after
+the next march: with many steps each has to be solved better, or the march counts for nothing."""
 FORGETFUL = 0.2
 """Contraction of the plain map from the start on below which it is left alone."""
 
@@ -43,14 +46,18 @@ def search(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicStat
     """
     accelerate, step_tolerance = Anderson(period_map.metric, DEPTH), goal.step_tolerance
     state, best = start, None
-    inner = max(step_tolerance, LOOSEST)
+    forcing, loosest = FORCING, LOOSEST
+    if goal.near:
+        forcing = min(FORCING, QUIET * NOISE / len(period_map.path.stages))
+        loosest = LOOSEST_NEAR
+    inner = max(step_tolerance, loosest)
     forgets, last_residual = True, np.inf
     while period_map.marches < goal.most_marches:
         interval = period_map(state, inner)
         solved = inner <= step_tolerance
         noisy = not solved and interval.march.residual > NOISE * interval.residual
-        ceiling = NOISE * inner if noisy else LOOSEST
-        inner = max(step_tolerance, min(FORCING * interval.residual, ceiling))
+        ceiling = NOISE * inner if noisy else loosest
+        inner = max(step_tolerance, min(forcing * interval.residual, ceiling))
         if noisy:
             continue  # what is left of the steps hides what the period changed
         forgets = forgets and interval.residual <= FORGETFUL * last_residual

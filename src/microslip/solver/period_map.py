@@ -30,12 +30,15 @@ class Goal(NamedTuple):
         Marches to try.
     inverse : np.ndarray or None, shape (start.size, start.size)
         Of a search from a start near by, if there was one: the inverse of 1 - F' (see newton.py).
+    near : bool
+        Whether the start is near the state, so that only well solved steps tell what is left.
     """
 
     tolerance: float
     step_tolerance: float
     most_marches: int = MOST_MARCHES
     inverse: np.ndarray | None = None
+    near: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,6 +31,8 @@ SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
 the friction itself does with the creep in a radian, so that every point slips forward too much.
 From there an accelerated search finds its way down; below, points would only drift."""
 
+MARCHES_FROM_COARSER = 50
+"""Of a search from tractions on other points; one that takes longer does better from the start."""
 COARSENING, COARSEST_STEPS = 8, 12
 COARSE_TOLERANCE = 1e-5
 """Where marches give derivatives, a search in this many times fewer steps comes first, as long as
@@ -58,7 +60,8 @@ def simulate(
     tolerance : float
         Of the periodic state, a force over mu F_z; steps are solved a hundred times tighter.
     guess : Run or None
-        Of the same point; of use if cells and angles are the same, too.
+        Of the same point; of use if cells and angles are the same, too, or where the contact can
+        bring tractions to its own.
     settings : Settings
         How it is done.
 
@@ -143,17 +146,23 @@ class _Search:
 
     def run(self, guess=None):
         """The Run; guess: see simulate."""
-        found = None
-        if guess is not None and self._fits(guess):
+        found, start = None, self._start_from(guess)
+        if start is not None:
             self.creep_rate = replace(self.creep_rate, static_force=guess.static_force)
-            found = self._find(self.path, guess.state, guess.inverse)
+            found = self._find(self.path, start, guess.inverse, near=start is not guess.state)
         if found is None or not found.converged:
             found = self._search_afresh()
         return self._summary(found)
 
-    def _fits(self, guess):
-        shape = (2, *self.contact.forward_position.shape)
-        return guess.converged and guess.state.shape == shape
+    def _start_from(self, guess):
+        """Tractions of a guess on the points of this contact; None: it is of no use here."""
+        if guess is None or not guess.converged:
+            return None
+        if guess.state.shape == (2, *self.contact.forward_position.shape):
+            return guess.state
+        prolonged = getattr(self.contact, "prolonged", None)
+        start = None if prolonged is None else prolonged(guess.state)
+        return None if start is None else project(start, self.contact.bound)
 
     def _search_afresh(self):
         slipping = forward_slip(self.contact)
@@ -190,13 +199,14 @@ class _Search:
                 start, inverse = found.start, found.inverse
         return self._find(self.path, start, inverse)
 
-    def _find(self, path, start, inverse, tolerance=None):
+    def _find(self, path, start, inverse, tolerance=None, near=False):
         looser = (tolerance or self.tolerance) / self.tolerance
         period_map = PeriodMap(
             self.contact, path, self.creep_rate, self.problem.motion.half_period_mirror
         )
         tolerances = looser * self.tolerance, looser * self.step_tolerance
-        goal = Goal(*tolerances, MOST_MARCHES, inverse)
+        most = MARCHES_FROM_COARSER if near else MOST_MARCHES
+        goal = Goal(*tolerances, most, inverse, near)
         self.done.append(self.method.search(period_map, start, goal))
         return self.done[-1]
 

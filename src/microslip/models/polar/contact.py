@@ -37,6 +37,13 @@ from microslip.pressures.by_name import HERTZ
 
 PENALTY = 1.0
 """Augmentation over the self-influence of a ring; iterations double at half and at twice it."""
+ROTATING_RINGS = 12
+"""Rings of a rotating contact at which that is best.  Narrow rings give way less than the whole
+contact does, and the best augmentation lies between the two: it grows with the root of their
+number."""
+
+FEWEST_PROLONGED = 16
+"""Rings below which tractions of a coarser contact are no better a start than the static limit."""
 
 
 class PolarContact:
@@ -73,14 +80,14 @@ class PolarContact:
         self.rings = make_rings(cells, focus, pressure)
         self.angles, self.rotates, self.stiffness = angles, rotates, pressure.stiffness
         self.edges = np.sin(self.rings.psi) if pressure.inner == 0.0 else None
-        theta = (np.arange(angles) + 0.5) * np.pi / angles
+        self._theta = theta = (np.arange(angles) + 0.5) * np.pi / angles
         self.lateral_position = np.cos(theta)[:, None] * self.rings.radius
         self.forward_position = np.sin(theta)[:, None] * self.rings.radius
         self.bound = self.rings.bound
         self.weight = self.rings.area / angles
         key = (cells, angles, rotates, poisson, focus, pressure)
         self.influence, self.inverse, self.compliance = _prepared(*key)
-        self.penalty = PENALTY * self.compliance
+        self.penalty = _penalty(cells, rotates) * self.compliance
         self._made_of = cells, focus, pressure
 
     def at_indentation(self, deepest: float, start: np.ndarray) -> PolarContact:
@@ -120,6 +127,26 @@ class PolarContact:
         apply_sectors(self.influence, folded, image)
         unfold(image, out)
         return out
+
+    def prolonged(self, state: np.ndarray) -> np.ndarray | None:
+        """Tractions of the same contact on other rings and angles, (2, angles, cells) of these,
+        brought to the points of this one; None where it does not turn, its load changes, or its
+        rings are too few for that to be of use.
+
+        What is interpolated is the share of the friction bound.
+        """
+        few = len(self.rings.radius) < FEWEST_PROLONGED
+        if few or not self.rotates or self.loaded is not None:
+            return None
+        _, focus, pressure = self._made_of
+        rings, count = make_rings(state.shape[2], focus, pressure), state.shape[1]
+        share = state / rings.bound
+        # forward tractions are even across the lateral axis, where the angles begin and end
+        beyond = share[:, [0, -1]] * contact.MIRROR
+        share = np.concatenate([beyond[:, :1], share, beyond[:, 1:]], axis=1)
+        given, wanted = ((np.arange(-1, count + 1) + 0.5) / count, self._theta / np.pi)
+        share = _interpolated(wanted, given, share, axis=1)
+        return _interpolated(self.rings.radius, rings.radius, share, axis=2) * self.bound
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
         """theta -> pi - theta, lateral traction negated."""
@@ -185,9 +212,19 @@ class PolarContact:
         )
 
 
+def _interpolated(wanted, given, values, axis):
+    """Linear between the given places along an axis, constant beyond them."""
+    return np.apply_along_axis(lambda line: np.interp(wanted, given, line), axis, values)
+
+
+def _penalty(cells, rotates):
+    """Augmentation over the self-influence of a ring."""
+    return PENALTY * (cells / ROTATING_RINGS) ** 0.5 if rotates else PENALTY
+
+
 @lru_cache(maxsize=32)
 def _prepared(cells, angles, rotates, poisson, focus, pressure):
     """The operator, (A + penalty)^-1, and the self-influence of each ring."""
     operator, compliance = influence_sectors(cells, angles, rotates, poisson, focus, pressure)
-    inverse = shifted_inverse(operator, PENALTY * compliance)
+    inverse = shifted_inverse(operator, _penalty(cells, rotates) * compliance)
     return quickest(operator), quickest(inverse), compliance
