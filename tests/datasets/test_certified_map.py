@@ -10,7 +10,7 @@ from stubs import certified_stub
 import microslip
 from microslip.config import load
 from microslip.datasets import certified_map
-from microslip.datasets.query.accessor import SOURCES
+from microslip.datasets.query.answers import SOURCES
 from microslip.foundation.errors import InputError
 from microslip.sweeps.batches import key_of
 from microslip.theory import masing, paper
