@@ -3,9 +3,12 @@
 import json
 import shutil
 import subprocess
+from html.parser import HTMLParser
+from pathlib import Path
 
 import pytest
 
+from microslip.report.explorer import explorer
 from microslip.report.explorer.page import FOLDER
 
 NODE = shutil.which("node")
@@ -43,4 +46,51 @@ def answers(scripts, call, given, calls):
         timeout=120,
     )
     assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+class _Ids(HTMLParser):
+    """Ids of a page, whether they are hidden, and the ids around each."""
+
+    EMPTY = ("meta", "input", "br")
+
+    def __init__(self):
+        super().__init__()
+        self.hidden, self.parents, self._open = {}, {}, []
+
+    def handle_starttag(self, tag, attrs):
+        found = dict(attrs)
+        name = found.get("id")
+        if name:
+            self.hidden[name] = "hidden" in found
+            self.parents[name] = [one for one in self._open if one]
+        if tag not in self.EMPTY:
+            self._open.append(name)
+
+    def handle_endtag(self, tag):
+        self._open.pop()
+
+
+def page_says(content, *steps):
+    """What the whole page says, run outside of a browser, with a document that draws nothing.
+
+    content: as payload.build makes it; steps: JavaScript, one after another, each an expression.
+    Returns a list of their values.
+    """
+    markup = (FOLDER / "page.html").read_text(encoding="utf-8")
+    ids = _Ids()
+    ids.feed(markup)
+    stub = Path(__file__).with_name("page_in_node.js").read_text(encoding="utf-8")
+    scripts = [name for name in explorer.ASSETS if name.endswith(".js")]
+    code = ["'use strict';", stub, *((FOLDER / name).read_text("utf-8") for name in scripts)]
+    code.append("process.stdout.write(JSON.stringify(steps.map((step) => eval(step) ?? null)));")
+    given = {"ids": ids.hidden, "parents": ids.parents, "numbers": content, "steps": steps}
+    done = subprocess.run(
+        [NODE, "-e", "\n".join(code)],
+        input=json.dumps(given, allow_nan=False),
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stderr[-2000:]
     return json.loads(done.stdout)

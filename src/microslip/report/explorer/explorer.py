@@ -18,7 +18,8 @@ from microslip.report.explorer.requests import maps_of, period_requests, refusal
 
 __all__ = ["ASSETS", "digest", "maps_of", "period_requests", "refusal", "report"]
 
-ASSETS = ("page.html", "style.css", "data.js", "charts.js", "disc.js", "page.js")
+ASSETS = ("page.html", "style.css", "certified.js", "beyond.js", "contact.js", "data.js")
+ASSETS += ("charts.js", "disc.js", "lines.js", "views.js", "form.js", "page.js")
 """What the page is made of besides numbers and plotly.js, in the order in which scripts run."""
 
 
