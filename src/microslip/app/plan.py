@@ -28,7 +28,7 @@ STUDY_CODE = ("datasets/sweep_dataset.py", "report/study_page.py", "studies")
 CERTIFIED_CODE = ("datasets/certified_map.py",)
 ROUND_CODE = ("sweeps/map_rounds.py",)
 """What says which points of a certified map are next."""
-PAGE = "explorer.html"
+PAGES = (explorer.PAGE, explorer.PAGE_OF_ALL)
 
 
 class Plan:
@@ -40,7 +40,7 @@ class Plan:
     studies : dict of str to str
         Studies by the names of their datasets.
     explored : list of str
-        Names of the maps that the explorer shows.
+        Names of the maps whose points have periods in the explorer.
     figures : dict of str to tuple of str
         Figures that there is data for, and the datasets of each.
     earlier : sweeps.batch_plans.Folder, or what does the same elsewhere; None
@@ -219,14 +219,23 @@ class Plan:
         """All files that are made to be kept: datasets, pages, figures."""
         names = self.datasets
         certified = (f"{name}.nc" for name in self.configuration.certified)
-        return [*self.dataset_files(names), *certified, *self.figure_files(names), PAGE]
+        return [*self.dataset_files(names), *certified, *self.figure_files(names), *PAGES]
+
+    def page_datasets(self, page: str) -> list[str]:
+        """Names of the datasets of sweeps that a page of the explorer shows."""
+        return explorer.sweeps_of(self.configuration, page)
+
+    @property
+    def page_certified(self) -> list[str]:
+        """Names of the certified maps that a page answers from."""
+        return explorer.certified_of(self.configuration)
 
     # What things are made of
 
     def code_of(self, file: str) -> str:
         """Digest of the code that makes a file, of those in `made_files`."""
         path = PurePosixPath(file)
-        if file == PAGE:
+        if file in PAGES:
             return explorer.digest()
         if path.parts[0] == "figures":
             return source_digest.of_modules(*drawing.modules_of(path.stem))
@@ -253,8 +262,9 @@ class Plan:
     def fingerprint_of(self, file: str) -> str:
         """What a file in `made_files` is made of, as a short text: settings, code, points."""
         path, code = PurePosixPath(file), self.code_of(file)
-        if file == PAGE:
-            names, groups = self.explored, [f"{name}_periods" for name in self.explored]
+        if file in PAGES:
+            names = [*self.page_datasets(file), *self.page_certified]
+            groups = [f"{name}_periods" for name in self.explored]
         elif path.parts[0] == "figures":
             names, groups = self.figures[path.stem], ()
         elif path.stem in self.configuration.certified:

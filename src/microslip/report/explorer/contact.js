@@ -204,7 +204,7 @@ function answerOf(si, maps, question) {
     refused: null,
     near: null,
   };
-  const map = maps.find((one) => one.scene === question.scene && one.pressure === "hertz");
+  const map = mapFor(maps, question.scene, contact.poisson);
   if (map === undefined) {
     return { ...said, refused: `this page holds no certified map of ${question.scene}` };
   }
@@ -221,6 +221,13 @@ function answerOf(si, maps, question) {
   }
   said.static_friction = unlessRefused(() => frictionAt(map, 0, amplitude, contact.poisson));
   return said;
+}
+
+// The map of a motion that holds a Poisson's ratio, of several the most exact one.
+function mapFor(maps, scene, poisson) {
+  const far = ({ poisson: [low, high] }) => Math.abs(poisson - clipped(poisson, low - SAME_POISSON, high + SAME_POISSON));
+  return maps.filter((one) => one.scene === scene && one.pressure === "hertz")
+    .sort((a, b) => far(a) - far(b) || a.error - b.error)[0];
 }
 
 function unlessRefused(answer) {

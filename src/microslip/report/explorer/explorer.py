@@ -1,8 +1,9 @@
 """The explorer: one page, for a browser without a network, that shows what is behind every point.
 
-`requests` says which periods the page needs, `payload` packs datasets and periods, `page` writes
-the page. It draws what datasets and stored periods hold and computes nothing. The JavaScript beside
-these modules runs in the browser; plotly.js draws.
+`requests` says what a page needs, `payload` packs datasets, periods and certified maps, `si_form`
+what the form for a real contact knows, `page` writes the page. It draws what datasets and stored
+periods hold; all that it computes are answers from certified maps. The JavaScript beside these
+modules runs in the browser; plotly.js draws.
 
 Importing this package is cheap, since the workflow reads it whenever it is parsed.
 """
@@ -14,9 +15,18 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from microslip.foundation import source_digest
-from microslip.report.explorer.requests import maps_of, period_requests, refusal
+from microslip.report.explorer.requests import (
+    PAGE,
+    PAGE_OF_ALL,
+    certified_of,
+    maps_of,
+    period_requests,
+    refusal,
+    sweeps_of,
+)
 
-__all__ = ["ASSETS", "digest", "maps_of", "period_requests", "refusal", "report"]
+__all__ = ["ASSETS", "PAGE", "PAGE_OF_ALL", "certified_of", "digest", "maps_of", "period_requests"]
+__all__ += ["refusal", "report", "sweeps_of"]
 
 ASSETS = ("page.html", "style.css", "certified.js", "beyond.js", "contact.js", "data.js")
 ASSETS += ("charts.js", "disc.js", "lines.js", "views.js", "form.js", "page.js")
