@@ -11,8 +11,13 @@ from microslip.theory.catalogue import FORMS
 
 FIGURES = {"transverse": "fig2_transverse_map", "bore": "fig6_bore_map"}
 SPARE_COLOURS = (style.SKY, style.GREY)
-NAMES = {name: form for forms in FORMS.values() for name, form in forms.items()}
-"""A form of every name that a limit may have."""
+NAMES = {
+    name: form
+    for forms in FORMS.values()
+    for name, form in forms.items()
+    if not name.startswith("mu_torque")
+}
+"""A form of every name that a limit of the friction may have."""
 
 
 def limits_of(dataset: xr.Dataset, poisson: float) -> list[dict]:
@@ -23,7 +28,8 @@ def limits_of(dataset: xr.Dataset, poisson: float) -> list[dict]:
     """
     scene = dataset.attrs["scene"].partition(":")[0]
     own = FORMS.get(scene, {})
-    known = [name for name in {**own, **NAMES} if name in dataset.variables]
+    known = [name for name in NAMES if name in dataset.variables]
+    known.sort(key=lambda name: list(own).index(name) if name in own else len(own))
     return [_limit(dataset, scene, own.get(key, NAMES[key]), poisson) for key in known]
 
 
