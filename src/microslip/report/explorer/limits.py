@@ -41,9 +41,10 @@ def _limit(dataset, scene, form, poisson):
         looks = {overlay.variable: overlay for overlay in (*plan.static, plan.large)}
     spare = list(NAMES).index(key) % len(SPARE_COLOURS)
     look = looks.get(key, maps.Overlay(key, form.label, SPARE_COLOURS[spare], style.DOTTED))
+    only_at_0 = poisson > 0 and form.exact and not form.any_poisson
     values = dataset[key]
     found = {
-        "label": look.label if form.any_poisson or poisson == 0 else f"{look.label} for ν = 0",
+        "label": f"{look.label} for ν = 0" if only_at_0 else look.label,
         "long_name": values.attrs["long_name"],
         "color": look.color,
         "dash": "solid" if look.linestyle == style.SOLID else _dash(look.linestyle),
