@@ -66,7 +66,7 @@ REFUSED = [
     ("-nj0", "--jobs = 0", CORES),
     ("--no-such-option", "unrecognized arguments: --no-such-option"),
     ("--cores 1 --configfile", "argument --configfile", "expected at least one argument"),
-    ("al", "TARGET = 'al'", "did you mean all?", "explorer, or a file"),
+    ("al", "TARGET = 'al'", "did you mean all?", "explorer_all, or a file"),
     ("bore", "TARGET = 'bore'", "allowed is one of all,"),
     ("-n --config poisson", "--config = 'poisson'", "KEY=VALUE"),
     ("-n --config 1=2", "--config = '1=2'", "KEY=VALUE"),
