@@ -34,7 +34,7 @@ TARGETS = {
 RULES = ("warm_up",)
 """Others that Snakemake makes by name."""
 
-_LISTED = "\n".join(f"    {name:<12}{text}" for name, text in TARGETS.items())
+_LISTED = "\n".join(f"    {name:<14}{text}" for name, text in TARGETS.items())
 HELP = f"""\
 usage: microslip sweep [TARGET ...] [--configfile FILE] [options of Snakemake]
 
