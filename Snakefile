@@ -91,7 +91,8 @@ rule all:
 
 rule certified:
     input:
-        in_results(f"{name}.nc" for name in CERTIFIED),
+        datasets_of(CERTIFIED),
+        figures_of(CERTIFIED),
 
 
 rule extended:

@@ -63,13 +63,18 @@ def test_answers_are_within_their_errors_and_these_within_what_was_asked(dataset
     assert float((miss <= answer.mu_macro_error).mean()) >= 0.999
     assert float(answer.mu_macro_error.max()) <= ERROR
     assert set(answer.source.values) == {SOURCES.index("map")}
-    assert dataset.points == dataset.sizes["point"] == len(np.unique(dataset.cell_node))
+    assert dataset.sizes["point"] == len(np.unique(dataset.cell_node))
+    solved = zip(dataset.velocity.values, dataset.amplitude.values, strict=True)
+    assert dataset.points == len(set(solved))
 
 
 def test_at_a_node_the_answer_is_the_node(dataset):
-    node = dataset.isel(point=slice(None, None, 7))
-    answer = dataset.friction.at(node.velocity.drop_vars("velocity"), node.amplitude)
-    assert answer.mu_macro.values == pytest.approx(node.mu_macro.values, abs=1e-6)
+    answer = dataset.friction.at(dataset.velocity.drop_vars("velocity"), dataset.amplitude)
+    off = abs(answer.mu_macro - dataset.mu_macro).values
+    assert (off <= answer.mu_macro_error.values).all()
+    # a neighbour with other nodes may answer on a border, and nobody else inside
+    inside = np.unique(dataset.cell_node.values.reshape(-1, 5, 5)[:, 1:-1, 1:-1])
+    assert off[inside].max() < 1e-6
 
 
 def test_beyond_the_map_the_limits_answer_as_from_any_map(dataset):
@@ -93,7 +98,8 @@ def test_equal_answers_give_equal_files(made, tmp_path):
 
 
 def test_a_point_that_failed_leaves_its_cells_unanswered(made):
-    bad = made.records[60]["request"]
+    requests = [record["request"] for record in made.records]
+    bad = next(r for r in requests if 0.01 < float(r["velocity"]) < 0.1 < float(r["amplitude"]))
     failed = [r if r["request"] != bad else record(bad, {"converged": False}) for r in made.records]
     data = certified_map.build(made.map, made.rounds, failed)
     there = float(bad["velocity"]) * 1.01, float(bad["amplitude"]) * 0.99

@@ -175,7 +175,7 @@ def test_one_of_the_poissons_ratios_is_its_own_map_alone():
 @pytest.mark.parametrize(
     ("poisson", "message"),
     [
-        (None, "poisson = None: allowed is 0 to 0.5: the dataset has 2 of them"),
+        (None, "poisson = None: allowed is 0 to 0.5: the dataset has more than one"),
         (0.6, "poisson = 0.6: allowed is 0 to 0.5; microslip.solve"),
         (-0.1, "poisson = -0.1: allowed is 0 to 0.5"),
         (np.nan, "poisson = nan: allowed is 0 to 0.5"),

@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_pdf import PdfFile
 from matplotlib.text import Text
 from PIL import Image
-from stubs import drives_stub, driving_stub, fit_stub, studies_stub
+from stubs import certified_stub, drives_stub, driving_stub, fit_stub, studies_stub
 
 from microslip.report.figures import drawing
 from microslip.report.figures import style as look
@@ -39,6 +39,8 @@ def given() -> dict[str, tuple[str, dict]]:
     driving = registry.build("driving", driving_stub.configured(), answer)
     found["driving"] = "driving", {"driving": driving}
     found["fit"] = "fit", {"fit": fit_stub.fitted()}
+    found["certified"] = "certified_bore", {"certified_bore": certified_stub.bore()}
+    found["deep"] = "certified_bore", {"certified_bore": certified_stub.bore(poisson=[0.1, 0.4])}
     found["maps"] = "extended_motions", groups.motions(3)
     found["lines"] = "extended_static", {"a": groups.static("a"), "b": groups.static("b")}
     return found

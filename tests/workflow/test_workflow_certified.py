@@ -37,6 +37,10 @@ def test_one_command_makes_a_map_whose_error_holds_everywhere(finished):
     data = microslip.open_map("certified_transverse", finished.folder / "results").load()
     assert float(data.cell_error.max()) <= data.error == 0.03
     assert data.points == len(finished.points()) > 25
+    figure = finished.folder / "results" / "figures" / "certified_transverse.png"
+    assert figure.read_bytes().startswith(b"\x89PNG")
+    page = finished.folder / "results" / "summaries" / "certified_transverse.html"
+    assert f"{data.points} points, none not converged" in page.read_text()
     answer = data.friction.at(velocity=0.7, amplitude=1.9)
     rigid = microslip.solve("transverse", 0.7, 1.9, model="rigid", tolerance=0.01)
     assert abs(float(answer.mu_macro) - rigid.mu_macro) <= float(answer.mu_macro_error)
@@ -82,4 +86,6 @@ def test_nothing_of_a_map_is_left_over(finished):
     without = {**TINY, "sweeps": {"transverse": AXES}}
     left = leftovers.left_over(results, [Plan(load.from_mapping(without))])
     assert len(left[leftovers.KINDS[0]]) == len(finished.points())
-    assert [path.name for path in left[leftovers.KINDS[2]]] == ["certified_transverse.nc"]
+    files = ("nc", "html", "png", "pdf")
+    made = sorted(f"certified_transverse.{kind}" for kind in files)
+    assert sorted(path.name for path in left[leftovers.KINDS[2]]) == made

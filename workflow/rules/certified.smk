@@ -46,6 +46,12 @@ rule collect_certified:
     output:
         # The old one stays until the new one is whole, whatever happens to the job.
         kept(f"{RESULTS}/{{certified}}.nc"),
+        summary=report(
+            kept(f"{RESULTS}/summaries/{{certified}}.html"),
+            caption="../report/dataset.rst",
+            category="Datasets",
+            labels={"dataset": "{certified}.nc"},
+        ),
     log:
         f"{RESULTS}/logs/collect_certified/{{certified}}.log",
     conda:

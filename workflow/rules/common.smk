@@ -138,7 +138,7 @@ def answered_rounds(name, most):
 
 def all_rounds(wildcards):
     """All that a map is made of."""
-    look_after(f"{wildcards.certified}.nc")
+    look_after(*PLAN.dataset_files([wildcards.certified]))
     return answered_rounds(wildcards.certified, map_rounds.MOST_ROUNDS)
 
 

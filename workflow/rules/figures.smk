@@ -14,6 +14,7 @@ rule draw_figure:
                 **dict.fromkeys(CONFIGURATION.sweeps, "The paper's figures"),
                 **dict.fromkeys(CONFIGURATION.extended, "Other motions and pressures"),
                 **dict.fromkeys(CONFIGURATION.drives, "What pulls the contact"),
+                **dict.fromkeys(CONFIGURATION.certified, "Certified maps"),
             }.get(FIGURES[wildcards.figure][0], "Methods"),
             labels={"figure": "{figure}"},
         ),

@@ -3,12 +3,14 @@
 Output: netCDF-4, CF conventions, all quantities dimensionless (units 1).
   certified_transverse.nc  dims point, cell, node
   certified_bore.nc        the same
+Beside it an HTML page that sums it up.
 """
 
 from microslip.app.job_log import job_log
 from microslip.app.plan import Plan
 from microslip.config import load
 from microslip.datasets import certified_map
+from microslip.report import dataset_page
 from microslip.sweeps import batches, map_rounds, sealed_files
 
 name = snakemake.wildcards.certified
@@ -20,6 +22,8 @@ with job_log(snakemake.log[0]) as log:
     records = batches.records_in(snakemake.input.batches)
     data = certified_map.build(configuration.certified[name], rounds, records)
     certified_map.write(snakemake.output[0], data)
-    for line in certified_map.report(data, name):
+    lines = list(certified_map.report(data, name))
+    for line in lines:
         log.info(line)
+    dataset_page.write(snakemake.output.summary, data, lines)
     sealed_files.mark(snakemake.output, snakemake.params.made_of)

@@ -25,7 +25,7 @@ PERIODS_PER_JOB = 150
 DATASET_CODE = ("datasets/sweep_dataset.py", "report/dataset_page.py")
 """Modules that make the dataset of a sweep, besides what these import."""
 STUDY_CODE = ("datasets/sweep_dataset.py", "report/study_page.py", "studies")
-CERTIFIED_CODE = ("datasets/certified_map.py",)
+CERTIFIED_CODE = ("datasets/certified_map.py", "report/dataset_page.py")
 ROUND_CODE = ("sweeps/map_rounds.py",)
 """What says which points of a certified map are next."""
 PAGES = (explorer.PAGE, explorer.PAGE_OF_ALL)
@@ -217,9 +217,8 @@ class Plan:
 
     def made_files(self) -> list[str]:
         """All files that are made to be kept: datasets, pages, figures."""
-        names = self.datasets
-        certified = (f"{name}.nc" for name in self.configuration.certified)
-        return [*self.dataset_files(names), *certified, *self.figure_files(names), *PAGES]
+        names = [*self.datasets, *self.configuration.certified]
+        return [*self.dataset_files(names), *self.figure_files(names), *PAGES]
 
     def page_datasets(self, page: str) -> list[str]:
         """Names of the datasets of sweeps that a page of the explorer shows."""
@@ -285,6 +284,8 @@ def _figures(configuration, of_studies):
             yield figure, names
     for group, names in configuration.groups.items():
         yield drawing.figure_of(group), names
+    for name in configuration.certified:
+        yield name, (name,)
 
 
 def _is_drawable(figure, names, configuration):

@@ -22,7 +22,7 @@ def maps(sweeps: dict[str, Sweep], given: dict, where: str) -> dict[str, Certifi
     Raises
     ------
     ConfigError
-        For a sweep that spans no map, has several Poisson's ratios or imposes its resolution.
+        For a sweep that spans no map or imposes its resolution.
     """
     found = {}
     for name, sweep in sweeps.items():
@@ -51,10 +51,6 @@ def _refuse_mismatch(sweep, where):
         raise ConfigError(
             f"{where}.adaptive: is not allowed here; allowed: with two amplitudes and two "
             "velocities above 0 at least, which are its range"
-        )
-    if sweep.poisson_is_axis:
-        raise ConfigError(
-            f"{where}.adaptive: is not allowed with a list of Poisson's ratios; allowed: one number"
         )
     if sweep.tolerance is None or sweep.cells is not None or sweep.steps is not None:
         raise ConfigError(

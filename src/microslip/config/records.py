@@ -90,10 +90,17 @@ class CertifiedMap:
         return self.sweep.amplitude[0], self.sweep.amplitude[-1]
 
     @property
+    def poisson(self) -> tuple[float, ...]:
+        """The smallest and the largest Poisson's ratio; () for a map of one."""
+        ratios = self.sweep.poisson
+        return (ratios[0], ratios[-1]) if len(ratios) > 1 else ()
+
+    @property
     def settings(self) -> dict:
         """All that its points depend on, as a dict for JSON."""
-        kept = ("scene", "pressure", "poisson", "model")
+        kept = ("scene", "pressure", "model")
         found = {name: getattr(self.sweep, name) for name in kept}
+        found["poisson"] = self.poisson or self.sweep.poisson
         ranges = {"velocity": self.velocity, "amplitude": self.amplitude}
         return found | ranges | {"error": self.error, "tolerance": self.tolerance}
 

@@ -2,9 +2,10 @@
 
     certified_transverse.nc     dims point, cell and node
 
-A cell is a rectangle in the coordinates of sweeps.map_coordinates, and friction in it the
-polynomial through its 5 x 5 points; cell_error is the bound of the error everywhere in it.  The
-same answers give the same bytes.
+A cell is a box in the coordinates of sweeps.map_coordinates, and friction in it the polynomial
+through its points, 5 along the velocity and the amplitude and 3 along Poisson's ratio where that is
+a direction, too; cell_error is the bound of the error everywhere in it.  The same answers give the
+same bytes.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 import xarray as xr
 
 from microslip.config.extended import solver_names
-from microslip.config.quantities import AMPLITUDE, MU_MACRO, VELOCITY
+from microslip.config.quantities import MU_MACRO
 from microslip.config.records import CertifiedMap
 from microslip.datasets import netcdf, sweep_dataset
 from microslip.foundation.canonical import canonical_json
@@ -27,10 +28,15 @@ from microslip.sweeps.sealed_files import writing_beside
 COORDINATES = "map_coordinates"
 """Attribute that says how a map is cut, as JSON."""
 BORDERS = {
-    "cell_left": "scaled velocity where the cell begins",
-    "cell_right": "scaled velocity where the cell ends",
-    "cell_low": "scaled amplitude where the cell begins",
-    "cell_high": "scaled amplitude where the cell ends",
+    "velocity": ("cell_left", "cell_right"),
+    "amplitude": ("cell_low", "cell_high"),
+    "poisson": ("cell_poisson_low", "cell_poisson_high"),
+}
+"""Names of the variables that say where a cell begins and ends, by direction."""
+SCALED = {
+    "velocity": "scaled velocity",
+    "amplitude": "scaled amplitude",
+    "poisson": "scaled Poisson's ratio",
 }
 
 
@@ -56,32 +62,30 @@ def build(map_: CertifiedMap, rounds: Sequence[dict], records: Iterable[dict]) -
     found, coordinates = map_rounds.refinement_of(map_, known), map_rounds.coordinates_of(map_)
     nodes = sorted(known)
     index = {node: i for i, node in enumerate(nodes)}
-    velocity, amplitude = np.array([coordinates.place(*node) for node in nodes]).T
+    degrees, places = coordinates.degrees, [coordinates.place(node) for node in nodes]
     mu, error = np.array([known[node] for node in nodes]).T
-    picked = np.array([[index[node] for node in cell.nodes] for cell in found.cells], np.int32)
-    borders = np.array(found.cells)
-    cells = {
-        name: _variable("cell", borders[:, i], said)
-        for i, (name, said) in enumerate(BORDERS.items())
+    picked = np.array([[index[n] for n in cell.nodes(degrees)] for cell in found.cells], np.int32)
+    axes = {
+        name: ("point", np.array(values))
+        for name, values in zip(coordinates.directions, zip(*places, strict=True), strict=True)
     }
+    if "poisson" not in axes:
+        axes["poisson"] = ((), map_.sweep.poisson[0])
     dataset = xr.Dataset(
         {
             "mu_macro": _variable("point", mu, MU_MACRO.description),
             "mu_macro_error": _variable("point", error, "estimated error of mu_macro"),
-            **cells,
+            **_borders(coordinates, found.cells),
             "cell_error": _variable("cell", found.errors, "bound of the error in the cell"),
             "cell_node": (
                 ("cell", "node"),
                 picked,
-                {"long_name": "points of the cell, amplitude fastest"},
+                {"long_name": "points of the cell, the last direction fastest"},
             ),
         },
-        coords={
-            "velocity": _variable("point", velocity, VELOCITY["transverse"].text),
-            "amplitude": _variable("point", amplitude, AMPLITUDE["transverse"].text),
-            "poisson": ((), map_.sweep.poisson[0], {"long_name": "Poisson's ratio", "units": "1"}),
-        },
+        coords=axes,
     )
+    sweep_dataset.describe_axes(dataset, map_.sweep)
     scene, pressure = solver_names(map_.sweep)
     versions = {canonical_json(record["versions"]) for record in records}
     about = sweep_dataset.provenance(
@@ -92,7 +96,9 @@ def build(map_: CertifiedMap, rounds: Sequence[dict], records: Iterable[dict]) -
         pressure=pressure,
         tolerance=map_.tolerance,
         error=map_.error,
-        points=len(nodes),
+        points=len(set(places)),  # a place where slow and fast cells meet can be two nodes
+        directions=" ".join(coordinates.directions),
+        degrees=np.array(degrees, np.int32),
     )
     return dataset.assign_attrs(about | {COORDINATES: coordinates.to_json()})
 
@@ -118,6 +124,17 @@ def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
 def coordinates_in(dataset: xr.Dataset) -> MapCoordinates:
     """How the map of a dataset is cut; raises KeyError and ValueError for one that does not say."""
     return MapCoordinates.from_json(dataset.attrs[COORDINATES])
+
+
+def _borders(coordinates, cells):
+    """Variables that say where the cells begin and end."""
+    found, borders = {}, np.array(cells)  # (cell, beginning or end, direction)
+    for i, direction in enumerate(coordinates.directions):
+        for name, ends, verb in zip(
+            BORDERS[direction], borders[:, :, i].T, ("begins", "ends"), strict=True
+        ):
+            found[name] = _variable("cell", ends, f"{SCALED[direction]} where the cell {verb}")
+    return found
 
 
 def _variable(dim, values, long_name):

@@ -16,6 +16,7 @@ import xarray as xr
 import microslip
 from microslip.config.extended import solver_names
 from microslip.config.quantities import AMPLITUDE, DRIVES, VELOCITY
+from microslip.config.records import Sweep
 from microslip.datasets import netcdf, point_variables, theory_limits
 from microslip.foundation import named_files, source_digest
 from microslip.foundation.canonical import canonical_json
@@ -98,7 +99,7 @@ def _root(sweep):
         coords["poisson"] = ((), sweep.poisson[0])
     coords |= {name: ((), values[0]) for name, values, _ in sweep.drives if name not in coords}
     dataset = xr.Dataset(theory_limits.variables(sweep), coords)
-    _describe_axes(dataset, sweep)
+    describe_axes(dataset, sweep)
     return dataset
 
 
@@ -163,7 +164,7 @@ def _axes(sweep):
     return axes | ({"velocity": sweep.velocity} if sweep.velocity else {"force": force})
 
 
-def _describe_axes(dataset, sweep):
+def describe_axes(dataset: xr.Dataset, sweep: Sweep) -> None:
     """Name the axes; `formula` is what a coordinate is, in the words of the scene."""
     scene = motion_named(sweep.scene)
     axes = [(VELOCITY, scene.velocity_label)] if sweep.velocity else []

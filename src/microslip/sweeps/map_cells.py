@@ -1,11 +1,11 @@
 """Cells of a map, and where they have to be split: from what is known to what is asked next.
 
-A cell is a rectangle in scaled coordinates (map_coordinates) with 5 x 5 nodes at equal distances;
-within it friction is the polynomial of degree 4 in each direction.  How wrong that may be is seen
-in the nodes themselves: the fourth differences along a direction are what the degree 3 would miss,
-and a share of them, calibrated on points that were never used, is what the degree 4 does.  A cell
-that may be too wrong is halved across the direction that is worse, and all of its nodes are nodes
-of the halves.
+A cell is a box in scaled coordinates (map_coordinates) with nodes at equal distances, 5 along the
+velocity and the amplitude and 3 along Poisson's ratio; within it friction is the polynomial through
+them.  How wrong that may be is seen in the nodes themselves: the highest differences along a
+direction are what one degree less would miss, and a share of them, calibrated on points that were
+never used, is what this degree does.  A cell that may be too wrong is halved across the direction
+that is worst, and all of its nodes are nodes of the halves.
 
 All is a function of the answers alone, so that whoever asks in whatever order, stops and goes on,
 comes to the same cells.
@@ -15,47 +15,54 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
 from microslip.sweeps.map_coordinates import MapCoordinates
 
-DEGREE = 4
 SHARE = 0.1
 """Of the surplus of a cell: what the polynomial may miss.  Measured by benchmarks/certified.py."""
 LOWER_ORDER = 0.25
 """Of the third differences, which count where fourth ones happen to cancel."""
+LOW_DEGREE = 2.0
+"""Factor of second differences: of degree 2 a polynomial misses a larger share of what it adds."""
+RESOLVED = 0.05
+"""Largest surplus that says how wrong a cell may be.  Of a larger one, which only a loose error
+would accept, the share that is missed can be a multiple of SHARE, so the cell is halved anyway."""
 SMALLEST = 2.0**-9
 """Width of a cell, in patches, that is not halved again."""
 
-Node = tuple[float, float]
+Node = tuple[float, ...]
 Answers = Mapping[Node, tuple[float, float]]
 """Friction and its error by the scaled coordinates of a node; NaN: it did not converge."""
 
 
 class Cell(NamedTuple):
-    """A rectangle in scaled coordinates: velocities left to right, amplitudes low to high."""
+    """A box in scaled coordinates.
 
-    left: float
-    right: float
-    low: float
-    high: float
+    Attributes
+    ----------
+    begin, end : tuple of float
+        Its lower and its upper ends by direction: velocity, amplitude and perhaps Poisson's ratio.
+    """
 
-    @property
-    def nodes(self) -> list[Node]:
-        """Its nodes; the amplitude runs fastest."""
-        columns = np.linspace(self.left, self.right, DEGREE + 1).tolist()
-        rows = np.linspace(self.low, self.high, DEGREE + 1).tolist()
-        return [(x, y) for x in columns for y in rows]
+    begin: tuple[float, ...]
+    end: tuple[float, ...]
 
-    def halves(self, along_velocity: bool) -> tuple[Cell, Cell]:
-        """Both halves of the cell, along the velocity or along the amplitude."""
-        if along_velocity:
-            middle = 0.5 * (self.left + self.right)
-            return self._replace(right=middle), self._replace(left=middle)
-        middle = 0.5 * (self.low + self.high)
-        return self._replace(high=middle), self._replace(low=middle)
+    def nodes(self, degrees: tuple[int, ...]) -> list[Node]:
+        """Its nodes, the last direction fastest."""
+        ends = zip(self.begin, self.end, degrees, strict=True)
+        return list(product(*(np.linspace(low, high, n + 1).tolist() for low, high, n in ends)))
+
+    def halves(self, direction: int) -> tuple[Cell, Cell]:
+        """Both halves of the cell along a direction, an index."""
+        middle = 0.5 * (self.begin[direction] + self.end[direction])
+        return (
+            self._replace(end=_with(self.end, direction, middle)),
+            self._replace(begin=_with(self.begin, direction, middle)),
+        )
 
 
 @dataclass(frozen=True)
@@ -79,12 +86,7 @@ class Refinement:
 
 def first_cells(coordinates: MapCoordinates) -> list[Cell]:
     """A cell for each patch of a map."""
-    columns, rows = coordinates.patches
-    return [
-        Cell(float(i), float(i + 1), float(j), float(j + 1))
-        for i in range(columns)
-        for j in range(rows)
-    ]
+    return [Cell(*patch) for patch in coordinates.patches]
 
 
 def refined(coordinates: MapCoordinates, known: Answers, error: float) -> Refinement:
@@ -100,20 +102,22 @@ def refined(coordinates: MapCoordinates, known: Answers, error: float) -> Refine
         That is to hold all over the map, nodes' errors included.
     """
     pending, done, missing = first_cells(coordinates)[::-1], [], set()
+    degrees = coordinates.degrees
     while pending:
         cell = pending.pop()
-        nodes = cell.nodes
+        nodes = cell.nodes(degrees)
         unknown = [node for node in nodes if node not in known]
         if unknown:
             missing.update(unknown)
             done.append((cell, np.inf))
             continue
         values, errors = np.array([known[node] for node in nodes]).T
-        surpluses = surpluses_of(values.reshape(DEGREE + 1, DEGREE + 1))
+        surpluses = surpluses_of(values.reshape([n + 1 for n in degrees]))
         bound = errors.max() + SHARE * sum(surpluses)
-        half = _worse(cell, surpluses)
-        if bound > error and half is not None:
-            pending.extend(cell.halves(half)[::-1])
+        worst = _worst(cell, surpluses)
+        is_good = bound <= error and sum(surpluses) <= RESOLVED
+        if not is_good and worst is not None:
+            pending.extend(cell.halves(worst)[::-1])
         else:
             done.append((cell, float(bound) if np.isfinite(bound) else np.inf))
     done.sort()
@@ -121,23 +125,33 @@ def refined(coordinates: MapCoordinates, known: Answers, error: float) -> Refine
     return Refinement(cells, bounds, tuple(sorted(missing)))
 
 
-def surpluses_of(values: np.ndarray) -> tuple[float, float]:
-    """What lower degrees miss along the velocity and along the amplitude; values: (5, 5)."""
-    return _surplus(values), _surplus(values.T)
+def surpluses_of(values: np.ndarray) -> tuple[float, ...]:
+    """What one degree less misses along each direction; values: 5 along one, or 3."""
+    return tuple(_surplus(values, axis) for axis in range(values.ndim))
 
 
-def _surplus(values):
-    fourth, third = (np.abs(np.diff(values, n, axis=0)).max() for n in (DEGREE, DEGREE - 1))
-    return float(max(fourth, LOWER_ORDER * third))
+def _surplus(values, axis):
+    degree = values.shape[axis] - 1
+    highest, next_to_it = (
+        np.abs(np.diff(values, n, axis=axis)).max() for n in (degree, degree - 1)
+    )
+    if degree == 2:
+        return float(LOW_DEGREE * highest)
+    return float(max(highest, LOWER_ORDER * next_to_it))
 
 
-def _worse(cell, surpluses):
-    """Whether to halve a cell along the velocity; None: not at all, where it is small enough, or
-    where friction is not known."""
+def _worst(cell, surpluses):
+    """The direction to halve a cell along; None: not at all, where it is small enough, or where
+    friction is not known."""
     if not np.all(np.isfinite(surpluses)):
         return None
-    wide = cell.right - cell.left > SMALLEST, cell.high - cell.low > SMALLEST
-    if not any(wide):
-        return None
-    along_velocity = surpluses[0] >= surpluses[1]
-    return along_velocity if wide[0 if along_velocity else 1] else not along_velocity
+    wide = [
+        direction
+        for direction, (low, high) in enumerate(zip(*cell, strict=True))
+        if high - low > SMALLEST
+    ]
+    return max(wide, key=lambda direction: surpluses[direction], default=None)
+
+
+def _with(ends, direction, value):
+    return (*ends[:direction], value, *ends[direction + 1 :])

@@ -30,7 +30,7 @@ MOST_ROUNDS = 64
 def coordinates_of(map_: CertifiedMap) -> MapCoordinates:
     """The coordinates that a certified map is cut in."""
     kinks = kinks_of(map_.sweep.scene, map_.sweep.pressure)
-    return MapCoordinates(map_.velocity, map_.amplitude, kinks)
+    return MapCoordinates(map_.velocity, map_.amplitude, kinks, map_.poisson)
 
 
 def next_round(map_: CertifiedMap, known: Answers, points_per_job: int) -> dict:
@@ -45,15 +45,16 @@ def next_round(map_: CertifiedMap, known: Answers, points_per_job: int) -> dict:
     )
     return {
         "nodes": [list(node) for node in nodes],
-        "requests": [_request(map_, *coordinates.place(*node)) for node in nodes],
+        "requests": [_request(map_, coordinates, node) for node in nodes],
         "parts": parts if nodes else 0,
     }
 
 
-def _request(map_, velocity, amplitude):
-    """The request for a point, as of a sweep that has it."""
-    point = {"velocity": (velocity,), "amplitude": (amplitude,), "tolerance": map_.tolerance}
-    return PointRequests(replace(map_.sweep, **point))[0]
+def _request(map_, coordinates, node):
+    """The request for a node, as of a sweep that has it."""
+    place = zip(coordinates.directions, coordinates.place(node), strict=True)
+    point = {name: (value,) for name, value in place}
+    return PointRequests(replace(map_.sweep, tolerance=map_.tolerance, **point))[0]
 
 
 def part_of(round_: dict, part: int) -> list[dict]:
@@ -69,11 +70,11 @@ def answers_in(rounds: Iterable[dict], records: Iterable[dict]) -> dict:
     results = {record["key"]: record["result"] for record in records}
     found = {}
     for round_ in rounds:
-        for (x, y), request in zip(round_["nodes"], round_["requests"], strict=True):
+        for node, request in zip(round_["nodes"], round_["requests"], strict=True):
             result = results[key_of(request)]
             good = result.get("converged", False)
             pair = (result["mu_macro"], result["mu_macro_error"]) if good else (math.nan, math.inf)
-            found[x, y] = pair
+            found[tuple(node)] = pair
     return found
 
 

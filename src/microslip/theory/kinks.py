@@ -19,10 +19,10 @@ class Kinks(NamedTuple):
     Attributes
     ----------
     amplitudes : tuple of float
-        At all velocities, sharpest at slow ones.
+        Below the velocity of the kink, sharpest at slow ones.
     velocity : tuple of float
         Of a kink at this velocity: () there is none; (v,) the same at all amplitudes;
-        (f, c0, c1, c2) at hypot(f, A^2 / (c0 + c1 A + c2 A^2)) of the amplitude A.
+        (n0, n1, c0, c1, c2) at (n0 + n1 A + A^2) / (c0 + c1 A + c2 A^2) of the amplitude A.
     """
 
     amplitudes: tuple[float, ...] = ()
@@ -32,8 +32,9 @@ class Kinks(NamedTuple):
 KINKS = {
     # At the amplitude 1 all of the contact slides sideways.  Above the velocity some of it no
     # longer sticks at the turning points: read off the second differences of friction at the
-    # amplitudes 0.2, 0.5, 1, 2 and 3 (0.030, 0.113, 0.30, 0.56, 0.69), where it jumps.
-    "transverse": Kinks((1.0,), (0.02, 1.39, 0.975, 0.965)),
+    # amplitudes 0.2, 0.5, 1, 2 and 3 (0.030, 0.113, 0.30, 0.56, 0.69), where it jumps.  A smooth
+    # curve that passes a little above these bends the cells next to it less than one through them.
+    "transverse": Kinks((1.0,), (0.004, 0.12, 1.69, 0.975, 0.965)),
     # The centre of rotation leaves the contact at the velocity 1.
     "bore": Kinks((), (1.0,)),
 }
@@ -52,5 +53,5 @@ def kink_velocity(kinks: Kinks, amplitude: np.ndarray) -> np.ndarray | None:
     amplitude = np.asarray(amplitude, float)
     if not rest:
         return np.full_like(amplitude, first)
-    c0, c1, c2 = rest
-    return np.hypot(first, amplitude**2 / (c0 + c1 * amplitude + c2 * amplitude**2))
+    n1, c0, c1, c2 = rest
+    return (first + n1 * amplitude + amplitude**2) / (c0 + c1 * amplitude + c2 * amplitude**2)

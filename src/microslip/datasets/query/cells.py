@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,7 +12,6 @@ import xarray as xr
 from microslip.datasets import certified_map
 from microslip.datasets.query.interpolation import Axis
 from microslip.foundation.errors import InputError
-from microslip.sweeps.map_cells import DEGREE
 from microslip.sweeps.map_coordinates import MapCoordinates
 
 EDGE = 97
@@ -31,18 +30,21 @@ class CellTable:
     Attributes
     ----------
     coordinates : MapCoordinates
-    borders : numpy.ndarray, shape (k, 4)
-        Cells: left, right, low and high, scaled.
-    nodes : numpy.ndarray, shape (k, 5, 5)
-        Friction at their nodes, over velocity and amplitude.
+    borders : numpy.ndarray, shape (k, directions, 2)
+        Where cells begin and end, scaled.
+    nodes : numpy.ndarray, shape (k, 5, 5) or (k, 5, 5, 3)
+        Friction at their nodes, over velocity, amplitude and perhaps Poisson's ratio.
     bounds : numpy.ndarray, shape (k,)
         Of the error in each.
+    poisson : float, optional
+        At which a map over Poisson's ratio is asked.
     """
 
     coordinates: MapCoordinates
     borders: np.ndarray
     nodes: np.ndarray
     bounds: np.ndarray
+    poisson: float = 0.0
 
     @cached_property
     def rows(self) -> Axis:
@@ -75,27 +77,39 @@ class CellTable:
     def at(self, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Values and bounds of their errors at points inside, amplitudes and velocities of shape
         (n,) each; NaN and infinity where a point that counts is not known."""
-        x, y = self.coordinates.scaled(column, row)
-        most = self.coordinates.patches
-        x, y = np.clip(x, 0.0, most[0]), np.clip(y, 0.0, most[1])
-        value, error = np.full(len(x), np.nan), np.full(len(x), np.inf)
-        for border, nodes, bound in zip(self.borders, self.nodes, self.bounds, strict=True):
-            left, right, low, high = border
-            here = np.flatnonzero((x >= left) & (x <= right) & (y >= low) & (y <= high))
+        place = [column, row]
+        if self.coordinates.poisson:
+            place.append(np.full(len(row), self.poisson))
+        scaled = self.coordinates.scaled(*place)
+        value, error = np.full(len(scaled), np.nan), np.full(len(scaled), np.inf)
+        for (begin, end), nodes, bound in zip(
+            self.borders.transpose(0, 2, 1), self.nodes, self.bounds, strict=True
+        ):
+            here = np.flatnonzero(((scaled >= begin) & (scaled <= end)).all(axis=1))
             if len(here):
-                across = _weights((x[here] - left) / (right - left))
-                along = _weights((y[here] - low) / (high - low))
-                value[here] = np.einsum("in,jn,ij->n", across, along, nodes)
+                value[here] = _polynomial(nodes, (scaled[here] - begin) / (end - begin))
                 error[here] = bound
         return value, np.where(np.isnan(value), np.inf, error)
 
 
-def _weights(share):
-    """Weights (5, n) of equally spaced values for the polynomial through them, at shares (n,)."""
-    steps = DEGREE * share
-    weights = np.ones((DEGREE + 1, len(share)))
-    for own in range(DEGREE + 1):
-        for other in range(DEGREE + 1):
+def _polynomial(nodes, shares):
+    """Value of the polynomial through equally spaced nodes, (n,), at shares (n, directions)."""
+    value = nodes[..., None]  # the points run last
+    for share in shares.T:
+        # Term by term, so that a point's answer has the same bits whatever else is asked.
+        value = sum(
+            w * part for w, part in zip(_weights(share, len(value) - 1), value, strict=True)
+        )
+    return value
+
+
+def _weights(share, degree):
+    """Weights (degree + 1, n) of equally spaced values for the polynomial through them, at shares
+    (n,)."""
+    steps = degree * share
+    weights = np.ones((degree + 1, len(share)))
+    for own in range(degree + 1):
+        for other in range(degree + 1):
             if other != own:
                 weights[own] *= (steps - other) / (own - other)
     return weights
@@ -107,7 +121,8 @@ class CellNodes:
 
     Attributes
     ----------
-    poisson : numpy.ndarray, shape (1,)
+    poisson : numpy.ndarray, shape (1,) or (2,)
+        The only one, or the smallest and the largest.
     values, errors : numpy.ndarray, shape (n,)
         mu_macro at the points and the bounds of its error; NaN and infinite: not known.
     cells : CellTable
@@ -126,14 +141,16 @@ class CellNodes:
         return hashlib.sha256(b"|".join([said, *(part.tobytes() for part in parts)])).digest()
 
     def table(self, poisson: float, *, still: bool = False) -> CellTable | None:
-        """The map above velocity 0; None: there is none at velocity 0."""
-        return None if still else self.cells
+        """The map for a Poisson's ratio above velocity 0; None: there is none at velocity 0."""
+        return None if still else replace(self.cells, poisson=poisson)
 
 
 def cells_of(dataset: xr.Dataset) -> CellNodes:
     """The map in the dataset of a certified map; raises InputError for what it has lost."""
+    coordinates = _coordinates_in(dataset)
+    names = [certified_map.BORDERS[direction] for direction in coordinates.directions]
     wanted = ("mu_macro", "mu_macro_error", "poisson", "cell_node", "cell_error")
-    for name in (*wanted, *certified_map.BORDERS):
+    for name in (*wanted, *sum(names, ())):
         if name not in dataset.variables:
             allowed = "friction.at needs it, and the dataset has lost it: keep it"
             raise InputError(name, None, allowed)
@@ -141,9 +158,20 @@ def cells_of(dataset: xr.Dataset) -> CellNodes:
     picked = dataset["cell_node"].values.astype(int)
     if picked.max() >= len(values):
         raise InputError("point", len(values), "friction.at needs all points of the dataset")
-    borders = np.stack([dataset[name].values for name in certified_map.BORDERS], axis=1)
-    nodes = values[picked].reshape(-1, DEGREE + 1, DEGREE + 1)
-    cells = CellTable(
-        certified_map.coordinates_in(dataset), borders, nodes, dataset["cell_error"].values
-    )
-    return CellNodes(np.atleast_1d(dataset["poisson"].values), values, errors, cells)
+    borders = np.stack([[dataset[name].values for name in pair] for pair in names])
+    nodes = values[picked].reshape(-1, *(n + 1 for n in coordinates.degrees))
+    bounds = dataset["cell_error"].values
+    cells = CellTable(coordinates, borders.transpose(2, 0, 1), nodes, bounds)
+    poisson = coordinates.poisson or np.atleast_1d(dataset["poisson"].values)
+    return CellNodes(np.array(poisson), values, errors, cells)
+
+
+def _coordinates_in(dataset):
+    try:
+        return certified_map.coordinates_in(dataset)
+    except (KeyError, TypeError, ValueError):
+        raise InputError(
+            certified_map.COORDINATES,
+            dataset.attrs[certified_map.COORDINATES],
+            "is none of this version's; allowed: a certified map that it made: make it again",
+        ) from None

@@ -213,7 +213,7 @@ def poisson_within(known: np.ndarray, poisson: float | None) -> float:
         f" to {high:g}" if high > low else ", the dataset's only one"
     )
     if poisson is None and high > low:
-        raise InputError("poisson", None, f"{allowed}: the dataset has {len(known)} of them")
+        raise InputError("poisson", None, f"{allowed}: the dataset has more than one")
     if not (poisson is None or is_real(poisson)):
         raise InputError("poisson", poisson, f"{allowed}, one number")
     try:

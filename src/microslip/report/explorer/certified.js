@@ -37,8 +37,8 @@ function bordersOf(map) {
 function kinkVelocity(map, amplitude) {
   const [first, ...rest] = map.kink_velocity;
   if (!rest.length) return first;
-  const [c0, c1, c2] = rest;
-  return Math.hypot(first, amplitude ** 2 / (c0 + c1 * amplitude + c2 * amplitude ** 2));
+  const [n1, c0, c1, c2] = rest, square = amplitude ** 2;
+  return (first + n1 * amplitude + square) / (c0 + c1 * amplitude + c2 * square);
 }
 
 function isCut(map) {
@@ -48,26 +48,39 @@ function isCut(map) {
   return Math.max(...atEnds) > clear * slow && Math.min(...atEnds) < fast / clear;
 }
 
-// Scaled coordinates of a place in the range, one for each direction of the cells.
-function scaled(map, velocity, amplitude, poisson) {
-  const v = Math.log(velocity), [slow, fast] = map.velocity.map(Math.log);
-  let x = (v - slow) / (fast - slow);
-  if (isCut(map)) {
-    const [least, most] = [map.gathering.clear * map.velocity[0], map.velocity[1] / map.gathering.clear];
-    const middle = Math.log(clipped(kinkVelocity(map, amplitude), least, most));
-    x = v <= middle ? (v - slow) / (middle - slow) : 1 + (v - middle) / (fast - middle);
-  }
+// Where a value lies between two ends, 0 to 1 whatever rounding does.
+function shareOf(value, [low, high]) {
+  return clipped((value - low) / (high - low), 0, 1);
+}
+
+// Scaled amplitude where the map is cut at kinks.
+function rowOf(map, amplitude) {
   const borders = bordersOf(map);
   let y = 0;
-  for (let k = 0; k + 1 < borders.length; k++) {
-    const [low, high] = [borders[k], borders[k + 1]];
+  for (let row = 0; row + 1 < borders.length; row++) {
+    const [low, high] = [borders[row], borders[row + 1]];
     if (amplitude < low || amplitude > high) continue;
-    y = k + even((amplitude - low) / (high - low), steepness(map, low), steepness(map, high));
+    const share = shareOf(amplitude, [low, high]);
+    y = row + even(share, steepness(map, low), steepness(map, high));
   }
-  const place = [clipped(x, 0, isCut(map) ? 2 : 1), clipped(y, 0, borders.length - 1)];
-  const [least, most] = map.poisson;
-  if (map.nodes.length > 2) place.push(clipped((poisson - least) / (most - least), 0, 1));
-  return place;
+  return y;
+}
+
+// Scaled coordinates of a place in the range, one for each direction of the cells.
+function scaled(map, velocity, amplitude, poisson) {
+  const [slow, fast] = map.velocity, { clear, slow_power, faster, spread } = map.gathering;
+  const small = (a) => Math.log1p(spread * a), power = (v) => v ** slow_power;
+  let x = shareOf(Math.log(velocity), [Math.log(slow), Math.log(fast)]), y = rowOf(map, amplitude);
+  if (isCut(map)) {
+    const middle = clipped(kinkVelocity(map, amplitude), clear * slow, fast / clear);
+    if (velocity <= middle) {
+      x = shareOf(power(velocity), [power(slow), power(middle)]);
+    } else {
+      x = faster + shareOf(Math.log(velocity), [Math.log(middle), Math.log(fast)]);
+      y = shareOf(small(amplitude), map.amplitude.map(small));
+    }
+  }
+  return map.nodes.length > 2 ? [x, y, shareOf(poisson, map.poisson)] : [x, y];
 }
 
 // Weights of equally spaced values for the polynomial through them, at a share of their distance.

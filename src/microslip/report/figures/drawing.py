@@ -50,10 +50,12 @@ _DRAWN: dict[str, tuple[str, ...]] = {
 _MODULES = {name: module for name, (module, *_) in _DRAWN.items()} | {"fit": "fit"}
 FIGURES = {name: tuple(datasets) for name, (_, *datasets) in _DRAWN.items()}
 """Every figure and its datasets, but for those of groups in `extended`, which have the names that
-`figure_of` gives and all the datasets of their group."""
+`figure_of` gives and all the datasets of their group, and of certified maps."""
 
 ON_DEMAND = {"fit": ("fit",)}
 """Figures that commands draw of answers of their own, and no workflow makes; likewise."""
+CERTIFIED = "certified_"
+"""What names of certified maps begin with; a figure of one has the name of its dataset."""
 MOST_POISSONS = 4
 """Lines that the figure of Poisson's ratios can tell apart."""
 
@@ -77,13 +79,20 @@ def figure_of(group: str) -> str:
 def modules_of(name: str) -> tuple[str, ...]:
     """Paths inside the package of the modules that draw a figure, besides what they import."""
     folder = "report/figures"
-    return f"{folder}/drawing.py", f"{folder}/{_MODULES.get(name, 'groups')}.py"
+    return f"{folder}/drawing.py", f"{folder}/{_module_of(name)}.py"
+
+
+def _module_of(name: str) -> str:
+    if name.startswith(CERTIFIED):
+        return "certified"
+    return _MODULES.get(name, "groups")
 
 
 def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     """Draw one figure.
 
-    name: a key of `FIGURES` or `ON_DEMAND`, or what `figure_of` gives for a group. datasets: at
+    name: a key of `FIGURES` or `ON_DEMAND`, what `figure_of` gives for a group, or the name of a
+    certified map. datasets: at
     least those that these list, by their key, or all of that group; others are ignored. Raises
     ValueError if the name is unknown, a dataset is of another scene, or a dataset, variable or
     dimension the figure needs is missing. The figure belongs to no window and no global state.
@@ -99,7 +108,7 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
             raise ValueError(f"figure {name}: dataset {key!r} is of {found!r}; allowed: {scene!r}")
     from microslip.report.figures.style import style
 
-    module = importlib.import_module(f"microslip.report.figures.{_MODULES.get(name, 'groups')}")
+    module = importlib.import_module(f"microslip.report.figures.{_module_of(name)}")
     with style():
         figure = module.draw(name, *(datasets[key] for key in keys))
         if (layout := figure.get_layout_engine()) is not None:
@@ -116,6 +125,8 @@ def _keys_of(name: str, datasets: Mapping[str, xr.Dataset]) -> tuple[str, ...]:
     """Keys of the datasets that a figure is drawn from."""
     if known := FIGURES.get(name) or ON_DEMAND.get(name):
         return known
+    if name.startswith(CERTIFIED):
+        return (name,)
     groups = {key: dataset.attrs.get("group") for key, dataset in datasets.items()}
     keys = tuple(key for key, group in groups.items() if group and figure_of(group) == name)
     if not keys:

@@ -1,0 +1,95 @@
+"""A certified map: friction with the cells that answer and their points, and their errors."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.figure import Figure
+
+from microslip.datasets import certified_map
+from microslip.datasets.query.accessor import Friction
+from microslip.report.figures import style as look
+from microslip.report.figures.data import require
+from microslip.report.figures.formulas import mathtext
+from microslip.report.figures.map_panel import fill
+from microslip.report.figures.small_maps import CONTOURS, LABELLED
+
+NODES = 97
+"""Velocities and amplitudes at which the map is asked for the picture of it."""
+SIDE = np.linspace(0.0, 1.0, 17)
+"""Places along a side of a cell, which is no straight line on the map."""
+VARIABLES = ("mu_macro", "cell_error", "cell_node", "velocity", "amplitude", "poisson")
+
+
+def draw(name: str, dataset: xr.Dataset) -> Figure:
+    """Draw the map with its cells and points, and beside it the bound of the error in each cell.
+
+    Of a map over Poisson's ratio, too, the part at the smallest one is shown.
+    """
+    require(name, name, dataset, VARIABLES)
+    poisson = float(dataset["poisson"].min())
+    figure = look.new_figure(look.DOUBLE, 3.1)
+    left, right = figure.subplots(1, 2, sharex=True, sharey=True)
+    grid = Friction(dataset).on_grid(NODES, NODES, poisson=poisson)
+    known = np.isfinite(grid["mu_macro"])
+    filled, _ = fill(left, grid.assign(converged=known), lines=CONTOURS, labelled=LABELLED)
+    outlines, errors = _cells(dataset)
+    left.add_collection(LineCollection(outlines, colors="white", linewidths=0.6, gid="cells"))
+    at = dataset.isel(point=dataset["poisson"].values == poisson) if _is_deep(dataset) else dataset
+    points = left.plot(
+        *(at["velocity"], at["amplitude"], "."),
+        **{"color": look.BLACK, "markersize": 2.2, "gid": "points"},
+    )
+    points[0].set_clip_on(False)
+    ratio = rf" at $\nu = {look.number(poisson)}$" if poisson or _is_deep(dataset) else ""
+    look.letter(left, "a", f"{dataset.attrs['points']} points, {len(dataset['cell_error'])} cells")
+    shares = PolyCollection(outlines, array=1e3 * errors, cmap=look.COLOURMAP, gid="errors")
+    shares.set(edgecolors="white", linewidths=0.6, clim=(0.0, 1e3 * float(dataset.attrs["error"])))
+    right.add_collection(shares)
+    look.letter(right, "b", f"bound of the error{ratio}")
+    right.tick_params(which="both", direction="out", top=False, right=False)
+    _label(left, right, dataset)
+    bar = figure.colorbar(filled, ax=left, pad=0.02, ticks=np.linspace(0, 1, 6))
+    bar.set_label(look.FRICTION)
+    bar.ax.tick_params(direction="out")
+    bar = figure.colorbar(shares, ax=right, pad=0.02)
+    bar.set_label("bound of the error, thousandths  (dimensionless)")
+    bar.ax.tick_params(direction="out")
+    return figure
+
+
+def _is_deep(dataset):
+    """Whether Poisson's ratio is a direction of the map."""
+    return dataset["poisson"].ndim > 0
+
+
+def _cells(dataset: xr.Dataset) -> tuple[list[np.ndarray], np.ndarray]:
+    """Outlines on the map, shape (n, 2) each, and bounds of the cells at the smallest ratio."""
+    coordinates = certified_map.coordinates_in(dataset)
+    ends = [
+        [dataset[name].values for name in certified_map.BORDERS[direction]]
+        for direction in coordinates.directions
+    ]
+    shown = np.flatnonzero(ends[2][0] == 0.0) if _is_deep(dataset) else range(len(ends[0][0]))
+    deep = (0.0,) * (len(ends) - 2)
+    outlines = []
+    for cell in shown:
+        (left, right), (low, high) = ([end[cell] for end in pair] for pair in ends[:2])
+        x, y = left + (right - left) * SIDE, low + (high - low) * SIDE
+        around = [(one, low) for one in x] + [(right, one) for one in y]
+        around += [(one, high) for one in x[::-1]] + [(left, one) for one in y[::-1]]
+        outlines.append(np.array([coordinates.place((*node, *deep))[:2] for node in around]))
+    return outlines, dataset["cell_error"].values[np.asarray(shown)]
+
+
+def _label(left: Axes, right: Axes, dataset: xr.Dataset) -> None:
+    for dim, quantity in (("velocity", "forward velocity"), ("amplitude", "amplitude")):
+        text = mathtext(dataset[dim].attrs.get("formula", ""))
+        text = f"{quantity}  {text}" if text else f"{quantity}  (dimensionless)"
+        if dim == "velocity":
+            left.set_xlabel(text)
+            right.set_xlabel(text)
+        else:
+            left.set_ylabel(text)

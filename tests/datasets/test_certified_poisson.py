@@ -1,0 +1,92 @@
+"""Certified maps over Poisson's ratio, too: cells of three directions."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from stubs import certified_stub
+
+import microslip
+from microslip.datasets import certified_map
+from microslip.foundation.errors import InputError
+from microslip.sweeps.batches import key_of
+from microslip.theory import paper
+
+pytestmark = pytest.mark.slow
+ERROR = 3e-2
+
+
+def friction(velocity, amplitude, poisson):
+    """Eq 6 with a stiffer amplitude, which reduces less where Poisson's ratio is large; made up."""
+    plain = paper.large_amplitude_transverse(velocity, np.asarray(amplitude) ** 1.5)
+    return 1.0 - (1.0 - plain) * (1.0 - poisson**2)
+
+
+def record(request):
+    place = (float(request[name]) for name in ("velocity", "amplitude", "poisson"))
+    result = {"mu_macro": float(friction(*place)), "mu_macro_error": 1e-4, "converged": True}
+    return {"key": key_of(request), "request": request, "result": result, "versions": {"x": "1"}}
+
+
+@pytest.fixture(scope="module")
+def dataset(tmp_path_factory):
+    """A certified map over Poisson's ratios from 0 to 0.4, through a file."""
+    axes = {"velocity": [0.01, 10], "amplitude": [0, 3], "poisson": [0, 0.4]}
+    map_ = certified_stub.configured("transverse", **axes, adaptive={"error": ERROR})
+    path = tmp_path_factory.mktemp("certified") / "certified_transverse.nc"
+    certified_map.write(path, certified_map.build(map_, *certified_stub.played(map_, record)))
+    with microslip.open_map("certified_transverse", path.parent) as opened:
+        return opened.load()
+
+
+def test_a_file_says_its_directions(dataset):
+    assert dataset.directions == "velocity amplitude poisson"
+    assert dataset.degrees.tolist() == [4, 4, 2]
+    assert dataset.sizes["node"] == 5 * 5 * 3
+    assert set(np.unique(dataset.poisson)) >= {0.0, 0.2, 0.4}
+    # the last direction runs fastest
+    first = dataset.poisson.values[dataset.cell_node.values[:, :3]]
+    assert (np.diff(first) > 0.0).all()
+    assert (dataset.cell_poisson_low < dataset.cell_poisson_high).all()
+
+
+@pytest.mark.parametrize("poisson", [0.0, 0.13, 0.3, 0.4])
+def test_answers_at_any_poissons_ratio_are_within_their_errors(dataset, poisson):
+    rng = np.random.default_rng(8)
+    velocity = xr.DataArray(10 ** rng.uniform(-2, 1, 500), dims="n")
+    amplitude = xr.DataArray(rng.uniform(0, 3, 500), dims="n")
+    answer = dataset.friction.at(velocity, amplitude, poisson=poisson)
+    off = abs(answer.mu_macro - friction(velocity.values, amplitude.values, poisson))
+    assert float((off <= answer.mu_macro_error).mean()) >= 0.999
+    assert float(answer.mu_macro_error.max()) <= ERROR
+    assert float(answer.poisson) == poisson
+
+
+def test_which_poissons_ratio_has_to_be_told(dataset):
+    with pytest.raises(InputError, match=r"poisson = None: allowed is 0 to 0.4"):
+        dataset.friction.at(0.1, 1.0)
+    with pytest.raises(InputError, match=r"poisson = 0.45: allowed is 0 to 0.4"):
+        dataset.friction.at(0.1, 1.0, poisson=0.45)
+
+
+def test_grids_and_questions_the_other_way_round_have_one(dataset):
+    grid = dataset.friction.on_grid(3, 3, poisson=0.2)
+    xr.testing.assert_identical(
+        grid, dataset.friction.at(grid.velocity.values, grid.amplitude.values, poisson=0.2)
+    )
+    found = dataset.friction.solve_for(0.5, amplitude=1.0, poisson=0.2)
+    low, high = (float(found[name][0]) for name in ("velocity_low", "velocity_high"))
+    # friction is made up without an error, so it crosses what is wanted within the interval
+    assert friction(low, 1.0, 0.2) <= 0.5 <= friction(high, 1.0, 0.2)
+
+
+def test_chunks_answer_alike(dataset):
+    velocity = xr.DataArray(np.geomspace(0.02, 5.0, 40), dims="n")
+    at_once = dataset.friction.at(velocity, 1.3, poisson=0.25)
+    lazy = dataset.friction.at(velocity.chunk(n=7), 1.3, poisson=0.25)
+    xr.testing.assert_identical(lazy.compute(), at_once)
+
+
+def test_a_map_of_another_version_is_refused(dataset):
+    text = dataset.attrs[certified_map.COORDINATES].replace('"poisson"', '"nu"')
+    with pytest.raises(InputError, match="make it again"):
+        dataset.assign_attrs({certified_map.COORDINATES: text}).friction.at(0.1, 1.0, poisson=0.1)
