@@ -49,8 +49,8 @@ CONFIDENCE = 0.95
 """Of the bound on the share of those that do not."""
 SOURCES = ("space", "time", "periodicity", "solver", "model")
 """Of what is claimed, kept to see which is to blame."""
-LONGEST = 600.0
-"""Seconds for a reference."""
+LONGEST = 60.0
+"""Seconds for a reference by a tighter tolerance; what takes longer is decided by `finer.py`."""
 
 
 def examine(seed: int, k: int, known: dict | None = None) -> dict:

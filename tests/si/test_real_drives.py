@@ -169,9 +169,9 @@ def test_all_of_friction_and_more_runs_away(force):
 @pytest.mark.slow
 def test_at_the_threshold_the_error_leaves_open_whether_it_moves():
     """A force that is above the threshold by less than the creep can be told: it says so."""
-    held = microslip.predict("transverse", amplitude=stroke(0.5), speed=0.0, **SIDEWAYS)
-    force = 1.0001 * held.force_threshold_N
-    found = microslip.predict("transverse", amplitude=stroke(0.5), force=force, **SIDEWAYS)
+    contact = SIDEWAYS | {"amplitude": stroke(0.5), "tolerance": 0.05}
+    held = microslip.predict("transverse", speed=0.0, **contact)
+    found = microslip.predict("transverse", force=1.0001 * held.force_threshold_N, **contact)
     assert found.outcome == "undecided"
     assert 0.0 <= found.speed_m_s <= found.speed_error_m_s
     assert found.time_to_1_mm_s is None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import difflib
 import re
+from collections.abc import Sequence
 from typing import NoReturn
 
 from microslip.app.terminal import complain
@@ -28,7 +29,9 @@ class OneLineParser(argparse.ArgumentParser):
         complain(f"{self.prog}: {message} (see {self.prog} --help)")
         raise SystemExit(2)
 
-    def parse_known_args(self, args=None, namespace=None) -> tuple:
+    def parse_known_args(
+        self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
+    ) -> tuple:
         self._refuse_strange_words(args)
         return super().parse_known_args(args, namespace)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 
 from microslip.app.command_line import Said
@@ -26,7 +27,7 @@ COLUMNS = ("velocity", "force", "power_out", "power_in", "efficiency")
 WIDTH = 12
 
 
-def add_parser(commands) -> None:
+def add_parser(commands: argparse._SubParsersAction) -> None:
     """Add the parser of `drive` to those of the other commands."""
     parser = commands.add_parser(
         "drive",
@@ -55,7 +56,7 @@ def add_parser(commands) -> None:
     )
 
 
-def run(options) -> int:
+def run(options: argparse.Namespace) -> int:
     """Answer; returns the exit code: 0 converged, 1 not converged, 2 bad input."""
     from microslip import drive
     from microslip.foundation import spec

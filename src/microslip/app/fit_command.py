@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 from pathlib import Path
 
@@ -29,7 +30,7 @@ FILES = ("map", "figure", "output")
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "u"), (1e-9, "n"))
 
 
-def add_parser(commands) -> None:
+def add_parser(commands: argparse._SubParsersAction) -> None:
     """Add the parser of `fit` to those of the other commands."""
     parser = commands.add_parser(
         "fit",
@@ -54,7 +55,7 @@ def add_parser(commands) -> None:
     )
 
 
-def run(options) -> int:
+def run(options: argparse.Namespace) -> int:
     """Answer; returns the exit code: 0 both numbers, 1 one of them, 2 bad input."""
     from microslip import fit
     from microslip.foundation.errors import CacheError, InputError

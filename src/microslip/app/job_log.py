@@ -5,6 +5,7 @@ import gc
 import logging
 import re
 import sys
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -29,7 +30,7 @@ class _LogFile(logging.FileHandler):
 
 
 @contextmanager
-def job_log(path, shown=logging.WARNING):
+def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.Logger]:
     """Context of a job: yields a logger that writes to the file `path`.
 
     Messages from the level `shown` on go to standard error too. An error goes to the log in full;
@@ -73,7 +74,7 @@ def job_log(path, shown=logging.WARNING):
 REFUSED = re.compile(r"^\w+: \[Errno (\d+)\] ([^:\n]+)(?:: '(.+)')?\s*\Z", re.MULTILINE)
 
 
-def plain_words(folder):
+def plain_words(folder: str | Path) -> Callable[[logging.LogRecord], bool]:
     """Filter for Snakemake's log: where the system refuses Snakemake itself, what to do about it.
 
     It comes in the place of a traceback. folder: named where the system names no file.
@@ -89,7 +90,7 @@ def plain_words(folder):
     return say_plainly
 
 
-def closing_lines(folder, names):
+def closing_lines(folder: str | Path, names: Iterable[str]) -> list[str]:
     """What the logs of collecting say about datasets: a list of lines; names: of the datasets.
 
     How many points each has, and which of them did not converge.

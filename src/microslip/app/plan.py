@@ -7,6 +7,7 @@ workflow is parsed by every job.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from functools import cache, cached_property
 from pathlib import PurePosixPath
 
@@ -197,13 +198,12 @@ class Plan:
             f"batches/{group}/{name}.json" for group in groups for name in self.batches_in(group)
         ]
 
-    def dataset_files(self, names) -> list[str]:
+    def dataset_files(self, names: Iterable[str]) -> list[str]:
         """Files of datasets and of the pages about them."""
         return [file for name in names for file in (f"{name}.nc", f"summaries/{name}.html")]
 
-    def figure_files(self, datasets) -> list[str]:
-        """Files of all figures that are drawn from these datasets, a map of the paper beside them
-        perhaps."""
+    def figure_files(self, datasets: Iterable[str]) -> list[str]:
+        """Files of all figures drawn from these datasets, perhaps with a map of the paper."""
         own = {
             figure: set(names) - set(self.configuration.sweeps) or set(names)
             for figure, names in self.figures.items()
@@ -244,7 +244,7 @@ class Plan:
             *(STUDY_CODE if path.stem in self.studies else DATASET_CODE)
         )
 
-    def refuse_edited(self, file: str, code: str):
+    def refuse_edited(self, file: str, code: str) -> None:
         """Raise SourcesEdited if the code that makes a file is not, or no longer, the planned one.
 
         code: what `code_of` said when the file was planned.

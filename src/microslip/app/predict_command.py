@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import math
 import sys
@@ -67,7 +68,7 @@ UNDERSTOOD += ("frequency", "rotation", "reduction")
 """What a Prediction has understood, in the order of the answer."""
 
 
-def add_parser(commands) -> None:
+def add_parser(commands: argparse._SubParsersAction) -> None:
     """Add the parser of `predict` to those of the other commands."""
     parser = commands.add_parser(
         "predict",
@@ -103,7 +104,7 @@ def add_parser(commands) -> None:
     )
 
 
-def run(options) -> int:
+def run(options: argparse.Namespace) -> int:
     """Answer; returns the exit code: 0 converged, 1 not converged, 2 bad input."""
     from microslip.sweeps.evaluate import plain
 

@@ -7,12 +7,13 @@ what has been done, by whichever process and on whichever machine that sees the 
 import atexit
 import sys
 import threading
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from tqdm import tqdm
 
 
-def counted(items, path):
+def counted(items: Iterable, path: str | Path) -> Iterator:
     """Yield the items; each one that is done with adds a byte to the file `path`.
 
     What cannot be written is not counted: a full disk is reported where results are stored.
@@ -29,11 +30,11 @@ def counted(items, path):
 class Watch:
     """A line on standard error while a run lasts; `start` and `stop` it."""
 
-    def __init__(self, path):
+    def __init__(self, path: str | Path):
         """path: of the file that jobs add to; it is emptied by `start`."""
         self.path, self.stopped, self.thread = Path(path), threading.Event(), None
 
-    def start(self, total):
+    def start(self, total: int) -> None:
         """Begin to show progress; total: points that there are to do."""
         if not total:
             return
@@ -46,13 +47,13 @@ class Watch:
         self.thread = threading.Thread(target=self._show, args=[total], daemon=True)
         self.thread.start()
 
-    def stop(self):
+    def stop(self) -> None:
         """Show where things stand, and no more."""
         if self.thread is not None:
             self.stopped.set()
             self.thread.join()
 
-    def done(self):
+    def done(self) -> int:
         """Number of points done so far."""
         try:
             return self.path.stat().st_size

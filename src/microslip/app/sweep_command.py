@@ -59,8 +59,8 @@ of bad input it is 2. The defaults are those of profiles/default, here or in the
 """
 
 
-def main(arguments):
-    """Run Snakemake with these arguments (list of str); return its exit code."""
+def main(arguments: list[str]) -> int:
+    """Run Snakemake with these arguments; return its exit code."""
     if {"-h", "--help"} & set(arguments):
         print(HELP, end="")
         return 0
@@ -101,7 +101,7 @@ def _hang_up(running):
     running.terminate()
 
 
-def snakefile():
+def snakefile() -> Path:
     """Path of the workflow that belongs to this package. Raises FileNotFoundError."""
     places = (PACKAGE / "bundle", PACKAGE.parents[1])
     for place in places:

@@ -26,7 +26,7 @@ def of_paper(name: str, given: dict, where: str) -> Sweep:
     return sweep
 
 
-def grid_of(name: str, scene: str, given: dict, where: str, **more) -> Sweep:
+def grid_of(name: str, scene: str, given: dict, where: str, **more: object) -> Sweep:
     """A Sweep with its axes expanded, of settings with defaults filled in; more: its other fields.
 
     Raises ConfigError, beginning with `where`, for a bad axis or too many points.

@@ -5,6 +5,7 @@ all without a word.  Imports nothing heavy, since the workflow reads it whenever
 """
 
 import re
+from typing import IO
 
 import yaml
 
@@ -16,11 +17,11 @@ class StrictLoader(yaml.SafeLoader):
     refused raises yaml.constructor.ConstructorError.
     """
 
-    def __init__(self, stream):
+    def __init__(self, stream: str | bytes | IO):
         super().__init__(stream)
         self._checked = []
 
-    def flatten_mapping(self, node) -> None:
+    def flatten_mapping(self, node: yaml.MappingNode) -> None:
         if not any(node is other for other in self._checked):  # afterwards it has what is merged
             self._checked.append(node)
             self._refuse_twice(node)
@@ -38,12 +39,12 @@ class StrictLoader(yaml.SafeLoader):
                 )
             seen.append(key)
 
-    def construct_yaml_int(self, node) -> int:
+    def construct_yaml_int(self, node: yaml.ScalarNode) -> int:
         """A whole number, unless YAML would read another one than the text shows to people."""
         self._refuse_other_bases(node)
         return super().construct_yaml_int(node)
 
-    def construct_yaml_float(self, node) -> float:
+    def construct_yaml_float(self, node: yaml.ScalarNode) -> float:
         """A number, unless YAML would read another one than the text shows to people."""
         self._refuse_other_bases(node)
         value = super().construct_yaml_float(node)
@@ -61,7 +62,7 @@ class StrictLoader(yaml.SafeLoader):
                 f"{node.value} is not allowed: to base 8 for YAML; write it without the 0 in front"
             )
 
-    def construct_object(self, node, deep: bool = False) -> object:
+    def construct_object(self, node: yaml.Node, deep: bool = False) -> object:
         try:
             return super().construct_object(node, deep)
         except (yaml.YAMLError, RecursionError):

@@ -6,10 +6,12 @@ Memory does not grow with the number of points: at most BLOCK of them are held a
 from collections.abc import Iterable
 from itertools import islice
 
+import netCDF4
 import numpy as np
 
 from microslip.config.quantities import MU_MACRO
 from microslip.config.quantities import TORQUE as TORQUE_OF
+from microslip.config.records import Sweep
 from microslip.datasets.netcdf import characters_of
 from microslip.foundation.canonical import canonical_json
 
@@ -75,7 +77,7 @@ BLOCK = 4096
 """Points that are held at a time when a dataset is written, and a chunk of larger ones."""
 
 
-def append(file, sweep, axes: dict, points: Iterable) -> set[str]:
+def append(file: netCDF4.Dataset, sweep: Sweep, axes: dict, points: Iterable) -> set[str]:
     """Write POINT_VARIABLES over the axes into an open file; the versions behind the records."""
     table = POINT_VARIABLES | (TORQUE_VARIABLES if sweep.amplitude is None else {})
     if not sweep.velocity:

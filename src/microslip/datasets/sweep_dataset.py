@@ -29,7 +29,7 @@ PAPER = "R. Pohrt, Front. Mech. Eng. 6:566440 (2020), doi:10.3389/fmech.2020.566
 
 
 def write_sweep(
-    path: str | os.PathLike, sweep, points: Iterable, histories: list, settings: dict
+    path: str | os.PathLike, sweep: Sweep, points: Iterable, histories: list, settings: dict
 ) -> None:
     """Write the dataset of a sweep to the netCDF-4 file `path`, all of it or nothing.
 
@@ -114,7 +114,7 @@ def _parts(sweep, histories):
     }
 
 
-def provenance(title: str, settings: dict, versions: set, **more) -> dict:
+def provenance(title: str, settings: dict, versions: set, **more: object) -> dict:
     """Attributes that say what made a dataset; settings: dict, kept as JSON; versions: set of
     texts, those of the libraries behind its results."""
     return {

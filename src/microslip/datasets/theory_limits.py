@@ -7,6 +7,7 @@ fine enough to draw. A formula in theory/catalogue.py appears in the dataset of 
 import numpy as np
 
 from microslip.config.extended import solver_names
+from microslip.config.records import Sweep
 from microslip.theory import catalogue
 
 CURVE_POINTS = 241
@@ -48,7 +49,7 @@ def _axis(sweep, dim):
     return np.array(pulls[dim] if dim in pulls else getattr(sweep, dim))
 
 
-def variables(sweep) -> dict:
+def variables(sweep: Sweep) -> dict:
     """Variables on the axes of a records.Sweep: name -> (dims, values, attributes)."""
     found = {}
     for name, form in (_forms(sweep) | _creep_forms(sweep)).items():
@@ -59,7 +60,7 @@ def variables(sweep) -> dict:
     return found
 
 
-def curves(sweep) -> dict:
+def curves(sweep: Sweep) -> dict:
     """The same on axes fine enough to draw, by `velocity_curves` and `amplitude_curves`.
 
     Beside every limit stands `<name>_curve`, on the fine axis `amplitude_curve` or

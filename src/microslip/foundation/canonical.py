@@ -36,6 +36,6 @@ def sha256(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def fingerprint(*parts) -> str:
+def fingerprint(*parts: object) -> str:
     """Short name of what something is made of; parts: what JSON can hold."""
     return sha256(canonical_json(parts))[:32]

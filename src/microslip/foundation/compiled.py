@@ -15,7 +15,7 @@ OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy"}
 """Compiled once and kept on disk; no reordering of sums; division by zero as NumPy does it."""
 
 
-def kernel(function: Callable | None = None, **options) -> Callable:
+def kernel(function: Callable | None = None, **options: object) -> Callable:
     """Decorator of functions that Numba compiles when they are first called.
 
     options: of numba.njit, besides OPTIONS, as in `@kernel(inline="always")`.

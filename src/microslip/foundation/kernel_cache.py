@@ -45,7 +45,7 @@ class BySources:
     package with the same sources finds the same code.
     """
 
-    def __init__(self, function):
+    def __init__(self, function: Callable):
         self.function = function
 
     @classmethod

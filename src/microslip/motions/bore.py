@@ -4,6 +4,7 @@ motion."""
 import numpy as np
 
 from microslip.motions.motion import Motion, within_rings
+from microslip.pressures.pressure import Pressure
 from microslip.theory import hertz
 
 
@@ -13,7 +14,7 @@ def displacement(phase: np.ndarray, velocity: float, amplitude: float, poisson: 
     return velocity * angle * phase, np.zeros_like(phase), angle * np.sin(phase)
 
 
-def focus(velocity: float, amplitude: float, pressure) -> float | None:
+def focus(velocity: float, amplitude: float, pressure: Pressure) -> float | None:
     """Lubkin's stick radius of the oscillation alone (Eq 30); under another pressure rings there do
     no harm."""
     return within_rings(hertz.lubkin_stick_radius(hertz.bore_angle(amplitude)))

@@ -3,6 +3,7 @@
 import numpy as np
 
 from microslip.motions.motion import Motion, within_rings
+from microslip.pressures.pressure import Pressure
 
 
 def displacement(phase: np.ndarray, velocity: float, amplitude: float, poisson: float) -> tuple:
@@ -10,7 +11,7 @@ def displacement(phase: np.ndarray, velocity: float, amplitude: float, poisson: 
     return velocity * phase, np.zeros_like(phase), phase + 0.0
 
 
-def focus(velocity: float, amplitude: float, pressure) -> float | None:
+def focus(velocity: float, amplitude: float, pressure: Pressure) -> float | None:
     """The instantaneous centre of rotation, while it lies inside the contact (Eq 14)."""
     return within_rings(velocity) if velocity < 1.0 else None
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from microslip.motions import transverse
+from microslip.pressures.pressure import Pressure
 from microslip.theory import masing
 
 
@@ -20,7 +21,7 @@ def turns(velocity: float, amplitude: float) -> tuple[float, ...]:
     return -back, back, 2.0 * np.pi - back
 
 
-def closed_form_of(velocity: float, amplitude: float, pressure) -> float | None:
+def closed_form_of(velocity: float, amplitude: float, pressure: Pressure) -> float | None:
     """First loading with Masing's memory, where the curve of first loading is known."""
     if pressure.loading is None:
         return None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from microslip.si.bodies import TwoBodies
 from microslip.si.motions import COMBINED, PARTS
 from microslip.theory import hertz
 
@@ -40,7 +41,7 @@ class RealMotion:
         return along, self.rotation_amplitude or 0.0
 
 
-def parts(motion: RealMotion, contact) -> dict[str, float]:
+def parts(motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
     """Amplitudes of a scene that oscillates in several ways, in the solver's groups, by the names
     of their shares."""
     unit = {"lateral": contact.u_lim, "forward": contact.u_lim, "load": contact.load}
@@ -55,7 +56,7 @@ def parts(motion: RealMotion, contact) -> dict[str, float]:
     return found
 
 
-def solver_scene(motion: RealMotion, contact) -> str:
+def solver_scene(motion: RealMotion, contact: TwoBodies) -> str:
     """The scene as microslip.solve takes it: of several amplitudes, their shares of the largest."""
     if motion.scene not in COMBINED:
         return motion.scene
@@ -66,7 +67,7 @@ def solver_scene(motion: RealMotion, contact) -> str:
     return f"{motion.scene}:{','.join(f'{name}={value!r}' for name, value in shares.items())}"
 
 
-def groups(motion: RealMotion, contact) -> tuple[float | None, float | None]:
+def groups(motion: RealMotion, contact: TwoBodies) -> tuple[float | None, float | None]:
     """(velocity, amplitude) as microslip.solve takes them (Eqs 2, 4, 13, 27, 28).
 
     motion: RealMotion; contact: bodies.TwoBodies.  amplitude: None for a steady bore.  velocity:
@@ -85,7 +86,7 @@ def groups(motion: RealMotion, contact) -> tuple[float | None, float | None]:
     return velocity, motion.amplitude / contact.u_lim
 
 
-def speed_unit(motion: RealMotion, contact) -> float:
+def speed_unit(motion: RealMotion, contact: TwoBodies) -> float:
     """Forward speed whose group is 1, m/s; it may be rounded to nothing."""
     if motion.scene == "continuous-bore":
         return motion.rotation * contact.contact_radius
@@ -122,7 +123,7 @@ class RealDrive:
     damping: float | None = None
 
 
-def drive_groups(drive: RealDrive, motion: RealMotion, contact) -> dict[str, float]:
+def drive_groups(drive: RealDrive, motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
     """force, stiffness, mass and damping as microslip.solve takes them, those that are not None.
 
     They are over mu F_z, mu F_z / u_lim, mu F_z / (u_lim omega^2) and mu F_z / (u_lim omega).
@@ -141,7 +142,7 @@ def drive_groups(drive: RealDrive, motion: RealMotion, contact) -> dict[str, flo
     return {name: value * unit for name, (value, unit) in found.items() if value is not None}
 
 
-def largest_slip_speed(motion: RealMotion, contact) -> float:
+def largest_slip_speed(motion: RealMotion, contact: TwoBodies) -> float:
     """Upper bound of the speed between the surfaces, m/s: rigid, at the edge.
 
     NaN where the contact runs away.

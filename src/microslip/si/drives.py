@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from microslip.foundation.errors import InputError
+from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealDrive, RealMotion, drive_groups
 from microslip.si.quantities import read
 
@@ -65,7 +66,9 @@ def _read(given):
     return RealDrive(**values), texts
 
 
-def checked_drive_groups(drive: RealDrive, motion: RealMotion, contact, given: dict) -> dict:
+def checked_drive_groups(
+    drive: RealDrive, motion: RealMotion, contact: TwoBodies, given: dict
+) -> dict:
     """drive_groups of a drive; raises InputError, with the value as it was given, for one that is
     beyond floating-point numbers.
 

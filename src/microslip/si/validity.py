@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from microslip.si.dimensionless import largest_slip_speed
+from microslip.si.bodies import TwoBodies
+from microslip.si.dimensionless import RealMotion, largest_slip_speed
 
 YIELDS_AT = 0.57
 """Largest Hertz pressure over hardness at which plastic flow sets in below the surface: 1.6 of the
@@ -19,7 +20,8 @@ HARDEST = 0.1
 """Hardness over Young's modulus that no metal, ceramic or glass is above: it is 2.8 times the yield
 stress, which is a few per cent of the modulus at most."""
 RUBBERY = 0.45
-"""Poisson's ratio from which on a body is taken for a rubber, which does not yield."""
+"""Poisson's ratio from which on a body is taken for a rubber, which does not yield but loses energy
+inside: its modulus rises with the frequency (K. A. Grosch, Proc. R. Soc. A 274, 1963)."""
 ADHESION = 0.05
 """Work of adhesion of clean smooth surfaces that only van der Waals forces hold, N/m, of that order
 (J. N. Israelachvili, Intermolecular and Surface Forces)."""
@@ -140,6 +142,14 @@ CHECKS = (
             "weld, of which Coulomb's law is a poor picture",
         ),
     ),
+    (
+        Rule(
+            (("rubbers", 1.0, 0.0),),
+            f"Poisson's ratio from {RUBBERY:g} on is that of rubber, whose modulus rises with the "
+            "frequency and whose losses inside rub too: give Young's modulus at this frequency; "
+            "the losses are left out",
+        ),
+    ),
 )
 """Rules in the order in which they are told; of those that stand together the first that holds."""
 PROPERTIES = {"hardness": "whether the bodies stay elastic", "density": "inertia"}
@@ -147,7 +157,7 @@ PROPERTIES = {"hardness": "whether the bodies stay elastic", "density": "inertia
 NOT_GIVEN = "{what} (no {name} given)"
 
 
-def broken_assumptions(contact, motion) -> list[str]:
+def broken_assumptions(contact: TwoBodies, motion: RealMotion) -> list[str]:
     """List of warnings; contact: bodies.TwoBodies, motion: dimensionless.RealMotion."""
     known = measures(contact, motion)
     found = (next((rule for rule in rules if _holds(rule, known)), None) for rules in CHECKS)
@@ -164,7 +174,7 @@ def _holds(rule, known):
     )
 
 
-def unchecked(contact) -> list[str]:
+def unchecked(contact: TwoBodies) -> list[str]:
     """What could not be checked, for want of which property: list of texts."""
     return [
         NOT_GIVEN.format(what=what, name=name)
@@ -173,7 +183,7 @@ def unchecked(contact) -> list[str]:
     ]
 
 
-def measures(contact, motion) -> dict[str, float | None]:
+def measures(contact: TwoBodies, motion: RealMotion) -> dict[str, float | None]:
     """What the rules look at, by name; None: there is no such thing, or it is not known."""
     return _of_bodies(contact) | _of_adhesion(contact) | _of_motion(contact, motion)
 
@@ -193,6 +203,7 @@ def _of_bodies(contact):
         "load": contact.load,
         "u_lim": contact.u_lim,
         "mu": contact.mu,
+        "rubbers": sum(b.poisson >= RUBBERY and not b.rigid for b in contact.bodies),
     }
     for side, body in zip(("first", "second"), contact.bodies, strict=True):
         known = body.hardness is not None or body.rigid or body.poisson >= RUBBERY

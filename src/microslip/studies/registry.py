@@ -7,15 +7,21 @@ in their name turn the answers into datasets. What is asked is plain data that i
 heavy, since the workflow reads it whenever it is parsed.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator
 from dataclasses import asdict
 from importlib import import_module
+from typing import TYPE_CHECKING
 
 from microslip.config.records import Configuration
 from microslip.studies.accuracy import accuracy_cost
 from microslip.studies.claims import claims
 from microslip.studies.driving import driving
 from microslip.studies.stability import stability
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # Studies, named as in the configuration, and their datasets.
 DATASETS = {
@@ -57,7 +63,7 @@ def groups(study: str) -> dict:
     return _dataset_of(study).GROUPS
 
 
-def report(study: str, dataset) -> Iterator[str]:
+def report(study: str, dataset: xr.Dataset) -> Iterator[str]:
     """Lines of text that sum up the dataset of a study."""
     return _dataset_of(study).report(dataset)
 

@@ -1,5 +1,7 @@
 """Records to columns: what the datasets of the studies share."""
 
+from collections.abc import Callable
+
 import numpy as np
 import xarray as xr
 
@@ -13,7 +15,7 @@ class Answers:
     answer(request) -> record, see microslip.sweeps.batches.
     """
 
-    def __init__(self, answer):
+    def __init__(self, answer: Callable):
         self.answer, self.keys, self.versions = answer, set(), set()
 
     def __call__(self, request):
@@ -54,7 +56,12 @@ def columns(dims: str | tuple, table: dict) -> dict:
 
 
 def finished(
-    variables: dict, coords: dict, title: str, answers: Answers, settings, **attributes
+    variables: dict,
+    coords: dict,
+    title: str,
+    answers: Answers,
+    settings: dict,
+    **attributes: object,
 ) -> xr.Dataset:
     """A Dataset with what says where it comes from; settings: dict, kept as JSON."""
     # The names of all results: they depend on the sources of the methods, too.

@@ -67,7 +67,7 @@ class Records:
         One line that says what to do, for a file that is damaged.
     """
 
-    def __init__(self, paths):
+    def __init__(self, paths: Iterable[str | Path]):
         self._places = {}
         for path in paths:
             content, _ = _batch_content(path)

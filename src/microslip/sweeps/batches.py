@@ -16,7 +16,7 @@ from pathlib import Path
 
 from microslip.config.axes import DRIVES
 from microslip.config.extended import solver_names
-from microslip.config.records import HISTORIES_OF_SWEEP, Configuration
+from microslip.config.records import HISTORIES_OF_SWEEP, Configuration, Sweep
 from microslip.foundation import source_digest
 from microslip.foundation.canonical import number
 from microslip.motions.body_contacts import contacts_of, written
@@ -54,7 +54,7 @@ class PointRequests(Sequence):
     fastest; a force stands in the place of the velocity.
     """
 
-    def __init__(self, sweep):
+    def __init__(self, sweep: Sweep):
         scene, pressure = solver_names(sweep)
         self._common = {
             "kind": "point",
@@ -172,7 +172,7 @@ class SourcesEdited(CacheError):
         What was computed, by code that was loaded before the edit or after it.
     """
 
-    def __init__(self, file, record=None):
+    def __init__(self, file: str | Path, record: dict | None = None):
         super().__init__(
             f"{file} was edited while its code was running, so what it computes is not kept; "
             "run again: finished points are kept"
@@ -250,7 +250,7 @@ def label(request: dict) -> str:
 
 
 @functools.cache
-def versions():
+def versions() -> dict[str, str]:
     """Versions of Python and of the numerical libraries that compute a result, as a dict."""
     found = {name: importlib.metadata.version(name) for name in ("numpy", "scipy", "numba")}
     return {"python": platform.python_version(), **found}

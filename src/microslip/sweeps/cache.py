@@ -19,7 +19,7 @@ log = logging.getLogger(__name__)
 class Store:
     """Results under one folder. Several processes may read and write it at the same time."""
 
-    def __init__(self, folder):
+    def __init__(self, folder: str | Path):
         """folder: str or Path. It is made when the first result is written."""
         refuse_no_folder(folder)
         self.folder = Path(folder)
@@ -57,7 +57,7 @@ class Store:
         write_atomically(path, line_of({**record, "key": key}))
         return path
 
-    def try_writing(self):
+    def try_writing(self) -> None:
         """Raise CacheError where nothing can be stored, before work is put into it; tries once."""
         if self._tried:
             return

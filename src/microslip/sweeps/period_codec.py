@@ -5,10 +5,16 @@ shares of the friction bound in steps of 1/127, which is what a drawing can show
 decimals, and which points slip is exact.
 """
 
+from __future__ import annotations
+
 import base64
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from microslip.adaptive.period import Period
 
 SHARES = 127
 """Steps of a traction from 0 to the friction bound; kept ones are off by half a step at most."""
@@ -17,7 +23,7 @@ DECIMALS = 7
 HISTORIES = ("phase", "forward", "lateral", "angle", "force_forward", "force_lateral", "torque")
 
 
-def packed(period, angles: int) -> dict:
+def packed(period: Period, angles: int) -> dict:
     """A period.Period as a dict of plain values and texts; angles: points on half a ring.
 
     Of a scene whose second half of a period is the mirror image of the first.

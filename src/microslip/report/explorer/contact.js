@@ -132,6 +132,7 @@ function measuresOf(si, question, contact) {
     load,
     u_lim,
     mu,
+    rubbers: bodies.filter((body) => body.poisson >= si.rubbery && body.young !== Infinity).length,
     tabor,
     maugis: 1.157 * tabor,
     pull_off: pull,

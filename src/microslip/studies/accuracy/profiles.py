@@ -5,6 +5,8 @@ point and a tolerance; a competitor's cost there is the least among its runs tha
 tolerance, and its ratio that cost over the least of all competitors of its contest.
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
@@ -62,7 +64,7 @@ class Trial(NamedTuple):
     cost: float
     error: float
 
-    def is_finer_than(self, other) -> bool:
+    def is_finer_than(self, other: Trial) -> bool:
         """Whether it is of the same series of runs, and as fine as another or finer."""
         return self[:3] == other[:3] and self.level >= other.level
 

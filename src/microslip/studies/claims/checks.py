@@ -18,14 +18,14 @@ from microslip.theory import paper as theory
 
 
 def check(
-    value: float, against: float, margin: float, error: np.ndarray, runs: Runs, **place
+    value: float, against: float, margin: float, error: np.ndarray, runs: Runs, **place: object
 ) -> Check:
     numbers = (float(value), float(against), float(margin), float(error))
     return Check(*numbers, tuple(run.key for run in runs), tuple(place.items()))
 
 
 def within(
-    limit: float, value: float, against: float, error: np.ndarray, runs: Runs, **place
+    limit: float, value: float, against: float, error: np.ndarray, runs: Runs, **place: object
 ) -> Check:
     """Holds where value and against are no more than `limit` apart."""
     return check(value, against, limit - abs(value - against), error, runs, **place)

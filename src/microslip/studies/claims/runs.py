@@ -1,5 +1,6 @@
 """The runs behind the verdicts: results by request, and how each can be repeated."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +21,7 @@ class Run:
 class Runs(Answers):
     """Answers that keep the runs in the order in which they were first asked for."""
 
-    def __init__(self, answer):
+    def __init__(self, answer: Callable):
         super().__init__(answer)
         self.found = {}
 

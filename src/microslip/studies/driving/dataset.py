@@ -6,6 +6,7 @@ from dataclasses import asdict
 import numpy as np
 import xarray as xr
 
+from microslip.config.records import Driving
 from microslip.studies.driving import driving as study
 from microslip.studies.tables import Answers, columns, finished, value_of, variable
 
@@ -34,7 +35,7 @@ OF_POINT = {
 """Numbers of every point of a line; NaN where nothing is driven."""
 
 
-def build(settings, answer: Callable) -> xr.Dataset:
+def build(settings: Driving, answer: Callable) -> xr.Dataset:
     """Assemble the Dataset.
 
     settings: records.Driving. answer(request) -> record, such as batches.answer with a store.

@@ -1,12 +1,13 @@
 """Driving: the lines of motions that drive the contact, from stall to no load."""
 
+from microslip.config.records import Driving, DrivingMotion
 from microslip.foundation.canonical import number
 
 LINES_TOGETHER = 2
 """That one job computes."""
 
 
-def line(study, motion) -> dict:
+def line(study: Driving, motion: DrivingMotion) -> dict:
     """The request for the line of a motion.
 
     study: records.Driving. motion: records.DrivingMotion.
@@ -21,7 +22,7 @@ def line(study, motion) -> dict:
     }
 
 
-def pieces(study) -> tuple[list, list]:
+def pieces(study: Driving) -> tuple[list, list]:
     """What one job each answers: two lists of lists of requests, those that take long first."""
     asked = [line(study, motion) for motion in study.motions.values()]
     distinct = [request for i, request in enumerate(asked) if request not in asked[:i]]
