@@ -35,6 +35,8 @@ def made(map_, friction, failed=None):
 
     def answered(request):
         place = float(request["velocity"]), float(request["amplitude"])
+        if map_.poisson:
+            place += (float(request["poisson"]),)
         result = {"mu_macro": friction(*place), "mu_macro_error": 1e-4, "converged": True}
         if failed is not None and failed(*place):
             result = {"converged": False}
@@ -147,6 +149,31 @@ def test_other_motions_are_refused_beyond_their_maps_as_by_friction_at():
         with pytest.raises(ValueError) as error:
             dataset.friction.at(*place)
         assert one["refused"] == str(error.value)
+
+
+@pytest.mark.parametrize("scene", ["transverse", "bore"])
+def test_maps_over_poissons_ratio_answer_as_friction_at(scene):
+    friction, widest = {"transverse": (sideways, 3), "bore": (boring, 5)}[scene]
+    axes = {"velocity": [0.001, 10], "amplitude": [0, widest], "poisson": [0, 0.5]}
+    map_ = certified_stub.configured(scene, **axes, adaptive={"error": 3e-2})
+
+    def changed(velocity, amplitude, poisson):
+        return friction(velocity, amplitude / (1 - 0.3 * poisson))
+
+    dataset, rng = made(map_, changed), np.random.default_rng(12)
+    velocity, amplitude = 10 ** rng.uniform(-3, 2, 60), rng.uniform(0, widest, 60)
+    packed = certified.packed(dataset)
+    for poisson in (0.0, 0.17, 0.3, 0.5):
+        places = zip(velocity.tolist(), amplitude.tolist(), strict=True)
+        said = answers(SCRIPTS, "frictionAt", packed, [[*one, poisson] for one in places])
+        at = (xr.DataArray(part, dims="n") for part in (velocity, amplitude))
+        compare(said, dataset.friction.at(*at, poisson=poisson))
+    slow, apart = answers(SCRIPTS, "frictionAt", packed, [[1e-4, 1.0, 0.3], [1.0, 1.0, 0.6]])
+    if scene == "transverse":
+        with pytest.raises(ValueError) as error:
+            dataset.friction.at(1e-4, 1.0, poisson=0.3)
+        assert slow["refused"] == str(error.value)
+    assert apart["refused"] == "poisson = 0.6: allowed is 0 to 0.5; microslip.solve computes any"
 
 
 def test_cells_of_three_directions_give_back_a_polynomial_of_their_degrees():
