@@ -354,7 +354,7 @@ def test_the_form_fits_a_phone(phone):
         boxes = [box for box in phone.evaluate(BOXES, selector) if box[1] > box[0]]
         assert boxes
         for left, right, top, bottom in boxes:
-            assert bottom - top >= 44 and 0 <= left and right <= 400, selector
+            assert bottom - top >= 44 and left >= 0 and right <= 400, selector
 
 
 def test_turning_the_phone_lays_it_out_again(phone):
