@@ -17,7 +17,7 @@ from microslip.sweeps.batches import key_of
 from microslip.theory import masing, paper
 
 pytestmark = [pytest.mark.slow, needs_node]
-SCRIPTS = ("certified.js", "beyond.js")
+SCRIPTS = ("certified.js", "elliptic.js", "limits.js", "beyond.js")
 TOLERANCE = 1e-12
 
 
@@ -79,16 +79,32 @@ def test_answers_on_the_map_are_those_of_friction_at(given):
 
 def test_answers_beyond_the_map_are_those_of_friction_at(given):
     rng = np.random.default_rng(8)
-    slowest, wider = (-5, 5) if given.scene == "transverse" else (-3, 1)
-    velocity = 10 ** rng.uniform(slowest, 3, 200)
-    amplitude = rng.uniform(0, wider * given.widest, 200)
-    if given.scene == "transverse":
-        velocity[:20] = 0.0
+    velocity, amplitude = 10 ** rng.uniform(-5, 3, 200), rng.uniform(0, 5 * given.widest, 200)
+    velocity[:20] = 0.0
     said, truth = asked(given.dataset, velocity, amplitude)
     compare(said, truth)
-    kinds = {one["source"] for one in said}
-    assert "between map and fast sliding" in kinds
-    assert ("static limit" in kinds) == (given.scene == "transverse")
+    assert {one["source"] for one in said} == {
+        "map",
+        "static limit",
+        "between static limit and map",
+        "between map and fast sliding",
+        "between map and large amplitude",
+    }
+
+
+@pytest.mark.parametrize(
+    ("call", "truth"),
+    [
+        ("largeTransverse(at, 1)", lambda at: paper.large_amplitude_transverse(at, 1.0)),
+        ("staticTransverse(at, rule)", paper.static_limit_transverse),
+        ("largeBore(at, 1, rule)", paper.large_amplitude_bore),
+        ("staticBore(at, rule)", paper.static_limit_bore),
+    ],
+)
+def test_limits_are_those_of_the_theory(call, truth):
+    at = np.concatenate([[0, 0.5, 0.999, 1, 1.0001, 2, 300, 1e4], np.geomspace(1e-9, 50, 60)])
+    said = answers(SCRIPTS, f"(rule, at) => {call}", certified.gauss_rule(), at[:, None].tolist())
+    assert np.array(said, float) == pytest.approx(truth(at), abs=1e-13, rel=0)
 
 
 def test_answers_below_the_smallest_amplitude_are_those_of_friction_at(given):
@@ -123,16 +139,6 @@ def test_both_refuse_the_same_with_the_same_words(given):
         refused, allowed = one["refused"].split(": ", 1)
         assert refused.split(" = ")[0] == error.value.argument
         assert error.value.allowed.startswith(allowed)
-
-
-def test_what_the_page_knows_no_limit_of_it_says():
-    axes = {"velocity": [0.01, 1], "amplitude": [0, 2], "adaptive": {"error": 3e-2}}
-    packed = certified.packed(made(certified_stub.configured("bore", **axes), boring))
-    calls = [(0.001, 1.0, 0.0), (0.5, 3.0, 0.0), (0.0, 0.0, 0.0)]
-    slow, wide, still = answers(SCRIPTS, "frictionAt", packed, calls)
-    assert slow["refused"].startswith("velocity = 0.001: allowed for bore is 0.01 or more")
-    assert wide["refused"].startswith("amplitude = 3: allowed for bore is 2 or less")
-    assert still["value"] == 1
 
 
 def test_other_motions_are_refused_beyond_their_maps_as_by_friction_at():

@@ -11,7 +11,7 @@ from microslip.sweeps import map_coordinates
 from microslip.sweeps.evaluate import plain
 
 RULE = 64
-"""Nodes of Gauss's rule for the static limit, as many as in theory.paper."""
+"""Nodes of Gauss's rule, as many as in theory.paper."""
 
 
 def packed(dataset: xr.Dataset) -> dict:
@@ -37,7 +37,6 @@ def packed(dataset: xr.Dataset) -> dict:
     found = cells_of(dataset)
     table, coordinates = found.cells, found.cells.coordinates
     scene, pressure = dataset.attrs["scene"], dataset.attrs.get("pressure", "hertz")
-    nodes, weights = np.polynomial.legendre.leggauss(RULE)
     return {
         "scene": scene,
         "pressure": pressure,
@@ -62,5 +61,11 @@ def packed(dataset: xr.Dataset) -> dict:
         "bounds": plain(table.bounds),
         "has_limits": beyond.is_known(scene, pressure),
         "edge": plain(table.columns.values),
-        "rule": {"nodes": plain((nodes + 1) / 2), "weights": plain(weights / 2)},
+        "rule": gauss_rule(),
     }
+
+
+def gauss_rule() -> dict:
+    """Nodes and weights of Gauss's rule on 0 to 1, for the limits that are integrals."""
+    nodes, weights = np.polynomial.legendre.leggauss(RULE)
+    return {"nodes": plain((nodes + 1) / 2), "weights": plain(weights / 2)}

@@ -28,8 +28,17 @@ from microslip.report.explorer.requests import (
 __all__ = ["ASSETS", "PAGE", "PAGE_OF_ALL", "certified_of", "digest", "maps_of", "period_requests"]
 __all__ += ["refusal", "report", "sweeps_of"]
 
-ASSETS = ("page.html", "style.css", "certified.js", "beyond.js", "contact.js", "data.js")
-ASSETS += ("charts.js", "disc.js", "lines.js", "views.js", "form.js", "page.js")
+ASSETS = ("page.html", "style.css", "certified.js", "elliptic.js", "limits.js", "beyond.js")
+ASSETS += (
+    "contact.js",
+    "data.js",
+    "charts.js",
+    "disc.js",
+    "lines.js",
+    "views.js",
+    "form.js",
+    "page.js",
+)
 """What the page is made of besides numbers and plotly.js, in the order in which scripts run."""
 
 
