@@ -4,7 +4,8 @@
                                    [--seed S] [--output FILE] [--markdown FILE]
 
 Needs the certified maps of a run (snakemake certified).  Random points on each, uniform in the
-logarithm of the velocity and in the amplitude, are solved more strictly and compared with what the
+logarithm of the velocity, in the amplitude and, where the map is over it, in Poisson's ratio, are
+solved more strictly and compared with what the
 map says: the first N tell which share of a cell's surplus is missed at most (map_cells.SHARE is no
 less than what 99.9 % of them need), the others whether the promise holds.  A point is covered if
 the map misses by no more than it claims and the error of what it is compared with.  Points are kept
@@ -39,54 +40,60 @@ UNIFORM = (25, 49, 97, 193)
 
 
 def random_points(dataset, number, seed):
-    """(velocity, amplitude) of random points on a map, in their order."""
+    """(velocity, amplitude, Poisson's ratio) of random points on a map, in their order."""
     motion = list(TOLERANCES).index(dataset.scene)
-    shares = np.random.default_rng([seed, motion]).uniform(size=(number, 2))
-    velocity, amplitude = dataset["velocity"].values, dataset["amplitude"].values
-    slow, fast = np.log10([velocity.min(), velocity.max()])
-    low, high = amplitude.min(), amplitude.max()
-    return [
-        (float(f"{10 ** (slow + (fast - slow) * s):.6g}"), float(f"{low + (high - low) * t:.6g}"))
-        for s, t in shares
-    ]
+    rng = np.random.default_rng([seed, motion])
+    velocity, amplitude, poisson = (
+        dataset[name].values for name in ("velocity", "amplitude", "poisson")
+    )
+    ranges = [np.log10([velocity.min(), velocity.max()]), [amplitude.min(), amplitude.max()]]
+    shares = rng.uniform(size=(number, 2 + poisson.ndim))
+    ranges += [[poisson.min(), poisson.max()]] * poisson.ndim
+    low, high = np.array(ranges).T
+    places = low + (high - low) * shares
+    places[:, 0] = 10 ** places[:, 0]
+    if not poisson.ndim:
+        places = np.column_stack([places, np.full(number, float(poisson))])
+    return [tuple(float(f"{value:.6g}") for value in place) for place in places]
 
 
 def solved(dataset, points, path):
     """(friction, error) at the points, shape (n, 2); those in the file are not solved again."""
     scene = dataset.scene
     lines = [line for line in tables.parsed(path) if line["scene"] == scene]
-    known = {(line["velocity"], line["amplitude"]): line for line in lines}
+    names = ("velocity", "amplitude", "poisson")
+    known = {tuple(line.get(name, 0.0) for name in names): line for line in lines}
     with path.open("a") as file:
-        for v, a in tqdm([point for point in points if point not in known], desc=scene):
-            found = microslip.solve(scene, v, a, tolerance=TOLERANCES[scene])
-            line = {"scene": scene, "velocity": v, "amplitude": a}
+        for point in tqdm([point for point in points if point not in known], desc=scene):
+            place = dict(zip(names, point, strict=True))
+            found = microslip.solve(scene, **place, tolerance=TOLERANCES[scene])
+            line = {"scene": scene} | place
             line |= {"mu_macro": found.mu_macro, "mu_macro_error": found.mu_macro_error}
-            known[v, a] = line
+            known[point] = line
             file.write(json.dumps(line) + "\n")
             file.flush()
     return np.array([[known[point][k] for k in ("mu_macro", "mu_macro_error")] for point in points])
 
 
-def surpluses_at(dataset, velocity, amplitude):
+def surpluses_at(dataset, points):
     """The surplus of the cell that answers at each point, and the largest error of its nodes."""
     found = cells_of(dataset)
-    x, y = found.cells.coordinates.scaled(velocity, amplitude)
-    surplus, node_error = np.full(len(x), np.nan), np.full(len(x), np.nan)
+    coordinates = found.cells.coordinates
+    scaled = coordinates.scaled(*np.array(points).T[: len(coordinates.directions)])
+    surplus, node_error = np.full((2, len(scaled)), np.nan)
     picked = dataset["cell_node"].values
-    for border, nodes, index in zip(found.cells.borders, found.cells.nodes, picked, strict=True):
-        left, right, low, high = border
-        here = (x >= left) & (x <= right) & (y >= low) & (y <= high)
+    for ends, nodes, index in zip(found.cells.borders, found.cells.nodes, picked, strict=True):
+        here = ((scaled >= ends[:, 0]) & (scaled <= ends[:, 1])).all(axis=1)
         surplus[here], node_error[here] = sum(surpluses_of(nodes)), found.errors[index].max()
     return surplus, node_error
 
 
 def judged(dataset, points, truth, label):
     """A line of the table of promises."""
-    velocity, amplitude = np.array(points).T
-    answer = dataset.friction.at(*(xr.DataArray(x, dims="n") for x in (velocity, amplitude)))
-    miss = abs(answer.mu_macro.values - truth[:, 0])
-    claim = answer.mu_macro_error.values
-    surplus, node_error = surpluses_at(dataset, velocity, amplitude)
+    answers = [dataset.friction.at(v, a, poisson=nu) for v, a, nu in points]
+    mu, claim = (np.array([float(x[n]) for x in answers]) for n in ("mu_macro", "mu_macro_error"))
+    miss = abs(mu - truth[:, 0])
+    surplus, node_error = surpluses_at(dataset, points)
     share = np.clip(miss - truth[:, 1] - node_error, 0.0, None) / surplus
     return {
         "map": dataset.scene,
@@ -145,7 +152,8 @@ def main():
         bounds = dataset.cell_error.values
         certified |= {"largest claim": f"{bounds.max():.1e}"}
         grids += [certified | {"median claim": f"{np.median(bounds):.1e}"}]
-        grids += [of_uniform_grid(dataset, count) for count in UNIFORM]
+        if not dataset["poisson"].ndim:
+            grids += [of_uniform_grid(dataset, count) for count in UNIFORM]
     text = f"{tables.markdown(promises)}\n\n{tables.markdown(grids)}"
     tables.publish(text, options)
 

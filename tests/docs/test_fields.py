@@ -79,7 +79,7 @@ def test_every_variable_of_a_sweep_is_in_the_table_and_no_other(tmp_path, monkey
 
 
 def test_every_variable_of_a_certified_map_is_in_its_table_and_no_other():
-    axes = GRIDS["bore"] | {"adaptive": {"error": 0.1}}
+    axes = GRIDS["bore"] | {"poisson": [0, 0.3], "adaptive": {"error": 0.1}}
     (map_,) = load.from_mapping({"sweeps": {"bore": axes}}).certified.values()
     first = map_rounds.next_round(map_, {}, 50)
     flat = {"mu_macro": 0.5, "mu_macro_error": 0.0, "converged": True}

@@ -25,11 +25,11 @@ def played(map_, answer):
 
 
 def bore(**given) -> xr.Dataset:
-    """The dataset of a map of a bore whose friction is v / (v + A), made up."""
+    """The dataset of a map of a bore whose friction is (v + 0.1) / (v + 0.1 + A), made up."""
 
     def answer(request):
         velocity, amplitude = (float(request[name]) for name in ("velocity", "amplitude"))
-        mu = velocity / (velocity + amplitude)
+        mu = (velocity + 0.1) / (velocity + 0.1 + amplitude)
         result = {"mu_macro": mu, "mu_macro_error": 1e-4, "converged": True}
         return {"key": key_of(request), "request": request, "result": result, "versions": {}}
 

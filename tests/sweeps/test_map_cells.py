@@ -10,6 +10,7 @@ from microslip.config.records import ConfigError
 from microslip.sweeps import map_rounds
 from microslip.sweeps.batches import key_of
 from microslip.sweeps.map_cells import (
+    LOWER_ORDER,
     RESOLVED,
     SHARE,
     SMALLEST,
@@ -110,8 +111,8 @@ def test_coordinates_survive_as_text():
 
 
 def test_no_more_than_a_cell_for_each_patch_is_asked_where_that_is_enough():
-    # a polynomial of the first degree in the coordinates of one patch
-    found, known, rounds = played(PLAIN, lambda v, a: np.log(v) + a, 1e-6)
+    # a polynomial of the first degree in the coordinates of a patch without kinks
+    found, known, rounds = played(PLAIN, lambda v, a: np.log(v) + np.log(1 + 2 * a), 1e-6)
     assert list(found.cells) == first_cells(PLAIN)
     assert (len(known), rounds) == (25, 1)
     assert found.errors == pytest.approx([0.0], abs=1e-8)
@@ -123,12 +124,12 @@ def test_surpluses_are_differences_of_the_fourth_order():
     along, across = surpluses_of(np.outer(x**4, np.ones(5)))
     assert along == pytest.approx(24.0)
     assert across == 0.0
-    # a cubic has no fourth differences; a quarter of its third one, 3! = 6, counts
-    assert surpluses_of(np.outer(np.ones(5), x**3)) == pytest.approx((0.0, 1.5))
+    # a cubic has no fourth differences; a share of its third one, 3! = 6, counts
+    assert surpluses_of(np.outer(np.ones(5), x**3)) == pytest.approx((0.0, 6 * LOWER_ORDER))
 
 
 def test_cells_are_halved_along_the_direction_that_is_worse():
-    found, _, _ = played(PLAIN, lambda v, a: np.sin(9 * np.log(v)) + a, 1e-3)
+    found, _, _ = played(PLAIN, lambda v, a: np.sin(9 * np.log(v)) + np.log(1 + 2 * a), 1e-3)
     widths = {cell.end[1] - cell.begin[1] for cell in found.cells}
     assert widths == {1.0}
     assert len(found.cells) > 2
@@ -200,7 +201,7 @@ def test_where_a_point_failed_nothing_is_promised_and_nothing_asked():
 def test_a_jump_ends_at_the_smallest_cells():
     found, _, _ = played(PLAIN, lambda v, a: float(v > 0.0301), 1e-2)
     assert min(cell.end[0] - cell.begin[0] for cell in found.cells) == SMALLEST
-    # which say so: the fourth differences of a jump of 1 are 3 at most, the third ones 2 of 1/4
+    # which say so: the fourth differences of a jump of 1 are 3 at most, and its third ones 2
     assert max(found.errors) == pytest.approx(3 * SHARE)
 
 

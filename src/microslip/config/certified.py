@@ -47,10 +47,11 @@ def _tolerance(given, error, where):
 
 
 def _refuse_mismatch(sweep, where):
-    if not sweep.spans_a_map:
+    is_static = len(sweep.amplitude or ()) > 1 and 0.0 in sweep.velocity
+    if not (sweep.spans_a_map or is_static):
         raise ConfigError(
             f"{where}.adaptive: is not allowed here; allowed: with two amplitudes and two "
-            "velocities above 0 at least, which are its range"
+            "velocities above 0 at least, which are its range, or the velocity 0 in their place"
         )
     if sweep.tolerance is None or sweep.cells is not None or sweep.steps is not None:
         raise ConfigError(

@@ -79,10 +79,10 @@ class CertifiedMap:
     tolerance: float  # of the points
 
     @property
-    def velocity(self) -> tuple[float, float]:
-        """The smallest velocity above 0, and the largest."""
+    def velocity(self) -> tuple[float, ...]:
+        """The smallest velocity above 0, and the largest; () for a map of the static limit."""
         positive = [velocity for velocity in self.sweep.velocity if velocity > 0]
-        return positive[0], positive[-1]
+        return (positive[0], positive[-1]) if self.sweep.spans_a_map else ()
 
     @property
     def amplitude(self) -> tuple[float, float]:

@@ -69,8 +69,8 @@ def build(map_: CertifiedMap, rounds: Sequence[dict], records: Iterable[dict]) -
         name: ("point", np.array(values))
         for name, values in zip(coordinates.directions, zip(*places, strict=True), strict=True)
     }
-    if "poisson" not in axes:
-        axes["poisson"] = ((), map_.sweep.poisson[0])
+    # what is the same all over the map
+    axes = {"velocity": ((), 0.0), "poisson": ((), map_.sweep.poisson[0])} | axes
     dataset = xr.Dataset(
         {
             "mu_macro": _variable("point", mu, MU_MACRO.description),

@@ -24,7 +24,7 @@ from microslip.sweeps.map_coordinates import MapCoordinates
 
 SHARE = 0.1
 """Of the surplus of a cell: what the polynomial may miss.  Measured by benchmarks/certified.py."""
-LOWER_ORDER = 0.25
+LOWER_ORDER = 0.35
 """Of the third differences, which count where fourth ones happen to cancel."""
 LOW_DEGREE = 2.0
 """Factor of second differences: of degree 2 a polynomial misses a larger share of what it adds."""

@@ -1,11 +1,11 @@
 """Coordinates in which a map is even: kinks at borders of patches, velocities by their powers.
 
 A map over velocity and amplitude, and perhaps Poisson's ratio, is cut into patches at the kinks
-that its motion is known to have (theory.kinks).  In the scaled coordinates patches are unit boxes.
-Where velocities are slower than the kink they are even in the power 1/3, half of that with which
-friction comes close to its static limit; amplitudes are cut at their kinks and gather there, and
-where the oscillation sets in.  Where they are faster, velocities are even in the logarithm, and
-amplitudes, whose kinks are gone, in that of 1 + 2 A.
+that its motion is known to have (theory.kinks); one of the static limit has no velocity.  In the
+scaled coordinates patches are boxes.  Where velocities are slower than the kink they are even in
+the power 1/3, half of that with which friction comes close to its static limit, and amplitudes are
+cut at their kinks and gather there.  Where they are faster, velocities are even in the logarithm,
+and amplitudes, whose kinks are gone, in that of 1 + 2 A, as they are wherever no kink is near.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ FAST = 2.0
 """Scaled velocity where what is faster than the kink begins: 1 is where what is slower ends."""
 FAST_PATCHES = 2
 """Into which that is cut along the velocity: friction may rise too steeply for fewer nodes."""
-AT_KINKS, AT_ONSET = 2.0, 1.5
-"""Powers with which places gather at kinks of the amplitude, and at the amplitude 0."""
+AT_KINKS = 2.0
+"""Power with which places gather at kinks of the amplitude."""
 SPREAD = 2.0
-"""Above the kink of the velocity, amplitudes are even in log(1 + SPREAD A)."""
+"""Where there are no kinks, amplitudes are even in log(1 + SPREAD A)."""
 DEGREES = {"velocity": 4, "amplitude": 4, "poisson": 2}
 """Of the polynomials in a cell; friction is nearly straight over Poisson's ratio."""
 
@@ -45,7 +45,7 @@ class MapCoordinates(NamedTuple):
     Attributes
     ----------
     velocity : tuple of float
-        Smallest and largest, above 0.
+        Smallest and largest, above 0; () for the static limit, where it is no direction of the map.
     amplitude : tuple of float
         Smallest and largest, >= 0.
     kinks : theory.kinks.Kinks
@@ -54,7 +54,7 @@ class MapCoordinates(NamedTuple):
         Smallest and largest Poisson's ratio; () where it is no direction of the map.
     """
 
-    velocity: tuple[float, float]
+    velocity: tuple[float, ...]
     amplitude: tuple[float, float]
     kinks: Kinks = Kinks()
     poisson: tuple[float, ...] = ()
@@ -62,7 +62,7 @@ class MapCoordinates(NamedTuple):
     @property
     def directions(self) -> tuple[str, ...]:
         """Names of the quantities that the map is over, in the order of scaled coordinates."""
-        return ("velocity", "amplitude", "poisson")[: 3 if self.poisson else 2]
+        return tuple(name for name in DEGREES if getattr(self, name))
 
     @property
     def degrees(self) -> tuple[int, ...]:
@@ -72,11 +72,12 @@ class MapCoordinates(NamedTuple):
     @property
     def patches(self) -> list[Box]:
         """Boxes in scaled coordinates that cover the map, those of slow velocities first."""
-        flat = [((0.0, float(row)), (1.0, row + 1.0)) for row in range(len(self._borders) - 1)]
+        rows = [((float(row),), (row + 1.0,)) for row in range(len(self._borders) - 1)]
+        flat = [((0.0, *low), (1.0, *high)) for low, high in rows] if self.velocity else rows
         if self._is_cut:
             ends = [FAST + i / FAST_PATCHES for i in range(FAST_PATCHES + 1)]
             flat += [((x, 0.0), (right, 1.0)) for x, right in zip(ends, ends[1:], strict=False)]
-        deep = len(self.directions) - 2
+        deep = len(self.directions) - len(flat[0][0])
         return [(begin + (0.0,) * deep, end + (1.0,) * deep) for begin, end in flat]
 
     @classmethod
@@ -98,7 +99,11 @@ class MapCoordinates(NamedTuple):
 
         places: by direction, velocities first, shape (n,) each.
         """
-        v, a, *rest = (np.asarray(part, float) for part in places)
+        places = [np.asarray(part, float) for part in places]
+        deep = [_share(places.pop(), self.poisson)] if self.poisson else []
+        if not self.velocity:
+            return np.stack([self._rows(*places), *deep], axis=-1)
+        v, a = places
         x, y = _share(np.log(v), np.log(self.velocity)), self._rows(a)
         if self._is_cut:
             middle, (slow, fast) = self._cut_at(a), self.velocity
@@ -106,15 +111,21 @@ class MapCoordinates(NamedTuple):
             below = _share(v**SLOW_POWER, (slow**SLOW_POWER, middle**SLOW_POWER))
             above = FAST + _share(np.log(v), (np.log(middle), np.log(fast)))
             x = np.where(is_slow, below, above)
-            y = np.where(is_slow, y, _share(_spread(a), _spread(np.array(self.amplitude))))
-        return np.stack([x, y, *(_share(nu, self.poisson) for nu in rest)], axis=-1)
+            y = np.where(is_slow, y, _spread_share(a, self.amplitude))
+        return np.stack([x, y, *deep], axis=-1)
 
     def place(self, node: tuple[float, ...]) -> tuple[float, ...]:
-        """Velocity, amplitude and what else is a direction at scaled coordinates, in DIGITS."""
-        x, y, *rest = node
+        """What the directions are at scaled coordinates, in DIGITS digits."""
+        *node, nu = [*node] if self.poisson else [*node, 0.0]
+        deep = [_between(nu, self.poisson)] if self.poisson else []
+        flat = self._place(*node) if self.velocity else (self._amplitude_at(*node),)
+        return tuple(_rounded(value) for value in (*flat, *deep))
+
+    def _place(self, x, y):
+        """Velocity and amplitude."""
         slow, fast = self.velocity
         if self._is_cut and x >= FAST:
-            amplitude = _gathered_small(_between(y, _spread(np.array(self.amplitude))))
+            amplitude = _at_spread_share(y, self.amplitude)
             velocity = np.exp(_between(x - FAST, np.log([self._cut_at(amplitude), fast])))
         elif self._is_cut:
             amplitude = self._amplitude_at(y)
@@ -123,8 +134,7 @@ class MapCoordinates(NamedTuple):
         else:
             amplitude = self._amplitude_at(y)
             velocity = np.exp(_between(x, np.log(self.velocity)))
-        found = velocity, amplitude, *(_between(z, self.poisson) for z in rest)
-        return tuple(_rounded(value) for value in found)
+        return velocity, amplitude
 
     @property
     def _borders(self):
@@ -133,8 +143,10 @@ class MapCoordinates(NamedTuple):
 
     @property
     def _is_cut(self):
+        if not (self.velocity and self.kinks.velocity):
+            return False
         slow, fast = self.velocity
-        if not self.kinks.velocity or fast <= CLEAR**2 * slow:
+        if fast <= CLEAR**2 * slow:
             return False
         at_ends = kink_velocity(self.kinks, np.array(self.amplitude))
         return bool(at_ends.max() > CLEAR * slow and at_ends.min() < fast / CLEAR)
@@ -148,23 +160,35 @@ class MapCoordinates(NamedTuple):
         y = np.empty_like(amplitude)
         for row, (low, high) in enumerate(zip(self._borders, self._borders[1:], strict=False)):
             here = (amplitude >= low) & (amplitude <= high)
-            share = _share(amplitude[here], (low, high))
-            y[here] = row + _even(share, self._steepness(low), self._steepness(high))
+            y[here] = row + self._even(amplitude[here], (low, high))
         return y
 
     def _amplitude_at(self, y):
         """The inverse of _rows."""
         row = min(int(y), len(self._borders) - 2)
-        low, high = self._borders[row : row + 2]
-        return _between(
-            _gathered(y - row, self._steepness(low), self._steepness(high)), (low, high)
-        )
+        ends, share = self._borders[row : row + 2], y - row
+        below, above = self._gathers_at(ends)
+        if below and above:
+            return _between(share * share * (3.0 - 2.0 * share), ends)
+        if not (below or above):
+            return _at_spread_share(share, ends)
+        return _between(share**AT_KINKS if below else 1.0 - (1.0 - share) ** AT_KINKS, ends)
 
-    def _steepness(self, amplitude):
-        """The power with which places gather at a border of the amplitude."""
-        if amplitude in self.kinks.amplitudes:
-            return AT_KINKS
-        return AT_ONSET if amplitude == 0.0 else 1.0
+    def _even(self, amplitude, ends):
+        """The inverse of that in one patch, 0 to 1."""
+        below, above = self._gathers_at(ends)
+        share, power = _share(amplitude, ends), 1.0 / AT_KINKS
+        if below and above:
+            return 0.5 - np.sin(np.arcsin(1.0 - 2.0 * share) / 3.0)
+        if not (below or above):
+            return _spread_share(amplitude, ends)
+        return share**power if below else 1.0 - (1.0 - share) ** power
+
+    def _gathers_at(self, ends):
+        """Whether places gather at the lower and at the upper end of a patch: at kinks, and, below
+        one, at the amplitude 0, where the oscillation sets in."""
+        below, above = (end in self.kinks.amplitudes for end in ends)
+        return below or (above and ends[0] == 0.0), above
 
 
 def _share(value, ends):
@@ -176,28 +200,16 @@ def _between(share, ends):
     return ends[0] + (ends[1] - ends[0]) * share
 
 
-def _spread(amplitude):
-    return np.log1p(SPREAD * amplitude)
+def _spread_share(amplitude, ends):
+    """Where an amplitude lies between two in the logarithm of 1 + SPREAD A, 0 to 1."""
+    low, high = (np.log1p(SPREAD * end) for end in ends)
+    return _share(np.log1p(SPREAD * amplitude), (low, high))
 
 
-def _gathered_small(spread):
-    """The inverse of _spread."""
-    return np.expm1(spread) / SPREAD
-
-
-def _gathered(s, low, high):
-    """From an even coordinate, 0 to 1, to the share of a patch: places gather at its steep ends."""
-    if low > 1.0 and high > 1.0:
-        return s * s * (3.0 - 2.0 * s)
-    return s**low if high == 1.0 else 1.0 - (1.0 - s) ** high
-
-
-def _even(share, low, high):
-    """The inverse of _gathered."""
-    share = np.clip(share, 0.0, 1.0)
-    if low > 1.0 and high > 1.0:
-        return 0.5 - np.sin(np.arcsin(1.0 - 2.0 * share) / 3.0)
-    return share ** (1.0 / low) if high == 1.0 else 1.0 - (1.0 - share) ** (1.0 / high)
+def _at_spread_share(share, ends):
+    """The inverse of _spread_share."""
+    low, high = (np.log1p(SPREAD * end) for end in ends)
+    return np.expm1(_between(share, (low, high))) / SPREAD
 
 
 def _rounded(value):

@@ -53,7 +53,7 @@ def next_round(map_: CertifiedMap, known: Answers, points_per_job: int) -> dict:
 def _request(map_, coordinates, node):
     """The request for a node, as of a sweep that has it."""
     place = zip(coordinates.directions, coordinates.place(node), strict=True)
-    point = {name: (value,) for name, value in place}
+    point = {"velocity": (0.0,)} | {name: (value,) for name, value in place}
     return PointRequests(replace(map_.sweep, tolerance=map_.tolerance, **point))[0]
 
 

@@ -118,7 +118,7 @@ class Friction(Inverse):
         flat_amplitude = np.full(len(flat_velocity), np.nan)
         if amplitude is not None:
             flat_amplitude = amplitude.values.ravel().astype(float)
-        if not beyond.is_known(self._scene, self._pressure):
+        if not beyond.is_known(self._scene, self._pressure) or cells.is_static(self._dataset):
             answer = self._map_alone(nodes, flat_velocity, flat_amplitude, nu, tolerance)
         elif self._table(nodes, nu) is None:
             raise InputError("velocity", 0.0, "friction.at needs nodes above 0 in the dataset")
@@ -143,7 +143,8 @@ class Friction(Inverse):
         ----------
         velocity, amplitude : int or sequence
             How many of them, over the range of the map, velocities in equal ratios and amplitudes
-            in equal steps; or which ones.  The amplitude does not count for continuous-bore.
+            in equal steps; or which ones.  The amplitude does not count for continuous-bore, the
+            velocity not for a certified map of the static limit, where it is 0.
         **settings
             poisson and tolerance, as for `at`.
 
@@ -157,7 +158,7 @@ class Friction(Inverse):
         InputError
             As `at` does, and for less than two of them.
         """
-        wanted = {"velocity": velocity}
+        wanted = {"velocity": [0.0] if cells.is_static(self._dataset) else velocity}
         if self._motion.periodic:
             wanted["amplitude"] = amplitude
         return self.at(**axes_of_grid(self._dataset, wanted), **settings)
@@ -193,6 +194,7 @@ class Friction(Inverse):
         tables = self._table(nodes, nu), self._table(nodes, nu, still=True)
         if tolerance is None:
             what = self._scene if self._pressure == "hertz" else f"pressure {self._pressure}"
+            what += " beyond this map" if cells.is_static(self._dataset) else ""
             refuse_beyond(*tables, velocity, rows, what)
         value, error = within(*tables, velocity, rows)
         return value, error, np.full(len(value), MAP)

@@ -23,6 +23,11 @@ def is_certified(dataset: xr.Dataset) -> bool:
     return certified_map.COORDINATES in dataset.attrs
 
 
+def is_static(dataset: xr.Dataset) -> bool:
+    """Whether a dataset is a certified map of the static limit."""
+    return is_certified(dataset) and "velocity" not in dataset.attrs.get("directions", "").split()
+
+
 @dataclass(frozen=True, eq=False)
 class CellTable:
     """Friction in the cells of a map: what interpolation.Table is for a map of nodes.
@@ -53,7 +58,9 @@ class CellTable:
 
     @cached_property
     def columns(self) -> Axis:
-        """The range of the velocity, in even ratios."""
+        """The range of the velocity, in even ratios; 0 alone of the static limit."""
+        if not self.coordinates.velocity:
+            return Axis(np.zeros(1))
         slow, fast = self.coordinates.velocity
         inner = np.geomspace(slow, fast, EDGE)[1:-1]
         return Axis(np.array([slow, *inner, fast]))
@@ -77,7 +84,7 @@ class CellTable:
     def at(self, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Values and bounds of their errors at points inside, amplitudes and velocities of shape
         (n,) each; NaN and infinity where a point that counts is not known."""
-        place = [column, row]
+        place = [column, row] if self.coordinates.velocity else [row]
         if self.coordinates.poisson:
             place.append(np.full(len(row), self.poisson))
         scaled = self.coordinates.scaled(*place)
@@ -141,8 +148,10 @@ class CellNodes:
         return hashlib.sha256(b"|".join([said, *(part.tobytes() for part in parts)])).digest()
 
     def table(self, poisson: float, *, still: bool = False) -> CellTable | None:
-        """The map for a Poisson's ratio above velocity 0; None: there is none at velocity 0."""
-        return None if still else replace(self.cells, poisson=poisson)
+        """The map for a Poisson's ratio above velocity 0, or of that alone; None: there is none."""
+        if still == bool(self.cells.coordinates.velocity):
+            return None
+        return replace(self.cells, poisson=poisson)
 
 
 def cells_of(dataset: xr.Dataset) -> CellNodes:

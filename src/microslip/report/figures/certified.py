@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 
 from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import Friction
+from microslip.datasets.query.cells import is_static
 from microslip.report.figures import style as look
 from microslip.report.figures.data import require
 from microslip.report.figures.formulas import mathtext
 from microslip.report.figures.map_panel import fill
 from microslip.report.figures.small_maps import CONTOURS, LABELLED
 
-NODES = 97
-"""Velocities and amplitudes at which the map is asked for the picture of it."""
+BOUND = "bound of the error,\nthousandths  (dimensionless)"
+INKS = look.BLUE, look.VERMILLION
+NODES, LINE = 97, 201
+"""Velocities and amplitudes at which the map is asked for the picture of it, a map or a line."""
 SIDE = np.linspace(0.0, 1.0, 17)
 """Places along a side of a cell, which is no straight line on the map."""
 VARIABLES = ("mu_macro", "cell_error", "cell_node", "velocity", "amplitude", "poisson")
@@ -26,9 +28,12 @@ VARIABLES = ("mu_macro", "cell_error", "cell_node", "velocity", "amplitude", "po
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw the map with its cells and points, and beside it the bound of the error in each cell.
 
-    Of a map over Poisson's ratio, too, the part at the smallest one is shown.
+    Of a map over Poisson's ratio, too, the part at the smallest one is shown; one of the static
+    limit is a line.
     """
     require(name, name, dataset, VARIABLES)
+    if is_static(dataset):
+        return _lines(dataset)
     poisson = float(dataset["poisson"].min())
     figure = look.new_figure(look.DOUBLE, 3.1)
     left, right = figure.subplots(1, 2, sharex=True, sharey=True)
@@ -50,13 +55,37 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     right.add_collection(shares)
     look.letter(right, "b", f"bound of the error{ratio}")
     right.tick_params(which="both", direction="out", top=False, right=False)
-    _label(left, right, dataset)
+    left.set(xlabel=_axis(dataset, "velocity"), ylabel=_axis(dataset, "amplitude"))
+    right.set_xlabel(_axis(dataset, "velocity"))
     bar = figure.colorbar(filled, ax=left, pad=0.02, ticks=np.linspace(0, 1, 6))
     bar.set_label(look.FRICTION)
     bar.ax.tick_params(direction="out")
     bar = figure.colorbar(shares, ax=right, pad=0.02)
-    bar.set_label("bound of the error, thousandths  (dimensionless)")
+    bar.set_label(BOUND)
     bar.ax.tick_params(direction="out")
+    return figure
+
+
+def _lines(dataset: xr.Dataset) -> Figure:
+    """The static limit over the amplitude, at the smallest and the largest Poisson's ratio, and the
+    bound of its error there."""
+    figure = look.new_figure(look.DOUBLE, 2.6)
+    left, right = figure.subplots(1, 2, sharex=True)
+    ends = np.unique([float(dataset["poisson"].min()), float(dataset["poisson"].max())])
+    for poisson, color, linestyle in zip(ends, INKS, (look.SOLID, look.DASHED), strict=False):
+        grid = Friction(dataset).on_grid(amplitude=LINE, poisson=float(poisson)).isel(velocity=0)
+        ink = {"color": color, "linestyle": linestyle, "linewidth": 1.2}
+        ink["label"] = rf"$\nu = {look.number(poisson)}$"
+        left.plot(grid["amplitude"], grid["mu_macro"], **ink)
+        right.plot(grid["amplitude"], 1e3 * grid["mu_macro_error"], **ink)
+        at = dataset.isel(point=dataset["poisson"] == poisson) if _is_deep(dataset) else dataset
+        left.plot(at["amplitude"], at["mu_macro"], ".", color=color, markersize=3.5, gid="points")
+    look.unit_range(left)
+    look.legend_above(left, "a", f"{dataset.attrs['points']} points")
+    look.letter(right, "b", f"{len(dataset['cell_error'])} cells")
+    right.set_ylim(0.0, 1e3 * float(dataset.attrs["error"]))
+    for axes, label in ((left, look.FRICTION), (right, BOUND)):
+        axes.set(xlabel=_axis(dataset, "amplitude"), ylabel=label)
     return figure
 
 
@@ -84,12 +113,7 @@ def _cells(dataset: xr.Dataset) -> tuple[list[np.ndarray], np.ndarray]:
     return outlines, dataset["cell_error"].values[np.asarray(shown)]
 
 
-def _label(left: Axes, right: Axes, dataset: xr.Dataset) -> None:
-    for dim, quantity in (("velocity", "forward velocity"), ("amplitude", "amplitude")):
-        text = mathtext(dataset[dim].attrs.get("formula", ""))
-        text = f"{quantity}  {text}" if text else f"{quantity}  (dimensionless)"
-        if dim == "velocity":
-            left.set_xlabel(text)
-            right.set_xlabel(text)
-        else:
-            left.set_ylabel(text)
+def _axis(dataset: xr.Dataset, dim: str) -> str:
+    """What is written at an axis."""
+    quantity = {"velocity": "forward velocity", "amplitude": "amplitude"}[dim]
+    return f"{quantity}  {mathtext(dataset[dim].attrs.get('formula', '(dimensionless)'))}"

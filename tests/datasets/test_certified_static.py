@@ -1,0 +1,81 @@
+"""Certified maps of the static limit: cells over the amplitude, and over Poisson's ratio, too."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from stubs import certified_stub
+
+import microslip
+from microslip.config import load
+from microslip.config.records import ConfigError
+from microslip.datasets import certified_map
+from microslip.sweeps import map_rounds
+from microslip.sweeps.batches import key_of
+from microslip.theory import paper
+
+ERROR = 2e-3
+STATIC = {"velocity": [0], "amplitude": [0, 1.5], "adaptive": {"error": ERROR}}
+
+
+def record(request):
+    """The exact limit at Poisson's ratio 0; made up above."""
+    amplitude, poisson = (float(request[name]) for name in ("amplitude", "poisson"))
+    mu = float(paper.static_limit_transverse(amplitude)) * (1.0 - 0.1 * poisson**2)
+    result = {"mu_macro": mu, "mu_macro_error": 1e-5, "converged": True}
+    return {"key": key_of(request), "request": request, "result": result, "versions": {"x": "1"}}
+
+
+def built(**given):
+    map_ = certified_stub.configured("transverse", **STATIC | given)
+    return certified_map.build(map_, *certified_stub.played(map_, record))
+
+
+def test_only_points_at_velocity_0_are_asked():
+    map_ = certified_stub.configured("transverse", **STATIC)
+    requests = map_rounds.next_round(map_, {}, 50)["requests"]
+    # two patches that meet at the amplitude 1, where all of the contact slides
+    assert len(requests) == 9
+    assert {request["velocity"] for request in requests} == {"0"}
+    assert "1" in {request["amplitude"] for request in requests}
+
+
+def test_the_closed_form_is_met_to_within_the_errors(tmp_path):
+    path = tmp_path / "certified_transverse.nc"
+    certified_map.write(path, built())
+    with microslip.open_map(path) as dataset:
+        amplitude = xr.DataArray(np.random.default_rng(2).uniform(0, 1.5, 500), dims="n")
+        answer = dataset.friction.at(0.0, amplitude)
+        off = abs(answer.mu_macro - paper.static_limit_transverse(amplitude.values))
+        assert bool((off <= answer.mu_macro_error).all())
+        assert float(answer.mu_macro_error.max()) <= ERROR
+        assert dataset.directions == "amplitude"
+        assert dataset.points < 50
+
+
+def test_over_poissons_ratio_it_answers_at_any():
+    dataset = built(poisson=[0.0, 0.5])
+    assert dataset.directions == "amplitude poisson"
+    amplitude = xr.DataArray(np.linspace(0, 1.5, 200), dims="n")
+    answer = dataset.friction.at(0.0, amplitude, poisson=0.35)
+    truth = paper.static_limit_transverse(amplitude.values) * (1.0 - 0.1 * 0.35**2)
+    assert bool((abs(answer.mu_macro - truth) <= answer.mu_macro_error).all())
+    found = dataset.friction.solve_for(0.5, velocity=0.0, poisson=0.35)
+    low, high = (float(found[name][0]) for name in ("amplitude_low", "amplitude_high"))
+    friction = [paper.static_limit_transverse(a) * (1.0 - 0.1 * 0.35**2) for a in (high, low)]
+    assert friction[0] <= 0.5 <= friction[1]
+
+
+def test_what_slides_is_not_answered():
+    with pytest.raises(ValueError, match="velocity = 0.1: the map has none such"):
+        built().friction.at(0.1, 0.5)
+
+
+def test_a_grid_is_at_velocity_0():
+    grid = built().friction.on_grid(amplitude=5)
+    assert grid.velocity.values.tolist() == [0.0]
+    assert grid.amplitude.values == pytest.approx([0, 0.375, 0.75, 1.125, 1.5])
+
+
+def test_one_velocity_above_0_is_refused():
+    with pytest.raises(ConfigError, match="or the velocity 0 in their place"):
+        load.from_mapping({"sweeps": {"transverse": STATIC | {"velocity": [0.1]}}})
