@@ -202,7 +202,7 @@ def test_cells_of_three_directions_give_back_a_polynomial_of_their_degrees():
         "poisson": [0.1, 0.4],
         "kink_amplitudes": [],
         "kink_velocity": [],
-        "gathering": {"at_kinks": 2.0, "at_onset": 1.5, "clear": 2.0},
+        "gathering": {"at_kinks": 2.0, "clear": 2.0, "spread": 2.0},
         "nodes": [5, 5, 3],
         "values": values,
         "cells": list(range(len(values))),
@@ -211,7 +211,9 @@ def test_cells_of_three_directions_give_back_a_polynomial_of_their_degrees():
         "has_limits": True,
     }
     x, y, z = np.random.default_rng(11).uniform(0, 1, (3, 100))
-    places = np.stack([slow * (fast / slow) ** x, low + (high - low) * y, 0.1 + 0.3 * z], axis=1)
+    # amplitudes are even in the logarithm of 1 + 2 A
+    wide = ((1 + 2 * low) * ((1 + 2 * high) / (1 + 2 * low)) ** y - 1) / 2
+    places = np.stack([slow * (fast / slow) ** x, wide, 0.1 + 0.3 * z], axis=1)
     for share, place, (value, error) in zip(
         np.stack([x, y, z], axis=1),
         places,

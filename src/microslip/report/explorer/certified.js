@@ -16,18 +16,6 @@ function clipped(value, low, high) {
   return Math.min(Math.max(value, low), high);
 }
 
-// The inverse of how places gather at the steep ends of a patch; powers of 1 do not gather.
-function even(share, low, high) {
-  const s = clipped(share, 0, 1);
-  if (low > 1 && high > 1) return 0.5 - Math.sin(Math.asin(1 - 2 * s) / 3);
-  return high === 1 ? s ** (1 / low) : 1 - (1 - s) ** (1 / high);
-}
-
-function steepness(map, amplitude) {
-  if (map.kink_amplitudes.includes(amplitude)) return map.gathering.at_kinks;
-  return amplitude === 0 ? map.gathering.at_onset : 1;
-}
-
 function bordersOf(map) {
   const [low, high] = map.amplitude;
   return [low, ...map.kink_amplitudes.filter((a) => low < a && a < high), high];
@@ -53,23 +41,37 @@ function shareOf(value, [low, high]) {
   return clipped((value - low) / (high - low), 0, 1);
 }
 
+// Where an amplitude lies between two in the logarithm of 1 + spread A, 0 to 1.
+function spreadShare(map, amplitude, ends) {
+  const small = (a) => Math.log1p(map.gathering.spread * a);
+  return shareOf(small(amplitude), ends.map(small));
+}
+
+// Even coordinate of an amplitude in a patch, 0 to 1; places gather at kinks and, below one, at 0.
+function even(map, amplitude, ends) {
+  const [low, above] = ends.map((end) => map.kink_amplitudes.includes(end));
+  const below = low || (above && ends[0] === 0);
+  const s = shareOf(amplitude, ends), power = 1 / map.gathering.at_kinks;
+  if (below && above) return 0.5 - Math.sin(Math.asin(1 - 2 * s) / 3);
+  if (!below && !above) return spreadShare(map, amplitude, ends);
+  return below ? s ** power : 1 - (1 - s) ** power;
+}
+
 // Scaled amplitude where the map is cut at kinks.
 function rowOf(map, amplitude) {
   const borders = bordersOf(map);
   let y = 0;
   for (let row = 0; row + 1 < borders.length; row++) {
-    const [low, high] = [borders[row], borders[row + 1]];
-    if (amplitude < low || amplitude > high) continue;
-    const share = shareOf(amplitude, [low, high]);
-    y = row + even(share, steepness(map, low), steepness(map, high));
+    const ends = [borders[row], borders[row + 1]];
+    if (amplitude >= ends[0] && amplitude <= ends[1]) y = row + even(map, amplitude, ends);
   }
   return y;
 }
 
 // Scaled coordinates of a place in the range, one for each direction of the cells.
 function scaled(map, velocity, amplitude, poisson) {
-  const [slow, fast] = map.velocity, { clear, slow_power, faster, spread } = map.gathering;
-  const small = (a) => Math.log1p(spread * a), power = (v) => v ** slow_power;
+  const [slow, fast] = map.velocity, { clear, slow_power, faster } = map.gathering;
+  const power = (v) => v ** slow_power;
   let x = shareOf(Math.log(velocity), [Math.log(slow), Math.log(fast)]), y = rowOf(map, amplitude);
   if (isCut(map)) {
     const middle = clipped(kinkVelocity(map, amplitude), clear * slow, fast / clear);
@@ -77,7 +79,7 @@ function scaled(map, velocity, amplitude, poisson) {
       x = shareOf(power(velocity), [power(slow), power(middle)]);
     } else {
       x = faster + shareOf(Math.log(velocity), [Math.log(middle), Math.log(fast)]);
-      y = shareOf(small(amplitude), map.amplitude.map(small));
+      y = spreadShare(map, amplitude, map.amplitude);
     }
   }
   return map.nodes.length > 2 ? [x, y, shareOf(poisson, map.poisson)] : [x, y];

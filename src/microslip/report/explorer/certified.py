@@ -48,7 +48,6 @@ def packed(dataset: xr.Dataset) -> dict:
         "kink_velocity": list(coordinates.kinks.velocity),
         "gathering": {
             "at_kinks": map_coordinates.AT_KINKS,
-            "at_onset": map_coordinates.AT_ONSET,
             "clear": map_coordinates.CLEAR,
             "slow_power": map_coordinates.SLOW_POWER,
             "faster": map_coordinates.FAST,

@@ -32,7 +32,7 @@ def certified_of(configuration: Configuration) -> list[str]:
     return [
         name
         for name, map_ in configuration.certified.items()
-        if map_.sweep.scene in MAPS and map_.sweep.pressure == "hertz"
+        if map_.velocity and map_.sweep.scene in MAPS and map_.sweep.pressure == "hertz"
     ]
 
 
