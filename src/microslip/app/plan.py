@@ -221,15 +221,6 @@ class Plan:
         certified = (f"{name}.nc" for name in self.configuration.certified)
         return [*self.dataset_files(names), *certified, *self.figure_files(names), *PAGES]
 
-    def page_datasets(self, page: str) -> list[str]:
-        """Names of the datasets of sweeps that a page of the explorer shows."""
-        return explorer.sweeps_of(self.configuration, page)
-
-    @property
-    def page_certified(self) -> list[str]:
-        """Names of the certified maps that a page answers from."""
-        return explorer.certified_of(self.configuration)
-
     # What things are made of
 
     def code_of(self, file: str) -> str:
@@ -263,7 +254,8 @@ class Plan:
         """What a file in `made_files` is made of, as a short text: settings, code, points."""
         path, code = PurePosixPath(file), self.code_of(file)
         if file in PAGES:
-            names = [*self.page_datasets(file), *self.page_certified]
+            names = explorer.sweeps_of(self.configuration, file)
+            names += explorer.certified_of(self.configuration)
             groups = [f"{name}_periods" for name in self.explored]
         elif path.parts[0] == "figures":
             names, groups = self.figures[path.stem], ()
