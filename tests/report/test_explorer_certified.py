@@ -120,7 +120,7 @@ def test_answers_below_the_smallest_amplitude_are_those_of_friction_at(given):
 def test_next_to_a_point_that_failed_nothing_is_known_to_both():
     axes = {"velocity": [0.01, 1], "amplitude": [0.2, 0.8], "adaptive": {"error": 3e-2}}
     map_ = certified_stub.configured("bore", **axes)
-    dataset = made(map_, boring, failed=lambda v, a: 0.09 < v < 0.11 and 0.49 < a < 0.51)
+    dataset = made(map_, boring, failed=lambda v, a: v < 0.02 and a < 0.3)
     assert dataset.mu_macro.isnull().any()
     velocity = 10 ** np.random.default_rng(10).uniform(-2.5, 0.5, 60)
     velocity, amplitude = np.fmax(velocity, 0.01), np.linspace(0.1, 0.8, 60)

@@ -55,7 +55,7 @@ EARLY = PLAN.early_groups
 FIGURES = PLAN.figures
 NAMES = PLAN.datasets
 # A certified map needs a folder of results on this machine, and a page does without it.
-ANSWERING = [] if STORED_ELSEWHERE else PLAN.page_certified
+ANSWERING = [] if STORED_ELSEWHERE else explorer.certified_of(CONFIGURATION)
 
 
 def kept(file):
@@ -195,7 +195,7 @@ def datasets_explored(page):
     problem = explorer.refusal(CONFIGURATION, page)
     if problem:
         sys.exit(f"Error in {ORIGIN}: {problem}")
-    return in_results(f"{name}.nc" for name in PLAN.page_datasets(page))
+    return in_results(f"{name}.nc" for name in explorer.sweeps_of(CONFIGURATION, page))
 
 
 wildcard_constraints:

@@ -21,7 +21,7 @@ rule explorer:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 10 * attempt,
     params:
-        names=PLAN.page_datasets(explorer.PAGE),
+        names=explorer.sweeps_of(CONFIGURATION, explorer.PAGE),
         explored=EXPLORED,
         made_of=lambda wildcards: PLAN.fingerprint_of(explorer.PAGE),
         code=lambda wildcards: PLAN.code_of(explorer.PAGE),
@@ -44,7 +44,7 @@ use rule explorer as explorer_all with:
     log:
         f"{RESULTS}/logs/explorer_all.log",
     params:
-        names=PLAN.page_datasets(explorer.PAGE_OF_ALL),
+        names=explorer.sweeps_of(CONFIGURATION, explorer.PAGE_OF_ALL),
         explored=EXPLORED,
         made_of=lambda wildcards: PLAN.fingerprint_of(explorer.PAGE_OF_ALL),
         code=lambda wildcards: PLAN.code_of(explorer.PAGE_OF_ALL),

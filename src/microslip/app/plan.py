@@ -29,7 +29,6 @@ STUDY_CODE = ("datasets/sweep_dataset.py", "report/study_page.py", "studies")
 CERTIFIED_CODE = ("datasets/certified_map.py", "report/dataset_page.py")
 ROUND_CODE = ("sweeps/map_rounds.py",)
 """What says which points of a certified map are next."""
-PAGES = (explorer.PAGE, explorer.PAGE_OF_ALL)
 
 
 class Plan:
@@ -218,23 +217,14 @@ class Plan:
     def made_files(self) -> list[str]:
         """All files that are made to be kept: datasets, pages, figures."""
         names = [*self.datasets, *self.configuration.certified]
-        return [*self.dataset_files(names), *self.figure_files(names), *PAGES]
-
-    def page_datasets(self, page: str) -> list[str]:
-        """Names of the datasets of sweeps that a page of the explorer shows."""
-        return explorer.sweeps_of(self.configuration, page)
-
-    @property
-    def page_certified(self) -> list[str]:
-        """Names of the certified maps that a page answers from."""
-        return explorer.certified_of(self.configuration)
+        return [*self.dataset_files(names), *self.figure_files(names), *explorer.PAGES]
 
     # What things are made of
 
     def code_of(self, file: str) -> str:
         """Digest of the code that makes a file, of those in `made_files`."""
         path = PurePosixPath(file)
-        if file in PAGES:
+        if file in explorer.PAGES:
             return explorer.digest()
         if path.parts[0] == "figures":
             return source_digest.of_modules(*drawing.modules_of(path.stem))
@@ -261,8 +251,8 @@ class Plan:
     def fingerprint_of(self, file: str) -> str:
         """What a file in `made_files` is made of, as a short text: settings, code, points."""
         path, code = PurePosixPath(file), self.code_of(file)
-        if file in PAGES:
-            names = [*self.page_datasets(file), *self.page_certified]
+        if file in explorer.PAGES:
+            names = explorer.datasets_of(self.configuration, file)
             groups = [f"{name}_periods" for name in self.explored]
         elif path.parts[0] == "figures":
             names, groups = self.figures[path.stem], ()

@@ -18,15 +18,17 @@ from microslip.foundation import source_digest
 from microslip.report.explorer.requests import (
     PAGE,
     PAGE_OF_ALL,
+    PAGES,
     certified_of,
+    datasets_of,
     maps_of,
     period_requests,
     refusal,
     sweeps_of,
 )
 
-__all__ = ["ASSETS", "PAGE", "PAGE_OF_ALL", "certified_of", "digest", "maps_of", "period_requests"]
-__all__ += ["refusal", "report", "sweeps_of"]
+__all__ = ["ASSETS", "PAGE", "PAGES", "PAGE_OF_ALL", "certified_of", "datasets_of", "digest"]
+__all__ += ["maps_of", "period_requests", "refusal", "report", "sweeps_of"]
 
 ASSETS = ("page.html", "style.css", "certified.js", "elliptic.js", "limits.js", "beyond.js")
 ASSETS += (

@@ -9,7 +9,7 @@ from math import prod
 from microslip.config.records import Configuration
 from microslip.foundation.canonical import number
 
-PAGE, PAGE_OF_ALL = "explorer.html", "explorer_all.html"
+PAGES = PAGE, PAGE_OF_ALL = "explorer.html", "explorer_all.html"
 MAPS = ("transverse", "bore")
 """Sweeps whose maps have periods, and motions that the form for a real contact knows."""
 CELLS, ANGLES, STEPS = 10, 12, 32
@@ -34,6 +34,11 @@ def certified_of(configuration: Configuration) -> list[str]:
         for name, map_ in configuration.certified.items()
         if map_.velocity and map_.sweep.scene in MAPS and map_.sweep.pressure == "hertz"
     ]
+
+
+def datasets_of(configuration: Configuration, page: str) -> list[str]:
+    """Names of all datasets that a page is made of, a list."""
+    return [*sweeps_of(configuration, page), *certified_of(configuration)]
 
 
 def maps_of(configuration: Configuration) -> list[str]:
