@@ -20,9 +20,6 @@ from microslip.studies import registry
 from microslip.sweeps import batch_plans
 from microslip.sweeps import batches as sweep
 
-PERIODS_PER_JOB = 150
-"""Periods for the explorer that one job computes: a few seconds of work."""
-
 DATASET_CODE = ("datasets/sweep_dataset.py", "report/dataset_page.py")
 """Modules that make the dataset of a sweep, besides what these import."""
 STUDY_CODE = ("datasets/sweep_dataset.py", "report/study_page.py", "studies")
@@ -104,7 +101,7 @@ class Plan:
             return requests, configuration.points_per_job[group]
         name, _, beside = group.rpartition("_")
         if beside == "periods":
-            return explorer.period_requests(configuration, name), PERIODS_PER_JOB
+            return explorer.period_requests(configuration, name), explorer.PERIODS_PER_JOB
         return None
 
     def _kept(self, group, requests, size):

@@ -19,6 +19,7 @@ from microslip.report.explorer.requests import (
     PAGE,
     PAGE_OF_ALL,
     PAGES,
+    PERIODS_PER_JOB,
     certified_of,
     datasets_of,
     maps_of,
@@ -27,7 +28,16 @@ from microslip.report.explorer.requests import (
     sweeps_of,
 )
 
-__all__ = ["ASSETS", "PAGE", "PAGES", "PAGE_OF_ALL", "certified_of", "datasets_of", "digest"]
+__all__ = [
+    "ASSETS",
+    "PAGE",
+    "PAGES",
+    "PAGE_OF_ALL",
+    "PERIODS_PER_JOB",
+    "certified_of",
+    "datasets_of",
+    "digest",
+]
 __all__ += ["maps_of", "period_requests", "refusal", "report", "sweeps_of"]
 
 ASSETS = ("page.html", "style.css", "certified.js", "elliptic.js", "limits.js", "beyond.js")

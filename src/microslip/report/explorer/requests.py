@@ -14,6 +14,8 @@ MAPS = ("transverse", "bore")
 """Sweeps whose maps have periods, and motions that the form for a real contact knows."""
 CELLS, ANGLES, STEPS = 10, 12, 32
 """Rings, points on half a ring, steps in a period: what a drawing of some 300 pixels can show."""
+PERIODS_PER_JOB = 150
+"""Periods that one job computes: a few seconds of work."""
 MOST_PERIODS = 1250
 """Periods on a page; one takes some 6 kB of it, and all of it is to stay below 15 MB."""
 MOST_POINTS = 5000
