@@ -76,7 +76,7 @@ CHOSEN = {"material": "steel", "counterbody": "steel", "scene": "transverse"}
 def packed() -> dict:
     """All that the form needs as one value that JSON can hold."""
     return {
-        "scenes": {scene: MOTIONS[scene] for scene in SCENES},
+        "scenes": {scene: f"{scene}: {MOTIONS[scene]}" for scene in SCENES},
         "fields": {name: _field(field) for name, field in FIELDS.items()},
         "sides": {side: list(fields) for side, fields in SIDES.items()},
         "amplitude_of": AMPLITUDE_OF,
