@@ -65,6 +65,12 @@ def test_over_poissons_ratio_it_answers_at_any():
     assert friction[0] <= 0.5 <= friction[1]
 
 
+def test_chunks_answer_alike():
+    dataset, amplitude = built(), xr.DataArray(np.linspace(0, 1.5, 40), dims="n")
+    lazy = dataset.friction.at(0.0, amplitude.chunk(n=7))
+    xr.testing.assert_identical(lazy.compute(), dataset.friction.at(0.0, amplitude))
+
+
 def test_what_slides_is_not_answered():
     with pytest.raises(ValueError, match="velocity = 0.1: the map has none such"):
         built().friction.at(0.1, 0.5)

@@ -5,10 +5,6 @@ from itertools import product
 import numpy as np
 import pytest
 
-from microslip.config import load
-from microslip.config.records import ConfigError
-from microslip.sweeps import map_rounds
-from microslip.sweeps.batches import key_of
 from microslip.sweeps.map_cells import (
     LOWER_ORDER,
     RESOLVED,
@@ -225,87 +221,3 @@ def test_a_third_direction_is_halved_where_friction_bends_over_it_and_only_there
 def test_surpluses_of_three_nodes_are_twice_their_second_differences():
     values = np.multiply.outer(np.ones((5, 5)), [0.0, 1.0, 4.0])  # x^2: second differences of 2
     assert surpluses_of(values) == pytest.approx((0.0, 0.0, 4.0))
-
-
-# Rounds
-
-
-GIVEN = {"velocity": [0.01, 1], "amplitude": [0, 2], "adaptive": {"error": 0.02}}
-
-
-def configured(**given):
-    return load.from_mapping({"sweeps": {"transverse": GIVEN | given}})
-
-
-def test_rounds_ask_for_points_of_the_sweep_until_all_is_answered():
-    (map_,) = configured().certified.values()
-    first = map_rounds.next_round(map_, {}, 50)
-    # slow and fast ones, two patches of 5 x 5 nodes each, share those on the border between them
-    assert len(first["nodes"]) == len(first["requests"]) == 45 + 45
-    assert first["parts"] == 4
-    parts = [map_rounds.part_of(first, part) for part in range(4)]
-    assert sorted(map(key_of, sum(parts, []))) == sorted(map(key_of, first["requests"]))
-    assert {request["tolerance"] for request in first["requests"]} == {"0.006"}
-    records = [
-        {"key": key_of(r), "result": {"mu_macro": 0.5, "mu_macro_error": 0.0, "converged": True}}
-        for r in first["requests"]
-    ]
-    known = map_rounds.answers_in([first], records)
-    assert map_rounds.next_round(map_, known, 50) == {"nodes": [], "requests": [], "parts": 0}
-
-
-def test_a_point_that_did_not_converge_is_not_known():
-    (map_,) = configured().certified.values()
-    first = map_rounds.next_round(map_, {}, 50)
-    records = [{"key": key_of(r), "result": {"converged": False}} for r in first["requests"]]
-    known = map_rounds.answers_in([first], records)
-    assert all(np.isnan(value) and np.isinf(error) for value, error in known.values())
-
-
-def test_certified_maps_are_named_after_their_sweep_and_have_its_ranges():
-    found = configured(velocity=[0, 0.01, 1]).certified
-    assert list(found) == ["certified_transverse"]
-    map_ = found["certified_transverse"]
-    assert (map_.velocity, map_.amplitude) == ((0.01, 1.0), (0.0, 2.0))
-    assert (map_.error, map_.tolerance) == (0.02, 0.006)
-    assert configured(adaptive=None).certified == {}
-
-
-def test_several_poissons_ratios_are_a_third_direction():
-    (map_,) = configured(poisson=[0, 0.2, 0.4]).certified.values()
-    assert map_.poisson == (0.0, 0.4)
-    assert map_rounds.coordinates_of(map_).directions == ("velocity", "amplitude", "poisson")
-    requests = map_rounds.next_round(map_, {}, 50)["requests"]
-    assert len(requests) == 90 * 3
-    assert {request["poisson"] for request in requests} == {"0", "0.2", "0.4"}
-    (alone,) = configured(poisson=[0.2]).certified.values()
-    assert (alone.poisson, alone.settings["poisson"]) == ((), (0.2,))
-
-
-def test_other_motions_and_pressures_are_certified_likewise():
-    cone = GIVEN | {"scene": "longitudinal", "pressure": "power:exponent=1", "group": "cones"}
-    given = {"sweeps": {"transverse": GIVEN | {"adaptive": None}}, "extended": {"cone": cone}}
-    (map_,) = load.from_mapping(given).certified.values()
-    assert map_.name == "certified_cone"
-    assert map_rounds.coordinates_of(map_).patches == [
-        ((0.0, 0.0), (1.0, 1.0))
-    ]  # no kink of it is known
-    request = map_rounds.next_round(map_, {}, 50)["requests"][0]
-    assert (request["scene"], request["pressure"]) == ("longitudinal", "power:exponent=1")
-    with pytest.raises(ConfigError, match="certified_cone: another result has this name"):
-        load.from_mapping(given | {"extended": {"cone": cone, "certified_cone": cone}})
-
-
-@pytest.mark.parametrize(
-    "given, at_fault",
-    [
-        ({"velocity": [0.1]}, "sweeps.transverse.adaptive"),
-        ({"cells": 16, "steps": 64}, "sweeps.transverse.adaptive"),
-        ({"adaptive": {"error": 0.01, "tolerance": 0.01}}, "sweeps.transverse.adaptive.tolerance"),
-        ({"adaptive": {"error": 0}}, "sweeps.transverse.adaptive.error"),
-        ({"adaptive": {}}, "sweeps.transverse.adaptive.error"),
-    ],
-)
-def test_what_cannot_be_certified_is_refused(given, at_fault):
-    with pytest.raises(ConfigError, match=at_fault):
-        configured(**given)

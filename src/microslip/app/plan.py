@@ -271,8 +271,7 @@ def _figures(configuration, of_studies):
             yield figure, names
     for group, names in configuration.groups.items():
         yield drawing.figure_of(group), names
-    for name in configuration.certified:
-        yield name, (name,)
+    yield from ((name, (name,)) for name in configuration.certified)
 
 
 def _is_drawable(figure, names, configuration):

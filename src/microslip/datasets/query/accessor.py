@@ -12,7 +12,8 @@ from microslip.datasets.query import beyond, cells, lazily
 from microslip.datasets.query.coordinates import labelled
 from microslip.datasets.query.grid import axes_of_grid
 from microslip.datasets.query.inverse import Inverse
-from microslip.datasets.query.nodes import nodes_of, poisson_within, refuse_negative
+from microslip.datasets.query.nodes import poisson_within, refuse_negative
+from microslip.datasets.query.nodes_once import NodesOnce
 from microslip.datasets.query.solver import solved
 from microslip.datasets.query.within import refuse_beyond, within
 from microslip.foundation.arguments import real
@@ -57,6 +58,7 @@ class Friction(Inverse):
         self._dataset = dataset
         self._scene = self._motion.name
         self._pressure = dataset.attrs.get("pressure", "hertz")
+        self._nodes = NodesOnce()
         self._tables = {}  # by what they are made of: a dataset may be changed in place
 
     def at(
@@ -105,11 +107,12 @@ class Friction(Inverse):
         """
         if lazily.is_lazy(velocity, amplitude):
             settings = {"poisson": poisson, "tolerance": tolerance}
-            return lazily.answered(self.at, *self._labelled(velocity, amplitude), **settings)
+            asked = self._labelled(velocity, amplitude)
+            return lazily.answered(self.at, self._dataset, *asked, **settings)
         if cells.is_certified(self._dataset):
             nodes = cells.cells_of(self._dataset)
         else:
-            nodes = nodes_of(self._dataset, periodic=self._motion.periodic, poisson=poisson)
+            nodes = self._nodes.of(self._dataset, periodic=self._motion.periodic, poisson=poisson)
         if beyond.is_known(self._scene, self._pressure):
             refuse_negative(nodes)
         nu = poisson_within(nodes.poisson, poisson)
@@ -143,8 +146,8 @@ class Friction(Inverse):
         ----------
         velocity, amplitude : int or sequence
             How many of them, over the range of the map, velocities in equal ratios and amplitudes
-            in equal steps; or which ones.  The amplitude does not count for continuous-bore, the
-            velocity not for a certified map of the static limit, where it is 0.
+            in equal steps; or which ones.  No amplitude counts for continuous-bore, and no velocity
+            for a certified map of the static limit.
         **settings
             poisson and tolerance, as for `at`.
 
@@ -194,7 +197,6 @@ class Friction(Inverse):
         tables = self._table(nodes, nu), self._table(nodes, nu, still=True)
         if tolerance is None:
             what = self._scene if self._pressure == "hertz" else f"pressure {self._pressure}"
-            what += " beyond this map" if cells.is_static(self._dataset) else ""
             refuse_beyond(*tables, velocity, rows, what)
         value, error = within(*tables, velocity, rows)
         return value, error, np.full(len(value), MAP)

@@ -14,7 +14,11 @@ def is_lazy(*given: object) -> bool:
 
 
 def answered(
-    at: Callable, velocity: xr.DataArray, amplitude: xr.DataArray | None, **settings
+    at: Callable,
+    dataset: xr.Dataset,
+    velocity: xr.DataArray,
+    amplitude: xr.DataArray | None,
+    **settings,
 ) -> xr.Dataset:
     """What `at` says, a Dataset in the chunks of the question.
 
@@ -22,6 +26,8 @@ def answered(
     ----------
     at : callable
         Friction.at, for what is in memory.
+    dataset : xarray.Dataset
+        Which it is asked of.
     velocity, amplitude : xarray.DataArray
         The question; no amplitude for a steady motion.
     **settings
@@ -29,7 +35,8 @@ def answered(
     """
     asked = [velocity] if amplitude is None else [amplitude, velocity]
     # The names and attributes of an answer are those of any other one.
-    pattern = at(*(1.0 for _ in asked), **settings | {"tolerance": None})
+    inside = [_largest(dataset, name) for name in ("velocity", "amplitude")[: len(asked)]]
+    pattern = at(*inside, **settings | {"tolerance": None})
 
     def block(*places):
         places = np.broadcast_arrays(*places)[::-1]
@@ -49,3 +56,8 @@ def answered(
     }
     rest = {name: c for name, c in pattern.coords.items() if name not in ("velocity", "amplitude")}
     return xr.Dataset(named, attrs=pattern.attrs).assign_coords(rest)
+
+
+def _largest(dataset, name):
+    """A place where any map answers; 1 where it has lost its coordinate, which `at` says better."""
+    return float(dataset[name].max()) if name in dataset.variables else 1.0

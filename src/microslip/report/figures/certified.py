@@ -41,7 +41,9 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     known = np.isfinite(grid["mu_macro"])
     filled, _ = fill(left, grid.assign(converged=known), lines=CONTOURS, labelled=LABELLED)
     outlines, errors = _cells(dataset)
-    left.add_collection(LineCollection(outlines, colors="white", linewidths=0.6, gid="cells"))
+    left.add_collection(
+        LineCollection(outlines, colors=look.VERMILLION, linewidths=0.7, gid="cells")
+    )
     at = dataset.isel(point=dataset["poisson"].values == poisson) if _is_deep(dataset) else dataset
     points = left.plot(
         *(at["velocity"], at["amplitude"], "."),
