@@ -234,8 +234,7 @@ class Friction(Inverse):
         source = np.full(len(value), MAP)
         last = (part[-1] for part in (table.values, table.errors))
         far = np.zeros_like(value)
-        if wide.any():  # the limit of the bore takes a while
-            far[wide] = beyond.distances(limits, table.columns.values, *last, below[wide], widest)
+        far[wide] = beyond.distances(limits, table.columns.values, *last, below[wide], widest)
         for where, code, rule, coordinates, end in (
             (amplitude < narrowest, NARROWER, beyond.narrower, (amplitude,), narrowest),
             (below < slowest, SLOWER, beyond.slower, (below, np.fmin(amplitude, widest)), slowest),
