@@ -197,9 +197,9 @@ def test_so_it_does_where_the_edge_lies_between_the_points(tmp_path, count, shif
 def test_a_file_too_coarse_for_the_tolerance_is_not_converged(tmp_path):
     axis = np.linspace(-0.75, 0.75, 4)
     file = csv(tmp_path / "p.csv", axis, axis, sphere(axis[:, None], axis[None, :]))
-    found = microslip.solve("transverse", 0.1, 0.5, pressure=file, tolerance=2e-3)
+    found = microslip.solve("transverse", 0.1, 0.5, pressure=file, tolerance=1e-2)
     assert not found.converged
-    assert found.mu_macro_error > 2e-3
+    assert found.mu_macro_error > 1e-2
     assert f"the file's own resolution leaves {found.error_model:.1e} open" in found.reason
 
 

@@ -12,7 +12,8 @@ from microslip.datasets.query import beyond, cells, lazily
 from microslip.datasets.query.coordinates import labelled
 from microslip.datasets.query.grid import axes_of_grid
 from microslip.datasets.query.inverse import Inverse
-from microslip.datasets.query.nodes import nodes_of, poisson_within, refuse_negative
+from microslip.datasets.query.nodes import poisson_within, refuse_negative
+from microslip.datasets.query.nodes_once import NodesOnce
 from microslip.datasets.query.solver import solved
 from microslip.datasets.query.within import refuse_beyond, within
 from microslip.foundation.arguments import real
@@ -57,6 +58,7 @@ class Friction(Inverse):
         self._dataset = dataset
         self._scene = self._motion.name
         self._pressure = dataset.attrs.get("pressure", "hertz")
+        self._nodes = NodesOnce()
         self._tables = {}  # by what they are made of: a dataset may be changed in place
 
     def at(
@@ -109,7 +111,8 @@ class Friction(Inverse):
         if cells.is_certified(self._dataset):
             nodes = cells.cells_of(self._dataset)
         else:
-            nodes = nodes_of(self._dataset, periodic=self._motion.periodic, poisson=poisson)
+            periodic = self._motion.periodic
+            nodes = self._nodes.of(self._dataset, periodic=periodic, poisson=poisson)
         if beyond.is_known(self._scene, self._pressure):
             refuse_negative(nodes)
         nu = poisson_within(nodes.poisson, poisson)

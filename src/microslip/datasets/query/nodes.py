@@ -17,6 +17,8 @@ from microslip.datasets.query.interpolation import Axis, Table, largest_around
 from microslip.foundation.arguments import is_real
 from microslip.foundation.errors import InputError
 
+READ = ("mu_macro", "mu_macro_error", "converged", "velocity", "amplitude", "poisson")
+"""Of a dataset: what its nodes are made of, beside the attribute `tolerance`."""
 SAME = 1e-12
 """Poisson's ratios that differ by less are one."""
 
