@@ -119,6 +119,29 @@ def test_a_finer_map_has_periods_for_some_points_of_both_axes():
     assert len({request["amplitude"] for request in asked}) == 17
 
 
+def test_of_several_certified_maps_the_most_exact_one_answers():
+    exact, rough = ({"adaptive": {"error": error}} for error in (1e-3, 5e-3))
+    axes = {"velocity": [0.1, 1], "amplitude": [0, 1]}
+    extended = axes | {"scene": "transverse", "group": "motions"}
+    given = {
+        "sweeps": {"transverse": axes | rough},
+        "extended": {
+            "again": extended | exact,
+            "along": extended | exact | {"scene": "longitudinal"},
+            "cone": extended | exact | {"pressure": "power:exponent=1"},
+        },
+    }
+    assert explorer.certified_of(load.from_mapping(given)) == ["certified_again"]
+    assert explorer.certified_of(load.from_mapping({"sweeps": {"bore": axes}})) == []
+
+
+def test_the_default_configuration_answers_for_all_of_poissons_ratios():
+    default = load.load(ROOT / "config" / "config.yaml")
+    chosen = explorer.certified_of(default)
+    assert chosen == ["certified_poisson_transverse", "certified_poisson_bore"]
+    assert {default.certified[name].poisson for name in chosen} == {(0, 0.5)}
+
+
 def test_a_map_that_has_no_room_is_refused():
     fine = {"log": {"start": 0.001, "stop": 10, "count": 101}}
     configuration = stub.configured(velocity=fine, amplitude=[0, *range(1, 51)])

@@ -30,12 +30,24 @@ def sweeps_of(configuration: Configuration, page: str) -> list[str]:
 
 
 def certified_of(configuration: Configuration) -> list[str]:
-    """Names of the certified maps that a real contact is answered from, a list."""
-    return [
-        name
-        for name, map_ in configuration.certified.items()
-        if map_.velocity and map_.sweep.scene in MAPS and map_.sweep.pressure == "hertz"
-    ]
+    """Names of the certified maps that a real contact is answered from, a list.
+
+    One for each motion: over most of Poisson's ratios, and of several such the most exact.
+    """
+    found = []
+    for motion in MAPS:
+        known = [
+            map_
+            for map_ in configuration.certified.values()
+            if (map_.sweep.scene, map_.sweep.pressure) == (motion, "hertz") and map_.velocity
+        ]
+        found += [map_.name for map_ in sorted(known, key=_preference)[:1]]
+    return found
+
+
+def _preference(map_):
+    ratios = map_.sweep.poisson
+    return ratios[0] - ratios[-1], map_.error
 
 
 def datasets_of(configuration: Configuration, page: str) -> list[str]:
