@@ -28,7 +28,9 @@
 # snakemake explorer makes one page to look behind every point of the maps.
 #
 #   points of the maps --> periods, cut into batches --> solve_batch --> results/periods
-#   datasets, periods --> explorer --> results/explorer.html
+#   datasets, periods, certified maps --> explorer --> results/explorer.html
+#
+# snakemake explorer_all makes the same of every sweep: results/explorer_all.html.
 #
 # Batches are named by the hashes of their points, points by what they depend on: the physics, the
 # tolerance and the solver's sources. So what is there is never stale, and never computed twice.

@@ -36,7 +36,9 @@ def test_the_targets_are_those_of_the_workflow():
     """A rule whose files have no names to fill in is one that can be asked for by name."""
     rules = {}
     for path in (ROOT / "Snakefile", *(ROOT / "workflow" / "rules").glob("*.smk")):
-        parts = re.split(r"^(?:use )?rule (\w+)", path.read_text(), flags=re.MULTILINE)[1:]
+        parts = re.split(r"^(?:use rule \w+ as|rule) (\w+)", path.read_text(), flags=re.MULTILINE)[
+            1:
+        ]
         rules |= dict(zip(parts[::2], parts[1::2], strict=True))
     by_name = {name for name, text in rules.items() if not re.search(r"output:[^:]*\{\{", text)}
     assert by_name == {*sweep_command.TARGETS, *sweep_command.RULES}
@@ -66,7 +68,7 @@ REFUSED = [
     ("-nj0", "--jobs = 0", CORES),
     ("--no-such-option", "unrecognized arguments: --no-such-option"),
     ("--cores 1 --configfile", "argument --configfile", "expected at least one argument"),
-    ("al", "TARGET = 'al'", "did you mean all?", "explorer, or a file"),
+    ("al", "TARGET = 'al'", "did you mean all?", "explorer_all, or a file"),
     ("bore", "TARGET = 'bore'", "allowed is one of all,"),
     ("-n --config poisson", "--config = 'poisson'", "KEY=VALUE"),
     ("-n --config 1=2", "--config = '1=2'", "KEY=VALUE"),

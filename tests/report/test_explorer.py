@@ -94,14 +94,20 @@ def test_every_point_that_moves_and_oscillates_has_a_period_or_a_reason(made):
 
 @pytest.mark.slow
 def test_the_default_configuration_has_a_period_for_every_point_and_stays_small(tmp_path):
+    """With every sweep of it; certified maps take 25 kB each."""
     default = load.load(ROOT / "config" / "config.yaml")
     datasets, records = stub.made_up(tmp_path, default)
+    left_out = set(explorer.sweeps_of(default, explorer.PAGE_OF_ALL)) - set(datasets)
+    assert len(left_out) < 0.2 * len(datasets)
     for name in requests.MAPS:
         grid = default.sweeps[name]
         assert len(records[name]) == np.count_nonzero(grid.amplitude) * len(grid.velocity)
-    page.write(tmp_path / "explorer.html", datasets, records)
-    size = (tmp_path / "explorer.html").stat().st_size
-    assert size < 13e6  # of 15: a made-up number may be shorter than a computed one
+    page.write(tmp_path / "explorer_all.html", datasets, records)
+    size = (tmp_path / "explorer_all.html").stat().st_size
+    assert size < 14e6  # of 15: a made-up number may be shorter than a computed one
+    few = {name: datasets[name] for name in explorer.sweeps_of(default, explorer.PAGE)}
+    page.write(tmp_path / "explorer.html", few, records)
+    assert (tmp_path / "explorer.html").stat().st_size < 13e6
 
 
 def test_a_finer_map_has_periods_for_some_points_of_both_axes():
@@ -111,6 +117,29 @@ def test_a_finer_map_has_periods_for_some_points_of_both_axes():
     assert 300 < len(asked) <= 625
     assert len({request["velocity"] for request in asked}) == 34
     assert len({request["amplitude"] for request in asked}) == 17
+
+
+def test_of_several_certified_maps_the_most_exact_one_answers():
+    exact, rough = ({"adaptive": {"error": error}} for error in (1e-3, 5e-3))
+    axes = {"velocity": [0.1, 1], "amplitude": [0, 1]}
+    extended = axes | {"scene": "transverse", "group": "motions"}
+    given = {
+        "sweeps": {"transverse": axes | rough},
+        "extended": {
+            "again": extended | exact,
+            "along": extended | exact | {"scene": "longitudinal"},
+            "cone": extended | exact | {"pressure": "power:exponent=1"},
+        },
+    }
+    assert explorer.certified_of(load.from_mapping(given)) == ["certified_again"]
+    assert explorer.certified_of(load.from_mapping({"sweeps": {"bore": axes}})) == []
+
+
+def test_the_default_configuration_answers_for_all_of_poissons_ratios():
+    default = load.load(ROOT / "config" / "config.yaml")
+    chosen = explorer.certified_of(default)
+    assert chosen == ["certified_poisson_transverse", "certified_poisson_bore"]
+    assert {default.certified[name].poisson for name in chosen} == {(0, 0.5)}
 
 
 def test_a_map_that_has_no_room_is_refused():
@@ -137,7 +166,7 @@ def test_the_page_asks_for_nothing_outside(made, monkeypatch):
 
 def test_text_in_a_dataset_cannot_end_the_script(made):
     held = json.loads(json.dumps(made[2]))
-    held["maps"][0]["made"].append(["title", "</script><script>alert(1)"])
+    held["made"]["bore"].append(["title", "</script><script>alert(1)"])
     assert page.page(held).count("</script>") == page.page(made[2]).count("</script>")
 
 

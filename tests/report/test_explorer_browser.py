@@ -263,6 +263,30 @@ def test_it_tells_what_made_it_and_fits_the_screen(made, page):
     assert (width, height) == (1280, 800)
 
 
+def test_the_form_answers_for_a_real_contact_and_a_mistake_is_told(page):
+    """The numbers are compared in node; here what is seen, and that it fits beside the map."""
+    select(page, "transverse")
+    page.get_by_role("button", name="A real contact").click()
+    assert page.locator("#point-view").is_hidden()
+    value = page.locator("#contact-value")
+    assert value.inner_text().startswith("No certified friction: this page holds no certified map")
+    assert "contact radius" in page.inner_text("#contact-facts")
+    page.get_by_label("radius of the sphere", exact=True).fill("5,0")
+    assert "read 5 and stopped at ',0'" in value.inner_text()
+    page.get_by_label("radius of the sphere", exact=True).fill("5")
+    assert page.locator("#si-young").is_hidden()
+    page.get_by_label("sphere", exact=True).select_option("by E and ν")
+    assert page.locator("#si-young").is_visible()
+    page.get_by_label("motion", exact=True).select_option("bore")
+    assert page.locator("#si-angle").is_visible() and page.locator("#si-stroke").is_hidden()
+    assert page.evaluate("STATE.map.name") == "bore"
+    assert page.evaluate("document.documentElement.scrollWidth") <= 1280
+    page.get_by_label("motion", exact=True).select_option("transverse")
+    page.get_by_label("sphere", exact=True).select_option("steel")
+    page.get_by_role("button", name="A real contact").click()
+    assert page.locator("#disc").is_visible()
+
+
 # On a phone
 
 
@@ -321,6 +345,16 @@ def test_a_finger_scrolls_the_phone_and_zooms_no_chart(phone):
     assert not phone.locator(".modebar-btn").count()
     click_on_map(phone, 0.1, 1.2)  # a tap still chooses a point
     assert "velocity 0.1, amplitude 1.2" in phone.inner_text("#certificate")
+
+
+def test_the_form_fits_a_phone(phone):
+    phone.get_by_role("button", name="A real contact").click()
+    assert phone.evaluate("document.documentElement.scrollWidth") <= 400
+    for selector in (".field input", ".field select", "#ask"):
+        boxes = [box for box in phone.evaluate(BOXES, selector) if box[1] > box[0]]
+        assert boxes
+        for left, right, top, bottom in boxes:
+            assert bottom - top >= 44 and left >= 0 and right <= 400, selector
 
 
 def test_turning_the_phone_lays_it_out_again(phone):

@@ -54,7 +54,8 @@ EXPLORED = PLAN.explored
 EARLY = PLAN.early_groups
 FIGURES = PLAN.figures
 NAMES = PLAN.datasets
-PAGE = f"{RESULTS}/{plan.PAGE}"
+# A certified map needs a folder of results on this machine, and a page does without it.
+ANSWERING = [] if STORED_ELSEWHERE else explorer.certified_of(CONFIGURATION)
 
 
 def kept(file):
@@ -188,13 +189,13 @@ def show_the_end():
         print(line, file=sys.stderr)
 
 
-def datasets_explored():
-    """Files of the datasets that the explorer shows, if it can show them."""
-    look_after(plan.PAGE)
-    problem = explorer.refusal(CONFIGURATION)
+def datasets_explored(page):
+    """Files of the datasets that a page of the explorer shows, if it can show them."""
+    look_after(page)
+    problem = explorer.refusal(CONFIGURATION, page)
     if problem:
         sys.exit(f"Error in {ORIGIN}: {problem}")
-    return in_results(f"{name}.nc" for name in EXPLORED)
+    return in_results(f"{name}.nc" for name in explorer.sweeps_of(CONFIGURATION, page))
 
 
 wildcard_constraints:

@@ -5,7 +5,8 @@ from glob import glob
 from microslip.sweeps import batch_files, sealed_files
 
 # Rules that seal what they make.
-SEALING = ("collect", "collect_study", "collect_certified", "draw_figure", "explorer")
+SEALING = ("collect", "collect_study", "collect_certified", "draw_figure")
+SEALING += ("explorer", "explorer_all")
 # Where another run may be writing, what looks damaged may be about to be whole.
 ASKING = workflow.is_main_process and not glob(".snakemake/locks/*")
 

@@ -20,16 +20,12 @@ from microslip.studies import registry
 from microslip.sweeps import batch_plans
 from microslip.sweeps import batches as sweep
 
-PERIODS_PER_JOB = 150
-"""Periods for the explorer that one job computes: a few seconds of work."""
-
 DATASET_CODE = ("datasets/sweep_dataset.py", "report/dataset_page.py")
 """Modules that make the dataset of a sweep, besides what these import."""
 STUDY_CODE = ("datasets/sweep_dataset.py", "report/study_page.py", "studies")
 CERTIFIED_CODE = ("datasets/certified_map.py", "report/dataset_page.py")
 ROUND_CODE = ("sweeps/map_rounds.py",)
 """What says which points of a certified map are next."""
-PAGE = "explorer.html"
 
 
 class Plan:
@@ -41,7 +37,7 @@ class Plan:
     studies : dict of str to str
         Studies by the names of their datasets.
     explored : list of str
-        Names of the maps that the explorer shows.
+        Names of the maps whose points have periods in the explorer.
     figures : dict of str to tuple of str
         Figures that there is data for, and the datasets of each.
     earlier : sweeps.batch_plans.Folder, or what does the same elsewhere; None
@@ -105,7 +101,7 @@ class Plan:
             return requests, configuration.points_per_job[group]
         name, _, beside = group.rpartition("_")
         if beside == "periods":
-            return explorer.period_requests(configuration, name), PERIODS_PER_JOB
+            return explorer.period_requests(configuration, name), explorer.PERIODS_PER_JOB
         return None
 
     def _kept(self, group, requests, size):
@@ -218,14 +214,14 @@ class Plan:
     def made_files(self) -> list[str]:
         """All files that are made to be kept: datasets, pages, figures."""
         names = [*self.datasets, *self.configuration.certified]
-        return [*self.dataset_files(names), *self.figure_files(names), PAGE]
+        return [*self.dataset_files(names), *self.figure_files(names), *explorer.PAGES]
 
     # What things are made of
 
     def code_of(self, file: str) -> str:
         """Digest of the code that makes a file, of those in `made_files`."""
         path = PurePosixPath(file)
-        if file == PAGE:
+        if file in explorer.PAGES:
             return explorer.digest()
         if path.parts[0] == "figures":
             return source_digest.of_modules(*drawing.modules_of(path.stem))
@@ -252,8 +248,9 @@ class Plan:
     def fingerprint_of(self, file: str) -> str:
         """What a file in `made_files` is made of, as a short text: settings, code, points."""
         path, code = PurePosixPath(file), self.code_of(file)
-        if file == PAGE:
-            names, groups = self.explored, [f"{name}_periods" for name in self.explored]
+        if file in explorer.PAGES:
+            names = explorer.datasets_of(self.configuration, file)
+            groups = [f"{name}_periods" for name in self.explored]
         elif path.parts[0] == "figures":
             names, groups = self.figures[path.stem], ()
         elif path.stem in self.configuration.certified:

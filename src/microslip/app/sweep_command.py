@@ -28,12 +28,13 @@ TARGETS = {
     "claims": "what the paper says, judged",
     "driving": "what motions that drive pull with, from stall to no load",
     "explorer": "one page that shows what is behind every point of the maps",
+    "explorer_all": "the same page with every other sweep of the configuration",
 }
 """What can be made by name: the rules of the workflow without wildcards that people ask for."""
 RULES = ("warm_up",)
 """Others that Snakemake makes by name."""
 
-_LISTED = "\n".join(f"    {name:<12}{text}" for name, text in TARGETS.items())
+_LISTED = "\n".join(f"    {name:<14}{text}" for name, text in TARGETS.items())
 HELP = f"""\
 usage: microslip sweep [TARGET ...] [--configfile FILE] [options of Snakemake]
 

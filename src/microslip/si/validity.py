@@ -1,8 +1,14 @@
-"""Where an assumption of the theory breaks at a real contact: one sentence each."""
+"""Where an assumption of the theory breaks at a real contact: one sentence each.
+
+What is looked at are measures of the contact, numbers by their names; when they break which
+assumption, and what is said then, are rules.  Whoever evaluates the measures elsewhere, as the
+explorer's page does, takes the rules from here.
+"""
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealMotion, largest_slip_speed
@@ -37,129 +43,198 @@ surface is tilted by 30 degrees at the edge, and a sphere is 7 % deeper there th
 Hertz takes for it."""
 
 
+class Rule(NamedTuple):
+    """When an assumption breaks, and what is said then.
+
+    Attributes
+    ----------
+    where : tuple of tuple
+        Conditions (left, factor, right): left > factor * right, each a number or the name of a
+        measure.  All have to hold, and none does of a measure that there is not.
+    text : str
+        The sentence, with measures in braces as str.format takes them.
+    """
+
+    where: tuple[tuple, ...]
+    text: str
+
+
+def _too_hard(side):
+    return Rule(
+        (("largest_pressure", YIELDS_AT * HARDEST, f"{side}_young"),),
+        f"the largest pressure, {{largest_pressure:.2g}} Pa, is {{{side}_pressure:.2g}} of Young's "
+        "modulus: no metal, ceramic or glass is so hard that it stays elastic",
+    )
+
+
+def _steep(radius, whose):
+    return Rule(
+        (("contact_radius", STEEP, radius),),
+        f"the contact radius is {{over_{radius}:.2g}} of the {whose}: the bodies are no "
+        "half-spaces",
+    )
+
+
+def _adhesive(theory, *where):
+    return Rule(
+        (("pull_off", SMALL, "load"), *where),
+        "clean smooth surfaces adhere with about {pull_off:.2g} N, {pull_off_share:.2g} of the "
+        f"load (Tabor's number {{tabor:.2g}}, Maugis's {{maugis:.2g}}: {theory}): adhesion counts",
+    )
+
+
+def _atomic(measure, name):
+    return Rule(
+        ((measure, 1.0, 0.0), (RANGE, 1.0, measure)),
+        f"{name} is {{{measure}:.2g}} m, less than the distance of atoms: the surfaces are no "
+        "continua there",
+    )
+
+
+CHECKS = (
+    (
+        Rule(
+            (("largest_pressure", YIELDS_AT, "hardness"),),
+            f"the largest pressure, {{largest_pressure:.2g}} Pa, is above {YIELDS_AT:g} of the "
+            "hardness, {hardness:.2g} Pa: the contact yields, and is larger than Hertz's",
+        ),
+    ),
+    (_too_hard("first"), _too_hard("second")),
+    (
+        _steep("smallest_radius", "smaller radius of the bodies"),
+        _steep("radius", "radius of relative curvature"),
+    ),
+    (
+        Rule(
+            (("stroke", 1.0, SMALL),),
+            "the amplitude is {stroke:.2g} of the contact radius: tractions are carried along by "
+            "the material in a stroke, which the theory leaves out",
+        ),
+    ),
+    (
+        Rule(
+            (("crossing", 1.0, SMALL),),
+            "a shear wave crosses the contact in {crossing:.2g} of a radian: inertia counts",
+        ),
+        Rule(
+            (("slip_speed", 1.0, SMALL),),
+            "the slip speed is {slip_speed:.2g} of that of shear waves: inertia counts",
+        ),
+    ),
+    (
+        Rule(
+            (("mismatch", 1.0, SMALL),),
+            "the bodies are elastically unlike (Dundurs' beta {mismatch:.2g}): pressure moves "
+            "their surfaces sideways, which the theory leaves out",
+        ),
+    ),
+    (
+        _adhesive("JKR", ("tabor", 1.0, SHORT)),
+        _adhesive("DMT", (LONG, 1.0, "tabor")),
+        _adhesive("between JKR and DMT"),
+    ),
+    (_atomic("u_lim", "u_lim"),),
+    (_atomic("amplitude", "the amplitude"),),
+    (
+        Rule(
+            (("mu", 1.0, LARGE_MU),),
+            f"mu is {{mu:.3g}}: above {LARGE_MU:g} it is rare but for rubber and clean metals that "
+            "weld, of which Coulomb's law is a poor picture",
+        ),
+    ),
+    (
+        Rule(
+            (("rubbers", 1.0, 0.0),),
+            f"Poisson's ratio from {RUBBERY:g} on is that of rubber, whose modulus rises with the "
+            "frequency and whose losses inside rub too: give Young's modulus at this frequency; "
+            "the losses are left out",
+        ),
+    ),
+)
+"""Rules in the order in which they are told; of those that stand together the first that holds."""
+PROPERTIES = {"hardness": "whether the bodies stay elastic", "density": "inertia"}
+"""What a body may come without, and what cannot be checked then."""
+NOT_GIVEN = "{what} (no {name} given)"
+
+
 def broken_assumptions(contact: TwoBodies, motion: RealMotion) -> list[str]:
     """List of warnings; contact: bodies.TwoBodies, motion: dimensionless.RealMotion."""
-    return [text for check in _CHECKS for text in check(contact, motion)]
+    known = measures(contact, motion)
+    found = (next((rule for rule in rules if _holds(rule, known)), None) for rules in CHECKS)
+    return [rule.text.format(**known) for rule in found if rule is not None]
+
+
+def _holds(rule, known):
+    def value(side):
+        return known[side] if isinstance(side, str) else side
+
+    return all(
+        value(left) is not None and value(right) is not None and value(left) > factor * value(right)
+        for left, factor, right in rule.where
+    )
 
 
 def unchecked(contact: TwoBodies) -> list[str]:
     """What could not be checked, for want of which property: list of texts."""
-    missing = []
-    for name, what in (("hardness", "whether the bodies stay elastic"), ("density", "inertia")):
-        if any(getattr(b, name) is None and not b.rigid for b in contact.bodies):
-            missing.append(f"{what} (no {name} given)")
-    return missing
+    return [
+        NOT_GIVEN.format(what=what, name=name)
+        for name, what in PROPERTIES.items()
+        if any(getattr(b, name) is None and not b.rigid for b in contact.bodies)
+    ]
 
 
-def _plastic(contact, motion):
-    known = [b.hardness for b in contact.bodies if b.hardness is not None]
-    pressure = contact.largest_pressure
-    if known and pressure > YIELDS_AT * min(known):
-        yield (
-            f"the largest pressure, {pressure:.2g} Pa, is above {YIELDS_AT:g} of the hardness, "
-            f"{min(known):.2g} Pa: the contact yields, and is larger than Hertz's"
-        )
+def measures(contact: TwoBodies, motion: RealMotion) -> dict[str, float | None]:
+    """What the rules look at, by name; None: there is no such thing, or it is not known."""
+    return _of_bodies(contact) | _of_adhesion(contact) | _of_motion(contact, motion)
 
 
-def _too_hard(contact, motion):
-    """Of bodies without a hardness: whether any one would do."""
-    pressure = contact.largest_pressure
-    for body in contact.bodies:
+def _of_bodies(contact):
+    a, pressure = contact.contact_radius, contact.largest_pressure
+    hard = [body.hardness for body in contact.bodies if body.hardness is not None]
+    found = {
+        "largest_pressure": pressure,
+        "hardness": min(hard, default=None),
+        "contact_radius": a,
+        "radius": contact.radius,
+        "smallest_radius": contact.smallest_radius,
+        "over_radius": a / contact.radius,
+        "over_smallest_radius": a / contact.smallest_radius,
+        "mismatch": abs(contact.mismatch),
+        "load": contact.load,
+        "u_lim": contact.u_lim,
+        "mu": contact.mu,
+        "rubbers": sum(b.poisson >= RUBBERY and not b.rigid for b in contact.bodies),
+    }
+    for side, body in zip(("first", "second"), contact.bodies, strict=True):
         known = body.hardness is not None or body.rigid or body.poisson >= RUBBERY
-        if not known and pressure > YIELDS_AT * HARDEST * body.young:
-            share = pressure / body.young
-            yield (
-                f"the largest pressure, {pressure:.2g} Pa, is {share:.2g} of Young's modulus: "
-                "no metal, ceramic or glass is so hard that it stays elastic"
-            )
-            return
+        found[f"{side}_young"] = None if known else body.young
+        found[f"{side}_pressure"] = None if known else pressure / body.young
+    return found
 
 
-def _lossy(contact, motion):
-    if any(body.poisson >= RUBBERY and not body.rigid for body in contact.bodies):
-        yield (
-            f"Poisson's ratio from {RUBBERY:g} on is that of rubber, whose modulus rises with the "
-            "frequency and whose losses inside rub too: give Young's modulus at this frequency; "
-            "the losses are left out"
-        )
-
-
-def _adhesive(contact, motion):
+def _of_adhesion(contact):
     strength = ADHESION**2 * contact.radius / (contact.E_star**2 * RANGE**3)
     tabor = strength ** (1.0 / 3.0)
     share = 1.5 if tabor > SHORT else 2.0
     pull = share * math.pi * ADHESION * contact.radius
-    if pull <= SMALL * contact.load:
-        return
-    theory = "JKR" if tabor > SHORT else "DMT" if tabor < LONG else "between JKR and DMT"
-    share = pull / contact.load
-    yield (
-        f"clean smooth surfaces adhere with about {pull:.2g} N, {share:.2g} of the load "
-        f"(Tabor's number {tabor:.2g}, Maugis's {1.157 * tabor:.2g}: {theory}): adhesion counts"
-    )
+    return {
+        "tabor": tabor,
+        "maugis": 1.157 * tabor,
+        "pull_off": pull,
+        "pull_off_share": pull / contact.load,
+    }
 
 
-def _atomic(contact, motion):
-    sizes = {"u_lim": contact.u_lim, "the amplitude": motion.swing[0]}
-    for name, size in sizes.items():
-        if 0.0 < size < RANGE:
-            yield (
-                f"{name} is {size:.2g} m, less than the distance of atoms: the surfaces are no "
-                "continua there"
-            )
-
-
-def _rough_mu(contact, motion):
-    if contact.mu > LARGE_MU:
-        yield (
-            f"mu is {contact.mu:.3g}: above {LARGE_MU:g} it is rare but for rubber and clean "
-            "metals that weld, of which Coulomb's law is a poor picture"
-        )
-
-
-def _steep(contact, motion):
-    a, radius = contact.contact_radius, contact.radius
-    whose = "radius of relative curvature"
-    if a > STEEP * contact.smallest_radius:
-        radius, whose = contact.smallest_radius, "smaller radius of the bodies"
-    if a > STEEP * radius:
-        share = f"{a / radius:.2g} of the {whose}"
-        yield f"the contact radius is {share}: the bodies are no half-spaces"
-
-
-def _far(contact, motion):
-    if motion.frequency is None:
-        return
-    ratio = motion.swing[0] / contact.contact_radius
-    if ratio > SMALL:
-        yield (
-            f"the amplitude is {ratio:.2g} of the contact radius: tractions are carried along by "
-            "the material in a stroke, which the theory leaves out"
-        )
-
-
-def _inertia(contact, motion):
+def _of_motion(contact, motion):
+    """What the motion is beside the contact, and beside waves where a density is known."""
+    steady, along = motion.frequency is None, motion.swing[0]
+    found = {"amplitude": along, "stroke": None if steady else along / contact.contact_radius}
     known = [b for b in contact.bodies if b.density is not None and not b.rigid]
     if not known:
-        return
+        return found | {"crossing": None, "slip_speed": None}
     wave = min(math.sqrt(body.shear_modulus / body.density) for body in known)
-    turn = motion.rotation if motion.frequency is None else 2.0 * math.pi * motion.frequency
-    crossing = turn * contact.contact_radius / wave
-    slip = largest_slip_speed(motion, contact) / wave
-    if crossing > SMALL:
-        yield f"a shear wave crosses the contact in {crossing:.2g} of a radian: inertia counts"
-    elif slip > SMALL:
-        yield f"the slip speed is {slip:.2g} of that of shear waves: inertia counts"
-
-
-def _mismatched(contact, motion):
-    beta = abs(contact.mismatch)
-    if beta > SMALL:
-        yield (
-            f"the bodies are elastically unlike (Dundurs' beta {beta:.2g}): pressure moves their "
-            "surfaces sideways, which the theory leaves out"
-        )
-
-
-_CHECKS = (_plastic, _too_hard, _steep, _far, _inertia, _mismatched)
-_CHECKS += (_adhesive, _atomic, _rough_mu, _lossy)
+    turn = motion.rotation if steady else 2.0 * math.pi * motion.frequency
+    return found | {
+        "crossing": turn * contact.contact_radius / wave,
+        "slip_speed": largest_slip_speed(motion, contact) / wave,
+    }

@@ -140,6 +140,8 @@ def distances(
 
     nodes, values, errors: the edge of a map at its largest amplitude, (m,); velocity: (n,).
     """
+    if not velocity.size:
+        return velocity  # the limit of the bore takes a while
     off = np.abs(values - limits.large(nodes, np.full_like(nodes, widest))) + errors
     away = np.abs(np.log10(np.clip(velocity, nodes[0], nodes[-1])[:, None] / nodes))
     near = (away <= 1.0) | (away == away.min(axis=1, keepdims=True))

@@ -62,7 +62,7 @@ function cellEdges(map) {
   return { x: edges(exponents).map((exponent) => 10 ** exponent), y: edges(map.amplitude) };
 }
 
-function drawMap(element, map, row, column) {
+function drawMap(element, map, row, column, contact) {
   const columns = shownColumns(map);
   const pick = (table) => table.map((row) => columns.map((j) => row[j]));
   const velocity = columns.map((j) => map.velocity[j]);
@@ -115,6 +115,7 @@ function drawMap(element, map, row, column) {
       hoverinfo: "skip",
       showlegend: bad.length > 0,
     },
+    contactTrace(contact),
   ];
   const ends = (list) => [list[0], list[list.length - 1]];
   Plotly.react(element, traces, layout({
@@ -126,6 +127,20 @@ function drawMap(element, map, row, column) {
     margin: { l: 52, r: 10, t: BAR, b: 42 },
     legend: { orientation: "h", x: 0, xanchor: "left", y: 1.01, yanchor: "bottom" },
   }), config());
+}
+
+// The contact of the form, a place [velocity, amplitude] on the map, or null.
+function contactTrace(contact) {
+  return {
+    type: "scatter",
+    name: "your contact",
+    mode: "markers",
+    x: contact ? [contact[0]] : [],
+    y: contact ? [contact[1]] : [],
+    marker: { symbol: "star", size: 16, color: VERMILLION, line: { width: 1.5, color: "#fff" } },
+    hovertemplate: "your contact: velocity %{x:.4g}, amplitude %{y:.4g}<extra></extra>",
+    showlegend: contact !== null,
+  };
 }
 
 // The cross on the map: the cell of the selected point, and the two cuts through it.

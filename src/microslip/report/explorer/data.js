@@ -14,9 +14,9 @@ const decodedMaps = new Map();
 
 // Decoded when a map is first looked at: what is not looked at costs no time.
 function decoded(map) {
-  if (!decodedMaps.has(map.name)) {
+  if (!decodedMaps.has(map.id)) {
     const p = map.periods;
-    decodedMaps.set(map.name, p.count === 0 ? null : {
+    decodedMaps.set(map.id, p.count === 0 ? null : {
       tractions: new Int8Array(bytesOf(p.tractions).buffer),
       slips: bytesOf(p.slips),
       forces: new Int16Array(bytesOf(p.forces).buffer),
@@ -25,13 +25,14 @@ function decoded(map) {
       bounds: new Uint16Array(bytesOf(p.bounds).buffer),
     });
   }
-  return decodedMaps.get(map.name);
+  return decodedMaps.get(map.id);
 }
 
 // The period behind a point of a map: forces over mu F_z and phases in rad at every frame, radii
 // over a and bounds over mu F_z/a^2 of the rings. Null where none is stored; then `whyNone` says why.
 function periodAt(map, row, column) {
   const p = map.periods;
+  if (p.count === 0) return null;
   const k = p.index[row][column];
   if (k < 0) return null;
   const { forces, phases, radii, bounds } = decoded(map);
@@ -56,6 +57,7 @@ function periodAt(map, row, column) {
 function whyNone(map, row, column) {
   const failed = map.periods.failed.find(([i, j]) => i === row && j === column);
   if (failed) return `No period was found: ${failed[2]}`;
+  if (map.periods.index === null) return "The page has no periods of this map.";
   if (map.amplitude[row] === 0) return "Nothing oscillates here: the whole contact slides at all times.";
   if (map.velocity[column] === 0) return "The static limit: no period belongs to it.";
   return "No period is stored for this point: the page has one for some points of each axis only.";

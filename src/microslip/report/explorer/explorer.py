@@ -1,8 +1,9 @@
 """The explorer: one page, for a browser without a network, that shows what is behind every point.
 
-`requests` says which periods the page needs, `payload` packs datasets and periods, `page` writes
-the page. It draws what datasets and stored periods hold and computes nothing. The JavaScript beside
-these modules runs in the browser; plotly.js draws.
+`requests` says what a page needs, `payload` packs datasets, periods and certified maps, `si_form`
+what the form for a real contact knows, `page` writes the page. It draws what datasets and stored
+periods hold; all that it computes are answers from certified maps. The JavaScript beside these
+modules runs in the browser; plotly.js draws.
 
 Importing this package is cheap, since the workflow reads it whenever it is parsed.
 """
@@ -14,11 +15,42 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from microslip.foundation import source_digest
-from microslip.report.explorer.requests import maps_of, period_requests, refusal
+from microslip.report.explorer.requests import (
+    PAGE,
+    PAGE_OF_ALL,
+    PAGES,
+    PERIODS_PER_JOB,
+    certified_of,
+    datasets_of,
+    maps_of,
+    period_requests,
+    refusal,
+    sweeps_of,
+)
 
-__all__ = ["ASSETS", "digest", "maps_of", "period_requests", "refusal", "report"]
+__all__ = [
+    "ASSETS",
+    "PAGE",
+    "PAGES",
+    "PAGE_OF_ALL",
+    "PERIODS_PER_JOB",
+    "certified_of",
+    "datasets_of",
+    "digest",
+]
+__all__ += ["maps_of", "period_requests", "refusal", "report", "sweeps_of"]
 
-ASSETS = ("page.html", "style.css", "data.js", "charts.js", "disc.js", "page.js")
+ASSETS = ("page.html", "style.css", "certified.js", "elliptic.js", "limits.js", "beyond.js")
+ASSETS += (
+    "contact.js",
+    "data.js",
+    "charts.js",
+    "disc.js",
+    "lines.js",
+    "views.js",
+    "form.js",
+    "page.js",
+)
 """What the page is made of besides numbers and plotly.js, in the order in which scripts run."""
 
 

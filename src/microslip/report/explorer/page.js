@@ -1,26 +1,60 @@
 // The page: what is selected, the controls, the words.
 
 const element = (id) => document.getElementById(id);
-const STATE = { map: NUMBERS.maps[0], row: 0, column: 0, frame: 0, period: null, disc: null,
-  hidden: new Set() };
+const STATE = { shown: null, map: null, row: 0, column: 0, frame: 0, period: null, disc: null,
+  hidden: new Set(), asking: false, contact: null };
 const SECONDS = 4; // that a period takes when it plays
 let playing = 0; // the request for the next picture, 0 at rest
 
+// Shows a sweep at one of Poisson's ratios.
+function show(entry) {
+  pause();
+  STATE.shown = entry;
+  markSweep(entry);
+  const isMap = sweepOf(entry).kind === "map";
+  element("map-view").hidden = element("hint").hidden = !isMap;
+  element("lines-view").hidden = isMap;
+  arrange();
+  if (isMap) {
+    selectMap(entry);
+  } else {
+    paragraph("lines-title", entry.title);
+    drawLines(element("lines-chart"), entry);
+  }
+}
+
+// The same again, after what is beside it has changed.
+function redraw() {
+  const { shown, map, row, column } = STATE;
+  if (shown !== map) {
+    show(shown);
+    return;
+  }
+  drawMap(element("map"), map, row, column, contactOn(map));
+  select(row, column);
+}
+
+// With a contact asked for, its words take the place of those of the point.
+function arrange() {
+  const isMap = sweepOf(STATE.shown).kind === "map";
+  element("contact-view").hidden = !STATE.asking;
+  element("point-view").hidden = STATE.asking || !isMap;
+  element("ask").setAttribute("aria-pressed", String(STATE.asking));
+}
+
 function selectMap(map) {
   STATE.map = map;
-  for (const button of element("tabs").children) {
-    button.setAttribute("aria-pressed", String(button.dataset.map === map.name));
-  }
   element("amplitude").max = map.amplitude.length - 1;
   element("velocity").max = map.velocity.length - 1;
   offerLimits(map);
   // A point in the middle of what a period is stored for.
-  const stored = map.periods.index.flatMap((row, i) => row.flatMap((k, j) => (k < 0 ? [] : [[i, j]])));
+  const stored = (map.periods.index ?? []).flatMap((row, i) =>
+    row.flatMap((k, j) => (k < 0 ? [] : [[i, j]])));
   const rows = [...new Set(stored.map((place) => place[0]))];
-  const row = rows.length ? rows[rows.length >> 2] : 0;
+  const row = rows.length ? rows[rows.length >> 2] : map.amplitude.length >> 1;
   const columns = stored.filter((place) => place[0] === row);
-  const column = columns.length ? columns[columns.length >> 1][1] : 0;
-  drawMap(element("map"), map, row, column);
+  const column = columns.length ? columns[columns.length >> 1][1] : map.velocity.length >> 1;
+  drawMap(element("map"), map, row, column, contactOn(map));
   select(row, column);
 }
 
@@ -39,8 +73,8 @@ function select(row, column) {
   STATE.disc = STATE.period && discOf(STATE.period);
   tell();
   element("inside").style.visibility = STATE.period ? "visible" : "hidden";
-  if (!STATE.period) {
-    pause();
+  if (!STATE.period || STATE.asking) {
+    pause(); // what is hidden has no size to draw in
     return;
   }
   const { mu_macro, mu_macro_error } = map.points;
@@ -88,20 +122,21 @@ function tell() {
   const { map, row, column, period } = STATE;
   const at = (name) => map.points[name][row][column];
   paragraph("value", muText(map, row, column));
-  const others = map.other_poissons.map((ratio) => digits(ratio)).join(", ");
   const place = `velocity ${digits(map.velocity[column])}, amplitude ${digits(map.amplitude[row])}, ` +
-    `Poisson's ratio ${digits(map.poisson)}` + (others && ` (the dataset holds ${others} as well)`);
-  paragraph("certificate", at("converged") ? `At ${place}; converged. Its error by source:`
-    : `At ${place}; not converged: ${at("reason")}`, !at("converged"));
-  table("sources", Object.entries(NUMBERS.errors).map(([name, source]) => [source, digits(at(name), 2)]));
+    `Poisson's ratio ${digits(map.poisson)}`;
+  const sources = Object.entries(NUMBERS.errors).filter(([name]) => map.points[name]);
+  paragraph("certificate", !at("converged") ? `At ${place}; not converged: ${at("reason")}`
+    : `At ${place}; converged.${sources.length ? " Its error by source:" : ""}`, !at("converged"));
+  table("sources", sources.map(([name, source]) => [source, digits(at(name), 2)]));
   const counts = [["cells", "rings"], ["angles", "angles on half a ring"],
-    ["steps_per_period", "steps in a period"]].filter(([name]) => at(name) > 1);
+    ["steps_per_period", "steps in a period"]].filter(([name]) => map.points[name] && at(name) > 1);
   const model = [`Model ${at("model")}`, ...counts.map(([name, word]) => `${at(name)} ${word}`)].join(", ");
   const limits = map.limits.map((given) => `${given.label} ${digits(limitAt(given, row, column))}`);
   paragraph("spent", `${model}.`);
-  paragraph("theory", `Theory here: ${limits.join("; ")}.`);
+  paragraph("theory", limits.length ? `Theory here: ${limits.join("; ")}.` : "");
   if (!period) {
-    paragraph("run", whyNone(map, row, column), map.amplitude[row] > 0 && map.velocity[column] > 0);
+    const missing = map.periods.index !== null && map.amplitude[row] > 0 && map.velocity[column] > 0;
+    paragraph("run", whyNone(map, row, column), missing);
     return;
   }
   const p = map.periods;
@@ -131,9 +166,9 @@ function limitAt(given, row, column) {
 }
 
 function tellWhatMade() {
-  for (const map of NUMBERS.maps) {
+  for (const made of Object.values(NUMBERS.made)) {
     const list = document.createElement("dl");
-    for (const [name, text] of map.made) {
+    for (const [name, text] of made) {
       const head = document.createElement("dt"), body = document.createElement("dd");
       const inside = name === "configuration" ? document.createElement("pre") : body;
       head.textContent = name;
@@ -171,13 +206,7 @@ function play() {
 }
 
 function connect() {
-  for (const map of NUMBERS.maps) {
-    const button = document.createElement("button");
-    Object.assign(button, { type: "button", textContent: map.title });
-    button.dataset.map = map.name;
-    button.addEventListener("click", () => selectMap(map));
-    element("tabs").append(button);
-  }
+  offerSweeps(show);
   element("amplitude").addEventListener("input", (e) => selectAndMark(Number(e.target.value), STATE.column));
   element("velocity").addEventListener("input", (e) => selectAndMark(STATE.row, Number(e.target.value)));
   element("phase").addEventListener("input", (e) => {
@@ -231,11 +260,8 @@ function connectCharts() {
 
 tellWhatMade();
 connect();
-selectMap(NUMBERS.maps[0]);
+offerContact();
+show(SWEEPS[0].entries[0]);
 connectCharts();
-PHONE.addEventListener("change", () => {
-  const { row, column } = STATE;
-  drawMap(element("map"), STATE.map, row, column);
-  select(row, column);
-});
+PHONE.addEventListener("change", redraw);
 document.body.dataset.ready = "yes";

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Sequence
 from pathlib import Path
 
 from plotly.offline import get_plotlyjs
@@ -15,13 +16,14 @@ from microslip.sweeps.sealed_files import writing_beside
 FOLDER = Path(__file__).parent
 
 
-def write(path: str | os.PathLike, datasets: dict, periods: dict) -> None:
+def write(path: str | os.PathLike, datasets: dict, periods: dict, certified: Sequence = ()) -> None:
     """Write the page to `path`, whole or not at all.
 
-    datasets, periods: as for `payload.build`. The same ones give the same bytes. Raises ValueError
-    as `payload.build` does, CacheError, one line that says what to do, where the system refuses.
+    datasets, periods, certified: as for `payload.build`. The same ones give the same bytes. Raises
+    ValueError as `payload.build` does, CacheError, one line that says what to do, where the system
+    refuses.
     """
-    text = page(payload.build(datasets, periods))
+    text = page(payload.build(datasets, periods, certified))
     with writing_beside(path, sealed=True) as beside:
         beside.write_text(text, encoding="utf-8", newline="\n")
 

@@ -1,4 +1,4 @@
-"""What the page holds: maps, limits and periods as one value that JSON can hold.
+"""What the page holds: maps, lines, limits and periods as one value that JSON can hold.
 
 Numbers of datasets are kept as they are. Those of periods are whole numbers of steps in base64:
 tractions in steps of bound/127, phases in steps of 2 pi/65535, radii and bounds in steps of
@@ -8,15 +8,16 @@ tractions in steps of bound/127, phases in steps of 2 pi/65535, radii and bounds
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.config.quantities import AMPLITUDE, VELOCITY
 from microslip.foundation.canonical import number
-from microslip.report.figures import drawing, maps, style
-from microslip.report.figures.data import limit, require, sweep
-from microslip.report.figures.formulas import html
+from microslip.report.explorer import brief, si_form
+from microslip.report.explorer.certified import packed
+from microslip.report.figures import drawing
+from microslip.report.figures.data import require, sweep
 from microslip.sweeps.evaluate import plain
 from microslip.sweeps.period_codec import SHARES, text_of, unpacked_half
 from microslip.theory.catalogue import FORMS
@@ -41,7 +42,6 @@ LABELS = {
         "Oscillating bore", "torque  <i>M<sub>z</sub></i>/<i>M</i><sub><i>z</i>,0</sub>", "torque"
     ),
 }
-FIGURES = {"transverse": "fig2_transverse_map", "bore": "fig6_bore_map"}
 ERRORS = {
     "error_space": "cells",
     "error_time": "time steps",
@@ -51,76 +51,59 @@ ERRORS = {
 }
 POINTS = ("mu_macro", "mu_macro_error", *ERRORS, "converged", "cells", "angles")
 POINTS += ("steps_per_period", "model", "reason")
-SPARE_COLOURS = (style.SKY, style.GREY)
 
 
-def build(datasets: dict, periods: dict) -> dict:
+def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
     """All that the page shows, as a dict.
 
-    datasets: xarray.Datasets by the names of maps, see `requests.MAPS`; periods: lists of records
-    of periods by the same names. Raises ValueError where a dataset lacks what the page shows, or
-    a period belongs to no point of its map.
+    Parameters
+    ----------
+    datasets : dict of xarray.Dataset
+        By the names of sweeps, see `requests`.
+    periods : dict of list
+        Records of periods, of the sweeps that have some: a map each.
+    certified : sequence of xarray.Dataset
+        Certified maps, which the form for a real contact is answered from.
+
+    Raises
+    ------
+    ValueError
+        Where a dataset lacks what the page shows, or a period belongs to no point of its map.
     """
-    return {
-        "maps": [_map(name, datasets[name], periods[name]) for name in datasets],
+    found = {"maps": [], "lines": []}
+    for name, dataset in datasets.items():
+        if name in periods:
+            found["maps"] += _maps(name, dataset, periods[name])
+        elif brief.is_map(dataset):
+            found["maps"] += brief.maps(name, dataset)
+        else:
+            found["lines"] += brief.lines(name, dataset)
+    return found | {
+        "made": {name: _made(datasets[name], periods.get(name, ())) for name in datasets},
+        "certified": [packed(dataset) for dataset in certified],
+        "si": si_form.packed(),
         "errors": ERRORS,
         "shares": SHARES,
         "unsigned": UNSIGNED,
     }
 
 
-def _map(name, dataset, records):
-    names = FORMS[name]
-    require("explorer", name, dataset, ["amplitude", "velocity", *POINTS, *names])
+def _maps(name, dataset, records):
+    """Maps at all of Poisson's ratios; that next to 0 has the periods and all of the errors."""
+    require("explorer", name, dataset, ["amplitude", "velocity", *POINTS, *FORMS[name]])
     shown, poisson = sweep(dataset, ("amplitude", "velocity"))
     shown = shown.transpose("amplitude", "velocity", ...)
     labels = LABELS[name]
-    return {
-        "name": name,
-        "title": labels.title,
-        "labels": [
-            *(f"{q.text}  {html(q.unit)}" for q in (VELOCITY[name], AMPLITUDE[name])),
-            labels.other,
-        ],
-        "poisson": poisson,
-        "other_poissons": [
-            float(ratio) for ratio in np.atleast_1d(dataset["poisson"]) if ratio != poisson
-        ],
-        "velocity": plain(shown["velocity"].values),
-        "amplitude": plain(shown["amplitude"].values),
+    found = brief.maps(name, dataset)
+    for one in found:
+        one["title"] = labels.title
+    first = next(one for one in found if one["poisson"] == poisson)
+    first |= {
+        "labels": [*first["labels"], labels.other],
         "points": {key: plain(shown[key].values) for key in POINTS},
-        "limits": [_limit(shown, name, key) for key in names],
         "periods": _periods(shown, records, labels.force),
-        "made": _made(dataset, records),
     }
-
-
-def _limit(dataset, name, key):
-    """A limit on the axes of the map, and as a curve on its fine axis where it has one of its own.
-
-    The curve of one that depends on both axes belongs to a single amplitude and is left out.
-    """
-    plan = maps.MAPS[FIGURES[name]]
-    looks = {overlay.variable: overlay for overlay in (*plan.static, plan.large)}
-    spare = list(FORMS[name]).index(key) % len(SPARE_COLOURS)
-    look = looks.get(key, maps.Overlay(key, key, SPARE_COLOURS[spare], style.DOTTED))
-    values = dataset[key]
-    found = {
-        "label": look.label,
-        "long_name": values.attrs["long_name"],
-        "color": look.color,
-        "dash": "solid" if look.linestyle == style.SOLID else _dash(look.linestyle),
-        "dims": list(values.dims),
-        "values": plain(values.values),
-    }
-    if len(values.dims) == 1:
-        x, y = maps.curve(limit(dataset, key))
-        found["curve"] = [plain(x), plain(y)]
-    return found
-
-
-def _dash(linestyle):
-    return ",".join(f"{2 * length:g}px" for length in linestyle[1])
+    return [first, *(one for one in found if one is not first)]
 
 
 def _periods(dataset, records, force):

@@ -1,19 +1,62 @@
-"""Which periods the page needs: one for every point of the maps that moves and oscillates."""
+"""What a page needs: sweeps, certified maps, and a period for every point that moves and vibrates.
+
+There are two pages.  That of the paper's sweeps is made in a few minutes; the other one shows every
+sweep of the configuration.
+"""
+
+from math import prod
 
 from microslip.config.records import Configuration
 from microslip.foundation.canonical import number
 
+PAGES = PAGE, PAGE_OF_ALL = "explorer.html", "explorer_all.html"
 MAPS = ("transverse", "bore")
+"""Sweeps whose maps have periods, and motions that the form for a real contact knows."""
 CELLS, ANGLES, STEPS = 10, 12, 32
 """Rings, points on half a ring, steps in a period: what a drawing of some 300 pixels can show."""
+PERIODS_PER_JOB = 150
+"""Periods that one job computes: a few seconds of work."""
 MOST_PERIODS = 1250
 """Periods on a page; one takes some 6 kB of it, and all of it is to stay below 15 MB."""
 MOST_POINTS = 5000
-"""Points of a map on a page; one takes some 260 bytes of it."""
+"""Points of a map with periods on a page; one takes some 260 bytes of it."""
+MOST_OTHERS = 20_000
+"""Points of all other sweeps together; one takes some 80 bytes."""
+
+
+def sweeps_of(configuration: Configuration, page: str) -> list[str]:
+    """Names of the sweeps that a page shows, a list."""
+    return list(configuration.grids if page == PAGE_OF_ALL else configuration.sweeps)
+
+
+def certified_of(configuration: Configuration) -> list[str]:
+    """Names of the certified maps that a real contact is answered from, a list.
+
+    One for each motion: over most of Poisson's ratios, and of several such the most exact.
+    """
+    found = []
+    for motion in MAPS:
+        known = [
+            map_
+            for map_ in configuration.certified.values()
+            if (map_.sweep.scene, map_.sweep.pressure) == (motion, "hertz") and map_.velocity
+        ]
+        found += [map_.name for map_ in sorted(known, key=_preference)[:1]]
+    return found
+
+
+def _preference(map_):
+    ratios = map_.sweep.poisson
+    return ratios[0] - ratios[-1], map_.error
+
+
+def datasets_of(configuration: Configuration, page: str) -> list[str]:
+    """Names of all datasets that a page is made of, a list."""
+    return [*sweeps_of(configuration, page), *certified_of(configuration)]
 
 
 def maps_of(configuration: Configuration) -> list[str]:
-    """Names of the sweeps that the page shows as maps, a list."""
+    """Names of the sweeps whose maps have periods, a list."""
     return [
         name
         for name in MAPS
@@ -21,8 +64,8 @@ def maps_of(configuration: Configuration) -> list[str]:
     ]
 
 
-def refusal(configuration: Configuration) -> str | None:
-    """Why there can be no page for a configuration, one line; None if there can."""
+def refusal(configuration: Configuration, page: str = PAGE) -> str | None:
+    """Why there can be no such page for a configuration, one line; None if there can."""
     names = maps_of(configuration)
     if not names:
         return (
@@ -37,7 +80,20 @@ def refusal(configuration: Configuration) -> str | None:
                 f"sweeps.{name}: {count:,} points have no room in the explorer; "
                 f"allowed: up to {MOST_POINTS:,}"
             )
+    others = sum(_count(configuration.grids[name]) for name in sweeps_of(configuration, page))
+    if others > MOST_OTHERS:
+        return (
+            f"sweeps: {others:,} points have no room in {page}; allowed: up to {MOST_OTHERS:,}, "
+            "at all of Poisson's ratios together"
+        )
     return None
+
+
+def _count(sweep):
+    """How many points a sweep has."""
+    pulls = [values for _, values, _ in sweep.drives]
+    axes = (sweep.velocity, sweep.amplitude, sweep.poisson, *pulls)
+    return prod(len(axis) for axis in axes if axis)
 
 
 def period_requests(configuration: Configuration, name: str) -> list[dict]:

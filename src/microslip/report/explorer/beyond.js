@@ -1,0 +1,117 @@
+// Friction at any velocity and amplitude: a certified map, and the proved limits where it ends.
+//
+// It says what friction.at says in Python; datasets/query/beyond.py tells why.
+
+const ROUNDING = 1e-12;
+const SLOW_EXPONENT = 2 / 3; // of the velocity with which friction comes close to its static limit
+
+// A guess brought into its bracket, and how far the bracket reaches from there.
+function bracketed(low, high, guess) {
+  const value = clipped(guess, low, high);
+  return [value, Math.max(high - value, value - low) + ROUNDING];
+}
+
+function largestKnown(a, b) {
+  if (Number.isNaN(a)) return b;
+  return Number.isNaN(b) ? a : Math.max(a, b);
+}
+
+const largeAtEdges = new WeakMap();
+
+// The limit for large amplitudes along the upper edge of a map; that of the bore takes a while.
+function largeAtEdge(map, limits) {
+  if (!largeAtEdges.has(map)) {
+    largeAtEdges.set(map, map.edge.map((at) => limits.large(at, map.amplitude[1], map.rule)));
+  }
+  return largeAtEdges.get(map);
+}
+
+// Largest distance from the limit for large amplitudes that the upper edge of the map shows within a
+// decade of a velocity.
+function distanceAt(map, limits, velocity, poisson) {
+  const [slow, fast] = map.velocity, widest = map.amplitude[1];
+  const away = map.edge.map((at) => Math.abs(Math.log10(clipped(velocity, slow, fast) / at)));
+  const nearest = Math.min(...away);
+  const ends = largeAtEdge(map, limits);
+  let most = 0;
+  map.edge.forEach((at, k) => {
+    if (away[k] > 1 && away[k] !== nearest) return;
+    const [value, error] = inside(map, at, widest, poisson);
+    const off = Math.abs(value - ends[k]) + error;
+    most = Number.isNaN(off) ? NaN : Math.max(most, off);
+  });
+  return most;
+}
+
+// Friction, the bound of its error, and where the answer comes from: { value, error, source }. Raises
+// Refusal for what is no question, and for what no limit is known of.
+function frictionAt(map, velocity, amplitude, poisson) {
+  for (const [name, value] of Object.entries({ velocity, amplitude })) {
+    if (!(Number.isFinite(value) && value >= 0)) refuse(name, value, "allowed is a finite number >= 0");
+  }
+  const nu = poissonWithin(map, poisson);
+  const limits = map.has_limits ? LIMITS[map.scene] : undefined;
+  if (limits === undefined) return mapAlone(map, velocity, amplitude, nu);
+  const [slowest, fastest] = map.velocity, [narrowest, widest] = map.amplitude;
+  if (limits.stillNeedsPoisson0 && nu > 0 && velocity < slowest) {
+    refuse("velocity", general(velocity), `allowed for nu = ${general(nu)} is ${general(slowest)} or more: ` +
+      "the static limit is proved for nu = 0; microslip.solve computes it");
+  }
+  if (amplitude === 0) return { value: 1, error: ROUNDING, source: "no vibration" };
+  const wide = amplitude > widest;
+  const below = wide ? limits.sameLimit(velocity, amplitude, widest) : velocity;
+  let [value, error] = inside(map, clipped(below, slowest, fastest),
+    clipped(amplitude, narrowest, widest), nu);
+  let source = "map";
+  if (amplitude < narrowest) {
+    const low = clipped(value - error, 0, 1);
+    [value, error] = bracketed(low, 1, 1 - ((1 - value) * amplitude) / narrowest);
+    source = "between map and no vibration";
+  }
+  const held = Math.min(amplitude, widest);
+  if (below < slowest) {
+    const still = limits.still(held, map.rule), share = (below / slowest) ** SLOW_EXPONENT;
+    [value, error] = bracketed(still, Math.max(value + error, still), still + share * (value - still));
+    source = "between static limit and map";
+  } else if (below > fastest) {
+    const low = clipped(largestKnown(1 - limits.drop(below, held), value - error), 0, 1);
+    const far = 1 - (1 - value) * (fastest / below) ** 2;
+    [value, error] = bracketed(low, 1, Number.isNaN(far) ? low : far);
+    source = "between map and fast sliding";
+  }
+  if (wide) {
+    const end = limits.large(velocity, amplitude, map.rule);
+    const left = ((value - end) * widest) / amplitude;
+    error = distanceAt(map, limits, below, nu) + Math.abs(left) + error;
+    value = clipped(end + left, 0, 1);
+    source = "between map and large amplitude";
+  }
+  [value, error] = withinTheBalance(limits, value, error, velocity, amplitude);
+  if (velocity === 0) {
+    [value, error, source] = [limits.still(amplitude, map.rule), ROUNDING, "static limit"];
+  }
+  return { value, error: Number.isNaN(value) || Number.isNaN(error) ? Infinity : error, source };
+}
+
+// No worse than the energy balance allows; NaN stays what it is.
+function withinTheBalance(limits, value, error, velocity, amplitude) {
+  const low = Math.max(1 - limits.drop(velocity, amplitude), 0);
+  const kept = clipped(value, low, 1);
+  const reach = Math.max(1 - kept, kept - low) + ROUNDING;
+  return [kept, Number.isNaN(kept) ? error : Math.min(error, reach)];
+}
+
+// Answers of a map that no limit is known of.
+function mapAlone(map, velocity, amplitude, poisson) {
+  const what = map.pressure === "hertz" ? map.scene : `pressure ${map.pressure}`;
+  const advice = `no limit of ${what} is known: with a tolerance the solver is asked`;
+  if (velocity === 0) refuse("velocity", 0, `the map has none such; ${advice}`);
+  for (const [name, value] of Object.entries({ velocity, amplitude })) {
+    const [low, high] = map[name];
+    if (value < low || value > high) {
+      refuse(name, general(value), `allowed is ${general(low)} to ${general(high)}; ${advice}`);
+    }
+  }
+  const [value, error] = inside(map, velocity, amplitude, poisson);
+  return { value, error, source: "map" };
+}

@@ -1,0 +1,121 @@
+"""What the page holds of sweeps that have no periods: maps and lines, a value and an error a point.
+
+A sweep over velocities and amplitudes is a map, one for each Poisson's ratio.  Any other one, and
+what is pulled, is lines over its longest axis, a line for each place on the others.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+
+import xarray as xr
+
+from microslip.config.quantities import MU_MACRO
+from microslip.datasets.query.interpolation import Axis
+from microslip.foundation.canonical import number
+from microslip.report.explorer.limits import limits_of
+from microslip.report.figures.data import at_each_poisson, require, sweep
+from microslip.report.figures.formulas import html
+from microslip.sweeps.evaluate import plain
+
+POINTS = ("mu_macro", "mu_macro_error", "converged", "model", "reason")
+AXES = ("mass", "damping", "stiffness", "amplitude", "force", "velocity")
+"""Axes that a dataset may have besides Poisson's ratio."""
+DRIVE = "drive"
+"""Attribute of the dataset of a contact that is pulled."""
+
+
+def is_map(dataset: xr.Dataset) -> bool:
+    """Whether the dataset of a sweep is shown as maps."""
+    if DRIVE in dataset.attrs or "amplitude" not in dataset.dims:
+        return False
+    return dataset.sizes["amplitude"] > 1 and int((dataset["velocity"] > 0).sum()) > 1
+
+
+def maps(name: str, dataset: xr.Dataset) -> list[dict]:
+    """A map at each Poisson's ratio, as values that JSON can hold.
+
+    Raises ValueError where the dataset lacks what is shown.
+    """
+    require("explorer", name, dataset, ["amplitude", "velocity", *POINTS])
+    return [_map(name, part) for part in at_each_poisson(dataset)]
+
+
+def _map(name, dataset):
+    shown, poisson = sweep(dataset, ("amplitude", "velocity"))
+    shown = shown.transpose("amplitude", "velocity", ...)
+    return about(name, dataset, poisson) | {
+        "labels": [axis_label(shown, dim) for dim in ("velocity", "amplitude")],
+        "velocity": plain(shown["velocity"].values),
+        "amplitude": plain(shown["amplitude"].values),
+        "points": {key: plain(shown[key].values) for key in POINTS},
+        "limits": limits_of(shown, poisson),
+        "periods": {"index": None, "failed": [], "count": 0},
+    }
+
+
+def lines(name: str, dataset: xr.Dataset) -> list[dict]:
+    """Lines at each Poisson's ratio, likewise."""
+    return [_lines(name, part) for part in at_each_poisson(dataset)]
+
+
+def _lines(name, dataset):
+    pulled = "force" in dataset.attrs.get(DRIVE, "").split(", ")
+    value = "velocity" if pulled else "mu_macro"
+    require("explorer", name, dataset, [value, f"{value}_error", "converged"])
+    dims = [dim for dim in AXES if dim in dataset[value].dims]
+    poisson = float(dataset["poisson"])
+    along = max(dims, key=lambda dim: (dataset.sizes[dim], dims.index(dim)))
+    others = [dim for dim in dims if dim != along]
+    shown = dataset.transpose(*others, along, ...).sortby(along)
+    at = shown[along].values
+    even_ratios = at[0] > 0 and Axis(at).logarithmic
+    return about(name, dataset, poisson) | {
+        "x": {"label": axis_label(shown, along), "values": plain(at), "log": bool(even_ratios)},
+        "y": {
+            "label": "mean velocity" if pulled else MU_MACRO.description,
+            "log": pulled,
+        },
+        "series": [
+            {
+                "label": ", ".join(
+                    f"{dim} {number(float(shown[dim][k]))}"
+                    for dim, k in zip(others, place, strict=True)
+                    if shown.sizes[dim] > 1
+                ),
+                **{
+                    key: plain(shown[of].values[place])
+                    for key, of in (
+                        ("values", value),
+                        ("errors", f"{value}_error"),
+                        ("converged", "converged"),
+                    )
+                },
+            }
+            for place in product(*(range(shown.sizes[dim]) for dim in others))
+        ],
+        "limits": []
+        if pulled
+        else [one for one in limits_of(shown, poisson) if one["dims"] == [along]],
+    }
+
+
+def about(name: str, dataset: xr.Dataset, poisson: float) -> dict:
+    """What a map and a set of lines say of themselves; of the paper's sweeps the group is None."""
+    group = dataset.attrs.get("group", "drives" if DRIVE in dataset.attrs else None)
+    return {
+        "name": name,
+        "id": f"{name} {number(poisson)}",
+        "title": name.replace("_", " ") if group is None else dataset.attrs["title"],
+        "group": group,
+        "scene": dataset.attrs["scene"],
+        "pressure": dataset.attrs.get("pressure", "hertz"),
+        "poisson": poisson,
+    }
+
+
+def axis_label(dataset: xr.Dataset, dim: str) -> str:
+    """Name and formula of an axis, in the markup that plotly knows."""
+    said = dataset[dim].attrs
+    text = said.get("long_name", dim).split(",")[0]
+    return f"{text}  {html(said.get('formula', ''))}".strip()

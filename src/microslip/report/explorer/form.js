@@ -1,0 +1,172 @@
+// The form for a real contact: its fields, and the words of its answer.
+
+const SI = NUMBERS.si;
+const PREFIXES = { "-12": "p", "-9": "n", "-6": "µ", "-3": "m", 0: "", 3: "k", 6: "M", 9: "G" };
+const TEXTS = {}; // what the form holds, by the names of fields
+
+// Where the contact of the form lies on a map: [velocity, amplitude], null if it is none of its motion.
+function contactOn(map) {
+  const { contact } = STATE;
+  const same = contact && contact.scene === map.scene && map.pressure === "hertz";
+  return same && contact.velocity > 0 ? [contact.velocity, contact.amplitude] : null;
+}
+
+// The power of ten of the prefix that a value is best written with.
+function prefixPower(value) {
+  return value === 0 ? 0 : clipped(3 * Math.floor(Math.log10(Math.abs(value)) / 3 + 1e-9), -12, 9);
+}
+
+function inUnit(value, unit) {
+  const power = prefixPower(value);
+  return `${digits(value / 10 ** power)} ${PREFIXES[power]}${unit}`;
+}
+
+// A value in as many digits as its error leaves.
+function withError(value, error) {
+  if (!Number.isFinite(error)) return "not known";
+  const places = clipped(1 - Math.floor(Math.log10(error)), 0, 8);
+  return error < 1e-8 ? digits(value, 6) : `${value.toFixed(places)} ± ${error.toPrecision(2)}`;
+}
+
+function labelled(label, ...controls) {
+  const row = document.createElement("div"), name = document.createElement("label");
+  row.className = "field";
+  name.textContent = label;
+  name.htmlFor = controls[0].id;
+  row.append(name, ...controls);
+  return row;
+}
+
+function choice(id, label, options) {
+  const select = document.createElement("select");
+  select.id = `si-${id}`;
+  select.setAttribute("aria-label", label);
+  select.append(...options.map(([value, text]) => optionOf(value, text)));
+  select.addEventListener("change", () => {
+    TEXTS[id] = select.value;
+    answerForm();
+  });
+  return select;
+}
+
+// A number with a list of units.
+function quantity(id) {
+  const field = SI.fields[id], input = document.createElement("input");
+  Object.assign(input, { id: `si-${id}`, type: "text", value: field.example });
+  input.setAttribute("inputmode", "decimal");
+  input.setAttribute("autocomplete", "off");
+  Object.assign(TEXTS, { [id]: field.example, [`${id}_unit`]: field.units[0].name });
+  input.addEventListener("input", () => {
+    TEXTS[id] = input.value;
+    answerForm();
+  });
+  const units = choice(`${id}_unit`, `unit: ${field.label}`, field.units.map(({ name }) => [name, name]));
+  units.hidden = field.units.length < 2;
+  return labelled(field.label, input, units);
+}
+
+function offerContact() {
+  const rows = {};
+  const bodies = [...Object.keys(SI.materials), SI.of_numbers];
+  const chosen = (id, label, options) => {
+    const control = choice(id, label, options);
+    control.value = TEXTS[id] = SI.chosen[id];
+    return labelled(label, control);
+  };
+  rows.scene = chosen("scene", "motion", Object.entries(SI.scenes));
+  rows.material = chosen("material", "sphere", bodies.map((name) => [name, name]));
+  rows.counterbody = chosen("counterbody", "flat", bodies.map((name) => [name, name]));
+  for (const id of Object.keys(SI.fields)) rows[id] = quantity(id);
+  const bodiesFirst = ["scene"];
+  for (const [side, fields] of Object.entries(SI.sides)) bodiesFirst.push(side, ...fields);
+  const others = Object.keys(SI.fields).filter((id) => !bodiesFirst.includes(id));
+  element("contact-form").append(...[...bodiesFirst, ...others].map((id) => rows[id]));
+  element("contact-form").addEventListener("submit", (e) => e.preventDefault());
+  offerContact.rows = rows;
+  element("ask").addEventListener("click", () => {
+    STATE.asking = !STATE.asking;
+    arrange();
+    if (STATE.asking) {
+      answerForm();
+    } else {
+      STATE.contact = null;
+      redraw();
+    }
+  });
+}
+
+// Only what counts is asked for.
+function showFields() {
+  const { rows } = offerContact;
+  for (const [side, fields] of Object.entries(SI.sides)) {
+    for (const id of fields) rows[id].hidden = TEXTS[side] !== SI.of_numbers;
+  }
+  for (const [scene, id] of Object.entries(SI.amplitude_of)) rows[id].hidden = scene !== TEXTS.scene;
+}
+
+function answerForm() {
+  showFields();
+  STATE.contact = null;
+  try {
+    STATE.contact = answerOf(SI, NUMBERS.certified, questionOf(SI, TEXTS));
+    tellContact(STATE.contact);
+  } catch (error) {
+    if (!(error instanceof Refusal)) throw error;
+    paragraph("contact-value", error.message, true);
+    paragraph("contact-note", "");
+    table("contact-facts", []);
+    element("contact-warnings").replaceChildren();
+  }
+  const own = SWEEPS.find((one) => one.kind === "map" && one.scene === TEXTS.scene && one.pressure === "hertz");
+  const shown = STATE.map === STATE.shown && STATE.map.scene === TEXTS.scene && STATE.map.pressure === "hertz";
+  if (own && !shown) {
+    show(own.entries[0]);
+  } else if (own) {
+    drawMap(element("map"), STATE.map, STATE.row, STATE.column, contactOn(STATE.map));
+  }
+}
+
+function tellContact(said) {
+  const { friction, static_friction, near } = said;
+  if (friction) {
+    const times = (factor) => withError(factor * friction.value, factor * friction.error);
+    const power = prefixPower(said.still);
+    paragraph("contact-value", `Coefficient of friction ${times(said.mu)} with vibration, instead of ` +
+      `${digits(said.mu)}: a force of ${times(said.still / 10 ** power)} ${PREFIXES[power]}N, instead of ${inUnit(said.still, "N")}`);
+    paragraph("contact-note", `Ratio of both (mu_macro): ${withError(friction.value, friction.error)}; ` +
+      `source: ${friction.source}.${outside(said)}`);
+  } else {
+    const at = near ? ` At Poisson's ratio ${digits(near.poisson)} the ratio mu_macro would be ` +
+      `${withError(near.value, near.error)}; what Poisson's ratio changes is not in that error.` : "";
+    paragraph("contact-value", `No certified friction: ${said.refused}.`, true);
+    paragraph("contact-note", at.trim() + outside(said));
+  }
+  table("contact-facts", [
+    ["velocity (dimensionless)", digits(said.velocity)],
+    ["amplitude (dimensionless)", digits(said.amplitude)],
+    ["Poisson's ratio of both bodies as one", digits(said.poisson)],
+    ["slides all over at u_lim", inUnit(said.u_lim, "m")],
+    ["contact radius", inUnit(said.contact_radius, "m")],
+    ["indentation", inUnit(said.indentation, "m")],
+    ["largest pressure", inUnit(said.largest_pressure, "Pa")],
+    ["coefficient at vanishing speed", static_friction ? withError(said.mu * static_friction.value,
+      said.mu * static_friction.error) : "not known here"],
+  ]);
+  const lines = [...said.warnings.map((text) => `Warning: ${text}`),
+    ...said.not_checked.map((text) => `Not checked: ${text}`)];
+  element("contact-warnings").replaceChildren(...lines.map((text) => {
+    const item = document.createElement("li");
+    item.textContent = text;
+    return item;
+  }));
+}
+
+// Whether the star of the contact is on the map beside the form.
+function outside({ scene, velocity, amplitude }) {
+  const map = NUMBERS.maps.find((one) => one.scene === scene && one.pressure === "hertz");
+  if (map === undefined) return "";
+  const fast = map.velocity[map.velocity.length - 1], wide = map.amplitude[map.amplitude.length - 1];
+  const slow = map.velocity.find((one) => one > 0);
+  const off = velocity < slow || velocity > fast || amplitude > wide || amplitude < map.amplitude[0];
+  return off ? " The point lies outside of the map that is drawn." : " A star marks the point on the map.";
+}

@@ -1,0 +1,289 @@
+"""The whole page in node: sweeps and Poisson's ratios to choose from, and the form that answers."""
+
+import numpy as np
+import pytest
+from stubs import certified_stub
+from stubs import explorer_stub as stub
+from stubs.in_node import needs_node, page_says
+
+from microslip.config import load
+from microslip.datasets import certified_map
+from microslip.datasets.query.accessor import Friction
+from microslip.report.explorer import payload, requests
+from microslip.sweeps.batches import key_of
+from microslip.theory import paper
+
+pytestmark = [pytest.mark.slow, needs_node]
+MAP = {"velocity": [0, 0.02, 0.1, 1], "amplitude": [0, 0.6, 1.2], "tolerance": 1e-2}
+RATIOS = [0, 0.3, 0.5]
+
+
+def configured():
+    """Sweeps of every shape: maps with and without periods, lines, several Poisson's ratios."""
+    extended = {
+        "along": MAP | {"scene": "longitudinal", "group": "motions", "title": "to and fro"},
+        "ratios": MAP | {"scene": "bore", "group": "poisson", "poisson": RATIOS},
+        "still": {
+            "scene": "bore",
+            "group": "static",
+            "velocity": [0, 0.001],
+            "amplitude": [0, 0.5, 1, 2],
+        },
+    }
+    drives = {
+        "creep": {"scene": "transverse", "force": [0.2, 0.4, 0.8], "amplitude": [0.5, 1]},
+        "body": {
+            "scene": "transverse",
+            "velocity": [0.1],
+            "amplitude": [1],
+            "stiffness": [0.1, 1],
+            "mass": [0.1, 1, 10],
+        },
+    }
+    steady = {"velocity": {"log": {"start": 0.1, "stop": 10, "count": 5}}}
+    sweeps = {"transverse": MAP | {"poisson": RATIOS}, "bore": MAP, "continuous_bore": steady}
+    return load.from_mapping({"sweeps": sweeps, "extended": extended, "drives": drives})
+
+
+def smooth(request):
+    place = float(request["velocity"]), float(request["amplitude"]) ** 1.5
+    mu = float(paper.large_amplitude_transverse(*place))
+    result = {"mu_macro": mu, "mu_macro_error": 1e-4, "converged": True}
+    return {"key": key_of(request), "request": request, "result": result, "versions": {}}
+
+
+@pytest.fixture(scope="module")
+def certified():
+    """A certified map of transverse oscillation, of a made-up friction."""
+    axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 1e-2}}
+    map_ = certified_stub.configured("transverse", **axes)
+    return certified_map.build(map_, *certified_stub.played(map_, smooth))
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory, certified):
+    """Datasets by the names of sweeps, and the page's content."""
+    datasets, periods = stub.made_up(tmp_path_factory.mktemp("page"), configured())
+    return datasets, payload.build(datasets, periods, [certified])
+
+
+def entries(content, kind, name):
+    return [one for one in content[kind] if one["name"] == name]
+
+
+# What the page holds
+
+
+def test_every_sweep_is_a_map_or_lines_at_every_poissons_ratio(made):
+    datasets, content = made
+    maps = {"transverse": 3, "bore": 1, "along": 1, "ratios": 3}
+    lines = {"continuous_bore": 1, "still": 1, "creep": 1, "body": 1}
+    for kind, wanted in (("maps", maps), ("lines", lines)):
+        assert {one["name"]: len(entries(content, kind, one["name"])) for one in content[kind]} == (
+            wanted
+        )
+    assert set(datasets) == set(maps) | set(lines) == set(content["made"])
+
+
+@pytest.mark.parametrize("name", ["transverse", "ratios"])
+def test_maps_at_every_ratio_hold_the_points_of_the_dataset(made, name):
+    dataset = made[0][name]
+    found = entries(made[1], "maps", name)
+    assert sorted(one["poisson"] for one in found) == RATIOS
+    for one in found:
+        part = dataset.sel(poisson=one["poisson"]).transpose("amplitude", "velocity", ...)
+        for key in ("mu_macro", "mu_macro_error"):
+            assert np.array_equal(one["points"][key], part[key].values)
+        # the static limit of a transverse oscillation holds for Poisson's ratio 0, and says so
+        labels = " ".join(given["label"] for given in one["limits"])
+        sideways = name == "transverse" and one["poisson"] > 0
+        assert ("exact limit for ν = 0" in labels) == sideways
+    with_periods = [one for one in found if one["periods"]["count"]]
+    assert [one["poisson"] for one in with_periods] == ([0] if name == "transverse" else [])
+
+
+def test_lines_run_over_the_longest_axis(made):
+    datasets, content = made
+    (steady,), (still,) = (entries(content, "lines", one) for one in ("continuous_bore", "still"))
+    assert steady["x"]["values"] == datasets["continuous_bore"].velocity.values.tolist()
+    assert steady["x"]["log"] and not still["x"]["log"]
+    assert steady["series"][0]["values"] == datasets["continuous_bore"].mu_macro.values.tolist()
+    assert [given["label"] for given in steady["limits"]] == ["force, Eq 21"]
+    assert [one["label"] for one in still["series"]] == ["velocity 0", "velocity 0.001"]
+    for one, velocity in zip(still["series"], (0, 0.001), strict=True):
+        assert one["values"] == datasets["still"].mu_macro.sel(velocity=velocity).values.tolist()
+
+
+def test_what_is_pulled_is_lines_of_what_comes_out(made):
+    datasets, content = made
+    (creep,), (body,) = (entries(content, "lines", one) for one in ("creep", "body"))
+    assert creep["y"]["label"] == "mean velocity"
+    assert creep["x"]["values"] == [0.2, 0.4, 0.8]
+    for one, amplitude in zip(creep["series"], (0.5, 1), strict=True):
+        assert one["label"] == f"amplitude {amplitude:g}"
+        assert one["values"] == datasets["creep"].velocity.sel(amplitude=amplitude).values.tolist()
+    assert body["x"]["values"] == [0.1, 1, 10]
+    for one, stiffness in zip(body["series"], (0.1, 1), strict=True):
+        part = datasets["body"].mu_macro.sel(stiffness=stiffness).transpose("mass", ...)
+        assert one["values"] == part.values.ravel().tolist()
+
+
+def test_too_many_points_are_refused():
+    many = {"velocity": {"log": {"start": 0.001, "stop": 10, "count": 101}}}
+    many |= {"amplitude": [0, *range(1, 201)], "scene": "longitudinal", "group": "motions"}
+    given = {"sweeps": {"bore": MAP}, "extended": {"large": many}}
+    configuration = load.from_mapping(given)
+    assert requests.refusal(configuration) is None
+    assert requests.refusal(configuration, requests.PAGE_OF_ALL) == (
+        "sweeps: 20,313 points have no room in explorer_all.html; allowed: up to 20,000, "
+        "at all of Poisson's ratios together"
+    )
+
+
+# What the page says
+
+
+def chosen(name):
+    """JavaScript that chooses a sweep of the list."""
+    return f"element('others').value = '{name}', element('others').fire('change')"
+
+
+def typed(field, text):
+    return f"element('si-{field}').value = '{text}', element('si-{field}').fire('input')"
+
+
+def picked(field, text):
+    return f"element('si-{field}').value = '{text}', element('si-{field}').fire('change')"
+
+
+def test_buttons_and_the_list_offer_all_sweeps(made):
+    tabs, others, ready = page_says(
+        made[1], "element('tabs').text", "element('others').text", "document.body.dataset.ready"
+    )
+    assert tabs == "Transverse oscillation Oscillating bore continuous bore"
+    # a group has its title in a label, which is no text
+    assert others == "other sweeps to and fro ratios still creep body"
+    assert ready == "yes"
+
+
+def test_every_sweep_can_be_looked_at_and_left_again(made):
+    said = page_says(
+        made[1],
+        chosen("along"),
+        "[element('map-view').hidden, element('map').data[0].z, element('run').text]",
+        chosen("still"),
+        "[element('map-view').hidden, element('lines-chart').data.length]",
+        "element('tabs').children[2].fire('click')",
+        "[element('lines-title').text, element('lines-chart').data.at(-1).y]",
+        "element('tabs').children[1].fire('click')",
+        "[element('lines-view').hidden, element('point-view').hidden, element('disc').drawn]",
+    )
+    dataset = made[0]["along"].transpose("amplitude", "velocity", ...)
+    hidden, shown, run = said[1]
+    assert (hidden, run) == (False, "The page has no periods of this map.")
+    assert np.array_equal(shown, dataset.mu_macro.values[:, 1:])  # velocity 0 has no place
+    limits = len(entries(made[1], "lines", "still")[0]["limits"])
+    assert said[3] == [True, 2 + limits]
+    assert said[5][0] == "continuous bore"
+    assert said[5][1] == made[0]["continuous_bore"].mu_macro.values.tolist()
+    assert said[7] == [True, False, True]
+
+
+def test_poissons_ratios_are_a_list(made):
+    said = page_says(
+        made[1],
+        "[element('poisson').hidden, element('poisson').text]",
+        "element('poisson').value = '2', element('poisson').fire('change')",
+        "[STATE.map.poisson, element('certificate').text, element('poisson').value]",
+        "element('tabs').children[1].fire('click')",
+        "element('poisson').hidden",
+    )
+    ratios = "Poisson's ratio 0 Poisson's ratio 0.3 Poisson's ratio 0.5"
+    assert said[0] == [False, ratios]
+    assert said[2][0] == 0.5 and "Poisson's ratio 0.5" in said[2][1] and said[2][2] == "2"
+    assert said[4] is True
+
+
+ASK = "element('ask').fire('click')"
+NO_NU = (picked("material", "by E and ν"), typed("nu", "0"), picked("counterbody", "rigid"))
+
+
+def test_the_form_answers_and_marks_the_point(made, certified):
+    said = page_says(
+        made[1],
+        "element('contact-view').hidden",
+        ASK,
+        "[element('contact-view').hidden, element('point-view').hidden]",
+        *NO_NU,
+        "STATE.contact",
+        "[element('contact-value').text, element('contact-note').text]",
+        "[element('map').data.at(-1).x, element('map').data.at(-1).y]",
+        "element('contact-warnings').text",
+        ASK,
+        "[element('contact-view').hidden, element('map').data.at(-1).x, element('disc').drawn]",
+    )
+    contact, (value, note), star, warnings = said[6:10]
+    truth = Friction(certified).at(contact["velocity"], contact["amplitude"])
+    mu, error = float(truth.mu_macro), float(truth.mu_macro_error)
+    assert contact["friction"]["value"] == pytest.approx(mu, abs=1e-12)
+    assert abs(float(value.split()[3]) - 0.3 * mu) <= 0.3 * error / 10
+    assert float(note.split(" ± ")[1].split(";")[0]) == pytest.approx(error, rel=0.05)
+    assert "instead of 0.3: a force of " in value and value.endswith("instead of 3 N")
+    assert star == [[contact["velocity"]], [contact["amplitude"]]]
+    assert "Warning: the largest pressure" not in warnings
+    assert "Not checked: whether the bodies stay elastic (no hardness given)" in warnings
+    assert said[-1] == [True, [], True]
+
+
+def test_the_form_asks_for_what_counts_alone(made):
+    hidden = "['young', 'counter_nu', 'stroke', 'angle'].map((id) => offerContact.rows[id].hidden)"
+    said = page_says(
+        made[1],
+        ASK,
+        hidden,
+        picked("material", "by E and ν"),
+        picked("scene", "bore"),
+        hidden,
+        "[element('contact-value').text, STATE.map.name]",
+    )
+    assert said[1] == [True, True, False, True]
+    assert said[4] == [False, True, True, False]
+    value, shown = said[5]
+    assert shown == "bore"  # the map of the motion is beside the form
+    assert value == "No certified friction: this page holds no certified map of bore."
+
+
+def test_a_mistake_is_told_and_leaves_no_answer_behind(made):
+    said = page_says(
+        made[1],
+        ASK,
+        *NO_NU,
+        typed("load", "1,5"),
+        "[element('contact-value').text, element('contact-value').className]",
+        "[element('contact-facts').text, element('contact-warnings').text, STATE.contact]",
+        typed("load", "1.5"),
+        "element('contact-value').className",
+    )
+    value, kind = said[5]
+    assert value.startswith("normal load = '1,5': read 1 and stopped at ',5', since decimals")
+    assert kind == "bad"
+    assert said[6] == ["", "", None]
+    assert said[8] == ""
+
+
+def test_names_of_the_scripts_do_not_meet():
+    """All scripts of the page share their names: of two functions the later one would win."""
+    import re
+
+    from microslip.report.explorer import explorer
+    from microslip.report.explorer.page import FOLDER
+
+    names = []
+    for asset in explorer.ASSETS:
+        if asset.endswith(".js"):
+            text = (FOLDER / asset).read_text(encoding="utf-8")
+            names += re.findall(r"^(?:function|class|let) (\w+)", text, re.M)
+            for line in re.findall(r"^const (.*)", text, re.M):
+                names += re.findall(r"(?:^|, )(\w+) = ", line)
+    assert len(names) > 90
+    assert len(set(names)) == len(names)

@@ -1,0 +1,96 @@
+"""Functions of the explorer's scripts, called outside of a browser."""
+
+import json
+import shutil
+import subprocess
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from microslip.report.explorer import explorer
+from microslip.report.explorer.page import FOLDER
+
+NODE = shutil.which("node")
+needs_node = pytest.mark.skipif(NODE is None, reason="node is not installed: apt install nodejs")
+"""For every test that runs scripts of the page."""
+
+CALLS = """
+const { given, calls, call } = JSON.parse(require("fs").readFileSync(0, "utf8"));
+// JSON has no numbers that are not finite.
+const said = (key, value) =>
+  typeof value === "number" && !Number.isFinite(value) ? String(value) : value;
+process.stdout.write(JSON.stringify(calls.map((one) => {
+  try {
+    return eval(call)(given, ...one);
+  } catch (error) {
+    if (!(error instanceof Refusal)) throw error;
+    return { refused: error.message };
+  }
+}), said));
+"""
+
+
+def answers(scripts, call, given, calls):
+    """What a function of the page's scripts answers.
+
+    scripts: names of files, in their order; call: JavaScript of a function of `given` and what is
+    in one of `calls`. Returns a list: an answer each, or {"refused": message}.
+    """
+    code = ["'use strict';", *((FOLDER / name).read_text(encoding="utf-8") for name in scripts)]
+    done = subprocess.run(
+        [NODE, "-e", "\n".join([*code, CALLS])],
+        input=json.dumps({"given": given, "calls": calls, "call": call}),
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+class _Ids(HTMLParser):
+    """Ids of a page, whether they are hidden, and the ids around each."""
+
+    EMPTY = ("meta", "input", "br")
+
+    def __init__(self):
+        super().__init__()
+        self.hidden, self.parents, self._open = {}, {}, []
+
+    def handle_starttag(self, tag, attrs):
+        found = dict(attrs)
+        name = found.get("id")
+        if name:
+            self.hidden[name] = "hidden" in found
+            self.parents[name] = [one for one in self._open if one]
+        if tag not in self.EMPTY:
+            self._open.append(name)
+
+    def handle_endtag(self, tag):
+        self._open.pop()
+
+
+def page_says(content, *steps):
+    """What the whole page says, run outside of a browser, with a document that draws nothing.
+
+    content: as payload.build makes it; steps: JavaScript, one after another, each an expression.
+    Returns a list of their values.
+    """
+    markup = (FOLDER / "page.html").read_text(encoding="utf-8")
+    ids = _Ids()
+    ids.feed(markup)
+    stub = Path(__file__).with_name("page_in_node.js").read_text(encoding="utf-8")
+    scripts = [name for name in explorer.ASSETS if name.endswith(".js")]
+    code = ["'use strict';", stub, *((FOLDER / name).read_text("utf-8") for name in scripts)]
+    code.append("process.stdout.write(JSON.stringify(steps.map((step) => eval(step) ?? null)));")
+    given = {"ids": ids.hidden, "parents": ids.parents, "numbers": content, "steps": steps}
+    done = subprocess.run(
+        [NODE, "-e", "\n".join(code)],
+        input=json.dumps(given, allow_nan=False),
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stderr[-2000:]
+    return json.loads(done.stdout)
