@@ -28,10 +28,13 @@ comes to lie scatters from run to run."""
 PROJECTED_CAUTION = {"angles": 1.3, "steps": 1.8}
 PROJECTED_SCATTER = 0.3
 """See chains.Axis."""
-TOGETHER_FROM, TOGETHER_RESOLVED = 5e-4, 0.8
+TOGETHER_FROM, TOGETHER_RESOLVED = 1e-3, 0.8
 """Tolerance from which on rings, angles and steps of a bore are refined together, and the share of
 it below which none of these points claims its error to be: the few runs of a point may come to lie
 on a line by chance."""
+TOGETHER_AMPLITUDES = 0.3, 6.0
+"""Between which that pays: at less, each axis by itself is cheaper; at more, the error falls with
+the first power in the end, after it has changed its sign, and four runs do not show it."""
 SWEEPING_STEPS = 4
 """Steps in half a period over rings where the edge of the contact sweeps over these.  They join it
 one by one, and the error scatters unless both are refined together."""
@@ -97,7 +100,10 @@ def _falls_smoothly(problem, model):
     """Whether the error of a contact that oscillates falls smoothly if all is refined together."""
     motion = problem.motion
     oscillates = motion.periodic and motion.rotates and motion.depth is None
-    return model == "polar" and oscillates and like_a_sphere(problem) and problem.velocity > 0.0
+    least, most = TOGETHER_AMPLITUDES
+    if not (model == "polar" and oscillates and least <= problem.amplitude <= most):
+        return False
+    return like_a_sphere(problem) and problem.velocity > 0.0
 
 
 def _all_together(problem, tolerance):
