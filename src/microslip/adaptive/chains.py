@@ -19,6 +19,8 @@ CALIBRATED = 1.7
 """Error over what is estimated by the second power, from shares or projections, and over the mixed
 difference: chosen on the random points of benchmarks/certificates.py, where 1 claim in 100 would
 not hold without, and 1 in 300 with 1.4."""
+SPREAD = 1.25
+"""Error over the spread of the last runs along an irregular axis, chosen likewise."""
 FITTED, JUDGED = 3, 4
 """Runs that a fitted value is extrapolated from, and those that its error is seen by."""
 FITTED_SHARES = 0.75, 1.0
@@ -199,7 +201,8 @@ class Chain:
             return share * _largest_projection(values, levels) + share_of_scatter * scatter
         if self.axis.projected:
             return CALIBRATED * self.axis.caution * _largest_projection(values, levels)
-        return self.axis.caution * (max(values) - min(values))
+        spread = max(values) - min(values)
+        return spread if self.axis.imposed else SPREAD * self.axis.caution * spread
 
 
 def _extrapolation(values, levels):
