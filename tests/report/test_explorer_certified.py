@@ -10,7 +10,7 @@ from stubs.in_node import answers, needs_node
 
 from microslip.config import load
 from microslip.datasets import certified_map
-from microslip.datasets.query.accessor import SOURCES
+from microslip.datasets.query.answers import SOURCES
 from microslip.foundation.errors import InputError
 from microslip.report.explorer import certified
 from microslip.sweeps.batches import key_of
