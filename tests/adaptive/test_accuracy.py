@@ -270,7 +270,8 @@ def test_mixed_difference_is_added_and_counts_as_error():
     assert found.mu == pytest.approx(EXACT + fake.excess(found.finest), abs=1e-14)
     failing_to_add_up = CALIBRATED * 0.5 * (1 / 12 - 1 / 16) * (1 / 8 - 1 / 12)
     spread = {name: np.ptp([run.mu for run in along(fake, name)]) for name in ("cells", "angles")}
-    expected = failing_to_add_up + sum(max(SPREAD * one, RESOLVED * 1e-1) for one in spread.values())
+    seen = [max(SPREAD * one, RESOLVED * 1e-1) for one in spread.values()]
+    expected = failing_to_add_up + sum(seen)
     assert found.errors["space"] == pytest.approx(expected, rel=1e-9)
 
 
