@@ -55,9 +55,7 @@ class Friction(Inverse):
         self._dataset = dataset
         self._scene = self._motion.name
         self._pressure = dataset.attrs.get("pressure", "hertz")
-        # What is proved is so of one contact at a given velocity.
-        alone = not {"drive", "contacts"} & set(dataset.attrs)
-        self._limits_known = alone and beyond.is_known(self._scene, self._pressure)
+        self._limits_known = beyond.known_of(dataset)
         self._nodes = NodesOnce()
         self._tables = {}  # by what they are made of: a dataset may be changed in place
 
@@ -197,7 +195,7 @@ class Friction(Inverse):
         tables = self._table(nodes, nu), self._table(nodes, nu, still=True)
         if tolerance is None:
             what = self._scene if self._pressure == "hertz" else f"pressure {self._pressure}"
-            if {"drive", "contacts"} & set(self._dataset.attrs):
+            if not beyond.is_alone(self._dataset):
                 what = f"{what} under a spring or of several contacts"
             refuse_beyond(*tables, velocity, rows, what)
         value, error = within(*tables, velocity, rows)

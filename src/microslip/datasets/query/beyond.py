@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from microslip.theory.catalogue import FORMS
 from microslip.theory.exact import LARGEST_DROPS, STATIC_LIMITS
@@ -73,6 +74,18 @@ LIMITS = {
 def is_known(scene: str, pressure: str) -> bool:
     """Whether limits of a scene under a pressure are proved."""
     return pressure == "hertz" and (scene in LIMITS or scene == "continuous-bore")
+
+
+def known_of(dataset: xr.Dataset) -> bool:
+    """Whether limits are proved for what a dataset holds: for one contact, at a given velocity."""
+    if not is_alone(dataset):
+        return False
+    return is_known(dataset.attrs["scene"], dataset.attrs.get("pressure", "hertz"))
+
+
+def is_alone(dataset: xr.Dataset) -> bool:
+    """Whether a dataset is of one contact that is moved at a velocity."""
+    return not {"drive", "contacts"} & set(dataset.attrs)
 
 
 class Edge(NamedTuple):
