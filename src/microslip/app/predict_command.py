@@ -9,7 +9,7 @@ import sys
 
 from microslip.app import predicted_driving
 from microslip.app.command_line import Said
-from microslip.app.predicted_text import groups_of_drive, length, line, threshold, walk
+from microslip.app.predicted_text import groups_of_drive, length, line, looked_for, threshold, walk
 from microslip.app.terminal import complain
 from microslip.foundation.errors import InputError, shown
 from microslip.si.materials import MATERIALS
@@ -43,7 +43,11 @@ OPTIONS = {
         "W",
         "speed of the spin of continuous-bore, such as '60 rpm', '1 Hz' or '6 rad/s'",
     ),
-    "reduction": ("SHARE", "instead of an amplitude: find the one that takes '50 %%' away"),
+    "reduction": (
+        "SHARE",
+        "instead of the amplitude, the speed or the load: find the least amplitude, the largest "
+        "speed or the largest load at which vibration takes '50 %%' away",
+    ),
     "drive-stiffness": ("K", "of a spring that pulls with the speed, such as '10 N/um'"),
     "mass": ("M", "of the body that a spring or a force pulls, such as '20 g'"),
     "damping": ("C", "of a dashpot on a body on a spring, such as '5 N*s/m'"),
@@ -58,7 +62,7 @@ OPTIONS = {
     ),
     "points": ("N", "with --driving: on the line, its ends included (9)"),
 }
-NEEDED = ("load", "mu")
+NEEDED = ("mu",)
 OTHER_NAMES = {"nu": ("--poisson",)}
 UNDERSTOOD = ("scene", "body", "counterbody", "radius", "counter_radius", "radius_across")
 UNDERSTOOD += ("contact_radius", "pressure", "load", "mu", "speed")
@@ -157,6 +161,7 @@ def _as_text(found):
         lines.append(line("amplitude", f"{_size(found)}dimensionless {found.amplitude:.4g}"))
     if found.velocity is not None and found.force_N is None:
         lines.append(line("velocity", f"dimensionless {found.velocity:.4g}"))
+    lines += looked_for(found)
     lines += groups_of_drive(found)
     lines += _friction(found) if found.force_N is None else walk(found)
     lines += _spread(found) + _energy(found)

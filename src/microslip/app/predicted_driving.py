@@ -26,7 +26,7 @@ def ask(scene: str, given: dict) -> object:
             raise InputError(name, given[name], allowed)
     if "points" in given:
         given = given | {"points": read("points", given["points"], whole=True)}
-    missing = dict.fromkeys(("radius", "amplitude", "frequency"))
+    missing = dict.fromkeys(("radius", "load", "amplitude", "frequency"))
     return predict_driving(scene, **missing | given)
 
 

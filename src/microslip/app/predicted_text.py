@@ -29,10 +29,31 @@ def _in_units(value, units):
     return f"{value / size:.4g} {name}"
 
 
+def _pair(value, error):
+    """A length and its error, in one unit."""
+    name, size = next((one for one in LENGTHS if value >= one[1]), LENGTHS[-1])
+    return f"{value / size:.4g} +- {error / size:.1g} {name}"
+
+
 def _speed(value, error):
     """A speed and its error, in one unit."""
-    name, size = next((one for one in LENGTHS if value >= one[1]), LENGTHS[-1])
-    return f"{value / size:.4g} +- {error / size:.1g} {name}/s"
+    return f"{_pair(value, error)}/s"
+
+
+def looked_for(found: Prediction) -> list[str]:
+    """The line of what was found for a wanted reduction, and its error."""
+    if found.sought is None:
+        return []
+    share = f"takes {found.understood['reduction']} away"
+    if found.sought == "speed":
+        text = f"{_speed(found.speed_m_s, found.sought_error)}, the largest at which vibration"
+    elif found.sought == "load":
+        text = f"{found.load_N:.4g} +- {found.sought_error:.1g} N, the largest at which vibration"
+    elif found.scene == "bore":
+        text = f"{found.amplitude_si:.4g} +- {found.sought_error:.1g} rad, the least that"
+    else:
+        text = f"{_pair(found.amplitude_si, found.sought_error)}, the least that"
+    return [line("found", f"{found.sought} {text} {share}")]
 
 
 def threshold(found: Prediction) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from microslip.foundation.errors import InputError
 from microslip.si.materials import Material
@@ -52,6 +52,10 @@ class TwoBodies:
         if self.first.rigid and self.second.rigid:
             allowed = "allowed is an elastic one for a rigid body"
             raise InputError("counterbody", "rigid", allowed)
+
+    def with_load(self, load: float) -> TwoBodies:
+        """The same bodies under another load, N."""
+        return replace(self, load=load)
 
     @property
     def bodies(self) -> tuple[Material, Material]:

@@ -20,13 +20,14 @@ def read_drive(
     drive_stiffness: object,
     mass: object,
     damping: object,
+    sought: str | None = None,
 ) -> tuple[RealDrive, dict]:
     """The drive, and a dict of texts of what was understood; raises InputError.
 
-    speed: as it was given, and read with the motion.
+    speed: as it was given, and read with the motion; sought: what is looked for.
     """
     given = {"drive_stiffness": drive_stiffness, "mass": mass, "damping": damping}
-    if speed is None and force is None:
+    if speed is None and force is None and sought != "speed":
         raise InputError("speed", None, "needed, or a force in its place")
     if speed is not None and force is not None:
         raise InputError("force", force, "allowed is a force or a speed, not both")

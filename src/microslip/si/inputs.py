@@ -246,14 +246,13 @@ def read_motion(
     amplitude: object,
     frequency: object,
     rotation: object,
-    reduction: object,
+    sought: str | None = None,
     **others: object,
 ) -> tuple[RealMotion, dict]:
     """The motion, and a dict of texts of what was understood; raises InputError.
 
-    The amplitude of the motion is None where a reduction is given in its place, and so is the speed
-    where none is given.  others: what scenes that oscillate in several ways take besides, see
-    motions.TAKES.
+    sought: what is looked for; an amplitude may be missing then.  A speed that is not given is
+    None.  others: what scenes that oscillate in several ways take besides, see motions.TAKES.
     """
     if not isinstance(scene, str) or scene not in MOTIONS:
         raise InputError("scene", scene, f"allowed is one of {', '.join(MOTIONS)}")
@@ -263,13 +262,8 @@ def read_motion(
     for name, value in given.items():
         if name not in (*needed, *TAKES.get(scene, ())) and value is not None:
             raise InputError(name, value, f"{scene} has none")
-    if reduction is not None and (steady or scene in COMBINED):
-        what = "no amplitude" if steady else "several amplitudes"
-        raise InputError("reduction", reduction, f"{scene} has {what} to look for")
-    if reduction is not None and amplitude is not None:
-        raise InputError("reduction", reduction, "allowed without an amplitude")
     for name in needed:
-        if given[name] is None and not (name == "amplitude" and reduction is not None):
+        if given[name] is None and name != sought:
             raise InputError(name, None, f"{scene} needs it")
     found = {}
     if speed is not None:

@@ -2,29 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
-from microslip.adaptive.checks import SMALLEST_TOLERANCE
 from microslip.adaptive.point import Result, solve
-from microslip.foundation.arguments import LARGEST
-from microslip.foundation.errors import InputError
-from microslip.si.dimensionless import groups, solver_scene
-from microslip.si.drives import checked_drive_groups, read_drive
+from microslip.si.dimensionless import solver_scene
+from microslip.si.drives import checked_drive_groups
 from microslip.si.energy import energy_fields, vibration_fields
-from microslip.si.inputs import read_body, read_contact, read_counterbody, read_motion
 from microslip.si.motions import COMBINED
 from microslip.si.prediction import Prediction
 from microslip.si.pulled import about_drive, answer_of, with_speed
-from microslip.si.quantities import read
-from microslip.si.reduction import motion_for
+from microslip.si.question import TOLERANCE, asked, checked_groups
+from microslip.si.reduction import with_reduction
 from microslip.si.uncertain import with_spreads
 from microslip.si.validity import broken_assumptions, unchecked
 
-LARGEST_TOLERANCE = 0.1
-"""Of mu_macro, and relative of a speed; what is larger is no answer."""
-TOLERANCE, TOLERANCE_OF_SPEED = 1e-3, 1e-2
-"""Unless told otherwise: of mu_macro, and under a force of the speed."""
 TOLERANCE_OF_LIMIT = 1e-2
 """Of mu_static where several oscillations meet: it takes a minute and more to know it better."""
 
@@ -33,8 +24,8 @@ TOLERANCE_OF_LIMIT = 1e-2
 def predict(
     scene: str,
     *,
-    load: object,
     mu: object,
+    load: object = None,
     radius: object = None,
     speed: object = None,
     force: object = None,
@@ -109,8 +100,9 @@ def predict(
     rotation : quantity
         Angular speed of a continuous bore, in the same units.  A number is in rad/s.
     reduction : quantity, optional
-        Instead of the amplitude, the share of friction to be taken away, 0 to 1 or in per cent: the
-        least amplitude that does it is looked for.  A speed alone pulls then.
+        Instead of the amplitude, the speed or the load, the share of friction to be taken away, 0
+        to 1 or in per cent: the least amplitude, the largest speed or the largest load at which
+        vibration does it is looked for.  A speed alone pulls then.
     drive_stiffness, mass, damping : quantity, optional
         Of a spring between what has the speed and the body, N/m, of the body, kg, and of a dashpot
         on it, N s/m.  A mass may be under a force, too.
@@ -136,94 +128,42 @@ def predict(
         what is missing, ambiguous or out of range, for bodies that fit so closely that the contact
         is half as wide as one of them, and where no amplitude takes that much friction away.
     """
-    if not isinstance(power, bool):
-        raise InputError("power", power, "allowed is True or False")
-    motion, asked = read_motion(
-        scene,
-        speed=speed,
-        amplitude=amplitude,
-        frequency=frequency,
-        rotation=rotation,
-        reduction=reduction,
-        forward_amplitude=forward_amplitude,
-        rotation_amplitude=rotation_amplitude,
-        load_amplitude=load_amplitude,
-        phase=phase,
-    )
-    drive, pulls = read_drive(
-        motion,
-        speed=speed,
-        force=force,
-        drive_stiffness=drive_stiffness,
-        mass=mass,
-        damping=damping,
-    )
-    if tolerance is None:
-        tolerance = TOLERANCE if force is None else TOLERANCE_OF_SPEED
-    accepted = read(
-        "tolerance", tolerance, "", low=SMALLEST_TOLERANCE, low_open=False, high=LARGEST_TOLERANCE
-    )
-    contact, understood = read_contact(
-        read_body(young, nu, material).completed("", hardness, density),
-        read_counterbody(counterbody).completed("counter_", counter_hardness, counter_density),
-        radius=radius,
-        counter_radius=counter_radius,
-        radius_across=radius_across,
-        contact_radius=contact_radius,
-        pressure=pressure,
-        load=load,
-        mu=mu,
-    )
-    if motion.load_amplitude is not None and motion.load_amplitude > contact.load:
-        allowed = "allowed is at most the load: beyond it the bodies part"
-        raise InputError("load_amplitude", load_amplitude, allowed)
-    about = understood | asked | pulls
-    if reduction is not None:
-        if pulls:
-            allowed = "allowed where a speed alone pulls: without a force and a drive_stiffness"
-            raise InputError("reduction", reduction, allowed)
-        share = read("reduction", reduction, "", high=1.0)
-        about["reduction"] = share.text
-        settings = {"share": share.si, "tolerance": accepted.si, "given": reduction}
-        motion = motion_for(contact, motion, **settings)
-    velocity, size = _checked_groups(contact, motion, speed, amplitude)
-    given = {"force": force, "drive_stiffness": drive_stiffness, "mass": mass, "damping": damping}
-    pulling = checked_drive_groups(drive, motion, contact, given)
-    answer = answer_of(contact, motion, pulling, accepted.si)
+    given = dict(locals())  # all arguments, and nothing else yet
+    return _answered(asked(given.pop("scene"), given))
+
+
+def _answered(question):
+    """The Prediction of a Question."""
+    contact, motion, given = question.contact, question.motion, question.given
+    about, pulled = dict(question.about), {}
+    if question.sought is not None:
+        settings = {"share": question.share, "tolerance": question.tolerance}
+        settings["given"] = given["reduction"]
+        found = with_reduction(contact, motion, question.sought, **settings)
+        motion, pulled = found.motion, {"sought": question.sought, "sought_error": found.error}
+        if question.sought == "load":
+            contact = question.under(found.contact.load)
+    velocity, size = checked_groups(contact, motion, given)
+    pulling = checked_drive_groups(question.drive, motion, contact, given)
+    answer = answer_of(contact, motion, pulling, question.tolerance)
     limit = None
     if size is not None:
-        exactly = min(accepted.si, TOLERANCE) if force is not None else accepted.si
-        if scene in COMBINED:
+        exactly = question.tolerance
+        if given["force"] is not None:
+            exactly = min(exactly, TOLERANCE)
+        if motion.scene in COMBINED:
             exactly = max(exactly, TOLERANCE_OF_LIMIT)
         settings = {"poisson": contact.poisson, "pressure": contact.pressure}
         named = solver_scene(motion, contact)
         limit = solve(named, 0.0, size, tolerance=exactly, **settings)
-    pulled = about_drive(contact, motion, drive, pulling, answer, limit)
+    pulled |= about_drive(contact, motion, question.drive, pulling, answer, limit)
     if velocity is None:
         velocity, motion = answer.velocity, with_speed(motion, contact, answer)
     if answer.converged:
         pulled |= energy_fields(contact, motion, answer)
-        pulled |= vibration_fields(contact, motion, answer, accepted.si) if power else {}
+        if given["power"]:
+            pulled |= vibration_fields(contact, motion, answer, question.tolerance)
     return replace(_prediction(contact, motion, velocity, answer, limit, about), **pulled)
-
-
-def _checked_groups(contact, motion, speed, amplitude):
-    """velocity and amplitude as groups gives them; raises InputError for what the solver cannot
-    take, in terms of the speed and the amplitude as they were given."""
-    velocity, size = groups(motion, contact)
-    if velocity is not None and not math.isfinite(velocity):
-        problem = "over that of the vibration, it is beyond the range of floating-point numbers"
-        raise InputError("speed", speed, f"{problem}; allowed is what a laboratory can have")
-    if size is not None and not size <= LARGEST["amplitude"]:
-        unit = "the angle that leaves half of the contact sticking"
-        if motion.scene != "bore":
-            unit = f"the {contact.u_lim:.3g} m that let the whole contact slide"
-        raise InputError(
-            "amplitude",
-            amplitude,
-            f"{size:.3g} times {unit}; allowed is at most {LARGEST['amplitude']:g} times",
-        )
-    return velocity, size
 
 
 def _prediction(contact, motion, velocity, answer: Result, limit: Result | None, understood):
@@ -234,6 +174,7 @@ def _prediction(contact, motion, velocity, answer: Result, limit: Result | None,
         indentation_m=contact.indentation,
         u_lim_m=contact.u_lim,
         largest_pressure_Pa=contact.largest_pressure,
+        load_N=contact.load,
         poisson=contact.poisson,
         speed_m_s=motion.speed,
         amplitude_si=motion.amplitude,

@@ -92,6 +92,11 @@ class Prediction:
     dissipated_power_W, energy_per_cycle_J : float or None
         Both powers together, W, which friction turns into heat, and what a period or a turn of it
         costs, J.
+    load_N : float
+        Normal force, N.
+    sought, sought_error : str or None, float or None
+        What was looked for so that vibration takes the wanted share of friction away ("amplitude",
+        "speed", "load"), and the largest error that it may have, in its SI unit, by estimate.
     mu_macro_spread, mu_apparent_spread, friction_force_spread_N, speed_spread_m_s : float or None
         Standard uncertainties that follow from those of what was given; None where none was.
     """
@@ -156,6 +161,9 @@ class Prediction:
     vibration_power_error_W: float | None = None
     dissipated_power_W: float | None = None
     energy_per_cycle_J: float | None = None
+    load_N: float | None = None
+    sought: str | None = None
+    sought_error: float | None = None
     mu_macro_spread: float | None = None
     mu_apparent_spread: float | None = None
     friction_force_spread_N: float | None = None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -33,6 +33,13 @@ class ShapedContact(TwoBodies):
 
     pressure: str = "hertz"
     size: float = 0.0
+
+    def with_load(self, load: float) -> TwoBodies:
+        """The same bodies under another load, N; a size that was given stays as it is."""
+        over = load / self.load
+        if self.radii:  # of the bodies, which Hertz's ellipse follows from
+            return replace(self, load=load, size=self.size * over ** (1.0 / 3.0))
+        return replace(self, load=load, radius=self.radius / over)
 
     @property
     def contact_radius(self) -> float:

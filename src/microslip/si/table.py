@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
+from inspect import signature
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from microslip.foundation.errors import InputError
+from microslip.si.motions import UNIT_OF_AMPLITUDE
 from microslip.si.predict import predict
 from microslip.si.prediction import Prediction
+from microslip.si.question import asked
+from microslip.si.uncertain import without_spreads
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,6 +26,8 @@ UNITS += (("_N", "N"), ("_m", "m"), ("_s", "s"))
 """Ends of names of fields, and the units that they stand for; the first that fits counts."""
 OTHER_UNITS = {"drive_stiffness_N_m": "N m-1", "time_to_1_mm_s": "s"}
 TEXTS = ("warnings", "not_checked")
+NAMES = ("outcome", "regime", "sought")
+"""Texts that no case may have; what no case has besides is a number."""
 
 
 def predict_table(scene: str, cases: Mapping[str, object], **shared: object) -> xr.Dataset:
@@ -32,7 +38,8 @@ def predict_table(scene: str, cases: Mapping[str, object], **shared: object) -> 
     scene : str
         As for `microslip.predict`.
     cases : mapping
-        Sequences of one length by the names of predict's arguments: {"load": ["1 N", "10 N"]}.
+        Sequences of one length by the names of predict's arguments: {"load": ["1 N", "10 N"]}; None
+        is what a case does not have.
     shared
         What all cases have in common, as for `microslip.predict`.
 
@@ -47,18 +54,43 @@ def predict_table(scene: str, cases: Mapping[str, object], **shared: object) -> 
     InputError
         As predict does, with the number of the case in front of what is allowed.
     """
-    count = _count(cases, shared)
-    found = []
-    for case in range(count):
-        try:
-            found.append(predict(scene, **shared, **{k: v[case] for k, v in cases.items()}))
-        except InputError as error:
-            allowed = f"in case {case}: {error.allowed}"
-            raise InputError(error.argument, error.value, allowed) from None
-    return _dataset(scene, cases, found)
+    return as_dataset(scene, cases, list(predictions(scene, cases, shared)))
 
 
-def _count(cases, shared):
+def predictions(
+    scene: str, cases: Mapping[str, object], shared: Mapping[str, object]
+) -> Iterator[Prediction]:
+    """The prediction of each case in turn; raises InputError as predict_table does.
+
+    All cases are read before the first one is solved.
+    """
+    several = [
+        shared | {name: values[case] for name, values in cases.items()}
+        for case in range(number_of(cases, shared))
+    ]
+    for ask in (_check, predict):
+        for case, given in enumerate(several):
+            try:
+                found = ask(scene, **given)
+            except InputError as error:
+                allowed = f"in case {case}: {error.allowed}"
+                raise InputError(error.argument, error.value, allowed) from None
+            if found is not None:
+                yield found
+
+
+def _check(scene, **given):
+    """Raise what predict would raise before it solves anything."""
+    plain, _ = without_spreads(given)
+    every = dict.fromkeys(signature(predict).parameters) | {"power": False}
+    strange = [name for name in plain if name not in every]
+    if strange:
+        raise InputError(strange[0], plain[strange[0]], f"allowed are {', '.join(every)}")
+    del every["scene"]
+    asked(scene, every | plain)
+
+
+def number_of(cases: Mapping[str, object], shared: Mapping[str, object]) -> int:
     """How many cases there are; raises InputError for a table that is none."""
     if not isinstance(cases, Mapping) or not cases:
         raise InputError("cases", cases, "allowed is a mapping of names to sequences")
@@ -76,7 +108,8 @@ def _count(cases, shared):
     return count
 
 
-def _dataset(scene, cases, found):
+def as_dataset(scene: str, cases: Mapping[str, object], found: Sequence[Prediction]) -> xr.Dataset:
+    """What predict_table returns, of the predictions of all cases."""
     import xarray as xr
 
     variables = {}
@@ -88,7 +121,7 @@ def _dataset(scene, cases, found):
             column, about = ["; ".join(texts) for texts in values], {}
         elif all(isinstance(value, str | None) for value in values):
             column, about = ["" if value is None else value for value in values], {}
-            if all(value is None for value in values):  # a number that no case has
+            if field.name not in NAMES and all(value is None for value in values):
                 column, about = np.full(len(found), np.nan), {"units": _unit(field.name)}
         elif isinstance(values[0], bool):
             column, about = values, {}
@@ -97,8 +130,13 @@ def _dataset(scene, cases, found):
             about = {"units": _unit(field.name)}
         variables[field.name] = "case", column, about
     variables |= {
-        f"case_{name}": ("case", [str(one) for one in values]) for name, values in cases.items()
+        f"case_{name}": ("case", ["" if one is None else str(one) for one in values])
+        for name, values in cases.items()
     }
+    amplitude = variables["amplitude_si"][2]["units"] = UNIT_OF_AMPLITUDE.get(scene, "m")
+    units = {"amplitude": amplitude, "speed": "m s-1", "load": "N"}
+    for sought in {one.sought for one in found} - {None}:  # one, since all cases have the same rest
+        variables["sought_error"][2]["units"] = units[sought]
     return xr.Dataset(variables, {"case": np.arange(len(found))}, {"scene": scene})
 
 

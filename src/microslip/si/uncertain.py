@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from microslip.foundation.errors import InputError
@@ -44,11 +44,7 @@ def with_spreads(predict: Callable) -> Callable:
 
     @functools.wraps(predict)
     def asked(scene, **arguments):
-        spread, plain = {}, dict(arguments)
-        for name, unit in UNITS.items():
-            parts = _parts(arguments.get(name))
-            if parts is not None:
-                plain[name], spread[name] = parts[0], _ends(name, arguments[name], parts, unit)
+        plain, spread = without_spreads(arguments)
         found = predict(scene, **plain)
         if not spread:
             return found
@@ -62,6 +58,19 @@ def with_spreads(predict: Callable) -> Callable:
         return replace(found, **spreads, understood=found.understood | texts)
 
     return asked
+
+
+def without_spreads(arguments: Mapping[str, object]) -> tuple[dict, dict]:
+    """Arguments of predict without the spreads in them, and the ends of those that have one.
+
+    Raises InputError for a spread that is none.
+    """
+    plain, ends = dict(arguments), {}
+    for name, unit in UNITS.items():
+        parts = _parts(arguments.get(name))
+        if parts is not None:
+            plain[name], ends[name] = parts[0], _ends(name, arguments[name], parts, unit)
+    return plain, ends
 
 
 def _parts(value):

@@ -1,0 +1,151 @@
+"""What is asked of a prediction, read and checked before anything is solved."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from microslip.adaptive.checks import SMALLEST_TOLERANCE
+from microslip.foundation.arguments import LARGEST
+from microslip.foundation.errors import InputError
+from microslip.si.bodies import TwoBodies
+from microslip.si.dimensionless import RealDrive, RealMotion, groups
+from microslip.si.drives import checked_drive_groups, read_drive
+from microslip.si.inputs import (
+    SHAPES,
+    Body,
+    read_body,
+    read_contact,
+    read_counterbody,
+    read_motion,
+)
+from microslip.si.quantities import read
+from microslip.si.reduction import sought_by
+
+LARGEST_TOLERANCE = 0.1
+"""Of mu_macro, and relative of a speed; what is larger is no answer."""
+TOLERANCE, TOLERANCE_OF_SPEED = 1e-3, 1e-2
+"""Unless told otherwise: of mu_macro, and under a force of the speed."""
+ANY_LOAD = 1e-12
+"""N; stands for a load that is looked for, small enough for Hertz's theory of all bodies."""
+MOVED = ("amplitude", "frequency", "rotation", "forward_amplitude", "rotation_amplitude")
+MOVED += ("load_amplitude", "phase")
+"""Arguments of predict that tell the motion, besides the speed."""
+PULLED = ("speed", "force", "drive_stiffness", "mass", "damping")
+"""What pulls."""
+
+
+@dataclass(frozen=True, eq=False)
+class Question:
+    """A contact, its motion and what pulls it, as far as they are given.
+
+    Attributes
+    ----------
+    given : Mapping
+        Arguments of predict, as they were given.
+    contact, motion, drive : TwoBodies, RealMotion, RealDrive
+        Without what is looked for.
+    bodies : tuple of Body
+        Those of the contact.
+    sought, share : str or None, float or None
+        What a reduction looks for, and the share of friction to be taken away.
+    tolerance : float
+        Of mu_macro, or relative of the speed.
+    about : dict of str
+        What was understood.
+    """
+
+    given: Mapping[str, object]
+    contact: TwoBodies
+    motion: RealMotion
+    drive: RealDrive
+    bodies: tuple[Body, Body]
+    sought: str | None
+    share: float | None
+    tolerance: float
+    about: dict
+
+    def under(self, load: float) -> TwoBodies:
+        """The contact under a load that was found, N; raises InputError where it is none."""
+        shape = {name: self.given[name] for name in (*SHAPES, "mu")}
+        try:
+            return read_contact(*self.bodies, load=load, **shape)[0]
+        except InputError as error:
+            problem = f"it takes a load of {load:.3g} N; {error}"
+            raise InputError("reduction", self.given["reduction"], problem) from None
+
+
+def asked(scene: str, given: Mapping[str, object]) -> Question:
+    """The question that is put to predict, given all of its arguments by their names.
+
+    Raises InputError for each of them that is none.
+    """
+    if not isinstance(given["power"], bool):
+        raise InputError("power", given["power"], "allowed is True or False")
+    speed, force, reduction = given["speed"], given["force"], given["reduction"]
+    known = {"amplitude": given["amplitude"], "load": given["load"]}
+    sought = sought_by(scene, reduction, known | {"speed": force if speed is None else speed})
+    motion, moved = read_motion(
+        scene, speed=speed, sought=sought, **{name: given[name] for name in MOVED}
+    )
+    drive, pulls = read_drive(motion, sought=sought, **{name: given[name] for name in PULLED})
+    tolerance = given["tolerance"]
+    if tolerance is None:
+        tolerance = TOLERANCE if force is None else TOLERANCE_OF_SPEED
+    accepted = read(
+        "tolerance", tolerance, "", low=SMALLEST_TOLERANCE, low_open=False, high=LARGEST_TOLERANCE
+    )
+    body = read_body(given["young"], given["nu"], given["material"])
+    other = read_counterbody(given["counterbody"])
+    bodies = (
+        body.completed("", given["hardness"], given["density"]),
+        other.completed("counter_", given["counter_hardness"], given["counter_density"]),
+    )
+    shape = {name: given[name] for name in (*SHAPES, "mu")}
+    load = ANY_LOAD if sought == "load" else given["load"]
+    contact, touched = read_contact(*bodies, load=load, **shape)
+    if motion.load_amplitude is not None and motion.load_amplitude > contact.load:
+        allowed = "allowed is at most the load: beyond it the bodies part"
+        raise InputError("load_amplitude", given["load_amplitude"], allowed)
+    about, share = touched | moved | pulls, None
+    if sought is None:
+        checked_groups(contact, motion, given)
+        checked_drive_groups(drive, motion, contact, given)
+    else:
+        share = _share(reduction, pulls)
+        about["reduction"] = share.text
+        about = {name: text for name, text in about.items() if name != sought}
+    settings = (sought, share and share.si, accepted.si, about)
+    return Question(given, contact, motion, drive, bodies, *settings)
+
+
+def _share(reduction, pulls):
+    """What is to be taken away; raises InputError."""
+    if pulls:
+        allowed = "allowed where a speed alone pulls: without a force and a drive_stiffness"
+        raise InputError("reduction", reduction, allowed)
+    return read("reduction", reduction, "", high=1.0)
+
+
+def checked_groups(
+    contact: TwoBodies, motion: RealMotion, given: Mapping[str, object]
+) -> tuple[float | None, float | None]:
+    """velocity and amplitude as groups gives them; raises InputError for what the solver cannot
+    take, in terms of the speed and the amplitude as they were given."""
+    velocity, size = groups(motion, contact)
+    if velocity is not None and not math.isfinite(velocity):
+        problem = "over that of the vibration, it is beyond the range of floating-point numbers"
+        raise InputError(
+            "speed", given["speed"], f"{problem}; allowed is what a laboratory can have"
+        )
+    if size is not None and not size <= LARGEST["amplitude"]:
+        unit = "the angle that leaves half of the contact sticking"
+        if motion.scene != "bore":
+            unit = f"the {contact.u_lim:.3g} m that let the whole contact slide"
+        raise InputError(
+            "amplitude",
+            given["amplitude"],
+            f"{size:.3g} times {unit}; allowed is at most {LARGEST['amplitude']:g} times",
+        )
+    return velocity, size

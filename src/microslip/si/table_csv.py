@@ -1,0 +1,106 @@
+"""A table of contacts as CSV: one contact a line, under a heading with names and units.
+
+load [N],speed [mm/s],counterbody
+10,1,steel
+20,1,"70 GPa, 0.22"
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+import re
+from collections.abc import Collection
+from pathlib import Path
+
+from microslip.foundation import csv_text
+from microslip.foundation.errors import InputError
+
+NUMBER = re.compile(r"[+-−]?[\d.,]+([eE][+-−]?\d+)?", re.A)
+"""What is meant to be a number; whether it is one is decided where it is read."""
+PURE = {"", "1", "-"}
+"""Units that say that there is none."""
+
+
+def cases_of_file(path: str | os.PathLike, names: Collection[str]) -> dict[str, list[str | None]]:
+    """The columns of a file, as microslip.predict_table takes them; raises InputError."""
+    try:
+        return read_cases(Path(path).read_bytes(), names)
+    except OSError as error:
+        problem = f"cannot be read ({error.strerror}); allowed is a file of CSV"
+        raise InputError("table", str(path), problem) from None
+    except ValueError as error:
+        raise InputError("table", str(path), str(error)) from None
+
+
+def read_cases(content: bytes, names: Collection[str]) -> dict[str, list[str | None]]:
+    """Columns of a table by their names: texts with their units, None for an empty cell.
+
+    Columns are parted by commas, semicolons or tabs, and a cell that has one of these in it is in
+    double quotes.  Cells under a heading with a unit are numbers in that unit, others are texts as
+    microslip.predict reads them.  Lines that are empty or begin with # do not count.
+
+    Parameters
+    ----------
+    content : bytes
+        The file.
+    names : collection of str
+        Columns that there may be.
+
+    Raises
+    ------
+    ValueError
+        For anything else; the message begins with the line.
+    """
+    lines = csv_text.lines(content)
+    where, heading = next(lines, (1, ""))
+    separator, columns = _columns(where, heading, names)
+    table = {name: [] for name, _ in columns}
+    thousands = csv_text.Thousands(separator, tuple(table))
+    for where, line in lines:
+        cells = _cells(line, separator)
+        if len(cells) != len(columns):
+            parted = f"parted by a {csv_text.SEPARATORS[separator]} as in the heading"
+            problem = f"{len(cells)} cells; allowed: {len(columns)}, {parted}"
+            raise ValueError(f"line {where}: {problem}, one with such a sign in double quotes")
+        for (name, unit), cell in zip(columns, cells, strict=True):
+            table[name].append(_text(where, name, cell, unit))
+        thousands.see(where, cells)
+    thousands.refuse()
+    if not any(table.values()):
+        raise ValueError(f"line {where}: no line follows the heading; allowed: one for a contact")
+    return table
+
+
+def _cells(line, separator):
+    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
+
+
+def _columns(where, heading, names):
+    """The separator, and name and unit of each column; the unit is None where cells have it."""
+    allowed = f"allowed: some of {', '.join(names)}, with a unit or without, as in speed [mm/s]"
+    for separator in csv_text.SEPARATORS:
+        found = [csv_text.HEADING.fullmatch(word) for word in csv_text.words(heading, separator)]
+        if all(found) and (len(found) > 1 or separator == ","):
+            break
+    else:
+        raise ValueError(f"line {where}: the heading is {heading[:80]!r}; {allowed}")
+    columns = [(match[1].lower(), match[2] and match[2].strip()) for match in found]
+    for name, _ in columns:
+        if name not in names:
+            raise ValueError(f"line {where}: a column {name!r}; {allowed}")
+        if [other for other, _ in columns].count(name) > 1:
+            raise ValueError(f"line {where}: {name} is there twice; allowed: once")
+    return separator, columns
+
+
+def _text(where, name, cell, unit):
+    """A cell as predict takes it."""
+    if not cell:
+        return None
+    if unit is None:
+        return cell
+    if not NUMBER.fullmatch(cell):
+        allowed = f"allowed is a number, or a heading without a unit: {name}"
+        raise ValueError(f"line {where}: {name} is {cell!r} in a column in {unit}; {allowed}")
+    return cell if unit in PURE else f"{cell} {unit}"
