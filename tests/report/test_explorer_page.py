@@ -160,7 +160,7 @@ def test_buttons_and_the_list_offer_all_sweeps(made):
     tabs, others, ready = page_says(
         made[1], "element('tabs').text", "element('others').text", "document.body.dataset.ready"
     )
-    assert tabs == "Transverse oscillation Oscillating bore continuous bore"
+    assert tabs == "Transverse oscillation Oscillating bore Continuous bore"
     # a group has its title in a label, which is no text
     assert others == "other sweeps to and fro ratios still creep body"
     assert ready == "yes"
@@ -184,7 +184,7 @@ def test_every_sweep_can_be_looked_at_and_left_again(made):
     assert np.array_equal(shown, dataset.mu_macro.values[:, 1:])  # velocity 0 has no place
     limits = len(entries(made[1], "lines", "still")[0]["limits"])
     assert said[3] == [True, 2 + limits]
-    assert said[5][0] == "continuous bore"
+    assert said[5][0] == "Continuous bore"
     assert said[5][1] == made[0]["continuous_bore"].mu_macro.values.tolist()
     assert said[7] == [True, False, True]
 

@@ -7,7 +7,7 @@ import json
 import math
 import sys
 
-from microslip.app import predicted_driving
+from microslip.app import predicted_driving, predicted_table
 from microslip.app.command_line import Said
 from microslip.app.predicted_text import groups_of_drive, length, line, looked_for, threshold, walk
 from microslip.app.terminal import complain
@@ -62,7 +62,6 @@ OPTIONS = {
     ),
     "points": ("N", "with --driving: on the line, its ends included (9)"),
 }
-NEEDED = ("mu",)
 OTHER_NAMES = {"nu": ("--poisson",)}
 UNDERSTOOD = ("scene", "body", "counterbody", "radius", "counter_radius", "radius_across")
 UNDERSTOOD += ("contact_radius", "pressure", "load", "mu", "speed")
@@ -92,7 +91,6 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
             action=Said,
             metavar=metavar,
             help=text,
-            required=name in NEEDED,
         )
     parser.add_argument(
         "--power", action="store_true", help="says what it takes to vibrate the contact, too"
@@ -104,36 +102,73 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "elliptic:forward_cycles=2,phase=0: stall force, no-load speed, power and efficiency",
     )
     parser.add_argument(
+        "--table",
+        metavar="CSV",
+        help="a contact for every line of a file, whose heading names some of the options, as in "
+        "load [N],speed [mm/s],material; the others are shared",
+    )
+    parser.add_argument(
+        "--output", metavar="FILE", help="with --table: writes all that is found into a .csv or .nc"
+    )
+    parser.add_argument(
         "--json", action="store_true", help="print one JSON object and nothing else"
     )
 
 
 def run(options: argparse.Namespace) -> int:
     """Answer; returns the exit code: 0 converged, 1 not converged, 2 bad input."""
+    from microslip.foundation.errors import CacheError
     from microslip.sweeps.evaluate import plain
 
     typed = getattr(options, "said", {})
+    given = {name: getattr(options, name) for name in typed}
     try:
-        found = _found(options, {name: getattr(options, name) for name in typed})
+        if options.table is not None:
+            text, converged = _of_table(options, given)
+        else:
+            found = _found(options, given)
+            as_text = predicted_driving.as_text if options.driving else _as_text
+            text = json.dumps(plain(found.to_dict())) if options.json else as_text(found)
+            converged = found.converged
     except InputError as error:
         complain(f"microslip predict: {_complaint(error, typed)}")
         return 2
-    as_text = predicted_driving.as_text if options.driving else _as_text
-    text = json.dumps(plain(found.to_dict())) if options.json else as_text(found)
+    except CacheError as error:
+        complain(f"microslip predict: {error}")
+        return 2
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"  # units may be no letters of it
     print(text.encode(encoding, "backslashreplace").decode(encoding))
-    return 0 if found.converged else 1
+    return 0 if converged else 1
+
+
+def _of_table(options, given):
+    """The answer to a table, as text, and whether all of it converged; raises InputError."""
+    from microslip.sweeps.evaluate import plain
+
+    if options.driving or "points" in given:
+        raise InputError("table", options.table, "allowed without --driving")
+    predicted_table.refuse_ending(options.output)
+    columns = [name.replace("-", "_") for name in OPTIONS if name != "points"]
+    shared = given | {"power": options.power}
+    cases, found = predicted_table.ask(options.scene, options.table, shared, columns)
+    if options.output is not None:
+        predicted_table.write(options.output, options.scene, cases, found)
+    dicts = [plain(one.to_dict()) for one in found]
+    text = json.dumps(dicts) if options.json else predicted_table.as_text(found)
+    return text, all(one.converged for one in found)
 
 
 def _found(options, given):
     """The answer to the options that were given, a dict; raises InputError."""
     from microslip import predict
 
+    if options.output is not None:
+        raise InputError("output", options.output, "allowed with --table alone")
     if options.driving:
         return predicted_driving.ask(options.scene, given)
     if "points" in given:
         raise InputError("points", given["points"], "allowed with --driving alone")
-    return predict(options.scene, **given, power=options.power)
+    return predict(options.scene, **{"mu": None} | given, power=options.power)
 
 
 def _complaint(error, typed):

@@ -83,6 +83,8 @@ def asked(scene: str, given: Mapping[str, object]) -> Question:
     """
     if not isinstance(given["power"], bool):
         raise InputError("power", given["power"], "allowed is True or False")
+    if given["mu"] is None:
+        raise InputError("mu", None, "needed")
     speed, force, reduction = given["speed"], given["force"], given["reduction"]
     known = {"amplitude": given["amplitude"], "load": given["load"]}
     sought = sought_by(scene, reduction, known | {"speed": force if speed is None else speed})

@@ -60,23 +60,26 @@ def predict_table(scene: str, cases: Mapping[str, object], **shared: object) -> 
 def predictions(
     scene: str, cases: Mapping[str, object], shared: Mapping[str, object]
 ) -> Iterator[Prediction]:
-    """The prediction of each case in turn; raises InputError as predict_table does.
+    """The prediction of each case in turn.
 
-    All cases are read before the first one is solved.
+    All cases are read before the first one is solved; raises InputError as predict_table does.
     """
     several = [
         shared | {name: values[case] for name, values in cases.items()}
         for case in range(number_of(cases, shared))
     ]
-    for ask in (_check, predict):
-        for case, given in enumerate(several):
-            try:
-                found = ask(scene, **given)
-            except InputError as error:
-                allowed = f"in case {case}: {error.allowed}"
-                raise InputError(error.argument, error.value, allowed) from None
-            if found is not None:
-                yield found
+    for case, given in enumerate(several):
+        _in_case(case, _check, scene, given)
+    return (_in_case(case, predict, scene, given) for case, given in enumerate(several))
+
+
+def _in_case(case, ask, scene, given):
+    """What is answered; what is wrong is told with the number of the case."""
+    try:
+        return ask(scene, **given)
+    except InputError as error:
+        allowed = f"in case {case}: {error.allowed}"
+        raise InputError(error.argument, error.value, allowed) from None
 
 
 def _check(scene, **given):

@@ -106,7 +106,7 @@ def about(name: str, dataset: xr.Dataset, poisson: float) -> dict:
     return {
         "name": name,
         "id": f"{name} {number(poisson)}",
-        "title": name.replace("_", " ") if group is None else dataset.attrs["title"],
+        "title": name.replace("_", " ").capitalize() if group is None else dataset.attrs["title"],
         "group": group,
         "scene": dataset.attrs["scene"],
         "pressure": dataset.attrs.get("pressure", "hertz"),

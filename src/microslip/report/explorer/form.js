@@ -88,6 +88,7 @@ function offerContact() {
     arrange();
     if (STATE.asking) {
       answerForm();
+      element("contact-view").scrollIntoView?.({ block: "nearest" }); // on a phone it is far below
     } else {
       STATE.contact = null;
       redraw();
@@ -162,11 +163,13 @@ function tellContact(said) {
 }
 
 // Whether the star of the contact is on the map beside the form.
-function outside({ scene, velocity, amplitude }) {
+function outside({ scene, velocity, amplitude, poisson }) {
   const map = NUMBERS.maps.find((one) => one.scene === scene && one.pressure === "hertz");
   if (map === undefined) return "";
   const fast = map.velocity[map.velocity.length - 1], wide = map.amplitude[map.amplitude.length - 1];
   const slow = map.velocity.find((one) => one > 0);
   const off = velocity < slow || velocity > fast || amplitude > wide || amplitude < map.amplitude[0];
-  return off ? " The point lies outside of the map that is drawn." : " A star marks the point on the map.";
+  if (off) return " The point lies outside of the map that is drawn.";
+  const other = map.poisson === poisson ? "" : `, which is drawn for Poisson's ratio ${digits(map.poisson)}`;
+  return ` A star marks the point on the map${other}.`;
 }

@@ -1,0 +1,68 @@
+"""`microslip predict --table`: a contact for every line."""
+
+import json
+
+import pytest
+import xarray as xr
+
+import microslip
+from microslip.app import cli
+
+SHARED = {"material": "steel", "radius": "5 mm", "mu": "0.3", "frequency": "20 kHz"}
+WORDS = [word for name, text in SHARED.items() for word in (f"--{name}", text)]
+TABLE = "load [N],amplitude [um],speed\n10,0.3,10 mm/s\n20,0.1,1 cm/s\n"
+COMMAND = ["predict", "transverse", *WORDS, "--tolerance", "0.01", "--table", "contacts.csv"]
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "contacts.csv").write_text(TABLE)
+    return tmp_path
+
+
+@pytest.mark.slow
+def test_each_line_is_the_prediction_of_its_contact(folder, capsys):
+    assert cli.main([*COMMAND, "--json", "--output", "found.nc"]) == 0
+    first, second = json.loads(capsys.readouterr().out)
+    asked = SHARED | {"tolerance": 0.01, "load": "20 N", "amplitude": "0.1 um", "speed": "1 cm/s"}
+    alone = microslip.predict("transverse", **asked)
+    assert (second["mu_apparent"], second["u_lim_m"]) == (alone.mu_apparent, alone.u_lim_m)
+    kept = xr.load_dataset(folder / "found.nc")
+    assert kept.friction_force_N.values.tolist() == [
+        one["friction_force_N"] for one in (first, second)
+    ]
+    assert kept.amplitude_si.attrs["units"] == "m" and kept.load_N.attrs["units"] == "N"
+    assert cli.main([*COMMAND, "--output", "found.csv"]) == 0
+    heading, *rows = (folder / "found.csv").read_text().splitlines()
+    assert heading.startswith("case,") and len(rows) == 2
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].split()[:4] == ["case", "mu_apparent", "+-", "force"]
+    assert float(lines[2].split()[1]) == pytest.approx(alone.mu_apparent, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("changed", "words", "said"),
+    [
+        ("20,0.1,", [], "--speed: in case 1: needed, or a force in its place"),
+        ("20,-0.1,1 cm/s", [], "--amplitude = '-0.1 um': in case 1: allowed is a finite value"),
+        ("20,0.1", [], "--table = 'contacts.csv': line 3: 2 cells; allowed: 3"),
+        ("20,0.1,1 cm/s", ["--load", "1 N"], "--load = '1 N': allowed once"),
+        ("20,0.1,1 cm/s", ["--output", "found.txt"], "a name that ends in .csv or .nc"),
+        ("20,0.1,1 cm/s", ["--driving"], "--table = 'contacts.csv': allowed without --driving"),
+        ("20,0.1,1 cm/s", ["--table", "none.csv"], "cannot be read (No such file"),
+    ],
+)
+def test_a_bad_table_is_one_line_before_anything_is_solved(folder, capsys, changed, words, said):
+    (folder / "contacts.csv").write_text(TABLE.replace("20,0.1,1 cm/s", changed))
+    assert cli.main([*COMMAND, *words]) == 2
+    out, line = capsys.readouterr()
+    assert out == "" and line.startswith("microslip predict: ") and said in line
+    assert len(line.splitlines()) == 1 and sorted(p.name for p in folder.iterdir()) == [
+        "contacts.csv"
+    ]
+
+
+def test_an_output_needs_a_table(folder, capsys):
+    assert cli.main(["predict", "transverse", *WORDS, "--output", "found.nc"]) == 2
+    assert "--output = 'found.nc': allowed with --table alone" in capsys.readouterr().err

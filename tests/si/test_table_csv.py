@@ -1,0 +1,46 @@
+"""A table of contacts as CSV."""
+
+import pytest
+
+from microslip.si.table_csv import cases_of_file, read_cases
+
+NAMES = ("load", "speed", "amplitude", "mu", "counterbody")
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("load [N],speed\n10,1 mm/s\n", {"load": ["10 N"], "speed": ["1 mm/s"]}),
+        ("load [N];mu\n1e1;0.3\n2;\n", {"load": ["1e1 N", "2 N"], "mu": ["0.3", None]}),
+        ("# said\n\nmu [-]\t load [ kN ]\n0.3\t1\n", {"mu": ["0.3"], "load": ["1 kN"]}),
+        ('counterbody,mu\n"70 GPa, 0.22",0.3\n', {"counterbody": ["70 GPa, 0.22"], "mu": ["0.3"]}),
+        ("load\n10 N +- 5 %\n", {"load": ["10 N +- 5 %"]}),
+        ("LOAD [N]\r\n10\r\n", {"load": ["10 N"]}),
+    ],
+)
+def test_columns_are_texts_with_their_units(text, found):
+    assert read_cases(text.encode(), NAMES) == found
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "line 1: the heading is ''"),
+        ("load [N]\n", "line 1: no line follows"),
+        ("load [N],sped\n1,2\n", "line 1: a column 'sped'; allowed: some of load, speed"),
+        ("load [N],load [kN]\n1,2\n", "line 1: load is there twice"),
+        ("load [N],mu\n1\n", "line 2: 1 cells; allowed: 2"),
+        ("load [N],mu\n1,5,0.3\n", "line 2: 3 cells; allowed: 2, parted by a comma"),
+        ("load [N]\n1 kN\n", "line 2: load is '1 kN' in a column in N"),
+        ("load [N];mu\n900;0.3\n1.100;0.3\n", "line 3: load is '1.100' beside whole numbers"),
+        ("load [N]\n1\0\n", "line 2: not text"),
+    ],
+)
+def test_what_is_no_table_is_refused_by_line(text, said):
+    with pytest.raises(ValueError, match=said.replace("(", r"\(")):
+        read_cases(text.encode(), NAMES)
+
+
+def test_a_file_that_is_none_is_told_by_its_name(tmp_path):
+    with pytest.raises(ValueError, match=r"^table = '.*none.csv': cannot be read \(No such file"):
+        cases_of_file(tmp_path / "none.csv", NAMES)
