@@ -3,6 +3,7 @@
 Run ``python benchmarks/explorer_opening.py results/explorer.html --markdown
 docs/measured/explorer.md`` after ``snakemake explorer``.  Every opening has a new profile, so that
 nothing is cached.  The page is open when all of its charts are drawn and it answers a click.
+``--pictures docs/images`` keeps what it shows then, and with the form for a real contact.
 """
 
 import argparse
@@ -20,7 +21,7 @@ CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 FLAGS = ["--disable-gpu", "--disable-background-networking", "--no-first-run"]
 
 
-def open_once(playwright, path):
+def open_once(playwright, path, pictures=None):
     """Wall and CPU seconds (of the page's main thread) from the request to the last chart."""
     with tempfile.TemporaryDirectory() as profile:
         context = playwright.chromium.launch_persistent_context(
@@ -34,6 +35,10 @@ def open_once(playwright, path):
         page.locator("body[data-ready]").wait_for()
         wall = time.perf_counter() - begun
         metrics = session.send("Performance.getMetrics")["metrics"]
+        if pictures is not None:
+            page.screenshot(path=pictures / "explorer.png")
+            page.locator("#ask").click()
+            page.screenshot(path=pictures / "explorer_contact.png")
         context.close()
     return wall, next(m["value"] for m in metrics if m["name"] == "TaskDuration")
 
@@ -42,12 +47,15 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("page", type=Path)
     parser.add_argument("--times", type=int, default=9)
+    parser.add_argument("--pictures", type=Path, help="folder for two pictures of the page")
     tables.add_markdown(parser)
     given = parser.parse_args()
     with sync_playwright() as playwright:
         wall, cpu = zip(
             *(open_once(playwright, given.page) for _ in range(given.times)), strict=True
         )
+        if given.pictures is not None:
+            open_once(playwright, given.page, given.pictures)
     rows = [
         ("size (MB), at most 15", f"{given.page.stat().st_size / 1e6:.1f}"),
         ("wall time (s), at most 3: median", f"{statistics.median(wall):.2f}"),
