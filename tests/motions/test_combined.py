@@ -29,10 +29,10 @@ def test_without_the_way_sideways_it_is_the_bore_at_another_velocity():
 @pytest.mark.slow
 @pytest.mark.parametrize("phase", [0.0, 90.0])
 def test_a_small_part_changes_little(phase):
-    """Squares, which know no symmetry, next to rings that do."""
+    """A disc that knows no symmetry, next to rings that do."""
     one = microslip.solve("transverse", 0.1, 0.6, tolerance=3e-3)
     other = microslip.solve(f"transverse-bore:angle=0.01,phase={phase:g}", 0.1, 0.6, tolerance=3e-3)
-    assert other.model == "cartesian"
+    assert other.model == "polar"
     # the edge of the contact moves by no more than the angle, and friction by no more than that
     allowed = float(hertz.bore_angle(0.006)) + one.mu_macro_error + other.mu_macro_error
     assert abs(one.mu_macro - other.mu_macro) <= allowed
@@ -84,6 +84,41 @@ def test_what_is_no_motion_is_refused(name, problem):
         microslip.solve(name, 0.1, 0.5)
 
 
-def test_models_that_know_half_the_contact_only_say_so():
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "velocity", "amplitude", "settings"),
+    [
+        ("transverse-bore", 0.1, 0.8, {}),
+        ("transverse-bore:phase=90", 0.03, 0.5, {"poisson": 0.3}),
+        ("transverse-bore:angle=0.4,phase=50", 0.3, 2.0, {"poisson": 0.5}),
+        ("transverse-bore:phase=90", 0.2, 0.5, {"pressure": "power:exponent=1"}),
+    ],
+)
+def test_angular_points_of_the_whole_disc_agree_with_squares(name, velocity, amplitude, settings):
+    both = [
+        microslip.solve(name, velocity, amplitude, model=model, tolerance=5e-3, **settings)
+        for model in ("polar", "cartesian")
+    ]
+    assert all(one.converged for one in both)
+    assert abs(both[0].mu_macro - both[1].mu_macro) <= sum(one.mu_macro_error for one in both)
+
+
+@pytest.mark.slow
+def test_a_load_that_oscillates_beside_both_tends_to_each_of_them():
+    """Without its rotation it is the load with a lateral motion, and without the lateral motion the
+    load with a rotation, both of which know half of the disc."""
+    for parts, rest in (
+        ("lateral=1,angle=0.001", "lateral=1"),
+        ("lateral=0.001,angle=1", "angle=1"),
+    ):
+        both = [
+            microslip.solve(f"normal:{shares}", 0.1, 0.5, tolerance=5e-3)
+            for shares in (parts, rest)
+        ]
+        errors = sum(one.mu_macro_error for one in both)
+        assert abs(both[0].mu_macro - both[1].mu_macro) <= errors + 2e-3
+
+
+def test_a_rigid_contact_that_knows_half_of_itself_says_so():
     with pytest.raises(ValueError, match="half of the contact does not tell the other half"):
-        microslip.solve("transverse-bore", 0.1, 0.5, model="polar")
+        microslip.solve("transverse-bore", 0.1, 0.5, model="rigid")

@@ -138,9 +138,7 @@ def test_another_indenter_may_turn_under_its_load():
 
 
 def test_squares_do_not_know_such_a_load():
-    with pytest.raises(
-        ValueError, match="scene = 'normal:angle=1,lateral=1': only cartesian .* load"
-    ):
-        microslip.solve("normal:angle=1,lateral=1", 0.1, 0.5)
+    with pytest.raises(ValueError, match="pressure = 'ellipse.*: only cartesian .* load"):
+        microslip.solve("normal:angle=1,lateral=1", 0.1, 0.5, pressure="ellipse:ratio=0.5")
     with pytest.raises(ValueError, match="angle = 2: allowed is a share in 0..1"):
         microslip.solve("normal:angle=2", 0.1, 0.5)

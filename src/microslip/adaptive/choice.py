@@ -12,11 +12,15 @@ STEPLESS = ("rigid", "dahl")
 """Models whose march is an evaluation: no step of theirs is solved."""
 
 
-def choose_model(motion: Motion, poisson: float, model: str = "auto") -> str:
+def choose_model(
+    motion: Motion, poisson: float, model: str = "auto", *, static: bool = False
+) -> str:
     """The model to use: the cheapest that is exact for the motion, or the one asked for.
 
     Rings where the traction depends on the radius alone (translation at nu = 0), angular modes
-    where half of the contact tells the other half: squares are never cheaper then.  The slider and
+    where the contact is round besides: squares are never cheaper then, but for the static limit of
+    a contact that no symmetry halves, where the edge of what sticks cuts rings, and nothing is
+    marched.  The slider and
     the rigid contact are never chosen: what they leave out can only be bounded by running the
     rings, which then are the answer.
 
@@ -28,6 +32,8 @@ def choose_model(motion: Motion, poisson: float, model: str = "auto") -> str:
         Poisson's ratio.
     model : str
         "auto", or a name in models.registry.MODELS.
+    static : bool
+        Whether the limit of vanishing velocity is asked for.
 
     Raises
     ------
@@ -35,7 +41,8 @@ def choose_model(motion: Motion, poisson: float, model: str = "auto") -> str:
         For an unknown model or one that does not apply.
     """
     if model == "auto":
-        if not (motion.pressure.is_round and motion.half_disc):
+        by_squares = static and motion.depth is None and not motion.half_disc
+        if by_squares or not motion.pressure.is_round:
             name = "cartesian"
         else:
             name = "polar" if motion.rotates or poisson > 0.0 else "radial"

@@ -128,7 +128,8 @@ def refuse_choice(
     if exact is None and model == "auto":
         exact = _exact(problem, None, cells, steps)
     if exact is None:
-        name = choose_model(motion, problem.poisson, model)
+        static = problem.velocity == 0.0
+        name = choose_model(motion, problem.poisson, model, static=static)
         refuse_free(plan(problem, name, TOLERANCE, cells, steps)[1])
 
 

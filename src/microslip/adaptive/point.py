@@ -109,7 +109,8 @@ def solve(
     refuse_bounds(most_work=most_work, time_limit=time_limit)
     if progress is not None and not callable(progress):
         raise InputError("progress", progress, "allowed is a function of one argument")
-    name, how = choose_model(motion, poisson, model), method_named(method)
+    name = choose_model(motion, poisson, model, static=drive is None and velocity == 0.0)
+    how = method_named(method)
     _refuse_method(motion, name, method, how)
     asked = Asked(
         problem=body_of(

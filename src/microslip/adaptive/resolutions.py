@@ -99,7 +99,7 @@ def _imposed(name, count):
 def _falls_smoothly(problem, model):
     """Whether the error of a contact that oscillates falls smoothly if all is refined together."""
     motion = problem.motion
-    oscillates = motion.periodic and motion.rotates and motion.depth is None
+    oscillates = motion.periodic and motion.rotates and motion.half_disc and motion.depth is None
     least, most = TOGETHER_AMPLITUDES
     if not (model == "polar" and oscillates and least <= problem.amplitude <= most):
         return False

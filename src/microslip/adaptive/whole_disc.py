@@ -8,6 +8,9 @@ import numpy as np
 def points_of(contact) -> list[np.ndarray]:
     """Forward and lateral positions, bounds and areas on the whole disc, (points,) each."""
     forward, lateral = contact.forward_position, contact.lateral_position
+    if contact.whole:
+        every = (np.broadcast_to(part, forward.shape) for part in (contact.bound, contact.weight))
+        return [part.ravel() for part in (forward, lateral, *every)]
     other = lateral if contact.rotates else -lateral
     bound = np.broadcast_to(contact.bound, forward.shape)
     # a point of the half that is resolved stands for its image, too
@@ -21,6 +24,8 @@ def whole_disc(contact, field: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     other half is the mirror image across the lateral axis, of a translation the same turned round.
     """
     flat = field.reshape(len(field), 2, -1)
+    if contact.whole:
+        return flat[:, 0], flat[:, 1]
     other = flat * [[1.0], [-1.0]] if contact.rotates else flat
     both = np.concatenate([flat, other], axis=2)
     return both[:, 0], both[:, 1]

@@ -100,14 +100,16 @@ def _refuse_springs(motion, poisson):
     return _refuse_rotation(motion, poisson)
 
 
-def _refuse_half_disc(motion, poisson):
-    if not motion.pressure.is_round:
-        return f"rings cannot resolve the pressure {motion.pressure.name}"
-    return "" if motion.half_disc else "half of the contact does not tell the other half"
+def _refuse_angles(motion, poisson):
+    if motion.pressure.is_round:
+        return ""
+    return f"rings cannot resolve the pressure {motion.pressure.name}"
 
 
 def _refuse_rigid(motion, poisson):
-    return _refuse_half_disc(motion, poisson) if motion.rotates else ""
+    if motion.rotates and not motion.half_disc:
+        return "half of the contact does not tell the other half"
+    return _refuse_angles(motion, poisson) if motion.rotates else ""
 
 
 _NO_ROTATION = _any_of(_refuse_rotation, _refuse_pulsation)
@@ -149,9 +151,15 @@ MODELS = {
     ),
     "polar": Model(
         lambda motion, poisson, cells, angles, focus: PolarContact(
-            cells, angles, motion.rotates, poisson, focus, motion.pressure
+            cells,
+            angles,
+            motion.rotates,
+            poisson,
+            focus,
+            motion.pressure,
+            whole=not motion.half_disc,
         ),
-        _any_of(_refuse_other_loads, _refuse_half_disc),
+        _any_of(_refuse_other_loads, _refuse_angles),
         axes=lambda motion: ("cells", "angles"),
         pulled=True,
     ),

@@ -73,7 +73,7 @@ def solve_stored(
     )
     tolerance, cells, steps = checked_request(tolerance, cells, steps)
     refuse_bounds(time_limit=time_limit)
-    chosen = choose_model(kind, poisson, model)
+    chosen = choose_model(kind, poisson, model, static=drive is None and place == 0.0)
     problem = Problem(kind, place, amplitude, poisson)
     problem = body_of(problem, contacts, None if drive is None else chosen)
     if drive is not None:

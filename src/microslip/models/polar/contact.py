@@ -6,6 +6,8 @@ half of the disc follows from symmetry:
 - scenes that rotate: mirror image across the lateral axis (forward traction even, lateral odd);
 - translation: point symmetry, traction(-z) = traction(z), so even modes only.
 
+A motion that does both has neither symmetry, and the points of the other half are resolved, too.
+
 Coulomb's law is asked for at the points; the elastic operator is block-diagonal in the angular
 modes, one small ring matrix each (two modes m and 2 - m together where nu > 0).  A step is solved
 by ADMM: the quadratic part through the blocks factorised once, the friction bound point by point.
@@ -61,6 +63,8 @@ class PolarContact:
         Where the rings gather.
     pressure : pressure.Pressure
         One that depends on the radius alone.
+    whole : bool
+        Whether the other half of the disc is resolved as well; states: (2, 2 angles, cells).
 
     Raises
     ------
@@ -74,19 +78,22 @@ class PolarContact:
     loaded = None
     """Rings that know the bounds while the normal load changes, a RadialContact."""
 
-    def __init__(self, cells, angles, rotates, poisson=0.0, focus=None, pressure=HERTZ):
+    def __init__(
+        self, cells, angles, rotates, poisson=0.0, focus=None, pressure=HERTZ, *, whole=False
+    ):
         if angles < 2 or angles % 2:
             raise ValueError(f"angles = {angles}: allowed is an even number of at least 2")
         self.rings = make_rings(cells, focus, pressure)
-        self.angles, self.rotates, self.stiffness = angles, rotates, pressure.stiffness
+        self.rotates, self.stiffness = rotates, pressure.stiffness
         self.edges = np.sin(self.rings.psi) if pressure.inner == 0.0 else None
-        self._theta = theta = (np.arange(angles) + 0.5) * np.pi / angles
+        self.whole, self._half, self.angles = whole, angles, 2 * angles if whole else angles
+        self._theta = theta = (np.arange(self.angles) + 0.5) * np.pi / angles
         self.lateral_position = np.cos(theta)[:, None] * self.rings.radius
         self.forward_position = np.sin(theta)[:, None] * self.rings.radius
         self.bound = self.rings.bound
-        self.weight = self.rings.area / angles
+        self.weight = self.rings.area / self.angles
         key = (cells, angles, rotates, poisson, focus, pressure)
-        self.influence, self.inverse, self.compliance = _prepared(*key)
+        self.influence, self.inverse, self.compliance = _prepared(*key, whole=whole)
         self.penalty = _penalty(cells, rotates) * self.compliance
         self._made_of = cells, focus, pressure
 
@@ -121,7 +128,7 @@ class PolarContact:
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
         """A q; shapes (2, angles, cells)."""
-        folded = np.empty((4, self.angles // 2, state.shape[2]))
+        folded = np.empty((self._parts, self._half // 2, state.shape[2]))
         image, out = np.empty_like(folded), np.empty(state.shape)
         fold(np.ascontiguousarray(state), folded)
         apply_sectors(self.influence, folded, image)
@@ -136,7 +143,7 @@ class PolarContact:
         What is interpolated is the share of the friction bound.
         """
         few = len(self.rings.radius) < FEWEST_PROLONGED
-        if few or not self.rotates or self.loaded is not None:
+        if few or not self.rotates or self.whole or self.loaded is not None:
             return None
         _, focus, pressure = self._made_of
         rings, count = make_rings(state.shape[2], focus, pressure), state.shape[1]
@@ -150,7 +157,18 @@ class PolarContact:
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
         """theta -> pi - theta, lateral traction negated."""
-        return state[:, ::-1, :] * contact.MIRROR
+        image = state[:, ::-1, :] * contact.MIRROR
+        return np.roll(image, self._half, axis=1) if self.whole else image
+
+    @property
+    def _parts(self):
+        """Of folded tractions."""
+        return 8 if self.whole else 4
+
+    def _without_what_cancels(self, forces):
+        """Set to zero what symmetry forbids, and the half disc that is not resolved cancels."""
+        if not self.whole:
+            forces[:, contact.LATERAL if self.rotates else contact.TORQUE] = 0.0
 
     @property
     def _points(self):
@@ -161,6 +179,7 @@ class PolarContact:
             self.penalty,
             self.weight,
             (self.forward_position, self.lateral_position),
+            self._parts,
         )
 
     def march(self, path, state, tolerance, sensitivity=False, previous=None) -> contact.March:
@@ -179,8 +198,7 @@ class PolarContact:
             polar_march.Stages(stages[0], stages[1], previous is not None),
             forces,
         )
-        # the half disc that is not resolved cancels what symmetry forbids
-        forces[:, contact.LATERAL if self.rotates else contact.TORQUE] = 0.0
+        self._without_what_cancels(forces)
         solves = path.stages.shape[0] * path.stages.shape[1]
         return contact.March(state, forces, residual, iterations, solves, stages=stages)
 
@@ -206,7 +224,7 @@ class PolarContact:
             PulledStages(stages[0][0], stages[0][1], stages[1], previous is not None),
             (float(tolerance), forces, moved),
         )
-        forces[:, contact.LATERAL if self.rotates else contact.TORQUE] = 0.0
+        self._without_what_cancels(forces)
         return PulledMarch(
             state, forces, residual, iterations, shape[0] * shape[1], stages=stages, body=moved
         )
@@ -223,8 +241,9 @@ def _penalty(cells, rotates):
 
 
 @lru_cache(maxsize=32)
-def _prepared(cells, angles, rotates, poisson, focus, pressure):
+def _prepared(cells, angles, rotates, poisson, focus, pressure, *, whole):
     """The operator, (A + penalty)^-1, and the self-influence of each ring."""
-    operator, compliance = influence_sectors(cells, angles, rotates, poisson, focus, pressure)
+    key = (cells, angles, rotates, poisson, focus, pressure)
+    operator, compliance = influence_sectors(*key, whole=whole)
     inverse = shifted_inverse(operator, _penalty(cells, rotates) * compliance)
     return quickest(operator), quickest(inverse), compliance

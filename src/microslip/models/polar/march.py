@@ -25,7 +25,8 @@ SLOWEST_RATE = -0.05
 
 
 class Points(NamedTuple):
-    """The points of a contact, N rings times M angles on half the disc, for compiled code.
+    """The points of a contact, N rings times M angles on half the disc or 2 M on all of it, for
+    compiled code.
 
     Attributes
     ----------
@@ -37,6 +38,8 @@ class Points(NamedTuple):
         Area of a point of each ring.
     positions : tuple of np.ndarray, shape (M, N) each
         Forward and lateral.
+    parts : int
+        Of folded tractions: 4, or 8 of a whole disc, which has 2 M angles.
     """
 
     influence: Sectors
@@ -44,6 +47,7 @@ class Points(NamedTuple):
     penalty: np.ndarray
     weight: np.ndarray
     positions: tuple
+    parts: int
 
 
 class Stages(NamedTuple):
@@ -233,7 +237,7 @@ def march(points, path, state, tolerance, known, forces) -> tuple:
     rigid, z, b = np.empty_like(q), np.empty_like(q), np.empty_like(q)
     slips = np.empty((stages, 2, angles, n))
     unknowns = Unknowns(q, np.zeros_like(q))
-    folded = np.empty((4, angles // 2, n))
+    folded = np.empty((points.parts, 2 * angles // points.parts, n))
     scratch = Scratch(folded, np.empty_like(folded), np.empty_like(q))
     rigid_displacement(path.positions[0], positions, rigid)
     fill_slip(points.influence, rigid, q, folded, scratch.image, z)

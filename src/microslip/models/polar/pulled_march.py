@@ -216,7 +216,7 @@ def pulled_march(points, path, pull, state, known, settings) -> tuple:
     rigid, z, b = np.empty_like(q), np.empty_like(q), np.empty_like(q)
     slips, rates = np.empty((stages, *q.shape)), np.empty(stages)
     unknowns = Unknowns(q, np.zeros_like(q))
-    folded = np.empty((4, q.shape[1] // 2, q.shape[2]))
+    folded = np.empty((points.parts, 2 * q.shape[1] // points.parts, q.shape[2]))
     scratch = Scratch(folded, np.empty_like(folded), np.empty_like(q))
     followed = _followed(points, q.shape, scratch)
     rigid_displacement(path.positions[0], positions, rigid)

@@ -1,0 +1,105 @@
+"""Angular points of a whole disc: the same operator and marches as of its halves."""
+
+import numpy as np
+import pytest
+
+from microslip.models.path import SDIRK2, make_path
+from microslip.models.polar.contact import PolarContact
+
+RINGS, ANGLES = 5, 6
+RATIOS = [0.0, 0.3, 0.5]
+SIGNS = np.array([1.0, -1.0])[:, None, None]
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(7)
+
+
+def whole(nu, focus=None):
+    return PolarContact(RINGS, ANGLES, True, nu, focus, whole=True)
+
+
+def turned(field, places):
+    """A field turned about the centre by some angles between points."""
+    forward, lateral = np.roll(field, places, axis=1)
+    angle = places * np.pi / ANGLES
+    return np.stack(
+        [
+            np.cos(angle) * forward + np.sin(angle) * lateral,
+            np.cos(angle) * lateral - np.sin(angle) * forward,
+        ]
+    )
+
+
+def smooth(contact, rng):
+    """Random tractions without the shortest waves, of which points know one of two."""
+    theta = (np.arange(2 * ANGLES) + 0.5)[:, None] * np.pi / ANGLES
+    waves = [wave(m * theta) for m in range(ANGLES - 1) for wave in (np.cos, np.sin)]
+    return sum(rng.normal(size=(2, 1, RINGS)) * wave for wave in waves)
+
+
+@pytest.mark.parametrize("nu", RATIOS)
+def test_the_operator_knows_no_direction(nu, rng):
+    """A round contact of an isotropic body: what is turned moves as much, and turned."""
+    contact = whole(nu)
+    field = smooth(contact, rng)
+    for places in (1, 2, 5):
+        one = contact.displacement(turned(field, places))
+        assert one == pytest.approx(turned(contact.displacement(field), places), abs=1e-12)
+
+
+@pytest.mark.parametrize("nu", RATIOS)
+def test_what_a_mirror_leaves_is_half_of_the_disc(nu, rng):
+    half, disc = PolarContact(RINGS, ANGLES, True, nu), whole(nu)
+    given = rng.normal(size=(2, ANGLES, RINGS))
+    both = np.concatenate([given, given[:, ::-1] * SIGNS], axis=1)
+    found = disc.displacement(both)
+    assert np.array_equal(found[:, :ANGLES], half.displacement(given))
+    assert np.array_equal(disc.mirrored(both)[:, :ANGLES], half.mirrored(given))
+
+
+@pytest.mark.parametrize("nu", RATIOS)
+def test_the_mirror_across_the_forward_axis_commutes_with_the_operator(nu, rng):
+    disc = whole(nu)
+    field = smooth(disc, rng)
+    image = disc.mirrored(field)
+    assert disc.displacement(image) == pytest.approx(
+        disc.mirrored(disc.displacement(field)), abs=1e-12
+    )
+    assert np.array_equal(disc.mirrored(image), field)
+    across = disc.lateral_position * np.ones((2, 1, 1))
+    assert disc.mirrored(across)[1] == pytest.approx(disc.lateral_position, abs=1e-15)
+
+
+@pytest.mark.parametrize("nu", RATIOS)
+@pytest.mark.parametrize("rotates", [True, False])
+def test_a_motion_with_a_symmetry_is_marched_as_on_half_of_the_disc(nu, rotates):
+    half = PolarContact(RINGS, ANGLES, rotates, nu, 0.6)
+    disc = whole(nu, 0.6)
+
+    def motion(phase):
+        swing = 0.7 * np.sin(phase)
+        none = 0.0 * phase
+        return (0.1 * phase, none, swing) if rotates else (0.1 * phase, swing, none)
+
+    path = make_path(motion, np.linspace(-1.5, 1.5, 9), SDIRK2)
+    marches = [
+        contact.march(path, np.zeros((2, *contact.forward_position.shape)), 1e-9)
+        for contact in (half, disc)
+    ]
+    # at nu > 0 the shortest wave of a translation has a cosine on half of the disc alone
+    allowed = 2e-6 if rotates or nu == 0.0 else 1e-4
+    assert marches[1].state[:, :ANGLES] == pytest.approx(marches[0].state, abs=allowed)
+    assert marches[1].forces == pytest.approx(marches[0].forces, abs=allowed)
+    assert np.hypot(*marches[1].state).max() <= disc.bound.max() * (1.0 + 1e-12)
+
+
+def test_forces_are_sums_over_the_disc():
+    """Uniform slip across: no forward force, the whole bound across, and no torque."""
+    disc = whole(0.3)
+    path = make_path(
+        lambda phase: (0.0 * phase, 50.0 * phase, 0.0 * phase), np.linspace(0.0, 1.0, 3), SDIRK2
+    )
+    forces = disc.march(path, np.zeros((2, 2 * ANGLES, RINGS)), 1e-10).forces[-1]
+    assert forces == pytest.approx([0.0, 1.0, 0.0], abs=1e-8)
