@@ -60,7 +60,7 @@ class Motion:
     half_disc : bool
         Half of a round contact tells the other half: where the motion rotates by mirror symmetry
         across the lateral axis, else by point symmetry.  A rotation together with a lateral motion
-        has neither.
+        has neither, and all of the disc is resolved.
     pressure : pressure.Pressure
         How the load is spread; it does not change while the contact moves.
     depth : callable or None

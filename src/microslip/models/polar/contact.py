@@ -1,4 +1,4 @@
-"""Rings times angular modes: rotating scenes at any nu, translation at nu > 0.
+"""Rings times angular modes: rotating scenes at any nu, translation at nu > 0, and both at once.
 
 Points sit on rings at angles theta_j = (j + 1/2) pi / M, theta from the lateral axis; the other
 half of the disc follows from symmetry:
@@ -49,7 +49,7 @@ FEWEST_PROLONGED = 16
 
 
 class PolarContact:
-    """Rings times points on half the disc (see models.contact.Contact); states: (2, angles, cells).
+    """Rings times points on the disc (see models.contact.Contact); states: (2, angles, cells).
 
     Parameters
     ----------
