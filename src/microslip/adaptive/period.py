@@ -161,7 +161,9 @@ def period(
     slip_forward, slip_lateral = whole_disc(contact, np.concatenate([slip[-1:], slip]))
     forward, lateral = whole_disc(contact, tractions)
     forward_position, lateral_position, _, area = points_of(contact)
-    bound = np.tile(bounds.reshape(len(bounds), -1), 2)  # the other half has the same
+    bound = bounds.reshape(len(bounds), -1)
+    if not contact.whole:
+        bound = np.tile(bound, 2)  # the other half has the same
     along = forward * slip_forward + lateral * slip_lateral > 0.0
     return Period(
         phase,
