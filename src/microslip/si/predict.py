@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 from microslip.adaptive.checks import SMALLEST_TOLERANCE
-from microslip.adaptive.point import Result, solve
+from microslip.adaptive.point import solve
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.si.dimensionless import groups, solver_scene
@@ -18,6 +18,7 @@ from microslip.si.prediction import Prediction
 from microslip.si.pulled import about_drive, answer_of, with_speed
 from microslip.si.quantities import read
 from microslip.si.reduction import motion_for
+from microslip.si.several import read_carriers
 from microslip.si.uncertain import with_spreads
 from microslip.si.validity import broken_assumptions, unchecked
 
@@ -57,6 +58,7 @@ def predict(
     drive_stiffness: object = None,
     mass: object = None,
     damping: object = None,
+    contacts: object = None,
     hardness: object = None,
     density: object = None,
     counter_hardness: object = None,
@@ -114,6 +116,12 @@ def predict(
     drive_stiffness, mass, damping : quantity, optional
         Of a spring between what has the speed and the body, N/m, of the body, kg, and of a dashpot
         on it, N s/m.  A mass may be under a force, too.
+    contacts : str, optional
+        Of a body that several contacts of the same bodies carry, as microslip.solve takes them:
+        "phase=0;phase=180".  The load is that of all of them, which share it by their `load`;
+        force, drive_stiffness, mass and damping are those of the body; amplitudes are of a contact
+        whose share of them is 1.  What is said of one contact is said of one that carries the mean
+        load, and warnings are about the one that carries most.
     hardness, density, counter_hardness, counter_density : quantity, optional
         Of the body and the counterbody, Pa (or as in "700 HV", "60 HRC") and kg/m^3, for the
         warnings alone.
@@ -163,6 +171,7 @@ def predict(
     accepted = read(
         "tolerance", tolerance, "", low=SMALLEST_TOLERANCE, low_open=False, high=LARGEST_TOLERANCE
     )
+    carriers, several = read_carriers(contacts, reduction=reduction, power=power)
     contact, understood = read_contact(
         read_body(young, nu, material).completed("", hardness, density),
         read_counterbody(counterbody).completed("counter_", counter_hardness, counter_density),
@@ -173,11 +182,12 @@ def predict(
         pressure=pressure,
         load=load,
         mu=mu,
+        contacts=carriers.count,
     )
     if motion.load_amplitude is not None and motion.load_amplitude > contact.load:
         allowed = "allowed is at most the load: beyond it the bodies part"
         raise InputError("load_amplitude", load_amplitude, allowed)
-    about = understood | asked | pulls
+    about = understood | asked | pulls | several
     if reduction is not None:
         if pulls:
             allowed = "allowed where a speed alone pulls: without a force and a drive_stiffness"
@@ -188,23 +198,31 @@ def predict(
         motion = motion_for(contact, motion, **settings)
     velocity, size = _checked_groups(contact, motion, speed, amplitude)
     given = {"force": force, "drive_stiffness": drive_stiffness, "mass": mass, "damping": damping}
-    pulling = checked_drive_groups(drive, motion, contact, given)
-    answer = answer_of(contact, motion, pulling, accepted.si)
+    pulling = checked_drive_groups(carriers.share_of(drive), motion, contact, given)
+    if several:
+        carriers.problem(motion, contact)  # refuses what does not go with them
+    answer = answer_of(contact, motion, pulling, accepted.si, carriers)
     limit = None
     if size is not None:
         exactly = min(accepted.si, TOLERANCE) if force is not None else accepted.si
         if scene in COMBINED:
             exactly = max(exactly, TOLERANCE_OF_LIMIT)
         settings = {"poisson": contact.poisson, "pressure": contact.pressure}
+        settings |= carriers.settings
         named = solver_scene(motion, contact)
         limit = solve(named, 0.0, size, tolerance=exactly, **settings)
-    pulled = about_drive(contact, motion, drive, pulling, answer, limit)
+    pulled = about_drive((contact, carriers), motion, (drive, pulling), answer, limit)
     if velocity is None:
         velocity, motion = answer.velocity, with_speed(motion, contact, answer)
     if answer.converged:
-        pulled |= energy_fields(contact, motion, answer)
+        pulled |= energy_fields(contact, motion, answer, carriers.count)
         pulled |= vibration_fields(contact, motion, answer, accepted.si) if power else {}
-    return replace(_prediction(contact, motion, velocity, answer, limit, about), **pulled)
+    most = carriers.most_loaded(contact)
+    doubts = tuple(broken_assumptions(most, motion)), tuple(unchecked(most))
+    still = contact.mu * contact.load * carriers.count
+    pulled |= {"contacts": answer.contacts if several else None}
+    found = _prediction(contact, (motion, still, doubts), velocity, (answer, limit), about)
+    return replace(found, **pulled)
 
 
 def _checked_groups(contact, motion, speed, amplitude):
@@ -226,8 +244,10 @@ def _checked_groups(contact, motion, speed, amplitude):
     return velocity, size
 
 
-def _prediction(contact, motion, velocity, answer: Result, limit: Result | None, understood):
-    still = contact.mu * contact.load
+def _prediction(contact, moved, velocity, answers, understood):
+    """moved: the motion, the force that it takes without vibration, warnings and what was not
+    looked at.  answers: Results at the speed, and at a vanishing one or None."""
+    (motion, still, (warnings, not_checked)), (answer, limit) = moved, answers
     return Prediction(
         scene=motion.scene,
         contact_radius_m=contact.contact_radius,
@@ -259,8 +279,8 @@ def _prediction(contact, motion, velocity, answer: Result, limit: Result | None,
         model=answer.model,
         converged=answer.converged and (limit is None or limit.converged),
         reason=answer.reason or ("" if limit is None else limit.reason),
-        warnings=tuple(broken_assumptions(contact, motion)),
-        not_checked=tuple(unchecked(contact)),
+        warnings=warnings,
+        not_checked=not_checked,
         counterbody=understood["counterbody"],
         understood=understood,
     )
