@@ -44,7 +44,11 @@ NUMBERS = [
     (f"{PULLED} --force -1 --results new", "--force = '-1'", "at least 0: transverse drives"),
     (f"{PULLED} --force 0.1 --contacts 'load=0'", "--contacts = 'load=0'", "in 0.001..1000"),
     (f"{PULLED} --force 0.1 --contacts 'phase=1;'", "--contacts = 'phase=1;'", "allowed are"),
-    (f"{PULLED} --force 0.1 --nu 0.3 --contacts phase=1", "--contacts = 'phase=1'", "model polar"),
+    (
+        "point continuous-bore --velocity 1 --contacts phase=1",
+        "--contacts = 'phase=1'",
+        "does not oscillate",
+    ),
     (f"{PULLED} --force 0.1 --model rigid", "--model = 'rigid'", "does not know a force"),
     (f"{PULLED} --force 0.1 --method march", "--method = 'march'", "shipped with a force"),
     (f"{TRANSVERSE} --stiffness 0", "--stiffness = '0'", "a number above 0"),

@@ -162,5 +162,6 @@ def test_several_contacts_are_part_of_every_request_and_of_the_dataset(tmp_path)
     assert len(list(tmp_path.glob("points/*/*/*.json"))) == 1  # found, not computed again
     with pytest.raises(load.ConfigError, match="pair.contacts: 'phase=': allowed are numbers"):
         configured(pair=PAIR | {"contacts": "phase="})
-    with pytest.raises(load.ConfigError, match="in the model polar"):
-        configured(pair=PAIR | {"poisson": 0.3})
+    unequal = {"scene": "normal", "contacts": "load=2;load=1"}
+    with pytest.raises(load.ConfigError, match="allowed are equal loads for normal"):
+        configured(pair=PAIR | unequal)

@@ -1,73 +1,170 @@
-"""Contacts of one body, side by side in one system of rings, against what is plainer."""
+"""Contacts of one body, side by side in one system, against what is plainer."""
 
 import numpy as np
 import pytest
-from models.test_pulled import BODIES, START
+from models.test_pulled import BODIES, START, plain
 from reference_pull import pulled_march
-from scipy.linalg import block_diag
 
 from microslip.models.contact import forward_slip
-from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
+from microslip.models.path import EULER, SDIRK2, BodyPath, half_period_phases, make_path
+from microslip.models.polar.contact import PolarContact
+from microslip.models.polar.side_by_side import PolarSideBySide
 from microslip.models.pull import Body
 from microslip.models.rings.contact import RadialContact
-from microslip.models.rings.side_by_side import BodyPath, RingsSideBySide
+from microslip.models.rings.side_by_side import RingsSideBySide
+from microslip.models.squares.contact import CartesianContact
+from microslip.models.squares.side_by_side import SquaresSideBySide
 
 VELOCITY = 0.3
 WAYS = ((0.8, 0.0, 0.0), (0.5, 1.1, 0.3))
 """Amplitude, phase and share of it forward of two contacts."""
 SHARES, EXTENTS = (0.7, 0.3), (1.25, 0.71)
 
-
-def small():
-    """Two contacts of a few rings, in their own units."""
-    return RadialContact.resolved(3, 0.7), RadialContact.resolved(4, 0.5)
+KINDS = {
+    "rings": (
+        RingsSideBySide,
+        lambda: (RadialContact.resolved(3, 0.7), RadialContact.resolved(4, 0.5)),
+        False,
+    ),
+    "angular points": (
+        PolarSideBySide,
+        lambda: (PolarContact(3, 4, True, 0.3, 0.6), PolarContact(4, 4, True, 0.3, 0.5)),
+        True,
+    ),
+    "angular points at nu = 0": (
+        PolarSideBySide,
+        lambda: (PolarContact(3, 4, True, 0.0, 0.6), PolarContact(4, 4, True, 0.0, 0.5)),
+        True,
+    ),
+    "angular points of a translation": (
+        PolarSideBySide,
+        lambda: (PolarContact(3, 4, False, 0.3, 0.6), PolarContact(3, 4, False, 0.3, 0.5)),
+        False,
+    ),
+    "angular points, too many for dense matrices": (
+        PolarSideBySide,
+        lambda: (PolarContact(7, 8, True, 0.0), PolarContact(6, 8, True, 0.0)),
+        True,
+    ),
+    "squares": (
+        SquaresSideBySide,
+        lambda: (CartesianContact(5, 0.3), CartesianContact(5, 0.3)),
+        True,
+    ),
+}
+"""How they stand side by side, two contacts in their own units, and whether they turn."""
 
 
 def base(phase):
     return VELOCITY * phase, 0.0 * phase, 0.0 * phase
 
 
-def besides(way):
+def besides(way, turns=False):
     amplitude, lead, forward = way
     return lambda phase: (
         amplitude * forward * np.sin(phase + lead),
         amplitude * np.sin(phase + lead),
-        0.0 * phase,
+        0.6 * turns * amplitude * np.cos(phase + lead),
     )
 
 
-def path_of(phases, ways, integrator=SDIRK2):
-    each = tuple(make_path(besides(way), phases, integrator) for way in ways)
+def path_of(phases, ways, integrator=SDIRK2, turns=False):
+    each = tuple(make_path(besides(way, turns), phases, integrator) for way in ways)
     return BodyPath(**vars(make_path(base, phases, integrator)), each=each)
+
+
+def plain_of_all(contacts):
+    """Matrix, weights and bound of contacts none of which feels the others."""
+    each = [plain(one) for one in contacts]
+    rows = each[0][1].shape[0]
+    cells = [weight.shape[1] for _, weight, _ in each]
+    unknowns = np.arange(2 * rows * sum(cells)).reshape(2, rows, sum(cells))
+    matrix = np.zeros((unknowns.size, unknowns.size))
+    own = np.split(unknowns, np.cumsum(cells)[:-1], axis=-1)
+    for places, (alone, _, _), extent in zip(own, each, EXTENTS, strict=True):
+        matrix[np.ix_(places.ravel(), places.ravel())] = extent * alone
+    weight = [share * weight for (_, weight, _), share in zip(each, SHARES, strict=True)]
+    bound = [bound for _, _, bound in each]
+    return matrix, np.concatenate(weight, axis=-1), np.concatenate(bound, axis=-1)
+
+
+def moved(contact, displacement, phase):
+    """Displacement of every point of a contact."""
+    forward, lateral, angle = displacement
+    turn = np.stack([contact.lateral_position, -contact.forward_position])
+    return np.array([forward + base(phase)[0], lateral])[:, None, None] + angle * turn
 
 
 @pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
 @pytest.mark.parametrize("body", BODIES)
-def test_a_march_of_two_contacts_is_the_plain_one(body, integrator):
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_march_of_two_contacts_is_the_plain_one(kind, body, integrator):
     """The plain march knows nothing of contacts: a matrix of two blocks, and points that move each
     as they like."""
-    contacts, phases = small(), half_period_phases(5)
-    joined = RingsSideBySide(contacts, SHARES, EXTENTS)
-    matrix = block_diag(*(e * one.influence for one, e in zip(contacts, EXTENTS, strict=True)))
-    weight = np.concatenate([s * one.weight for one, s in zip(contacts, SHARES, strict=True)])
-    bound = np.concatenate([one.bound for one in contacts])
-    cells = [len(one.bound) for one in contacts]
+    side_by_side, build, turns = KINDS[kind]
+    contacts, phases = build(), half_period_phases(5)
+    joined = side_by_side(contacts, SHARES, EXTENTS)
 
     def of_points(phase):
-        rows = [np.array(besides(way)(phase)[:2]) for way in WAYS]
-        rows = [row + np.array([base(phase)[0], 0.0]) for row in rows]
-        return np.repeat(np.stack(rows, axis=1), cells, axis=1)[:, None]
+        each = zip(contacts, WAYS, strict=True)
+        return np.concatenate(
+            [moved(one, besides(way, turns)(phase), phase) for one, way in each], axis=-1
+        )
 
     start, numbers = 0.5 * forward_slip(joined), BODIES[body]
-    plain = np.kron(np.eye(2), matrix), weight[None], bound
     stages = len(integrator.times)
-    expected, places = pulled_march(plain, of_points, phases, start, numbers, START, stages)
-    path = path_of(phases, WAYS, integrator)
+    expected, places = pulled_march(
+        plain_of_all(contacts), of_points, phases, start, numbers, START, stages
+    )
+    path = path_of(phases, WAYS, integrator, turns)
     found = joined.pulled_march(path, start, 1e-12, Body(*numbers), START)
     assert found.state == pytest.approx(expected[-1], abs=2e-8)
     assert found.body[:, 0] == pytest.approx(places, abs=2e-8)
     again = joined.pulled_march(path, start, 1e-12, Body(*numbers), START, previous=found)
     assert again.state == pytest.approx(found.state, abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_work_on_all_contacts_is_stored_or_dissipated(kind):
+    """As of one contact: a backward Euler step balances work exactly."""
+    side_by_side, build, turns = KINDS[kind]
+    contacts, phases, force = build(), half_period_phases(1), 0.7
+    joined = side_by_side(contacts, SHARES, EXTENTS)
+    start, path = 0.5 * forward_slip(joined), path_of(phases, WAYS, EULER, turns)
+    found = joined.pulled_march(path, start, 1e-12, Body(0.0, 0.0, 0.0, force), START)
+    q, ahead = found.state, np.diff(base(phases)[0])[0] + found.body[1, 0]
+    each = zip(contacts, WAYS, strict=True)
+    swung = np.concatenate(
+        [
+            np.subtract(*(moved(one, besides(way, turns)(phase), 0.0) for phase in phases[::-1]))
+            for one, way in each
+        ],
+        axis=-1,
+    )
+    strained = joined.displacement(q - start)
+    slip = swung - strained
+    slip[0] += ahead
+    work = force * ahead + np.sum(joined.weight * q * swung)
+    stored = np.sum(joined.weight * q * strained)
+    dissipated = np.sum(joined.weight * joined.bound * np.hypot(*slip))
+    assert dissipated > 0.01
+    assert work == pytest.approx(stored + dissipated, abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_displacements_of_contacts_side_by_side_are_their_own(kind):
+    side_by_side, build, _ = KINDS[kind]
+    contacts = build()
+    joined = side_by_side(contacts, SHARES, EXTENTS)
+    state = np.random.default_rng(3).normal(size=forward_slip(joined).shape)
+    matrix, weight, bound = plain_of_all(contacts)
+    assert joined.displacement(state).ravel() == pytest.approx(matrix @ state.ravel(), abs=1e-12)
+    assert np.broadcast_to(joined.weight, weight.shape) == pytest.approx(weight)
+    assert joined.bound == pytest.approx(bound)
+    cells = weight.shape[1] // 2 if kind == "squares" else contacts[0].bound.shape[-1]
+    for own, one in zip(np.split(joined.mirrored(state), [cells], axis=-1), contacts, strict=True):
+        columns = slice(0, cells) if one is contacts[0] else slice(cells, None)
+        assert np.array_equal(own, one.mirrored(state[..., columns]))
 
 
 @pytest.mark.parametrize("body", ["a spring and a mass", "a force"])

@@ -134,7 +134,7 @@ def predicted(monkeypatch):
             rest = {"amplitude": amplitude, "model": "map", "converged": False, "reason": reason}
             return SimpleNamespace(**found, **rest)
 
-        def answer_of(contact, motion, pulling, tolerance):
+        def answer_of(contact, motion, pulling, tolerance, carriers):
             groups = module.groups(motion, contact)
             return solve(motion.scene, *groups, poisson=contact.poisson)
 

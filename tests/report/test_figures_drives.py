@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from stubs.drives_stub import FORCES, creep, pulled
+from stubs.drives_stub import FORCES, creep, pairs, pulled
 
 from microslip.report.figures import drawing
 
@@ -54,9 +54,25 @@ def test_drives_are_laid_over_each_other():
     assert level.get_ydata()[0] == pytest.approx(0.1 / 1.1)
 
 
-@pytest.mark.parametrize("name", ["creep_maps", "drives"])
+def test_a_pair_is_drawn_beside_one_contact_and_its_closed_form():
+    left, right = drawing.draw("pairs", pairs()).figure.axes
+    alone, moved = by_gid(left, "computed")
+    soft, stiff, force = by_gid(right, "computed")
+    assert np.array_equal(alone.get_ydata(), moved.get_ydata())
+    assert soft.get_ydata() == pytest.approx(0.5 * stiff.get_ydata())
+    assert stiff.get_label() == "constant velocity"
+    (line,) = by_gid(right, "antiphase")
+    velocity, held = line.get_data()
+    # (2/pi) P^(2/3) at amplitude 1
+    assert velocity == pytest.approx(2.0 / np.pi * held ** (2 / 3))
+    on_the_line = 2.0 / np.pi * force.get_ydata() ** (2 / 3)
+    assert force.get_xdata() == pytest.approx(1.1 * on_the_line)
+
+
+@pytest.mark.parametrize("name", ["creep_maps", "drives", "pairs"])
 def test_what_is_missing_is_named(name):
     datasets = {"creep_transverse": creep("transverse"), "creep_bore": creep("bore")} | pulled()
+    datasets |= pairs()
     last = drawing.FIGURES[name][-1]
     lacking = datasets | {last: datasets[last].drop_vars("converged")}
     with pytest.raises(ValueError, match="converged"):

@@ -35,6 +35,7 @@ def given() -> dict[str, tuple[str, dict]]:
     found |= {f"two {name}": (name, two) for name in ("fig2_transverse_map", "fig6_bore_map")}
     maps = {f"creep_{scene}": drives_stub.creep(scene) for scene in ("transverse", "bore")}
     found |= {"creep_maps": ("creep_maps", maps), "drives": ("drives", drives_stub.pulled())}
+    found["pairs"] = "pairs", drives_stub.pairs()
     answer, _ = studies_stub.answered(driving_stub.driving_result)
     driving = registry.build("driving", driving_stub.configured(), answer)
     found["driving"] = "driving", {"driving": driving}

@@ -113,9 +113,7 @@ def solve(
     how = method_named(method)
     _refuse_method(motion, name, method, how)
     asked = Asked(
-        problem=body_of(
-            Problem(motion, velocity, amplitude, poisson), contacts, name if drive else None
-        ),
+        problem=body_of(Problem(motion, velocity, amplitude, poisson), contacts),
         model=name,
         chosen=model == "auto",
         method=method,

@@ -12,22 +12,16 @@ from microslip.motions.body_contacts import contacts_of
 from microslip.solver.body_problem import BodyProblem, why_not
 from microslip.solver.problem import Problem
 
-COUPLED_MODELS = ("slider", "mdr", "radial")
-"""Those whose contacts may stand side by side, see models.rings.side_by_side."""
 
-
-def body_of(problem: Problem, contacts: str | None, pulled_in: str | None) -> Problem:
+def body_of(problem: Problem, contacts: str | None) -> Problem:
     """The problem with the contacts that a text says, if there is one.
 
-    pulled_in: name of the model where a force or a spring pulls, else None.  Raises InputError
-    about `contacts` where these do not go with the problem or the model.
+    Raises InputError about `contacts` where these do not go with the problem.
     """
     if contacts is None:
         return problem
     body = BodyProblem(**vars(problem), contacts=contacts_of(contacts))
     refusal = why_not(body)
-    if not refusal and pulled_in is not None and pulled_in not in COUPLED_MODELS:
-        refusal = f"allowed is none where a force or a spring pulls in the model {pulled_in}"
     if refusal:
         raise InputError("contacts", contacts, refusal)
     return body
@@ -45,7 +39,8 @@ def solve_each(asked: Asked) -> Result:
     results = list(alone.values())
 
     def weighted(name):
-        return sum(part.share * getattr(alone[part.problem], name) for part in problem.parts)
+        each = zip(problem.shares, problem.parts, strict=True)
+        return sum(share * getattr(alone[part.problem], name) for share, part in each)
 
     def most(name):
         return max(getattr(result, name) for result in results)

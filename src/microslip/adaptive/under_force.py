@@ -99,6 +99,8 @@ def least_load(problem: Problem) -> float:
     if not problem.motion.periodic or problem.depth is None:
         return 1.0
     loads = problem.motion.pressure.total(np.asarray(problem.depth(LOOP), dtype=float))
+    if problem.parts:
+        loads = np.array([part.share for part in problem.parts]) @ loads
     return max(float(loads.min()), 0.0) / problem.mean_load
 
 

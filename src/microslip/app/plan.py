@@ -283,6 +283,8 @@ def _is_drawable(figure, names, configuration):
         return (
             same and _has(moved.amplitude, body.amplitude) and _has(moved.velocity, body.velocity)
         )
+    if figure == "pairs":
+        return len({configuration.grids[name].amplitude for name in names}) == 1
     if figure not in ("fig2_transverse_map", "fig6_bore_map", "poisson"):
         return True
     grids = [configuration.sweeps[name] for name in names]

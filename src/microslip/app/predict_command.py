@@ -51,6 +51,11 @@ OPTIONS = {
     "drive-stiffness": ("K", "of a spring that pulls with the speed, such as '10 N/um'"),
     "mass": ("M", "of the body that a spring or a force pulls, such as '20 g'"),
     "damping": ("C", "of a dashpot on a body on a spring, such as '5 N*s/m'"),
+    "contacts": (
+        "TEXT",
+        "that carry the body together, such as 'phase=0;phase=180': the load is that of all, which "
+        "share it by load=..., and so is what pulls",
+    ),
     "hardness": ("H", "of the body, to warn of yielding, such as '7 GPa', '700 HV' or '60 HRC'"),
     "density": ("RHO", "of the body, to warn of inertia, such as '7850 kg/m^3'"),
     "counter-hardness": ("H2", "of the counterbody"),
@@ -64,7 +69,7 @@ OPTIONS = {
 }
 OTHER_NAMES = {"nu": ("--poisson",)}
 UNDERSTOOD = ("scene", "body", "counterbody", "radius", "counter_radius", "radius_across")
-UNDERSTOOD += ("contact_radius", "pressure", "load", "mu", "speed")
+UNDERSTOOD += ("contact_radius", "pressure", "load", "contacts", "mu", "speed")
 UNDERSTOOD += ("force", "drive_stiffness", "mass", "damping")
 UNDERSTOOD += ("amplitude", "forward_amplitude", "rotation_amplitude", "load_amplitude", "phase")
 UNDERSTOOD += ("frequency", "rotation", "reduction")

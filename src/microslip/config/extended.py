@@ -185,7 +185,7 @@ def _ask_of_drive(sweep, scene):
         drive = checked_drive(velocity, **given)
         model = choose_model(scene, sweep.poisson[-1], sweep.model)
         problem = Problem(scene, velocity or 0.0, amplitude, sweep.poisson[-1])
-        problem = body_of(problem, sweep.contacts, model)
+        problem = body_of(problem, sweep.contacts)
         refuse_drive(problem, drive, model)
 
 

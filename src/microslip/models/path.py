@@ -152,6 +152,34 @@ class Path:
         return np.trapezoid(values, self.phase, axis=0) / (self.phase[-1] - self.phase[0])
 
 
+@dataclass(frozen=True, eq=False)
+class BodyPath(Path):
+    """A Path of a body, and what its contacts do besides.
+
+    Attributes
+    ----------
+    each : tuple of path.Path
+        Of every contact, relative to that of the body and cut into the same steps; they alone tell
+        an indentation.
+    """
+
+    each: tuple[Path, ...] = ()
+
+    def bounds(self, contacts: Sequence) -> np.ndarray:
+        """Friction bounds of contacts side by side, as LoadingPath has them."""
+        if self.each[0].depth is None:
+            return np.concatenate([one.bound for one in contacts], axis=-1)[None]
+        along = [one.bounds_along(path) for one, path in zip(contacts, self.each, strict=True)]
+        return np.concatenate(along, axis=-1)
+
+    def besides(self) -> np.ndarray:
+        """What each contact does besides, at the start and at every stage, shape (contacts,
+        1 + steps stages, 3)."""
+        return np.stack(
+            [np.concatenate([one.positions[:1], one.stages.reshape(-1, 3)]) for one in self.each]
+        )
+
+
 def make_path(
     displacement: Callable,
     phase: np.ndarray,

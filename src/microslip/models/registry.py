@@ -27,12 +27,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from microslip.models.polar.contact import PolarContact
+from microslip.models.polar.side_by_side import PolarSideBySide
 from microslip.models.reduced.dahl import DahlContact
 from microslip.models.reduced.mdr import mdr_contact
 from microslip.models.reduced.rigid import RigidContact
 from microslip.models.reduced.slider import slider_contact
 from microslip.models.rings.contact import RadialContact
+from microslip.models.rings.side_by_side import RingsSideBySide
 from microslip.models.squares.contact import CartesianContact
+from microslip.models.squares.side_by_side import SquaresSideBySide
 
 
 @dataclass(frozen=True)
@@ -49,15 +52,21 @@ class Model:
         exact(motion) -> whether refinement converges to the truth.
     axes : callable
         axes(motion) -> what of its space can be refined: "cells", "angles".
-    pulled : bool
-        Whether its contact may be pulled, see pull.PullsContact.
+    side_by_side : callable or None
+        side_by_side(contacts, shares, extents) -> Contact of a body on several of its contacts,
+        each in its own units; None where its contact cannot be pulled, see pull.PullsContact.
     """
 
     build: Callable
     refuses: Callable
     exact: Callable = lambda motion: True
     axes: Callable = lambda motion: ("cells",)
-    pulled: bool = False
+    side_by_side: Callable | None = None
+
+    @property
+    def pulled(self) -> bool:
+        """Whether its contact may be pulled."""
+        return self.side_by_side is not None
 
 
 def _never(motion):
@@ -128,7 +137,7 @@ MODELS = {
         _NO_ROTATION,
         exact=_never,
         axes=lambda motion: (),
-        pulled=True,
+        side_by_side=RingsSideBySide,
     ),
     "dahl": Model(
         lambda motion, poisson, cells, angles, focus: DahlContact(motion.pressure.stiffness),
@@ -140,14 +149,14 @@ MODELS = {
         lambda motion, poisson, cells, angles, focus: mdr_contact(cells, focus, motion.pressure),
         _any_of(_refuse_other_loads, _refuse_springs),
         exact=_never,
-        pulled=True,
+        side_by_side=RingsSideBySide,
     ),
     "radial": Model(
         lambda motion, poisson, cells, angles, focus: RadialContact.resolved(
             cells, focus, motion.pressure
         ),
         _any_of(_refuse_other_loads, _refuse_rings),
-        pulled=True,
+        side_by_side=RingsSideBySide,
     ),
     "polar": Model(
         lambda motion, poisson, cells, angles, focus: PolarContact(
@@ -161,14 +170,14 @@ MODELS = {
         ),
         _any_of(_refuse_other_loads, _refuse_angles),
         axes=lambda motion: ("cells", "angles"),
-        pulled=True,
+        side_by_side=PolarSideBySide,
     ),
     "cartesian": Model(
         lambda motion, poisson, cells, angles, focus: CartesianContact(
             cells, poisson, motion.pressure
         ),
         _refuse_pulsation,
-        pulled=True,
+        side_by_side=SquaresSideBySide,
     ),
 }
 """Models by name."""

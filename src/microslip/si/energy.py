@@ -13,9 +13,12 @@ from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealMotion, groups, solver_scene
 
 
-def energy_fields(contact: TwoBodies, motion: RealMotion, answer: Result) -> dict:
-    """Fields of a Prediction that follow from the answer: drag, and torque of a steady spin."""
-    still = contact.mu * contact.load
+def energy_fields(
+    contact: TwoBodies, motion: RealMotion, answer: Result, contacts: int = 1
+) -> dict:
+    """Fields of a Prediction that follow from the answer: drag, of all contacts together, and
+    torque of a steady spin."""
+    still = contact.mu * contact.load * contacts
     drag = still * answer.mu_macro * motion.speed
     found = {"drag_power_W": drag}
     if answer.mu_torque is None:

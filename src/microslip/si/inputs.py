@@ -133,18 +133,19 @@ def _numbers(body):
 
 
 def read_contact(
-    body: Body, other: Body, *, load: object, mu: object, **shape: object
+    body: Body, other: Body, *, load: object, mu: object, contacts: int = 1, **shape: object
 ) -> tuple[TwoBodies, dict]:
     """The contact, and a dict of texts of what was understood; raises InputError.
 
-    shape: radius, counter_radius, radius_across, contact_radius and pressure, as far as given.
+    contacts: how many carry the load, of which this one has the mean.  shape: radius,
+    counter_radius, radius_across, contact_radius and pressure, as far as given.
     """
     shape = dict.fromkeys(SHAPES) | shape
     if shape["pressure"] is not None or shape["contact_radius"] is not None:
-        return _of_size(body, other, load, mu, shape)
+        return _of_size(body, other, (load, contacts), mu, shape)
     if shape["radius"] is None:
         raise InputError("radius", None, "needed, or a contact_radius in its place")
-    contact, texts = _of_spheres(body, other, load, mu, shape)
+    contact, texts = _of_spheres(body, other, (load, contacts), mu, shape)
     across = shape["radius_across"]
     if across is not None:
         if shape["counter_radius"] is not None:
@@ -156,8 +157,10 @@ def read_contact(
     return contact, texts
 
 
-def _of_size(body, other, load, mu, shape):
-    """A contact whose size is given, and not the shape of the bodies."""
+def _of_size(body, other, carried, mu, shape):
+    """A contact whose size is given, and not the shape of the bodies; carried: the load, and by how
+    many contacts."""
+    load, contacts = carried
     for name in ("radius", "counter_radius", "radius_across"):
         if shape[name] is not None:
             raise InputError(name, shape[name], "allowed is none beside a contact_radius")
@@ -168,7 +171,7 @@ def _of_size(body, other, load, mu, shape):
     pressure = "hertz" if shape["pressure"] is None else shape["pressure"]
     force, coefficient = read("load", load, "N"), read("mu", mu, "", high=LARGEST_MU)
     _refuse_rigid(body, other)
-    plain = TwoBodies(body.material, other.material, 1.0, force.si, coefficient.si)
+    plain = TwoBodies(body.material, other.material, 1.0, force.si / contacts, coefficient.si)
     try:
         contact = of_size(plain, size.si, pressure)
         good = all(0.0 < one < math.inf for one in (contact.u_lim, contact.largest_pressure))
@@ -189,8 +192,9 @@ def _refuse_rigid(body, other):
         raise InputError("material", "rigid", allowed)
 
 
-def _of_spheres(body, other, load, mu, shape):
-    """Hertz's contact of a sphere with a flat or a second sphere."""
+def _of_spheres(body, other, carried, mu, shape):
+    """Hertz's contact of a sphere with a flat or a second sphere; carried: as for _of_size."""
+    load, contacts = carried
     radius, counter_radius = shape["radius"], shape["counter_radius"]
     first = read("radius", radius, "m")
     given = {"radius": first, "load": read("load", load, "N")}
@@ -211,9 +215,8 @@ def _of_spheres(body, other, load, mu, shape):
         allowed = "allowed is a hollow wider than the sphere"
         raise InputError("counter_radius", counter_radius, allowed)
     _refuse_rigid(body, other)
-    contact = TwoBodies(
-        body.material, other.material, 1.0 / curvature, given["load"].si, given["mu"].si, radii
-    )
+    each = given["load"].si / contacts
+    contact = TwoBodies(body.material, other.material, 1.0 / curvature, each, given["mu"].si, radii)
     _refuse_senseless(contact, radius, counter_radius, load)
     bodies = {"body": body.text, "counterbody": other.text}
     return contact, bodies | texts | {name: one.text for name, one in given.items()}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from microslip.adaptive.point import Result, solve
+from microslip.adaptive.point import solve
 from microslip.si.dimensionless import solver_scene
 from microslip.si.drives import checked_drive_groups
 from microslip.si.energy import energy_fields, vibration_fields
@@ -48,6 +48,7 @@ def predict(
     drive_stiffness: object = None,
     mass: object = None,
     damping: object = None,
+    contacts: object = None,
     hardness: object = None,
     density: object = None,
     counter_hardness: object = None,
@@ -106,6 +107,12 @@ def predict(
     drive_stiffness, mass, damping : quantity, optional
         Of a spring between what has the speed and the body, N/m, of the body, kg, and of a dashpot
         on it, N s/m.  A mass may be under a force, too.
+    contacts : str, optional
+        Of a body that several contacts of the same bodies carry, as microslip.solve takes them:
+        "phase=0;phase=180".  The load is that of all of them, which share it by their `load`;
+        force, drive_stiffness, mass and damping are those of the body; amplitudes are of a contact
+        whose share of them is 1.  What is said of one contact is said of one that carries the mean
+        load, and warnings are about the one that carries most.
     hardness, density, counter_hardness, counter_density : quantity, optional
         Of the body and the counterbody, Pa (or as in "700 HV", "60 HRC") and kg/m^3, for the
         warnings alone.
@@ -135,17 +142,19 @@ def predict(
 def _answered(question):
     """The Prediction of a Question."""
     contact, motion, given = question.contact, question.motion, question.given
-    about, pulled = dict(question.about), {}
+    carriers, drive = question.carriers, question.drive
+    pulled = {"contacts": carriers.text}
     if question.sought is not None:
         settings = {"share": question.share, "tolerance": question.tolerance}
         settings["given"] = given["reduction"]
         found = with_reduction(contact, motion, question.sought, **settings)
-        motion, pulled = found.motion, {"sought": question.sought, "sought_error": found.error}
+        motion = found.motion
+        pulled |= {"sought": question.sought, "sought_error": found.error}
         if question.sought == "load":
             contact = question.under(found.contact.load)
     velocity, size = checked_groups(contact, motion, given)
-    pulling = checked_drive_groups(question.drive, motion, contact, given)
-    answer = answer_of(contact, motion, pulling, question.tolerance)
+    pulling = checked_drive_groups(carriers.share_of(drive), motion, contact, given)
+    answer = answer_of(contact, motion, pulling, question.tolerance, carriers)
     limit = None
     if size is not None:
         exactly = question.tolerance
@@ -154,27 +163,34 @@ def _answered(question):
         if motion.scene in COMBINED:
             exactly = max(exactly, TOLERANCE_OF_LIMIT)
         settings = {"poisson": contact.poisson, "pressure": contact.pressure}
+        settings |= carriers.settings
         named = solver_scene(motion, contact)
         limit = solve(named, 0.0, size, tolerance=exactly, **settings)
-    pulled |= about_drive(contact, motion, question.drive, pulling, answer, limit)
+    pulled |= about_drive((contact, carriers), motion, (drive, pulling), answer, limit)
     if velocity is None:
         velocity, motion = answer.velocity, with_speed(motion, contact, answer)
     if answer.converged:
-        pulled |= energy_fields(contact, motion, answer)
+        pulled |= energy_fields(contact, motion, answer, carriers.count)
         if given["power"]:
             pulled |= vibration_fields(contact, motion, answer, question.tolerance)
-    return replace(_prediction(contact, motion, velocity, answer, limit, about), **pulled)
+    most = carriers.most_loaded(contact)
+    doubts = tuple(broken_assumptions(most, motion)), tuple(unchecked(most))
+    still = contact.mu * contact.load * carriers.count
+    pulled["load_N"] = contact.load * carriers.count
+    found = _prediction(contact, (motion, still, doubts), velocity, (answer, limit), question.about)
+    return replace(found, **pulled)
 
 
-def _prediction(contact, motion, velocity, answer: Result, limit: Result | None, understood):
-    still = contact.mu * contact.load
+def _prediction(contact, moved, velocity, answers, understood):
+    """moved: the motion, the force that it takes without vibration, warnings and what was not
+    looked at.  answers: Results at the speed, and at a vanishing one or None."""
+    (motion, still, (warnings, not_checked)), (answer, limit) = moved, answers
     return Prediction(
         scene=motion.scene,
         contact_radius_m=contact.contact_radius,
         indentation_m=contact.indentation,
         u_lim_m=contact.u_lim,
         largest_pressure_Pa=contact.largest_pressure,
-        load_N=contact.load,
         poisson=contact.poisson,
         speed_m_s=motion.speed,
         amplitude_si=motion.amplitude,
@@ -200,8 +216,8 @@ def _prediction(contact, motion, velocity, answer: Result, limit: Result | None,
         model=answer.model,
         converged=answer.converged and (limit is None or limit.converged),
         reason=answer.reason or ("" if limit is None else limit.reason),
-        warnings=tuple(broken_assumptions(contact, motion)),
-        not_checked=tuple(unchecked(contact)),
+        warnings=warnings,
+        not_checked=not_checked,
         counterbody=understood["counterbody"],
         understood=understood,
     )

@@ -82,6 +82,9 @@ class Prediction:
         How the load is spread, as microslip.solve takes it.
     forward_amplitude_m, rotation_amplitude_rad, load_amplitude_N, phase_rad : float or None
         Of scenes that oscillate in several ways: further half strokes, and a phase.
+    contacts : str or None
+        Those that carry the body, as microslip.solve writes them; None where it is one.  Forces and
+        powers are those of the body then, and sizes and groups of a contact with the mean load.
     torque_N_m, torque_error_N_m : float or None
         Torque that a steady spin takes, N m, and its error; None for motions that oscillate.
     drag_power_W : float or None
@@ -154,6 +157,7 @@ class Prediction:
     rotation_amplitude_rad: float | None = None
     load_amplitude_N: float | None = None
     phase_rad: float | None = None
+    contacts: str | None = None
     torque_N_m: float | None = None
     torque_error_N_m: float | None = None
     drag_power_W: float | None = None

@@ -7,15 +7,19 @@ from dataclasses import replace
 
 from microslip.adaptive.checks import LARGEST_FORCE, SMALLEST_TOLERANCE
 from microslip.adaptive.point import Result, solve
-from microslip.adaptive.under_force import oscillates_forward
+from microslip.adaptive.under_force import (
+    is_even,
+    oscillates,
+    oscillates_forward,
+    without_forward_motion,
+)
 from microslip.foundation.arguments import LARGEST, LARGEST_BODY
-from microslip.motions.by_name import motion_named
 from microslip.motions.drive import Drive
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealDrive, RealMotion, groups, solver_scene, speed_unit
 from microslip.si.reduction import friction_of
 from microslip.si.regimes import natural_frequency, regime
-from microslip.solver.problem import Problem
+from microslip.si.several import Carriers
 
 SLOWEST = 1e-3
 """Velocity, in the unit of the scene, below which the accepted error is no longer relative."""
@@ -25,7 +29,11 @@ MILLIMETRE = 1e-3
 
 
 def answer_of(
-    contact: TwoBodies, motion: RealMotion, pulling: dict[str, float], tolerance: float
+    contact: TwoBodies,
+    motion: RealMotion,
+    pulling: dict[str, float],
+    tolerance: float,
+    carriers: Carriers,
 ) -> Result:
     """What microslip.solve says of a motion.
 
@@ -35,16 +43,18 @@ def answer_of(
         What dimensionless.drive_groups gives.
     tolerance : float
         Accepted error: of mu_macro, or under a force of the velocity, relative down to SLOWEST.
+    carriers : several.Carriers
+        The contact, or several like it.
     """
     if not pulling:
-        return friction_of(contact, motion, tolerance)
+        return friction_of(contact, motion, tolerance, **carriers.settings)
     velocity, size = groups(motion, contact)
     if velocity is not None:
         velocity = min(velocity, LARGEST["velocity"])
 
     def found(tolerance):
         settings = {"poisson": contact.poisson, "tolerance": tolerance}
-        settings["pressure"] = contact.pressure
+        settings |= {"pressure": contact.pressure} | carriers.settings
         scene = solver_scene(motion, contact)
         return solve(scene, velocity, size, **settings, **within_range(pulling))
 
@@ -69,19 +79,26 @@ def within_range(pulling: dict[str, float]) -> dict[str, float]:
 
 
 def about_drive(
-    contact: TwoBodies,
+    carried: tuple[TwoBodies, Carriers],
     motion: RealMotion,
-    drive: RealDrive,
-    pulling: dict[str, float],
+    pulls: tuple[RealDrive, dict[str, float]],
     answer: Result,
     limit: Result | None,
 ) -> dict:
     """Fields of a prediction.Prediction that say what pulls, and what comes of it.
 
-    limit: the answer for a vanishing speed, None for a steady motion.
+    Parameters
+    ----------
+    carried : tuple
+        The contact, and how many like it there are.
+    pulls : tuple
+        The drive as it was given, and its groups.
+    limit : Result or None
+        The answer for a vanishing speed, None for a steady motion.
     """
-    still = contact.mu * contact.load
-    share, error = _threshold(motion, contact, pulling, limit)
+    (contact, carriers), (drive, pulling) = carried, pulls
+    still = contact.mu * contact.load * carriers.count
+    share, error = _threshold(motion, carried, pulling, limit)
     fields = {
         "force_N": drive.force,
         "drive_stiffness_N_m": drive.stiffness,
@@ -100,26 +117,28 @@ def about_drive(
     body = {name: value for name, value in pulling.items() if name != "force"}
     if body:
         working = Drive(**body)
-        fields["regime"] = regime(motion.scene, answer.amplitude, working)
+        widest = answer.amplitude * max(carriers.widest, 1.0)
+        fields["regime"] = regime(motion.scene, widest, working)
         fields["natural_frequency"] = natural_frequency(working)
     return fields
 
 
-def _threshold(motion, contact, pulling, limit):
+def _threshold(motion, carried, pulling, limit):
     """Force over mu F_z from which on a constant force moves the contact, and its error; None
     where it is not known.
 
-    It is the friction at vanishing speed, where the oscillation exerts no forward force.  Where it
-    does, a contact without mass goes along, and all of friction holds it.
+    It is the friction at vanishing speed, where the oscillation exerts no forward force, be it that
+    of contacts which cancel.  Where it does, a contact without mass goes along, and all of friction
+    holds one that does nothing else; what else it does has no limit here.
     """
     if limit is None:
         return 0.0, 0.0  # a steady spin turns all of friction aside
-    _, size = groups(motion, contact)
-    named = motion_named(solver_scene(motion, contact), contact.pressure)
-    problem = Problem(named, 0.0, size, contact.poisson)
-    if not oscillates_forward(problem):
+    contact, carriers = carried
+    problem = carriers.problem(motion, contact)
+    if not oscillates_forward(problem) or is_even(problem):
         return limit.mu_macro, limit.mu_macro_error
-    return (None, None) if pulling.get("mass") else (1.0, 0.0)
+    still = not pulling.get("mass") and not oscillates(without_forward_motion(problem))
+    return (1.0, 0.0) if still else (None, None)
 
 
 def _walk(contact, motion, force, answer):

@@ -22,6 +22,7 @@ from microslip.si.inputs import (
 )
 from microslip.si.quantities import read
 from microslip.si.reduction import sought_by
+from microslip.si.several import Carriers, read_carriers
 
 LARGEST_TOLERANCE = 0.1
 """Of mu_macro, and relative of a speed; what is larger is no answer."""
@@ -48,6 +49,8 @@ class Question:
         Without what is looked for.
     bodies : tuple of Body
         Those of the contact.
+    carriers : several.Carriers
+        The contact, or several like it, of which it carries the mean load.
     sought, share : str or None, float or None
         What a reduction looks for, and the share of friction to be taken away.
     tolerance : float
@@ -61,6 +64,7 @@ class Question:
     motion: RealMotion
     drive: RealDrive
     bodies: tuple[Body, Body]
+    carriers: Carriers
     sought: str | None
     share: float | None
     tolerance: float
@@ -104,22 +108,25 @@ def asked(scene: str, given: Mapping[str, object]) -> Question:
         body.completed("", given["hardness"], given["density"]),
         other.completed("counter_", given["counter_hardness"], given["counter_density"]),
     )
+    carriers, several = read_carriers(given["contacts"], reduction=reduction, power=given["power"])
     shape = {name: given[name] for name in (*SHAPES, "mu")}
     load = ANY_LOAD if sought == "load" else given["load"]
-    contact, touched = read_contact(*bodies, load=load, **shape)
+    contact, touched = read_contact(*bodies, load=load, contacts=carriers.count, **shape)
     if motion.load_amplitude is not None and motion.load_amplitude > contact.load:
         allowed = "allowed is at most the load: beyond it the bodies part"
         raise InputError("load_amplitude", given["load_amplitude"], allowed)
-    about, share = touched | moved | pulls, None
+    about, share = touched | moved | pulls | several, None
     if sought is None:
         checked_groups(contact, motion, given)
-        checked_drive_groups(drive, motion, contact, given)
-    else:
+        checked_drive_groups(carriers.share_of(drive), motion, contact, given)
+    if several:
+        carriers.problem(motion, contact)  # refuses what does not go with them
+    if sought is not None:
         share = _share(reduction, pulls)
         about["reduction"] = share.text
         about = {name: text for name, text in about.items() if name != sought}
     settings = (sought, share and share.si, accepted.si, about)
-    return Question(given, contact, motion, drive, bodies, *settings)
+    return Question(given, contact, motion, drive, bodies, carriers, *settings)
 
 
 def _share(reduction, pulls):

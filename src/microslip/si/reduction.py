@@ -70,12 +70,14 @@ class _NoAnswerError(Exception):
     """The solver has no number at an amplitude; its reason is found again there."""
 
 
-def friction_of(contact: TwoBodies, motion: RealMotion, tolerance: float) -> Result:
-    """What microslip.solve says of a motion."""
+def friction_of(
+    contact: TwoBodies, motion: RealMotion, tolerance: float, **contacts: str
+) -> Result:
+    """What microslip.solve says of a motion; contacts: what it is told of several, if anything."""
     velocity, size = groups(motion, contact)
     fast = min(velocity, LARGEST["velocity"])  # beyond, the vibration does nothing
     settings = {"poisson": contact.poisson, "pressure": contact.pressure, "tolerance": tolerance}
-    return solve(solver_scene(motion, contact), fast, size, **settings)
+    return solve(solver_scene(motion, contact), fast, size, **settings, **contacts)
 
 
 def sought_by(scene: str, reduction: object, given: Mapping[str, object]) -> str | None:

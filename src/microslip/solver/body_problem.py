@@ -19,8 +19,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from microslip.models.path import SDIRK2, Path, make_path, phases_between
-from microslip.models.rings.side_by_side import BodyPath, RingsSideBySide
+from microslip.models.contact import Contact
+from microslip.models.path import SDIRK2, BodyPath, Path, make_path, phases_between
+from microslip.models.registry import MODELS
 from microslip.motions.body_contacts import BodyContact, written
 from microslip.motions.motion import LOOP
 from microslip.solver.problem import Problem, build_contact
@@ -40,7 +41,7 @@ class Part:
     problem : problem.Problem
         It alone, in its own groups.
     share : float
-        Of the load of the body.
+        Of the load of the body, without oscillation.
     extent : float
         Its u_lim over that of the body.
     lead : float
@@ -53,9 +54,14 @@ class Part:
     lead: float
 
     def oscillation(self, phase: np.ndarray) -> np.ndarray:
-        """Its own displacement at a phase of the body, in the units of this, shape (2, ...)."""
-        forward, lateral, _ = self.problem.oscillation(phase + self.lead)
-        return self.extent * np.array([forward, lateral])
+        """Its own displacement at a phase of the body, shape (3, ...): in the units of this, and
+        the angle in that of which the places in the contact, over its radius, are moved by so
+        much."""
+        return self.extent * np.array(self.problem.oscillation(phase + self.lead))
+
+    def depth(self, phase: np.ndarray) -> np.ndarray:
+        """Its indentation at a phase of the body, where that changes; see problem.Problem."""
+        return self.problem.depth(phase + self.lead)
 
 
 @dataclass(frozen=True)
@@ -79,8 +85,22 @@ class BodyProblem(Problem):
         return tuple(_part(self, one) for one in self.contacts)
 
     @cached_property
+    def depth(self) -> Callable | None:
+        """Those of all contacts at a phase, one a row; None: they do not change."""
+        if self.motion.depth is None:
+            return None
+        return lambda phase: np.stack([part.depth(phase) for part in self.parts])
+
+    @cached_property
     def mean_load(self) -> float:
         return sum(part.share * part.problem.mean_load for part in self.parts)
+
+    @property
+    def shares(self) -> tuple[float, ...]:
+        """Of every contact in the mean normal load."""
+        if self.motion.depth is None:
+            return tuple(part.share for part in self.parts)
+        return tuple(part.share * part.problem.mean_load / self.mean_load for part in self.parts)
 
     @property
     def start(self) -> float:
@@ -119,11 +139,14 @@ class BodyProblem(Problem):
         count = self.contacts.count
         return all(count(one) == count(_opposite(one)) for one in self.contacts)
 
-    def contact(self, model: str, resolution, focus=None) -> RingsSideBySide:
-        """All contacts at a resolution; each gathers its own rings."""
+    def contact(self, model: str, resolution, focus=None) -> Contact:
+        """All contacts at a resolution, side by side; each gathers its own rings."""
         parts = self.parts
-        return RingsSideBySide(
-            [build_contact(part.problem, model, resolution, focus) for part in parts],
+        return MODELS[model].side_by_side(
+            [
+                build_contact(part.problem, model, resolution, focus, self.start + part.lead)
+                for part in parts
+            ],
             [part.share for part in parts],
             [part.extent for part in parts],
         )
@@ -158,11 +181,11 @@ def why_not(problem: BodyProblem) -> str:
     motion = problem.motion
     if not motion.periodic:
         return f"allowed is none: {motion.name} does not oscillate"
-    if motion.depth is not None:
-        return f"allowed is none under {motion.name}, whose normal load oscillates"
     if any(one.load != 1.0 for one in problem.contacts):
         if not motion.pressure.is_indenter:
             return f"allowed are equal loads: how {motion.pressure.name} grows is not known"
+        if motion.depth is not None:
+            return f"allowed are equal loads for {motion.name}, of which a part is the load"
         translation = problem.oscillation(LOOP)[:2]
         if motion.rotates and max(np.ptp(along) for along in translation) > 0.0:
             return f"allowed are equal loads for {motion.name}, of which a part is an angle"
@@ -180,7 +203,15 @@ def _body_path(problem, steps, integrator):
         return creep * phase, np.zeros_like(phase), np.zeros_like(phase)
 
     base = make_path(forward, phases, integrator)
-    each = tuple(make_path(_besides(problem, part), phases, integrator) for part in problem.parts)
+    each = tuple(
+        make_path(
+            _besides(problem, part),
+            phases,
+            integrator,
+            None if problem.motion.depth is None else part.depth,
+        )
+        for part in problem.parts
+    )
     return BodyPath(**vars(base), each=each)
 
 
@@ -188,10 +219,10 @@ def _besides(problem, part) -> Callable:
     """Displacement of a contact beyond that of the body."""
 
     def displacement(phase):
-        forward, lateral = part.oscillation(phase)
+        forward, lateral, angle = part.oscillation(phase)
         if problem.steadied:
             forward = forward - _together(problem, phase)
-        return forward, lateral, np.zeros_like(phase)
+        return forward, lateral, angle
 
     return displacement
 

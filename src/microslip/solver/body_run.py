@@ -45,12 +45,12 @@ def simulate_each(
         ]
         state = np.concatenate(states, axis=-1)
 
-    def weighted(name):
+    def weighted(name, shares=shares):
         values = [getattr(alone[part.problem], name) for part in problem.parts]
         return float(np.dot(shares, values))
 
     return Run(
-        mu=weighted("mu"),
+        mu=weighted("mu", problem.shares),
         torque=weighted("torque"),
         distance=max(run.distance for run in runs),
         solver_residual=max(run.solver_residual for run in runs),
@@ -79,7 +79,7 @@ def _led(problem, part, model, resolution, found):
     state = run.state
     if left > 0.0:
         phases = first + np.linspace(0.0, left, LEAD_STEPS + 1)
-        path = make_path(alone.displacement, phases)
+        path = make_path(alone.displacement, phases, depth=alone.depth)
         state = contact.march(path, state, LEAD_TOLERANCE).state
     mirrored = alone.motion.half_period_mirror and int(times) % 2 == 1
     return contact.mirrored(state) if mirrored else state

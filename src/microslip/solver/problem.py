@@ -137,7 +137,11 @@ def _focus(problem):
 
 
 def build_contact(
-    problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
+    problem: Problem,
+    model: str,
+    resolution: Resolution,
+    focus: Focus | None = None,
+    start: float | None = None,
 ) -> Contact:
     """The contact of a problem.
 
@@ -151,6 +155,8 @@ def build_contact(
         Of the model.
     focus : mesh.Focus or None
         Where rings gather; None: where the slip starts.
+    start : float or None
+        Phase at which a period starts; None: the first turning point.
     """
     motion = problem.motion
     focus = focus or _focus(problem)
@@ -158,6 +164,6 @@ def build_contact(
     contact = build(motion, problem.poisson, resolution.cells, resolution.angles, focus)
     if motion.depth is None:
         return contact
-    start = motion.turns(problem.velocity, problem.amplitude)[0]
+    start = motion.turns(problem.velocity, problem.amplitude)[0] if start is None else start
     deepest = motion.deepest(problem.amplitude, motion.pressure)
     return contact.at_indentation(deepest, float(problem.depth(np.array(start))))

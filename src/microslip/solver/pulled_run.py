@@ -1,11 +1,13 @@
 """One run at one resolution of a contact that a force or a spring pulls.
 
 It begins with the contact moved at a given velocity, whose tractions are near: that of the spring's
-far end, or under a force one that is about as slow.  From there an accelerated search goes on.
+far end, or under a force one that is about as slow.  From there an accelerated search goes on.  A
+search takes as many periods with few steps as with many, so that many steps begin where few ended.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -26,7 +28,9 @@ MARCHES = 2 * MOST_MARCHES
 """Of a search: a body may swing."""
 LOOSEST_MOVED = 1e-4
 """Force over mu F_z to which the state of a contact that is moved is found at least."""
-NOTHING_MOVED = failed_run("")
+COARSENING, PREPARED_FROM = 6, 96
+"""By how much steps are fewer where a search begins, and from how many steps on it does: fewer cost
+little, and are what tolerances of 1e-3 ask for."""
 MOST_SCALED = 4.0
 """By how much the tractions of a contact that is moved are scaled to the force at most."""
 
@@ -108,7 +112,7 @@ class _Pulled:
         if drive.force is not None:
             load += drive.force * problem.mean_load
         self.body = Body(drive.stiffness, drive.damping, drive.mass, load)
-        self.slope, self.moved = np.inf, None
+        self.slope, self.before = np.inf, []
 
     @property
     def force_of_answer(self):
@@ -152,12 +156,27 @@ class _Pulled:
         """States to begin with, each with the force of the static limit, the nearest one first."""
         if guess is not None and guess.converged:
             yield guess.state, guess.static_force
-        self.moved = moved = self._moved(tolerance)
+        if self.resolution.steps >= PREPARED_FROM:
+            coarser = self._coarser(tolerance)
+            if coarser.converged:
+                yield coarser.state, coarser.static_force
+        moved = self._moved(tolerance)
+        self.before.append(moved)
         slipping = forward_slip(self.contact)
         if moved.state is not None:
             yield self._state(moved.state, moved.mu * self.problem.mean_load), moved.static_force
         full = float(forces(self.contact, slipping)[FORWARD])
         yield self._state(slipping, full), moved.static_force
+
+    def _coarser(self, tolerance):
+        """The Run with fewer steps."""
+        fewer = replace(self.resolution, steps=self.resolution.steps // COARSENING)
+        accuracy = Accuracy(tolerance / self.force_of_answer, self.slope)
+        found = simulate_pulled(
+            self.problem, self.drive, self.model, fewer, accuracy, self.settings
+        )
+        self.before.append(found)
+        return found
 
     def _moved(self, tolerance):
         """The Run at a velocity that is given."""
@@ -177,7 +196,6 @@ class _Pulled:
 
     def _summary(self, done, static_force, step_tolerance):
         problem, unit, found = self.problem, self.force_of_answer, done[-1]
-        moved = self.moved or NOTHING_MOVED
         forward, _, torque = mean_forces(self.contact, problem, self.path, found.forces)
         stages = self.path.stages.shape[0] * self.path.stages.shape[1]
         solved = found.solver_residual <= stages * step_tolerance
@@ -193,15 +211,19 @@ class _Pulled:
             torque=float(torque) / problem.motion.pressure.torque,
             distance=found.distance / unit,
             solver_residual=found.solver_residual / unit,
-            periods=periods + moved.periods,
-            iterations=sum(one.iterations for one in done) + moved.iterations,
-            solves=sum(one.solves for one in done) + moved.solves,
-            work=sum(one.solves for one in done) * found.start.size + moved.work,
-            effort=sum(one.iterations for one in done) * found.start.size + moved.effort,
+            periods=periods + self._spent("periods"),
+            iterations=sum(one.iterations for one in done) + self._spent("iterations"),
+            solves=sum(one.solves for one in done) + self._spent("solves"),
+            work=sum(one.solves for one in done) * found.start.size + self._spent("work"),
+            effort=sum(one.iterations for one in done) * found.start.size + self._spent("effort"),
             converged=found.converged and solved,
             reason=reason,
             state=found.start,
             static_force=static_force,
             velocity=problem.velocity + ahead / creep,
-            retried=moved.retried,
+            retried=max((run.retried for run in self.before), default=0),
         )
+
+    def _spent(self, name):
+        """What the runs before this one took."""
+        return sum(getattr(run, name) for run in self.before)

@@ -75,7 +75,7 @@ def solve_stored(
     refuse_bounds(time_limit=time_limit)
     chosen = choose_model(kind, poisson, model, static=drive is None and place == 0.0)
     problem = Problem(kind, place, amplitude, poisson)
-    problem = body_of(problem, contacts, None if drive is None else chosen)
+    problem = body_of(problem, contacts)
     if drive is not None:
         refuse_drive(problem, drive, chosen)
     if tolerance is None:

@@ -204,12 +204,21 @@ class PolarContact:
 
     def pulled_march(self, path, state, tolerance, body, start, previous=None) -> PulledMarch:
         """March from which a body may stay behind or run ahead; see models.pull.PullsContact."""
+        bounds = self.bound[None] if path.depth is None else self.bounds_along(path)
+        besides = np.empty((1 + path.stages.shape[0] * path.stages.shape[1], 3, 0))
+        return self._pulled_along(
+            path, (bounds, besides), state, tolerance, (body, start), previous
+        )
+
+    def _pulled_along(self, path, imposed, state, tolerance, pulled, previous):
+        """The PulledMarch along a path; imposed: friction bounds, and what each ring does besides,
+        see pulled_march.py; pulled: a pull.Body and where it is."""
         from microslip.models.polar.pulled_march import (  # only now: it takes a while to load
             PulledStages,
             pulled_march,
         )
 
-        shape = path.stages.shape[:2]
+        (bounds, besides), (body, start), shape = imposed, pulled, path.stages.shape[:2]
         if previous is None:
             stages = np.empty((2, *shape, *state.shape)), np.zeros(shape)
         else:
@@ -218,7 +227,7 @@ class PolarContact:
         state, residual, iterations = unbroken(
             pulled_march,
             self._points,
-            path.under(self.bound[None] if path.depth is None else self.bounds_along(path)),
+            (path.under(bounds), besides),
             body.along(path, start),
             np.ascontiguousarray(state),
             PulledStages(stages[0][0], stages[0][1], stages[1], previous is not None),

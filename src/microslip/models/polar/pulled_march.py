@@ -186,15 +186,28 @@ class PulledStages(NamedTuple):
 
 
 @kernel
-def pulled_march(points, path, pull, state, known, settings) -> tuple:
+def _impose(motion, ahead, positions, out):
+    """Fill out with a rigid displacement, and what `ahead` has of each ring besides, if any."""
+    rigid_displacement(motion, positions, out)
+    forward, lateral = positions
+    for i in range(ahead.shape[1]):
+        for j in range(out.shape[1]):
+            out[0, j, i] += ahead[0, i] + ahead[2, i] * lateral[j, i]
+            out[1, j, i] += ahead[1, i] - ahead[2, i] * forward[j, i]
+
+
+@kernel
+def pulled_march(points, imposed, pull, state, known, settings) -> tuple:
     """March along a path from which the contact may stay behind, or run ahead.
 
     Parameters
     ----------
     points : march.Points
         The contact.
-    path : models.path.LoadingPath
-        Its integrator ends with the step.
+    imposed : tuple
+        models.path.LoadingPath, whose integrator ends with the step; what each ring does besides
+        (forward, lateral, angle), shape (1 + steps stages, 3, N), at the start and at every stage,
+        or (1 + steps stages, 3, 0) where all rings follow the path.
     pull : models.pull.Pull
         What pulls.
     state : np.ndarray, shape (2, M, N)
@@ -210,6 +223,7 @@ def pulled_march(points, path, pull, state, known, settings) -> tuple:
     tuple
         State at the end, residual sum, iterations, whether it was interrupted.
     """
+    path, ahead = imposed
     weight, positions, bounds = points.weight, points.positions, path.bounds
     (tolerance, forces, body), stages = settings, path.stages.shape[1]
     q, before = state.copy(), np.empty_like(state)
@@ -219,7 +233,7 @@ def pulled_march(points, path, pull, state, known, settings) -> tuple:
     folded = np.empty((points.parts, 2 * q.shape[1] // points.parts, q.shape[2]))
     scratch = Scratch(folded, np.empty_like(folded), np.empty_like(q))
     followed = _followed(points, q.shape, scratch)
-    rigid_displacement(path.positions[0], positions, rigid)
+    _impose(path.positions[0], ahead[0], positions, rigid)
     fill_slip(points.influence, rigid, q, folded, scratch.image, z)
     add(z, -2.0, z)
     sum_forces(q, weight, positions, forces[0])
@@ -229,7 +243,8 @@ def pulled_march(points, path, pull, state, known, settings) -> tuple:
     for k in range(path.stages.shape[0]):
         length = pull.lengths[k]
         for s in range(stages):
-            rigid_displacement(path.stages[k, s], positions, rigid)
+            at = 1 + k * stages + s
+            _impose(path.stages[k, s], ahead[at], positions, rigid)
             past_place, past_rate = body[k, 0], body[k, 1]
             copy(b, z)
             add(b, 1.0, rigid)
@@ -247,7 +262,7 @@ def pulled_march(points, path, pull, state, known, settings) -> tuple:
                 known.advances[k, s] = known.advances[k - 1, s]
             else:
                 known.advances[k, s] = 0.0
-            bound = bounds[min(1 + k * stages + s, len(bounds) - 1)]
+            bound = bounds[min(at, len(bounds) - 1)]
             shrink_onto(q, bound)
             equation = Equation(
                 stage_stiffness(pull, length),

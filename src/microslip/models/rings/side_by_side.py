@@ -12,27 +12,13 @@ tractions and bounds being what they are in its own units.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import block_diag
 
-from microslip.models.path import Path
+from microslip.models.path import BodyPath
 from microslip.models.pull import PulledMarch
 from microslip.models.rings.contact import RadialContact
-
-
-@dataclass(frozen=True, eq=False)
-class BodyPath(Path):
-    """A Path of a body, and what its contacts do besides.
-
-    Attributes
-    ----------
-    each : tuple of path.Path
-        Of every contact, relative to that of the body and cut into the same steps.
-    """
-
-    each: tuple[Path, ...] = ()
 
 
 class RingsSideBySide(RadialContact):
@@ -58,21 +44,25 @@ class RingsSideBySide(RadialContact):
             np.concatenate([one.weight * share for one, share, _ in scaled]),
             sum(one.stiffness * share / extent for one, share, extent in scaled),
         )
-        self._cells = [len(one.bound) for one in contacts]
-        self._ahead = None, None
+        self._contacts = contacts
+        self._imposed = None, None
+
+    def bounds(self, depths: np.ndarray) -> np.ndarray:
+        """Bounds of all rings, (k, cells of all), where each contact is at its depths, one a
+        row."""
+        each = zip(self._contacts, depths, strict=True)
+        return np.concatenate([one.bounds(own) for one, own in each], axis=1)
 
     def pulled_march(self, path, state, tolerance, body, start, previous=None) -> PulledMarch:
         """March of the body along a BodyPath; see models.pull.PullsContact."""
-        if self._ahead[0] is not path:
-            self._ahead = path, self._ahead_of(path)
-        imposed = path.under(self.bound[None]), self._ahead[1]
+        if self._imposed[0] is not path:
+            bounds = path.bounds(self._contacts)
+            self._imposed = path, (path.under(bounds), self._ahead_of(path))
+        imposed = self._imposed[1]
         return self._pulled_along(path, imposed, state, tolerance, (body, start), previous)
 
-    def _ahead_of(self, path):
+    def _ahead_of(self, path: BodyPath):
         """What each contact does besides, weighted, (1 + steps stages, 2, cells)."""
-        columns = []
-        for one, cells in zip(path.each, self._cells, strict=True):
-            stages = one.stages.reshape(-1, 3)
-            moved = np.concatenate([one.positions[:1], stages])[:, :2]
-            columns.append(np.repeat(moved[:, :, None], cells, axis=2))
-        return np.concatenate(columns, axis=2) * self.weight
+        cells = [len(one.bound) for one in self._contacts]
+        ahead = np.repeat(path.besides()[:, :, :2], cells, axis=0)
+        return np.ascontiguousarray(np.moveaxis(ahead, 0, -1)) * self.weight

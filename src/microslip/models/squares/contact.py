@@ -3,6 +3,8 @@ own method."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from microslip.models import contact
@@ -91,16 +93,30 @@ class CartesianContact:
 
     def pulled_march(self, path, state, tolerance, body, start, previous=None) -> PulledMarch:
         """March from which a body may stay behind or run ahead; see models.pull.PullsContact."""
-        from microslip.models.squares.pulled_march import pulled_march  # only now: as for rings
+        moved = np.concatenate([path.positions[:1], path.stages.reshape(-1, 3)])
+        standing = np.ones(1), np.ones(1), moved[None]
+        march = self.pulled_along(path, standing, state[None], tolerance, (body, start))
+        return replace(march, state=march.state[0])
 
-        state, moved, forces, residual, iterations = unbroken(
+    def pulled_along(self, path, standing, state, tolerance, pulled) -> PulledMarch:
+        """The PulledMarch of several contacts like this one, states (contacts, 2, cells, cells);
+        standing: shares, extents and displacements, see pulled_march.py; pulled: a pull.Body and
+        where it is."""
+        from microslip.models.squares.pulled_march import (  # only now: as for rings
+            Carried,
+            pulled_march,
+        )
+
+        (shares, extents, moved), (body, start) = standing, pulled
+        positions = self.forward_position, self.lateral_position
+        state, at, forces, residual, iterations = unbroken(
             pulled_march,
             self.squares(),
-            (self.forward_position, self.lateral_position),
+            (positions, Carried(shares, extents), moved),
             path.under(self.bound[None]),
             body.along(path, start),
             np.ascontiguousarray(state),
-            (float(tolerance), self.stiffness),
+            (float(tolerance), float((self.stiffness * shares / extents).sum())),
         )
         solves = path.stages.shape[0] * path.stages.shape[1]
-        return PulledMarch(state, forces, residual, iterations, solves, body=moved)
+        return PulledMarch(state, forces, residual, iterations, solves, body=at)

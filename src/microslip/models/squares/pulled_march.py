@@ -4,6 +4,10 @@ every step.
 The forward force does not fall with the place, and never rises by more than the contact's own
 stiffness.  So a secant finds the place where the forces balance, kept between places where they are
 too large and too small.  Slow and plain: it checks what rings do in one go.
+
+A body may stand on several contacts of one kind, each in its own units: at a place x of the body
+one whose u_lim is larger by `extent` is at x / extent, and its forces count by its `share` of the
+load.  They are solved one by one, and the body feels the sum.
 """
 
 from __future__ import annotations
@@ -40,7 +44,7 @@ class Equation(NamedTuple):
     stiffness, load : float
         Of the body.
     holding : float
-        Of the contact without slip, at most.
+        Of the contacts without slip, at most.
     place : float
         First guess of how far the body moves.
     """
@@ -51,19 +55,43 @@ class Equation(NamedTuple):
     place: float
 
 
+class Carried(NamedTuple):
+    """How a body stands on its C contacts.
+
+    Attributes
+    ----------
+    shares, extents : np.ndarray, shape (C,)
+        Of the load; u_lim over that of the body.
+    """
+
+    shares: np.ndarray
+    extents: np.ndarray
+
+
 @kernel
-def solve_pulled_step(squares, b, state, equation, tolerance) -> tuple:
+def _forward(squares, carried, q) -> float:
+    """Forward force of all contacts."""
+    force = 0.0
+    for one in range(len(q)):
+        force += carried.shares[one] * (squares.area * q[one, 0].sum())
+    return force
+
+
+@kernel
+def solve_pulled_step(squares, carried, b, state, equation, tolerance) -> tuple:
     """Solve one Coulomb step and for the place of the body, in place.
 
     Parameters
     ----------
     squares : march.Squares
-        The contact.
-    b : np.ndarray, shape (2, n, n)
+        Every contact.
+    carried : Carried
+        By which of them.
+    b : np.ndarray, shape (C, 2, n, n)
         Displacement imposed at the place 0.
     state : tuple
-        Tractions, start and result, and slip, which receives b + e x - A q, shape (2, n, n) both;
-        length of the first gradient step to try.
+        Tractions, start and result, and slip, which receives b + e x - A q, shape (C, 2, n, n)
+        both; length of the first gradient step to try, (C,), replaced by the last one.
     equation : Equation
         Of the body.
     tolerance : float
@@ -72,20 +100,25 @@ def solve_pulled_step(squares, b, state, equation, tolerance) -> tuple:
     Returns
     -------
     tuple
-        Iterations, residual, last length, place; -1 iterations: interrupted.
+        Iterations, residual, place; -1 iterations: interrupted.
     """
-    (q, slip, length), steepest = state, equation.stiffness + equation.holding
-    imposed, place, slope = np.empty_like(b), equation.place, steepest
+    (q, slip, lengths), steepest = state, equation.stiffness + equation.holding
+    imposed, place, slope = np.empty_like(b[0]), equation.place, steepest
     low, high, before, last_gap = -np.inf, np.inf, np.nan, np.nan
     iterations, left = 0, np.inf
     for _ in range(MOST_PLACES):
-        copy(imposed, b)
-        move_forward(imposed, place)
-        count, residual, length = solve_step(squares, imposed, q, slip, length, INNER * tolerance)
-        if count < 0:
-            return -1, residual, length, place
-        iterations += count
-        gap = equation.load - equation.stiffness * place - squares.area * q[0].sum()
+        residual = 0.0
+        for one in range(len(b)):
+            copy(imposed, b[one])
+            move_forward(imposed, place / carried.extents[one])
+            count, own, lengths[one] = solve_step(
+                squares, imposed, q[one], slip[one], lengths[one], INNER * tolerance
+            )
+            if count < 0:
+                return -1, own, place
+            iterations += count
+            residual += carried.shares[one] * own
+        gap = equation.load - equation.stiffness * place - _forward(squares, carried, q)
         left = residual + abs(gap)
         if left <= tolerance:
             break
@@ -100,27 +133,40 @@ def solve_pulled_step(squares, b, state, equation, tolerance) -> tuple:
         place += gap / slope
         if not low < place < high:
             place = 0.5 * (low + high)
-    return iterations, left, length, place
+    return iterations, left, place
 
 
 @kernel
-def pulled_march(squares, positions, path, pull, state, settings) -> tuple:
-    """March along a path from which the contact may stay behind, or run ahead.
+def _sum_all(squares, carried, positions, q, one_contact, out):
+    """Fill out with the forces of all contacts."""
+    weight = np.full(q.shape[3], squares.area)
+    out[:] = 0.0
+    for one in range(len(q)):
+        sum_forces(q[one], weight, positions, one_contact)
+        for c in range(3):
+            out[c] += carried.shares[one] * one_contact[c]
+
+
+@kernel
+def pulled_march(squares, standing, path, pull, state, settings) -> tuple:
+    """March along a path from which the contacts may stay behind, or run ahead.
 
     Parameters
     ----------
     squares : march.Squares
-        The contact.
-    positions : tuple of np.ndarray, shape (n, n) each
-        Forward and lateral.
+        Every contact.
+    standing : tuple
+        Positions of its squares, forward and lateral, shape (n, n) each; the Carried; what each
+        contact does in its own units (forward, lateral, angle) at the start and at every stage,
+        shape (C, 1 + steps stages, 3).
     path : models.path.LoadingPath
-        Its integrator ends with the step; the bounds in it are not looked at.
+        Its integrator ends with the step; the positions and the bounds in it are not looked at.
     pull : models.pull.Pull
         What pulls.
-    state : np.ndarray, shape (2, n, n)
+    state : np.ndarray, shape (C, 2, n, n)
         Tractions at the start.
     settings : tuple of float
-        Tolerance of every stage, a force over mu F_z; stiffness of the contact without slip.
+        Tolerance of every stage, a force over mu F_z; stiffness of the contacts without slip.
 
     Returns
     -------
@@ -129,57 +175,63 @@ def pulled_march(squares, positions, path, pull, state, settings) -> tuple:
         sum, iterations, whether it was interrupted.
     """
     steps, stages, (tolerance, holding) = path.stages.shape[0], path.stages.shape[1], settings
-    bound, weight = squares.bound, np.full(state.shape[2], squares.area)
+    (positions, carried, moved), bound, contacts = standing, squares.bound, len(state)
     q = state.copy()
     rigid, z, b = np.empty_like(q), np.empty_like(q), np.empty_like(q)
     slips, forces = np.empty((stages, *q.shape)), np.empty((steps + 1, 3))
     before, body = np.empty((2, stages, *q.shape)), np.empty((steps + 1, 2))
-    advances, rates = np.zeros(stages), np.zeros(stages)
-    length = 1.0 / squares.scale
-    convolve(squares.operator, squares.workspace, q, z)
-    rigid_displacement(path.positions[0], positions, rigid)
-    add(z, -1.0, rigid)
-    sum_forces(q, weight, positions, forces[0])
+    advances, rates, force = np.zeros(stages), np.zeros(stages), np.empty(3)
+    lengths = np.full(contacts, 1.0 / squares.scale)
+    _sum_all(squares, carried, positions, q, force, forces[0])
     body[0, 0], body[0, 1] = starting_place(pull, forces[0, 0]), pull.start[1]
-    move_forward(z, -body[0, 0])
+    for one in range(contacts):
+        convolve(squares.operator, squares.workspace, q[one], z[one])
+        rigid_displacement(moved[one, 0], positions, rigid[one])
+        add(z[one], -1.0, rigid[one])
+        move_forward(z[one], -body[0, 0] / carried.extents[one])
     total, iterations, spent = 0.0, 0, 0.0
     for k in range(steps):
         for s in range(stages):
-            rigid_displacement(path.stages[k, s], positions, rigid)
             past_place, past_rate = body[k, 0], body[k, 1]
-            copy(b, z)
-            add(b, 1.0, rigid)
             for j in range(s):
-                add(b, -path.carry[s, j], slips[j])
                 past_place += path.carry[s, j] * advances[j]
                 past_rate += path.carry[s, j] * rates[j]
-            move_forward(b, past_place)
-            if k > 1:
-                extrapolate(before[0, s], before[0, s], before[1, s], bound, q)
+            for one in range(contacts):
+                rigid_displacement(moved[one, 1 + k * stages + s], positions, rigid[one])
+                copy(b[one], z[one])
+                add(b[one], 1.0, rigid[one])
+                for j in range(s):
+                    add(b[one], -path.carry[s, j], slips[j, one])
+                move_forward(b[one], past_place / carried.extents[one])
+                if k > 1:
+                    start, earlier = before[0, s, one], before[1, s, one]
+                    extrapolate(start, start, earlier, bound, q[one])
             equation = Equation(
                 stage_stiffness(pull, pull.lengths[k]),
                 stage_load(pull, pull.lengths[k], past_place, past_rate),
                 holding,
                 advances[s],
             )
-            count, residual, length, advances[s] = solve_pulled_step(
-                squares, b, (q, slips[s], length), equation, tolerance
+            count, residual, advances[s] = solve_pulled_step(
+                squares, carried, b, (q, slips[s], lengths), equation, tolerance
             )
             rates[s] = advances[s] / pull.lengths[k] - past_rate
-            spent += count * 100.0 * q.size
+            spent += count * 100.0 * q[0].size
             if count < 0 or (spent > BETWEEN_LOOKS and interrupted()):
                 return q, body, forces, total, iterations, True
             if spent > BETWEEN_LOOKS:
                 spent = 0.0
             iterations += count
             total += residual
-            copy(before[1, s], before[0, s])
-            copy(before[0, s], q)
+            for one in range(contacts):
+                copy(before[1, s, one], before[0, s, one])
+                copy(before[0, s, one], q[one])
         body[k + 1, 0] = past_place + advances[stages - 1]
         body[k + 1, 1] = advances[stages - 1] / pull.lengths[k]
-        copy(z, b)
-        add(z, -1.0, slips[stages - 1])
-        add(z, -1.0, rigid)
-        move_forward(z, -past_place)
-        sum_forces(q, weight, positions, forces[k + 1])
+        for one in range(contacts):
+            copy(z[one], b[one])
+            add(z[one], -1.0, slips[stages - 1, one])
+            add(z[one], -1.0, rigid[one])
+            move_forward(z[one], -past_place / carried.extents[one])
+        _sum_all(squares, carried, positions, q, force, forces[k + 1])
     return q, body, forces, total, iterations, False

@@ -36,6 +36,7 @@ _DRAWN: dict[str, tuple[str, ...]] = {
     "poisson": ("poisson", "transverse", "bore"),
     "creep_maps": ("creep", "creep_transverse", "creep_bore"),
     "drives": ("drives", "transverse", "drive_force", "drive_spring", "drive_body"),
+    "pairs": ("pairs", "one_spring", "pair_spring", "pair_force"),
     "accuracy_profile": ("profile", "accuracy_cost"),
     "accuracy_vs_cost": ("work_precision", "accuracy_cost"),
     "accuracy_vs_work": ("work_precision", "accuracy_cost"),

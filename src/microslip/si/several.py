@@ -1,0 +1,84 @@
+"""A body on several contacts in SI units: what each of them has of the load and of the drive.
+
+All groups are those of the contact that carries the mean load, see solver.body_problem: so a drive
+counts by its share for each contact, and forces of the body are those of that contact times their
+number.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from microslip.adaptive.several import body_of
+from microslip.foundation.errors import InputError
+from microslip.motions.body_contacts import contacts_of, written
+from microslip.motions.by_name import motion_named
+from microslip.pressures.by_name import pressure_named
+from microslip.si.bodies import TwoBodies
+from microslip.si.dimensionless import RealDrive, RealMotion, groups, solver_scene
+from microslip.si.shapes import ShapedContact
+from microslip.solver.problem import Problem
+
+
+@dataclass(frozen=True)
+class Carriers:
+    """The contacts that carry a body.
+
+    Attributes
+    ----------
+    text : str or None
+        As microslip.solve takes them, None where it is one.
+    count : int
+        How many there are.
+    heaviest, widest : float
+        Largest load over the mean, and largest share of the amplitude.
+    """
+
+    text: str | None = None
+    count: int = 1
+    heaviest: float = 1.0
+    widest: float = 1.0
+
+    @property
+    def settings(self) -> dict[str, str]:
+        """What microslip.solve is to be told of them."""
+        return {} if self.text is None else {"contacts": self.text}
+
+    def share_of(self, drive: RealDrive) -> RealDrive:
+        """What a drive has for each contact."""
+        parts = {name: value for name, value in vars(drive).items() if value is not None}
+        return RealDrive(**{name: value / self.count for name, value in parts.items()})
+
+    def most_loaded(self, contact: TwoBodies) -> TwoBodies:
+        """The contact that carries most, of the one that carries the mean."""
+        if self.heaviest == 1.0:
+            return contact
+        other = replace(contact, load=contact.load * self.heaviest)
+        if isinstance(contact, ShapedContact):
+            pressure = pressure_named(contact.pressure)
+            grown = float(pressure.radius(float(pressure.of_load(self.heaviest))))
+            other = replace(other, size=contact.size * grown)
+        return other
+
+    def problem(self, motion: RealMotion, contact: TwoBodies) -> Problem:
+        """What the solver makes of a motion at a vanishing speed; raises InputError about
+        `contacts` where these do not go with the motion or the pressure."""
+        _, size = groups(motion, contact)
+        named = motion_named(solver_scene(motion, contact), contact.pressure)
+        return body_of(Problem(named, 0.0, size, contact.poisson), self.text)
+
+
+def read_carriers(contacts: object, **alone: object) -> tuple[Carriers, dict[str, str]]:
+    """The Carriers, and a dict of texts of what was understood; raises InputError.
+
+    alone: values, as they were given, of arguments that go with one contact only.
+    """
+    if contacts is None:
+        return Carriers(), {}
+    found = contacts_of(contacts)
+    for name, value in alone.items():
+        if value:
+            raise InputError(name, value, "allowed is none beside contacts: they go with one alone")
+    text = written(found)
+    most = (max(one.load for one in found), max(one.amplitude for one in found))
+    return Carriers(text, len(found), *most), {"contacts": " ".join(contacts.split())}

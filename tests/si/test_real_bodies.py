@@ -1,0 +1,178 @@
+"""Bodies in SI units that several contacts carry: what each has of the load and of the drive."""
+
+import math
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip.app import cli
+from microslip.foundation.errors import InputError
+from microslip.si.bodies import TwoBodies
+from microslip.si.dimensionless import RealDrive
+from microslip.si.materials import RIGID, Material
+from microslip.si.several import read_carriers
+from microslip.si.shapes import of_size
+from microslip.theory.creep import antiphase_creep
+
+BALL = {"radius": "5 mm", "mu": 0.3, "young": "210 GPa", "nu": 0.0, "frequency": "20 kHz"}
+OMEGA = 2.0 * math.pi * 20e3
+AGAINST = "phase=0;phase=180"
+
+
+def one_of(load):
+    return TwoBodies(Material(210e9, 0.0), RIGID, 0.005, load, 0.3)
+
+
+PULLED = {
+    "a speed": ({"speed": 0.02}, {}),
+    "a force": ({}, {"force": 1.5}),
+    "a mass on a spring": ({"speed": 0.02}, {"drive_stiffness": 4e6, "mass": 2e-4, "damping": 3.0}),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", PULLED)
+def test_three_contacts_in_phase_are_three_times_one(name):
+    """A third of the load and of all that pulls the body goes to each."""
+    same, of_the_body = PULLED[name]
+    ball = BALL | {"amplitude": one_of(10.0).u_lim}
+    alone = microslip.predict("transverse", load=10.0, **ball, **same, **of_the_body)
+    body = {key: 3.0 * value for key, value in of_the_body.items()}
+    three = "phase=20;phase=20;phase=20"
+    found = microslip.predict("transverse", load=30.0, contacts=three, **ball, **same, **body)
+    assert found.u_lim_m == pytest.approx(alone.u_lim_m)
+    for key in ("friction_force_still_N", "force_threshold_N"):
+        assert getattr(found, key) == pytest.approx(3.0 * getattr(alone, key), rel=1e-9)
+    error = 3.0 * alone.mu_apparent_error * 10.0 + 3.0 * found.mu_apparent_error * 10.0
+    assert abs(found.friction_force_N - 3.0 * alone.friction_force_N) <= max(error, 1e-9)
+    assert found.drag_power_W == pytest.approx(3.0 * alone.drag_power_W, rel=1e-2)
+    if name == "a force":
+        errors = found.speed_error_m_s + alone.speed_error_m_s
+        assert abs(found.speed_m_s - alone.speed_m_s) <= errors
+        assert found.safety_factor == pytest.approx(alone.safety_factor)
+        assert found.outcome == alone.outcome == "moves"
+
+
+MOVED = {
+    "transverse": {"amplitude": "0.6 um", "speed": "20 mm/s", "nu": 0.3},
+    "bore": {"amplitude": "0.5 deg", "speed": "20 mm/s"},
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", MOVED)
+def test_the_friction_of_a_body_at_a_speed_is_the_sum_of_its_contacts(scene):
+    """Each is predicted alone under its own load, with its own contact radius and u_lim."""
+    given = BALL | MOVED[scene]
+    each = [microslip.predict(scene, load=load, **given) for load in (4.0, 16.0)]
+    assert abs(each[0].mu_macro - each[1].mu_macro) > 0.05
+    found = microslip.predict(scene, load=20.0, contacts="load=1;load=4,phase=60", **given)
+    forces = sum(one.friction_force_N for one in each)
+    errors = 20.0 * found.mu_apparent_error + sum(
+        load * one.mu_apparent_error for load, one in zip((4.0, 16.0), each, strict=True)
+    )
+    assert abs(found.friction_force_N - forces) <= errors
+    assert found.friction_force_still_N == pytest.approx(0.3 * 20.0)
+
+
+@pytest.mark.slow
+def test_two_feet_that_work_against_each_other_walk_as_fast_as_the_closed_form():
+    unit = one_of(10.0).u_lim
+    given = BALL | {"load": 20.0, "contacts": AGAINST}
+    found = microslip.predict("longitudinal", amplitude=unit, force=1.8, **given)
+    expected = float(antiphase_creep(0.3, 1.0)) * OMEGA * unit
+    assert found.outcome == "moves" and found.converged
+    assert abs(found.speed_m_s - expected) <= found.speed_error_m_s
+    # the threshold of each: (1 - A)^(3/2) of mu times its load
+    still = microslip.predict("longitudinal", amplitude=0.5 * unit, force=1.8, **given)
+    assert still.force_threshold_N == pytest.approx(6.0 * 0.5**1.5, abs=6.0 * 1e-3)
+    assert still.outcome == "stays"
+    # in phase they go to and fro with the body, and all of friction holds it
+    together = given | {"contacts": "phase=0;phase=0"}
+    held = microslip.predict("longitudinal", amplitude=unit, force=1.8, **together)
+    assert held.outcome == "stays" and held.force_threshold_N == pytest.approx(6.0)
+
+
+@pytest.mark.slow
+def test_no_threshold_is_claimed_where_contacts_move_the_body_by_themselves():
+    """Neither alike nor in opposite pairs: their forces at rest add up to one that swings."""
+    given = BALL | {"load": 20.0, "contacts": "phase=0;phase=100", "tolerance": 0.1}
+    found = microslip.predict("longitudinal", amplitude="1 um", force=3.0, **given)
+    assert found.force_threshold_N is None and found.safety_factor is None
+    elliptic = BALL | {"amplitude": "0.2 um", "forward_amplitude": "0.2 um", "load": 10.0}
+    ellipse = microslip.predict("elliptic", force=0.1, **elliptic)
+    assert ellipse.force_threshold_N is None
+
+
+def test_parts_of_a_drive_and_the_contact_that_carries_most():
+    carriers, said = read_carriers(" load=3 ; load=1, phase=90, amplitude=2 ")
+    assert said == {"contacts": "load=3 ; load=1, phase=90, amplitude=2"}
+    assert (carriers.count, carriers.heaviest, carriers.widest) == (2, 1.5, 2.0)
+    share = carriers.share_of(RealDrive(force=3.0, mass=0.5))
+    assert share == RealDrive(force=1.5, mass=0.25)
+    for contact in (one_of(8.0), of_size(one_of(8.0), one_of(8.0).contact_radius, "hertz")):
+        most = carriers.most_loaded(contact)
+        # Hertz: radius with the root of third order, displacements with its square
+        assert most.load == pytest.approx(12.0)
+        assert most.contact_radius == pytest.approx(one_of(12.0).contact_radius)
+        assert most.u_lim == pytest.approx(one_of(12.0).u_lim)
+        assert most.largest_pressure == pytest.approx(one_of(12.0).largest_pressure, rel=5e-3)
+    assert read_carriers(None) == (read_carriers(None)[0], {})
+
+
+def test_warnings_are_about_the_contact_that_carries_most():
+    """A sphere yields from 0.57 of the hardness on, by the largest pressure under it."""
+    pressure = one_of(10.0).largest_pressure
+    given = BALL | {"load": 20.0, "amplitude": "0.5 um", "speed": "1 m/s", "tolerance": 0.1}
+    given["hardness"] = 1.05 * pressure / 0.57
+    found = {
+        contacts: microslip.predict("transverse", contacts=contacts, **given).warnings
+        for contacts in ("load=1;load=1", "load=5;load=1")
+    }
+    assert np.cbrt(5 / 3) > 1.05
+    yields = [any("hardness" in text for text in texts) for texts in found.values()]
+    assert yields == [False, True]
+
+
+REFUSED = {
+    "no text": ({"contacts": 2}, "contacts", "allowed is a text such as"),
+    "a reduction": (
+        {"contacts": AGAINST, "reduction": 0.5, "amplitude": None},
+        "reduction",
+        "beside contacts",
+    ),
+    "power": ({"contacts": AGAINST, "power": True}, "power", "beside contacts"),
+    "an ellipse": (
+        {"contacts": "load=2;load=1", "radius_across": "7 mm"},
+        "contacts",
+        "allowed are equal loads",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_does_not_go_with_several_contacts_gets_one_line(name):
+    given, argument, expected = REFUSED[name]
+    ball = BALL | {"load": 10.0, "amplitude": "0.5 um", "speed": "1 mm/s"}
+    with pytest.raises(InputError) as refused:
+        microslip.predict("transverse", **ball | given)
+    assert refused.value.argument == argument and expected in refused.value.allowed
+
+
+def test_nothing_steady_has_several_contacts():
+    ball = {"radius": "5 mm", "mu": 0.3, "young": "210 GPa", "nu": 0.0, "load": 1.0}
+    with pytest.raises(InputError, match="does not oscillate"):
+        microslip.predict(
+            "continuous-bore", rotation="1 Hz", speed="1 mm/s", contacts="phase=0", **ball
+        )
+
+
+@pytest.mark.slow
+def test_the_command_says_by_what_the_body_is_carried(capsys):
+    words = ["--radius", "5 mm", "--load", "20 N", "--mu", "0.3", "--material", "steel"]
+    words += ["--frequency", "20 kHz", "--amplitude", "0.1 um", "--speed", "20 mm/s"]
+    assert cli.main(["predict", "transverse", *words, "--contacts", AGAINST]) == 0
+    printed = capsys.readouterr().out
+    assert f"contacts          {AGAINST}" in printed
+    assert "instead of 6 N" in printed

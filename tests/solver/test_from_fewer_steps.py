@@ -1,0 +1,58 @@
+"""A search for the periodic state of a contact that is pulled begins where one with fewer steps
+ended: what it finds is the same, and it takes less."""
+
+import pytest
+
+from microslip.motions.by_name import motion_named
+from microslip.motions.drive import Drive
+from microslip.solver import pulled_run
+from microslip.solver.problem import Problem, Resolution
+from microslip.solver.pulled_run import COARSENING, PREPARED_FROM, Accuracy, simulate_pulled
+from microslip.solver.run import AS_SHIPPED, failed_run
+from microslip.theory import paper
+
+PLACES = {
+    "just above the threshold": (
+        ("transverse", 1e-5, 0.5),
+        Drive(force=1.0001 * float(paper.static_limit_transverse(0.5))),
+        Accuracy(2e-6, 50.0),
+    ),
+    "a mass under a load that oscillates": (
+        ("normal:lateral=1", 0.3, 0.6),
+        Drive(stiffness=0.1, mass=1.0),
+        Accuracy(1e-5),
+    ),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", PLACES)
+def test_the_state_is_the_same_and_takes_less(name, monkeypatch):
+    place, drive, accuracy = PLACES[name]
+    problem, resolution = Problem(motion_named(place[0]), *place[1:], 0.0), Resolution(24, 1, 192)
+    runs = []
+    for first in (PREPARED_FROM, resolution.steps + 1):
+        monkeypatch.setattr(pulled_run, "PREPARED_FROM", first)
+        runs.append(simulate_pulled(problem, drive, "radial", resolution, accuracy, AS_SHIPPED))
+    ahead, plain = runs
+    assert ahead.converged and plain.converged
+    answers = [run.mu if drive.force is None else run.velocity for run in runs]
+    assert abs(answers[0] - answers[1]) <= 2.0 * accuracy.tolerance
+    # counted as are those of the run with fewer steps
+    assert ahead.solves < 0.8 * plain.solves
+    assert ahead.iterations < 0.8 * plain.iterations
+
+
+def test_a_search_goes_on_without_one_that_failed(monkeypatch):
+    problem, drive = Problem(motion_named("transverse"), 0.1, 1.0, 0.0), Drive(stiffness=1.0)
+    tried, really = [], simulate_pulled
+
+    def fails(problem, drive, model, resolution, *others, **more):
+        tried.append(resolution.steps)
+        return failed_run("on purpose")
+
+    monkeypatch.setattr(pulled_run, "simulate_pulled", fails)
+    fine = Resolution(8, 1, PREPARED_FROM)
+    found = really(problem, drive, "radial", fine, Accuracy(1e-4), AS_SHIPPED)
+    assert tried == [PREPARED_FROM // COARSENING]
+    assert found.converged and found.periods > 0.0
