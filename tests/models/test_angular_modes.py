@@ -9,12 +9,11 @@ from microslip.models.path import EULER, SDIRK2, make_path
 from microslip.models.polar import angular_modes
 from microslip.models.polar.angular_modes import (
     apply_sectors,
-    fold,
     influence_sectors,
     quickest,
-    unfold,
 )
 from microslip.models.polar.contact import PolarContact
+from microslip.models.polar.folding import fold, unfold
 from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import make_rings
 

@@ -25,13 +25,12 @@ from microslip.models.interrupts import unbroken
 from microslip.models.polar import march as polar_march
 from microslip.models.polar.angular_modes import (
     apply_sectors,
-    fold,
     influence_sectors,
     quickest,
     scaled,
     shifted_inverse,
-    unfold,
 )
+from microslip.models.polar.folding import fold, unfold
 from microslip.models.pull import PulledMarch
 from microslip.models.rings.contact import RadialContact
 from microslip.models.rings.mesh import make_rings

@@ -14,7 +14,8 @@ from microslip.foundation.compiled import kernel
 from microslip.models.coulomb import coulomb_residual, extended, shrink
 from microslip.models.interrupts import BETWEEN_LOOKS, interrupted
 from microslip.models.point_fields import add, copy, rigid_displacement, sum_forces
-from microslip.models.polar.angular_modes import Sectors, apply_sectors, fold, unfold
+from microslip.models.polar.angular_modes import Sectors, apply_sectors
+from microslip.models.polar.folding import fold, unfold
 
 MAX_ITERATIONS = 4000
 RELAXATION = 1.7
@@ -87,7 +88,7 @@ class Scratch(NamedTuple):
     Attributes
     ----------
     folded, image : np.ndarray, shape (4, M/2, N)
-        See `angular_modes.fold`.
+        See `folding.fold`.
     free : np.ndarray, shape (2, M, N)
         Tractions before they are projected.
     """

@@ -25,7 +25,8 @@ from microslip.models.point_fields import (
     rigid_displacement,
     sum_forces,
 )
-from microslip.models.polar.angular_modes import apply_sectors, fold, unfold
+from microslip.models.polar.angular_modes import apply_sectors
+from microslip.models.polar.folding import fold, unfold
 from microslip.models.polar.march import (
     FEWEST_BETWEEN,
     MAX_ITERATIONS,
