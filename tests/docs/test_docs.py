@@ -48,8 +48,8 @@ SHARED = ("Snakefile", "README.md", "pyproject.toml")
 SHARED_FOLDERS = ("benchmarks", "config", "docs", "profiles", "tests", "workflow")
 
 INSTALLS = "installs packages; .ci/run does this in a new environment"
-FULL = "the full sweeps take minutes; .ci/run runs the same rules on config/smoke.yaml"
-SMALL = "about a minute of computing; .ci/run makes it for config/smoke.yaml"
+FULL = "the full sweeps take minutes; .ci/run and tests run the same rules on small ones"
+SMALL = "about a minute of computing; tests of the workflow make it for smaller configurations"
 BENCHMARK = "minutes to hours; nobody runs it but who wants the numbers of the page"
 CLUSTER = "needs a cluster or a cloud; not run"
 # Blocks that are not run, by page and first line: why not, and where they are.
