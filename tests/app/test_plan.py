@@ -1,8 +1,7 @@
 """What a configuration leads to, asked without Snakemake."""
 
-from stubs.workflow_project import AXES, TINY
-
 import pytest
+from stubs.workflow_project import AXES, TINY
 
 from microslip.app.plan import Plan
 from microslip.config import load
