@@ -21,6 +21,7 @@ from microslip.solver.static_run import simulate_static
 SLOW = ("transverse", 1e-9, 0.5)
 
 
+@pytest.mark.slow
 def test_a_point_that_would_take_hours_ends_as_not_converged():
     """The bound is looked at inside a run: the first one alone would take ten times as much."""
     found = microslip.solve(*SLOW, tolerance=1e-6, most_work=5e5)
@@ -32,6 +33,7 @@ def test_a_point_that_would_take_hours_ends_as_not_converged():
     assert np.array_equal(again.mu_macro, found.mu_macro, equal_nan=True)
 
 
+@pytest.mark.slow
 def test_what_is_known_by_then_is_told():
     """With an error that holds, by the certified answer of a point that needs more."""
     whole = microslip.solve("bore", 0.02, 0.25)

@@ -399,7 +399,7 @@ def test_converged_means_within_the_tolerance_at_an_imposed_resolution_too(scene
 @settings(max_examples=12, deadline=None)
 @given(
     st.sampled_from(["transverse", "longitudinal"]),
-    st.floats(0.0, 3.0),
+    st.just(0.0) | st.floats(1e-4, 3.0),  # slower ones take seconds each
     st.floats(0.0, 3.0),
     st.sampled_from([None, 4, 16]),
     st.sampled_from([None, 8, 64]),

@@ -46,6 +46,7 @@ def names(folder):
     return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
 
 
+@pytest.mark.slow
 def test_what_was_planned_counts_and_a_plan_of_other_sources_is_left_over(
     results, tmp_path, monkeypatch
 ):

@@ -1,5 +1,6 @@
 """What a configuration leads to, asked without Snakemake."""
 
+import pytest
 from stubs.workflow_project import AXES, TINY
 
 from microslip.app.plan import Plan
@@ -27,6 +28,7 @@ def test_a_job_may_be_a_point():
     assert [len(batch) for batch in plan().batches_in("transverse").values()] == [4]
 
 
+@pytest.mark.slow
 def test_what_a_file_is_made_of_changes_with_its_own_settings_alone():
     sweeps = {**TINY["sweeps"], "transverse": {**AXES, "amplitude": [0, 0.5, 1]}}
     before, after = plan(), plan(sweeps=sweeps)

@@ -366,7 +366,8 @@ def test_brackets_hold_what_the_solver_says(tmp_path, scene):
     }
     for source, points in places.items():
         for v, a in points:
-            answer, truth = dataset.friction.at(v, a), microslip.solve(scene, v, a)
+            answer = dataset.friction.at(v, a)
+            truth = microslip.solve(scene, v, a, tolerance=5e-3)
             off = abs(float(answer.mu_macro) - truth.mu_macro)
             assert off <= float(answer.mu_macro_error) + truth.mu_macro_error, (v, a)
             if not (v > 2.0 and a > 2.0):

@@ -48,8 +48,8 @@ SHARED = ("Snakefile", "README.md", "pyproject.toml")
 SHARED_FOLDERS = ("benchmarks", "config", "docs", "profiles", "tests", "workflow")
 
 INSTALLS = "installs packages; .ci/run does this in a new environment"
-FULL = "the full sweeps take minutes; .ci/run runs the same rules on config/smoke.yaml"
-SMALL = "about a minute of computing; .ci/run makes it for config/smoke.yaml"
+FULL = "the full sweeps take minutes; .ci/run and tests run the same rules on small ones"
+SMALL = "about a minute of computing; tests of the workflow make it for smaller configurations"
 BENCHMARK = "minutes to hours; nobody runs it but who wants the numbers of the page"
 CLUSTER = "needs a cluster or a cloud; not run"
 # Blocks that are not run, by page and first line: why not, and where they are.
@@ -146,7 +146,7 @@ def computed(tmp_path_factory):
         for file in (f"{name}.nc", f".{name}.nc.sha256"):
             shutil.copy(place / file, folder)
     # coarse, so that it takes seconds
-    axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 0.1}}
+    axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 0.05}}
     map_ = certified_stub.configured("transverse", **axes)
     found = certified_stub.played(map_, lambda request: batches.answer(request, store)[0])
     certified_map.write(folder / f"{map_.name}.nc", certified_map.build(map_, *found))

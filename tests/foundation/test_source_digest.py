@@ -213,6 +213,8 @@ REQUESTS = [
 LOADED_BY = """
 import json, os, sys
 import numba, scipy.linalg, scipy.special  # which take long and belong to others
+from numba.core.registry import cpu_target
+cpu_target.typing_context.refresh(), cpu_target.target_context.refresh()  # so does this
 for request in json.loads(sys.argv[1]):
     if os.fork() == 0:  # a process for each, which has loaded nothing of the package
         from microslip.sweeps import evaluate as answers

@@ -19,6 +19,7 @@ def size(q):
     return np.hypot(q[0], q[1])
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(VECTORS, BOUNDS)
 def test_projection_is_the_nearest_point_of_the_disc(q, bound):

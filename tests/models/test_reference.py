@@ -51,6 +51,7 @@ def test_a_march_is_the_plain_one(name, integrator):
     assert found.forces[:, kept] == pytest.approx(sums[:, kept], abs=1e-9)
 
 
+@pytest.mark.slow
 def test_the_periodic_state_is_the_one_that_the_plain_march_ends_in():
     contact, scene = RadialContact.resolved(5, 0.7), motion_named("transverse")
     matrix, displacement = plain_parts(contact, scene, 0.0)

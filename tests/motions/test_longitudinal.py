@@ -72,6 +72,7 @@ def test_the_closed_form_is_taken_where_it_holds():
     assert microslip.solve("longitudinal", 0.1, 0.5, poisson=0.3).model == "polar"
 
 
+@pytest.mark.slow
 def test_nu_changes_little_and_keeps_the_order():
     """Motion along one line knows of nu only through the shape of the stick zone."""
     answer = microslip.solve("longitudinal", 0.1, 0.5, poisson=0.3)

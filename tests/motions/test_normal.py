@@ -136,10 +136,11 @@ def test_the_parts_of_a_contact_carry_its_load(carried):
     assert HERTZ.total(HERTZ.radius(depths) ** 2) == pytest.approx(HERTZ.total(depths))
 
 
-@pytest.mark.parametrize("contact", [RadialContact.resolved(12, 0.6), mdr_contact(12, 0.6)])
-def test_a_contact_that_grows_keeps_load_and_stiffness(contact):
+@pytest.mark.parametrize("build", [RadialContact.resolved, mdr_contact])
+def test_a_contact_that_grows_keeps_load_and_stiffness(build):
     """At the reference depth it is as it was; at another the load is Hertz's, and so is the
     stiffness of all rings together, 2 G* times the radius."""
+    contact = build(12, 0.6)
     same = contact.at_indentation(1.0, 1.0)
     assert same.bound == pytest.approx(contact.bound, rel=1e-9)
     wide = contact.at_indentation(1.69, 0.5)

@@ -193,6 +193,7 @@ def drawn_words(figure):
     return [" ".join(text.replace(r"\$", "$").split()) for text in plain]
 
 
+@pytest.mark.usefixtures("unplaced")
 def test_titles_are_drawn_as_they_stand(tmp_path):
     given = {f"m{k}": spanning(title) for k, title in enumerate(TITLES)}
     figure = drawing.draw("extended_motions", given)

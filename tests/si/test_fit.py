@@ -137,13 +137,13 @@ def test_rows_under_several_loads_are_brought_together(closed):
     assert (found.mu, found.u_lim_m) == pytest.approx((MU, U_LIM), rel=1e-5)
 
 
-SEEDS = 100
+SEEDS = 60
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("known", "confidence"), [(True, 0.68), (False, 0.95)])
 def test_intervals_cover_the_truth_as_often_as_they_say(closed, known, confidence):
-    """Counts of 100 seeds lie where a binomial one of that chance does but once in 10^4."""
+    """Counts of that many seeds lie where a binomial one of that chance does but once in 10^4."""
     table, sigma = conditions(12), 0.05
     true, held = force(table), {"mu": 0, "u_lim": 0}
     for seed in range(SEEDS):

@@ -71,6 +71,7 @@ def test_springs_on_a_circle_in_closed_form(amplitude):
     within(found, (1.0 - amplitude) ** 1.5)
 
 
+@pytest.mark.slow
 def test_where_all_slides_the_mean_of_the_directions_is_left():
     def forward(t):
         return np.cos(2.0 * t) / np.hypot(np.cos(2.0 * t), np.cos(t))

@@ -75,6 +75,7 @@ def main(address):
     for name in LIBRARIES:
         with contextlib.suppress(ImportError):
             import_module(name)
+    _load_numba()
     signal.signal(signal.SIGCHLD, _bury)
     server = socket.socket(socket.AF_UNIX)
     server.bind(address)
@@ -85,6 +86,14 @@ def main(address):
             server.close()
             _run(asked)
         asked.close()
+
+
+def _load_numba():
+    """What Numba loads with the first function that is compiled, or was."""
+    from numba.core.registry import cpu_target
+
+    cpu_target.typing_context.refresh()
+    cpu_target.target_context.refresh()
 
 
 def _bury(*_):

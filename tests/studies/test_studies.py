@@ -176,6 +176,7 @@ def test_blocks_have_names_that_the_configuration_knows():
     assert stability.axes(everything) == list(stability.AXES)
 
 
+@pytest.mark.slow
 def test_cases_can_be_asked():
     for axis, value, overrides in stability.cases(configured(stability={"axes": None}).stability):
         request = stability.probe(configured().stability, "shipped", axis, value, overrides)

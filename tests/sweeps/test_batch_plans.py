@@ -56,6 +56,7 @@ def test_what_is_added_is_in_new_batches_and_these_hold_nothing_else(grown, tmp_
     assert len(new(before, after)) == -(-len(added) // 4)
 
 
+@pytest.mark.slow
 def test_twenty_thousand_points_and_a_velocity_start_one_job(tmp_path):
     many = {"velocity": [k / 1000 for k in range(1, 201)], "size": 100}
     many["amplitude"] = [k / 50 for k in range(1, 101)]

@@ -11,12 +11,12 @@ from microslip.report.figures import drawing
 
 pytestmark = pytest.mark.slow
 
-# A point and maps that cost next to nothing, and a block whose cases are few.
+# A point with a closed form, maps that cost next to nothing, and a block whose cases are few.
 TINY = {
     "sweeps": {"transverse": {"velocity": [1], "amplitude": [0]}},
     "accuracy": {
         "methods": ["shipped", "my-method"],
-        "points": {"fast": {"scene": "transverse", "velocity": 3, "amplitude": 0.5}},
+        "points": {"fast": {"scene": "longitudinal", "velocity": 0.5, "amplitude": 1}},
         "levels": 2,
         "repeats": 1,
         "map": {
