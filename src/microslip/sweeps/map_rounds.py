@@ -12,6 +12,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from microslip.config.extended import solver_names
 from microslip.config.records import CertifiedMap
 from microslip.foundation.canonical import canonical_json
 from microslip.sweeps.batches import PointRequests, key_of
@@ -29,7 +30,7 @@ MOST_ROUNDS = 64
 
 def coordinates_of(map_: CertifiedMap) -> MapCoordinates:
     """The coordinates that a certified map is cut in."""
-    kinks = kinks_of(map_.sweep.scene, map_.sweep.pressure)
+    kinks = kinks_of(*solver_names(map_.sweep))
     return MapCoordinates(map_.velocity, map_.amplitude, kinks, map_.poisson)
 
 

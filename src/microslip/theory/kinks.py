@@ -37,12 +37,27 @@ KINKS = {
     "transverse": Kinks((1.0,), (0.004, 0.12, 1.69, 0.975, 0.965)),
     # The centre of rotation leaves the contact at the velocity 1.
     "bore": Kinks((), (1.0,)),
+    # At the amplitude 1 contact is lost.  Below it, above some velocity the load never grows
+    # faster than the springs at the growing edge are stretched, and friction is full: the largest
+    # A sin t / (1.5 (1 - A cos t)^(1/3)) over t, to 2 % from above.
+    "normal": Kinks((1.0,), (0.0, 1.0, 1.5, 1.25, 0.0)),
 }
+"""Under Hertz's pressure, by the names of motions."""
+UNDER_ANY = {
+    # Above the velocity A the contact is never pulled back, and friction is full; from the
+    # amplitude 1 on all of it slides backward, too.
+    "longitudinal": Kinks((1.0,), (0.0, 1.0, 1.0, 1.0, 0.0)),
+    # The same of springs that are pressed deeper; at the amplitude 1 contact is lost.
+    "normal:indentation=1": Kinks((1.0,), (0.0, 1.0, 1.0, 1.0, 0.0)),
+}
+"""The same under any pressure, in its own units."""
 
 
 def kinks_of(motion: str, pressure: str = "hertz") -> Kinks:
-    """What is known of a motion under a pressure, by their names; none of most."""
-    return KINKS.get(motion, Kinks()) if pressure == "hertz" else Kinks()
+    """What is known of a motion under a pressure, by the names that the solver writes; none of
+    most."""
+    of_hertz = KINKS if pressure == "hertz" else {}
+    return (UNDER_ANY | of_hertz).get(motion, Kinks())
 
 
 def kink_velocity(kinks: Kinks, amplitude: np.ndarray) -> np.ndarray | None:
