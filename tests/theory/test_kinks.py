@@ -51,5 +51,19 @@ def test_a_load_that_oscillates_takes_nothing_from_a_little_below_its_kink_on():
         assert load_oscillates(0.95 * at, amplitude) < 1.0 - 1e-6
 
 
+def test_a_loop_is_cut_where_it_no_longer_goes_back():
+    for name in (
+        "elliptic",
+        "elliptic:forward=0.5,forward_cycles=2,phase=0",
+        "elliptic:forward=0.3,phase=30",
+    ):
+        phase = np.linspace(0.0, 2.0 * np.pi, 3601)
+        along, _, _ = motion_named(name).displacement(phase, 0.0, 0.7, 0.0)
+        fastest = np.gradient(along, phase).max()
+        at = kink_velocity(kinks_of(name), np.array(0.7))
+        assert float(at) == pytest.approx(fastest, rel=1e-3)
+    assert kinks_of("elliptic:forward=0") == Kinks()
+
+
 def test_most_motions_have_none_that_is_known():
-    assert kinks_of("elliptic") == kinks_of("transverse", "punch") == Kinks()
+    assert kinks_of("transverse-bore") == kinks_of("transverse", "punch") == Kinks()

@@ -12,6 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from microslip.foundation import spec
+
+LOOP = "elliptic"
+"""Name of the motions that oscillate along two directions, with numbers that are 1 if not given."""
+
 
 class Kinks(NamedTuple):
     """Where the friction of a motion has kinks; all dimensionless.
@@ -57,7 +62,22 @@ def kinks_of(motion: str, pressure: str = "hertz") -> Kinks:
     """What is known of a motion under a pressure, by the names that the solver writes; none of
     most."""
     of_hertz = KINKS if pressure == "hertz" else {}
-    return (UNDER_ANY | of_hertz).get(motion, Kinks())
+    known = UNDER_ANY | of_hertz
+    return known[motion] if motion in known else _of_loop(motion)
+
+
+def _of_loop(motion):
+    """Of a loop: above the velocity that goes with its largest one forward, it never goes back.
+
+    There is no kink at that velocity, but what slower ones feel is over that, however small the
+    amplitude.
+    """
+    name, _, rest = motion.partition(":")
+    if name != LOOP:
+        return Kinks()
+    numbers = spec.numbers_in(rest, motion, "scene", f"{LOOP}:forward=0.5") if rest else {}
+    back = numbers.get("forward", 1.0) * numbers.get("forward_cycles", 1.0)
+    return Kinks((), (0.0, 1.0, 1.0 / back, 1.0 / back, 0.0)) if back > 0.0 else Kinks()
 
 
 def kink_velocity(kinks: Kinks, amplitude: np.ndarray) -> np.ndarray | None:
