@@ -66,4 +66,4 @@ def test_a_loop_is_cut_where_it_no_longer_goes_back():
 
 
 def test_most_motions_have_none_that_is_known():
-    assert kinks_of("transverse-bore") == kinks_of("transverse", "punch") == Kinks()
+    assert kinks_of("transverse-bore") == kinks_of("bore", "punch") == Kinks()
