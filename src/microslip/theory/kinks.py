@@ -16,6 +16,8 @@ from microslip.foundation import spec
 
 LOOP = "elliptic"
 """Name of the motions that oscillate along two directions, with numbers that are 1 if not given."""
+LOAD = "normal"
+"""Name of those whose load, in a share that is 1 if not given, or indentation oscillates."""
 
 
 class Kinks(NamedTuple):
@@ -64,19 +66,23 @@ def kinks_of(motion: str, pressure: str = "hertz") -> Kinks:
     most."""
     of_hertz = KINKS if pressure == "hertz" else {}
     known = UNDER_ANY | of_hertz
-    return known[motion] if motion in known else _of_loop(motion)
+    return known[motion] if motion in known else _of_family(motion)
 
 
-def _of_loop(motion):
-    """Of a loop: above the velocity that goes with its largest one forward, it never goes back.
+def _of_family(motion):
+    """Of a loop, and of a load that oscillates together with something else.
 
-    There is no kink at that velocity, but what slower ones feel is over that, however small the
-    amplitude.
+    Above the velocity that goes with its largest one forward, a loop never goes back.  There is no
+    kink there, but what slower velocities feel is over that, however small the amplitude; under a
+    load that oscillates it is over the amplitude.  That load is lost from some amplitude on.
     """
     name, _, rest = motion.partition(":")
-    if name != LOOP:
+    if name not in (LOOP, LOAD):
         return Kinks()
-    numbers = spec.numbers_in(rest, motion, "scene", f"{LOOP}:forward=0.5") if rest else {}
+    numbers = spec.numbers_in(rest, motion, "scene", f"{name}:forward=0.5") if rest else {}
+    if name == LOAD:
+        share = numbers.get("indentation", 0.0) or numbers.get("load", 1.0)
+        return Kinks((1.0 / share,) if share > 0.0 else (), (0.0, 1.0, 1.0, 1.0, 0.0))
     back = numbers.get("forward", 1.0) * numbers.get("forward_cycles", 1.0)
     return Kinks((), (0.0, 1.0, 1.0 / back, 1.0 / back, 0.0)) if back > 0.0 else Kinks()
 
