@@ -75,7 +75,8 @@ def main():
         ("largest memory after all, MB", f"{memory() / 1e6:.0f}"),
         ("mean of the answers, largest error", f"{float(mean):.4f}, {float(error):.1e}"),
     ]
-    tables.publish(tables.measured(rows), options)
+    head = "# Many questions to a certified map\n\nMade by `benchmarks/many_questions.py`."
+    tables.publish(f"{head}\n\n{tables.measured(rows)}", options)
 
 
 if __name__ == "__main__":

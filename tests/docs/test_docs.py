@@ -78,6 +78,7 @@ NOT_RUN = {
     ("docs/explanation/accuracy.md", "python benchmarks/paper_method.py"): BENCHMARK,
     ("docs/explanation/accuracy.md", "python benchmarks/interpolation.py"): BENCHMARK,
     ("docs/how-to/sweeps.md", "python benchmarks/certified.py"): BENCHMARK,
+    ("docs/how-to/sweeps.md", "python benchmarks/other_maps.py"): BENCHMARK,
     ("docs/how-to/cluster.md", ".venv/bin/snakemake -j8"): FULL,
     ("docs/how-to/cluster.md", ".venv/bin/pip install -e '.[slurm]'"): CLUSTER,
     ("docs/how-to/cluster.md", "benchmarks/slurm_here.sh"): f"{CLUSTER} by a test: it installs one",
