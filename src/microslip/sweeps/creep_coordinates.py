@@ -70,10 +70,16 @@ class CreepCoordinates(NamedTuple):
         """The coordinates as a text, for the attribute of a dataset."""
         return canonical_json(self._asdict())
 
-    def scaled(self, force: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
-        """Scaled coordinates, shape (n, 2), of places that creep, in the range, shape (n,) each."""
+    def scaled(
+        self, force: np.ndarray, amplitude: np.ndarray, least: np.ndarray | None = None
+    ) -> np.ndarray:
+        """Scaled coordinates, shape (n, 2), of places that creep, in the range, shape (n,) each.
+
+        least: the threshold at these amplitudes, where it is known already; it takes a while.
+        """
         force, amplitude = (np.asarray(part, float) for part in (force, amplitude))
-        least = threshold(self.motion, amplitude)
+        if least is None:
+            least = threshold(self.motion, amplitude)
         ends = _stretched(self.force, least)
         share = np.clip(_stretched(force, least) / np.where(ends > 0.0, ends, 1.0), 0.0, 1.0)
         return np.column_stack([share, self._rows.scaled(amplitude)])

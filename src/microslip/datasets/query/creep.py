@@ -80,7 +80,7 @@ class Creep:
         _refuse_beyond(coordinates, flat[moves], amplitude[moves])
         velocity, error = np.zeros((2, len(flat)))
         velocity[state == RUNS_AWAY] = np.inf
-        scaled = coordinates.scaled(flat[moves], amplitude[moves])
+        scaled = coordinates.scaled(flat[moves], amplitude[moves], least[moves])
         velocity[moves], error[moves] = velocity_of(*found.cells.at_scaled(scaled))
         return self._answered(force, (velocity, error, least, state))
 
