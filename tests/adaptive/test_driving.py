@@ -186,7 +186,7 @@ def test_a_rigid_contact_pushed_back():
 @pytest.mark.slow
 def test_a_contact_that_sticks_drives_nothing():
     """So small an oscillation leaves friction enough to hold a body against either direction."""
-    line = microslip.drive(EIGHT, 0.1, tolerance=0.1)
+    line = microslip.drive(EIGHT, 0.1, tolerance=3e-2)
     assert line.converged
     assert line.stall_force == line.no_load_velocity == 0.0
     assert line.velocity.size == line.efficiency.size == 0

@@ -5,12 +5,13 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
-from stubs import claims_stub, driving_stub, studies_stub
+from stubs import certified_stub, claims_stub, driving_stub, studies_stub
 from stubs.sweep_stub import Solver
 
 import microslip
 from microslip.config import load
 from microslip.datasets import certified_map, sweep_dataset
+from microslip.datasets.query.creep import Creep
 from microslip.si.predict import Prediction
 from microslip.studies import registry
 from microslip.sweeps import batches, map_rounds
@@ -89,6 +90,13 @@ def test_every_variable_of_a_certified_map_is_in_its_table_and_no_other():
     ]
     data = certified_map.build(map_, [first], records)
     assert set(section("A certified map")) == set(map(str, data.variables))
+
+
+def test_every_variable_of_a_map_of_creep_and_of_its_answers_is_in_its_table_and_no_other():
+    data = certified_stub.creeping()
+    answer = Creep(data).at(0.5, 1.0)
+    known = set(data.variables) | set(answer.variables)
+    assert set(section("A certified map of creep")) == set(map(str, known))
 
 
 STUDIES = {

@@ -43,6 +43,7 @@ def given() -> dict[str, tuple[str, dict]]:
     found["certified"] = "certified_bore", {"certified_bore": certified_stub.bore()}
     found["deep"] = "certified_bore", {"certified_bore": certified_stub.bore(poisson=[0.1, 0.4])}
     static = certified_stub.bore(velocity=[0], poisson=[0.1, 0.4])
+    found["certified creep"] = "certified_weights", {"certified_weights": certified_stub.creeping()}
     found["certified static"] = "certified_bore", {"certified_bore": static}
     found["maps"] = "extended_motions", groups.motions(3)
     found["lines"] = "extended_static", {"a": groups.static("a"), "b": groups.static("b")}

@@ -137,7 +137,7 @@ def test_rows_under_several_loads_are_brought_together(closed):
     assert (found.mu, found.u_lim_m) == pytest.approx((MU, U_LIM), rel=1e-5)
 
 
-SEEDS = 60
+SEEDS = 100
 
 
 @pytest.mark.slow

@@ -1,11 +1,16 @@
 """The rounds of a certified map, played in one process without a workflow."""
 
+import numpy as np
 import xarray as xr
 
 from microslip.config import load
 from microslip.datasets import certified_map
-from microslip.sweeps import map_rounds
+from microslip.sweeps import evaluate, map_rounds
 from microslip.sweeps.batches import key_of
+from microslip.theory.creep_threshold import threshold
+
+PAPER = {"transverse": {"velocity": [1], "amplitude": [1]}}
+CREEP = {"scene": "transverse", "force": [0.05, 0.95], "amplitude": [0, 3]}
 
 
 def configured(scene, **given):
@@ -36,3 +41,34 @@ def bore(**given) -> xr.Dataset:
     axes = {"velocity": [0.01, 10], "amplitude": [0, 5], "adaptive": {"error": 0.02}}
     map_ = configured("bore", **axes | given)
     return certified_map.build(map_, *played(map_, answer))
+
+
+def creep(force, amplitude):
+    """A velocity under a force, made up: 0 up to the threshold, from there on like its power 3/2,
+    and infinite at 1."""
+    least = threshold("transverse", amplitude)
+    share = np.clip((force - least) / np.where(least < 1.0, 1.0 - least, 1.0), 0.0, 1.0)
+    return amplitude * share**1.5 / np.sqrt(1.0 - share)
+
+
+def creeping(*, fails=lambda force, amplitude: False, **given) -> xr.Dataset:
+    """The dataset of a map of that; fails: at which places no velocity is found."""
+
+    def answer(request):
+        place = [float(request[name]) for name in ("force", "amplitude")]
+        velocity = float(creep(*place))
+        error = {"mu_macro_error": 0.0, "velocity_error": 1e-4 * max(1.0, velocity)}
+        result = {"mu_macro": place[0], "velocity": velocity, "converged": True} | error
+        if fails(*place):
+            result = {"converged": False}
+        return {"key": key_of(request), "request": request, "result": result, "versions": {}}
+
+    drives = {"weights": CREEP | {"adaptive": {"error": 1e-2}} | given}
+    (map_,) = load.from_mapping({"sweeps": PAPER, "drives": drives}).certified.values()
+    return certified_map.build(map_, *played(map_, answer))
+
+
+def solved(request):
+    """The record of a request, from the solver."""
+    result = evaluate.computed(request)
+    return {"key": key_of(request), "request": request, "result": result, "versions": {}}

@@ -16,12 +16,12 @@ from microslip.sweeps.map_cells import (
     surpluses_of,
 )
 from microslip.sweeps.map_coordinates import MapCoordinates
-from microslip.theory.kinks import KINKS, Kinks, kink_velocity
+from microslip.theory.kinks import Kinks, kink_velocity, kinks_of
 
 PLAIN = MapCoordinates((0.01, 1.0), (0.5, 2.5))
-TRANSVERSE = MapCoordinates((0.001, 10.0), (0.0, 3.0), KINKS["transverse"])
-BORE = MapCoordinates((0.001, 10.0), (0.0, 5.0), KINKS["bore"])
-DEEP = MapCoordinates((0.001, 10.0), (0.0, 3.0), KINKS["transverse"], (0.1, 0.5))
+TRANSVERSE = MapCoordinates((0.001, 10.0), (0.0, 3.0), kinks_of("transverse"))
+BORE = MapCoordinates((0.001, 10.0), (0.0, 5.0), kinks_of("bore"))
+DEEP = MapCoordinates((0.001, 10.0), (0.0, 3.0), kinks_of("transverse"), (0.1, 0.5))
 
 
 def played(coordinates, function, error):
@@ -73,7 +73,7 @@ def test_kinks_are_borders_of_patches():
     assert BORE.place((1.0, 0.3))[0] == BORE.place((2.0, 0.3))[0] == 1.0
     for node in ((1.0, 1.7), (2.0, 0.7)):
         velocity, amplitude = TRANSVERSE.place(node)
-        kink = kink_velocity(KINKS["transverse"], np.array(amplitude))
+        kink = kink_velocity(kinks_of("transverse"), np.array(amplitude))
         assert velocity == pytest.approx(float(kink), rel=1e-8)
 
 
@@ -88,12 +88,12 @@ def test_places_are_even_in_what_they_are_said_to_be_even_in():
 
 
 def test_a_kink_outside_of_the_range_cuts_nothing():
-    assert MapCoordinates((2.0, 10.0), (0.0, 5.0), KINKS["bore"]).patches == PLAIN.patches
+    assert MapCoordinates((2.0, 10.0), (0.0, 5.0), kinks_of("bore")).patches == PLAIN.patches
     assert MapCoordinates((0.1, 10.0), (1.0, 3.0), Kinks((1.0,))).patches == PLAIN.patches
 
 
 def test_a_kink_in_part_of_the_range_stays_clear_of_its_ends():
-    inside = MapCoordinates((0.1, 10.0), (0.0, 3.0), KINKS["transverse"])
+    inside = MapCoordinates((0.1, 10.0), (0.0, 3.0), kinks_of("transverse"))
     places = [inside.place((1.0, y))[0] for y in np.linspace(0, 2, 9)]
     assert min(places) == pytest.approx(0.2)  # twice the slowest, where the kink is at 0.002
 

@@ -89,3 +89,26 @@ def test_nothing_of_a_map_is_left_over(finished):
     files = ("nc", "html", "png", "pdf")
     made = sorted(f"certified_transverse.{kind}" for kind in files)
     assert sorted(path.name for path in left[leftovers.KINDS[2]]) == made
+
+
+def test_a_sweep_of_forces_makes_a_map_of_creep(tmp_path):
+    weights = {"scene": "transverse", "force": [0.1, 0.8], "amplitude": [0.5, 1.5]}
+    weights |= {"adaptive": {"error": 0.1}}
+    given = {"sweeps": {"transverse": AXES}, "drives": {"weights": weights}}
+    project = Project(tmp_path)
+    project.configure(given)
+    project.run("certified")
+    results = project.folder / "results"
+    data = microslip.open_map("certified_weights", results).load()
+    assert float(data.cell_error.max()) <= data.error == 0.1
+    page = (results / "summaries" / "certified_weights.html").read_text()
+    assert f"{data.points} points, none not converged; within" in page
+    assert "sqrt(1 + v^2) everywhere" in page
+    assert (results / "figures" / "certified_weights.png").read_bytes().startswith(b"\x89PNG")
+    answer = data.creep.at(0.6, 1.2)
+    asked = microslip.solve("transverse", amplitude=1.2, force=0.6, tolerance=1e-2)
+    off = abs(float(answer.velocity) - asked.velocity)
+    assert off <= float(answer.velocity_error) + asked.velocity_error
+    plan = Plan(load.from_mapping(given))
+    assert not any(leftovers.left_over(results, [plan]).values())
+    assert "Nothing to be done" in project.run("certified")

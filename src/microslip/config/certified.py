@@ -3,6 +3,8 @@
 from microslip.config.records import CertifiedMap, ConfigError, Sweep
 from microslip.foundation.canonical import number
 
+EXACT_MODELS = ("auto", "radial", "polar", "cartesian")
+"""Models whose contact is the half-space, of which thresholds of creep are known."""
 SHARE_OF_POINTS = 0.3
 """Of the error of a map: what is left to its points unless told otherwise."""
 
@@ -46,9 +48,41 @@ def _tolerance(given, error, where):
     return tolerance
 
 
+def refuse_unsolvable(given: dict[str, CertifiedMap], where: str) -> None:
+    """Raise ConfigError for a map of creep where the force that it begins at is not known.
+
+    given: maps by name; where: how messages begin.  It takes a while to load.
+    """
+    from microslip.config.extended import solver_names
+    from microslip.theory import creep_threshold
+
+    for map_ in (map_ for map_ in given.values() if map_.force is not None):
+        sweep, at = map_.sweep, f"{where}.{map_.sweep.name}.adaptive"
+        motion, pressure = solver_names(sweep)
+        if not creep_threshold.is_known(motion, pressure, sweep.poisson[0]):
+            raise ConfigError(
+                f"{at}: is not allowed for {motion} under {pressure} at Poisson's ratio "
+                f"{sweep.poisson[0]:g}, whose threshold is not known exactly; allowed: "
+                f"{', '.join(creep_threshold.KNOWN)} under hertz, at Poisson's ratio 0 but for bore"
+            )
+        if sweep.model not in EXACT_MODELS:
+            raise ConfigError(
+                f"{at}: is not allowed with model {sweep.model}, whose threshold is another one; "
+                f"allowed: {', '.join(EXACT_MODELS)}"
+            )
+        least = float(creep_threshold.threshold(motion, map_.amplitude[1]))
+        if least >= map_.force:
+            raise ConfigError(
+                f"{at}: is not allowed where nothing moves; allowed: a force above the threshold "
+                f"at the largest amplitude, {least:.3g}"
+            )
+
+
 def _refuse_mismatch(sweep, where):
+    if sweep.drives:
+        _refuse_no_creep(sweep, where)
     is_static = len(sweep.amplitude or ()) > 1 and 0.0 in sweep.velocity
-    if not (sweep.spans_a_map or is_static):
+    if not (sweep.spans_a_map or is_static or sweep.drives):
         raise ConfigError(
             f"{where}.adaptive: is not allowed here; allowed: with two amplitudes and two "
             "velocities above 0 at least, which are its range, or the velocity 0 in their place"
@@ -57,4 +91,25 @@ def _refuse_mismatch(sweep, where):
         raise ConfigError(
             f"{where}.adaptive: is not allowed with cells or steps imposed; allowed: a tolerance "
             "alone"
+        )
+
+
+def _refuse_no_creep(sweep, where):
+    """Raise ConfigError for what is pulled but by a force alone, over which it is to be a map."""
+    (name, values, _), *others = sweep.drives
+    if others or name != "force" or sweep.contacts is not None:
+        pulls = ", ".join(name for name, _, _ in sweep.drives)
+        pulls += ", contacts" if sweep.contacts is not None else ""
+        raise ConfigError(
+            f"{where}.adaptive: is not allowed with {pulls}; allowed: a force alone, on one contact"
+        )
+    if len(sweep.amplitude or ()) < 2 or len(sweep.poisson) > 1:
+        raise ConfigError(
+            f"{where}.adaptive: is not allowed here; allowed: with two amplitudes at least, which "
+            "are its range, and one Poisson's ratio"
+        )
+    if not 0.0 < values[-1] < 1.0:
+        raise ConfigError(
+            f"{where}.adaptive: is not allowed up to the force {values[-1]:g}; allowed: above 0 "
+            "and below 1, where a contact runs away"
         )

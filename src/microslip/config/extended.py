@@ -83,10 +83,11 @@ def pulled_sweeps(given: dict, where: str, others: Iterable) -> dict:
 
     others: names that are taken already. Raises ConfigError.
     """
-    found = {}
+    found, others = {}, set(others)
     for name, settings in given.items():
         at = f"{where}.{name}"
-        if name in TAKEN or name in others:
+        names = given.keys() | others
+        if name in TAKEN or name in others or name.removeprefix("certified_") in names - {name}:
             raise ConfigError(f"{at}: another result has this name; allowed: a new one")
         drives = axes.drives_of(settings, at)
         if not drives:

@@ -139,6 +139,9 @@ def from_mapping(
         extended.refuse_unsolvable(list(others.values()), f"{source}: extended")
         extended.refuse_unsolvable(list(pulled.values()), f"{source}: drives")
     extended.refuse_mixtures(list(others.values()), f"{source}: extended")
+    creeping = certified.maps(pulled, filled["drives"], f"{source}: drives")
+    if ask_solver and creeping:
+        certified.refuse_unsolvable(creeping, f"{source}: drives")
     given = filled["sweeps"] | filled["extended"] | filled["drives"]
     return Configuration(
         results=filled["results"],
@@ -155,7 +158,8 @@ def from_mapping(
         claims=_claims(filled["claims"], f"{source}: claims"),
         driving=driving.study(filled["driving"], f"{source}: driving", ask_solver),
         certified=certified.maps(sweeps, filled["sweeps"], f"{source}: sweeps")
-        | certified.maps(others, filled["extended"], f"{source}: extended"),
+        | certified.maps(others, filled["extended"], f"{source}: extended")
+        | creeping,
     )
 
 

@@ -96,12 +96,20 @@ class CertifiedMap:
         return (ratios[0], ratios[-1]) if len(ratios) > 1 else ()
 
     @property
+    def force(self) -> float | None:
+        """The largest force of a map of the velocity that one gives; None: it is of friction."""
+        pulls = {name: values for name, values, _ in self.sweep.drives}
+        return pulls["force"][-1] if "force" in pulls else None
+
+    @property
     def settings(self) -> dict:
         """All that its points depend on, as a dict for JSON."""
         kept = ("scene", "pressure", "model")
         found = {name: getattr(self.sweep, name) for name in kept}
         found["poisson"] = self.poisson or self.sweep.poisson
         ranges = {"velocity": self.velocity, "amplitude": self.amplitude}
+        if self.force is not None:
+            ranges["force"] = self.force
         return found | ranges | {"error": self.error, "tolerance": self.tolerance}
 
 

@@ -4,8 +4,9 @@
 
 A cell is a box in the coordinates of sweeps.map_coordinates, and friction in it the polynomial
 through its points, 5 along the velocity and the amplitude and 3 along Poisson's ratio where that is
-a direction, too; cell_error is the bound of the error everywhere in it.  The same answers give the
-same bytes.
+a direction, too; cell_error is the bound of the error everywhere in it.  A map of creep is over
+force and amplitude, in the coordinates of sweeps.creep_coordinates, and what its cells interpolate
+is asinh(velocity).  The same answers give the same bytes.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from microslip.config.records import CertifiedMap
 from microslip.datasets import netcdf, sweep_dataset
 from microslip.foundation.canonical import canonical_json
 from microslip.sweeps import map_rounds
+from microslip.sweeps.creep_coordinates import CreepCoordinates, velocity_of
 from microslip.sweeps.map_coordinates import MapCoordinates
 from microslip.sweeps.sealed_files import writing_beside
 
@@ -29,12 +31,14 @@ COORDINATES = "map_coordinates"
 """Attribute that says how a map is cut, as JSON."""
 BORDERS = {
     "velocity": ("cell_left", "cell_right"),
+    "force": ("cell_left", "cell_right"),
     "amplitude": ("cell_low", "cell_high"),
     "poisson": ("cell_poisson_low", "cell_poisson_high"),
 }
 """Names of the variables that say where a cell begins and ends, by direction."""
 SCALED = {
     "velocity": "scaled velocity",
+    "force": "scaled force",
     "amplitude": "scaled amplitude",
     "poisson": "scaled Poisson's ratio",
 }
@@ -63,20 +67,21 @@ def build(map_: CertifiedMap, rounds: Sequence[dict], records: Iterable[dict]) -
     nodes = sorted(known)
     index = {node: i for i, node in enumerate(nodes)}
     degrees, places = coordinates.degrees, [coordinates.place(node) for node in nodes]
-    mu, error = np.array([known[node] for node in nodes]).T
+    values, errors = np.array([known[node] for node in nodes]).T
     picked = np.array([[index[n] for n in cell.nodes(degrees)] for cell in found.cells], np.int32)
     axes = {
         name: ("point", np.array(values))
         for name, values in zip(coordinates.directions, zip(*places, strict=True), strict=True)
     }
     # what is the same all over the map
-    axes = {"velocity": ((), 0.0), "poisson": ((), map_.sweep.poisson[0])} | axes
+    axes = {"poisson": ((), map_.sweep.poisson[0])} | axes
+    if map_.force is None:
+        axes = {"velocity": ((), 0.0)} | axes
     dataset = xr.Dataset(
         {
-            "mu_macro": _variable("point", mu, MU_MACRO.description),
-            "mu_macro_error": _variable("point", error, "estimated error of mu_macro"),
+            **_at_points(map_, values, errors),
             **_borders(coordinates, found.cells),
-            "cell_error": _variable("cell", found.errors, "bound of the error in the cell"),
+            "cell_error": _variable("cell", found.errors, _bound_of(map_)),
             "cell_node": (
                 ("cell", "node"),
                 picked,
@@ -88,8 +93,9 @@ def build(map_: CertifiedMap, rounds: Sequence[dict], records: Iterable[dict]) -
     sweep_dataset.describe_axes(dataset, map_.sweep)
     scene, pressure = solver_names(map_.sweep)
     versions = {canonical_json(record["versions"]) for record in records}
+    quantity = "friction" if map_.force is None else "creep"
     about = sweep_dataset.provenance(
-        f"Certified friction of a vibrated contact, scene {scene}",
+        f"Certified {quantity} of a vibrated contact, scene {scene}",
         map_.settings,
         versions,
         scene=scene,
@@ -100,6 +106,8 @@ def build(map_: CertifiedMap, rounds: Sequence[dict], records: Iterable[dict]) -
         directions=" ".join(coordinates.directions),
         degrees=np.array(degrees, np.int32),
     )
+    if map_.force is not None:
+        about["drive"] = "force"
     return dataset.assign_attrs(about | {COORDINATES: coordinates.to_json()})
 
 
@@ -111,19 +119,47 @@ def write(path: str | os.PathLike, dataset: xr.Dataset) -> None:
 
 def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
     """Lines of text: how many points there are, what holds everywhere, and where it does not."""
-    errors, failed = dataset["cell_error"].values, int(dataset["mu_macro"].isnull().sum())
+    creeps = is_of_creep(dataset)
+    values, errors = dataset["velocity" if creeps else "mu_macro"], dataset["cell_error"].values
+    failed, scale = int(values.isnull().sum()), " sqrt(1 + v^2)" if creeps else ""
     yield (
         f"{name}: {dataset.points} points, {failed or 'none'} not converged; within "
-        f"{errors.max():.1e} everywhere"
+        f"{errors.max():.1e}{scale} everywhere"
     )
     over = int((errors > dataset.error).sum())
     if over:
         yield f"  {over} of {len(errors)} cells are not within {dataset.error:g}"
 
 
-def coordinates_in(dataset: xr.Dataset) -> MapCoordinates:
+def is_of_creep(dataset: xr.Dataset) -> bool:
+    """Whether a dataset is a certified map of the velocity under a force."""
+    return COORDINATES in dataset.attrs and "force" in dataset.attrs.get("directions", "").split()
+
+
+def coordinates_in(dataset: xr.Dataset) -> MapCoordinates | CreepCoordinates:
     """How the map of a dataset is cut; raises KeyError and ValueError for one that does not say."""
-    return MapCoordinates.from_json(dataset.attrs[COORDINATES])
+    kind = CreepCoordinates if is_of_creep(dataset) else MapCoordinates
+    return kind.from_json(dataset.attrs[COORDINATES])
+
+
+def _at_points(map_, values, errors):
+    """Variables of what was solved for."""
+    if map_.force is None:
+        return {
+            "mu_macro": _variable("point", values, MU_MACRO.description),
+            "mu_macro_error": _variable("point", errors, "estimated error of mu_macro"),
+        }
+    velocity, error = velocity_of(values, errors)
+    return {
+        "velocity": _variable("point", velocity, "mean forward velocity"),
+        "velocity_error": _variable("point", error, "estimated error of velocity"),
+    }
+
+
+def _bound_of(map_):
+    if map_.force is None:
+        return "bound of the error in the cell"
+    return "bound of the error of asinh(velocity) in the cell"
 
 
 def _borders(coordinates, cells):

@@ -119,7 +119,7 @@ class MapCoordinates(NamedTuple):
         *node, nu = [*node] if self.poisson else [*node, 0.0]
         deep = [_between(nu, self.poisson)] if self.poisson else []
         flat = self._place(*node) if self.velocity else (self._amplitude_at(*node),)
-        return tuple(_rounded(value) for value in (*flat, *deep))
+        return tuple(rounded(value) for value in (*flat, *deep))
 
     def _place(self, x, y):
         """Velocity and amplitude."""
@@ -212,5 +212,6 @@ def _at_spread_share(share, ends):
     return np.expm1(_between(share, (low, high))) / SPREAD
 
 
-def _rounded(value):
+def rounded(value: float) -> float:
+    """A number in DIGITS digits."""
     return float(f"{value:.{DIGITS}g}")

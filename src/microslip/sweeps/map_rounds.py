@@ -12,9 +12,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from microslip.config.extended import solver_names
 from microslip.config.records import CertifiedMap
 from microslip.foundation.canonical import canonical_json
 from microslip.sweeps.batches import PointRequests, key_of
+from microslip.sweeps.creep_coordinates import CreepCoordinates, scaled_velocity
 from microslip.sweeps.map_cells import Answers, Refinement, refined
 from microslip.sweeps.map_coordinates import MapCoordinates
 from microslip.theory.kinks import kinks_of
@@ -27,9 +29,12 @@ MOST_ROUNDS = 64
 """More than halving all cells to the smallest takes."""
 
 
-def coordinates_of(map_: CertifiedMap) -> MapCoordinates:
+def coordinates_of(map_: CertifiedMap) -> MapCoordinates | CreepCoordinates:
     """The coordinates that a certified map is cut in."""
-    kinks = kinks_of(map_.sweep.scene, map_.sweep.pressure)
+    motion, pressure = solver_names(map_.sweep)
+    if map_.force is not None:
+        return CreepCoordinates(motion, map_.force, map_.amplitude)
+    kinks = kinks_of(motion, pressure)
     return MapCoordinates(map_.velocity, map_.amplitude, kinks, map_.poisson)
 
 
@@ -52,8 +57,12 @@ def next_round(map_: CertifiedMap, known: Answers, points_per_job: int) -> dict:
 
 def _request(map_, coordinates, node):
     """The request for a node, as of a sweep that has it."""
-    place = zip(coordinates.directions, coordinates.place(node), strict=True)
-    point = {"velocity": (0.0,)} | {name: (value,) for name, value in place}
+    place = dict(zip(coordinates.directions, coordinates.place(node), strict=True))
+    if "force" in place:
+        point = {"velocity": (), "drives": (("force", (place.pop("force"),), True),)}
+    else:
+        point = {"velocity": (0.0,)}
+    point |= {name: (value,) for name, value in place.items()}
     return PointRequests(replace(map_.sweep, tolerance=map_.tolerance, **point))[0]
 
 
@@ -65,17 +74,23 @@ def part_of(round_: dict, part: int) -> list[dict]:
 def answers_in(rounds: Iterable[dict], records: Iterable[dict]) -> dict:
     """Friction and its error by node, from rounds and the records that answer them.
 
-    NaN and infinity where a point did not converge.
+    Under a force it is the scaled velocity in its place.  NaN and infinity where a point did not
+    converge.
     """
     results = {record["key"]: record["result"] for record in records}
     found = {}
     for round_ in rounds:
         for node, request in zip(round_["nodes"], round_["requests"], strict=True):
-            result = results[key_of(request)]
-            good = result.get("converged", False)
-            pair = (result["mu_macro"], result["mu_macro_error"]) if good else (math.nan, math.inf)
-            found[tuple(node)] = pair
+            found[tuple(node)] = _answer(request, results[key_of(request)])
     return found
+
+
+def _answer(request, result):
+    if not result.get("converged", False):
+        return math.nan, math.inf
+    if "force" in request:
+        return scaled_velocity(result["velocity"], result["velocity_error"])
+    return result["mu_macro"], result["mu_macro_error"]
 
 
 def refinement_of(map_: CertifiedMap, known: Answers) -> Refinement:

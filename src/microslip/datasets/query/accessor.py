@@ -50,7 +50,8 @@ class Friction(Inverse):
         if "force" in dataset.attrs.get("drive", ""):
             raise ValueError(
                 "the contact of this dataset is pulled by a force, which is friction itself: "
-                "allowed is one that is moved at a velocity or by a spring, and sel and interp here"
+                "allowed is one that is moved at a velocity or by a spring; here creep.at of a "
+                "certified map, and sel and interp"
             )
         self._dataset = dataset
         self._scene = self._motion.name
@@ -105,8 +106,9 @@ class Friction(Inverse):
         """
         if lazily.is_lazy(velocity, amplitude):
             settings = {"poisson": poisson, "tolerance": tolerance}
-            asked = self._labelled(velocity, amplitude)
-            return lazily.answered(self.at, self._dataset, *asked, **settings)
+            velocity, amplitude = self._labelled(velocity, amplitude)
+            asked = {"amplitude": amplitude, "velocity": velocity}
+            return lazily.answered(self.at, self._dataset, asked, **settings)
         if cells.is_certified(self._dataset):
             nodes = cells.cells_of(self._dataset)
         else:

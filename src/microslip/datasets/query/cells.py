@@ -12,6 +12,7 @@ import xarray as xr
 from microslip.datasets import certified_map
 from microslip.datasets.query.interpolation import Axis
 from microslip.foundation.errors import InputError
+from microslip.sweeps.creep_coordinates import CreepCoordinates
 from microslip.sweeps.map_coordinates import MapCoordinates
 
 EDGE = 97
@@ -34,18 +35,19 @@ class CellTable:
 
     Attributes
     ----------
-    coordinates : MapCoordinates
+    coordinates : MapCoordinates or CreepCoordinates
     borders : numpy.ndarray, shape (k, directions, 2)
         Where cells begin and end, scaled.
     nodes : numpy.ndarray, shape (k, 5, 5) or (k, 5, 5, 3)
-        Friction at their nodes, over velocity, amplitude and perhaps Poisson's ratio.
+        Friction at their nodes, over velocity, amplitude and perhaps Poisson's ratio; asinh of the
+        velocity of creep.
     bounds : numpy.ndarray, shape (k,)
         Of the error in each.
     poisson : float, optional
         At which a map over Poisson's ratio is asked.
     """
 
-    coordinates: MapCoordinates
+    coordinates: MapCoordinates | CreepCoordinates
     borders: np.ndarray
     nodes: np.ndarray
     bounds: np.ndarray
@@ -87,7 +89,10 @@ class CellTable:
         place = [column, row] if self.coordinates.velocity else [row]
         if self.coordinates.poisson:
             place.append(np.full(len(row), self.poisson))
-        scaled = self.coordinates.scaled(*place)
+        return self.at_scaled(self.coordinates.scaled(*place))
+
+    def at_scaled(self, scaled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The same at scaled coordinates, shape (n, directions)."""
         value, error = np.full(len(scaled), np.nan), np.full(len(scaled), np.inf)
         for (begin, end), nodes, bound in zip(
             self.borders.transpose(0, 2, 1), self.nodes, self.bounds, strict=True
@@ -158,17 +163,21 @@ def cells_of(dataset: xr.Dataset) -> CellNodes:
     """The map in the dataset of a certified map; raises InputError for what it has lost."""
     coordinates = _coordinates_in(dataset)
     names = [certified_map.BORDERS[direction] for direction in coordinates.directions]
-    wanted = ("mu_macro", "mu_macro_error", "poisson", "cell_node", "cell_error")
+    creeps = certified_map.is_of_creep(dataset)
+    solved = ("velocity", "velocity_error") if creeps else ("mu_macro", "mu_macro_error")
+    wanted = (*solved, "poisson", "cell_node", "cell_error")
     for name in (*wanted, *sum(names, ())):
         if name not in dataset.variables:
-            allowed = "friction.at needs it, and the dataset has lost it: keep it"
+            question = "creep.at" if creeps else "friction.at"
+            allowed = f"{question} needs it, and the dataset has lost it: keep it"
             raise InputError(name, None, allowed)
-    values, errors = (dataset[name].values for name in ("mu_macro", "mu_macro_error"))
+    values, errors = (dataset[name].values for name in solved)
     picked = dataset["cell_node"].values.astype(int)
     if picked.max() >= len(values):
-        raise InputError("point", len(values), "friction.at needs all points of the dataset")
+        raise InputError("point", len(values), "an answer needs all points of the dataset")
     borders = np.stack([[dataset[name].values for name in pair] for pair in names])
-    nodes = values[picked].reshape(-1, *(n + 1 for n in coordinates.degrees))
+    interpolated = np.arcsinh(values) if creeps else values
+    nodes = interpolated[picked].reshape(-1, *(n + 1 for n in coordinates.degrees))
     bounds = dataset["cell_error"].values
     cells = CellTable(coordinates, borders.transpose(2, 0, 1), nodes, bounds)
     poisson = coordinates.poisson or np.atleast_1d(dataset["poisson"].values)

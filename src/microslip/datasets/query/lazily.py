@@ -16,8 +16,7 @@ def is_lazy(*given: object) -> bool:
 def answered(
     at: Callable,
     dataset: xr.Dataset,
-    velocity: xr.DataArray,
-    amplitude: xr.DataArray | None,
+    asked: dict[str, xr.DataArray | None],
     **settings,
 ) -> xr.Dataset:
     """What `at` says, a Dataset in the chunks of the question.
@@ -25,27 +24,30 @@ def answered(
     Parameters
     ----------
     at : callable
-        Friction.at, for what is in memory.
+        Friction.at or Creep.at, for what is in memory.
     dataset : xarray.Dataset
         Which it is asked of.
-    velocity, amplitude : xarray.DataArray
-        The question; no amplitude for a steady motion.
+    asked : dict of xarray.DataArray
+        The question by the names of the arguments of `at`, in the order of the dimensions of an
+        answer; None for the amplitude of a steady motion.
     **settings
-        poisson and tolerance, of `at`.
+        poisson and tolerance, of `at`, where it has these.
     """
-    asked = [velocity] if amplitude is None else [amplitude, velocity]
+    asked = {name: places for name, places in asked.items() if places is not None}
     # The names and attributes of an answer are those of any other one.
-    inside = [_largest(dataset, name) for name in ("velocity", "amplitude")[: len(asked)]]
-    pattern = at(*inside, **settings | {"tolerance": None})
+    inside = {name: _largest(dataset, name) for name in asked}
+    pattern = at(**inside, **settings | dict.fromkeys(settings.keys() & {"tolerance"}))
 
     def block(*places):
-        places = np.broadcast_arrays(*places)[::-1]
-        found = at(*(xr.DataArray(place.ravel(), dims="n") for place in places), **settings)
-        return tuple(found[name].values.reshape(places[0].shape) for name in pattern.data_vars)
+        places = dict(zip(asked, np.broadcast_arrays(*places), strict=True))
+        shape = next(iter(places.values())).shape
+        flat = {name: xr.DataArray(place.ravel(), dims="n") for name, place in places.items()}
+        found = at(**flat, **settings)
+        return tuple(found[name].values.reshape(shape) for name in pattern.data_vars)
 
     parts = xr.apply_ufunc(
         block,
-        *asked,
+        *asked.values(),
         dask="parallelized",
         output_core_dims=[[]] * len(pattern.data_vars),
         output_dtypes=[pattern[name].dtype for name in pattern.data_vars],
@@ -54,7 +56,7 @@ def answered(
         name: part.assign_attrs(pattern[name].attrs)
         for name, part in zip(pattern.data_vars, parts, strict=True)
     }
-    rest = {name: c for name, c in pattern.coords.items() if name not in ("velocity", "amplitude")}
+    rest = {name: c for name, c in pattern.coords.items() if name not in asked}
     return xr.Dataset(named, attrs=pattern.attrs).assign_coords(rest)
 
 

@@ -20,10 +20,14 @@ from microslip.config.records import SCENE_OF_SWEEP
 from microslip.datasets.netcdf import group_names
 from microslip.datasets.query.accessor import Friction
 from microslip.datasets.query.answers import SOURCES
+from microslip.datasets.query.creep import Creep
 from microslip.foundation.errors import InputError
 from microslip.sweeps.sealed_files import CacheError, is_damaged, refuse_no_folder
 
-__all__ = ["SOURCES", "Friction", "open_map"]
+__all__ = ["SOURCES", "Creep", "Friction", "open_map"]
+
+SOLVED = {"mu_macro", "velocity_error"}
+"""Variables of which the dataset of a sweep has one at least."""
 
 
 def open_map(
@@ -33,7 +37,7 @@ def open_map(
     *,
     group: str | None = None,
 ) -> xr.Dataset:
-    """Open the dataset of a sweep, with the accessor `friction` for certified answers.
+    """Open the dataset of a sweep, with the accessors `friction` and `creep` for certified answers.
 
     Parameters
     ----------
@@ -92,7 +96,7 @@ def _found(name, results, chunks, group):
     if is_damaged(path):
         raise CacheError(f"{path} is damaged: run the workflow again, which makes it anew")
     dataset = _opened(path, chunks=chunks)
-    if "scene" not in dataset.attrs or "mu_macro" not in dataset:
+    if "scene" not in dataset.attrs or not dataset.variables.keys() & SOLVED:
         dataset.close()
         raise CacheError(f"{path} is not the dataset of a sweep")
     if group is None:

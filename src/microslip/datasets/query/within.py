@@ -22,7 +22,13 @@ def within(table, still, velocity: np.ndarray, amplitude: np.ndarray) -> tuple:
 
 def refuse_beyond(table, still, velocity: np.ndarray, amplitude: np.ndarray, what: str) -> None:
     """Raise ValueError, naming the argument, for the first point beyond a map; as `within`."""
-    for v, a in zip(velocity, amplitude, strict=True):
+    outside = np.ones(len(velocity), bool)
+    for part, chosen in ((table, velocity != 0.0), (still, velocity == 0.0)):
+        if part is not None:
+            held = part.rows.holds(amplitude) & part.columns.holds(velocity)
+            outside[chosen & held] = False
+    first = np.flatnonzero(outside)[:1]
+    for v, a in zip(velocity[first], amplitude[first], strict=True):
         part = still if v == 0.0 else table
         advice = f"no limit of {what} is known: with a tolerance the solver is asked"
         if part is None:

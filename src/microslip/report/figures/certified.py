@@ -1,4 +1,7 @@
-"""A certified map: friction with the cells that answer and their points, and their errors."""
+"""A certified map: friction with the cells that answer and their points, and their errors.
+
+Or the velocity under a force in the place of friction.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,7 @@ from matplotlib.figure import Figure
 from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import Friction
 from microslip.datasets.query.cells import is_static
+from microslip.datasets.query.creep import Creep
 from microslip.report.figures import style as look
 from microslip.report.figures.data import require
 from microslip.report.figures.formulas import mathtext
@@ -23,6 +27,10 @@ NODES, LINE = 97, 201
 SIDE = np.linspace(0.0, 1.0, 17)
 """Places along a side of a cell, which is no straight line on the map."""
 VARIABLES = ("mu_macro", "cell_error", "cell_node", "velocity", "amplitude", "poisson")
+OF_CREEP = ("velocity", "cell_error", "cell_node", "force", "amplitude", "poisson")
+DECADES = np.linspace(-3.0, 1.0, 17)
+"""Decimal logarithms of the velocities of creep that bands begin at."""
+STAYS = {"facecolor": look.PALE, "edgecolor": "none"}
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
@@ -31,6 +39,9 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     Of a map over Poisson's ratio, too, the part at the smallest one is shown; one of the static
     limit is a line.
     """
+    if certified_map.is_of_creep(dataset):
+        require(name, name, dataset, OF_CREEP)
+        return _creep(dataset)
     require(name, name, dataset, VARIABLES)
     if is_static(dataset):
         return _lines(dataset)
@@ -40,21 +51,10 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     grid = Friction(dataset).on_grid(NODES, NODES, poisson=poisson)
     known = np.isfinite(grid["mu_macro"])
     filled, _ = fill(left, grid.assign(converged=known), lines=CONTOURS, labelled=LABELLED)
-    outlines, errors = _cells(dataset)
-    left.add_collection(
-        LineCollection(outlines, colors=look.VERMILLION, linewidths=0.7, gid="cells")
-    )
     at = dataset.isel(point=dataset["poisson"].values == poisson) if _is_deep(dataset) else dataset
-    points = left.plot(
-        *(at["velocity"], at["amplitude"], "."),
-        **{"color": look.BLACK, "markersize": 2.2, "gid": "points"},
-    )
-    points[0].set_clip_on(False)
+    shares = _show_cells(left, right, dataset, at, "velocity")
     ratio = rf" at $\nu = {look.number(poisson)}$" if poisson or _is_deep(dataset) else ""
     look.letter(left, "a", f"{dataset.attrs['points']} points, {len(dataset['cell_error'])} cells")
-    shares = PolyCollection(outlines, array=1e3 * errors, cmap=look.COLOURMAP, gid="errors")
-    shares.set(edgecolors="white", linewidths=0.6, clim=(0.0, 1e3 * float(dataset.attrs["error"])))
-    right.add_collection(shares)
     look.letter(right, "b", f"bound of the error{ratio}")
     right.tick_params(which="both", direction="out", top=False, right=False)
     left.set(xlabel=_axis(dataset, "velocity"), ylabel=_axis(dataset, "amplitude"))
@@ -62,10 +62,68 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     bar = figure.colorbar(filled, ax=left, pad=0.02, ticks=np.linspace(0, 1, 6))
     bar.set_label(look.FRICTION)
     bar.ax.tick_params(direction="out")
-    bar = figure.colorbar(shares, ax=right, pad=0.02)
+    _bar_of_errors(figure, right, shares)
+    return figure
+
+
+def _creep(dataset: xr.Dataset) -> Figure:
+    """The velocity over force and amplitude, grey where the contact stays, and the bounds."""
+    figure = look.new_figure(look.DOUBLE, 3.1)
+    left, right = figure.subplots(1, 2, sharex=True, sharey=True)
+    coordinates = certified_map.coordinates_in(dataset)
+    force = np.linspace(0.0, coordinates.force, NODES)
+    grid = Creep(dataset).on_grid(force, NODES)
+    slowest, fastest = 10.0 ** DECADES[[0, -1]]
+    shown = np.log10(np.clip(grid["velocity"].values, slowest, fastest))
+    amplitude = grid["amplitude"].values
+    filled = left.contourf(
+        force, amplitude, shown, levels=DECADES, cmap=look.COLOURMAP, extend="both"
+    )
+    filled.set_edgecolor("face")
+    held = np.minimum(grid["threshold"].values[:, 0], coordinates.force)
+    for axes in (left, right):
+        axes.fill_betweenx(amplitude, 0.0, held, gid="stays", **STAYS)
+    left.plot(held, amplitude, color=look.BLACK, linewidth=1.3, gid="threshold")
+    shares = _show_cells(left, right, dataset, dataset, "force")
+    poisson = float(dataset["poisson"])
+    ratio = rf" at $\nu = {look.number(poisson)}$" if poisson else ""
+    look.letter(left, "a", f"{dataset.attrs['points']} points, {len(dataset['cell_error'])} cells")
+    look.letter(right, "b", rf"bound of the error over $\sqrt{{1 + v^2}}${ratio}")
+    for axes in (left, right):
+        axes.tick_params(which="both", direction="out", top=False, right=False)
+        axes.set_xlabel(_axis(dataset, "force"))
+    left.set(ylabel=_axis(dataset, "amplitude"), xlim=(0.0, coordinates.force))
+    left.set_ylim(*coordinates.amplitude)
+    bar = figure.colorbar(filled, ax=left, pad=0.02, ticks=np.arange(-3.0, 2.0))
+    bar.ax.set_yticklabels([f"${look.number(10.0**power)}$" for power in np.arange(-3.0, 2.0)])
+    bar.set_label("mean velocity  (dimensionless)")
+    bar.ax.tick_params(direction="out")
+    _bar_of_errors(figure, right, shares)
+    return figure
+
+
+def _show_cells(left, right, dataset, at, across):
+    """Outlines and points on one panel, bounds on the other, which are returned; at: the part of
+    the dataset whose points are shown, across: the name of what runs along the abscissa."""
+    outlines, errors = _cells(dataset)
+    left.add_collection(
+        LineCollection(outlines, colors=look.VERMILLION, linewidths=0.7, gid="cells")
+    )
+    points = left.plot(
+        *(at[across], at["amplitude"], "."),
+        **{"color": look.BLACK, "markersize": 2.2, "gid": "points"},
+    )
+    points[0].set_clip_on(False)
+    shares = PolyCollection(outlines, array=1e3 * errors, cmap=look.COLOURMAP, gid="errors")
+    shares.set(edgecolors="white", linewidths=0.6, clim=(0.0, 1e3 * float(dataset.attrs["error"])))
+    right.add_collection(shares)
+    return shares
+
+
+def _bar_of_errors(figure, axes, shares):
+    bar = figure.colorbar(shares, ax=axes, pad=0.02)
     bar.set_label(BOUND)
     bar.ax.tick_params(direction="out")
-    return figure
 
 
 def _lines(dataset: xr.Dataset) -> Figure:
@@ -117,5 +175,5 @@ def _cells(dataset: xr.Dataset) -> tuple[list[np.ndarray], np.ndarray]:
 
 def _axis(dataset: xr.Dataset, dim: str) -> str:
     """What is written at an axis."""
-    quantity = {"velocity": "forward velocity", "amplitude": "amplitude"}[dim]
+    quantity = {"velocity": "forward velocity"}.get(dim, dim)
     return f"{quantity}  {mathtext(dataset[dim].attrs.get('formula', '(dimensionless)'))}"

@@ -1,0 +1,83 @@
+"""How long 10^8 questions to a certified map take, in chunks, and how much memory.
+
+    python benchmarks/many_questions.py MAP.nc [--questions N] [--chunk N] [--threads N]
+                                        [--markdown FILE]
+
+Velocities, or forces, and amplitudes are random and never in memory as a whole:
+dask makes a chunk of them, asks the map, keeps the sum and the largest error, and forgets them.
+"""
+
+from __future__ import annotations
+
+import one_thread  # noqa: F401
+
+# isort: split
+
+import argparse
+import resource
+import time
+from pathlib import Path
+
+import dask
+import dask.array
+import tables
+import xarray as xr
+
+import microslip
+from microslip.datasets import certified_map
+
+
+def questions(dataset, count, chunk):
+    """What is asked, by the names of the arguments, in chunks."""
+    across = "force" if certified_map.is_of_creep(dataset) else "velocity"
+    draw = dask.array.random.default_rng(3)
+    return {
+        name: xr.DataArray(
+            draw.uniform(
+                float(dataset[name].min()), float(dataset[name].max()), count, chunks=chunk
+            ),
+            dims="question",
+        )
+        for name in (across, "amplitude")
+    }
+
+
+def memory():
+    """Largest memory of this process so far, in bytes."""
+    return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("map", type=Path)
+    parser.add_argument("--questions", type=int, default=10**8)
+    parser.add_argument("--chunk", type=int, default=10**5)
+    parser.add_argument("--threads", type=int, default=1)
+    tables.add_markdown(parser)
+    options = parser.parse_args()
+    dataset = microslip.open_map(options.map).load()
+    creeps = certified_map.is_of_creep(dataset)
+    accessor, value = (dataset.creep, "velocity") if creeps else (dataset.friction, "mu_macro")
+    few = accessor.at(**questions(dataset, options.chunk, options.chunk))
+    dask.compute(few[value].mean())
+    before, begun = memory(), time.process_time()
+    answer = accessor.at(**questions(dataset, options.questions, options.chunk))
+    with dask.config.set(scheduler="threads", num_workers=options.threads):
+        mean, error = dask.compute(answer[value].mean(), answer[f"{value}_error"].max())
+    seconds = time.process_time() - begun
+    rows = [
+        ("map", f"{options.map.stem}, {dataset.points} points, {dataset.sizes['cell']} cells"),
+        ("questions", f"{options.questions:.0e}, {options.chunk:.0e} in a chunk"),
+        ("threads", options.threads),
+        ("CPU seconds", f"{seconds:.0f}"),
+        ("questions in a CPU second", f"{options.questions / seconds:.1e}"),
+        ("largest memory after one chunk, MB", f"{before / 1e6:.0f}"),
+        ("largest memory after all, MB", f"{memory() / 1e6:.0f}"),
+        ("mean of the answers, largest error", f"{float(mean):.4f}, {float(error):.1e}"),
+    ]
+    head = "# Many questions to a certified map\n\nMade by `benchmarks/many_questions.py`."
+    tables.publish(f"{head}\n\n{tables.measured(rows)}", options)
+
+
+if __name__ == "__main__":
+    main()

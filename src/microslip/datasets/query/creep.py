@@ -1,0 +1,145 @@
+"""`dataset.creep.at(...)`: how fast a force moves a contact, from the certified map of a sweep."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from microslip.datasets import certified_map
+from microslip.datasets.query import lazily
+from microslip.datasets.query.cells import cells_of
+from microslip.datasets.query.coordinates import labelled
+from microslip.datasets.query.grid import axes_of_grid
+from microslip.foundation.errors import InputError
+from microslip.sweeps.creep_coordinates import velocity_of
+from microslip.theory.creep_threshold import threshold
+
+STATES = ("stays", "creeps", "undecided", "runs away")
+"""What becomes of a contact, by its code in the variable `state`; undecided: the force is that of
+the threshold, to within the error of this."""
+(STAYS, CREEPS, UNDECIDED, RUNS_AWAY) = range(len(STATES))
+THRESHOLD_ERROR = 1e-12
+"""Of the closed forms that thresholds are known by."""
+
+
+@xr.register_dataset_accessor("creep")
+class Creep:
+    """How fast a force moves a contact, from the certified map of a sweep under forces.
+
+    Raises ValueError for another dataset.
+    """
+
+    def __init__(self, dataset):
+        if not certified_map.is_of_creep(dataset):
+            raise ValueError(
+                "no certified map of creep: allowed is certified_NAME of a sweep over forces that "
+                "says adaptive"
+            )
+        self._dataset = dataset
+
+    def at(self, force: object, amplitude: object) -> xr.Dataset:
+        """Mean velocity under a force and a bound of its error.
+
+        The map answers where the contact creeps.  Below the threshold it stays where it is, and
+        from the force 1 on it runs away, whatever the map.
+
+        Parameters
+        ----------
+        force, amplitude : number, sequence or DataArray
+            >= 0.  A sequence becomes a dimension of the answer; DataArrays broadcast by their
+            dimensions.  Where one is in chunks of dask, so is the answer.
+
+        Returns
+        -------
+        xarray.Dataset
+            velocity, velocity_error, threshold of the force, and state, an index into STATES with
+            its meanings in flag_meanings.
+
+        Raises
+        ------
+        InputError
+            Naming the argument, for what is no such number, for what the dataset has lost, and for
+            what creeps beyond the largest force or the amplitudes of the map.
+        """
+        if lazily.is_lazy(force, amplitude):
+            asked = {"amplitude": labelled("amplitude", amplitude)}
+            asked |= {"force": labelled("force", force)}
+            return lazily.answered(self.at, self._dataset, asked)
+        found = cells_of(self._dataset)
+        # An outer product has the order of the datasets.
+        shape, force = xr.broadcast(labelled("amplitude", amplitude), labelled("force", force))
+        amplitude = shape.values.ravel().astype(float)
+        flat = force.values.ravel().astype(float)
+        coordinates = found.cells.coordinates
+        least = np.asarray(threshold(coordinates.motion, amplitude), float)
+        state = np.full(len(flat), CREEPS, np.int8)
+        state[flat <= least + THRESHOLD_ERROR] = UNDECIDED
+        state[(flat < least - THRESHOLD_ERROR) | (flat == 0.0)] = STAYS
+        state[flat >= 1.0] = RUNS_AWAY
+        moves = (state == CREEPS) | (state == UNDECIDED)
+        _refuse_beyond(coordinates, flat[moves], amplitude[moves])
+        velocity, error = np.zeros((2, len(flat)))
+        velocity[state == RUNS_AWAY] = np.inf
+        scaled = coordinates.scaled(flat[moves], amplitude[moves], least[moves])
+        velocity[moves], error[moves] = velocity_of(*found.cells.at_scaled(scaled))
+        return self._answered(force, (velocity, error, least, state))
+
+    def on_grid(self, force: object = 49, amplitude: object = 49) -> xr.Dataset:
+        """Velocity and a bound of its error on a regular grid, for figures and plain xarray.
+
+        Parameters
+        ----------
+        force, amplitude : int or sequence
+            How many of them, in equal steps over the range of the map; or which ones.
+
+        Returns
+        -------
+        xarray.Dataset
+            As `at` gives it, dims (amplitude, force).
+
+        Raises
+        ------
+        InputError
+            As `at` does, and for less than two of them.
+        """
+        return self.at(**axes_of_grid(self._dataset, {"force": force, "amplitude": amplitude}))
+
+    def _answered(self, shape, answer):
+        velocity, error, least, state = answer
+        texts = (
+            "mean forward velocity",
+            "bound of its error",
+            "force up to which the contact stays where it is",
+        )
+        names = ("velocity", "velocity_error", "threshold")
+        found = {
+            name: (shape.dims, values.reshape(shape.shape), {"long_name": text, "units": "1"})
+            for name, values, text in zip(names, (velocity, error, least), texts, strict=True)
+        }
+        flags = {
+            "long_name": "what becomes of the contact",
+            "flag_values": np.arange(len(STATES), dtype=np.int8),
+            "flag_meanings": " ".join(name.replace(" ", "_") for name in STATES),
+        }
+        found["state"] = shape.dims, state.reshape(shape.shape), flags
+        about = {"scene": self._dataset.attrs["scene"]}
+        return xr.Dataset(found, coords=shape.coords, attrs=about).assign_coords(
+            poisson=self._dataset["poisson"]
+        )
+
+
+def _refuse_beyond(coordinates, force, amplitude):
+    """Raise InputError, naming the argument, for the first place beyond the map that creeps."""
+    low, high = coordinates.amplitude
+    for name, values, ends in (
+        ("force", force, (0.0, coordinates.force)),
+        ("amplitude", amplitude, (low, high)),
+    ):
+        beyond = values[(values < ends[0]) | (values > ends[1])]
+        if beyond.size:
+            raise InputError(
+                name,
+                float(beyond[0]),
+                f"allowed is {ends[0]:g} to {ends[1]:g} where the contact creeps: the map ends "
+                "there, and microslip.solve goes on",
+            )

@@ -1,0 +1,80 @@
+"""Kinks that motions are known to have, held against their closed forms."""
+
+import numpy as np
+import pytest
+
+from microslip.motions.by_name import motion_named
+from microslip.pressures.by_name import pressure_named
+from microslip.theory import masing, oscillating_load
+from microslip.theory.kinks import Kinks, kink_velocity, kinks_of
+
+AMPLITUDES = (0.2, 0.6, 1.0, 1.7)
+PULLED_BACK = 0.97
+"""Share of the velocity of a kink at which there is less than full friction."""
+
+
+def load_oscillates(velocity, amplitude):
+    pressure = motion_named("normal").pressure
+    return oscillating_load.friction(velocity, amplitude, True, pressure)
+
+
+def indentation_oscillates(velocity, amplitude):
+    pressure = pressure_named("power:exponent=1")
+    return oscillating_load.friction(velocity, amplitude, False, pressure)
+
+
+def along(velocity, amplitude):
+    curve = pressure_named("power:exponent=1").loading
+    return float(masing.longitudinal(velocity, amplitude, curve))
+
+
+@pytest.mark.parametrize(
+    ("scene", "pressure", "friction"),
+    [
+        ("longitudinal", "power:exponent=1", along),
+        ("normal:indentation=1", "power:exponent=1", indentation_oscillates),
+    ],
+)
+def test_friction_is_full_from_the_velocity_of_the_kink_on(scene, pressure, friction):
+    for amplitude in AMPLITUDES:
+        at = float(kink_velocity(kinks_of(scene, pressure), np.array(amplitude)))
+        assert at == pytest.approx(amplitude)
+        assert friction(at, amplitude) == pytest.approx(1.0, abs=1e-9)
+        assert friction(PULLED_BACK * at, amplitude) < 1.0 - 1e-5
+
+
+def test_a_load_that_oscillates_takes_nothing_from_a_little_below_its_kink_on():
+    """The border is 5 % above the kink at most; above the amplitude 1 there is none."""
+    for amplitude in (0.1, 0.3, 0.6, 0.9, 1.0):
+        at = float(kink_velocity(kinks_of("normal"), np.array(amplitude)))
+        assert load_oscillates(1.001 * at, amplitude) == pytest.approx(1.0, abs=1e-9)
+        assert load_oscillates(0.95 * at, amplitude) < 1.0 - 1e-6
+
+
+def test_a_loop_is_cut_where_it_no_longer_goes_back():
+    for name in (
+        "elliptic",
+        "elliptic:forward=0.5,forward_cycles=2,phase=0",
+        "elliptic:forward=0.3,phase=30",
+    ):
+        phase = np.linspace(0.0, 2.0 * np.pi, 3601)
+        along, _, _ = motion_named(name).displacement(phase, 0.0, 0.7, 0.0)
+        fastest = np.gradient(along, phase).max()
+        at = kink_velocity(kinks_of(name), np.array(0.7))
+        assert float(at) == pytest.approx(fastest, rel=1e-3)
+    assert kinks_of("elliptic:forward=0") == Kinks()
+
+
+def test_a_load_that_oscillates_with_something_else_is_lost_from_some_amplitude_on():
+    for name in ("normal:lateral=1", "normal:load=0.5,forward=1", "normal:indentation=0.8,angle=1"):
+        (amplitude,) = kinks_of(name).amplitudes
+        motion, phase = motion_named(name), np.linspace(0.0, 2.0 * np.pi, 7201)
+        least = [
+            float(np.min(motion.depth(phase, factor * amplitude, motion.pressure)))
+            for factor in (0.99, 1.0)
+        ]
+        assert least[0] > 0.0 == pytest.approx(least[1], abs=1e-6)
+
+
+def test_most_motions_have_none_that_is_known():
+    assert kinks_of("transverse-bore") == kinks_of("bore", "punch") == Kinks()
