@@ -147,7 +147,7 @@ def computed(tmp_path_factory):
         for file in (f"{name}.nc", f".{name}.nc.sha256"):
             shutil.copy(place / file, folder)
     # coarse, so that it takes seconds
-    axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 0.05}}
+    axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 0.1}}
     map_ = certified_stub.configured("transverse", **axes)
     found = certified_stub.played(map_, lambda request: batches.answer(request, store)[0])
     certified_map.write(folder / f"{map_.name}.nc", certified_map.build(map_, *found))

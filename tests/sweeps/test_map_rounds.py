@@ -49,6 +49,11 @@ def test_certified_maps_are_named_after_their_sweep_and_have_its_ranges():
     assert configured(adaptive=None).certified == {}
 
 
+def test_points_of_a_loose_map_are_no_looser_than_their_bends_are_judged():
+    (map_,) = configured(adaptive={"error": 0.1}).certified.values()
+    assert (map_.error, map_.tolerance) == (0.1, 0.01)
+
+
 def test_several_poissons_ratios_are_a_third_direction():
     (map_,) = configured(poisson=[0, 0.2, 0.4]).certified.values()
     assert map_.poisson == (0.0, 0.4)
@@ -80,6 +85,7 @@ def test_other_motions_and_pressures_are_certified_likewise():
         ({"velocity": [0.1]}, "sweeps.transverse.adaptive"),
         ({"cells": 16, "steps": 64}, "sweeps.transverse.adaptive"),
         ({"adaptive": {"error": 0.01, "tolerance": 0.01}}, "sweeps.transverse.adaptive.tolerance"),
+        ({"adaptive": {"error": 0.1, "tolerance": 0.02}}, "sweeps.transverse.adaptive.tolerance"),
         ({"adaptive": {"error": 0}}, "sweeps.transverse.adaptive.error"),
         ({"adaptive": {}}, "sweeps.transverse.adaptive.error"),
     ],

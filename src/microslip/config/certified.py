@@ -7,6 +7,9 @@ EXACT_MODELS = ("auto", "radial", "polar", "cartesian")
 """Models whose contact is the half-space, of which thresholds of creep are known."""
 SHARE_OF_POINTS = 0.3
 """Of the error of a map: what is left to its points unless told otherwise."""
+LOOSEST_POINTS = 1e-2
+"""Largest tolerance of points: what looser ones may be off would be taken for bends of the map, and
+its cells halved for nothing."""
 
 
 def maps(sweeps: dict[str, Sweep], given: dict, where: str) -> dict[str, CertifiedMap]:
@@ -39,7 +42,8 @@ def maps(sweeps: dict[str, Sweep], given: dict, where: str) -> dict[str, Certifi
 
 
 def _tolerance(given, error, where):
-    tolerance = float(number(SHARE_OF_POINTS * error if given is None else given))
+    loosest = min(SHARE_OF_POINTS * error, LOOSEST_POINTS)
+    tolerance = float(number(loosest if given is None else given))
     if tolerance >= error:
         raise ConfigError(
             f"{where}.tolerance: {tolerance:g} is not allowed; allowed: less than the error, which "
