@@ -15,6 +15,7 @@ from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import Friction
 from microslip.foundation.errors import InputError
 from microslip.report.explorer import certified, si_form
+from microslip.si.dimensionless import groups
 from microslip.si.materials import MATERIALS
 from microslip.si.quantities import read
 from microslip.sweeps.batches import key_of
@@ -135,8 +136,7 @@ def predicted(monkeypatch):
             return SimpleNamespace(**found, **rest)
 
         def answer_of(contact, motion, pulling, tolerance, carriers):
-            groups = module.groups(motion, contact)
-            return solve(motion.scene, *groups, poisson=contact.poisson)
+            return solve(motion.scene, *groups(motion, contact), poisson=contact.poisson)
 
         monkeypatch.setattr(module, "solve", solve)
         monkeypatch.setattr(module, "answer_of", answer_of)
