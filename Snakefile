@@ -92,8 +92,8 @@ rule all:
 
 rule certified:
     input:
-        datasets_of(CERTIFIED),
-        figures_of(CERTIFIED),
+        datasets_of(CERTIFIED_AT_VELOCITIES),
+        figures_of(CERTIFIED_AT_VELOCITIES),
 
 
 rule extended:
@@ -104,8 +104,8 @@ rule extended:
 
 rule drives:
     input:
-        datasets_of(CONFIGURATION.drives),
-        figures_of(CONFIGURATION.drives),
+        datasets_of(DRIVEN),
+        figures_of(DRIVEN),
 
 
 rule accuracy:

@@ -97,7 +97,7 @@ def test_a_sweep_of_forces_makes_a_map_of_creep(tmp_path):
     given = {"sweeps": {"transverse": AXES}, "drives": {"weights": weights}}
     project = Project(tmp_path)
     project.configure(given)
-    project.run("certified")
+    project.run("drives")
     results = project.folder / "results"
     data = microslip.open_map("certified_weights", results).load()
     assert float(data.cell_error.max()) <= data.error == 0.1
@@ -111,4 +111,4 @@ def test_a_sweep_of_forces_makes_a_map_of_creep(tmp_path):
     assert off <= float(answer.velocity_error) + asked.velocity_error
     plan = Plan(load.from_mapping(given))
     assert not any(leftovers.left_over(results, [plan]).values())
-    assert "Nothing to be done" in project.run("certified")
+    assert "Nothing to be done" in project.run("drives")

@@ -1,6 +1,10 @@
 # Certified maps: rounds of points, each chosen by the answers of those before it.
 
 CERTIFIED = CONFIGURATION.certified
+# Maps of creep are made with the sweeps of drives, whose kernels they need.
+CREEP = [name for name, map_ in CERTIFIED.items() if map_.force is not None]
+CERTIFIED_AT_VELOCITIES = [name for name in CERTIFIED if name not in CREEP]
+DRIVEN = [*CONFIGURATION.drives, *CREEP]
 ROUNDS = f"{RESULTS}/rounds/{{certified}}/{{chosen}}"
 
 
@@ -23,6 +27,7 @@ checkpoint next_round:
 rule solve_round:
     input:
         ancient(rules.warm_up.output),
+        ancient(lambda wildcards: kernels_of(wildcards.certified)),
         round=f"{ROUNDS}/{{round}}.json",
     output:
         f"{ROUNDS}/{{round}}-{{part}}.json",

@@ -14,14 +14,36 @@ rule warm_up:
     resources:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 10 * attempt,
+    params:
+        pulled=False,
     script:
         "../scripts/warm_up.py"
 
 
+# The same of what marches contacts that a force or a spring pulls.
+use rule warm_up as warm_up_pulled with:
+    input:
+        ancient(rules.warm_up.output),
+    output:
+        f"{RESULTS}/warm_up/{source_digest.of_solver()[:16]}_pulled.txt",
+    log:
+        f"{RESULTS}/logs/warm_up_pulled.log",
+    params:
+        pulled=True,
+
+
+def kernels_of(name):
+    """What has to be compiled besides for a sweep or a certified map."""
+    pulled = [*CONFIGURATION.drives, *(f"certified_{sweep}" for sweep in CONFIGURATION.drives)]
+    return rules.warm_up_pulled.output if name in pulled else []
+
+
 rule solve_batch:
     input:
-        # It only has to be there: its name holds the digest of the solver, as those of the points.
+        # They only have to be there: their names hold the digest of the solver, as those of the
+        # points.
         ancient(rules.warm_up.output),
+        ancient(lambda wildcards: kernels_of(wildcards.get("group", wildcards.get("early")))),
     output:
         f"{RESULTS}/batches/{{group}}/{{batch}}.json",
     log:
