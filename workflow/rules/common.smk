@@ -87,6 +87,12 @@ def figures_of(datasets):
     return in_results(PLAN.figure_files(datasets))
 
 
+def kernels_of(name):
+    """What has to be compiled besides for a sweep or a certified map."""
+    pulled = [*CONFIGURATION.drives, *(f"certified_{sweep}" for sweep in CONFIGURATION.drives)]
+    return rules.warm_up_pulled.output if name in pulled else []
+
+
 def requests_of(group, batch):
     """Requests of a batch as one string: Snakemake compares parameters as a set and would miss two
     swapped numbers."""

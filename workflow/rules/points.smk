@@ -32,12 +32,6 @@ use rule warm_up as warm_up_pulled with:
         pulled=True,
 
 
-def kernels_of(name):
-    """What has to be compiled besides for a sweep or a certified map."""
-    pulled = [*CONFIGURATION.drives, *(f"certified_{sweep}" for sweep in CONFIGURATION.drives)]
-    return rules.warm_up_pulled.output if name in pulled else []
-
-
 rule solve_batch:
     input:
         # They only have to be there: their names hold the digest of the solver, as those of the
