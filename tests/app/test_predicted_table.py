@@ -49,6 +49,8 @@ def test_each_line_is_the_prediction_of_its_contact(folder, capsys):
         ("20,0.1", [], "--table = 'contacts.csv': line 3: 2 cells; allowed: 3"),
         ("20,0.1,1 cm/s", ["--load", "1 N"], "--load = '1 N': allowed once"),
         ("20,0.1,1 cm/s", ["--output", "found.txt"], "a name that ends in .csv or .nc"),
+        ("20,0.1,1 cm/s", ["--output", "contacts.csv"], "another file than the table"),
+        ("20,0.1,1 cm/s", ["--output", "nowhere/found.csv"], "a folder that can be written to"),
         ("20,0.1,1 cm/s", ["--driving"], "--table = 'contacts.csv': allowed without --driving"),
         ("20,0.1,1 cm/s", ["--table", "none.csv"], "cannot be read (No such file"),
     ],

@@ -79,6 +79,13 @@ def test_what_cannot_be_looked_for_is_refused(changed, said):
         microslip.predict("transverse", **asked)
 
 
+def test_no_bore_takes_all_of_static_friction_away():
+    """The centre of a twisted contact always sticks."""
+    asked = BALL | {"load": "10 N", "speed": "0 mm/s", "frequency": "20 kHz", "reduction": "100 %"}
+    with pytest.raises(InputError, match="^reduction = '100 %': allowed is less than all"):
+        microslip.predict("bore", **asked)
+
+
 def test_a_load_that_hertz_theory_does_not_know_is_refused():
     """A stroke of half of the ball needs a contact of its size to stick."""
     asked = LATERAL | {"amplitude": "2.5 mm", "speed": "0 m/s", "reduction": "10 %"}

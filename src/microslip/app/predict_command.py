@@ -152,7 +152,7 @@ def _of_table(options, given):
 
     if options.driving or "points" in given:
         raise InputError("table", options.table, "allowed without --driving")
-    predicted_table.refuse_ending(options.output)
+    predicted_table.refuse_output(options.output, options.table)
     columns = [name.replace("-", "_") for name in OPTIONS if name != "points"]
     shared = given | {"power": options.power}
     cases, found = predicted_table.ask(options.scene, options.table, shared, columns)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Mapping
 from pathlib import Path
 
@@ -36,11 +37,19 @@ def ask(
     return cases, list(tqdm(predictions(scene, cases, given), "contacts", count, leave=False))
 
 
-def refuse_ending(path: str | None) -> None:
-    """Raise InputError for an output that is of no kind, before anything is computed."""
-    if path is not None and Path(path).suffix.lower() not in ENDINGS:
+def refuse_output(path: str | None, table: str) -> None:
+    """Raise InputError for an output that cannot be, before anything is computed; table: the file
+    that is read."""
+    if path is None:
+        return
+    file = Path(path)
+    if file.suffix.lower() not in ENDINGS:
         allowed = f"allowed is a name that ends in {' or '.join(ENDINGS)}"
         raise InputError("output", path, allowed)
+    if file.is_dir() or not file.parent.is_dir() or not os.access(file.parent, os.W_OK):
+        raise InputError("output", path, "allowed is a file in a folder that can be written to")
+    if file.resolve() == Path(table).resolve():
+        raise InputError("output", path, "allowed is another file than the table that is read")
 
 
 def write(path: str, scene: str, cases: Mapping[str, object], found: list[Prediction]) -> None:

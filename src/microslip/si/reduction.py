@@ -143,6 +143,9 @@ def with_reduction(
 
     if share < tolerance:
         raise InputError("reduction", given, f"allowed is at least the tolerance, {tolerance:g}")
+    if motion.scene == "bore" and share == 1.0:
+        allowed = "allowed is less than all of it: the centre of a contact that turns always sticks"
+        raise InputError("reduction", given, allowed)
     line = _LINES[sought](contact, motion, share)
     last, error = (contact, motion), 0.0
 
