@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
 HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\])?")
 """The name of a column, with its unit in brackets or without."""
+PURE = {"", "1", "-"}
+"""Units that say that there is none."""
 SPREADSHEET_ERROR = re.compile(r"#(N/A|NV|[A-Z/0]+[!?])")
 """What spreadsheets write into a cell without a value, such as #N/A and #DIV/0!."""
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+", re.A)
@@ -43,6 +45,33 @@ def lines(content: bytes) -> Iterator[tuple[int, str]]:
 def words(line: str, separator: str) -> list[str]:
     """The cells of a line, without spaces and quotes around them."""
     return [word.strip().strip("\"'").strip() for word in line.split(separator)]
+
+
+def columns(
+    where: int, heading: str, names: Collection[str], allowed: str
+) -> tuple[str, list[tuple[str, str | None]]]:
+    """The separator of a table, and name and unit of each of its columns, None without brackets.
+
+    Raises
+    ------
+    ValueError
+        For a heading that is none, a column that is not among the names, and one that is there
+        twice; the message begins with the line and ends with what is allowed.
+    """
+    for separator in SEPARATORS:
+        found = [HEADING.fullmatch(word) for word in words(heading, separator)]
+        if all(found) and (len(found) > 1 or separator == ","):
+            break
+    else:
+        raise ValueError(f"line {where}: the heading is {heading[:80]!r}; {allowed}")
+    given = [match[1].lower() for match in found]
+    for name in given:
+        if name not in names:
+            raise ValueError(f"line {where}: a column {name!r}; {allowed}")
+        if given.count(name) > 1:
+            raise ValueError(f"line {where}: {name} is there twice; allowed: once")
+    units = [match[2] and match[2].strip() for match in found]
+    return separator, list(zip(given, units, strict=True))
 
 
 def row(where: int, line: str, separator: str, order: Sequence[int]) -> list[str]:

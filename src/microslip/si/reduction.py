@@ -172,11 +172,12 @@ def with_reduction(
                 raise InputError("reduction", given, f"{line.none} takes that much friction away")
         place = brentq(missing, line.low, high, xtol=0.1 * tolerance)
         here = missing(place)
+        error_here = error
         slopes = [missing(place - STRIDE) - here, here - missing(place + STRIDE)]
     except _NoAnswerError:
         return Found(*last, math.nan)
     steep = [slope / STRIDE for slope in slopes if slope > 0.0]
-    wrong = (abs(here) + error) / min(steep) if steep else math.inf
+    wrong = (abs(here) + error_here) / min(steep) if steep else math.inf
     return Found(*line.at(place), line.rate * line.size(place) * wrong)
 
 

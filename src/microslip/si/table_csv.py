@@ -18,8 +18,6 @@ from microslip.foundation.errors import InputError
 
 NUMBER = re.compile(r"[+-−]?[\d.,]+([eE][+-−]?\d+)?", re.A)
 """What is meant to be a number; whether it is one is decided where it is read."""
-PURE = {"", "1", "-"}
-"""Units that say that there is none."""
 
 
 def cases_of_file(path: str | os.PathLike, names: Collection[str]) -> dict[str, list[str | None]]:
@@ -54,7 +52,8 @@ def read_cases(content: bytes, names: Collection[str]) -> dict[str, list[str | N
     """
     lines = csv_text.lines(content)
     where, heading = next(lines, (1, ""))
-    separator, columns = _columns(where, heading, names)
+    allowed = f"allowed: some of {', '.join(names)}, with a unit or without, as in speed [mm/s]"
+    separator, columns = csv_text.columns(where, heading, names, allowed)
     table = {name: [] for name, _ in columns}
     thousands = csv_text.Thousands(separator, tuple(table))
     for where, line in lines:
@@ -76,24 +75,6 @@ def _cells(line, separator):
     return [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
 
 
-def _columns(where, heading, names):
-    """The separator, and name and unit of each column; the unit is None where cells have it."""
-    allowed = f"allowed: some of {', '.join(names)}, with a unit or without, as in speed [mm/s]"
-    for separator in csv_text.SEPARATORS:
-        found = [csv_text.HEADING.fullmatch(word) for word in csv_text.words(heading, separator)]
-        if all(found) and (len(found) > 1 or separator == ","):
-            break
-    else:
-        raise ValueError(f"line {where}: the heading is {heading[:80]!r}; {allowed}")
-    columns = [(match[1].lower(), match[2] and match[2].strip()) for match in found]
-    for name, _ in columns:
-        if name not in names:
-            raise ValueError(f"line {where}: a column {name!r}; {allowed}")
-        if [other for other, _ in columns].count(name) > 1:
-            raise ValueError(f"line {where}: {name} is there twice; allowed: once")
-    return separator, columns
-
-
 def _text(where, name, cell, unit):
     """A cell as predict takes it."""
     if not cell:
@@ -103,4 +84,4 @@ def _text(where, name, cell, unit):
     if not NUMBER.fullmatch(cell):
         allowed = f"allowed is a number, or a heading without a unit: {name}"
         raise ValueError(f"line {where}: {name} is {cell!r} in a column in {unit}; {allowed}")
-    return cell if unit in PURE else f"{cell} {unit}"
+    return cell if unit in csv_text.PURE else f"{cell} {unit}"

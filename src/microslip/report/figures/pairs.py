@@ -11,6 +11,7 @@ from microslip.config.quantities import DRIVES, VELOCITY
 from microslip.report.figures import style as look
 from microslip.report.figures.cuts import computed
 from microslip.report.figures.data import at_one_poisson, require
+from microslip.report.figures.drives import SPRINGS
 from microslip.theory.creep import antiphase_creep
 
 NEEDED = {
@@ -18,8 +19,6 @@ NEEDED = {
     "pair_spring": ("velocity", "stiffness", "mu_macro", "mu_macro_error", "converged"),
     "pair_force": ("velocity", "velocity_error", "force", "converged"),
 }
-SPRINGS = ((look.BLUE, "s"), (look.GREEN, "^"), (look.ORANGE, "D"))
-"""Colour and marker of the points of each stiffness, from the softest on."""
 AS_A_VELOCITY = 1e5
 """Stiffness from which on a spring is told as a constant velocity."""
 

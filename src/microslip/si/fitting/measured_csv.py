@@ -22,8 +22,6 @@ COLUMNS = {
 }
 """Columns that a table may have, and their units in the SI; the amplitude of a bore is in rad."""
 MOST_ROWS = 10_000
-PURE = {"", "1", "-"}
-"""Units that say that there is none."""
 
 
 def read_table(content: bytes, unit_of_amplitude: str) -> dict[str, list[float]]:
@@ -64,22 +62,12 @@ def read_table(content: bytes, unit_of_amplitude: str) -> dict[str, list[float]]
 def _columns(where, heading):
     """Separator, names and units of the columns."""
     allowed = f"allowed: some of {', '.join(COLUMNS)}, each with its unit, as in speed [mm/s]"
-    for separator in csv_text.SEPARATORS:
-        found = [csv_text.HEADING.fullmatch(word) for word in csv_text.words(heading, separator)]
-        if all(found) and (len(found) > 1 or separator == ","):
-            break
-    else:
-        raise ValueError(f"line {where}: the heading is {heading[:80]!r}; {allowed}")
-    names = [match[1].lower() for match in found]
-    units = [(match[2] or "").strip() for match in found]
-    for name, unit in zip(names, units, strict=True):
-        if name not in COLUMNS:
-            raise ValueError(f"line {where}: a column {name!r}; {allowed}")
-        if names.count(name) > 1:
-            raise ValueError(f"line {where}: {name} is there twice; allowed: once")
+    separator, columns = csv_text.columns(where, heading, COLUMNS, allowed)
+    for name, unit in columns:
         if COLUMNS[name] and not unit:
             raise ValueError(f"line {where}: {name} has no unit; {allowed}")
-    return separator, names, ["" if unit in PURE else unit for unit in units]
+    names, units = zip(*((name, unit or "") for name, unit in columns), strict=True)
+    return separator, list(names), ["" if unit in csv_text.PURE else unit for unit in units]
 
 
 def _value(where, name, text, unit):
