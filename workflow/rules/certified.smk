@@ -26,7 +26,6 @@ checkpoint next_round:
 
 rule solve_round:
     input:
-        ancient(rules.warm_up.output),
         ancient(lambda wildcards: kernels_of(wildcards.certified)),
         round=f"{ROUNDS}/{{round}}.json",
     output:

@@ -88,9 +88,10 @@ def figures_of(datasets):
 
 
 def kernels_of(name):
-    """What has to be compiled besides for a sweep or a certified map."""
+    """What has to be compiled for a sweep or a certified map."""
     pulled = [*CONFIGURATION.drives, *(f"certified_{sweep}" for sweep in CONFIGURATION.drives)]
-    return rules.warm_up_pulled.output if name in pulled else []
+    compiled = [*rules.warm_up.output, *rules.warm_up_angles.output]
+    return [*compiled, *rules.warm_up_pulled.output] if name in pulled else compiled
 
 
 def requests_of(group, batch):

@@ -1,7 +1,8 @@
 # Points and single runs, in batches.
 
 
-# Compiles the solver once, before jobs that would all do it at the same time.
+# Compiles the solver once, before jobs that would all do it at the same time. Two jobs share the
+# work, since what they compile has little in common.
 rule warm_up:
     output:
         f"{RESULTS}/warm_up/{source_digest.of_solver()[:16]}.txt",
@@ -15,28 +16,37 @@ rule warm_up:
         mem_mb=lambda wildcards, attempt: 1000 * attempt,
         runtime=lambda wildcards, attempt: 10 * attempt,
     params:
-        pulled=False,
+        kernels="rings",
     script:
         "../scripts/warm_up.py"
+
+
+use rule warm_up as warm_up_angles with:
+    output:
+        f"{RESULTS}/warm_up/{source_digest.of_solver()[:16]}_angles.txt",
+    log:
+        f"{RESULTS}/logs/warm_up_angles.log",
+    params:
+        kernels="angles",
 
 
 # The same of what marches contacts that a force or a spring pulls.
 use rule warm_up as warm_up_pulled with:
     input:
         ancient(rules.warm_up.output),
+        ancient(rules.warm_up_angles.output),
     output:
         f"{RESULTS}/warm_up/{source_digest.of_solver()[:16]}_pulled.txt",
     log:
         f"{RESULTS}/logs/warm_up_pulled.log",
     params:
-        pulled=True,
+        kernels="pulled",
 
 
 rule solve_batch:
     input:
         # They only have to be there: their names hold the digest of the solver, as those of the
         # points.
-        ancient(rules.warm_up.output),
         ancient(lambda wildcards: kernels_of(wildcards.get("group", wildcards.get("early")))),
     output:
         f"{RESULTS}/batches/{{group}}/{{batch}}.json",

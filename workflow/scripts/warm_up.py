@@ -8,5 +8,5 @@ from microslip.app.job_log import job_log
 from microslip.sweeps.sealed_files import write_atomically
 
 with job_log(snakemake.log[0]):
-    microslip.warm_up(pulled=snakemake.params.pulled)
+    microslip.warm_up(snakemake.params.kernels)
     write_atomically(snakemake.output[0], b"The kernels are compiled.\n")

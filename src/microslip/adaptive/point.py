@@ -159,20 +159,39 @@ def _refuse_method(motion, model, method, how):
         )
 
 
-def warm_up(pulled: bool = False) -> None:
-    """Compile the kernels of the automatic models (and leave them in Numba's cache).
+KERNELS = {
+    "rings": ({"scene": "transverse"},),
+    "angles": (
+        {"scene": "transverse", "poisson": 0.3},
+        {"scene": "bore"},
+        {"scene": "continuous-bore", "amplitude": None, "model": "polar"},
+    ),
+    "pulled": ({"scene": "transverse", "stiffness": 1.0}, {"scene": "bore", "stiffness": 1.0}),
+}
+"""Points that need what is compiled, by the name of the kernels."""
 
-    Takes a while the first time; squares are compiled when they are first used.
+
+def warm_up(*kernels: str) -> None:
+    """Compile kernels of the automatic models (and leave them in Numba's cache).
+
+    Takes a while the first time.  Processes that compile different ones may do so side by side.
+    Squares are compiled when they are first used.
 
     Parameters
     ----------
-    pulled : bool
-        Whether those for contacts that a force or a spring pulls are among them.
+    kernels : str
+        Which: "rings", "angles" (of motions that turn, and Poisson's ratios above 0) or "pulled"
+        (contacts that a force or a spring pulls).  Rings and angles, unless any is named.
+
+    Raises
+    ------
+    InputError
+        There are no such kernels.
     """
-    solve("transverse", 0.5, 0.5, tolerance=1e-2)
-    solve("transverse", 0.5, 0.5, poisson=0.3, tolerance=1e-2)
-    solve("bore", 0.5, 0.5, tolerance=1e-2)
-    solve("continuous-bore", 0.5, model="polar", tolerance=1e-2)
-    if pulled:
-        solve("transverse", 0.5, 0.5, stiffness=1.0, tolerance=1e-2)
-        solve("bore", 0.5, 0.5, stiffness=1.0, tolerance=1e-2)
+    kernels = kernels or ("rings", "angles")
+    for name in kernels:
+        if name not in KERNELS:
+            raise InputError("kernels", name, f"may be {', '.join(KERNELS)}")
+    for name in kernels:
+        for case in KERNELS[name]:
+            solve(**{"velocity": 0.5, "amplitude": 0.5, "tolerance": 1e-2, **case})

@@ -31,7 +31,7 @@ TARGETS = {
     "explorer_all": "the same page with every other sweep of the configuration",
 }
 """What can be made by name: the rules of the workflow without wildcards that people ask for."""
-RULES = ("warm_up", "warm_up_pulled")
+RULES = ("warm_up", "warm_up_angles", "warm_up_pulled")
 """Others that Snakemake makes by name."""
 
 _LISTED = "\n".join(f"    {name:<14}{text}" for name, text in TARGETS.items())
