@@ -1,6 +1,7 @@
 """`microslip predict --table`: a contact for every line."""
 
 import json
+import math
 
 import pytest
 import xarray as xr
@@ -36,16 +37,40 @@ def test_each_line_is_the_prediction_of_its_contact(folder, capsys):
     assert cli.main([*COMMAND, "--output", "found.csv"]) == 0
     heading, *rows = (folder / "found.csv").read_text().splitlines()
     assert heading.startswith("case,") and len(rows) == 2
+    assert kept.line.values.tolist() == [2, 3]
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0].split()[:4] == ["case", "mu_apparent", "+-", "force"]
+    assert lines[0].split()[:4] == ["line", "mu_apparent", "+-", "force"]
     assert float(lines[2].split()[1]) == pytest.approx(alone.mu_apparent, rel=1e-3)
+
+
+@pytest.mark.slow
+def test_a_line_that_nothing_answers_does_not_take_the_others_with_it(folder, capsys):
+    """At 4 m/s no load has two fifths of its friction taken away by this vibration."""
+    text = "mu,speed\n# two days\n0.3 +- 0.03,10 mm/s\n0.3 +- 0.03,4 m/s\n"
+    (folder / "contacts.csv").write_text(text)
+    words = ["--amplitude", "0.3 um", "--reduction", "40 %", "--output", "found.nc"]
+    words = [word for word in COMMAND if word not in ("--mu", "0.3")] + words
+    assert cli.main(words) == 1
+    heading, first, second, *said = capsys.readouterr().out.splitlines()
+    assert heading.split()[0] == "line" and heading.rstrip().endswith("spread N")
+    assert [first.split()[0], second.split()[0]] == ["3", "4"]
+    told = [line for line in said if "warning" not in line]
+    assert len(told) == 1 and told[0].startswith("line 4: NOT CONVERGED: of those tried, down to")
+    kept = xr.load_dataset(folder / "found.nc")
+    assert kept.converged.values.tolist() == [True, False]
+    (load, none), (spread, _) = kept.load_N.values, kept.sought_spread.values
+    assert math.isnan(none) and kept.sought_spread.attrs["units"] == "N"
+    assert float(first.split()[-3]) == pytest.approx(load, rel=1e-3)
+    # u_lim and with it the amplitude over u_lim depend on mu times the load to the power 2/3: what
+    # mu is known to is what the load is known to.
+    assert spread / load == pytest.approx(1.5 * 0.1, rel=0.05)
 
 
 @pytest.mark.parametrize(
     ("changed", "words", "said"),
     [
-        ("20,0.1,", [], "--speed: in case 1: needed, or a force in its place"),
-        ("20,-0.1,1 cm/s", [], "--amplitude = '-0.1 um': in case 1: allowed is a finite value"),
+        ("20,0.1,", [], "--speed: in line 3: needed, or a force in its place"),
+        ("20,-0.1,1 cm/s", [], "--amplitude = '-0.1 um': in line 3: allowed is a finite value"),
         ("20,0.1", [], "--table = 'contacts.csv': line 3: 2 cells; allowed: 3"),
         ("20,0.1,1 cm/s", ["--load", "1 N"], "--load = '1 N': allowed once"),
         ("20,0.1,1 cm/s", ["--output", "found.txt"], "a name that ends in .csv or .nc"),

@@ -43,7 +43,13 @@ NUMBERS = [
     (f"{PULLED} --force 0.1 --damping 1", "--damping = '1'", "none beside a force"),
     (f"{PULLED} --force -1 --results new", "--force = '-1'", "at least 0: transverse drives"),
     (f"{PULLED} --force 0.1 --contacts 'load=0'", "--contacts = 'load=0'", "in 0.001..1000"),
-    (f"{PULLED} --force 0.1 --contacts 'phase=1;'", "--contacts = 'phase=1;'", "allowed are"),
+    (
+        f"{PULLED} --force 0.1 --contacts 'phase=1;'",
+        "--contacts = 'phase=1;'",
+        "contact 2: in it ''",
+    ),
+    ("point elliptic:forward --velocity 1 --amplitude 1", "--path = 'forward'", "in it 'forward'"),
+    ("point transverse:x=1 --velocity 1 --amplitude 1", "SCENE = 'transverse:x=1'", "one of"),
     (
         "point continuous-bore --velocity 1 --contacts phase=1",
         "--contacts = 'phase=1'",

@@ -26,10 +26,11 @@ def test_what_is_written_is_read_as_it_was():
 
 BAD = {
     "no text": (["phase=0"], "contacts = ['phase=0']: allowed is a text such as"),
-    "nothing": ("", "contacts = '': allowed are numbers as in phase=0;phase=180"),
-    "an end too many": ("phase=0;", "contacts = 'phase=0;': allowed are numbers"),
-    "no number": ("phase=up", "contacts = 'phase=up': allowed are numbers"),
-    "endless": ("phase=inf", "contacts = 'phase=inf': allowed are numbers"),
+    "nothing": ("", "contact 1: in it '': allowed are numbers as in phase=0;phase=180"),
+    "an end too many": ("phase=0;", "contact 2: in it '': allowed are numbers"),
+    "no number": ("phase=up", "contact 1: in it 'phase=up': allowed are numbers"),
+    "with a unit": ("load=1;phase=180deg", "contact 2: in it 'phase=180deg': allowed are numbers"),
+    "endless": ("phase=inf", "contact 1: in it 'phase=inf': allowed are numbers"),
     "twice": ("phase=0,phase=1", "phase occurs twice"),
     "a strange key": ("share=1", "unknown number share; allowed: load, phase, amplitude"),
     "no load": ("load=0", "load = 0: allowed is a number in 0.001..1000"),

@@ -16,10 +16,22 @@ NAMES = ("load", "speed", "amplitude", "mu", "counterbody")
         ('counterbody,mu\n"70 GPa, 0.22",0.3\n', {"counterbody": ["70 GPa, 0.22"], "mu": ["0.3"]}),
         ("load\n10 N +- 5 %\n", {"load": ["10 N +- 5 %"]}),
         ("LOAD [N]\r\n10\r\n", {"load": ["10 N"]}),
+        ("load (N),speed (mm/s)\n10,1\n", {"load": ["10 N"], "speed": ["1 mm/s"]}),
     ],
 )
 def test_columns_are_texts_with_their_units(text, found):
-    assert read_cases(text.encode(), NAMES) == found
+    assert read_cases(text.encode(), NAMES)[0] == found
+
+
+def test_lines_are_numbered_as_the_file_has_them():
+    text = b"# measured on two days\n\nload [N]\n1\n# the second day\n2\n"
+    assert read_cases(text, NAMES) == ({"load": ["1 N", "2 N"]}, [4, 6])
+
+
+def test_another_encoding_is_told(tmp_path):
+    (tmp_path / "latin.csv").write_bytes("amplitude [µm]\n1\n".encode("latin-1"))
+    with pytest.raises(ValueError, match="line 1: byte 0xb5 is not UTF-8; allowed: UTF-8, which"):
+        cases_of_file(tmp_path / "latin.csv", NAMES)
 
 
 @pytest.mark.parametrize(
@@ -34,6 +46,7 @@ def test_columns_are_texts_with_their_units(text, found):
         ("load [N]\n1 kN\n", "line 2: load is '1 kN' in a column in N"),
         ("load [N];mu\n900;0.3\n1.100;0.3\n", "line 3: load is '1.100' beside whole numbers"),
         ("load [N]\n1\0\n", "line 2: not text"),
+        ('load [N],counterbody\n1,"70 GPa, 0.22\n', "line 2: unexpected end of data; allowed"),
     ],
 )
 def test_what_is_no_table_is_refused_by_line(text, said):

@@ -38,6 +38,29 @@ def test_spreads_of_several_quantities_are_those_of_a_monte_carlo():
     assert found.friction_force_N == pytest.approx(drawn.mean(), rel=5e-3)
 
 
+SLIDER = {"material": "steel", "radius": "5 mm", "mu": 0.3, "frequency": "2 kHz"}
+
+
+@pytest.mark.slow
+def test_what_is_found_is_known_as_well_as_what_was_given():
+    """Of a rigid slider friction depends on the speed over the amplitude alone."""
+    asked = SLIDER | {"load": "1 N", "speed": "1 m/s +- 5 %", "reduction": "50 %"}
+    found = microslip.predict("transverse", **asked)
+    assert found.sought_value == found.amplitude_si
+    assert found.sought_spread == pytest.approx(0.05 * found.amplitude_si, rel=1e-2)
+    assert found.mu_macro_spread == pytest.approx(0.0, abs=1e-3)
+
+
+@pytest.mark.slow
+def test_where_an_end_has_no_answer_the_spread_is_endless():
+    """A load of nearly nothing slides as a rigid one, of which vibration takes 22 % at 0.8 times
+    the velocity of the vibration, by Eq 6, and 18 % at 0.96 times: 20 % only below some speed."""
+    speed = 0.8 * 2.0 * math.pi * 2e3 * 1e-6
+    asked = SLIDER | {"speed": f"{speed:.6g} m/s +- 20 %", "amplitude": "1 um"}
+    found = microslip.predict("transverse", **asked, reduction=0.2, tolerance=1e-2)
+    assert found.converged and found.load_N > 0.0 and math.isinf(found.sought_spread)
+
+
 def test_without_a_spread_there_is_none():
     found = microslip.predict("continuous-bore", **SPIN)
     assert found.friction_force_spread_N is None and found.mu_apparent_spread is None

@@ -21,6 +21,7 @@ def test_rounds_ask_for_points_of_the_sweep_until_all_is_answered():
     # slow and fast ones, two patches of 5 x 5 nodes each, share those on the border between them
     assert len(first["nodes"]) == len(first["requests"]) == 45 + 45
     assert first["parts"] == 4
+    assert [map_rounds.next_round(map_, {}, size)["parts"] for size in (10, 600)] == [9, 1]
     parts = [map_rounds.part_of(first, part) for part in range(4)]
     assert sorted(map(key_of, sum(parts, []))) == sorted(map(key_of, first["requests"]))
     assert {request["tolerance"] for request in first["requests"]} == {"0.006"}

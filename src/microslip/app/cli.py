@@ -178,6 +178,8 @@ def main(arguments: list[str] | None = None) -> int:
         return leftovers.main(arguments[1:])
     if arguments[:1] == ["sweep"]:  # not for argparse: what follows is Snakemake's
         return sweep_command.main(arguments[1:])
+    if arguments[:1] == ["point"]:
+        arguments = _with_path(arguments)
     options = build_parser(next(iter(arguments), None)).parse_args(command_line.joined(arguments))
     if options.command == "predict":
         return predict_command.run(options)
@@ -209,6 +211,18 @@ def main(arguments: list[str] | None = None) -> int:
     return 0 if result.converged else 1
 
 
+def _with_path(words):
+    """Words of `point` in which the numbers of a scene follow it as --path, also where they were
+    given as elsewhere: elliptic:forward=0.5."""
+    from microslip.motions.by_name import FAMILIES
+
+    command, *rest = words
+    name, colon, numbers = rest[0].partition(":") if rest else ("", "", "")
+    if not colon or name not in FAMILIES or any(word.startswith("--path") for word in rest):
+        return words
+    return [command, name, f"--path={numbers}", *rest[1:]]
+
+
 def _as_given(options, argument):
     """Name of the option for an argument of `solve`, and its value on the command line."""
     if argument == "scene":
@@ -237,7 +251,7 @@ def _answer(options, progress):
 
     path = getattr(options, "path", None)
     settings = {"pressure": options.pressure, "model": options.model, **numbers}
-    settings["scene"] = f"{options.scene}:{path}" if path else options.scene
+    settings["scene"] = options.scene if path is None else f"{options.scene}:{path}"
     if options.contacts is not None:
         settings["contacts"] = options.contacts
     if options.results is None:

@@ -9,7 +9,15 @@ import sys
 
 from microslip.app import predicted_driving, predicted_table
 from microslip.app.command_line import Said
-from microslip.app.predicted_text import groups_of_drive, length, line, looked_for, threshold, walk
+from microslip.app.predicted_text import (
+    groups_of_drive,
+    length,
+    line,
+    looked_for,
+    threshold,
+    unit_of_sought,
+    walk,
+)
 from microslip.app.terminal import complain
 from microslip.foundation.errors import InputError, shown
 from microslip.si.materials import MATERIALS
@@ -74,6 +82,10 @@ UNDERSTOOD += ("force", "drive_stiffness", "mass", "damping")
 UNDERSTOOD += ("amplitude", "forward_amplitude", "rotation_amplitude", "load_amplitude", "phase")
 UNDERSTOOD += ("frequency", "rotation", "reduction")
 """What a Prediction has understood, in the order of the answer."""
+
+
+ADDED = {"bore": "spin", "continuous-bore": "spin", "transverse-bore": "vibration and spin"}
+"""What is said to take friction away, where that is not vibration alone."""
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -155,12 +167,13 @@ def _of_table(options, given):
     predicted_table.refuse_output(options.output, options.table)
     columns = [name.replace("-", "_") for name in OPTIONS if name != "points"]
     shared = given | {"power": options.power}
-    cases, found = predicted_table.ask(options.scene, options.table, shared, columns)
+    answered = predicted_table.ask(options.scene, options.table, shared, columns)
     if options.output is not None:
-        predicted_table.write(options.output, options.scene, cases, found)
-    dicts = [plain(one.to_dict()) for one in found]
-    text = json.dumps(dicts) if options.json else predicted_table.as_text(found)
-    return text, all(one.converged for one in found)
+        predicted_table.write(options.output, answered)
+    lines = zip(answered.lines, answered.found, strict=True)
+    dicts = [{"line": line} | plain(one.to_dict()) for line, one in lines]
+    text = json.dumps(dicts) if options.json else predicted_table.as_text(answered)
+    return text, all(one.converged for one in answered.found)
 
 
 def _found(options, given):
@@ -180,7 +193,8 @@ def _complaint(error, typed):
     """The option, its value as it was given, and what is allowed, in one line."""
     name = f"--{error.argument.replace('_', '-')}"
     option = "SCENE" if error.argument == "scene" else typed.get(error.argument, name)
-    given = "" if error.value is None else f" = {shown(error.value)}"
+    flag = error.value is True or error.value is None
+    given = "" if flag else f" = {shown(error.value)}"
     return " ".join(f"{option}{given}: {error.allowed}".split())
 
 
@@ -220,9 +234,14 @@ def _spread(found):
         return [
             line("spread", f"{found.speed_spread_m_s:.2g} m/s of the speed, from what was given")
         ]
-    of_mu = f"{found.mu_apparent_spread:.2g} of mu_apparent"
-    of_force = f"{found.friction_force_spread_N:.2g} N of the force"
-    return [line("spread", f"{of_mu}, {of_force}, from the spreads of what was given")]
+    shares = [
+        f"{found.mu_apparent_spread:.2g} of mu_apparent",
+        f"{found.friction_force_spread_N:.2g} N of the force",
+    ]
+    if found.sought is not None:
+        unit = unit_of_sought(found)
+        shares.insert(0, f"{found.sought_spread:.2g} {unit} of the {found.sought}")
+    return [line("spread", f"{', '.join(shares)}, from the spreads of what was given")]
 
 
 def _energy(found):
@@ -256,7 +275,7 @@ def _size(found):
 
 def _friction(found):
     """Lines of the answer itself: which number is a ratio, and which a coefficient."""
-    still, added = found.friction_force_still_N, "spin" if "bore" in found.scene else "vibration"
+    still, added = found.friction_force_still_N, ADDED.get(found.scene, "vibration")
     ratio = f"{found.mu_macro:.4f} +- {found.mu_macro_error:.1g}"
     coefficient = f"{found.mu_apparent:.4f} +- {found.mu_apparent_error:.1g}"
     less = 100.0 * found.force_reduction

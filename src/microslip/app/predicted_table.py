@@ -4,37 +4,52 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
-from microslip.foundation.errors import InputError
+from microslip.app.predicted_text import runs_away, unit_of_sought
+from microslip.foundation.errors import CacheError, InputError
 from microslip.si.prediction import Prediction
 
 ENDINGS = (".csv", ".nc")
-SHOWN = {
-    "mu_apparent": ("mu_apparent", 4),
-    "mu_apparent_error": ("+-", 2),
-    "friction_force_N": ("force N", 4),
-    "speed_m_s": ("speed m/s", 4),
-}
-"""Fields in the printed table, their headings and digits."""
 WIDTH = 13
 
 
-def ask(
-    scene: str, path: str, given: Mapping[str, object], columns: Collection[str]
-) -> tuple[dict, list[Prediction]]:
+@dataclass(frozen=True)
+class Answered:
+    """A table and its answer.
+
+    Attributes
+    ----------
+    scene : str
+        The motion.
+    cases : dict of list of str
+        Columns of the file.
+    lines : list of int
+        Numbers of the lines of the file that they come from.
+    found : list of Prediction
+        Of each line.
+    """
+
+    scene: str
+    cases: dict[str, list[str | None]]
+    lines: list[int]
+    found: list[Prediction]
+
+
+def ask(scene: str, path: str, given: Mapping[str, object], columns: Collection[str]) -> Answered:
     """The cases of a file and their predictions, with a line of progress; raises InputError.
 
     given: options by name that all cases share; columns: of predict's arguments.
     """
     from tqdm import tqdm
 
-    from microslip.si.table import number_of, predictions
+    from microslip.si.table import predictions
     from microslip.si.table_csv import cases_of_file
 
-    cases = cases_of_file(path, [name for name in columns if name != "power"])
-    count = number_of(cases, given)
-    return cases, list(tqdm(predictions(scene, cases, given), "contacts", count, leave=False))
+    cases, lines = cases_of_file(path, [name for name in columns if name != "power"])
+    found = predictions(scene, cases, given, [f"line {line}" for line in lines])
+    return Answered(scene, cases, lines, list(tqdm(found, "contacts", len(lines), leave=False)))
 
 
 def refuse_output(path: str | None, table: str) -> None:
@@ -52,28 +67,56 @@ def refuse_output(path: str | None, table: str) -> None:
         raise InputError("output", path, "allowed is another file than the table that is read")
 
 
-def write(path: str, scene: str, cases: Mapping[str, object], found: list[Prediction]) -> None:
-    """All fields of all cases into a .csv or a .nc, whole or not at all."""
+def write(path: str, answered: Answered) -> None:
+    """All fields of all cases into a .csv or a .nc, whole or not at all; raises InputError."""
     from microslip.si.table import as_dataset
     from microslip.sweeps.sealed_files import writing_beside
 
-    dataset = as_dataset(scene, cases, found)
-    with writing_beside(Path(path)) as beside:
-        if Path(path).suffix.lower() == ".csv":
-            dataset.to_dataframe().to_csv(beside)
-        else:
-            dataset.to_netcdf(beside, engine="netcdf4")
+    dataset = as_dataset(answered.scene, answered.cases, answered.found)
+    lines = "case", answered.lines, {"long_name": "line of the file"}
+    dataset = dataset.assign_coords(line=lines)
+    try:
+        with writing_beside(Path(path)) as beside:
+            if Path(path).suffix.lower() == ".csv":
+                dataset.to_dataframe().to_csv(beside)
+            else:
+                dataset.to_netcdf(beside, engine="netcdf4")
+    except (OSError, CacheError) as error:
+        raise InputError("output", path, f"cannot be written: {error}") from None
 
 
-def as_text(found: list[Prediction]) -> str:
-    """A line for each case, and what is said against it below the table."""
-    titles = ["case", *(title for title, _ in SHOWN.values())]
-    lines = ["".join(f"{title:>{WIDTH}}" for title in titles)]
+def as_text(answered: Answered) -> str:
+    """A row for each case, and what is said against it below the table."""
+    columns = _columns(answered.found)
+    rows = ["".join(f"{title:>{WIDTH}}" for title in ("line", *columns))]
     remarks = []
-    for case, one in enumerate(found):
-        numbers = [f"{getattr(one, name):>{WIDTH}.{n}g}" for name, (_, n) in SHOWN.items()]
-        lines.append(f"{case:>{WIDTH}}{''.join(numbers)}")
-        if not one.converged:
-            remarks.append(f"case {case}: NOT CONVERGED: {one.reason}")
-        remarks += [f"case {case}: warning: {text}" for text in one.warnings]
-    return "\n".join(lines + remarks)
+    for line, one in zip(answered.lines, answered.found, strict=True):
+        numbers = [_number(attribute, digits, one) for attribute, digits in columns.values()]
+        rows.append(f"{line:>{WIDTH}}{''.join(numbers)}")
+        if one.outcome == "runs away":
+            remarks.append(f"line {line}: {runs_away(one)}")
+        elif not one.converged:
+            remarks.append(f"line {line}: NOT CONVERGED: {one.reason}")
+        remarks += [f"line {line}: warning: {text}" for text in one.warnings]
+    return "\n".join(rows + remarks)
+
+
+def _columns(found):
+    """Attributes of a Prediction and their digits, by the heading of their column."""
+    columns = {"mu_apparent": ("mu_apparent", 4), "+-": ("mu_apparent_error", 2)}
+    if any(one.mu_apparent_spread is not None for one in found):
+        columns["spread"] = "mu_apparent_spread", 2
+    columns |= {"force N": ("friction_force_N", 4), "speed m/s": ("speed_m_s", 4)}
+    (sought,) = {one.sought for one in found}  # one, since all cases have the same columns
+    if sought is not None:
+        unit = unit_of_sought(found[0])
+        columns.pop(f"{sought} {unit}", None)
+        columns |= {f"{sought} {unit}": ("sought_value", 4), f"+- {unit}": ("sought_error", 2)}
+    if any(one.sought_spread is not None for one in found):
+        columns["spread " + unit] = "sought_spread", 2
+    return columns
+
+
+def _number(attribute, digits, one):
+    value = getattr(one, attribute)
+    return f"{'' if value is None else format(value, f'.{digits}g'):>{WIDTH}}"

@@ -40,6 +40,13 @@ def _speed(value, error):
     return f"{_pair(value, error)}/s"
 
 
+def unit_of_sought(found: Prediction) -> str:
+    """Unit of what was looked for."""
+    if found.sought == "amplitude" and found.scene == "bore":
+        return "rad"
+    return {"amplitude": "m", "speed": "m/s", "load": "N"}[found.sought]
+
+
 def looked_for(found: Prediction) -> list[str]:
     """The line of what was found for a wanted reduction, and its error."""
     if found.sought is None:
@@ -114,11 +121,10 @@ def _stays(found):
     return [line("outcome", "it stays: the force is below the threshold")]
 
 
-def _runs_away(found):
+def runs_away(found: Prediction) -> str:
+    """What is said of a contact that does."""
     still = f"{found.friction_force_still_N:.4g} N"
-    return [
-        line("outcome", f"it runs away: friction holds no more than {still}, mu times the load")
-    ]
+    return f"it runs away: friction holds no more than {still}, mu times the load"
 
 
 def _undecided(found):
@@ -130,7 +136,7 @@ def _undecided(found):
 _OUTCOMES = {
     "moves": _moves,
     "stays": _stays,
-    "runs away": _runs_away,
+    "runs away": lambda found: [line("outcome", runs_away(found))],
     "undecided": _undecided,
     None: lambda found: [],
 }

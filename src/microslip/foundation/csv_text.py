@@ -6,8 +6,9 @@ import re
 from collections.abc import Collection, Iterator, Sequence
 
 SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
-HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\])?")
+HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\]|\(([^()]*)\))?")
 """The name of a column, with its unit in brackets or without."""
+ENCODING = "allowed: UTF-8, which spreadsheets call CSV UTF-8"
 PURE = {"", "1", "-"}
 """Units that say that there is none."""
 SPREADSHEET_ERROR = re.compile(r"#(N/A|NV|[A-Z/0]+[!?])")
@@ -26,12 +27,13 @@ def lines(content: bytes) -> Iterator[tuple[int, str]]:
         For what is no text in UTF-8; the message begins with the line.
     """
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise ValueError("line 1: UTF-16; allowed: UTF-8")
+        raise ValueError(f"line 1: UTF-16; {ENCODING}")
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
-        raise ValueError(f"line {line}: byte 0x{content[error.start]:02x} is not UTF-8") from None
+        byte = f"byte 0x{content[error.start]:02x}"
+        raise ValueError(f"line {line}: {byte} is not UTF-8; {ENCODING}") from None
     if "\0" in text:
         line = text.count("\n", 0, text.index("\0")) + 1
         raise ValueError(f"line {line}: not text; allowed: CSV or netCDF")
@@ -70,7 +72,8 @@ def columns(
             raise ValueError(f"line {where}: a column {name!r}; {allowed}")
         if given.count(name) > 1:
             raise ValueError(f"line {where}: {name} is there twice; allowed: once")
-    units = [match[2] and match[2].strip() for match in found]
+    units = [match[2] if match[3] is None else match[3] for match in found]
+    units = [unit and unit.strip() for unit in units]
     return separator, list(zip(given, units, strict=True))
 
 

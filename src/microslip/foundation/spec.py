@@ -70,7 +70,7 @@ def numbers_in(part: str, text: str, what: str, example: str) -> dict[str, float
         except InputError:
             numbers[key] = math.nan
         if not (key and equals and math.isfinite(numbers[key])):
-            raise InputError(what, text, f"allowed are numbers as in {example}")
+            raise InputError(what, text, f"in it {one!r}: allowed are numbers as in {example}")
     return numbers
 
 

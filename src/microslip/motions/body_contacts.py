@@ -14,6 +14,7 @@ from microslip.foundation.errors import InputError
 USUAL = {"load": 1.0, "phase": 0.0, "amplitude": 1.0}
 """A contact of which nothing is said."""
 EXAMPLE = "phase=0;phase=180"
+MEANT = "loads and amplitudes are shares without a unit, phases are in degrees"
 MOST_CONTACTS = 8
 LIGHTEST, HEAVIEST = 1e-3, 1e3
 """Of a load over another: what is less or more is a slip."""
@@ -47,7 +48,7 @@ def contacts_of(text: str) -> tuple[BodyContact, ...]:
     """
     if not isinstance(text, str):
         raise InputError("contacts", text, f"allowed is a text such as {EXAMPLE!r}")
-    records = [_numbers(part, text) for part in text.split(";")]
+    records = [_numbers(number, part, text) for number, part in enumerate(text.split(";"), 1)]
     if len(records) > MOST_CONTACTS:
         allowed = f"allowed are up to {MOST_CONTACTS} contacts, not {len(records)}"
         raise InputError("contacts", text, allowed)
@@ -67,11 +68,16 @@ def written(contacts: tuple[BodyContact, ...]) -> str:
     )
 
 
-def _numbers(part, text):
-    given = spec.numbers_in(part, text, "contacts", EXAMPLE)
-    spec.refuse_unknown(text, "contacts", given, USUAL)
-    numbers = USUAL | given
-    spec.refuse_outside(text, "contacts", "load", numbers["load"], (LIGHTEST, HEAVIEST))
-    limits = (0.0, LARGEST_SHARE)
-    spec.refuse_outside(text, "contacts", "amplitude", numbers["amplitude"], limits)
+def _numbers(number, part, text):
+    """What is said of a contact; what is wrong is told with its number."""
+    try:
+        given = spec.numbers_in(part, text, "contacts", EXAMPLE)
+        spec.refuse_unknown(text, "contacts", given, USUAL)
+        numbers = USUAL | given
+        spec.refuse_outside(text, "contacts", "load", numbers["load"], (LIGHTEST, HEAVIEST))
+        limits = (0.0, LARGEST_SHARE)
+        spec.refuse_outside(text, "contacts", "amplitude", numbers["amplitude"], limits)
+    except InputError as error:
+        problem = f"contact {number}: {error.allowed} ({MEANT})"
+        raise InputError("contacts", text, problem) from None
     return numbers

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import math
+from dataclasses import dataclass, replace
 
 from microslip.adaptive.point import solve
 from microslip.si.dimensionless import solver_scene
@@ -11,13 +12,23 @@ from microslip.si.energy import energy_fields, vibration_fields
 from microslip.si.motions import COMBINED
 from microslip.si.prediction import Prediction
 from microslip.si.pulled import about_drive, answer_of, with_speed
-from microslip.si.question import TOLERANCE, asked, checked_groups
+from microslip.si.question import TOLERANCE, Question, asked, checked_groups
 from microslip.si.reduction import with_reduction
 from microslip.si.uncertain import with_spreads
 from microslip.si.validity import broken_assumptions, unchecked
 
 TOLERANCE_OF_LIMIT = 1e-2
 """Of mu_static where several oscillations meet: it takes a minute and more to know it better."""
+
+UNKNOWN_WITHOUT = {
+    "amplitude": ("amplitude_si",),
+    "speed": ("speed_m_s",),
+    "load": (
+        *("load_N", "contact_radius_m", "indentation_m", "u_lim_m", "largest_pressure_Pa"),
+        "friction_force_still_N",
+    ),
+}
+"""Fields of a Prediction that are not known without what is looked for."""
 
 
 @with_spreads
@@ -179,6 +190,28 @@ def _answered(question):
     pulled["load_N"] = contact.load * carriers.count
     found = _prediction(contact, (motion, still, doubts), velocity, (answer, limit), question.about)
     return replace(found, **pulled)
+
+
+@dataclass(frozen=True)
+class _NoAnswer:
+    """In place of a Result, where there is no contact to solve."""
+
+    reason: str
+    amplitude: float = math.nan
+    mu_macro: float = math.nan
+    mu_macro_error: float = math.nan
+    model: str = "none"
+    converged: bool = False
+
+
+def unattained(question: Question, reason: str) -> Prediction:
+    """The Prediction where nothing has the wanted reduction: NaN for what would follow from it."""
+    contact = question.contact
+    moved = question.motion, contact.mu * contact.load, ((), ())
+    found = _prediction(contact, moved, math.nan, (_NoAnswer(reason), None), question.about)
+    unknown = UNKNOWN_WITHOUT[question.sought]
+    settings = {"sought": question.sought, "sought_error": math.nan, "load_N": contact.load}
+    return replace(found, **settings | dict.fromkeys(unknown, math.nan))
 
 
 def _prediction(contact, moved, velocity, answers, understood):

@@ -102,6 +102,9 @@ class Prediction:
         "speed", "load"), and the largest error that it may have, in its SI unit, by estimate.
     mu_macro_spread, mu_apparent_spread, friction_force_spread_N, speed_spread_m_s : float or None
         Standard uncertainties that follow from those of what was given; None where none was.
+    sought_spread : float or None
+        The same of what was looked for, in its SI unit.  Infinite, as the others, where within the
+        spreads nothing has the wanted reduction.
     """
 
     scene: str
@@ -172,6 +175,13 @@ class Prediction:
     mu_apparent_spread: float | None = None
     friction_force_spread_N: float | None = None
     speed_spread_m_s: float | None = None
+    sought_spread: float | None = None
+
+    @property
+    def sought_value(self) -> float | None:
+        """What was looked for, in its SI unit; NaN where there is none, None where nothing was."""
+        fields = {"amplitude": self.amplitude_si, "speed": self.speed_m_s, "load": self.load_N}
+        return fields.get(self.sought)
 
     def to_dict(self) -> dict:
         """Fields as a plain dict."""

@@ -66,6 +66,10 @@ class _Line:
     rate: float = 1.0
 
 
+class NotAttainedError(InputError):
+    """No contact, or every one, has so much of its friction taken away: known by solving alone."""
+
+
 class _NoAnswerError(Exception):
     """The solver has no number at an amplitude; its reason is found again there."""
 
@@ -136,8 +140,10 @@ def with_reduction(
 
     Raises
     ------
-    InputError
+    NotAttainedError
         Where none, or every one, takes that much friction away.
+    InputError
+        For a share that cannot be looked for.
     """
     from scipy.optimize import brentq
 
@@ -147,7 +153,7 @@ def with_reduction(
         allowed = "allowed is less than all of it: the centre of a contact that turns always sticks"
         raise InputError("reduction", given, allowed)
     line = _LINES[sought](contact, motion, share)
-    last, error = (contact, motion), 0.0
+    last, error, seen = (contact, motion), 0.0, []
 
     def missing(place):
         nonlocal last, error
@@ -158,18 +164,21 @@ def with_reduction(
             raise _NoAnswerError
         if last[1].speed == 0.0 and found <= error:
             found = 0.0  # of static friction nothing is left, which no run says to the last digit
+        seen.append(1.0 - found)
         return found - (1.0 - share)
 
     try:
         if missing(line.low) < 0.0:
-            raise InputError("reduction", given, f"{line.every} takes more away")
+            problem = f"{line.every} takes more away: {100.0 * min(seen):.3g} %"
+            raise NotAttainedError("reduction", given, problem)
         high = line.start
         if line.end is not None and missing(line.end) > 0.0:
             high = math.inf
         while high > line.high or missing(high) > 0.0:
             high += math.log(2.0)
             if high > line.high:
-                raise InputError("reduction", given, f"{line.none} takes that much friction away")
+                problem = f"{line.none} takes more than {100.0 * max(seen):.3g} % away"
+                raise NotAttainedError("reduction", given, problem)
         place = brentq(missing, line.low, high, xtol=0.1 * tolerance)
         here = missing(place)
         error_here = error
@@ -240,7 +249,7 @@ def _loads(contact, motion, share):
         high,
         load_at,
         f"the largest load tried, {load_at(low):.2g} N,",
-        f"no load down to {load_at(high):.2g} N",
+        f"of those tried, down to {load_at(high):.2g} N, no load",
         rate=1.0 / power,
     )
 

@@ -11,9 +11,10 @@ import numpy as np
 
 from microslip.foundation.errors import InputError
 from microslip.si.motions import UNIT_OF_AMPLITUDE
-from microslip.si.predict import predict
+from microslip.si.predict import predict, unattained
 from microslip.si.prediction import Prediction
 from microslip.si.question import asked
+from microslip.si.reduction import NotAttainedError
 from microslip.si.uncertain import without_spreads
 
 if TYPE_CHECKING:
@@ -58,39 +59,51 @@ def predict_table(scene: str, cases: Mapping[str, object], **shared: object) -> 
 
 
 def predictions(
-    scene: str, cases: Mapping[str, object], shared: Mapping[str, object]
+    scene: str,
+    cases: Mapping[str, object],
+    shared: Mapping[str, object],
+    names: Sequence[str] | None = None,
 ) -> Iterator[Prediction]:
-    """The prediction of each case in turn.
+    """The prediction of each case in turn; names: of the cases, for messages.
 
-    All cases are read before the first one is solved; raises InputError as predict_table does.
+    All cases are read before the first one is solved; raises InputError as predict_table does.  A
+    case that nothing has the wanted reduction of is not converged, and says so.
     """
+    count = number_of(cases, shared)
+    names = names or [f"case {case}" for case in range(count)]
     several = [
-        shared | {name: values[case] for name, values in cases.items()}
-        for case in range(number_of(cases, shared))
+        shared | {name: values[case] for name, values in cases.items()} for case in range(count)
     ]
-    for case, given in enumerate(several):
-        _in_case(case, _check, scene, given)
-    return (_in_case(case, predict, scene, given) for case, given in enumerate(several))
+    for name, given in zip(names, several, strict=True):
+        _in_case(name, _question, scene, given)
+    pairs = zip(names, several, strict=True)
+    return (_in_case(name, _prediction, scene, given) for name, given in pairs)
 
 
-def _in_case(case, ask, scene, given):
-    """What is answered; what is wrong is told with the number of the case."""
+def _in_case(name, ask, scene, given):
+    """What is answered; what is wrong is told with the name of the case."""
     try:
         return ask(scene, **given)
     except InputError as error:
-        allowed = f"in case {case}: {error.allowed}"
-        raise InputError(error.argument, error.value, allowed) from None
+        raise InputError(error.argument, error.value, f"in {name}: {error.allowed}") from None
 
 
-def _check(scene, **given):
-    """Raise what predict would raise before it solves anything."""
+def _prediction(scene, **given):
+    try:
+        return predict(scene, **given)
+    except NotAttainedError as error:
+        return unattained(_question(scene, **given), error.allowed)
+
+
+def _question(scene, **given):
+    """What is asked; raises what predict would raise before it solves anything."""
     plain, _ = without_spreads(given)
     every = dict.fromkeys(signature(predict).parameters) | {"power": False}
     strange = [name for name in plain if name not in every]
     if strange:
         raise InputError(strange[0], plain[strange[0]], f"allowed are {', '.join(every)}")
     del every["scene"]
-    asked(scene, every | plain)
+    return asked(scene, every | plain)
 
 
 def number_of(cases: Mapping[str, object], shared: Mapping[str, object]) -> int:
@@ -139,7 +152,8 @@ def as_dataset(scene: str, cases: Mapping[str, object], found: Sequence[Predicti
     amplitude = variables["amplitude_si"][2]["units"] = UNIT_OF_AMPLITUDE.get(scene, "m")
     units = {"amplitude": amplitude, "speed": "m s-1", "load": "N"}
     for sought in {one.sought for one in found} - {None}:  # one, since all cases have the same rest
-        variables["sought_error"][2]["units"] = units[sought]
+        for name in ("sought_error", "sought_spread"):
+            variables[name][2]["units"] = units[sought]
     return xr.Dataset(variables, {"case": np.arange(len(found))}, {"scene": scene})
 
 

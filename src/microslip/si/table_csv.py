@@ -20,8 +20,11 @@ NUMBER = re.compile(r"[+-−]?[\d.,]+([eE][+-−]?\d+)?", re.A)
 """What is meant to be a number; whether it is one is decided where it is read."""
 
 
-def cases_of_file(path: str | os.PathLike, names: Collection[str]) -> dict[str, list[str | None]]:
-    """The columns of a file, as microslip.predict_table takes them; raises InputError."""
+def cases_of_file(
+    path: str | os.PathLike, names: Collection[str]
+) -> tuple[dict[str, list[str | None]], list[int]]:
+    """The columns of a file, as microslip.predict_table takes them, and the numbers of the lines
+    that they come from; raises InputError."""
     try:
         return read_cases(Path(path).read_bytes(), names)
     except OSError as error:
@@ -31,8 +34,11 @@ def cases_of_file(path: str | os.PathLike, names: Collection[str]) -> dict[str, 
         raise InputError("table", str(path), str(error)) from None
 
 
-def read_cases(content: bytes, names: Collection[str]) -> dict[str, list[str | None]]:
-    """Columns of a table by their names: texts with their units, None for an empty cell.
+def read_cases(
+    content: bytes, names: Collection[str]
+) -> tuple[dict[str, list[str | None]], list[int]]:
+    """Columns of a table by their names: texts with their units, None for an empty cell; and the
+    numbers of the lines, the first one of the file being 1.
 
     Columns are parted by commas, semicolons or tabs, and a cell that has one of these in it is in
     double quotes.  Cells under a heading with a unit are numbers in that unit, others are texts as
@@ -54,10 +60,11 @@ def read_cases(content: bytes, names: Collection[str]) -> dict[str, list[str | N
     where, heading = next(lines, (1, ""))
     allowed = f"allowed: some of {', '.join(names)}, with a unit or without, as in speed [mm/s]"
     separator, columns = csv_text.columns(where, heading, names, allowed)
-    table = {name: [] for name, _ in columns}
+    table, numbers = {name: [] for name, _ in columns}, []
     thousands = csv_text.Thousands(separator, tuple(table))
     for where, line in lines:
-        cells = _cells(line, separator)
+        cells = _cells(where, line, separator)
+        numbers.append(where)
         if len(cells) != len(columns):
             parted = f"parted by a {csv_text.SEPARATORS[separator]} as in the heading"
             problem = f"{len(cells)} cells; allowed: {len(columns)}, {parted}"
@@ -66,13 +73,17 @@ def read_cases(content: bytes, names: Collection[str]) -> dict[str, list[str | N
             table[name].append(_text(where, name, cell, unit))
         thousands.see(where, cells)
     thousands.refuse()
-    if not any(table.values()):
+    if not numbers:
         raise ValueError(f"line {where}: no line follows the heading; allowed: one for a contact")
-    return table
+    return table, numbers
 
 
-def _cells(line, separator):
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
+def _cells(where, line, separator):
+    try:
+        return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, strict=True))]
+    except csv.Error as error:
+        allowed = "allowed are cells in whole pairs of double quotes, within one line"
+        raise ValueError(f"line {where}: {error}; {allowed}") from None
 
 
 def _text(where, name, cell, unit):

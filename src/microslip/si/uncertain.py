@@ -15,6 +15,7 @@ from dataclasses import replace
 
 from microslip.foundation.errors import InputError
 from microslip.si.quantities import read
+from microslip.si.reduction import NotAttainedError
 
 UNITS = {
     "mu": "",
@@ -34,8 +35,9 @@ FIELDS = {
     "mu_apparent": "mu_apparent_spread",
     "friction_force_N": "friction_force_spread_N",
     "speed_m_s": "speed_spread_m_s",
+    "sought_value": "sought_spread",
 }
-"""Fields of a Prediction that it is carried through to."""
+"""Attributes of a Prediction that it is carried through to, and the fields where that is kept."""
 _SPREAD = re.compile(r"(.*?)\s*(?:\+-|\+/-|±)\s*(.*)", re.S)
 
 
@@ -48,11 +50,11 @@ def with_spreads(predict: Callable) -> Callable:
         found = predict(scene, **plain)
         if not spread:
             return found
-        squares = dict.fromkeys(FIELDS, 0.0)
+        squares = {name: 0.0 for name in FIELDS if getattr(found, name) is not None}
         for name, ends in spread.items():
             low, high = (_predicted(predict, scene, plain, name, end) for end in ends)
-            for field in FIELDS:
-                squares[field] += (0.5 * (getattr(high, field) - getattr(low, field))) ** 2
+            for field in squares:
+                squares[field] += _half_of_difference(low, high, field) ** 2
         texts = {name: " ".join(str(arguments[name]).split()) for name in spread}
         spreads = {FIELDS[field]: math.sqrt(value) for field, value in squares.items()}
         return replace(found, **spreads, understood=found.understood | texts)
@@ -97,9 +99,18 @@ def _ends(name, given, parts, unit):
     return value - size, value + size
 
 
+def _half_of_difference(low, high, field):
+    """Of a field of both; infinite where one of them has nothing with the wanted reduction."""
+    if low is None or high is None:
+        return math.inf
+    return 0.5 * (getattr(high, field) - getattr(low, field))
+
+
 def _predicted(predict, scene, plain, name, end):
     try:
         return predict(scene, **plain | {name: end})
+    except NotAttainedError:
+        return None
     except InputError as error:
         problem = f"at an end of its spread, {end:.6g}: {error.argument}: {error.allowed}"
         raise InputError(name, plain[name], problem) from None

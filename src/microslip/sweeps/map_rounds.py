@@ -23,8 +23,10 @@ from microslip.theory.kinks import kinks_of
 
 LEAST_PARTS = 4
 """Of a round, so that several cores have something to do."""
-SMALLEST_PART = 16
-"""Points for which a process is worth its start."""
+SMALLEST_PART = 18
+"""Points for which a process is worth its start, and more where jobs are asked to be large."""
+OF_A_JOB = 6
+"""A part has at least this fraction of the points of a job."""
 MOST_ROUNDS = 64
 """More than halving all cells to the smallest takes."""
 
@@ -45,9 +47,8 @@ def next_round(map_: CertifiedMap, known: Answers, points_per_job: int) -> dict:
     """
     coordinates = coordinates_of(map_)
     nodes = refined(coordinates, known, map_.error).missing
-    parts = max(
-        math.ceil(len(nodes) / points_per_job), min(LEAST_PARTS, len(nodes) // SMALLEST_PART), 1
-    )
+    smallest = max(SMALLEST_PART, points_per_job // OF_A_JOB)
+    parts = max(math.ceil(len(nodes) / points_per_job), min(LEAST_PARTS, len(nodes) // smallest), 1)
     return {
         "nodes": [list(node) for node in nodes],
         "requests": [_request(map_, coordinates, node) for node in nodes],
