@@ -27,6 +27,8 @@ _WHERE = {
     "History": "microslip.adaptive.history",
     "traction_field": "microslip.adaptive.history",
     "drive": "microslip.adaptive.driving",
+    "shakedown": "microslip.adaptive.shakedown",
+    "Shakedown": "microslip.adaptive.shakedown",
     "DrivingLine": "microslip.adaptive.driving_line",
     "period": "microslip.adaptive.period",
     "Period": "microslip.adaptive.period",

@@ -43,6 +43,7 @@ RECORDS = {
     "A fit": microslip.Fit,
     "Forces from a start": microslip.History,
     "A period of the periodic state": microslip.Period,
+    "The way to rest": microslip.Shakedown,
     "The line of a motion that drives": microslip.DrivingLine,
     "A motion that drives, in units": microslip.RealDrivingLine,
 }

@@ -118,7 +118,13 @@ def _moves(found):
 
 
 def _stays(found):
-    return [line("outcome", "it stays: the force is below the threshold")]
+    lines = [line("outcome", "it stays: the force is below the threshold")]
+    if found.displacement_m is not None:
+        way = f"{_pair(found.displacement_m, found.displacement_error_m)} forward, then no further"
+        cycles = f"{found.cycles_to_rest:.3g} cycles"
+        most = f"nine tenths of what the vibration adds within {cycles}"
+        lines.append(line("displacement", f"{way}: {most}"))
+    return lines
 
 
 def runs_away(found: Prediction) -> str:

@@ -69,6 +69,10 @@ class Prediction:
         Mean forward displacement in a period of the oscillation, m; None for steady motions.
     time_to_1_mm_s, time_to_contact_radius_s : float or None
         How long a contact that a force moves takes to walk so far, s.
+    displacement_m, displacement_error_m, cycles_to_rest : float or None
+        How far a contact that stays under a force goes forward before it stands, with its error,
+        and after how many periods nine tenths of what the vibration adds are gone.  None for what
+        moves, has a mass or is not round.
     force_threshold_N, force_threshold_error_N : float or None
         Constant force from which on the contact moves, N; None where it is not known.
     safety_factor : float or None
@@ -150,6 +154,9 @@ class Prediction:
     displacement_per_cycle_m: float | None = None
     time_to_1_mm_s: float | None = None
     time_to_contact_radius_s: float | None = None
+    displacement_m: float | None = None
+    displacement_error_m: float | None = None
+    cycles_to_rest: float | None = None
     force_threshold_N: float | None = None
     force_threshold_error_N: float | None = None
     safety_factor: float | None = None

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from microslip.adaptive.checks import LARGEST_FORCE, SMALLEST_TOLERANCE
 from microslip.adaptive.point import Result, solve
+from microslip.adaptive.shakedown import shakedown
 from microslip.adaptive.under_force import (
     is_even,
     oscillates,
@@ -14,7 +15,9 @@ from microslip.adaptive.under_force import (
     without_forward_motion,
 )
 from microslip.foundation.arguments import LARGEST, LARGEST_BODY
+from microslip.foundation.errors import InputError
 from microslip.motions.drive import Drive
+from microslip.pressures.by_name import pressure_named
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealDrive, RealMotion, groups, solver_scene, speed_unit
 from microslip.si.reduction import friction_of
@@ -114,6 +117,8 @@ def about_drive(
         if share is not None:
             fields["safety_factor"] = still * share / drive.force
         fields |= _walk(contact, motion, pulling["force"], answer)
+        if fields["outcome"] == "stays" and set(pulling) == {"force"} and carriers.text is None:
+            fields |= _way_to_rest(contact, motion, pulling["force"])
     body = {name: value for name, value in pulling.items() if name != "force"}
     if body:
         working = Drive(**body)
@@ -154,6 +159,27 @@ def _walk(contact, motion, force, answer):
         fields["time_to_1_mm_s"] = MILLIMETRE / speed
         fields["time_to_contact_radius_s"] = contact.contact_radius / speed
     return fields
+
+
+def _way_to_rest(contact, motion, force):
+    """How far a contact without mass goes that a force does not keep moving; nothing where it is
+    not round, since that would take minutes."""
+    if not pressure_named(contact.pressure).is_round:
+        return {}
+    _, size = groups(motion, contact)
+    settings = {"pressure": contact.pressure, "poisson": contact.poisson}
+    try:
+        found = shakedown(solver_scene(motion, contact), size, force, **settings)
+    except InputError:  # a motion that drives: no force is known to be held
+        return {}
+    if not found.converged:
+        return {}
+    unit = contact.u_lim
+    return {
+        "displacement_m": found.displacement * unit,
+        "displacement_error_m": found.displacement_error * unit,
+        "cycles_to_rest": found.most_after,
+    }
 
 
 def _outcome(force, velocity, error):

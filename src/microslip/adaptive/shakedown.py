@@ -1,0 +1,237 @@
+"""How far a contact goes under a force that does not keep it moving, before it stands for good.
+
+Below the static limit a vibrated contact under a constant force settles: its slip regions relax,
+period by period, and what they carried goes over to the rest, until nothing slips forward any more
+(shakedown).  How far it goes until then depends on how it begins: here the force comes first, on a
+contact that nothing has pulled before, and then the vibration, at its mean position.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+
+from microslip.adaptive.asked import Asked, budget_for, verdict
+from microslip.adaptive.checks import checked_point, checked_request, refuse_bounds
+from microslip.adaptive.choice import choose_model
+from microslip.adaptive.moved import PERIODICITY_SHARE
+from microslip.adaptive.pulled import refuse_drive
+from microslip.adaptive.refinement import certify
+from microslip.adaptive.resolutions import plan
+from microslip.adaptive.several import solve_each
+from microslip.adaptive.under_force import (
+    is_even,
+    oscillates,
+    runs_away,
+    without_forward_motion,
+)
+from microslip.foundation.arguments import real
+from microslip.foundation.errors import InputError
+from microslip.motions.drive import Drive
+from microslip.solver.problem import Problem
+from microslip.solver.run import Settings
+from microslip.solver.shakedown_run import run_to_rest
+
+TOLERANCE = 1e-2
+"""Of the displacement, in u_lim, unless told otherwise."""
+PLANNED_VELOCITY = 0.1
+"""For which the steps are planned: near the static limit there would be none."""
+CAUTION = 1.5
+"""Errors over the spread of the last runs along an axis: what slips comes to lie between rings and
+steps, and nothing says that values fall smoothly."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shakedown:
+    """How far a contact goes that comes to rest; dimensionless.
+
+    Attributes
+    ----------
+    scene, pressure, model : str
+        What moves, how the load is spread, and the contact model.
+    amplitude, poisson, force, tolerance : float
+        As asked for.
+    threshold, threshold_error : float
+        Force from which on the contact does not come to rest, the static limit, over mu times the
+        mean normal load.
+    displacement, displacement_error : float
+        Forward, in u_lim, from where nothing pulled the contact until it stands; infinite where it
+        does not.  The error is the largest one, by estimate.
+    pushed : float
+        Part of the displacement that the force makes before anything oscillates.
+    most_after : float
+        Periods after which nine tenths of the rest is gone.
+    converged : bool
+        Whether the contact comes to rest for certain and the error is within the tolerance.
+    reason : str
+        Why not, else empty.
+    error_space, error_time, error_periodicity, error_solver : float
+        Parts of the error: what may be left of the way is the periodicity.
+    cells, angles, steps_per_period : int
+        The finest used.
+    periods : float
+        The most that were marched.
+    work : int
+        Unknowns times steps, of all runs.
+    solve_time_s : float
+        Seconds by the wall clock.
+    """
+
+    scene: str
+    pressure: str
+    model: str
+    amplitude: float
+    poisson: float
+    force: float
+    tolerance: float
+    threshold: float
+    threshold_error: float
+    displacement: float
+    displacement_error: float
+    pushed: float = math.nan
+    most_after: float = math.nan
+    converged: bool
+    reason: str = ""
+    error_space: float = 0.0
+    error_time: float = 0.0
+    error_periodicity: float = 0.0
+    error_solver: float = 0.0
+    cells: int = 0
+    angles: int = 0
+    steps_per_period: int = 0
+    periods: float = 0.0
+    work: int = 0
+    solve_time_s: float = 0.0
+
+    def to_dict(self) -> dict:
+        """Fields as a plain dict."""
+        return asdict(self)
+
+
+def shakedown(
+    scene: str,
+    amplitude: float,
+    force: float,
+    *,
+    pressure: str = "hertz",
+    poisson: float = 0.0,
+    model: str = "auto",
+    tolerance: float = TOLERANCE,
+    most_work: float | None = None,
+    time_limit: float | None = None,
+    progress: Callable | None = None,
+) -> Shakedown:
+    """How far a vibrated contact goes under a constant force below the static limit.
+
+    Parameters
+    ----------
+    scene : str
+        A motion that exerts no forward force by itself, such as "transverse" or "bore".
+    amplitude, pressure, poisson, model, most_work, time_limit, progress
+        As for `microslip.solve`.
+    force : float
+        0 to below the static limit, over mu times the mean normal load; the contact has no mass.
+    tolerance : float
+        Absolute, of the displacement, in u_lim.
+
+    Returns
+    -------
+    Shakedown
+        With an infinite displacement and the reason where the contact does not come to rest.
+
+    Raises
+    ------
+    InputError
+        For bad input, and for motions of which no force is known to be held: it names the argument.
+    """
+    started = time.perf_counter()
+    motion, _, amplitude, poisson = checked_point(scene, 0.0, amplitude, poisson, pressure)
+    if not motion.periodic:
+        raise InputError("scene", scene, "allowed is a motion that oscillates")
+    force = real("force", force, 0.0)
+    if tolerance is None:
+        raise InputError("tolerance", tolerance, "allowed is a number")
+    tolerance, _, _ = checked_request(tolerance, None, None)
+    refuse_bounds(most_work=most_work, time_limit=time_limit)
+    name = choose_model(motion, poisson, model)
+    problem = without_forward_motion(Problem(motion, 0.0, amplitude, poisson))
+    refuse_drive(problem, Drive(force=force), name)
+    if not is_even(problem):
+        allowed = "allowed is a motion that exerts no forward force by itself, such as transverse"
+        raise InputError("scene", scene, allowed)
+    asked = Asked(
+        problem=problem,
+        model=name,
+        tolerance=tolerance,
+        budget=budget_for(name, most_work, time_limit),
+        progress=progress,
+        started=started,
+    )
+    return _answer(asked, force)
+
+
+def _answer(asked, force):
+    """The Shakedown under a force."""
+    threshold, error, away = _threshold(asked, force)
+    known = {
+        "scene": asked.problem.motion.name,
+        "pressure": asked.problem.motion.pressure.name,
+        "model": asked.model,
+        "amplitude": asked.problem.amplitude,
+        "poisson": asked.problem.poisson,
+        "force": force,
+        "tolerance": asked.tolerance,
+        "threshold": threshold,
+        "threshold_error": error,
+    }
+    if not away and force >= threshold - error:
+        away = f"the error of the threshold, {error:.1e}, does not tell whether the force is below"
+        if force > threshold + error:
+            away = f"creeps on for ever: the force is above the threshold, {threshold:.4g}"
+    if away:
+        endless = {"displacement": math.inf, "displacement_error": math.inf}
+        endless |= {"converged": False, "reason": away, "solve_time_s": asked.seconds}
+        return Shakedown(**known, **endless)
+    return Shakedown(**known, **_certified(asked, force))
+
+
+def _threshold(asked, force):
+    """The static limit, its error, and why the contact does not even come near it, or ""."""
+    problem = asked.problem
+    away = runs_away(problem, Drive(force=force))
+    if not oscillates(problem):
+        return 1.0, 0.0, away
+    if away:
+        return math.nan, math.inf, away
+    static = solve_each(replace(asked, chosen=True))
+    return static.mu_macro, static.mu_macro_error, ""
+
+
+def _certified(asked, force):
+    """Fields of a Shakedown that comes of runs."""
+    planned = replace(asked.problem, velocity=PLANNED_VELOCITY)
+    coarsest, axes = plan(planned, asked.model, asked.tolerance)
+    axes = [replace(axis, regular=False, projected=False, caution=CAUTION) for axis in axes]
+    settings, finest = Settings(asked.how, budget=asked.budget), {}
+
+    def run(resolution, guess):
+        if asked.progress is not None:
+            asked.progress(resolution)
+        left = PERIODICITY_SHARE * asked.tolerance
+        finest[resolution] = run_to_rest(
+            asked.problem, force, asked.model, resolution, left, settings
+        )
+        return finest[resolution]
+
+    certified = certify(run, coarsest, axes, asked.tolerance, (), "displacement")
+    said = verdict(asked, certified, axes, asked.tolerance)
+    taken = set(Shakedown.__dataclass_fields__)
+    last = finest[max(finest, key=lambda one: (one.cells, one.steps))] if finest else None
+    return {name: value for name, value in said.items() if name in taken} | {
+        "displacement": float(certified.mu),
+        "displacement_error": float(certified.error),
+        "pushed": math.nan if last is None else last.pushed,
+        "most_after": math.nan if last is None else last.most_after,
+    }

@@ -1,0 +1,204 @@
+"""One run of a contact from rest under a force that does not keep it moving, until it stands.
+
+First the force alone pushes it as far as partial slip lets it go.  Then the oscillation begins at
+its mean position, and every period moves the contact on by less than the one before.  What these
+still add in the end falls by powers of their number, and faster: the distances that are gone while
+that number doubles are more than a geometric series.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from microslip.models.contact import StepFailure, forward_slip
+from microslip.models.path import EULER, make_path
+from microslip.models.pull import Body
+from microslip.motions.motion import HALF_PERIOD
+from microslip.solver.problem import Problem, Resolution
+from microslip.solver.pulled_map import PulledMap
+from microslip.solver.run import Run, Settings, failed_run
+
+FIRST_LOOK, MOST_INTERVALS = 16, 16384
+"""(Half) periods after which it is first looked at what is left, and the most that are marched."""
+LOOKS = 1.5, 4.0 / 3.0
+"""From one such number to the next, in turns: multiples of four."""
+STEP_SHARE = 1e-4
+"""Of that tolerance, as a force over mu F_z: what a step may leave unsolved."""
+SLOWEST_RATIO = 0.9
+"""Of distances gone while the number of periods doubles: a larger ratio tells of no end."""
+LONG, CREEPING = 200, 1.8
+"""(Half) periods from which on such a ratio, of 2 if it never slowed down, tells that the contact
+creeps: the threshold of so coarse a contact is another."""
+MOST_SHARE = 0.9
+"""Of the way that the oscillation adds, after which `most_after` looks."""
+
+
+@dataclass(frozen=True)
+class ShakedownRun(Run):
+    """A Run that tells how far the contact goes; `distance` is what may be left of the way.
+
+    Attributes
+    ----------
+    displacement : float
+        Of the contact from where nothing pulled it, in u_lim, at the end.
+    pushed : float
+        Part of it that the force alone makes.
+    most_after : float
+        Periods after which MOST_SHARE of the rest is gone.
+    """
+
+    displacement: float = np.nan
+    pushed: float = np.nan
+    most_after: float = np.nan
+
+
+def run_to_rest(
+    problem: Problem,
+    force: float,
+    model: str,
+    resolution: Resolution,
+    tolerance: float,
+    settings: Settings,
+) -> ShakedownRun:
+    """Run a contact that a force pulls until it stands.
+
+    Parameters
+    ----------
+    problem : problem.Problem
+        At velocity 0, its motion even.
+    force : float
+        Over mu times the mean normal load, below the static limit.
+    model : str
+        Name in models.registry.MODELS, of a contact that may be pulled.
+    resolution : problem.Resolution
+        Of the model.
+    tolerance : float
+        Of what may be left of the way, in u_lim.
+    settings : run.Settings
+        How it is done.
+
+    Returns
+    -------
+    ShakedownRun
+        Not converged where the contact does not come to rest, or a step failed.
+    """
+    contact = settings.contact(problem, model, resolution)
+    body = Body(0.0, 0.0, 0.0, force * problem.mean_load)
+    try:
+        return _Walk(problem, contact, resolution.steps, body).to_rest(tolerance)
+    except (StepFailure, ArithmeticError, np.linalg.LinAlgError) as failure:
+        return ShakedownRun(**vars(failed_run(str(failure))))
+
+
+class _Walk:
+    """A contact on its way."""
+
+    def __init__(self, problem, contact, steps, body):
+        self.problem, self.contact, self.steps, self.body = problem, contact, steps, body
+        path = problem.path(contact, steps)
+        self.map = PulledMap(contact, path, body, mirror=problem.motion.half_period_mirror)
+        self.interval = path.phase[-1] - path.phase[0]
+        self.gone, self.residual, self.iterations, self.solves = [], 0.0, 0, 0
+
+    def to_rest(self, tolerance):
+        """The ShakedownRun; tolerance: of what may be left of the way."""
+        step_tolerance = STEP_SHARE * tolerance
+        state = 0.0 * forward_slip(self.contact)
+        state, pushed = self._along(self._still(), state, step_tolerance)
+        first, images = self._first_part()
+        state, begun = self._along(first, state, step_tolerance)
+        for _ in range(images):
+            state = self.map.image(state)
+        state, look = self.map.state(state, np.zeros(2)), FIRST_LOOK
+        for turn in range(MOST_INTERVALS):
+            interval = self.map(state, step_tolerance)
+            state = interval.image
+            self.gone.append(float(interval.march.body[-1, 0] - interval.march.body[0, 0]))
+            self.residual += interval.march.residual
+            if turn + 1 == look:
+                left = self._left()
+                if left <= tolerance or self._creeps():
+                    break
+                look = round(look * LOOKS[look % 3 == 0])
+        return self._summary((pushed, begun), left, left <= tolerance, state)
+
+    def _still(self):
+        """The path on which the force alone grows: one step, since slip only grows with it."""
+        problem, depth = self.problem, None
+        if problem.depth is not None:
+
+            def depth(phase):
+                return problem.depth(0.0 * phase)
+
+        def displacement(phase):
+            return tuple(0.0 * phase for _ in range(3))
+
+        return make_path(displacement, np.array([0.0, 1.0]), EULER, depth)
+
+    def _first_part(self):
+        """The path from the mean position to where an interval of the map ends, and of how many
+        such intervals that is the image of the beginning."""
+        end, images = self.map.path.phase[0], 0
+        while end <= 0.0:
+            end, images = end + self.interval, images + 1
+        steps = max(1, round(self.steps * end / (HALF_PERIOD[1] - HALF_PERIOD[0])))
+        phases = np.linspace(0.0, end, steps + 1)
+        return make_path(self.problem.displacement, phases, depth=self.problem.depth), images
+
+    def _along(self, path, state, step_tolerance):
+        """State at the end of a path, and how far the contact went."""
+        march = self.contact.pulled_march(path, state, step_tolerance, self.body, np.zeros(2))
+        self.residual += march.residual
+        self.iterations += march.iterations
+        self.solves += march.solves
+        return march.state, float(march.body[-1, 0] - march.body[0, 0])
+
+    def _creeps(self):
+        """Whether the contact goes on as fast as it did long before."""
+        before, last = self._last_two()
+        return len(self.gone) >= LONG and last > CREEPING * before
+
+    def _left(self):
+        """How much of the way may be left: the series of distances that are gone while the number
+        of intervals doubles, if it went on as it did last; infinite if that does not end."""
+        before, last = self._last_two()
+        if last == 0.0:
+            return 0.0
+        ratio = last / before if before > 0.0 else np.inf
+        return last * ratio / (1.0 - ratio) if ratio < SLOWEST_RATIO else np.inf
+
+    def _last_two(self):
+        """Distances gone while the number of intervals doubled to half of what it is, and to it."""
+        count = len(self.gone)
+        before, last = sum(self.gone[count // 4 : count // 2]), sum(self.gone[count // 2 :])
+        return max(before, 0.0), max(last, 0.0)
+
+    def _summary(self, parts, left, converged, state):
+        pushed, begun = parts
+        marched = np.cumsum([begun, *self.gone])
+        added = marched[-1] + (0.5 * left if np.isfinite(left) else 0.0)
+        most = int(np.searchsorted(np.maximum.accumulate(marched), MOST_SHARE * added))
+        periods = self.interval / (2.0 * np.pi)
+        count = float(self.map.marches * periods)
+        reason = "" if converged else f"still moves after {count:g} periods: {left:.1e} may be left"
+        solves = self.solves + self.map.solves
+        iterations = self.iterations + self.map.iterations
+        return ShakedownRun(
+            mu=self.body.load / self.problem.mean_load,
+            torque=0.0,
+            distance=0.5 * left,
+            solver_residual=self.residual / self.contact.stiffness,
+            periods=count,
+            iterations=iterations,
+            solves=solves,
+            work=solves * state.size,
+            effort=iterations * state.size,
+            converged=converged,
+            reason=reason,
+            state=state,
+            displacement=float(pushed + added),
+            pushed=float(pushed),
+            most_after=float(most * periods),
+        )

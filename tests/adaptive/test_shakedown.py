@@ -1,0 +1,152 @@
+"""How far a contact goes that comes to rest: against closed forms, finer runs and other models."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip.foundation.errors import InputError
+from microslip.motions.by_name import motion_named
+from microslip.solver.problem import Problem, Resolution
+from microslip.solver.run import Settings
+from microslip.solver.shakedown_run import run_to_rest
+
+
+def mindlin(force):
+    """Displacement in u_lim under a force that nothing vibrates (Cattaneo 1938, Mindlin 1949)."""
+    return 1.0 - (1.0 - force) ** (2.0 / 3.0)
+
+
+@pytest.mark.parametrize("force", [0.0, 0.1, 0.5, 0.9])
+@pytest.mark.parametrize("poisson", [0.0, 0.3])
+def test_without_vibration_it_is_mindlins(force, poisson):
+    found = microslip.shakedown("transverse", 0.0, force, poisson=poisson)
+    assert found.converged and found.displacement_error <= 1e-2
+    # For nu > 0 a sphere that is pushed slips a little to the side as well, which they leave out.
+    assert abs(found.displacement - mindlin(force)) <= found.displacement_error
+    assert found.pushed == pytest.approx(mindlin(force), abs=5e-3) and found.threshold == 1.0
+
+
+@pytest.mark.parametrize(("force", "amplitude"), [(0.3, 0.2), (0.5, 0.4), (0.2, 0.7)])
+def test_under_a_load_that_oscillates_it_is_mindlins_at_the_least_load(force, amplitude):
+    """At the least load the contact gives way as far as one that has never had another, and what
+    comes back into contact is not stretched: nothing slips any more."""
+    found = microslip.shakedown("normal", amplitude, force)
+    load = 1.0 - amplitude
+    depth = load ** (2.0 / 3.0)
+    assert abs(found.displacement - depth * mindlin(force / load)) <= found.displacement_error
+    assert found.pushed == pytest.approx(mindlin(force), abs=5e-3)
+
+
+def test_a_contact_that_nothing_resists_goes_along_with_its_own_oscillation():
+    found = microslip.shakedown("longitudinal", 0.5, 0.4)
+    assert abs(found.displacement - mindlin(0.4)) <= found.displacement_error
+
+
+POINTS = [("transverse", 0.3, 0.5), ("transverse", 0.5, 0.99), ("transverse", 0.9, 0.5)]
+POINTS += [("bore", 1.0, 0.6), ("bore", 3.0, 0.9)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("scene", "amplitude", "share"), POINTS)
+def test_claims_hold_against_finer_runs(scene, amplitude, share):
+    limit = microslip.solve(scene, 0.0, amplitude).mu_macro
+    coarse = microslip.shakedown(scene, amplitude, share * limit, tolerance=2e-2)
+    fine = microslip.shakedown(scene, amplitude, share * limit, tolerance=4e-3)
+    assert coarse.converged and fine.converged
+    assert abs(coarse.displacement - fine.displacement) <= coarse.displacement_error
+    assert coarse.threshold == pytest.approx(limit, abs=1e-2)
+    assert fine.displacement > fine.pushed > 0.0
+
+
+def walked(model, **resolution):
+    problem = Problem(motion_named("transverse", "hertz"), 0.0, 0.4, 0.0)
+    return run_to_rest(problem, 0.4, model, Resolution(**resolution), 1e-3, Settings())
+
+
+@pytest.mark.slow
+def test_rings_angles_and_squares_go_equally_far():
+    rings = walked("radial", cells=24, angles=1, steps=24)
+    angles = walked("polar", cells=24, angles=4, steps=24)
+    squares = walked("cartesian", cells=24, angles=1, steps=12)
+    assert rings.converged and angles.converged and squares.converged
+    assert angles.displacement == pytest.approx(rings.displacement, abs=2e-4)
+    assert squares.displacement == pytest.approx(rings.displacement, abs=1.5e-2)
+    assert rings.most_after == angles.most_after > 1.0
+
+
+def test_what_is_left_is_no_more_than_is_said():
+    """A run that looks ten times as closely marches on, and gains no more than was left open."""
+    problem = Problem(motion_named("transverse", "hertz"), 0.0, 0.5, 0.0)
+    resolution = Resolution(cells=16, angles=1, steps=16)
+    for force in (0.3, 0.5, 0.56):
+        early, late = (
+            run_to_rest(problem, force, "radial", resolution, left, Settings())
+            for left in (1e-2, 1e-4)
+        )
+        assert late.periods > early.periods
+        assert abs(late.displacement - early.displacement) <= early.distance + late.distance
+        assert early.most_after == pytest.approx(late.most_after, rel=0.2, abs=1.0)
+
+
+def test_above_the_threshold_there_is_no_end():
+    found = microslip.shakedown("transverse", 0.5, 0.6)
+    assert not found.converged and found.displacement == math.inf
+    assert found.reason.startswith("creeps on for ever: the force is above the threshold, 0.5644")
+    away = microslip.shakedown("transverse", 0.5, 1.2)
+    assert not away.converged and away.reason.startswith("runs away")
+
+
+def test_a_contact_that_would_march_for_ever_says_so():
+    """Above the threshold, which the run does not know of."""
+    problem = Problem(motion_named("transverse", "hertz"), 0.0, 0.5, 0.0)
+    resolution = Resolution(cells=8, angles=1, steps=8)
+    found = run_to_rest(problem, 0.65, "radial", resolution, 1e-2, Settings())
+    assert not found.converged and "still moves after" in found.reason
+
+
+def test_equal_questions_get_equal_bits():
+    one, other = (microslip.shakedown("transverse", 0.5, 0.3) for _ in range(2))
+    one, other = (dataclasses.replace(each, solve_time_s=0.0) for each in (one, other))
+    assert one == other and set(one.to_dict()) == {f.name for f in dataclasses.fields(one)}
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"scene": "continuous-bore", "amplitude": None}, "scene = 'continuous-bore': "),
+        (
+            {"scene": "transverse-bore"},
+            "scene = 'transverse-bore': allowed is a motion that exerts",
+        ),
+        ({"force": -0.1}, "force = -0.1: "),
+        ({"force": math.nan}, "force = nan: "),
+        ({"amplitude": -1.0}, "amplitude = -1.0: "),
+        ({"tolerance": 0.5}, "tolerance = 0.5: "),
+        ({"tolerance": None}, "tolerance = None: allowed is a number"),
+        ({"model": "rigid"}, "model = 'rigid': "),
+        ({"time_limit": 0.0}, "time_limit = 0.0: "),
+    ],
+)
+def test_bad_input_gets_one_line(changed, said):
+    given = {"scene": "transverse", "amplitude": 0.5, "force": 0.3} | changed
+    with pytest.raises(InputError) as refused:
+        microslip.shakedown(**given)
+    assert str(refused.value).startswith(said) and "\n" not in str(refused.value)
+
+
+@pytest.mark.slow
+def test_in_si_units_it_is_told_of_a_joint_that_stays():
+    joint = {"material": "steel", "counterbody": "steel", "radius": "200 mm", "load": "1 kN"}
+    joint |= {"mu": 0.15, "frequency": "50 Hz", "amplitude": "0.5 um"}
+    found = microslip.predict("transverse", **joint, force="60 N")
+    same = microslip.shakedown("transverse", found.amplitude, found.force, poisson=found.poisson)
+    assert found.outcome == "stays"
+    assert found.displacement_m == pytest.approx(same.displacement * found.u_lim_m)
+    assert found.displacement_error_m <= 1e-2 * found.u_lim_m
+    assert found.cycles_to_rest == same.most_after
+    moving = microslip.predict("transverse", **joint, force="100 N")
+    assert moving.displacement_m is None
+    assert np.isfinite(found.displacement_m)
