@@ -160,7 +160,7 @@ def test_several_contacts_are_part_of_every_request_and_of_the_dataset(tmp_path)
     )
     assert stored.contacts == request["contacts"] and stored.converged
     assert len(list(tmp_path.glob("points/*/*/*.json"))) == 1  # found, not computed again
-    with pytest.raises(load.ConfigError, match="pair.contacts: 'phase=': allowed are numbers"):
+    with pytest.raises(load.ConfigError, match="pair.contacts: 'phase=': contact 1: in it"):
         configured(pair=PAIR | {"contacts": "phase="})
     unequal = {"scene": "normal", "contacts": "load=2;load=1"}
     with pytest.raises(load.ConfigError, match="allowed are equal loads for normal"):

@@ -19,7 +19,7 @@ def project(tmp_path_factory):
 def test_lines_are_answered_in_batches_collected_and_drawn(project):
     """Three lines, two to a job, one dataset and one figure."""
     planned = project.planned("driving")
-    assert planned.pop("warm_up") == 1
+    assert planned.pop("warm_up") == planned.pop("warm_up_angles") == 1
     assert planned == {"solve_batch": 2, "collect_study": 1, "draw_figure": 1, "driving": 1}
 
 

@@ -36,6 +36,7 @@ def finished(tmp_path_factory):
     project.said = project.run("extended")
     assert jobs_in(project.said) == {
         "warm_up": 1,
+        "warm_up_angles": 1,
         "solve_batch": 2,
         "collect": 2,
         "draw_figure": 2,
