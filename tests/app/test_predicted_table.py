@@ -66,6 +66,20 @@ def test_a_line_that_nothing_answers_does_not_take_the_others_with_it(folder, ca
     assert spread / load == pytest.approx(1.5 * 0.1, rel=0.05)
 
 
+@pytest.mark.slow
+def test_each_line_may_look_for_something_else(folder, capsys):
+    text = "load [N],amplitude [um],reduction\n10,,0.3\n,0.3,0.3\n10,0.3,\n"
+    (folder / "contacts.csv").write_text(text)
+    assert cli.main([*COMMAND, "--speed", "10 mm/s", "--output", "found.nc"]) == 0
+    heading, first, second, third, *_ = capsys.readouterr().out.splitlines()
+    assert heading.split()[-8:] == ["amplitude", "m", "+-", "m", "load", "N", "+-", "N"]
+    assert [len(row.split()) for row in (first, second, third)] == [7, 7, 5]
+    kept = xr.load_dataset(folder / "found.nc")
+    assert kept.sought.values.tolist() == ["amplitude", "load", ""]
+    assert "sought" in kept.sought_error.attrs["units"]
+    assert float(second.split()[-2]) == pytest.approx(kept.load_N.values[1], rel=1e-3)
+
+
 @pytest.mark.parametrize(
     ("changed", "words", "said"),
     [

@@ -43,6 +43,7 @@ def test_another_encoding_is_told(tmp_path):
         ("load [N],load [kN]\n1,2\n", "line 1: load is there twice"),
         ("load [N],mu\n1\n", "line 2: 1 cells; allowed: 2"),
         ("load [N],mu\n1,5,0.3\n", "line 2: 3 cells; allowed: 2, parted by a comma"),
+        ("load [N]\nl0\n", "line 2: load is 'l0' in a column in N"),
         ("load [N]\n1 kN\n", "line 2: load is '1 kN' in a column in N"),
         ("load [N];mu\n900;0.3\n1.100;0.3\n", "line 3: load is '1.100' beside whole numbers"),
         ("load [N]\n1\0\n", "line 2: not text"),

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 
 from microslip.adaptive.asked import Asked, budget_for, verdict
 from microslip.adaptive.checks import checked_point, checked_request, refuse_bounds
@@ -227,7 +227,7 @@ def _certified(asked, force):
 
     certified = certify(run, coarsest, axes, asked.tolerance, (), "displacement")
     said = verdict(asked, certified, axes, asked.tolerance)
-    taken = set(Shakedown.__dataclass_fields__)
+    taken = {field.name for field in fields(Shakedown)}
     last = finest[max(finest, key=lambda one: (one.cells, one.steps))] if finest else None
     return {name: value for name, value in said.items() if name in taken} | {
         "displacement": float(certified.mu),

@@ -91,8 +91,7 @@ def as_text(answered: Answered) -> str:
     rows = ["".join(f"{title:>{WIDTH}}" for title in ("line", *columns))]
     remarks = []
     for line, one in zip(answered.lines, answered.found, strict=True):
-        numbers = [_number(attribute, digits, one) for attribute, digits in columns.values()]
-        rows.append(f"{line:>{WIDTH}}{''.join(numbers)}")
+        rows.append(f"{line:>{WIDTH}}{''.join(_text(one, *about) for about in columns.values())}")
         if one.outcome == "runs away":
             remarks.append(f"line {line}: {runs_away(one)}")
         elif not one.converged:
@@ -102,21 +101,23 @@ def as_text(answered: Answered) -> str:
 
 
 def _columns(found):
-    """Attributes of a Prediction and their digits, by the heading of their column."""
-    columns = {"mu_apparent": ("mu_apparent", 4), "+-": ("mu_apparent_error", 2)}
+    """Attribute of a Prediction, digits, and what has to be looked for if it is to be told, None
+    for anything, by the heading of their column."""
+    columns = {"mu_apparent": ("mu_apparent", 4, None), "+-": ("mu_apparent_error", 2, None)}
     if any(one.mu_apparent_spread is not None for one in found):
-        columns["spread"] = "mu_apparent_spread", 2
-    columns |= {"force N": ("friction_force_N", 4), "speed m/s": ("speed_m_s", 4)}
-    (sought,) = {one.sought for one in found}  # one, since all cases have the same columns
-    if sought is not None:
-        unit = unit_of_sought(found[0])
-        columns.pop(f"{sought} {unit}", None)
-        columns |= {f"{sought} {unit}": ("sought_value", 4), f"+- {unit}": ("sought_error", 2)}
-    if any(one.sought_spread is not None for one in found):
-        columns["spread " + unit] = "sought_spread", 2
+        columns["spread"] = "mu_apparent_spread", 2, None
+    columns |= {"force N": ("friction_force_N", 4, None), "speed m/s": ("speed_m_s", 4, None)}
+    for one in found:  # an empty cell may be what is looked for, another one in each line
+        if one.sought is not None:
+            unit = unit_of_sought(one)
+            columns.setdefault(f"{one.sought} {unit}", ("sought_value", 4, one.sought))
+            columns[f"+- {unit}"] = "sought_error", 2, one.sought
+            if one.sought_spread is not None:
+                columns[f"spread {unit}"] = "sought_spread", 2, one.sought
     return columns
 
 
-def _number(attribute, digits, one):
+def _text(one, attribute, digits, sought):
     value = getattr(one, attribute)
-    return f"{'' if value is None else format(value, f'.{digits}g'):>{WIDTH}}"
+    told = value is not None and sought in (None, one.sought)
+    return f"{format(value, f'.{digits}g') if told else '':>{WIDTH}}"

@@ -151,9 +151,11 @@ def as_dataset(scene: str, cases: Mapping[str, object], found: Sequence[Predicti
     }
     amplitude = variables["amplitude_si"][2]["units"] = UNIT_OF_AMPLITUDE.get(scene, "m")
     units = {"amplitude": amplitude, "speed": "m s-1", "load": "N"}
-    for sought in {one.sought for one in found} - {None}:  # one, since all cases have the same rest
+    sought = {one.sought for one in found} - {None}
+    if sought:  # one for all cases, or another for some, which `sought` tells
         for name in ("sought_error", "sought_spread"):
-            variables[name][2]["units"] = units[sought]
+            unit = units[next(iter(sought))] if len(sought) == 1 else "SI unit of what is sought"
+            variables[name][2]["units"] = unit
     return xr.Dataset(variables, {"case": np.arange(len(found))}, {"scene": scene})
 
 

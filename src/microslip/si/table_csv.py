@@ -16,7 +16,7 @@ from pathlib import Path
 from microslip.foundation import csv_text
 from microslip.foundation.errors import InputError
 
-NUMBER = re.compile(r"[+-−]?[\d.,]+([eE][+-−]?\d+)?", re.A)
+NUMBER = re.compile(r"[+−-]?[\d.,]+([eE][+−-]?\d+)?", re.A)
 """What is meant to be a number; whether it is one is decided where it is read."""
 
 

@@ -3,7 +3,7 @@
 First the force alone pushes it as far as partial slip lets it go.  Then the oscillation begins at
 its mean position, and every period moves the contact on by less than the one before.  What these
 still add in the end falls by powers of their number, and faster: the distances that are gone while
-that number doubles are more than a geometric series.
+that number doubles fall at least as a geometric series does.
 """
 
 from __future__ import annotations
@@ -182,7 +182,7 @@ class _Walk:
         most = int(np.searchsorted(np.maximum.accumulate(marched), MOST_SHARE * added))
         periods = self.interval / (2.0 * np.pi)
         count = float(self.map.marches * periods)
-        reason = "" if converged else f"still moves after {count:g} periods: {left:.1e} may be left"
+        reason = f"still moves after {count:g} periods, by {self.gone[-1]:.1e} in the last march"
         solves = self.solves + self.map.solves
         iterations = self.iterations + self.map.iterations
         return ShakedownRun(
@@ -196,7 +196,7 @@ class _Walk:
             work=solves * state.size,
             effort=iterations * state.size,
             converged=converged,
-            reason=reason,
+            reason="" if converged else reason,
             state=state,
             displacement=float(pushed + added),
             pushed=float(pushed),
