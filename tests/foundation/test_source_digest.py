@@ -43,9 +43,10 @@ class Thing:
         ('    """Docstring."""\n    return', "    return"),
         ("\n\n\n", "\n"),
         ("factor * x", "(factor*x)"),
+        ("(x, *, factor=2.0):", "(x: float, *, factor: float = 2.0) -> float:"),
     ],
 )
-def test_layout_comments_and_docstrings_do_not_change_the_digest(old, new):
+def test_layout_comments_docstrings_and_hints_of_functions_do_not_change_the_digest(old, new):
     assert old in MODULE
     assert digest_of_source(MODULE.replace(old, new)) == digest_of_source(MODULE)
 
@@ -227,6 +228,7 @@ for request in json.loads(sys.argv[1]):
 """
 NAMES = ("solver/methods/", "motions/", "pressures/")
 BY_LISTING = {
+    "theory/indenter_pressure.py",
     "theory/masing.py",
     "theory/oscillating_load.py",
     "foundation/csv_text.py",

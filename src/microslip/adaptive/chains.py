@@ -5,6 +5,7 @@ See microslip.adaptive.refinement for how an answer is made of them.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -100,7 +101,9 @@ class Runs:
     quantity: name of what is asked of a run.Run.
     """
 
-    def __init__(self, run, coarsest, axes, quantity="mu"):
+    def __init__(
+        self, run: Callable | None, coarsest: Resolution, axes: Sequence[Axis], quantity: str = "mu"
+    ):
         self.run, self.coarsest, self.axes = run, coarsest, {axis.name: axis for axis in axes}
         self.quantity = quantity
         self.base = {axis.name: axis.base for axis in axes}
@@ -131,7 +134,7 @@ class Runs:
 class Readings:
     """The finest run along the cells, under other pressures that the same numbers may stand for."""
 
-    def __init__(self, runs, readings):
+    def __init__(self, runs: Runs, readings: Sequence[Callable]):
         self.runs, self.readings, self.done = runs, readings, {}
 
     def open(self, chains: dict[str, Chain], name: str) -> float:
@@ -151,7 +154,7 @@ class Readings:
 class Chain:
     """Runs along one axis, the others at the base."""
 
-    def __init__(self, runs, axis):
+    def __init__(self, runs: Runs, axis: Axis):
         self.runs, self.axis = runs, axis
         self.indices = list(axis.first)
 

@@ -105,7 +105,7 @@ def checked_request(
     return tolerance, cells, steps
 
 
-def refuse_bounds(**given) -> None:
+def refuse_bounds(**given: float | None) -> None:
     """Raise InputError for a bound, None or a number, that is not above 0."""
     for name, value in given.items():
         if value is not None and not (is_real(value) and value > 0.0):

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from microslip.models.polar.contact import PolarContact
 
-def points_of(contact) -> list[np.ndarray]:
+
+def points_of(contact: PolarContact) -> list[np.ndarray]:
     """Forward and lateral positions, bounds and areas on the whole disc, (points,) each."""
     forward, lateral = contact.forward_position, contact.lateral_position
     if contact.whole:
@@ -19,7 +21,7 @@ def points_of(contact) -> list[np.ndarray]:
     return [np.concatenate([half.ravel() for half in part]) for part in parts]
 
 
-def whole_disc(contact, field: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def whole_disc(contact: PolarContact, field: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Forward and lateral parts of a field (n, 2, M, N) on the whole disc, (n, points) each: the
     other half is the mirror image across the lateral axis, of a translation the same turned round.
     """

@@ -2,7 +2,8 @@
 
 What counts for a result follows from imports: the file that answers it, all that this one imports,
 and so on.  The digest of these files is part of the name of every result, dataset and figure, so
-none can be older than the code that stands for it.  Comments, docstrings and layout do not count.
+none can be older than the code that stands for it.  Comments, docstrings, layout and hints of
+functions do not count.
 
 The sources are read once, when the package is imported.  So a digest is that of the code that is
 running, however the files are edited meanwhile; `edited` says whether they were.
@@ -88,7 +89,7 @@ class Sources:
         return found
 
     def digest(self, names: Iterable[str]) -> str:
-        """SHA-256 of modules and their names, in hexadecimal; comments and docstrings are no part.
+        """SHA-256 of modules and their names, in hexadecimal, by what they say to Python.
 
         names: paths inside the package, or in one of the folders that requests name.
         """

@@ -1,13 +1,20 @@
-"""Digest of what a source says to Python: comments, docstrings and layout do not count."""
+"""Digest of what a source says to Python: comments, docstrings, layout and hints do not count.
+
+Hints are those of a function's arguments and of what it returns.  Those of a class's fields count,
+since dataclasses and schemas are made of them.
+"""
 
 from __future__ import annotations
 
 import ast
 import hashlib
 
+HINTS = {"annotation": ast.arg, "returns": ast.FunctionDef | ast.AsyncFunctionDef}
+"""Fields of the syntax tree that hold a function's hints, and the nodes that carry them."""
+
 
 def digest_of_source(text: str) -> str:
-    """Digest of a module's syntax tree without comments, docstrings, layout and line numbers."""
+    """Digest of a module's syntax tree without what changes no result, and line numbers."""
     out = []
     _dump(ast.parse(text), out)
     return hashlib.sha256("".join(out).encode()).hexdigest()
@@ -21,6 +28,8 @@ def _dump(node, out):
         for field, value in ast.iter_fields(node):
             if field == "body" and _has_docstring(node):
                 value = value[1:]
+            if field in HINTS and isinstance(node, HINTS[field]):
+                continue
             if value is not None and value != []:
                 out.append(f"{field}=")
                 _dump(value, out)

@@ -7,6 +7,8 @@ from typing import Protocol
 
 import numpy as np
 
+from microslip.models.path import Path
+
 FORWARD, LATERAL, TORQUE = range(3)
 """Columns of the forces."""
 
@@ -91,7 +93,7 @@ class Contact(Protocol):
 
     def march(
         self,
-        path,
+        path: Path,
         state: np.ndarray,
         tolerance: float,
         sensitivity: bool = False,

@@ -18,7 +18,7 @@ from microslip.foundation.compiled import kernel
 
 
 @kernel(inline="always")
-def shrink(forward: float, lateral: float, bound: np.ndarray) -> float:
+def shrink(forward: float, lateral: float, bound: float) -> float:
     """Factor in 0..1 that brings the traction (forward, lateral) onto the disc |q| <= bound."""
     size = np.sqrt(forward * forward + lateral * lateral)
     return min(1.0, bound / max(size, 1e-300))  # no branch: the compiler can vectorise it
@@ -31,7 +31,9 @@ def extended(start: float, stage: float, end: float) -> float:
 
 
 @kernel
-def coulomb_residual(q, slip, bound, weight, scale) -> float:
+def coulomb_residual(
+    q: np.ndarray, slip: np.ndarray, bound: np.ndarray, weight: np.ndarray, scale: np.ndarray
+) -> float:
     """How far tractions are from Coulomb's law, as a force over mu F_z.
 
     q, slip: forward and lateral components, shape (2, n, m); bound, weight (area of a point) and

@@ -32,7 +32,7 @@ def interrupted() -> bool:
     return found != 0
 
 
-def unbroken(march: Callable, *arguments) -> list:
+def unbroken(march: Callable, *arguments: object) -> list:
     """What a compiled march returns, whose last value is whether it was interrupted.
 
     Then Python is told of the signal, which as a rule is a KeyboardInterrupt; where the program has

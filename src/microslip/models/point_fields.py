@@ -6,11 +6,13 @@ point depends on its column alone.
 
 from __future__ import annotations
 
+import numpy as np
+
 from microslip.foundation.compiled import kernel
 
 
 @kernel
-def rigid_displacement(motion, positions: tuple, out) -> None:
+def rigid_displacement(motion: np.ndarray, positions: tuple, out: np.ndarray) -> None:
     """Fill out, (2, rows, columns), for motion = (forward, lateral, angle); positions: (forward,
     lateral), (rows, columns) each."""
     forward_position, lateral_position = positions
@@ -21,7 +23,7 @@ def rigid_displacement(motion, positions: tuple, out) -> None:
 
 
 @kernel
-def sum_forces(q, weight, positions: tuple, out) -> None:
+def sum_forces(q: np.ndarray, weight: np.ndarray, positions: tuple, out: np.ndarray) -> None:
     """Fill out with forward force, lateral force and torque of tractions q, (2, rows, columns);
     weight: area of the points of each column, (columns,)."""
     forward_position, lateral_position = positions
@@ -35,7 +37,7 @@ def sum_forces(q, weight, positions: tuple, out) -> None:
 
 
 @kernel
-def copy(out, values) -> None:
+def copy(out: np.ndarray, values: np.ndarray) -> None:
     """out[:] = values for shape (2, rows, columns), which takes a second less to compile."""
     for c in range(2):
         for j in range(out.shape[1]):
@@ -44,7 +46,7 @@ def copy(out, values) -> None:
 
 
 @kernel
-def add(out, factor, values) -> None:
+def add(out: np.ndarray, factor: float, values: np.ndarray) -> None:
     """out += factor values for shape (2, rows, columns); see copy."""
     for c in range(2):
         for j in range(out.shape[1]):
@@ -53,7 +55,7 @@ def add(out, factor, values) -> None:
 
 
 @kernel
-def move_forward(out, place) -> None:
+def move_forward(out: np.ndarray, place: float) -> None:
     """Add a forward displacement to shape (2, rows, columns), in place."""
     for j in range(out.shape[1]):
         for i in range(out.shape[2]):

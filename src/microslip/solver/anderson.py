@@ -78,7 +78,7 @@ def search(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicStat
 class Anderson:
     """Anderson acceleration of a fixed-point map on tractions, least squares in a force metric."""
 
-    def __init__(self, metric, depth):
+    def __init__(self, metric: np.ndarray, depth: int):
         self.scale = np.sqrt(metric)
         self.depth = depth
         self.images, self.changes = [], []

@@ -20,11 +20,12 @@ from itertools import pairwise
 import numpy as np
 
 from microslip.models.contact import Contact
-from microslip.models.path import SDIRK2, BodyPath, Path, make_path, phases_between
+from microslip.models.path import SDIRK2, BodyPath, Integrator, Path, make_path, phases_between
 from microslip.models.registry import MODELS
+from microslip.models.rings.mesh import Focus
 from microslip.motions.body_contacts import BodyContact, written
 from microslip.motions.motion import LOOP
-from microslip.solver.problem import Problem, build_contact
+from microslip.solver.problem import Problem, Resolution, build_contact
 
 RETURNED = 1e-12
 """Share of the amplitude below which an oscillation is rounding."""
@@ -139,7 +140,7 @@ class BodyProblem(Problem):
         count = self.contacts.count
         return all(count(one) == count(_opposite(one)) for one in self.contacts)
 
-    def contact(self, model: str, resolution, focus=None) -> Contact:
+    def contact(self, model: str, resolution: Resolution, focus: Focus | None = None) -> Contact:
         """All contacts at a resolution, side by side; each gathers its own rings."""
         parts = self.parts
         return MODELS[model].side_by_side(
@@ -151,7 +152,7 @@ class BodyProblem(Problem):
             [part.extent for part in parts],
         )
 
-    def path(self, contact, steps: int, integrator=SDIRK2) -> Path:
+    def path(self, contact: Contact, steps: int, integrator: Integrator = SDIRK2) -> Path:
         """The BodyPath, in about so many steps in half a period, finer where a contact turns."""
         return _body_path(self, steps, integrator)
 

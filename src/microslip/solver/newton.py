@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.solver.period_map import Goal, PeriodicState, PeriodMap
+from microslip.solver.period_map import Goal, MarchInterval, PeriodicState, PeriodMap
 
 NEUTRAL = 1e-10
 """Damping of every correction: keeps directions in which nothing ever slips where they are."""
@@ -75,7 +75,7 @@ class Corrector:
     step: size of the last correction before it was projected, in the metric of Broyden's updates.
     """
 
-    def __init__(self, period_map, state, inverse=None):
+    def __init__(self, period_map: PeriodMap, state: np.ndarray, inverse: np.ndarray | None = None):
         self.period_map, self.inverse = period_map, inverse
         contact = period_map.contact
         self.damping, self.step = 0.0, np.inf
@@ -89,7 +89,7 @@ class Corrector:
         self.step = float(np.sqrt(self._metric @ correction**2))
         return self.period_map.admissible(interval.state + correction.reshape(interval.state.shape))
 
-    def learn(self, interval, before) -> None:
+    def learn(self, interval: MarchInterval, before: MarchInterval | None) -> None:
         """Take the derivative from an interval that has one, else update it from the one before."""
         if interval.march.sensitivity is not None:
             self._system = -self._signs * interval.march.sensitivity

@@ -12,8 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from microslip.models.contact import March, StepFailure, energy_norm
+from microslip.models.contact import Contact, March, StepFailure, energy_norm
 from microslip.models.coulomb import project
+from microslip.models.path import Path
 
 MOST_MARCHES = 200
 """Of a search, unless told otherwise."""
@@ -150,7 +151,9 @@ class PeriodMap:
         See `path`.
     """
 
-    def __init__(self, contact, path, creep_rate=None, mirror=True):
+    def __init__(
+        self, contact: Contact, path: Path, creep_rate: CreepRate | None = None, mirror: bool = True
+    ):
         self.contact, self.path, self.creep_rate, self.mirror = contact, path, creep_rate, mirror
         self.marches = self.iterations = self.solves = 0
         self._march = None

@@ -137,6 +137,12 @@ class PulledMap(PeriodMap):
         tractions, moved = self._parts(state)
         return self.state(project(tractions, self.contact.bound), moved)
 
-    def result(self, interval, distance, converged, inverse=None) -> PeriodicState:
+    def result(
+        self,
+        interval: MarchInterval,
+        distance: float,
+        converged: bool,
+        inverse: np.ndarray | None = None,
+    ) -> PeriodicState:
         found = super().result(interval, distance, converged, inverse)
         return replace(found, body=interval.march.body)

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from microslip.models.contact import Contact
 from microslip.solver.budget import Budget
 from microslip.solver.method import SHIPPED, Method
+
+if TYPE_CHECKING:
+    from microslip.models.rings.mesh import Focus
+    from microslip.solver.problem import Problem, Resolution
 
 
 @dataclass(frozen=True)
@@ -29,7 +34,9 @@ class Settings:
     tighter: bool = False
     budget: Budget | None = None
 
-    def contact(self, problem, model: str, resolution, focus=None) -> Contact:
+    def contact(
+        self, problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
+    ) -> Contact:
         """The contact of a problem with the method's steps, whose marches count."""
         contact = self.method.dressed(problem.contact(model, resolution, focus))
         return contact if self.budget is None else self.budget.metered(contact)

@@ -1,9 +1,12 @@
 """One point as `microslip.solve` answers it, kept among the results of sweeps."""
 
+from __future__ import annotations
+
 import math
 import time
 import warnings
 from dataclasses import fields
+from pathlib import Path
 
 from microslip.adaptive.asked import TOLERANCE
 from microslip.adaptive.checks import (
@@ -25,24 +28,24 @@ from microslip.sweeps.cache import Store
 
 
 def solve_stored(
-    scene,
-    velocity=None,
-    amplitude=None,
+    scene: str,
+    velocity: float | None = None,
+    amplitude: float | None = None,
     *,
-    results="results",
-    force=None,
-    stiffness=None,
-    mass=None,
-    damping=None,
-    contacts=None,
-    pressure="hertz",
-    poisson=0.0,
-    model="auto",
-    tolerance=TOLERANCE,
-    cells=None,
-    steps=None,
-    time_limit=None,
-):
+    results: str | Path = "results",
+    force: float | None = None,
+    stiffness: float | None = None,
+    mass: float | None = None,
+    damping: float | None = None,
+    contacts: str | None = None,
+    pressure: str = "hertz",
+    poisson: float = 0.0,
+    model: str = "auto",
+    tolerance: float | None = TOLERANCE,
+    cells: int | None = None,
+    steps: int | None = None,
+    time_limit: float | None = None,
+) -> Result:
     """Friction at one point, from a folder of results if it is there, else computed and kept there.
 
     A result is named by the physics, the tolerance and the sources of the solver, so that a sweep,

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from microslip.theory.indenter_pressure import IndenterPressure
+
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(128)
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 SMALLEST_STICK_RADIUS = 1e-6
 
 
-def static_transverse(pressure, amplitude: float) -> float:
+def static_transverse(pressure: IndenterPressure, amplitude: float) -> float:
     """Static friction under transverse oscillation, v -> 0, nu = 0.
 
     Integral over the stick zone of sqrt(g^2 - (g - g_c)^2), see paper.static_limit_transverse.
@@ -42,7 +44,7 @@ def static_transverse(pressure, amplitude: float) -> float:
     return min(_over_the_circle(left, c, _kink(pressure)), 1.0)
 
 
-def static_stick_zone(pressure, stick_radius: np.ndarray | float) -> np.ndarray:
+def static_stick_zone(pressure: IndenterPressure, stick_radius: np.ndarray | float) -> np.ndarray:
     """Share of the load inside a stick radius, 0 to 1 (Eq 9).
 
     Parameters
@@ -55,7 +57,7 @@ def static_stick_zone(pressure, stick_radius: np.ndarray | float) -> np.ndarray:
     return pressure.load(stick_radius, 1.0)
 
 
-def torsion_angle(pressure, stick_radius: np.ndarray | float, poisson: float = 0.0) -> float:
+def torsion_angle(pressure: IndenterPressure, stick_radius: float, poisson: float = 0.0) -> float:
     """Angle of pure torsion, from rest, that leaves a stick circle (Eq 24 for a sphere).
 
     Torsion is a sum of turned flat punches, whose inversion by Abel gives
@@ -82,7 +84,7 @@ def torsion_angle(pressure, stick_radius: np.ndarray | float, poisson: float = 0
     return 2.0 / ((2.0 - poisson) * pressure.G_star) * float(np.sum(step * bound))
 
 
-def torsion_stick_radius(pressure, angle: float, poisson: float = 0.0) -> float:
+def torsion_stick_radius(pressure: IndenterPressure, angle: float, poisson: float = 0.0) -> float:
     """Stick radius left by pure torsion from rest, the inverse of torsion_angle.
 
     Parameters
@@ -111,7 +113,7 @@ def torsion_stick_radius(pressure, angle: float, poisson: float = 0.0) -> float:
     return float(np.exp(brentq(excess, smallest, 0.0, xtol=1e-13))) if excess(smallest) > 0 else 0.0
 
 
-def torsion_traction(pressure, r: np.ndarray, stick_radius: np.ndarray | float) -> np.ndarray:
+def torsion_traction(pressure: IndenterPressure, r: np.ndarray, stick_radius: float) -> np.ndarray:
     """Circumferential traction of pure torsion inside the stick circle.
 
     The turned punches summed up: (2 r/pi) Integral g(t)/t d(theta), t^2 = c^2 + (c^2 - r^2) tan^2.
@@ -139,7 +141,7 @@ def torsion_traction(pressure, r: np.ndarray, stick_radius: np.ndarray | float) 
     return 2.0 / np.pi * r[..., 0] * np.sum(step * pressure.bound(t, 1.0) / t, axis=-1)
 
 
-def static_bore(pressure, angle: float, poisson: float = 0.0) -> float:
+def static_bore(pressure: IndenterPressure, angle: float, poisson: float = 0.0) -> float:
     """Static friction under oscillating bore, v -> 0.
 
     4 Integral_0^c g arccos(tau / g) r dr, see paper.static_limit_bore.

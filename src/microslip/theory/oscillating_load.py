@@ -18,6 +18,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from microslip.theory.indenter_pressure import IndenterPressure
+
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
 _ANGLES = 0.25 * np.pi * (_NODES + 1.0)
 _NODES, _WEIGHTS = np.sin(_ANGLES) ** 2, 0.25 * np.pi * _WEIGHTS * np.sin(2.0 * _ANGLES)
@@ -26,7 +28,7 @@ _HALVINGS = 60
 _LOOKED_AT = 2001
 
 
-def mean_load(amplitude: float, by_load: bool, pressure) -> float:
+def mean_load(amplitude: float, by_load: bool, pressure: IndenterPressure) -> float:
     """Mean normal load over that of the reference state.
 
     Parameters
@@ -47,7 +49,7 @@ def mean_load(amplitude: float, by_load: bool, pressure) -> float:
     return float(loss * (2.0 * _NODES * _WEIGHTS) @ pressure.total(motion.depth(t))) / np.pi
 
 
-def friction(velocity: float, amplitude: float, by_load: bool, pressure) -> float:
+def friction(velocity: float, amplitude: float, by_load: bool, pressure: IndenterPressure) -> float:
     """Mean forward friction over mu times the mean normal load.
 
     Parameters

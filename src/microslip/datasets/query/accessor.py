@@ -40,7 +40,7 @@ class Friction(Inverse):
     Raises ValueError where the dataset is none of a sweep.
     """
 
-    def __init__(self, dataset):
+    def __init__(self, dataset: xr.Dataset):
         try:
             self._motion = motion_named(dataset.attrs.get("scene"))
         except ValueError:
@@ -139,7 +139,9 @@ class Friction(Inverse):
             self._solve((value, error, source), point, nu, tolerance)
         return answered(self._scene, velocity, (value, error, source), nu)
 
-    def on_grid(self, velocity: object = 49, amplitude: object = 49, **settings) -> xr.Dataset:
+    def on_grid(
+        self, velocity: object = 49, amplitude: object = 49, **settings: float | None
+    ) -> xr.Dataset:
         """Friction and a bound of its error on a regular grid, for figures and plain xarray.
 
         Parameters

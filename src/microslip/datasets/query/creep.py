@@ -29,7 +29,7 @@ class Creep:
     Raises ValueError for another dataset.
     """
 
-    def __init__(self, dataset):
+    def __init__(self, dataset: xr.Dataset):
         if not certified_map.is_of_creep(dataset):
             raise ValueError(
                 "no certified map of creep: allowed is certified_NAME of a sweep over forces that "

@@ -17,7 +17,7 @@ def answered(
     at: Callable,
     dataset: xr.Dataset,
     asked: dict[str, xr.DataArray | None],
-    **settings,
+    **settings: float | None,
 ) -> xr.Dataset:
     """What `at` says, a Dataset in the chunks of the question.
 

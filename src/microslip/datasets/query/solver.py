@@ -14,7 +14,7 @@ from microslip.sweeps.sealed_files import CacheError
 from microslip.sweeps.solve_stored import solve_stored
 
 
-def solved(folder: str, *point, **settings) -> Result:
+def solved(folder: str, *point: str | float | None, **settings: object) -> Result:
     """What solve_stored says, kept in the folder, or for now where that takes nothing."""
     try:
         return solve_stored(*point, results=folder, **settings)

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from microslip.datasets.query.interpolation import Table
 
-def within(table, still, velocity: np.ndarray, amplitude: np.ndarray) -> tuple:
+
+def within(
+    table: Table | None, still: Table | None, velocity: np.ndarray, amplitude: np.ndarray
+) -> tuple:
     """Values and bounds of their errors, shape (n,) each; NaN and infinity beyond the map.
 
     table, still: interpolation.Table of the map above velocity 0 and of its row at velocity 0, each
@@ -20,7 +24,9 @@ def within(table, still, velocity: np.ndarray, amplitude: np.ndarray) -> tuple:
     return value, error
 
 
-def refuse_beyond(table, still, velocity: np.ndarray, amplitude: np.ndarray, what: str) -> None:
+def refuse_beyond(
+    table: Table | None, still: Table | None, velocity: np.ndarray, amplitude: np.ndarray, what: str
+) -> None:
     """Raise ValueError, naming the argument, for the first point beyond a map; as `within`."""
     outside = np.ones(len(velocity), bool)
     for part, chosen in ((table, velocity != 0.0), (still, velocity == 0.0)):

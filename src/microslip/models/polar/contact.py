@@ -22,6 +22,7 @@ import numpy as np
 
 from microslip.models import contact
 from microslip.models.interrupts import unbroken
+from microslip.models.path import Path
 from microslip.models.polar import march as polar_march
 from microslip.models.polar.angular_modes import (
     apply_sectors,
@@ -31,10 +32,11 @@ from microslip.models.polar.angular_modes import (
     shifted_inverse,
 )
 from microslip.models.polar.folding import fold, unfold
-from microslip.models.pull import PulledMarch
+from microslip.models.pull import Body, PulledMarch
 from microslip.models.rings.contact import RadialContact
-from microslip.models.rings.mesh import make_rings
+from microslip.models.rings.mesh import Focus, make_rings
 from microslip.pressures.by_name import HERTZ
+from microslip.pressures.pressure import Pressure
 
 PENALTY = 1.0
 """Augmentation over the self-influence of a ring; iterations double at half and at twice it."""
@@ -78,7 +80,15 @@ class PolarContact:
     """Rings that know the bounds while the normal load changes, a RadialContact."""
 
     def __init__(
-        self, cells, angles, rotates, poisson=0.0, focus=None, pressure=HERTZ, *, whole=False
+        self,
+        cells: int,
+        angles: int,
+        rotates: bool,
+        poisson: float = 0.0,
+        focus: Focus | float | None = None,
+        pressure: Pressure = HERTZ,
+        *,
+        whole: bool = False,
     ):
         if angles < 2 or angles % 2:
             raise ValueError(f"angles = {angles}: allowed is an even number of at least 2")
@@ -96,7 +106,7 @@ class PolarContact:
         self.penalty = _penalty(cells, rotates) * self.compliance
         self._made_of = cells, focus, pressure
 
-    def at_indentation(self, deepest: float, start: np.ndarray) -> PolarContact:
+    def at_indentation(self, deepest: float, start: float) -> PolarContact:
         """The same points spread over the contact at its `deepest`, with the bound at `start`;
         see RadialContact.at_indentation."""
         out = copy(self)
@@ -115,7 +125,7 @@ class PolarContact:
         """Mean friction bound of each ring at each depth, shape (len(depths), cells)."""
         return self.loaded.bounds(depths)
 
-    def bounds_along(self, path) -> np.ndarray:
+    def bounds_along(self, path: Path) -> np.ndarray:
         """Bounds at the start and at every stage of a path, (1 + steps stages, cells)."""
         return self.loaded.bounds_along(path)
 
@@ -181,7 +191,14 @@ class PolarContact:
             self._parts,
         )
 
-    def march(self, path, state, tolerance, sensitivity=False, previous=None) -> contact.March:
+    def march(
+        self,
+        path: Path,
+        state: np.ndarray,
+        tolerance: float,
+        sensitivity: bool = False,
+        previous: contact.March | None = None,
+    ) -> contact.March:
         """March along `path`; see models.contact.Contact."""
         forces = np.zeros((path.steps + 1, 3))
         if previous is None:
@@ -201,7 +218,15 @@ class PolarContact:
         solves = path.stages.shape[0] * path.stages.shape[1]
         return contact.March(state, forces, residual, iterations, solves, stages=stages)
 
-    def pulled_march(self, path, state, tolerance, body, start, previous=None) -> PulledMarch:
+    def pulled_march(
+        self,
+        path: Path,
+        state: np.ndarray,
+        tolerance: float,
+        body: Body,
+        start: np.ndarray,
+        previous: PulledMarch | None = None,
+    ) -> PulledMarch:
         """March from which a body may stay behind or run ahead; see models.pull.PullsContact."""
         bounds = self.bound[None] if path.depth is None else self.bounds_along(path)
         besides = np.empty((1 + path.stages.shape[0] * path.stages.shape[1], 3, 0))

@@ -13,6 +13,7 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 from microslip.models.coulomb import coulomb_residual, extended, shrink
 from microslip.models.interrupts import BETWEEN_LOOKS, interrupted
+from microslip.models.path import LoadingPath
 from microslip.models.point_fields import add, copy, rigid_displacement, sum_forces
 from microslip.models.polar.angular_modes import Sectors, apply_sectors
 from microslip.models.polar.folding import fold, unfold
@@ -99,7 +100,14 @@ class Scratch(NamedTuple):
 
 
 @kernel
-def fill_slip(influence, b, q, folded, image, slip) -> None:
+def fill_slip(
+    influence: Sectors,
+    b: np.ndarray,
+    q: np.ndarray,
+    folded: np.ndarray,
+    image: np.ndarray,
+    slip: np.ndarray,
+) -> None:
     """slip = b - A q; folded, image: room for folded tractions."""
     fold(q, folded)
     apply_sectors(influence, folded, image)
@@ -111,7 +119,7 @@ def fill_slip(influence, b, q, folded, image, slip) -> None:
 
 
 @kernel
-def project_relaxed(free, bound, q, dual) -> None:
+def project_relaxed(free: np.ndarray, bound: np.ndarray, q: np.ndarray, dual: np.ndarray) -> None:
     """Over-relaxed projection on the friction bound, the remainder kept in `dual`; in place."""
     for j in range(q.shape[1]):
         for i in range(q.shape[2]):
@@ -143,7 +151,9 @@ class Step(NamedTuple):
 
 
 @kernel
-def solve_step(points, step, unknowns, slip, scratch) -> tuple[int, float]:
+def solve_step(
+    points: Points, step: Step, unknowns: Unknowns, slip: np.ndarray, scratch: Scratch
+) -> tuple[int, float]:
     """Solve one Coulomb step by over-relaxed ADMM, in place.
 
     Parameters
@@ -198,7 +208,7 @@ def solve_step(points, step, unknowns, slip, scratch) -> tuple[int, float]:
 
 
 @kernel
-def shrink_onto(q, bound) -> None:
+def shrink_onto(q: np.ndarray, bound: np.ndarray) -> None:
     """q projected on the friction bound, which may have become smaller; in place."""
     for j in range(q.shape[1]):
         for i in range(q.shape[2]):
@@ -208,7 +218,14 @@ def shrink_onto(q, bound) -> None:
 
 
 @kernel
-def march(points, path, state, tolerance, known, forces) -> tuple:
+def march(
+    points: Points,
+    path: LoadingPath,
+    state: np.ndarray,
+    tolerance: float,
+    known: Stages,
+    forces: np.ndarray,
+) -> tuple:
     """March along a path.
 
     Parameters

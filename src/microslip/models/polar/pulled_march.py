@@ -18,13 +18,7 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 from microslip.models.coulomb import coulomb_residual
 from microslip.models.interrupts import BETWEEN_LOOKS, interrupted
-from microslip.models.point_fields import (
-    add,
-    copy,
-    move_forward,
-    rigid_displacement,
-    sum_forces,
-)
+from microslip.models.point_fields import add, copy, move_forward, rigid_displacement, sum_forces
 from microslip.models.polar.angular_modes import apply_sectors
 from microslip.models.polar.folding import fold, unfold
 from microslip.models.polar.march import (
@@ -32,6 +26,7 @@ from microslip.models.polar.march import (
     MAX_ITERATIONS,
     MOST_BETWEEN,
     SLOWEST_RATE,
+    Points,
     Scratch,
     Step,
     Unknowns,
@@ -39,7 +34,7 @@ from microslip.models.polar.march import (
     project_relaxed,
     shrink_onto,
 )
-from microslip.models.pull import stage_load, stage_stiffness, starting_place
+from microslip.models.pull import Pull, stage_load, stage_stiffness, starting_place
 
 
 class Followed(NamedTuple):
@@ -124,7 +119,14 @@ def _iterate(points, step, equation, followed, unknowns, scratch) -> float:
 
 
 @kernel
-def solve_pulled_step(points, step, equation, followed, state, scratch) -> tuple:
+def solve_pulled_step(
+    points: Points,
+    step: Step,
+    equation: Equation,
+    followed: Followed,
+    state: tuple,
+    scratch: Scratch,
+) -> tuple:
     """Solve one Coulomb step and for the place of the body, in place.
 
     Parameters
@@ -198,7 +200,14 @@ def _impose(motion, ahead, positions, out):
 
 
 @kernel
-def pulled_march(points, imposed, pull, state, known, settings) -> tuple:
+def pulled_march(
+    points: Points,
+    imposed: tuple,
+    pull: Pull,
+    state: np.ndarray,
+    known: PulledStages,
+    settings: tuple,
+) -> tuple:
     """March along a path from which the contact may stay behind, or run ahead.
 
     Parameters
@@ -265,11 +274,9 @@ def pulled_march(points, imposed, pull, state, known, settings) -> tuple:
                 known.advances[k, s] = 0.0
             bound = bounds[min(at, len(bounds) - 1)]
             shrink_onto(q, bound)
-            equation = Equation(
-                stage_stiffness(pull, length),
-                stage_load(pull, length, past_place, past_rate),
-                known.advances[k, s],
-            )
+            stiffness = stage_stiffness(pull, length)
+            load = stage_load(pull, length, past_place, past_rate)
+            equation = Equation(stiffness, load, known.advances[k, s])
             count, residual, advance = solve_pulled_step(
                 points, Step(b, bound, tolerance), equation, followed, (unknowns, slips[s]), scratch
             )

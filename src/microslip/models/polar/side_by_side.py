@@ -18,7 +18,7 @@ import numpy as np
 from microslip.models.path import BodyPath
 from microslip.models.polar.angular_modes import Sectors, quickest, scaled
 from microslip.models.polar.contact import PolarContact
-from microslip.models.pull import PulledMarch
+from microslip.models.pull import Body, PulledMarch
 
 
 class PolarSideBySide(PolarContact):
@@ -58,7 +58,15 @@ class PolarSideBySide(PolarContact):
         each = zip(self._contacts, depths, strict=True)
         return np.concatenate([one.bounds(own) for one, own in each], axis=1)
 
-    def pulled_march(self, path, state, tolerance, body, start, previous=None) -> PulledMarch:
+    def pulled_march(
+        self,
+        path: BodyPath,
+        state: np.ndarray,
+        tolerance: float,
+        body: Body,
+        start: np.ndarray,
+        previous: PulledMarch | None = None,
+    ) -> PulledMarch:
         """March of the body along a BodyPath; see models.pull.PullsContact."""
         if self._imposed[0] is not path:
             self._imposed = path, (path.bounds(self._contacts), self._besides_of(path))

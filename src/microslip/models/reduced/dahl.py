@@ -13,6 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from microslip.models import contact
+from microslip.models.path import Path
 
 
 class DahlContact:
@@ -22,7 +23,7 @@ class DahlContact:
     sticks = False  # no point of it ever sticks: nothing is left of it in the static limit
     angles = 1
 
-    def __init__(self, stiffness):
+    def __init__(self, stiffness: float):
         self.stiffness = stiffness
         self.bound = self.weight = np.ones(1)
         self.compliance = np.full(1, 1.0 / stiffness)
@@ -36,7 +37,14 @@ class DahlContact:
         """Lateral traction negated."""
         return state * contact.MIRROR
 
-    def march(self, path, state, tolerance, sensitivity=False, previous=None) -> contact.March:
+    def march(
+        self,
+        path: Path,
+        state: np.ndarray,
+        tolerance: float,
+        sensitivity: bool = False,
+        previous: contact.March | None = None,
+    ) -> contact.March:
         """Solve along `path`, straight from phase to phase (translations only)."""
         moves = np.diff(path.positions[:, :2], axis=0)
         lengths = np.hypot(*moves.T)

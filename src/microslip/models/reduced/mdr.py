@@ -13,12 +13,15 @@ from __future__ import annotations
 import numpy as np
 
 from microslip.models.rings.contact import RadialContact
-from microslip.models.rings.mesh import make_rings
+from microslip.models.rings.mesh import Focus, make_rings
 from microslip.models.varying_load import Growth, load_on_springs
 from microslip.pressures.by_name import HERTZ
+from microslip.pressures.pressure import Pressure
 
 
-def mdr_contact(cells: int, focus=None, pressure=HERTZ) -> RadialContact:
+def mdr_contact(
+    cells: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ
+) -> RadialContact:
     """`cells` springs under an indenter's Pressure on 0 < x < 1 with their mirror images,
     gathered around x = `focus`.
 

@@ -9,8 +9,10 @@ from __future__ import annotations
 import numpy as np
 
 from microslip.models import contact
+from microslip.models.path import Path
 from microslip.models.rings.mesh import make_rings
 from microslip.pressures.by_name import HERTZ
+from microslip.pressures.pressure import Pressure
 
 GRADING = 0.98
 """Steps at the turning points, over the mean: the direction turns there within a phase v/y."""
@@ -23,7 +25,7 @@ class RigidContact:
     sticks = False
     grading = GRADING
 
-    def __init__(self, cells, angles, rotates, pressure=HERTZ):
+    def __init__(self, cells: int, angles: int, rotates: bool, pressure: Pressure = HERTZ):
         self.stiffness = pressure.stiffness
         self.angles = angles if rotates else 1
         if rotates:
@@ -45,7 +47,14 @@ class RigidContact:
         """theta -> pi - theta, lateral traction negated."""
         return state[:, ::-1, :] * contact.MIRROR
 
-    def march(self, path, state, tolerance, sensitivity=False, previous=None) -> contact.March:
+    def march(
+        self,
+        path: Path,
+        state: np.ndarray,
+        tolerance: float,
+        sensitivity: bool = False,
+        previous: contact.March | None = None,
+    ) -> contact.March:
         """Forces of full slip along the velocity at each phase of the path."""
         velocity = np.gradient(path.positions, path.phase, axis=0, edge_order=2)
         forces = np.empty((path.steps + 1, 3))

@@ -13,13 +13,15 @@ from scipy.linalg import solve_triangular
 
 from microslip.models import contact
 from microslip.models.interrupts import unbroken
-from microslip.models.pull import PulledMarch
+from microslip.models.path import Path
+from microslip.models.pull import Body, PulledMarch
 from microslip.models.rings import march as ring_march
 from microslip.models.rings.influence import ring_influence
-from microslip.models.rings.mesh import make_rings
+from microslip.models.rings.mesh import Focus, make_rings
 from microslip.models.rings.tangent import RingSystem, cholesky
 from microslip.models.varying_load import Growth, load_on_rings
 from microslip.pressures.by_name import HERTZ
+from microslip.pressures.pressure import Pressure
 
 
 class RadialContact:
@@ -52,7 +54,14 @@ class RadialContact:
     radius = 1.0
     edges = None
 
-    def __init__(self, influence, bound, weight, stiffness=None, growth=None):
+    def __init__(
+        self,
+        influence: np.ndarray,
+        bound: np.ndarray,
+        weight: np.ndarray,
+        stiffness: float | None = None,
+        growth: Growth | None = None,
+    ):
         self.influence = np.ascontiguousarray(influence, dtype=float)
         self.bound, self.weight, self.growth = bound, weight, growth
         if growth is not None and growth.pressure.inner == 0.0:
@@ -68,11 +77,13 @@ class RadialContact:
         self.stiffness = float(stiffness)
 
     @staticmethod
-    def resolved(cells: int, focus=None, pressure=HERTZ) -> RadialContact:
+    def resolved(
+        cells: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ
+    ) -> RadialContact:
         """The half-space on `cells` rings refined around the radius `focus`."""
         return _resolved(cells, focus, pressure)
 
-    def at_indentation(self, deepest: float, start: np.ndarray) -> RadialContact:
+    def at_indentation(self, deepest: float, start: float) -> RadialContact:
         """The same rings spread over the contact at its `deepest`, with the bound at `start`.
 
         Both are depths (see varying_load.py), deepest > 0.
@@ -118,7 +129,7 @@ class RadialContact:
         load_within[:, 1:-1] = np.where(outside, most, load_within[:, 1:-1])
         return np.maximum(np.diff(load_within, axis=1), 0.0) / self.weight
 
-    def bounds_along(self, path) -> np.ndarray:
+    def bounds_along(self, path: Path) -> np.ndarray:
         """Bounds at the start and at every stage of a path, (1 + steps stages, cells).
 
         Rings join or leave at the last stage of a step only: what jumps at an earlier one would be
@@ -148,7 +159,14 @@ class RadialContact:
         """Lateral traction negated."""
         return state * contact.MIRROR
 
-    def march(self, path, state, tolerance, sensitivity=False, previous=None) -> contact.March:
+    def march(
+        self,
+        path: Path,
+        state: np.ndarray,
+        tolerance: float,
+        sensitivity: bool = False,
+        previous: contact.March | None = None,
+    ) -> contact.March:
         """March along `path` (translations only); see models.contact.Contact.
 
         The stages of the result, and of `previous`, are the tractions at the start and after
@@ -177,7 +195,15 @@ class RadialContact:
             stages=tractions,
         )
 
-    def pulled_march(self, path, state, tolerance, body, start, previous=None) -> PulledMarch:
+    def pulled_march(
+        self,
+        path: Path,
+        state: np.ndarray,
+        tolerance: float,
+        body: Body,
+        start: np.ndarray,
+        previous: PulledMarch | None = None,
+    ) -> PulledMarch:
         """March from which a body may stay behind or run ahead; see models.pull.PullsContact."""
         bounds = self.bound[None] if path.depth is None else self.bounds_along(path)
         imposed = path.under(bounds), np.empty((0, 2, 0))

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.foundation.compiled import kernel
-from microslip.models.rings.tangent import combine, subtract, turning
+from microslip.models.rings.tangent import Factors, RingSystem, combine, subtract, turning
 
 
 class Derivative(NamedTuple):
@@ -142,7 +142,14 @@ def _fill_felt(order, stick, derivative):
 
 
 @kernel
-def slip_tangent(factors, stick, slip, bound, derivative, stage) -> None:
+def slip_tangent(
+    factors: Factors,
+    stick: int,
+    slip: np.ndarray,
+    bound: np.ndarray,
+    derivative: Derivative,
+    stage: int,
+) -> None:
     """Derivative of the slips of one solved stage: fills those of the slipping rings.
 
     slip: weighted slips, (2, n); stick: number of the sticking rings, as `factorise` returns it.
@@ -177,7 +184,7 @@ def slip_tangent(factors, stick, slip, bound, derivative, stage) -> None:
 
 
 @kernel
-def start_derivative(rings, dz: np.ndarray) -> np.ndarray:
+def start_derivative(rings: RingSystem, dz: np.ndarray) -> np.ndarray:
     """Derivative of the end tractions with respect to the first ones, B^-1 dz B, (2 n, 2 n)."""
     n = len(rings.weight)
     out = np.zeros((2 * n, 2 * n))

@@ -30,7 +30,9 @@ def follow(q: np.ndarray, bound: np.ndarray, now: np.ndarray, before: np.ndarray
 
 
 @kernel
-def extrapolate(q, last, bound, before, ratio) -> None:
+def extrapolate(
+    q: np.ndarray, last: np.ndarray, bound: np.ndarray, before: np.ndarray, ratio: float
+) -> None:
     """First guess: go on as from `before` to q, `ratio` times as far; slip stays slip.
 
     last, bound: those that q obeys, and that the guess shall.

@@ -7,6 +7,7 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 from microslip.models.coulomb import extended
 from microslip.models.interrupts import BETWEEN_LOOKS, interrupted
+from microslip.models.path import LoadingPath
 from microslip.models.rings.derivative import (
     carry_derivative,
     carry_to_stage,
@@ -16,11 +17,11 @@ from microslip.models.rings.derivative import (
 )
 from microslip.models.rings.first_guess import extrapolate, follow, stretch, within
 from microslip.models.rings.newton_step import Step, solve_step, weighted_slip
-from microslip.models.rings.tangent import copy, factorise, make_factors, subtract
+from microslip.models.rings.tangent import RingSystem, copy, factorise, make_factors, subtract
 
 
 @kernel
-def displacements(path) -> np.ndarray:
+def displacements(path: LoadingPath) -> np.ndarray:
     """Forward and lateral displacement at the start and at every stage, (1 + steps stages, 2)."""
     steps, stages = path.stages.shape[0], path.stages.shape[1]
     displacements = np.empty((1 + steps * stages, 2))
@@ -32,7 +33,7 @@ def displacements(path) -> np.ndarray:
 
 
 @kernel
-def remembered(rings, position, q, b) -> np.ndarray:
+def remembered(rings: RingSystem, position: np.ndarray, q: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Weighted displacement z = B q - area w at the start; b: scratch, all (2, n)."""
     z = np.empty_like(q)
     for c in range(2):
@@ -46,13 +47,20 @@ def remembered(rings, position, q, b) -> np.ndarray:
 
 
 @kernel(inline="always")
-def bound_at(bounds, at) -> np.ndarray:
+def bound_at(bounds: np.ndarray, at: int) -> np.ndarray:
     """Friction bound at the start (0) and at the stages (from 1 on), (n,)."""
     return bounds[at if len(bounds) > 1 else 0]
 
 
 @kernel(inline="always")
-def guess(q, bounds, displacements, at, known, tractions) -> None:
+def guess(
+    q: np.ndarray,
+    bounds: np.ndarray,
+    displacements: np.ndarray,
+    at: int,
+    known: np.ndarray,
+    tractions: np.ndarray,
+) -> None:
     """Move q, the tractions at the end of a stage, to the first guess of those of the next one.
 
     at: number of that stage from 1 on; known, tractions: of another march, or nothing, and of this
@@ -70,7 +78,14 @@ def guess(q, bounds, displacements, at, known, tractions) -> None:
 
 
 @kernel
-def march(rings, path, state, known, tolerance, tangent) -> tuple:
+def march(
+    rings: RingSystem,
+    path: LoadingPath,
+    state: np.ndarray,
+    known: np.ndarray,
+    tolerance: float,
+    tangent: bool,
+) -> tuple:
     """March along a path.
 
     Parameters

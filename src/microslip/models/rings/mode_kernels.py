@@ -90,7 +90,9 @@ def coupling_kernels(r: float, s: float, toroidal: np.ndarray, out: np.ndarray) 
 
 
 @kernel
-def mode_kernels(r, s, n_modes, coupled, torus, pair) -> np.ndarray:
+def mode_kernels(
+    r: float, s: float, n_modes: int, coupled: bool, torus: np.ndarray, pair: np.ndarray
+) -> np.ndarray:
     """Fill torus[m] = G_m and, if coupled, pair[j] = C_{j+1}; returns torus, perhaps enlarged."""
     top = n_modes
     if coupled:

@@ -13,7 +13,7 @@ import numpy as np
 
 from microslip.foundation.compiled import kernel
 from microslip.models.coulomb import shrink
-from microslip.models.rings.tangent import copy, factorise, subtract
+from microslip.models.rings.tangent import Factors, RingSystem, copy, factorise, subtract
 
 MAX_ITERATIONS = 200
 RESCUE_SWEEPS = 12
@@ -23,7 +23,9 @@ GOOD_STEP = 0.3
 
 
 @kernel
-def weighted_slip(stiffness, imposed, q, out) -> None:
+def weighted_slip(
+    stiffness: np.ndarray, imposed: np.ndarray, q: np.ndarray, out: np.ndarray
+) -> None:
     """out = imposed - B q; all (2, n)."""
     n = q.shape[1]
     for c in range(2):
@@ -36,7 +38,9 @@ def weighted_slip(stiffness, imposed, q, out) -> None:
 
 
 @kernel
-def step_residual(stiffness, q, slip, bound, weight) -> float:
+def step_residual(
+    stiffness: np.ndarray, q: np.ndarray, slip: np.ndarray, bound: np.ndarray, weight: np.ndarray
+) -> float:
     """coulomb.coulomb_residual for weighted slips on rings."""
     total = 0.0
     for i in range(q.shape[1]):
@@ -102,7 +106,7 @@ def _substitute_sticking(upper, change, stick):
 
 
 @kernel
-def newton_step(slip, stick, factors) -> None:
+def newton_step(slip: np.ndarray, stick: int, factors: Factors) -> None:
     """Fill factors.change (in the order of the factors) with the Newton step against `slip`.
 
     Sticking rings are eliminated from both components, the angles of the slipping ones are solved
@@ -142,7 +146,7 @@ class Step(NamedTuple):
 
 
 @kernel(inline="always")
-def move(q, bound, stick, factors) -> None:
+def move(q: np.ndarray, bound: np.ndarray, stick: int, factors: Factors) -> None:
     """Fill factors.trial with q moved by factors.change, within the bound."""
     order, change, trial = factors.order, factors.change, factors.trial
     for p in range(len(bound)):
@@ -155,7 +159,9 @@ def move(q, bound, stick, factors) -> None:
 
 
 @kernel
-def solve_step(rings, step: Step, q: np.ndarray, slip: np.ndarray, factors) -> tuple[int, float]:
+def solve_step(
+    rings: RingSystem, step: Step, q: np.ndarray, slip: np.ndarray, factors: Factors
+) -> tuple[int, float]:
     """Solve one Coulomb step on rings in place.
 
     Parameters

@@ -6,12 +6,12 @@ import numpy as np
 
 from microslip.foundation.compiled import kernel
 from microslip.models.interrupts import BETWEEN_LOOKS, interrupted
-from microslip.models.pull import stage_load, stage_stiffness, starting_place
+from microslip.models.pull import Pull, stage_load, stage_stiffness, starting_place
 from microslip.models.rings.first_guess import stretch
 from microslip.models.rings.march import bound_at, displacements, guess, remembered
 from microslip.models.rings.newton_step import Step
 from microslip.models.rings.pulled_step import PulledStep, make_trial, solve_pulled_step
-from microslip.models.rings.tangent import copy, make_factors, subtract
+from microslip.models.rings.tangent import RingSystem, copy, make_factors, subtract
 
 
 @kernel(inline="always")
@@ -33,7 +33,9 @@ def _add(rows, ahead, at, sign):
 
 
 @kernel
-def pulled_march(rings, imposed, pull, state, known, settings) -> tuple:
+def pulled_march(
+    rings: RingSystem, imposed: tuple, pull: Pull, state: np.ndarray, known: tuple, settings: tuple
+) -> tuple:
     """March along a path from which the contact may stay behind, or run ahead.
 
     Parameters

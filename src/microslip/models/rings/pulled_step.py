@@ -30,7 +30,7 @@ from microslip.models.rings.newton_step import (
     step_residual,
     weighted_slip,
 )
-from microslip.models.rings.tangent import copy, factorise, subtract
+from microslip.models.rings.tangent import Factors, RingSystem, copy, factorise, subtract
 
 SOFTEST = 1e-12
 """Slope of the forward force over x, below which it tells a Newton step nothing."""
@@ -137,7 +137,7 @@ def _forward_change(weight, change, order):
 
 
 @kernel
-def follow_place(rings, trial: Trial, stick: int, factors) -> float:
+def follow_place(rings: RingSystem, trial: Trial, stick: int, factors: Factors) -> float:
     """Fill trial.follows with the change of tractions with x; returns that of the forward force."""
     newton_step(trial.push, stick, factors)
     copy(trial.follows, factors.change)
@@ -145,7 +145,9 @@ def follow_place(rings, trial: Trial, stick: int, factors) -> float:
 
 
 @kernel
-def solve_pulled_step(rings, pulled: PulledStep, state: tuple, factors, trial: Trial) -> tuple:
+def solve_pulled_step(
+    rings: RingSystem, pulled: PulledStep, state: tuple, factors: Factors, trial: Trial
+) -> tuple:
     """Solve one Coulomb step on rings and for the place of the body, in place.
 
     Parameters

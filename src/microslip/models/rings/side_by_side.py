@@ -17,7 +17,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from microslip.models.path import BodyPath
-from microslip.models.pull import PulledMarch
+from microslip.models.pull import Body, PulledMarch
 from microslip.models.rings.contact import RadialContact
 
 
@@ -53,7 +53,15 @@ class RingsSideBySide(RadialContact):
         each = zip(self._contacts, depths, strict=True)
         return np.concatenate([one.bounds(own) for one, own in each], axis=1)
 
-    def pulled_march(self, path, state, tolerance, body, start, previous=None) -> PulledMarch:
+    def pulled_march(
+        self,
+        path: BodyPath,
+        state: np.ndarray,
+        tolerance: float,
+        body: Body,
+        start: np.ndarray,
+        previous: PulledMarch | None = None,
+    ) -> PulledMarch:
         """March of the body along a BodyPath; see models.pull.PullsContact."""
         if self._imposed[0] is not path:
             bounds = path.bounds(self._contacts)

@@ -112,7 +112,7 @@ def subtract(y: np.ndarray, factor: float, x: np.ndarray) -> None:
 
 
 @kernel
-def combine(y: np.ndarray, factors: Factors, rows: np.ndarray, count: int) -> None:
+def combine(y: np.ndarray, factors: np.ndarray, rows: np.ndarray, count: int) -> None:
     """y -= Sum over k < count of factors[k] rows[k], four rows at a time to spare memory."""
     columns = len(y)
     k = 0
@@ -161,7 +161,7 @@ def cholesky(stiffness: np.ndarray) -> np.ndarray:
 
 
 @kernel(inline="always")
-def turning(slip_forward: float, slip_lateral: float, bound: np.ndarray) -> float:
+def turning(slip_forward: float, slip_lateral: float, bound: float) -> float:
     """|slip| / bound: how much a traction on the bound resists being turned away from its slip."""
     size = np.sqrt(slip_forward * slip_forward + slip_lateral * slip_lateral)
     return size / bound if bound > 0.0 else HELD
@@ -249,7 +249,9 @@ def _schur_of_outer(whole, stick, upper, scratch):
 
 
 @kernel
-def factorise(rings, bound, q, slip, factors) -> int:
+def factorise(
+    rings: RingSystem, bound: np.ndarray, q: np.ndarray, slip: np.ndarray, factors: Factors
+) -> int:
     """Tangent problem at (q, slip), factorised; returns the number of sticking rings, -1 if it
     breaks down.  What belongs to the sticking rings is kept while these stay the same."""
     stick, news = _split(q, slip, bound, factors)

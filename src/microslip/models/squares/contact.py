@@ -9,10 +9,12 @@ import numpy as np
 
 from microslip.models import contact
 from microslip.models.interrupts import unbroken
-from microslip.models.pull import PulledMarch
+from microslip.models.path import Path
+from microslip.models.pull import Body, PulledMarch
 from microslip.models.squares import march as square_march
 from microslip.models.squares.convolution import convolve, square_convolution, workspace
 from microslip.pressures.by_name import HERTZ
+from microslip.pressures.pressure import Pressure
 
 MAX_REMEMBERED = 4_000_000
 """Numbers that a march keeps as first guesses for the next one; longer marches keep none."""
@@ -43,7 +45,7 @@ class CartesianContact:
     sticks = True
     angles = 1
 
-    def __init__(self, cells, poisson=0.0, pressure=HERTZ):
+    def __init__(self, cells: int, poisson: float = 0.0, pressure: Pressure = HERTZ):
         if cells < 2:
             raise ValueError(f"cells = {cells}: allowed is a whole number of at least 2")
         self.size = 2.0 / cells
@@ -73,7 +75,14 @@ class CartesianContact:
         """Lateral axis reversed, lateral traction negated."""
         return state[:, :, ::-1] * contact.MIRROR
 
-    def march(self, path, state, tolerance, sensitivity=False, previous=None) -> contact.March:
+    def march(
+        self,
+        path: Path,
+        state: np.ndarray,
+        tolerance: float,
+        sensitivity: bool = False,
+        previous: contact.March | None = None,
+    ) -> contact.March:
         """March along `path`; see models.contact.Contact."""
         steps, n_stages, _ = path.stages.shape
         guided = previous is not None and previous.stages is not None
@@ -91,14 +100,24 @@ class CartesianContact:
         stages = tractions if remembers else None
         return contact.March(state, forces, residual, iterations, steps * n_stages, stages=stages)
 
-    def pulled_march(self, path, state, tolerance, body, start, previous=None) -> PulledMarch:
+    def pulled_march(
+        self,
+        path: Path,
+        state: np.ndarray,
+        tolerance: float,
+        body: Body,
+        start: np.ndarray,
+        previous: PulledMarch | None = None,
+    ) -> PulledMarch:
         """March from which a body may stay behind or run ahead; see models.pull.PullsContact."""
         moved = np.concatenate([path.positions[:1], path.stages.reshape(-1, 3)])
         standing = np.ones(1), np.ones(1), moved[None]
         march = self.pulled_along(path, standing, state[None], tolerance, (body, start))
         return replace(march, state=march.state[0])
 
-    def pulled_along(self, path, standing, state, tolerance, pulled) -> PulledMarch:
+    def pulled_along(
+        self, path: Path, standing: tuple, state: np.ndarray, tolerance: float, pulled: tuple
+    ) -> PulledMarch:
         """The PulledMarch of several contacts like this one, states (contacts, 2, cells, cells);
         standing: shares, extents and displacements, see pulled_march.py; pulled: a pull.Body and
         where it is."""

@@ -15,6 +15,7 @@ import numpy as np
 from microslip.foundation.compiled import kernel
 from microslip.models.coulomb import extended, shrink
 from microslip.models.interrupts import BETWEEN_LOOKS, interrupted
+from microslip.models.path import LoadingPath
 from microslip.models.point_fields import add, copy, rigid_displacement, sum_forces
 from microslip.models.squares.convolution import Convolution, convolve
 
@@ -85,7 +86,14 @@ class Trial(NamedTuple):
 
 
 @kernel
-def march(squares, positions, path, state, tolerance, guide) -> tuple:
+def march(
+    squares: Squares,
+    positions: tuple,
+    path: LoadingPath,
+    state: np.ndarray,
+    tolerance: float,
+    guide: Guide,
+) -> tuple:
     """March along a path.
 
     Parameters
@@ -156,7 +164,14 @@ def march(squares, positions, path, state, tolerance, guide) -> tuple:
 
 
 @kernel
-def solve_step(squares, b, q, slip, length, tolerance) -> tuple[int, float, float]:
+def solve_step(
+    squares: Squares,
+    b: np.ndarray,
+    q: np.ndarray,
+    slip: np.ndarray,
+    length: float,
+    tolerance: float,
+) -> tuple[int, float, float]:
     """Solve one Coulomb step in place.
 
     Parameters
@@ -244,7 +259,9 @@ def _replace(bound, b, q, slip, trial):
 
 
 @kernel
-def extrapolate(start, later, earlier, bound, out) -> None:
+def extrapolate(
+    start: np.ndarray, later: np.ndarray, earlier: np.ndarray, bound: np.ndarray, out: np.ndarray
+) -> None:
     """out = P(start + later - earlier)."""
     for i in range(bound.shape[0]):
         for j in range(bound.shape[1]):

@@ -18,6 +18,7 @@ import numpy as np
 
 from microslip.foundation.compiled import kernel
 from microslip.models.interrupts import BETWEEN_LOOKS, interrupted
+from microslip.models.path import LoadingPath
 from microslip.models.point_fields import (
     add,
     copy,
@@ -25,9 +26,9 @@ from microslip.models.point_fields import (
     rigid_displacement,
     sum_forces,
 )
-from microslip.models.pull import stage_load, stage_stiffness, starting_place
+from microslip.models.pull import Pull, stage_load, stage_stiffness, starting_place
 from microslip.models.squares.convolution import convolve
-from microslip.models.squares.march import extrapolate, solve_step
+from microslip.models.squares.march import Squares, extrapolate, solve_step
 
 MOST_PLACES = 60
 FLATTEST = 1e-3
@@ -78,7 +79,14 @@ def _forward(squares, carried, q) -> float:
 
 
 @kernel
-def solve_pulled_step(squares, carried, b, state, equation, tolerance) -> tuple:
+def solve_pulled_step(
+    squares: Squares,
+    carried: Carried,
+    b: np.ndarray,
+    state: tuple,
+    equation: Equation,
+    tolerance: float,
+) -> tuple:
     """Solve one Coulomb step and for the place of the body, in place.
 
     Parameters
@@ -148,7 +156,14 @@ def _sum_all(squares, carried, positions, q, one_contact, out):
 
 
 @kernel
-def pulled_march(squares, standing, path, pull, state, settings) -> tuple:
+def pulled_march(
+    squares: Squares,
+    standing: tuple,
+    path: LoadingPath,
+    pull: Pull,
+    state: np.ndarray,
+    settings: tuple,
+) -> tuple:
     """March along a path from which the contacts may stay behind, or run ahead.
 
     Parameters

@@ -8,7 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from microslip.models.pull import PulledMarch
+from microslip.models.path import BodyPath
+from microslip.models.pull import Body, PulledMarch
 from microslip.models.squares.contact import CartesianContact
 
 
@@ -54,7 +55,15 @@ class SquaresSideBySide:
         """Every contact in its own mirror image."""
         return self._together([self._one.mirrored(own) for own in self._each(state)])
 
-    def pulled_march(self, path, state, tolerance, body, start, previous=None) -> PulledMarch:
+    def pulled_march(
+        self,
+        path: BodyPath,
+        state: np.ndarray,
+        tolerance: float,
+        body: Body,
+        start: np.ndarray,
+        previous: PulledMarch | None = None,
+    ) -> PulledMarch:
         """March of the body along a BodyPath; see models.pull.PullsContact."""
         base = np.concatenate([path.positions[:1], path.stages.reshape(-1, 3)])
         moved = (base + path.besides()) / self._extents[:, None, None]

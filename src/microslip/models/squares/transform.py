@@ -13,7 +13,9 @@ from microslip.foundation.compiled import kernel
 
 
 @kernel
-def forward(re, im, columns, radices, roots) -> None:
+def forward(
+    re: np.ndarray, im: np.ndarray, columns: int, radices: np.ndarray, roots: np.ndarray
+) -> None:
     """Transform the first `columns` columns in place; for the order see `convolution._order`."""
     length = padded = re.shape[0]
     for radix in radices:
@@ -31,7 +33,9 @@ def forward(re, im, columns, radices, roots) -> None:
 
 
 @kernel
-def backward(re, im, columns, radices, roots) -> None:
+def backward(
+    re: np.ndarray, im: np.ndarray, columns: int, radices: np.ndarray, roots: np.ndarray
+) -> None:
     """Undo `forward`, up to the factor P."""
     part, padded = 1, re.shape[0]
     for radix in radices[::-1]:

@@ -17,8 +17,9 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.foundation.compiled import kernel
-from microslip.models.contact import March, StepFailure, forces
+from microslip.models.contact import Contact, March, StepFailure, forces
 from microslip.models.coulomb import coulomb_residual, shrink
+from microslip.models.path import Path
 
 FAR_FROM_SOLVED = 1e-2
 """Residual of a step, over mu F_z, above which it counts as diverged rather than slow."""
@@ -54,7 +55,9 @@ class DenseContact:
 
     has_sensitivity = False
 
-    def __init__(self, contact, solve, prepare=nothing, **parameters):
+    def __init__(
+        self, contact: Contact, solve: Callable, prepare: Callable = nothing, **parameters: float
+    ):
         self.contact, self.solve = contact, solve
         self.shape = (2, *contact.forward_position.shape)
         flat = (
@@ -67,7 +70,14 @@ class DenseContact:
     def __getattr__(self, name):
         return getattr(self.contact, name)
 
-    def march(self, path, state, tolerance, sensitivity=False, previous=None) -> March:
+    def march(
+        self,
+        path: Path,
+        state: np.ndarray,
+        tolerance: float,
+        sensitivity: bool = False,
+        previous: March | None = None,
+    ) -> March:
         """March along `path`; raises StepFailure at the first step that stays unsolved."""
         q = state.reshape(2, -1).copy()
         at_end, z = q.copy(), self._elastic(q) - self._rigid(path.positions[0])
@@ -155,7 +165,14 @@ def project_in_place(q: np.ndarray, bound: np.ndarray) -> None:
 
 
 @kernel
-def descend(points, b, q, slip, tolerance, length) -> tuple[int, float]:
+def descend(
+    points: Points,
+    b: np.ndarray,
+    q: np.ndarray,
+    slip: np.ndarray,
+    tolerance: float,
+    length: np.ndarray,
+) -> tuple[int, float]:
     """Solve a step by projected gradient steps of fixed length, that of each point in `length`,
     (K,); see the module's docstring."""
     residual = judge(points, b, q, slip)

@@ -24,7 +24,7 @@ import math
 import numpy as np
 
 from microslip.models.coulomb import project
-from microslip.models.path import EULER
+from microslip.models.path import EULER, Path
 from microslip.models.squares.convolution import square_convolution
 from microslip.solver.method import Method
 from microslip.solver.run import Run, failed_run
@@ -40,7 +40,7 @@ class Solver:
     """A sphere under load on `cells` x `cells` squares over [-1, 1]^2, to be moved step by
     step; working units, mu = 1."""
 
-    def __init__(self, cells, poisson):
+    def __init__(self, cells: int, poisson: float):
         import aspher
 
         # G* = 4G/(2 - nu) is given, G = E* (1 - nu)/2; the load of radius 1 is 4/3 E*/R = 1
@@ -76,7 +76,7 @@ class Solver:
         return float(force) * self.size**2, float(residual) * self.size**2
 
 
-def half_period(solver: Solver, path, number: int) -> tuple[np.ndarray, float]:
+def half_period(solver: Solver, path: Path, number: int) -> tuple[np.ndarray, float]:
     """March the half period of this number, from 0; returns the forward forces at its phases, the
     first one left out, and the sum of the residuals."""
     start, end = path.positions[0, :2], path.positions[-1, :2]

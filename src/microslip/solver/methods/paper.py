@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.models.contact import FORWARD, forward_slip
+from microslip.models.contact import FORWARD, March, forward_slip
 from microslip.models.path import EULER, Path, make_path
 from microslip.models.squares.contact import CartesianContact
 from microslip.solver.method import Method
+from microslip.solver.problem import Problem
 from microslip.solver.run import Run
 
 CELLS, STEPS_PER_PERIOD = 32, 100
@@ -20,13 +21,13 @@ STEPS = 8000
 STRESS_TOLERANCE = 1e-3
 
 
-def path_of(problem, steps: int = STEPS) -> Path:
+def path_of(problem: Problem, steps: int = STEPS) -> Path:
     """Path of so many steps from the middle of a stroke."""
     phase = 2.0 * np.pi / STEPS_PER_PERIOD * np.arange(steps + 1)
     return make_path(problem.displacement, phase, EULER)
 
 
-def last_means(march) -> tuple[float, float]:
+def last_means(march: March) -> tuple[float, float]:
     """Mean forward force over each of the last two periods, the last one first."""
     force = march.forces[1:, FORWARD]
     last, before = force[-STEPS_PER_PERIOD:], force[-2 * STEPS_PER_PERIOD : -STEPS_PER_PERIOD]
