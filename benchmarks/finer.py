@@ -3,14 +3,15 @@
 Four times the rings, angles and steps that the point was certified with (no more than 192 rings or
 squares, 64 angles and 2048 steps in half a period), each refined by itself from a base that is
 finer than any certificate starts from, every periodic state searched for from scratch, to a tenth
-of the tolerance.  What is left of its own error is estimated from the run with half of the
-refinement.
+of the tolerance.  What two axes do together is measured from that base, too.  What is left of its
+own error is estimated from the run with half of the refinement.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
 
+from microslip.adaptive.cells_policies import like_a_sphere
 from microslip.adaptive.choice import choose_model
 from microslip.solver.problem import Resolution
 from microslip.solver.simulate import simulate
@@ -24,6 +25,8 @@ FINER = 4
 BASE = {"radial": Resolution(32, 1, 48), "polar": Resolution(24, 12, 32)}
 LEAST = {"radial": Resolution(64, 1, 96), "polar": Resolution(48, 16, 64)}
 BASE["cartesian"], LEAST["cartesian"] = Resolution(32, 1, 32), Resolution(96, 1, 64)
+PEAKED = 48
+"""Rings of the base of rotations under pressures whose peak or edge coarser ones see by chance."""
 MOST = Resolution(192, 64, 2048)
 """Resolutions (steps in half a period) of the reference: its base, and bounds of its finest."""
 PERIODICITY = 0.1
@@ -50,6 +53,8 @@ def reference(problem, tolerance, certified):
         )
         return fine.mu, abs(fine.mu - coarse.mu)
     base = replace(BASE[model], steps=2 * round(0.5 * BASE[model].steps * stroke))
+    if model == "polar" and kind.rotates and not like_a_sphere(problem):
+        base = replace(base, cells=PEAKED)
 
     left = []  # distances from the periodic states
 
@@ -70,8 +75,9 @@ def reference(problem, tolerance, certified):
         beyond = (fine - coarse) / 3.0  # second order
         mu += fine + beyond - at_base
         uncertainty += abs(beyond)
-    if model == "polar":  # what rings and angles do together
-        twice = {"cells": 2 * base.cells, "angles": 2 * base.angles}
+    together = [("cells", "steps"), ("cells", "angles")][: 1 + (model == "polar")]
+    for pair in together:
+        twice = {axis: 2 * getattr(base, axis) for axis in pair}
         one, other = (mean(**{axis: count}) for axis, count in twice.items())
         mixed = mean(**twice) - one - other + at_base
         mu, uncertainty = mu + mixed, uncertainty + 0.5 * abs(mixed)

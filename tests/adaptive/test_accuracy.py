@@ -203,6 +203,35 @@ def test_nothing_is_refined_that_is_fine_enough():
     assert found.errors["space"] >= RESOLVED * 1e-2 and found.errors["time"] >= RESOLVED * 1e-2
 
 
+def test_another_axis_makes_room_for_one_that_is_at_its_finest():
+    cells, angles = axis("cells", regular=False, most=5), axis("angles", regular=False)
+    # spreads of 8, 12, 16 cells and of 6, 8, 12 angles: errors of 0.6 and 0.5 tolerances
+    of_cells = 0.6e-3 / SPREAD / (8**-2 - 16**-2)
+    of_angles = 0.5e-3 / SPREAD / (6**-2 - 12**-2)
+    fake = FakeRun((of_cells, {"cells": 2}), (of_angles, {"angles": 2}))
+    found = certified(fake, (cells, angles), 1e-3)
+    assert found.converged and (found.finest.cells, found.finest.angles) == (16, 16)
+    # beyond a tolerance no other axis can make room for it, and none is tried
+    fake = FakeRun((2.0 * of_cells, {"cells": 2}), (of_angles, {"angles": 2}))
+    found = certified(fake, (cells, angles), 1e-3)
+    assert found.reason.endswith("over cells is still 1.2e-03 at 16") and found.finest.angles == 12
+
+
+@pytest.mark.parametrize("judged", [0, 4])
+def test_an_axis_that_was_refined_is_judged_by_its_last_runs(judged):
+    cells = Axis("cells", LEVELS["cells"], 0, tuple(range(6)), judged=judged)
+    fake = FakeRun((1.0, {"cells": 2}))
+    found = certified(fake, (cells,), 1e-2)
+    last = [n**-2 for n in LEVELS["cells"] if n <= found.finest.cells][-(judged or 6) :]
+    assert len(fake.asked) > 6 and found.errors["space"] == pytest.approx(
+        SPREAD * (last[0] - last[-1])
+    )
+    # as many as it began with, before
+    assert certify(fake, COARSEST, (cells,), 0.1).errors["space"] == pytest.approx(
+        SPREAD * (4**-2 - 24**-2)
+    )
+
+
 def test_imposed_axes_are_reported_but_not_refined():
     terms = (5.0, {"cells": 2}), (1.0, {"steps": 2})
     fake = FakeRun(*terms)

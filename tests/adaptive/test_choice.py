@@ -216,10 +216,11 @@ def test_every_plan_can_be_run(point):
         assert all(level % 2 == 0 for level in axis.levels)
         assert all(np.diff(axis.levels) > 0) and axis.levels[0] >= 2
         assert len(axis.first) >= 3
-        assert list(axis.first) == list(range(axis.first[0], axis.first[-1] + 1))
+        assert all(np.diff(axis.first) > 0) and axis.base in axis.first
         assert axis.first[0] >= 0 and axis.first[-1] < len(axis.levels)
-        # the base is one of the first, and has a neighbour for the mixed difference
-        assert axis.first[0] <= axis.base <= axis.first[-1]
+        # runs that lie close together may agree by chance
+        assert not axis.projected or axis.levels[axis.first[-1]] >= 2 * axis.levels[axis.first[0]]
+        # the base has a neighbour for the mixed difference
         assert axis.base >= 1 or axis.first[-1] > axis.base
         assert axis.base < len(axis.levels) and not axis.imposed
 

@@ -7,8 +7,8 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+from microslip.adaptive.certified import Certified
 from microslip.adaptive.chains import Axis
-from microslip.adaptive.refinement import Certified
 from microslip.foundation.errors import InputError
 from microslip.solver import method_names
 from microslip.solver.budget import Budget

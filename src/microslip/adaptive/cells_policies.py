@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.adaptive.chains import EXTRAPOLATED_SHARES, Axis
+from microslip.adaptive.chains import EXTRAPOLATED_SHARES, JUDGED, Axis
 from microslip.pressures.by_name import HERTZ
 from microslip.solver.problem import Problem
 from microslip.solver.static_limit import at_turning_points
@@ -50,7 +50,7 @@ class CellsPolicy:
         Cells of the coarsest and of the finest of the runs to start with.
     levels : tuple of int
         Cells there may be.
-    regular, caution, shares
+    regular, caution, shares, judged
         See chains.Axis.
     made_for : float or None
         Tolerance that all of them are for, which are finer where it is; None: whatever it is.
@@ -64,6 +64,7 @@ class CellsPolicy:
     regular: bool = True
     caution: float = 1.0
     shares: tuple[float, float] = EXTRAPOLATED_SHARES
+    judged: int = 0
     made_for: float | None = None
 
     def axis(self, tolerance: float) -> Axis:
@@ -78,6 +79,7 @@ class CellsPolicy:
             regular=self.regular,
             caution=self.caution,
             shares=self.shares,
+            judged=self.judged,
         )
 
 
@@ -105,6 +107,7 @@ CELLS_POLICIES = (
         first=(16, 48),
         levels=STATIC_SQUARES,
         regular=False,
+        judged=JUDGED,
     ),
     CellsPolicy(
         "static limit: cells come and go at the edge; nothing is marched, so more are cheap",
@@ -113,6 +116,7 @@ CELLS_POLICIES = (
         first=(16, 64),
         levels=STATIC_SQUARES,
         regular=False,
+        judged=JUDGED,
     ),
     CellsPolicy(
         "squares, slow: the layer at the stick radius is thin",
@@ -147,6 +151,7 @@ CELLS_POLICIES = (
         base=24,
         first=(16, 48),
         regular=False,
+        judged=JUDGED,
         caution=EDGE_CAUTION,
     ),
     CellsPolicy(
@@ -155,6 +160,7 @@ CELLS_POLICIES = (
         base=16,
         first=(8, 48),
         regular=False,
+        judged=JUDGED,
     ),
     CellsPolicy(
         "rotation under another pressure: its peak falls between rings, and no trend is safe",
@@ -169,6 +175,15 @@ CELLS_POLICIES = (
         lambda problem, model: problem.motion.rotates,
         base=6,
         first=(6, 12),
+        made_for=1e-3,
+    ),
+    CellsPolicy(
+        "translation to and fro at nu > 0, slow: the layer at the stick radius is thin",
+        lambda problem, model: (
+            problem.poisson > 0.0 and problem.motion.half_period_mirror and _is_slow(problem)
+        ),
+        base=8,
+        first=(8, 16),
         made_for=1e-3,
     ),
     CellsPolicy(

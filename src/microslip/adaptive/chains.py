@@ -23,8 +23,9 @@ not hold without, and 1 in 300 with 1.4."""
 SPREAD = 1.25
 """Error over the spread of the last runs along an irregular axis, chosen likewise."""
 FITTED, JUDGED = 3, 4
-"""Runs that a fitted value is extrapolated from, and those that its error is seen by."""
-FITTED_SHARES = 0.75, 1.0
+"""Runs that a fitted value is extrapolated from, and those that its error is seen by, and that of a
+static limit which was refined."""
+FITTED_SHARES = 1.0, 1.0
 """Errors of fitted axes over the largest projection, and over the scatter about the line: chosen on
 random bores, of which none is off by more than that and the share below which no claim goes."""
 RESOLVED = 0.125
@@ -73,6 +74,8 @@ class Axis:
         left.
     resolved : float
         See RESOLVED.
+    judged : int
+        Runs that the error is seen by once the axis was refined; 0: as many as it began with.
     """
 
     name: str
@@ -88,6 +91,7 @@ class Axis:
     tied: tuple[tuple[str, tuple[int, ...]], ...] = ()
     fitted: bool = False
     resolved: float = RESOLVED
+    judged: int = 0
 
     @property
     def refines(self) -> tuple[str, ...]:
@@ -162,6 +166,13 @@ class Chain:
     def levels(self) -> list[int]:
         return [self.axis.levels[index] for index in self.indices]
 
+    @property
+    def judged(self) -> int:
+        """Runs that the error is seen by."""
+        began = len(self.axis.first)
+        refined = self.axis.judged and len(self.indices) > began
+        return self.axis.judged if refined else began
+
     def values(self, name: str) -> list[float]:
         return [getattr(self.runs(**{self.axis.name: index}), name) for index in self.indices]
 
@@ -196,8 +207,7 @@ class Chain:
             change = values[-1] + beyond - values[-2] - before
             share, share_of_change = self.axis.shares
             return CALIBRATED * (share * abs(beyond) + share_of_change * abs(change))
-        last = slice(-JUDGED if self.axis.fitted else -len(self.axis.first), None)
-        values, levels = values[last], levels[last]
+        values, levels = values[-self.judged :], levels[-self.judged :]
         if self.axis.fitted:
             share, share_of_scatter = FITTED_SHARES
             scatter = _line(values, levels).scatter
@@ -254,7 +264,8 @@ def refines_cells(chains: dict[str, Chain]) -> str | None:
 def mixed_difference(runs: Runs, chains: dict[str, Chain], name: str) -> float:
     """How far the corrections along cells and angles fail to add up: their mixed difference.
 
-    It is taken next to the finest angles, since few of them may hide what cells are worth.
+    It is taken next to the finest angles, since few of them may hide what cells are worth, and, of
+    cells whose error is irregular, twice as fine: what is next to the base may differ by chance.
     """
     first = refines_cells(chains)
     if first is None or "angles" not in chains or chains[first].axis.imposed:
@@ -263,8 +274,10 @@ def mixed_difference(runs: Runs, chains: dict[str, Chain], name: str) -> float:
     for axis in (first, "angles"):
         base = runs.base[axis]
         last = chains[axis].indices[-1]
-        step = max(last - base - 1, 1) if axis == "angles" else 1
-        beside[axis] = base + step if last > base else base - 1
+        step = 1 if chains[axis].axis.regular else 2
+        if axis == "angles":
+            step = max(last - base - 1, 1)
+        beside[axis] = min(base + step, last) if last > base else base - 1
     one, other = ({axis: index} for axis, index in beside.items())
     both, one, other, base = (getattr(runs(**at), name) for at in (beside, one, other, {}))
     return both - one - other + base

@@ -233,7 +233,7 @@ def _given_up(asked, drive, reason):
 
 
 def _certified(asked, drive, accuracy):
-    """The refinement.Certified to an accuracy, and what was refined."""
+    """The certified.Certified to an accuracy, and what was refined."""
     problem, tolerance = asked.problem, accuracy.tolerance
     share = accuracy._replace(tolerance=PERIODICITY_SHARE * tolerance)
     coarsest, axes = plan(problem, asked.model, tolerance, asked.cells, asked.steps)

@@ -8,8 +8,7 @@ time scatter in the differences of other chains) that counts as error too, and i
 one the base itself is refined.
 
 - cells: the error falls smoothly with about the second power, so the last difference is
-  extrapolated; a share of that extrapolation stays as error, and another of the change that the
-  last run made to the extrapolated value.
+  extrapolated; shares of that and of the change that the last run made to it stay as error.
 - angles: the error falls fast but irregularly, so nothing is extrapolated, and the spread of the
   last three runs is the error; of rotating motions the larger of two projections: how far the value
   would still go by each of the last two differences.
@@ -25,11 +24,10 @@ one the base itself is refined.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
-import numpy as np
-
+from microslip.adaptive.certified import Certified, nothing
 from microslip.adaptive.chains import (
     CALIBRATED,
     Axis,
@@ -45,53 +43,10 @@ from microslip.solver.run import Run
 
 LARGEST_OPEN = 0.5
 """Share of the tolerance that the readings may take for runs to be refined for what is left."""
+LEAST_WORTH = 0.25
+"""Share of the tolerance down to which an axis is refined where a worse one cannot be."""
 MOST_REBASED = 6
 SOURCES = {"cells": "space", "angles": "space", "steps": "time"}
-
-
-@dataclass(frozen=True)
-class Certified:
-    """A number and what is wrong with it at most; forces over mu F_z, or a velocity.
-
-    Attributes
-    ----------
-    mu, torque : float
-        Corrected means; for mu the quantity that was asked for.
-    errors : dict of float
-        Of mu by source: space, time, periodicity, solver; model, where there are readings.
-    torque_error : float
-        Of the torque in space, and over the readings.
-    finest : problem.Resolution
-        Largest resolution used along each axis.
-    periods : float
-        Of the longest run.
-    iterations, work, effort, retried : int
-        Of all runs.
-    converged : bool
-        Whether every run found its periodic state and nothing kept the refinement from going on.
-    reason : str
-        What is to blame else.
-    periodic : bool
-        Whether every run found its periodic state.
-    """
-
-    mu: float
-    torque: float
-    errors: dict
-    torque_error: float
-    finest: object
-    periods: float
-    iterations: int
-    work: int
-    effort: int
-    retried: int
-    converged: bool
-    reason: str
-    periodic: bool
-
-    @property
-    def error(self) -> float:
-        return sum(self.errors.values())
 
 
 def certify(
@@ -141,7 +96,7 @@ def certify(
         still = "no error is known yet"
         if known is not None:
             still = f"the error is still {known.error:.1e}"
-        return replace(known or _nothing(coarsest), converged=False, reason=f"{spent}: {still}")
+        return replace(known or nothing(coarsest), converged=False, reason=f"{spent}: {still}")
 
 
 class Estimate(NamedTuple):
@@ -218,10 +173,18 @@ class _Refinement:
             return None
         if worst is None or sum(left.values()) + sum(hidden.values()) < 0.5 * self.goal:
             return ""
-        if self.chains[worst].refine():
+        if self._refine_one(left):
             return None
         finest = self.chains[worst].levels[-1]
         return f"the error over {worst} is still {left[worst]:.1e} at {finest}"
+
+    def _refine_one(self, left):
+        """Refine the worst axis or, if it has no finer level, another that makes room for it."""
+        worst, *others = sorted(left, key=left.get, reverse=True)
+        if self.chains[worst].refine():
+            return True
+        worth = [name for name in others if left[name] > LEAST_WORTH * self.goal]
+        return left[worst] < self.goal and any(self.chains[name].refine() for name in worth)
 
     def _can_rebase(self, cause):
         """Whether the axes whose base would cure it are there and have a finer level."""
@@ -249,13 +212,6 @@ class _Refinement:
         """The Certified of the chains as they are; readings: whether their error is part of it."""
         others = self.readings if readings else Readings(self.runs, ())
         return _summary(self.runs, self.chains, estimate.errors, others, reason)
-
-
-def _nothing(coarsest):
-    """The Certified of a point of which no error is known yet."""
-    errors = dict.fromkeys((*SOURCES.values(), "periodicity", "solver"), np.inf)
-    none = replace(coarsest, cells=0, angles=0, steps=0)
-    return Certified(np.nan, np.nan, errors, np.inf, none, 0.0, 0, 0, 0, 0, False, "", False)
 
 
 def _errors(runs, chains, hidden, tolerance):

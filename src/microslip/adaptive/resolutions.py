@@ -28,7 +28,7 @@ comes to lie scatters from run to run."""
 PROJECTED_CAUTION = {"angles": 1.3, "steps": 1.8}
 PROJECTED_SCATTER = 0.3
 """See chains.Axis."""
-TOGETHER_FROM, TOGETHER_RESOLVED = 1e-3, 0.8
+TOGETHER_FROM, TOGETHER_RESOLVED = 1e-3, 0.9
 """Tolerance from which on rings, angles and steps of a bore are refined together, and the share of
 it below which none of these points claims its error to be: the few runs of a point may come to lie
 on a line by chance."""
@@ -182,5 +182,5 @@ def _steps(problem, model, tolerance):
         return Axis("steps", levels, base, first, caution=caution)
     base = STEPS.index(coarsest.steps) + levels_finer(1e-3 / tolerance) // 2
     caution, scatter = PROJECTED_CAUTION["steps"], PROJECTED_SCATTER
-    first = (base - 2, base - 1, base)
+    first = (base - 2, base, base + 2)
     return Axis("steps", levels, base, first, projected=True, caution=caution, scatter=scatter)
