@@ -22,6 +22,9 @@ NEEDED = {
 AS_A_VELOCITY = 1e5
 """Stiffness from which on a spring is told as a constant velocity."""
 
+MARGIN = 1.1
+"""Free space beside the first and the last velocity, as a factor, so that no mark is cut."""
+
 
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
     """Draw friction over the mean velocity, of one contact and of the pair."""
@@ -37,14 +40,17 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
     velocity = pair["velocity"].values
     for axes in (left, right):
         axes.set_xscale("log")
-        axes.set(xlim=(velocity[0], velocity[-1]))
+        axes.set(xlim=(velocity[0] / MARGIN, velocity[-1] * MARGIN))
         look.logarithmic(axes.xaxis)
         axes.set_xlabel(look.axis(VELOCITY["transverse"]))
         look.unit_range(axes)
     left.set_ylabel(look.FRICTION.replace("  (", "\n("))
     amplitude = f"amplitude {float(pair['amplitude']):g}, along the motion"
-    look.legend_above(left, "a", f"one contact, {amplitude}")
-    look.legend_above(right, "b", "two in antiphase")
+    look.letter(left, "a", f"one contact, {amplitude}")
+    look.letter(right, "b", "two in antiphase")
+    # the right panel has all that the left one has
+    handles, labels = right.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=len(labels))
     return figure
 
 
