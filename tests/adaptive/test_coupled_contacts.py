@@ -26,6 +26,7 @@ ALONE = {
         {"amplitude": 1.5, "force": 0.3, "pressure": "ellipse:ratio=0.5"} | COARSE,
     ),
 }
+LONG = ("turning on a spring", "no axis of symmetry")
 ONCE = {"phase=0": 1e-5, "phase=30;load=1,phase=30": None}
 
 
@@ -37,7 +38,9 @@ def answer(found):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ALONE)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.long if n in LONG else ()) for n in ALONE]
+)
 @pytest.mark.parametrize("contacts", ONCE)
 def test_contacts_that_do_the_same_are_one(contacts, name):
     """When a period begins does not count; from the same start on, steps are the very same."""

@@ -85,7 +85,8 @@ def test_no_load_by_a_heavy_body_without_a_force():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("scene", "amplitude"), [(EIGHT, 1.0), ("normal:forward=1,phase=225", 0.8)]
+    ("scene", "amplitude"),
+    [(EIGHT, 1.0), pytest.param("normal:forward=1,phase=225", 0.8, marks=pytest.mark.long)],
 )
 def test_what_goes_in_and_not_out_is_dissipated(scene, amplitude):
     """Slip times traction, summed over the points of another model."""

@@ -89,7 +89,9 @@ def test_what_is_no_motion_is_refused(name, problem):
     ("name", "velocity", "amplitude", "settings"),
     [
         ("transverse-bore", 0.1, 0.8, {}),
-        ("transverse-bore:phase=90", 0.03, 0.5, {"poisson": 0.3}),
+        pytest.param(
+            *("transverse-bore:phase=90", 0.03, 0.5, {"poisson": 0.3}), marks=pytest.mark.long
+        ),
         ("transverse-bore:angle=0.4,phase=50", 0.3, 2.0, {"poisson": 0.5}),
         ("transverse-bore:phase=90", 0.2, 0.5, {"pressure": "power:exponent=1"}),
     ],

@@ -211,6 +211,7 @@ def test_the_page_answers_for_all_materials_as_predict_does_on_the_same_map(over
     assert answered > 0.7 * COUNT
 
 
+@pytest.mark.long
 def test_the_page_agrees_with_the_solver_within_both_errors():
     """100 questions about bodies of Poisson's ratio 0: map on the page, predict by the solver."""
     axes = {"velocity": [0.01, 5], "amplitude": [0, 2.5], "adaptive": {"error": 1e-2}}

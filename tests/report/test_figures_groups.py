@@ -97,7 +97,7 @@ def test_a_group_that_is_not_there_or_is_mixed_is_refused():
 # Maps
 
 
-@pytest.mark.parametrize("count", [1, 2, 3, 5, 12])
+@pytest.mark.parametrize("count", [1, 2, 3, 5, pytest.param(12, marks=pytest.mark.long)])
 def test_any_number_of_maps_has_room(count):
     figure = drawing.draw("extended_motions", motions(count))
     size, edges = figure.get_size_inches(), figure.get_tightbbox().extents
@@ -209,6 +209,7 @@ def test_titles_are_drawn_as_they_stand(tmp_path):
         drawing.save(figure, tmp_path / f"lines.{kind}")
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore:Glyph")
 def test_a_sign_that_the_font_lacks_and_a_word_without_end_do_no_harm(tmp_path):
     given = {"a": spanning("\u4e2d\u6587"), "b": spanning("x" * 100), "c": spanning("c")}

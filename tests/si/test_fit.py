@@ -141,7 +141,9 @@ SEEDS = 100
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("known", "confidence"), [(True, 0.68), (False, 0.95)])
+@pytest.mark.parametrize(
+    ("known", "confidence"), [pytest.param(True, 0.68, marks=pytest.mark.long), (False, 0.95)]
+)
 def test_intervals_cover_the_truth_as_often_as_they_say(closed, known, confidence):
     """Counts of that many seeds lie where a binomial one of that chance does but once in 10^4."""
     table, sigma = conditions(12), 0.05

@@ -100,7 +100,7 @@ def test_mirror_images_have_the_same_limit_or_the_opposite_one():
     within(drags, -drives.mu_macro, drives.mu_macro_error)  # all of it slides
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_other_models_find_the_same_limit():
     rings = microslip.solve("elliptic", 0.0, 0.5)
     coarse = {"cells": 16, "steps": 64, "tolerance": 1e-2}
