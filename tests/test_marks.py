@@ -1,5 +1,6 @@
 """Which tests a command line runs: what is long is left out unless something is named."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -35,6 +36,7 @@ def folder(tmp_path_factory):
     (folder / "tests").mkdir()
     shutil.copy(TESTS / "conftest.py", folder / "tests")
     shutil.copy(TESTS.parent / "pyproject.toml", folder)
+    shutil.copytree(TESTS.parent / ".ci", folder / ".ci")
     (folder / "tests" / "test_tiers.py").write_text(TIERS)
     return folder
 
@@ -50,14 +52,23 @@ def folder(tmp_path_factory):
     ],
 )
 def test_what_is_long_runs_when_something_is_named(arguments, expected, folder):
+    assert passed([sys.executable, "-m", "pytest", *arguments], folder) == expected
+
+
+@pytest.mark.slow
+def test_everything_is_run_by_one_script(folder):
+    assert passed(["bash", ".ci/whole", "-n0"], folder) == {QUICK, SLOW, LONG}
+
+
+def passed(command, folder):
+    """Names of the tests that a command runs."""
     loads_nothing = ["-o", "filterwarnings="]  # the package's warnings are those of libraries
-    command = [sys.executable, "-m", "pytest", "-rA", *loads_nothing, *arguments]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    done = subprocess.run(
+        [*command, "-rA", *loads_nothing],
+        cwd=folder,
+        env=os.environ | {"PYTHON": sys.executable},
+        capture_output=True,
+        text=True,
+    )
     assert done.returncode == 0, done.stdout + done.stderr
-    passed = {line.rpartition("::")[2] for line in done.stdout.splitlines() if "::" in line}
-    assert passed == expected
-
-
-def test_all_of_them_are_run_by_one_command():
-    script = (TESTS.parent / ".ci" / "whole").read_text()
-    assert '-m pytest -m "long or not long" "$@"' in script
+    return {line.rpartition("::")[2] for line in done.stdout.splitlines() if "::" in line}

@@ -309,6 +309,7 @@ def test_no_page_has_code_that_is_not_fenced(page):
 
 
 def test_what_is_not_run_is_there_and_names_what_there_is():
+    assert set(LONG_PAGES) <= set(PAGES)
     for page, start in NOT_RUN:
         if not (ROOT / page).exists():
             continue

@@ -78,6 +78,10 @@ def drawn():
     return draw
 
 
+def test_what_every_run_looks_at_is_there():
+    assert set(SOME) < set(NAMES)
+
+
 @pytest.mark.usefixtures("unplaced")
 @each(NAMES)
 def test_saves_whole_and_reproducibly(name, tmp_path, monkeypatch):
