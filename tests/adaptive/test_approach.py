@@ -103,7 +103,7 @@ def test_bore_marches_fall_to_the_closed_form():
         ("transverse", "radial", 0.25, 1e-4, (1e-2, 1e-3, 1e-4, 1e-5)),
         ("transverse", "radial", 0.5, 1e-4, (1e-2, 1e-3, 1e-4, 1e-5)),
         ("transverse", "radial", 0.75, 1e-4, (1e-2, 1e-3, 1e-4, 1e-5)),
-        ("bore", "polar", 1.0, 5e-4, (3e-2, 3e-3, 3e-4, 3e-5)),
+        pytest.param("bore", "polar", 1.0, 5e-4, (3e-2, 3e-3, 3e-4, 3e-5), marks=pytest.mark.long),
     ],
 )
 def test_certified_points_fall_towards_the_closed_form(
@@ -128,9 +128,9 @@ def test_certified_points_fall_towards_the_closed_form(
 @pytest.mark.parametrize(
     ("amplitude", "velocity", "tolerance"),
     [
-        (0.25, 1e-4, 1e-3),
+        pytest.param(0.25, 1e-4, 1e-3, marks=pytest.mark.long),
         (0.75, 1e-4, 1e-3),
-        (0.25, 1e-5, 1e-4),
+        pytest.param(0.25, 1e-5, 1e-4, marks=pytest.mark.long),
         (0.5, 1e-5, 1e-4),
         (0.25, 1e-5, 1e-3),
     ],

@@ -56,7 +56,7 @@ def test_contacts_that_do_the_same_are_one(contacts, name):
 @pytest.mark.parametrize(
     "scene, contacts, given",
     [
-        ("bore", "load=2;load=1,phase=90", {}),
+        pytest.param("bore", "load=2;load=1,phase=90", {}, marks=pytest.mark.long),
         ("elliptic", "load=2;amplitude=0.5,phase=90", {"poisson": 0.3, "tolerance": 1e-2}),
         ("normal:lateral=1,phase=40", "phase=0;amplitude=0.5,phase=90", {"tolerance": 1e-2}),
     ],
@@ -101,7 +101,7 @@ def test_the_threshold_of_contacts_that_turn_is_the_mean_of_their_static_limits(
     assert above.velocity > 2.0 * above.velocity_error
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_large_turns_are_those_of_rigid_contacts():
     """At every instant Eq 21 of each, at the velocity over its own speed of rotation."""
     shares, leads, force = (0.75, 0.25), (0.0, np.deg2rad(60.0)), 0.4
@@ -140,7 +140,7 @@ def test_large_turns_are_those_of_rigid_contacts():
     assert lost[1] < 0.5 * lost[0]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("drive", [{"force": 0.3}, SPRING], ids=["force", "spring"])
 def test_rings_angles_and_squares_agree_without_coupling_of_directions(drive):
     given = {"amplitude": 1.5, "contacts": "load=2;load=1,phase=90"} | drive

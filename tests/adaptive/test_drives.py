@@ -160,7 +160,10 @@ def test_a_force_on_a_steady_bore_inverts_equation_21():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("drive", [{"velocity": 0.1, "stiffness": 0.5}, {"force": 0.5}])
+@pytest.mark.parametrize(
+    "drive",
+    [pytest.param({"velocity": 0.1, "stiffness": 0.5}, marks=pytest.mark.long), {"force": 0.5}],
+)
 def test_rings_angular_points_and_squares_agree(drive):
     found = {
         model: microslip.solve("transverse", amplitude=1.0, model=model, tolerance=t, **drive)

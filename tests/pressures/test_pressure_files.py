@@ -76,7 +76,7 @@ def test_a_uniform_square_is_one_pressure_at_any_resolution(reading):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["transverse", "bore"])
+@pytest.mark.parametrize("scene", ["transverse", pytest.param("bore", marks=pytest.mark.long)])
 def test_friction_of_a_uniform_square_does_not_depend_on_its_grid(tmp_path, scene):
     found = []
     for count in (2, 41):
@@ -228,7 +228,7 @@ def test_units_and_formats_do_not_matter(tmp_path):
     assert one.cell_loads(20) == pytest.approx(other.cell_loads(20), abs=1e-8)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_pressure_that_is_not_symmetric_is_marched_over_the_whole_period(tmp_path):
     values = HERTZIAN * (1.0 + 0.5 * AXIS)
     name = csv(tmp_path / "p.csv", values=values)

@@ -236,9 +236,12 @@ def test_the_steady_bore_is_eqs_17_and_18(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["power:exponent=1", "punch", "ring"])
 @pytest.mark.parametrize(
-    ("scene", "velocity", "amplitude"), [("transverse", 0.1, 0.6), ("bore", 0.3, 1.0)]
+    "name", ["power:exponent=1", pytest.param("punch", marks=pytest.mark.long), "ring"]
+)
+@pytest.mark.parametrize(
+    ("scene", "velocity", "amplitude"),
+    [("transverse", 0.1, 0.6), pytest.param("bore", 0.3, 1.0, marks=pytest.mark.long)],
 )
 def test_rings_and_squares_agree(name, scene, velocity, amplitude):
     settings = {"pressure": name, "tolerance": 4e-3}

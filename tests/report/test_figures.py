@@ -287,6 +287,7 @@ def test_all_of_poissons_ratios_in_a_sweep_are_drawn(datasets, key, name):
     assert said.count(r"computed, $\nu = 0.5$") == 2
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("unplaced")
 def test_of_many_of_poissons_ratios_it_is_said_how_many_are_drawn(datasets):
     given = at_ratios(datasets["bore"], *np.linspace(0, 0.5, 11))

@@ -115,7 +115,16 @@ def test_other_models_find_the_same_limit():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", [NARROW, EIGHT, "elliptic", ACROSS, "normal:forward=1,phase=90"])
+@pytest.mark.parametrize(
+    "scene",
+    [
+        NARROW,
+        EIGHT,
+        pytest.param("elliptic", marks=pytest.mark.long),
+        ACROSS,
+        "normal:forward=1,phase=90",
+    ],
+)
 def test_slow_marches_end_there(scene):
     """Limit and marches are those of the same rings and steps, so that few of them tell."""
     kind, resolution = motion_named(scene), Resolution(32, 1, 128)

@@ -190,6 +190,7 @@ def test_an_installed_copy_gives_the_same_dataset_and_finds_what_a_tree_made(ord
     assert "Nothing to be done" in done.stdout + done.stderr, done.stderr
 
 
+@pytest.mark.long
 def test_an_installed_copy_hands_on_arguments_and_exit_codes(ordinary, installed):
     place = beside(ordinary, "refused")
     done = installed(place, "sweep", "results/sideways.nc", *RUN)

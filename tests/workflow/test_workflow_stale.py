@@ -75,6 +75,7 @@ def test_a_dataset_of_another_configuration_is_made_again(both_solved, tmp_path)
     assert project.planned(target) == {}
 
 
+@pytest.mark.long
 def test_what_has_no_seal_of_its_own_is_made_again(project):
     """A dataset without one; one of some other project, with its seal; a figure that is another."""
     results = project.folder / "results"
