@@ -26,7 +26,7 @@ ALONE = {
         {"amplitude": 1.5, "force": 0.3, "pressure": "ellipse:ratio=0.5"} | COARSE,
     ),
 }
-LONG = ("turning on a spring", "no axis of symmetry")
+LONG = ("turning on a spring", "a load that oscillates, turning", "no axis of symmetry")
 ONCE = {"phase=0": 1e-5, "phase=30;load=1,phase=30": None}
 
 

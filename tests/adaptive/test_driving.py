@@ -117,7 +117,7 @@ def test_an_oscillating_load_does_no_work_over_a_period(amplitude):
     assert np.abs(work).sum() > 1.0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_two_models_drive_alike():
     """At nu = 0 rings alone and rings with angles are two models of one contact."""
     rings, modes = (

@@ -73,7 +73,7 @@ def test_certificate_covers_a_much_finer_reference(scene, velocity, amplitude, n
     assert min(shares) >= 0.0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_certificate_sees_rings_and_angles_together():
     """The centre of rotation moves through the contact, and few angles hide what rings are worth:
     with the mixed difference taken next to the base this point missed by twice its certificate."""

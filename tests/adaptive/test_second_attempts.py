@@ -98,7 +98,7 @@ def test_slowest_motions_get_their_answer_in_a_second_attempt(
     assert apart <= answer.mu_macro_error + limit.mu_macro_error + velocity ** (2 / 3)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_these_points_need_it(monkeypatch):
     """Without the second attempt they are not converged; with it they say that there was one."""
     scene, poisson, velocity, amplitude, tolerance = HARD[2]

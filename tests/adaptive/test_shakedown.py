@@ -140,7 +140,7 @@ def test_bad_input_gets_one_line(changed, said):
     assert str(refused.value).startswith(said) and "\n" not in str(refused.value)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_in_si_units_it_is_told_of_a_joint_that_stays():
     joint = {"material": "steel", "counterbody": "steel", "radius": "200 mm", "load": "1 kN"}
     joint |= {"mu": 0.15, "frequency": "50 Hz", "amplitude": "0.5 um"}

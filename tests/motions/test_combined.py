@@ -105,7 +105,7 @@ def test_angular_points_of_the_whole_disc_agree_with_squares(name, velocity, amp
     assert abs(both[0].mu_macro - both[1].mu_macro) <= sum(one.mu_macro_error for one in both)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_load_that_oscillates_beside_both_tends_to_each_of_them():
     """Without its rotation it is the load with a lateral motion, and without the lateral motion the
     load with a rotation, both of which know half of the disc."""

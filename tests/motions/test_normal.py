@@ -36,7 +36,7 @@ ALONG = [
 ASIDE = [
     ("normal:lateral=1", 0.1, 0.7),
     ("normal:lateral=0.5,phase=90,indentation=1", 0.02, 1.2),
-    ("normal:lateral=1,normal_cycles=2", 0.1, 0.8),
+    pytest.param(("normal:lateral=1,normal_cycles=2", 0.1, 0.8), marks=pytest.mark.long),
 ]
 
 
@@ -368,7 +368,10 @@ def test_a_history_follows_the_load():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("pressure", ["power:exponent=1", "power:exponent=8", "punch"])
+@pytest.mark.parametrize(
+    "pressure",
+    ["power:exponent=1", "power:exponent=8", pytest.param("punch", marks=pytest.mark.long)],
+)
 @pytest.mark.parametrize(
     ("scene", "velocity", "amplitude"),
     [("normal", 0.1, 0.5), ("normal:indentation=1", 0.03, 1.4)],

@@ -36,7 +36,7 @@ def test_modes_find_what_rings_find(scene):
         assert modes.mu == pytest.approx(rings.mu, abs=2e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_static_limit_is_that_of_rings_too():
     scene = "normal:lateral=1"
     rings = microslip.solve(scene, 0.0, 0.4, model="radial", tolerance=1e-3)

@@ -163,7 +163,7 @@ TRUTHS += [("power:exponent=1", cone, 16)]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("reading", ["cells", "samples"])
+@pytest.mark.parametrize("reading", ["cells", pytest.param("samples", marks=pytest.mark.long)])
 @pytest.mark.parametrize(("name", "shape", "count"), TRUTHS)
 def test_the_error_holds_what_the_resolution_of_a_file_leaves_open(
     tmp_path, name, shape, count, reading

@@ -275,7 +275,7 @@ def test_the_power_2_is_a_sphere_in_motion():
         assert other.mu_macro == pytest.approx(one.mu_macro, abs=1e-7)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_translation_at_poissons_ratio_0_cannot_tell_how_an_ellipse_lies():
     """Directions of traction and places of points meet nowhere but in nu and in rotation."""
     settings = {"tolerance": 5e-3}

@@ -46,7 +46,7 @@ def test_nothing_is_left_where_slip_goes_both_ways():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("amplitude", [0.2, 0.5, 0.8])
+@pytest.mark.parametrize("amplitude", [0.2, 0.5, pytest.param(0.8, marks=pytest.mark.long)])
 def test_a_loop_of_no_width_has_the_limit_of_its_line(amplitude):
     """A loop as narrow as this is within 2e-4 of the line, for which there are closed forms."""
     across = microslip.solve("elliptic:forward=0.001", 0.0, amplitude)

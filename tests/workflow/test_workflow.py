@@ -103,6 +103,7 @@ def test_what_is_damaged_is_made_again_where_it_is_needed(project):
     assert project.planned() == {}
 
 
+@pytest.mark.long
 def test_a_job_that_fails_does_not_hide_what_the_others_say(project):
     (project.folder / "results" / "bore.nc").unlink()
     project.append("src/microslip/report/figures/maps.py", "\nraise ValueError('no maps today')\n")
