@@ -194,12 +194,11 @@ def test_the_shipped_answer_at_velocity_zero_is_the_limit_and_not_a_start():
 
 # Methods and what ships agree where both converge
 
-COMPILED = ["full-newton"]
-COMPILED += [
+COMPILED = [
     pytest.param(name, marks=pytest.mark.long)
-    for name in ("admm", "gauss-seidel", "spectral-gradient")
+    for name in ("admm", "gauss-seidel", "spectral-gradient", "full-newton")
 ]
-"""Methods with code of their own, which takes seconds to compile: one of them in every run."""
+"""Methods with code of their own, which takes seconds to compile."""
 
 
 @pytest.mark.slow
