@@ -3,8 +3,8 @@ finished run.
 
 A file is one process's, since its tests share what is slow to make (--dist loadfile).
 
-Tests that are marked `long` take several seconds each: whole workflows, pages, figures, campaigns.
-Something quicker guards the same thing in every run, so a run that names nothing leaves them out.
+Tests that are marked `long` take a second to a minute each: whole workflows, pages, figures, and
+finer runs of what something quicker shows, too. A run that names nothing leaves them out.
 Whatever is named on the command line runs whole, be it a file, a folder, an expression of -k or
 one of -m; `.ci/whole` runs everything.
 """
