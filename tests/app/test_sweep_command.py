@@ -188,15 +188,9 @@ def is_job(process):
     return False
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs Linux")
-@pytest.mark.parametrize(
-    "command",
-    [
-        pytest.param(SWEEP, id="microslip sweep"),
-        pytest.param(SNAKEMAKE, id="snakemake", marks=pytest.mark.long),
-    ],
-)
+@pytest.mark.parametrize("command", [SWEEP, SNAKEMAKE], ids=["microslip sweep", "snakemake"])
 def test_a_terminal_that_is_closed_ends_all_processes_and_leaves_no_lock(command, tmp_path):
     """The system tells the first process of a session, and a shell all that it has started."""
     (tmp_path / "slow.yaml").write_text(SLOW)

@@ -38,7 +38,7 @@ def test_without_a_lateral_part_it_is_the_longitudinal_one(phase):
 @pytest.mark.parametrize(
     "scene",
     [
-        CIRCLE,
+        pytest.param(CIRCLE, marks=pytest.mark.long),
         pytest.param("elliptic:phase=0", marks=pytest.mark.long),
         pytest.param("elliptic:forward=0.5,phase=30", marks=pytest.mark.long),
         "elliptic:forward_cycles=2",

@@ -34,7 +34,7 @@ ALONG = [
     ("normal:forward=0.8,forward_cycles=2,phase=30", 0.2, 0.6),
 ]
 ASIDE = [
-    ("normal:lateral=1", 0.1, 0.7),
+    pytest.param(("normal:lateral=1", 0.1, 0.7), marks=pytest.mark.long),
     ("normal:lateral=0.5,phase=90,indentation=1", 0.02, 1.2),
     pytest.param(("normal:lateral=1,normal_cycles=2", 0.1, 0.8), marks=pytest.mark.long),
 ]
