@@ -1,6 +1,12 @@
-"""What all tests share: the order in which files of them are handed out, and a finished run.
+"""What all tests share: which of them run, the order in which files of them are handed out, and a
+finished run.
 
 A file is one process's, since its tests share what is slow to make (--dist loadfile).
+
+Tests that are marked `long` take a second to a minute each: whole workflows, pages, figures, and
+finer runs of what something quicker shows, too. A run that names nothing leaves them out.
+Whatever is named on the command line runs whole, be it a file, a folder, an expression of -k or
+one of -m; `.ci/whole` runs everything.
 """
 
 import gc
@@ -25,31 +31,35 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell starts what runs in its background so, and processes that tests interrupt inherit it.
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-LONG = (
+FIRST = (
     "test_workflow.py",  # compiles the solver, which takes a fresh clone a minute or two
-    "test_figures_every",  # needs no solver
-    "test_figures_studies",
-    "test_workflow_",
-    "test_docs",
-    "test_figures",
-    "test_explorer",
-    "test_terminal",
-    "test_pressure",
-    "test_point",
-    "test_static_loop",
-    "test_approach",
-    "test_stability",
-    "test_normal_turning",
-    "test_odd_files",
+    *("test_figures", "test_odd_files", "test_bad", "test_compiled", "test_terminal"),  # need none
+    *("test_workflow_", "test_docs", "test_explorer", "test_coupled", "test_drives", "test_point"),
+    *("test_pressure", "test_side_by_side", "test_static_loop", "test_normal", "test_period"),
+    *("test_stability", "test_sweep_command", "test_fit"),
 )
 """Files that take long, by how their names begin: they come first, so that all processes end at
 about the same time."""
 
 
+def pytest_configure(config):
+    """Leave out what is long where nothing is named; processes that run tests are told the same."""
+    option = config.option
+    is_named = config.args_source == config.ArgsSource.ARGS  # and not what pyproject.toml names
+    if not (is_named or option.markexpr or option.keyword):
+        option.markexpr = "not long"
+
+
+@pytest.hookimpl(tryfirst=True)  # before pytest leaves out what it is asked to leave out
 def pytest_collection_modifyitems(items):
+    """What is long is slow, too; files that take long come first."""
+    for item in items:
+        if item.get_closest_marker("long"):
+            item.add_marker("slow")
+
     def place(item):
-        found = (i for i, start in enumerate(LONG) if item.path.name.startswith(start))
-        return next(found, len(LONG))
+        found = (i for i, start in enumerate(FIRST) if item.path.name.startswith(start))
+        return next(found, len(FIRST))
 
     items.sort(key=place)
 

@@ -172,7 +172,7 @@ def test_scattered_errors_are_covered_nearly_always():
     assert share_covered(0.3, {"steps": 2}, axes=["steps"]) > 0.98
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_mixed_errors_are_covered():
     mixed = {"cells": 2, "angles": 2}
     assert share_covered(0.0, *SEPARATE, mixed) > 0.98

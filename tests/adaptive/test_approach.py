@@ -66,7 +66,7 @@ def exponents(velocities, excess):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("amplitude", [0.25, 0.5, 0.75])
+@pytest.mark.parametrize("amplitude", [pytest.param(0.25, marks=pytest.mark.long), 0.5, 0.75])
 def test_transverse_marches_fall_to_the_closed_form(amplitude):
     mu, error = marched("transverse", amplitude, SLOW)
     exact = float(paper.static_limit_transverse(amplitude))
@@ -82,7 +82,7 @@ def test_transverse_marches_fall_to_the_closed_form(amplitude):
     assert abs(free_limit(mu) - float(paper.static_transverse(amplitude))) > 100 * error.max()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_bore_marches_fall_to_the_closed_form():
     velocities = tuple(10.0 ** -np.array([2.0, 2.5, 3.0, 3.5, 4.0]))
     mu, error = marched("bore", 1.0, velocities)
@@ -103,7 +103,7 @@ def test_bore_marches_fall_to_the_closed_form():
         ("transverse", "radial", 0.25, 1e-4, (1e-2, 1e-3, 1e-4, 1e-5)),
         ("transverse", "radial", 0.5, 1e-4, (1e-2, 1e-3, 1e-4, 1e-5)),
         ("transverse", "radial", 0.75, 1e-4, (1e-2, 1e-3, 1e-4, 1e-5)),
-        ("bore", "polar", 1.0, 5e-4, (3e-2, 3e-3, 3e-4, 3e-5)),
+        pytest.param("bore", "polar", 1.0, 5e-4, (3e-2, 3e-3, 3e-4, 3e-5), marks=pytest.mark.long),
     ],
 )
 def test_certified_points_fall_towards_the_closed_form(
@@ -128,11 +128,11 @@ def test_certified_points_fall_towards_the_closed_form(
 @pytest.mark.parametrize(
     ("amplitude", "velocity", "tolerance"),
     [
-        (0.25, 1e-4, 1e-3),
+        pytest.param(0.25, 1e-4, 1e-3, marks=pytest.mark.long),
         (0.75, 1e-4, 1e-3),
-        (0.25, 1e-5, 1e-4),
+        pytest.param(0.25, 1e-5, 1e-4, marks=pytest.mark.long),
         (0.5, 1e-5, 1e-4),
-        (0.25, 1e-5, 1e-3),
+        pytest.param(0.25, 1e-5, 1e-3, marks=pytest.mark.long),
     ],
 )
 def test_certificates_cover_slow_marches(amplitude, velocity, tolerance):

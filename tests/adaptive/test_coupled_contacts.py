@@ -26,6 +26,7 @@ ALONE = {
         {"amplitude": 1.5, "force": 0.3, "pressure": "ellipse:ratio=0.5"} | COARSE,
     ),
 }
+LONG = ("turning on a spring", "a load that oscillates, turning", "no axis of symmetry")
 ONCE = {"phase=0": 1e-5, "phase=30;load=1,phase=30": None}
 
 
@@ -37,7 +38,9 @@ def answer(found):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ALONE)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.long if n in LONG else ()) for n in ALONE]
+)
 @pytest.mark.parametrize("contacts", ONCE)
 def test_contacts_that_do_the_same_are_one(contacts, name):
     """When a period begins does not count; from the same start on, steps are the very same."""
@@ -53,7 +56,7 @@ def test_contacts_that_do_the_same_are_one(contacts, name):
 @pytest.mark.parametrize(
     "scene, contacts, given",
     [
-        ("bore", "load=2;load=1,phase=90", {}),
+        pytest.param("bore", "load=2;load=1,phase=90", {}, marks=pytest.mark.long),
         ("elliptic", "load=2;amplitude=0.5,phase=90", {"poisson": 0.3, "tolerance": 1e-2}),
         ("normal:lateral=1,phase=40", "phase=0;amplitude=0.5,phase=90", {"tolerance": 1e-2}),
     ],
@@ -98,7 +101,7 @@ def test_the_threshold_of_contacts_that_turn_is_the_mean_of_their_static_limits(
     assert above.velocity > 2.0 * above.velocity_error
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_large_turns_are_those_of_rigid_contacts():
     """At every instant Eq 21 of each, at the velocity over its own speed of rotation."""
     shares, leads, force = (0.75, 0.25), (0.0, np.deg2rad(60.0)), 0.4
@@ -137,7 +140,7 @@ def test_large_turns_are_those_of_rigid_contacts():
     assert lost[1] < 0.5 * lost[0]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("drive", [{"force": 0.3}, SPRING], ids=["force", "spring"])
 def test_rings_angles_and_squares_agree_without_coupling_of_directions(drive):
     given = {"amplitude": 1.5, "contacts": "load=2;load=1,phase=90"} | drive

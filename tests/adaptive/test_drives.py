@@ -42,7 +42,7 @@ def test_what_does_not_give_way_has_the_friction_of_the_velocity(place, body):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("place", ["transverse", "bore"])
+@pytest.mark.parametrize("place", ["transverse", pytest.param("bore", marks=pytest.mark.long)])
 def test_the_softest_spring_is_a_force(place):
     """A spring as soft as can be pulls with its mean force: that force has its velocity.
 
@@ -160,7 +160,10 @@ def test_a_force_on_a_steady_bore_inverts_equation_21():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("drive", [{"velocity": 0.1, "stiffness": 0.5}, {"force": 0.5}])
+@pytest.mark.parametrize(
+    "drive",
+    [pytest.param({"velocity": 0.1, "stiffness": 0.5}, marks=pytest.mark.long), {"force": 0.5}],
+)
 def test_rings_angular_points_and_squares_agree(drive):
     found = {
         model: microslip.solve("transverse", amplitude=1.0, model=model, tolerance=t, **drive)
@@ -176,7 +179,7 @@ def test_rings_angular_points_and_squares_agree(drive):
             assert apart(one, other) < 1.0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_half_a_disc_and_squares_agree_on_a_bore_under_a_force():
     half = microslip.solve("bore", amplitude=1.0, force=0.6)
     squares = microslip.solve("bore", amplitude=1.0, force=0.6, model="cartesian", tolerance=2e-2)

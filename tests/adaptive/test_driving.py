@@ -85,7 +85,8 @@ def test_no_load_by_a_heavy_body_without_a_force():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("scene", "amplitude"), [(EIGHT, 1.0), ("normal:forward=1,phase=225", 0.8)]
+    ("scene", "amplitude"),
+    [(EIGHT, 1.0), pytest.param("normal:forward=1,phase=225", 0.8, marks=pytest.mark.long)],
 )
 def test_what_goes_in_and_not_out_is_dissipated(scene, amplitude):
     """Slip times traction, summed over the points of another model."""
@@ -116,7 +117,7 @@ def test_an_oscillating_load_does_no_work_over_a_period(amplitude):
     assert np.abs(work).sum() > 1.0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_two_models_drive_alike():
     """At nu = 0 rings alone and rings with angles are two models of one contact."""
     rings, modes = (

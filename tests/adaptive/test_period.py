@@ -9,7 +9,7 @@ from microslip.theory.hertz import TORQUE_FULL_SLIP
 
 POINTS = [
     ("transverse-bore:phase=90", 0.1, 0.8, 0.3),
-    ("normal:lateral=1,angle=1", 0.1, 0.5, 0.0),
+    pytest.param(("normal:lateral=1,angle=1", 0.1, 0.5, 0.0), marks=pytest.mark.long),
     ("transverse", 0.1, 0.6, 0.0),
     ("transverse", 0.1, 0.6, 0.3),
     ("bore", 0.05, 0.7, 0.0),

@@ -72,6 +72,7 @@ HARD = [
     ("transverse", 0.0, 1.2e-8, 0.909, 1e-3),
     ("bore", 0.0, 2.78e-8, 0.0959, 1e-2),
 ]
+LONG = HARD[1:3]
 
 
 @cache
@@ -81,7 +82,10 @@ def answered(scene, poisson, velocity, amplitude, tolerance):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("scene", "poisson", "velocity", "amplitude", "tolerance"), HARD)
+@pytest.mark.parametrize(
+    ("scene", "poisson", "velocity", "amplitude", "tolerance"),
+    [pytest.param(*point, marks=pytest.mark.long if point in LONG else ()) for point in HARD],
+)
 def test_slowest_motions_get_their_answer_in_a_second_attempt(
     scene, poisson, velocity, amplitude, tolerance
 ):
@@ -94,7 +98,7 @@ def test_slowest_motions_get_their_answer_in_a_second_attempt(
     assert apart <= answer.mu_macro_error + limit.mu_macro_error + velocity ** (2 / 3)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_these_points_need_it(monkeypatch):
     """Without the second attempt they are not converged; with it they say that there was one."""
     scene, poisson, velocity, amplitude, tolerance = HARD[2]

@@ -94,7 +94,7 @@ def test_what_does_not_give_way_has_the_friction_of_the_velocity(scene, endless)
 
 @pytest.mark.slow
 @pytest.mark.parametrize("force", [0.1, 0.3, 0.7])
-@pytest.mark.parametrize("amplitude", [0.5, 1.0, 5.0])
+@pytest.mark.parametrize("amplitude", [0.5, pytest.param(1.0, marks=pytest.mark.long), 5.0])
 def test_two_sliders_against_each_other_have_their_closed_form(amplitude, force):
     found = microslip.solve("longitudinal", amplitude=amplitude, force=force, contacts=AGAINST)
     assert found.converged

@@ -45,8 +45,11 @@ def test_a_contact_that_nothing_resists_goes_along_with_its_own_oscillation():
     assert abs(found.displacement - mindlin(0.4)) <= found.displacement_error
 
 
-POINTS = [("transverse", 0.3, 0.5), ("transverse", 0.5, 0.99), ("transverse", 0.9, 0.5)]
-POINTS += [("bore", 1.0, 0.6), ("bore", 3.0, 0.9)]
+POINTS = [("transverse", 0.3, 0.5), ("transverse", 0.9, 0.5), ("bore", 3.0, 0.9)]
+POINTS += [
+    pytest.param(*p, marks=pytest.mark.long)
+    for p in (("transverse", 0.5, 0.99), ("bore", 1.0, 0.6))
+]
 
 
 @pytest.mark.slow
@@ -66,7 +69,7 @@ def walked(model, **resolution):
     return run_to_rest(problem, 0.4, model, Resolution(**resolution), 1e-3, Settings())
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_rings_angles_and_squares_go_equally_far():
     rings = walked("radial", cells=24, angles=1, steps=24)
     angles = walked("polar", cells=24, angles=4, steps=24)
@@ -137,7 +140,7 @@ def test_bad_input_gets_one_line(changed, said):
     assert str(refused.value).startswith(said) and "\n" not in str(refused.value)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_in_si_units_it_is_told_of_a_joint_that_stays():
     joint = {"material": "steel", "counterbody": "steel", "radius": "200 mm", "load": "1 kN"}
     joint |= {"mu": 0.15, "frequency": "50 Hz", "amplitude": "0.5 um"}

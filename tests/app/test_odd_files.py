@@ -220,7 +220,7 @@ def test_sweep_forgets_no_configuration_that_is_given_apart(tmp_path):
     assert "--configfile" in done.stderr and "--configfile A B" in done.stderr
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_sweep_runs_where_the_home_takes_no_files(tmp_path):
     (tmp_path / "home").write_text("no folder")
     more = {"HOME": str(tmp_path / "home"), "XDG_CACHE_HOME": "", "NUMBA_CACHE_DIR": ""}

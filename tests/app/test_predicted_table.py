@@ -66,7 +66,7 @@ def test_a_line_that_nothing_answers_does_not_take_the_others_with_it(folder, ca
     assert spread / load == pytest.approx(1.5 * 0.1, rel=0.05)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_each_line_may_look_for_something_else(folder, capsys):
     text = "load [N],amplitude [um],reduction\n10,,0.3\n,0.3,0.3\n10,0.3,\n"
     (folder / "contacts.csv").write_text(text)

@@ -125,7 +125,11 @@ def test_a_file_that_is_no_configuration_is_one_line(case, here):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("row", [REFUSED[0], REFUSED[9], REFUSED[-1]], ids=str)
+@pytest.mark.parametrize(
+    "row",
+    [REFUSED[0], *(pytest.param(row, marks=pytest.mark.long) for row in (REFUSED[9], REFUSED[-1]))],
+    ids=str,
+)
 def test_the_same_lines_come_from_a_process(row, tmp_path):
     arguments, *parts = row
     (tmp_path / "good.yaml").write_text(GOOD)
@@ -149,7 +153,7 @@ def test_a_folder_that_is_gone_is_one_line(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("option", ["-j0", "-c -2"])
+@pytest.mark.parametrize("option", ["-j0", pytest.param("-c -2", marks=pytest.mark.long)])
 def test_plain_snakemake_is_told_that_it_has_no_cores(option, tmp_path):
     done = run([*SNAKEMAKE, *option.split(), "--configfile", ROOT / "config/smoke.yaml"], tmp_path)
     assert done.returncode == 1
@@ -184,7 +188,7 @@ def is_job(process):
     return False
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs Linux")
 @pytest.mark.parametrize("command", [SWEEP, SNAKEMAKE], ids=["microslip sweep", "snakemake"])
 def test_a_terminal_that_is_closed_ends_all_processes_and_leaves_no_lock(command, tmp_path):

@@ -150,7 +150,7 @@ def test_a_name_that_a_certified_map_takes_is_refused():
         load.from_mapping({"sweeps": certified_stub.PAPER, "drives": drives})
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_solver_agrees_at_places_that_no_map_has_used():
     (map_,) = configured(adaptive={"error": 3e-2}, amplitude=[0.3, 2]).certified.values()
     data = certified_map.build(map_, *certified_stub.played(map_, certified_stub.solved))

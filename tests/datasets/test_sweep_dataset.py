@@ -370,7 +370,7 @@ def test_files_of_several_poissons_ratios_are_one_dataset(tmp_path, solver):
         xr.testing.assert_allclose(lazy.mu_macro.compute(), joined.mu_macro)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_file_may_be_open_many_times_at_once(tmp_path, solver):
     """Texts of variable length end Python here: HDF5 loses their type when one of two is closed."""
     write("transverse", tmp_path, tmp_path / "transverse.nc")

@@ -44,6 +44,16 @@ PAGES = sorted(
         *(ROOT / "docs").rglob("*.md"),
     )
 )
+LONG_PAGES = (
+    "docs/explanation/beyond.md",
+    "docs/explanation/drives.md",
+    "docs/explanation/driving.md",
+    "docs/how-to/contacts.md",
+    "docs/how-to/extend.md",
+    "docs/how-to/fit.md",
+    "docs/how-to/loose.md",
+)
+"""Pages whose code takes several seconds, but for those that a newcomer reads first."""
 SHARED = ("Snakefile", "README.md", "pyproject.toml")
 SHARED_FOLDERS = ("benchmarks", "config", "docs", "profiles", "tests", "workflow")
 
@@ -253,7 +263,14 @@ def assert_said(said, expected, where):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("page", [page for page in PAGES if blocks(page)])
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(page, marks=pytest.mark.long if page in LONG_PAGES else ())
+        for page in PAGES
+        if blocks(page)
+    ],
+)
 def test_the_code_of_a_page_runs(page, computed, tmp_path, monkeypatch):
     environment = make_place(page, tmp_path, computed)
     monkeypatch.chdir(tmp_path)
@@ -292,6 +309,7 @@ def test_no_page_has_code_that_is_not_fenced(page):
 
 
 def test_what_is_not_run_is_there_and_names_what_there_is():
+    assert set(LONG_PAGES) <= set(PAGES)
     for page, start in NOT_RUN:
         if not (ROOT / page).exists():
             continue
@@ -383,7 +401,7 @@ class Loaded(HTMLParser):
                 self.addresses.append(given[name])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.skipif(
     not all(map(find_spec, ("sphinx", "myst_parser", "furo"))),
     reason="the extra docs is not installed: pip install -e '.[docs]'",

@@ -81,7 +81,7 @@ def test_an_edit_of_what_a_kernel_takes_its_numbers_from_does_so_too(copy):
     assert of_kernels(copy) != before
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_an_edited_law_of_friction_is_the_one_that_runs(copy):
     """Edited in one file, inlined into another: the code on disk of the other is as old as it."""
     (copy / "caller.py").write_text(

@@ -89,7 +89,9 @@ def test_what_is_no_motion_is_refused(name, problem):
     ("name", "velocity", "amplitude", "settings"),
     [
         ("transverse-bore", 0.1, 0.8, {}),
-        ("transverse-bore:phase=90", 0.03, 0.5, {"poisson": 0.3}),
+        pytest.param(
+            *("transverse-bore:phase=90", 0.03, 0.5, {"poisson": 0.3}), marks=pytest.mark.long
+        ),
         ("transverse-bore:angle=0.4,phase=50", 0.3, 2.0, {"poisson": 0.5}),
         ("transverse-bore:phase=90", 0.2, 0.5, {"pressure": "power:exponent=1"}),
     ],
@@ -103,7 +105,7 @@ def test_angular_points_of_the_whole_disc_agree_with_squares(name, velocity, amp
     assert abs(both[0].mu_macro - both[1].mu_macro) <= sum(one.mu_macro_error for one in both)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_load_that_oscillates_beside_both_tends_to_each_of_them():
     """Without its rotation it is the load with a lateral motion, and without the lateral motion the
     load with a rotation, both of which know half of the disc."""

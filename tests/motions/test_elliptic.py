@@ -37,7 +37,12 @@ def test_without_a_lateral_part_it_is_the_longitudinal_one(phase):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "scene",
-    [CIRCLE, "elliptic:phase=0", "elliptic:forward=0.5,phase=30", "elliptic:forward_cycles=2"],
+    [
+        pytest.param(CIRCLE, marks=pytest.mark.long),
+        pytest.param("elliptic:phase=0", marks=pytest.mark.long),
+        pytest.param("elliptic:forward=0.5,phase=30", marks=pytest.mark.long),
+        "elliptic:forward_cycles=2",
+    ],
 )
 def test_rings_and_squares_agree(scene):
     rings = microslip.solve(scene, 0.1, 0.5)
@@ -47,7 +52,10 @@ def test_rings_and_squares_agree(scene):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("velocity", "amplitude"), [(0.05, 0.4), (0.5, 2.0), (0.01, 0.8)])
+@pytest.mark.parametrize(
+    ("velocity", "amplitude"),
+    [(0.05, 0.4), (0.5, 2.0), pytest.param(0.01, 0.8, marks=pytest.mark.long)],
+)
 def test_certificates_hold_against_finer_runs(velocity, amplitude):
     answer = microslip.solve(CIRCLE, velocity, amplitude)
     finer = microslip.solve(CIRCLE, velocity, amplitude, tolerance=2e-4)

@@ -60,7 +60,7 @@ def test_springs_and_modes_agree_too(model):
     assert abs(answer.mu_macro - longitudinal(0.1, 0.7)) <= answer.mu_macro_error
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_squares_come_close():
     answer = microslip.solve("longitudinal", 0.2, 0.8, model="cartesian", cells=32, steps=128)
     assert answer.mu_macro == pytest.approx(longitudinal(0.2, 0.8), abs=5e-3)
@@ -136,7 +136,7 @@ def test_a_period_from_inside():
     assert found.slip_forward[1:].sum(axis=0) == pytest.approx(0.1 * 2 * np.pi, rel=1e-3)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_real_contact():
     ball = {
         "material": "steel",

@@ -34,9 +34,9 @@ ALONG = [
     ("normal:forward=0.8,forward_cycles=2,phase=30", 0.2, 0.6),
 ]
 ASIDE = [
-    ("normal:lateral=1", 0.1, 0.7),
+    pytest.param(("normal:lateral=1", 0.1, 0.7), marks=pytest.mark.long),
     ("normal:lateral=0.5,phase=90,indentation=1", 0.02, 1.2),
-    ("normal:lateral=1,normal_cycles=2", 0.1, 0.8),
+    pytest.param(("normal:lateral=1,normal_cycles=2", 0.1, 0.8), marks=pytest.mark.long),
 ]
 
 
@@ -368,7 +368,10 @@ def test_a_history_follows_the_load():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("pressure", ["power:exponent=1", "power:exponent=8", "punch"])
+@pytest.mark.parametrize(
+    "pressure",
+    ["power:exponent=1", "power:exponent=8", pytest.param("punch", marks=pytest.mark.long)],
+)
 @pytest.mark.parametrize(
     ("scene", "velocity", "amplitude"),
     [("normal", 0.1, 0.5), ("normal:indentation=1", 0.03, 1.4)],

@@ -36,14 +36,14 @@ def test_modes_find_what_rings_find(scene):
         assert modes.mu == pytest.approx(rings.mu, abs=2e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_static_limit_is_that_of_rings_too():
     scene = "normal:lateral=1"
     rings = microslip.solve(scene, 0.0, 0.4, model="radial", tolerance=1e-3)
     within(microslip.solve(scene, 0.0, 0.4, model="polar", tolerance=2e-2), rings)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_small_part_changes_little():
     """Next to no load beside a bore, next to no bore beside a load."""
     bore = microslip.solve("transverse-bore:lateral=0", 0.1, 0.7)
@@ -78,7 +78,7 @@ def test_which_way_it_turns_does_not_matter():
     within(one, other)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_half_a_period_suffices_where_it_is_mirrored():
     scene = motion_named("normal:angle=1,normal_cycles=2")
     assert scene.half_period_mirror and scene.half_disc
@@ -119,7 +119,14 @@ def test_slow_marches_end_in_the_limit():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("scene", "finer"), [("normal", 1e-3), ("normal:lateral=1", 1e-3), (TURNING, 3e-3)]
+    ("scene", "finer"),
+    [
+        ("normal", 1e-3),
+        *(
+            pytest.param(*p, marks=pytest.mark.long)
+            for p in (("normal:lateral=1", 1e-3), (TURNING, 3e-3))
+        ),
+    ],
 )
 def test_certificates_hold_against_finer_runs(scene, finer):
     loose, tight = (
@@ -130,7 +137,7 @@ def test_certificates_hold_against_finer_runs(scene, finer):
     assert loose.mu_macro_error <= 1e-2 and tight.mu_macro_error <= finer
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_another_indenter_may_turn_under_its_load():
     cone = {"pressure": "power:exponent=1", "tolerance": 5e-3}
     bore = microslip.solve("transverse-bore:lateral=0", 0.1, 0.7, **cone)

@@ -76,7 +76,7 @@ def test_a_uniform_square_is_one_pressure_at_any_resolution(reading):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["transverse", "bore"])
+@pytest.mark.parametrize("scene", ["transverse", pytest.param("bore", marks=pytest.mark.long)])
 def test_friction_of_a_uniform_square_does_not_depend_on_its_grid(tmp_path, scene):
     found = []
     for count in (2, 41):
@@ -158,12 +158,12 @@ def cone(x, y):
     return np.arccosh(1.0 / np.clip(np.hypot(x, y), 0.25 * step, 1.0))
 
 
-TRUTHS = [("hertz", sphere, count) for count in (8, 64)]
+TRUTHS = [("hertz", sphere, 8), pytest.param("hertz", sphere, 64, marks=pytest.mark.long)]
 TRUTHS += [("power:exponent=1", cone, 16)]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("reading", ["cells", "samples"])
+@pytest.mark.parametrize("reading", ["cells", pytest.param("samples", marks=pytest.mark.long)])
 @pytest.mark.parametrize(("name", "shape", "count"), TRUTHS)
 def test_the_error_holds_what_the_resolution_of_a_file_leaves_open(
     tmp_path, name, shape, count, reading
@@ -228,7 +228,7 @@ def test_units_and_formats_do_not_matter(tmp_path):
     assert one.cell_loads(20) == pytest.approx(other.cell_loads(20), abs=1e-8)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_pressure_that_is_not_symmetric_is_marched_over_the_whole_period(tmp_path):
     values = HERTZIAN * (1.0 + 0.5 * AXIS)
     name = csv(tmp_path / "p.csv", values=values)

@@ -236,9 +236,12 @@ def test_the_steady_bore_is_eqs_17_and_18(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["power:exponent=1", "punch", "ring"])
 @pytest.mark.parametrize(
-    ("scene", "velocity", "amplitude"), [("transverse", 0.1, 0.6), ("bore", 0.3, 1.0)]
+    "name", ["power:exponent=1", pytest.param("punch", marks=pytest.mark.long), "ring"]
+)
+@pytest.mark.parametrize(
+    ("scene", "velocity", "amplitude"),
+    [("transverse", 0.1, 0.6), pytest.param("bore", 0.3, 1.0, marks=pytest.mark.long)],
 )
 def test_rings_and_squares_agree(name, scene, velocity, amplitude):
     settings = {"pressure": name, "tolerance": 4e-3}
@@ -272,7 +275,7 @@ def test_the_power_2_is_a_sphere_in_motion():
         assert other.mu_macro == pytest.approx(one.mu_macro, abs=1e-7)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_translation_at_poissons_ratio_0_cannot_tell_how_an_ellipse_lies():
     """Directions of traction and places of points meet nowhere but in nu and in rotation."""
     settings = {"tolerance": 5e-3}

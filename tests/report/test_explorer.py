@@ -92,7 +92,7 @@ def test_every_point_that_moves_and_oscillates_has_a_period_or_a_reason(made):
         assert (has == moves.values).all()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_default_configuration_has_a_period_for_every_point_and_stays_small(tmp_path):
     """With every sweep of it; certified maps take 25 kB each."""
     default = load.load(ROOT / "config" / "config.yaml")
@@ -200,7 +200,7 @@ def test_all_assets_are_there_and_short():
 # The rule
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_workflow_makes_the_page_and_makes_it_again_only_when_it_changes(finished, project):
     assert "explorer" not in jobs_in(finished.said)
     assert jobs_in(project.run("explorer")) == {"solve_batch": 2, "explorer": 1}

@@ -195,6 +195,7 @@ def test_the_page_answers_as_predict_does_on_the_same_map(coarse, predicted, at_
     assert len(warned) >= (3 if at_ratio_0 else 6)
 
 
+@pytest.mark.long
 def test_the_page_answers_for_all_materials_as_predict_does_on_the_same_map(over_ratios, predicted):
     rng = np.random.default_rng(24)
     scene, predict = over_ratios.attrs["scene"], predicted(over_ratios)
@@ -211,6 +212,7 @@ def test_the_page_answers_for_all_materials_as_predict_does_on_the_same_map(over
     assert answered > 0.7 * COUNT
 
 
+@pytest.mark.long
 def test_the_page_agrees_with_the_solver_within_both_errors():
     """100 questions about bodies of Poisson's ratio 0: map on the page, predict by the solver."""
     axes = {"velocity": [0.01, 5], "amplitude": [0, 2.5], "adaptive": {"error": 1e-2}}

@@ -74,6 +74,7 @@ def entries(content, kind, name):
 # What the page holds
 
 
+@pytest.mark.long
 def test_every_sweep_is_a_map_or_lines_at_every_poissons_ratio(made):
     datasets, content = made
     maps = {"transverse": 3, "bore": 1, "along": 1, "ratios": 3}

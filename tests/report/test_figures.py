@@ -267,7 +267,11 @@ def test_the_static_limit_is_called_exact_only_where_it_is(datasets, scene, name
 
 
 @pytest.mark.parametrize(
-    ("key", "name"), [("transverse", "fig2_transverse_map"), ("bore", "fig6_bore_map")]
+    ("key", "name"),
+    [
+        pytest.param("transverse", "fig2_transverse_map", marks=pytest.mark.long),
+        ("bore", "fig6_bore_map"),
+    ],
 )
 def test_all_of_poissons_ratios_in_a_sweep_are_drawn(datasets, key, name):
     given = at_ratios(datasets[key], 0.0, 0.5).isel(poisson=[1, 0])
@@ -287,6 +291,7 @@ def test_all_of_poissons_ratios_in_a_sweep_are_drawn(datasets, key, name):
     assert said.count(r"computed, $\nu = 0.5$") == 2
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("unplaced")
 def test_of_many_of_poissons_ratios_it_is_said_how_many_are_drawn(datasets):
     given = at_ratios(datasets["bore"], *np.linspace(0, 0.5, 11))

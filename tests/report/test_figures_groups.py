@@ -97,7 +97,9 @@ def test_a_group_that_is_not_there_or_is_mixed_is_refused():
 # Maps
 
 
-@pytest.mark.parametrize("count", [1, 2, 3, 5, 12])
+@pytest.mark.parametrize(
+    "count", [1, 3, *(pytest.param(n, marks=pytest.mark.long) for n in (2, 5, 12))]
+)
 def test_any_number_of_maps_has_room(count):
     figure = drawing.draw("extended_motions", motions(count))
     size, edges = figure.get_size_inches(), figure.get_tightbbox().extents
@@ -193,6 +195,7 @@ def drawn_words(figure):
     return [" ".join(text.replace(r"\$", "$").split()) for text in plain]
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("unplaced")
 def test_titles_are_drawn_as_they_stand(tmp_path):
     given = {f"m{k}": spanning(title) for k, title in enumerate(TITLES)}
@@ -209,6 +212,7 @@ def test_titles_are_drawn_as_they_stand(tmp_path):
         drawing.save(figure, tmp_path / f"lines.{kind}")
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore:Glyph")
 def test_a_sign_that_the_font_lacks_and_a_word_without_end_do_no_harm(tmp_path):
     given = {"a": spanning("\u4e2d\u6587"), "b": spanning("x" * 100), "c": spanning("c")}
@@ -319,6 +323,7 @@ def test_labels_of_every_scene_can_be_set(name):
         MathTextParser("path").parse(mathtext(label))
 
 
+@pytest.mark.long
 def test_maps_at_several_of_poissons_ratios_show_what_these_change():
     def at_ratios(title):
         first = spanning(title)

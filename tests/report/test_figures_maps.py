@@ -134,7 +134,10 @@ def test_what_is_not_known_stays_open_and_its_neighbours_do_not():
 # Numbers on contours
 
 
-@pytest.mark.parametrize(("velocities", "amplitudes"), [(3, 3), (4, 4), (13, 9)])
+@pytest.mark.parametrize(
+    ("velocities", "amplitudes"),
+    [*(pytest.param(n, n, marks=pytest.mark.long) for n in (3, 4)), (13, 9)],
+)
 def test_numbers_are_inside_the_frame_and_off_other_lines(velocities, amplitudes):
     given = {f"m{k}": mapped(velocities, amplitudes) for k in range(6)}
     for key, dataset in given.items():

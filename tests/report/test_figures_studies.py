@@ -244,7 +244,10 @@ def fake_stability(axes: int = 13, cases: int = 7, methods: tuple[str, ...] = ST
 
 
 FIGURES = ("accuracy_vs_cost", "accuracy_vs_work", "model_map", "scaling", "stability_atlas")
-ALL = (*FIGURES, "accuracy_profile", "claims_static", "claims_patches")
+ALL = [*FIGURES, "accuracy_profile", "claims_static", "claims_patches"]
+LONG = ("model_map", "stability_atlas")
+"""As large as the real ones these take seconds to lay out; every run looks at smaller ones."""
+EACH = [pytest.param(name, marks=pytest.mark.long if name in LONG else ()) for name in ALL]
 
 
 @pytest.fixture(scope="module")
@@ -266,13 +269,22 @@ def small() -> dict[str, xr.Dataset]:
     return few()
 
 
+class Drawn(dict):
+    """Figures by their names, each drawn once, when it is first looked at."""
+
+    def __init__(self, datasets):
+        self.datasets = datasets
+
+    def __missing__(self, name):
+        self[name] = drawing.draw(name, self.datasets)
+        self[name].draw_without_rendering()  # so that all texts have their places
+        return self[name]
+
+
 @pytest.fixture(scope="module")
 def figures(datasets):
-    """All figures of the studies, drawn once."""
-    drawn = {name: drawing.draw(name, datasets) for name in ALL}
-    for figure in drawn.values():
-        figure.draw_without_rendering()  # so that all texts have their places
-    return drawn
+    """The figures of the studies."""
+    return Drawn(datasets)
 
 
 def claims(**changes) -> xr.Dataset:
@@ -325,7 +337,7 @@ def test_figures_name_their_datasets():
     assert {drawing.FIGURES[name] for name in FIGURES[:-1]} == {("accuracy_cost",)}
 
 
-@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("name", EACH)
 def test_fits_the_page_and_no_texts_meet(name, figures):
     figure = figures[name]
     width, height = figure.get_size_inches()
@@ -346,7 +358,7 @@ def test_fits_the_page_and_no_texts_meet(name, figures):
     assert not [(drawn[i].get_text(), drawn[j].get_text()) for i, j in np.argwhere(meet)]
 
 
-@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("name", EACH)
 def test_legends_hide_no_panel_and_no_other_legend(name, figures):
     figure = figures[name]
     panels = [axes.get_window_extent().padded(-2) for axes in figure.axes if axes.axison]
@@ -600,6 +612,7 @@ def test_a_dataset_without_trials_is_refused(small):
 # Map of models
 
 
+@pytest.mark.long
 def test_the_map_colours_and_names_the_cheapest_models(datasets, figures):
     dataset, figure = datasets["accuracy_cost"], figures["model_map"]
     (legend,) = figure.findobj(Legend)
@@ -644,6 +657,7 @@ def test_every_region_of_the_map_is_named_where_it_is():
     assert len(artists(axes, "region")) == 4
 
 
+@pytest.mark.long
 def test_the_amplitudes_own_spacing_decides_about_the_scale(figures):
     scales = [axes.get_yscale() for axes in figures["model_map"].axes]
     assert scales == ["linear", "linear", "log", "log"]
@@ -706,6 +720,7 @@ def test_an_axis_shorter_than_a_decade_has_labels(small):
 # Atlas of stability
 
 
+@pytest.mark.long
 def test_the_atlas_shows_every_outcome(datasets, figures):
     dataset, figure = datasets["stability"], figures["stability_atlas"]
     blocks = [axes for axes in figure.axes if axes.get_label() != "<legend>"]
@@ -738,6 +753,7 @@ def test_the_atlas_shows_every_outcome(datasets, figures):
         assert labels == list(cases["case_label"].values)
 
 
+@pytest.mark.long
 def test_the_fills_differ_in_grey_and_their_signs_stand_out(figures):
     keys = [axes for axes in figures["stability_atlas"].axes if axes.get_label() == "<legend>"]
     assert to_hex(keys.pop().get_facecolor()) == "#ffffff"
@@ -748,6 +764,7 @@ def test_the_fills_differ_in_grey_and_their_signs_stand_out(figures):
         assert abs(grey(axes.texts[0].get_color()) - shade) > 0.4
 
 
+@pytest.mark.long
 def test_the_atlas_heads_every_block_and_explains_every_outcome(datasets, figures):
     shown = [text.replace("\n", " ") for text in texts(figures["stability_atlas"])]
     dataset = datasets["stability"]

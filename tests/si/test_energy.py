@@ -15,7 +15,10 @@ SHAKEN = BALL | {"speed": "10 mm/s", "amplitude": "0.3 um", "frequency": "20 kHz
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["transverse", "longitudinal", "bore", "elliptic"])
+@pytest.mark.parametrize(
+    "scene",
+    ["transverse", "longitudinal", "bore", pytest.param("elliptic", marks=pytest.mark.long)],
+)
 def test_drag_and_vibration_are_what_slip_dissipates(scene):
     """The balance: work in over a period is traction times slip, summed over the whole disc."""
     velocity, amplitude = 0.3, 1.2

@@ -17,7 +17,7 @@ RIGID = {"amplitude": "1 mm", "speed": "20 m/s", "load": "1 N", "frequency": "2 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("sought", ["speed", "load"])
-@pytest.mark.parametrize("scene", ["transverse", "bore"])
+@pytest.mark.parametrize("scene", ["transverse", pytest.param("bore", marks=pytest.mark.long)])
 def test_whichever_is_left_out_is_found_again(scene, sought):
     # Of a bore two loads feel the same, and the larger one is looked for.
     given = GIVEN | ({"amplitude": 0.01, "load": 200.0} if scene == "bore" else {})
@@ -31,7 +31,10 @@ def test_whichever_is_left_out_is_found_again(scene, sought):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("shape", [{"radius_across": "8 mm"}, {"contact_radius": "60 um"}])
+@pytest.mark.parametrize(
+    "shape",
+    [pytest.param({"radius_across": "8 mm"}, marks=pytest.mark.long), {"contact_radius": "60 um"}],
+)
 def test_a_load_is_found_of_other_contacts(shape):
     """Hertz's ellipse grows with the load, a contact whose size is given does not."""
     given = LATERAL | GIVEN | shape

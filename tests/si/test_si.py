@@ -138,7 +138,7 @@ def test_two_balls_are_one_ball_of_half_the_radius():
     ("scene", "motion"),
     [
         ("transverse", {"frequency": "20 kHz"}),
-        ("transverse", {"frequency": "50 Hz"}),
+        pytest.param("transverse", {"frequency": "50 Hz"}, marks=pytest.mark.long),
         ("bore", {"frequency": "20 kHz"}),
     ],
 )

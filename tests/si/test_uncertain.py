@@ -41,7 +41,7 @@ def test_spreads_of_several_quantities_are_those_of_a_monte_carlo():
 SLIDER = {"material": "steel", "radius": "5 mm", "mu": 0.3, "frequency": "2 kHz"}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_is_found_is_known_as_well_as_what_was_given():
     """Of a rigid slider friction depends on the speed over the amplitude alone."""
     asked = SLIDER | {"load": "1 N", "speed": "1 m/s +- 5 %", "reduction": "50 %"}

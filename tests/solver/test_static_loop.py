@@ -46,7 +46,7 @@ def test_nothing_is_left_where_slip_goes_both_ways():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("amplitude", [0.2, 0.5, 0.8])
+@pytest.mark.parametrize("amplitude", [0.2, 0.5, pytest.param(0.8, marks=pytest.mark.long)])
 def test_a_loop_of_no_width_has_the_limit_of_its_line(amplitude):
     """A loop as narrow as this is within 2e-4 of the line, for which there are closed forms."""
     across = microslip.solve("elliptic:forward=0.001", 0.0, amplitude)
@@ -100,7 +100,7 @@ def test_mirror_images_have_the_same_limit_or_the_opposite_one():
     within(drags, -drives.mu_macro, drives.mu_macro_error)  # all of it slides
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_other_models_find_the_same_limit():
     rings = microslip.solve("elliptic", 0.0, 0.5)
     coarse = {"cells": 16, "steps": 64, "tolerance": 1e-2}
@@ -115,7 +115,16 @@ def test_other_models_find_the_same_limit():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", [NARROW, EIGHT, "elliptic", ACROSS, "normal:forward=1,phase=90"])
+@pytest.mark.parametrize(
+    "scene",
+    [
+        NARROW,
+        EIGHT,
+        pytest.param("elliptic", marks=pytest.mark.long),
+        ACROSS,
+        "normal:forward=1,phase=90",
+    ],
+)
 def test_slow_marches_end_there(scene):
     """Limit and marches are those of the same rings and steps, so that few of them tell."""
     kind, resolution = motion_named(scene), Resolution(32, 1, 128)

@@ -89,7 +89,7 @@ def iterations_a_step(method, cells):
     return march.iterations / march.solves
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_stagnation_of_the_projected_gradient():
     """A step short enough to be safe for rough tractions is too short for smooth ones; the shipped
     solver takes the smooth ones in one stride, whatever the number of rings."""
@@ -117,7 +117,7 @@ def test_undamped_jacobi_never_gets_there():
     )
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_switching_is_right_in_one_direction_and_lost_where_slip_turns():
     motion = Problem(TRANSVERSE, 0.1, 0.5, 0.0)
     rings = build_contact(motion, "radial", Resolution(32, 1, 16))
@@ -194,11 +194,17 @@ def test_the_shipped_answer_at_velocity_zero_is_the_limit_and_not_a_start():
 
 # Methods and what ships agree where both converge
 
+COMPILED = [
+    pytest.param(name, marks=pytest.mark.long)
+    for name in ("admm", "gauss-seidel", "spectral-gradient", "full-newton")
+]
+"""Methods with code of their own, which takes seconds to compile."""
+
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "method",
-    ["euler", "extrapolated", "march", "full-newton", "admm", "gauss-seidel", "spectral-gradient"],
+    ["euler", "extrapolated", "march", *COMPILED],
 )
 def test_methods_agree_with_what_ships(method):
     """... at a fast, easy point, each within its own certificate and that of the other."""
@@ -210,7 +216,7 @@ def test_methods_agree_with_what_ships(method):
         assert abs(other.mu_macro - shipped.mu_macro) <= allowed
 
 
-@pytest.mark.parametrize("method", ["admm", "gauss-seidel", "spectral-gradient", "full-newton"])
+@pytest.mark.parametrize("method", COMPILED)
 def test_step_solvers_find_the_one_solution_of_a_step(method):
     """Each step is a convex problem: whoever solves it finds the same tractions."""
     motion = Problem(BORE, 0.2, 1.0, 0.3)

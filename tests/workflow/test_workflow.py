@@ -63,6 +63,7 @@ def test_an_edit_makes_again_what_it_concerns_and_comments_and_dates_do_not_coun
     assert project.planned() == ALL_JOBS
 
 
+@pytest.mark.long
 def test_what_is_damaged_is_made_again_where_it_is_needed(project):
     """And what a killed run has left half written is cleared before that."""
     results, before = project.folder / "results", project.points()
@@ -102,6 +103,7 @@ def test_what_is_damaged_is_made_again_where_it_is_needed(project):
     assert project.planned() == {}
 
 
+@pytest.mark.long
 def test_a_job_that_fails_does_not_hide_what_the_others_say(project):
     (project.folder / "results" / "bore.nc").unlink()
     project.append("src/microslip/report/figures/maps.py", "\nraise ValueError('no maps today')\n")
@@ -124,6 +126,7 @@ def solve(scene, velocity, amplitude=None, **settings):
 """
 
 
+@pytest.mark.long
 def test_points_that_do_not_converge_are_listed_and_drawn(project):
     target = "results/figures/fig2_transverse_map.png"
     project.append("src/microslip/adaptive/point.py", STALLING)

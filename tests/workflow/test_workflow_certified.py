@@ -10,7 +10,7 @@ from microslip.app import leftovers
 from microslip.app.plan import Plan
 from microslip.config import load
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.long
 
 # The rigid model: points that cost nothing.
 AXES = {"velocity": [0.1, 10], "amplitude": [0.5, 3], "model": "rigid", "tolerance": 0.01}

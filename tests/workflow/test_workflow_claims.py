@@ -8,7 +8,7 @@ from microslip.config import load
 from microslip.datasets import netcdf
 from microslip.sweeps import sealed_files
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.long
 
 TINY = {
     "sweeps": {"transverse": {"velocity": [1], "amplitude": [0]}},

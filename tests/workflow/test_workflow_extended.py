@@ -45,6 +45,7 @@ def finished(tmp_path_factory):
     return project
 
 
+@pytest.mark.long
 def test_one_command_makes_the_datasets_and_a_figure_of_each_group(finished):
     results = finished.folder / "results"
     assert {path.stem for path in results.glob("*.nc")} == {"circle", "cone"}
@@ -61,6 +62,7 @@ def test_one_command_makes_the_datasets_and_a_figure_of_each_group(finished):
     assert len(finished.points()) == 12
 
 
+@pytest.mark.long
 def test_a_second_run_has_nothing_to_do_and_a_plain_one_makes_none_of_it(finished):
     assert "Nothing to be done" in finished.run("extended")
     planned = finished.planned()

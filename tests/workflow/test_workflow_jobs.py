@@ -40,7 +40,7 @@ def test_a_job_that_solves_loads_nothing_that_draws_or_collects():
     assert not HEAVY & found
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_collecting_loads_nothing_that_draws_and_drawing_nothing_that_solves():
     assert not {"matplotlib", "plotly", "numba"} & loaded("collect")
     assert not {"plotly", "numba"} & loaded("draw_figure")

@@ -45,6 +45,7 @@ def bytes_of(place, path=DATASET):
 # Other folders
 
 
+@pytest.mark.long
 def test_another_folder_gets_the_results_of_a_run_there(ordinary):
     place = beside(ordinary, "elsewhere")
     place.run(DATASET, "-s", "../microslip/Snakefile")
@@ -65,6 +66,7 @@ def test_the_default_configuration_is_found_from_another_folder_unless_that_has_
     assert jobs_in(place.snakemake(*plan).stdout)["collect"] == 1
 
 
+@pytest.mark.long
 def test_files_that_a_configuration_names_lie_beside_it(ordinary):
     """Wherever the run is; one that is not there is told with the places it was looked for in."""
     place, far = beside(ordinary, "pads"), ordinary.folder.parent / "far"
@@ -122,6 +124,7 @@ use rule * from friction
 """
 
 
+@pytest.mark.long
 def test_a_module_of_another_workflow_gives_the_same_dataset(ordinary):
     place = beside(ordinary, "outer", {"friction": CONFIGURATION, "of_another": 1})
     (place.folder / "Snakefile").write_text(OUTER)
@@ -172,6 +175,7 @@ def installed(ordinary):
     return microslip
 
 
+@pytest.mark.long
 def test_an_installed_copy_gives_the_same_dataset_and_finds_what_a_tree_made(ordinary, installed):
     place = beside(ordinary, "empty")
     done = installed(place, "sweep", DATASET, *RUN)
@@ -186,6 +190,7 @@ def test_an_installed_copy_gives_the_same_dataset_and_finds_what_a_tree_made(ord
     assert "Nothing to be done" in done.stdout + done.stderr, done.stderr
 
 
+@pytest.mark.long
 def test_an_installed_copy_hands_on_arguments_and_exit_codes(ordinary, installed):
     place = beside(ordinary, "refused")
     done = installed(place, "sweep", "results/sideways.nc", *RUN)
@@ -206,6 +211,7 @@ def offline():
     return without if tried and tried.returncode == 0 else []
 
 
+@pytest.mark.long
 def test_the_report_is_made_offline_and_holds_captions_and_what_made_the_datasets(ordinary):
     report = ordinary.folder.parent / "report.zip"
     command = [sys.executable, "-m", "snakemake", *RUN[1:], "--report", str(report)]

@@ -57,6 +57,7 @@ def share_the_folder(project):
     project.folder = there
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("how", [forget, copy_to_a_new_clone, share_the_folder])
 def test_a_dataset_of_another_configuration_is_to_be_made_again(how, both_solved, tmp_path):
     project = both_solved.copied(tmp_path / "copy")
@@ -64,6 +65,7 @@ def test_a_dataset_of_another_configuration_is_to_be_made_again(how, both_solved
     assert project.planned() == DRAWN
 
 
+@pytest.mark.long
 def test_a_dataset_of_another_configuration_is_made_again(both_solved, tmp_path):
     project = both_solved.copied(tmp_path / "copy")
     share_the_folder(project)
@@ -73,6 +75,7 @@ def test_a_dataset_of_another_configuration_is_made_again(both_solved, tmp_path)
     assert project.planned(target) == {}
 
 
+@pytest.mark.long
 def test_what_has_no_seal_of_its_own_is_made_again(project):
     """A dataset without one; one of some other project, with its seal; a figure that is another."""
     results = project.folder / "results"
@@ -97,6 +100,7 @@ def snapshot(folder):
     return {p: (p.read_bytes(), p.stat().st_mtime_ns) for p in files}
 
 
+@pytest.mark.long
 def test_asking_removes_and_renames_nothing(project):
     results = project.folder / "results"
     (results / "bore.nc").write_bytes(b"\x89HDF, once")
@@ -167,6 +171,7 @@ def solve(scene, velocity, amplitude=None, **settings):
 """
 
 
+@pytest.mark.long
 def test_sources_that_are_edited_while_a_run_is_on_end_it(project):
     """What is computed then is kept under no name, and the next run is of the new sources."""
     project.append("src/microslip/adaptive/point.py", EDITS)

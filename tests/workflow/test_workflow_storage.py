@@ -17,7 +17,7 @@ from stubs.workflow_project import AXES, ENVIRONMENT, RUN, TINY
 pytest.importorskip("moto.server")
 pytest.importorskip("snakemake_storage_plugin_s3")
 boto3 = pytest.importorskip("boto3")
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.long
 
 BUCKET, FOLDER = "bucket", "friction"
 KEYS = {"AWS_ACCESS_KEY_ID": "a", "AWS_SECRET_ACCESS_KEY": "b", "AWS_DEFAULT_REGION": "us-east-1"}

@@ -9,7 +9,7 @@ from stubs.workflow_project import Project
 from microslip.datasets import netcdf
 from microslip.report.figures import drawing
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.long
 
 # A point with a closed form, maps that cost next to nothing, and a block whose cases are few.
 TINY = {
