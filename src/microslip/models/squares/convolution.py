@@ -5,6 +5,8 @@ transform leaves its output in the order in which it was computed (digit-reverse
 starts from there, and the transformed kernel sits in the same order, so that nothing is ever
 sorted.  Butterflies run over whole rows, which the compiler turns into vector instructions, and
 rows that are known to be zero, or of no interest, are left out.
+
+Where fields are even along both axes, a quarter of them is enough, see quarter.py.
 """
 
 from __future__ import annotations
@@ -15,12 +17,23 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.foundation.compiled import kernel
+from microslip.models.squares.quarter import (
+    Folding,
+    apply_filter,
+    fold,
+    folded_filter,
+    folding,
+    gather,
+    spread,
+    unfold,
+)
 from microslip.models.squares.transform import backward, forward
 from microslip.theory.hertz import G_STAR
 
 
 class Convolution(NamedTuple):
-    """All that the compiled convolution needs; P: padded cells along a side.
+    """All that the compiled convolution needs; P: padded cells along a side, of the quarter if it
+    is `folded`.
 
     Attributes
     ----------
@@ -36,6 +49,10 @@ class Convolution(NamedTuple):
         Whether nu > 0.
     opposite : np.ndarray, shape (P,)
         Row of minus the frequency of each row.
+    folded : bool
+        Whether it is that of a quarter of even fields, whose filter is in `kernel` then.
+    folding : quarter.Folding
+        Used only if `folded`.
     """
 
     radices: np.ndarray
@@ -44,30 +61,39 @@ class Convolution(NamedTuple):
     cross: np.ndarray
     coupled: bool
     opposite: np.ndarray
+    folded: bool
+    folding: Folding
 
 
 @lru_cache(maxsize=8)
 def square_convolution(
-    cells: int, poisson: float, modulus: float = G_STAR
+    cells: int, poisson: float, modulus: float = G_STAR, quarter: bool = False
 ) -> tuple[Convolution, float, float]:
     """Convolution of `cells` x `cells` squares over [-1, 1]^2, their self-influence, and an
-    upper bound on the eigenvalues (u_lim per unit traction); modulus: G* in working units."""
-    padded = _padded(cells)
+    upper bound on the eigenvalues (u_lim per unit traction).
+
+    modulus: G* in working units; quarter: of fields at nu = 0 that are even along both axes, on an
+    even number of cells, by their values where both coordinates are positive.
+    """
+    padded = _padded(cells // 2 if quarter else cells)
     radices = _radices(padded)
     turns = 2.0 * np.pi * np.arange(padded) / padded
     order = _order(list(radices))
-    coefficients = influence(cells, padded, poisson, modulus)
+    opposite = np.argsort(order)[-order % padded]
+    coefficients = influence(cells, 2 * padded if quarter else padded, poisson, modulus)
     kernel, cross = (np.fft.fft2(part).T[np.ix_(order, order)] for part in coefficients)
     largest = np.abs(kernel).max() + np.abs(cross).max()
     # each factor of the inverse transform brings its size along: divide once, here
-    kernel, cross = kernel / padded**2, cross / padded**2
+    kernel, cross = (kernel / padded**2).real, cross / padded**2
     operator = Convolution(
         radices,
         np.stack([np.cos(turns), np.sin(turns)]),
-        np.ascontiguousarray(kernel.real),
+        folded_filter(kernel) if quarter else np.ascontiguousarray(kernel),
         np.stack([cross.real, cross.imag]),
         poisson > 0.0,
-        np.argsort(order)[-order % padded],
+        opposite,
+        quarter,
+        folding(order, opposite),
     )
     return operator, float(coefficients[0][0, 0]), float(largest)
 
@@ -116,7 +142,8 @@ def _power(number, prime):
 
 def _radices(padded):
     twos = _power(padded, 2)
-    return np.array([4] * (twos // 2) + [2] * (twos % 2) + [3] * _power(padded, 3))
+    radices = [4] * (twos // 2) + [2] * (twos % 2) + [3] * _power(padded, 3)
+    return np.array(radices, dtype=np.int64)  # also those of a single cell, which are none
 
 
 def _order(radices):
@@ -136,6 +163,9 @@ def workspace(operator: Convolution) -> tuple[np.ndarray, np.ndarray]:
 @kernel
 def convolve(operator: Convolution, scratch: tuple, q: np.ndarray, out: np.ndarray) -> None:
     """out = A q; q, out: forward and lateral parts, (2, n, n); scratch: from `workspace`."""
+    if operator.folded:
+        _convolve_folded(operator, scratch, q, out)
+        return
     n = q.shape[1]
     first, second = scratch
     padded = first.shape[1]
@@ -177,3 +207,19 @@ def _multiply_coupled(operator, given, out):
             cr, ci = operator.cross[0, i, k], operator.cross[1, i, k]
             out[0, i, k] = operator.kernel[i, k] * given[0, i, k] + cr * real - ci * imag
             out[1, i, k] = operator.kernel[i, k] * given[1, i, k] + cr * imag + ci * real
+
+
+@kernel
+def _convolve_folded(operator, scratch, q, out):
+    """The same by cosine transforms, see quarter.py."""
+    m, (first, second), folding = q.shape[1], scratch, operator.folding
+    padded = first.shape[1]
+    spread(folding, q, first)
+    forward(first[0], first[1], m, operator.radices, operator.roots)
+    fold(folding, m, first, second)
+    forward(second[0], second[1], padded, operator.radices, operator.roots)
+    apply_filter(folding, operator.kernel, second)
+    backward(second[0], second[1], padded, operator.radices, operator.roots)
+    unfold(folding, m, second, first)
+    backward(first[0], first[1], m, operator.radices, operator.roots)
+    gather(folding, first, out)
