@@ -88,7 +88,7 @@ def square_convolution(
     operator = Convolution(
         radices,
         np.stack([np.cos(turns), np.sin(turns)]),
-        folded_filter(kernel) if quarter else np.ascontiguousarray(kernel),
+        folded_filter(kernel, opposite) if quarter else np.ascontiguousarray(kernel),
         np.stack([cross.real, cross.imag]),
         poisson > 0.0,
         opposite,

@@ -49,12 +49,15 @@ def folding(order: np.ndarray, opposite: np.ndarray) -> Folding:
     return Folding(place, opposite, np.stack([np.cos(angle), np.sin(angle)]))
 
 
-def folded_filter(transform: np.ndarray) -> np.ndarray:
-    """What `apply_filter` takes: the transform of the coefficients, rows the second axis, without
-    the factors that `fold` and it leave out."""
-    factors = np.full(len(transform), 0.25)
-    factors[0] = 0.5
-    return np.ascontiguousarray(factors[:, None] * transform)
+def folded_filter(transform: np.ndarray, opposite: np.ndarray) -> np.ndarray:
+    """What `apply_filter` takes, from the cosine transform of the coefficients, rows the second
+    axis, (L, L), without the factor that `fold` leaves out: half the sum of two opposite rows in
+    the first of them, half their difference in the other."""
+    rows = np.arange(len(transform))[:, None]
+    near, far = 0.5 * transform, 0.5 * transform[opposite]
+    pairs = np.where(rows < opposite[:, None], near + far, far - near)
+    alone = opposite[:, None] == rows
+    return 0.5 * np.where(alone, transform, pairs)
 
 
 @kernel
@@ -117,18 +120,21 @@ def unfold(folding: Folding, m: int, given: np.ndarray, out: np.ndarray) -> None
 @kernel
 def apply_filter(folding: Folding, coefficients: np.ndarray, values: np.ndarray) -> None:
     """Multiply the cosine transform along the first axis of `values`, (2, L, L), which holds the
-    Fourier transform before and after; coefficients: see folded_filter."""
+    Fourier transform before and after; coefficients: see folded_filter.
+
+    For factors f_k of C_k, with h the half of f_k + f_{L-k} and d that of f_k - f_{L-k}, this is
+    h Z_k + d exp(2 i t) Z_{L-k} in place of Z_k, h Z_{L-k} + d exp(-2 i t) Z_k in that of Z_{L-k}.
+    """
     re, im = values
     for row in range(re.shape[0]):
         far, c, s = folding.opposite[row], folding.turn[0, row], folding.turn[1, row]
-        if row == 0:
-            re[0] *= coefficients[0]
-            im[0] *= coefficients[0]
-        elif row <= far:
+        if row == far:
+            re[row] *= coefficients[row]
+            im[row] *= coefficients[row]
+        elif row < far:
+            c, s = c * c - s * s, 2.0 * c * s
             for k in range(re.shape[1]):
                 x, y, u, v = re[row, k], im[row, k], re[far, k], im[far, k]
-                near, beyond = coefficients[row, k], coefficients[far, k]
-                a, b = near * (c * (x + u) + s * (y - v)), near * (c * (y + v) + s * (u - x))
-                d, e = beyond * (s * (x + u) - c * (y - v)), beyond * (s * (y + v) - c * (u - x))
-                re[row, k], im[row, k] = c * (a + e) - s * (b - d), c * (b - d) + s * (a + e)
-                re[far, k], im[far, k] = s * (b + d) + c * (a - e), c * (b + d) - s * (a - e)
+                h, d = coefficients[row, k], coefficients[far, k]
+                re[row, k], im[row, k] = h * x + d * (c * u - s * v), h * y + d * (c * v + s * u)
+                re[far, k], im[far, k] = h * u + d * (c * x + s * y), h * v + d * (c * y - s * x)
