@@ -174,7 +174,7 @@ MODELS = {
     ),
     "cartesian": Model(
         lambda motion, poisson, cells, angles, focus: CartesianContact(
-            cells, poisson, motion.pressure
+            cells, poisson, motion.pressure, translates=not motion.rotates
         ),
         _refuse_pulsation,
         side_by_side=SquaresSideBySide,

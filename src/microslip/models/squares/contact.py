@@ -1,5 +1,10 @@
 """Square cells with FFT convolution: any nu, any outline; the general reference, and the paper's
-own method."""
+own method.
+
+At nu = 0 the rigid displacement of a translation is the same everywhere and forward and lateral
+displacements do not mix, so that tractions are even along both axes if the pressure is: a quarter
+of the contact tells the rest, see quarter.py.
+"""
 
 from __future__ import annotations
 
@@ -18,13 +23,17 @@ from microslip.pressures.pressure import Pressure
 
 MAX_REMEMBERED = 4_000_000
 """Numbers that a march keeps as first guesses for the next one; longer marches keep none."""
+ROUNDED = 1e-10
+"""Difference of two loads, over the largest, below which they are one number: those of a sphere on
+192 squares across differ from their images by a hundredth of it."""
 
 
 class CartesianContact:
     """Squares over the circumscribed square of the contact (see models.contact.Contact).
 
-    States: (2, cells, cells), axis 1 along the forward axis, axis 2 along the lateral one.  Cells
-    that the edge cuts carry the load of their part inside.
+    States: (2, n, n), axis 1 along the forward axis, axis 2 along the lateral one; n is the number
+    of cells, or half of it if a quarter stands for all of them.  Cells that the edge cuts carry
+    the load of their part inside.
 
     Parameters
     ----------
@@ -34,6 +43,14 @@ class CartesianContact:
         Poisson's ratio.
     pressure : pressure.Pressure
         Any.
+    translates : bool
+        Whether nothing will ever turn it.  Squares of positive coordinates then stand for their
+        three images, too, as long as these are alike.
+
+    Attributes
+    ----------
+    quarter : bool
+        Whether they do.
 
     Raises
     ------
@@ -45,35 +62,51 @@ class CartesianContact:
     sticks = True
     angles = 1
 
-    def __init__(self, cells: int, poisson: float = 0.0, pressure: Pressure = HERTZ):
+    def __init__(
+        self,
+        cells: int,
+        poisson: float = 0.0,
+        pressure: Pressure = HERTZ,
+        *,
+        translates: bool = False,
+    ):
         if cells < 2:
             raise ValueError(f"cells = {cells}: allowed is a whole number of at least 2")
         self.size = 2.0 / cells
         centres = (np.arange(cells) + 0.5) * self.size - 1.0
-        self.forward_position, self.lateral_position = np.meshgrid(centres, centres, indexing="ij")
-        self.weight = np.full((cells, cells), self.size**2)
         self.bound = pressure.cell_loads(cells) / self.size**2
+        self.quarter = translates and poisson == 0.0 and cells % 2 == 0 and _is_even(self.bound)
+        if self.quarter:
+            centres, self.bound = centres[cells // 2 :], _mean_quarter(self.bound)
+        self.forward_position, self.lateral_position = np.meshgrid(centres, centres, indexing="ij")
+        self.area = (4.0 if self.quarter else 1.0) * self.size**2
+        self.weight = np.full(self.bound.shape, self.area)
         self.stiffness = pressure.stiffness
         self.operator, self.scale, self.largest = square_convolution(
-            cells, poisson, pressure.G_star
+            cells, poisson, pressure.G_star, self.quarter
         )
-        self.compliance = np.full((cells, cells), self.scale)
+        self.compliance = np.full(self.bound.shape, self.scale)
 
     def squares(self) -> square_march.Squares:
         """The march.Squares of this contact, for one thread at a time."""
         room = workspace(self.operator)
         scales = self.scale, self.largest
-        return square_march.Squares(self.operator, room, *scales, self.bound, self.size**2)
+        return square_march.Squares(self.operator, room, *scales, self.bound, self.area)
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
-        """A q; shapes (2, cells, cells)."""
+        """A q; shapes (2, n, n)."""
         out = np.empty(state.shape)
         convolve(self.operator, workspace(self.operator), np.ascontiguousarray(state), out)
         return out
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
         """Lateral axis reversed, lateral traction negated."""
-        return state[:, :, ::-1] * contact.MIRROR
+        return (state if self.quarter else state[:, :, ::-1]) * contact.MIRROR
+
+    def _without_what_cancels(self, forces):
+        """Set to zero the torque of a quarter, which the others cancel."""
+        if self.quarter:
+            forces[:, contact.TORQUE] = 0.0
 
     def march(
         self,
@@ -97,6 +130,7 @@ class CartesianContact:
             tolerance,
             square_march.Guide(previous.stages if guided else tractions, guided, tractions),
         )
+        self._without_what_cancels(forces)
         stages = tractions if remembers else None
         return contact.March(state, forces, residual, iterations, steps * n_stages, stages=stages)
 
@@ -137,5 +171,19 @@ class CartesianContact:
             np.ascontiguousarray(state),
             (float(tolerance), float((self.stiffness * shares / extents).sum())),
         )
+        self._without_what_cancels(forces)
         solves = path.stages.shape[0] * path.stages.shape[1]
         return PulledMarch(state, forces, residual, iterations, solves, body=at)
+
+
+def _is_even(loads):
+    """Whether a field is its own image along both axes, but for rounding."""
+    images = np.stack([loads[::-1], loads[:, ::-1]])
+    return bool(np.abs(images - loads).max() <= ROUNDED * loads.max())
+
+
+def _mean_quarter(loads):
+    """Mean of the four images of an even field, where both coordinates are positive."""
+    half = len(loads) // 2
+    ahead = 0.5 * (loads[half:] + loads[half - 1 :: -1])
+    return 0.5 * (ahead[:, half:] + ahead[:, half - 1 :: -1])
