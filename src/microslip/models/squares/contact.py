@@ -1,9 +1,8 @@
 """Square cells with FFT convolution: any nu, any outline; the general reference, and the paper's
 own method.
 
-At nu = 0 the rigid displacement of a translation is the same everywhere and forward and lateral
-displacements do not mix, so that tractions are even along both axes if the pressure is: a quarter
-of the contact tells the rest, see quarter.py.
+What tells the rest is enough, see `_images`: tractions have the symmetries that the rigid
+displacement, the pressure and the influence of tractions share.
 """
 
 from __future__ import annotations
@@ -16,6 +15,7 @@ from microslip.models import contact
 from microslip.models.interrupts import unbroken
 from microslip.models.path import Path
 from microslip.models.pull import Body, PulledMarch
+from microslip.models.squares import half
 from microslip.models.squares import march as square_march
 from microslip.models.squares.convolution import convolve, square_convolution, workspace
 from microslip.pressures.by_name import HERTZ
@@ -31,9 +31,9 @@ ROUNDED = 1e-10
 class CartesianContact:
     """Squares over the circumscribed square of the contact (see models.contact.Contact).
 
-    States: (2, n, n), axis 1 along the forward axis, axis 2 along the lateral one; n is the number
-    of cells, or half of it if a quarter stands for all of them.  Cells that the edge cuts carry
-    the load of their part inside.
+    States: (2, cells, cells), axis 1 along the forward axis, axis 2 along the lateral one, or half
+    as many along axis 1, or both, where these tell the rest.  Cells that the edge cuts carry the
+    load of their part inside.
 
     Parameters
     ----------
@@ -43,14 +43,15 @@ class CartesianContact:
         Poisson's ratio.
     pressure : pressure.Pressure
         Any.
-    translates : bool
-        Whether nothing will ever turn it.  Squares of positive coordinates then stand for their
-        three images, too, as long as these are alike.
+    symmetry : str
+        half.TURN of translations, half.MIRROR of rotations with nothing lateral besides, "" of
+        all else.  Squares then stand for their images, too, as far as the pressure has it.
 
     Attributes
     ----------
-    quarter : bool
-        Whether they do.
+    images : int
+        Squares that one stands for, itself included: 4 where both coordinates are positive, 2 where
+        the forward one is, 1.
 
     Raises
     ------
@@ -67,23 +68,24 @@ class CartesianContact:
         cells: int,
         poisson: float = 0.0,
         pressure: Pressure = HERTZ,
-        *,
-        translates: bool = False,
+        symmetry: str = "",
     ):
         if cells < 2:
             raise ValueError(f"cells = {cells}: allowed is a whole number of at least 2")
         self.size = 2.0 / cells
         centres = (np.arange(cells) + 0.5) * self.size - 1.0
         self.bound = pressure.cell_loads(cells) / self.size**2
-        self.quarter = translates and poisson == 0.0 and cells % 2 == 0 and _is_even(self.bound)
-        if self.quarter:
-            centres, self.bound = centres[cells // 2 :], _mean_quarter(self.bound)
-        self.forward_position, self.lateral_position = np.meshgrid(centres, centres, indexing="ij")
-        self.area = (4.0 if self.quarter else 1.0) * self.size**2
+        self.images = _images(self.bound, symmetry, poisson)
+        rows = centres[cells // 2 :] if self.images > 1 else centres
+        columns = centres[cells // 2 :] if self.images == 4 else centres
+        self.bound = _mean_of_images(self.bound, self.images, symmetry)
+        self.forward_position, self.lateral_position = np.meshgrid(rows, columns, indexing="ij")
+        self.area = self.images * self.size**2
+        self._cancelled = contact.LATERAL if symmetry == half.MIRROR else contact.TORQUE
         self.weight = np.full(self.bound.shape, self.area)
         self.stiffness = pressure.stiffness
         self.operator, self.scale, self.largest = square_convolution(
-            cells, poisson, pressure.G_star, self.quarter
+            cells, poisson, pressure.G_star, self.images, symmetry
         )
         self.compliance = np.full(self.bound.shape, self.scale)
 
@@ -94,19 +96,19 @@ class CartesianContact:
         return square_march.Squares(self.operator, room, *scales, self.bound, self.area)
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
-        """A q; shapes (2, n, n)."""
+        """A q; shapes of a state."""
         out = np.empty(state.shape)
         convolve(self.operator, workspace(self.operator), np.ascontiguousarray(state), out)
         return out
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
         """Lateral axis reversed, lateral traction negated."""
-        return (state if self.quarter else state[:, :, ::-1]) * contact.MIRROR
+        return (state if self.images == 4 else state[:, :, ::-1]) * contact.MIRROR
 
     def _without_what_cancels(self, forces):
-        """Set to zero the torque of a quarter, which the others cancel."""
-        if self.quarter:
-            forces[:, contact.TORQUE] = 0.0
+        """Set to zero what symmetry forbids, and the images of the squares cancel."""
+        if self.images > 1:
+            forces[:, self._cancelled] = 0.0
 
     def march(
         self,
@@ -176,14 +178,33 @@ class CartesianContact:
         return PulledMarch(state, forces, residual, iterations, solves, body=at)
 
 
-def _is_even(loads):
-    """Whether a field is its own image along both axes, but for rounding."""
-    images = np.stack([loads[::-1], loads[:, ::-1]])
-    return bool(np.abs(images - loads).max() <= ROUNDED * loads.max())
+def _images(loads, symmetry, poisson):
+    """Squares that one stands for.
+
+    Translations move all points alike, and a half turn takes that to its opposite; so do rotations
+    and a mirror across the lateral axis.  At nu = 0 forward and lateral displacements of
+    translations do not mix, and each of them is even along both axes.
+    """
+    if len(loads) % 2 or not symmetry:
+        return 1
+    if symmetry == half.MIRROR:
+        return 2 if _is_like(loads, loads[::-1]) else 1
+    even = _is_like(loads, loads[::-1]) and _is_like(loads, loads[:, ::-1])
+    if even and poisson == 0.0:
+        return 4
+    return 2 if _is_like(loads, loads[::-1, ::-1]) else 1
 
 
-def _mean_quarter(loads):
-    """Mean of the four images of an even field, where both coordinates are positive."""
-    half = len(loads) // 2
-    ahead = 0.5 * (loads[half:] + loads[half - 1 :: -1])
-    return 0.5 * (ahead[:, half:] + ahead[:, half - 1 :: -1])
+def _is_like(loads, image):
+    """Whether two fields are the same but for rounding."""
+    return bool(np.abs(image - loads).max() <= ROUNDED * loads.max())
+
+
+def _mean_of_images(loads, images, symmetry):
+    """Loads of the squares that are left, without what rounding makes of images."""
+    if images == 1:
+        return loads
+    ahead = len(loads) // 2
+    image = loads[::-1, ::-1] if images == 2 and symmetry == half.TURN else loads[::-1]
+    mean = 0.5 * (loads + image)[ahead:]
+    return 0.5 * (mean + mean[:, ::-1])[:, ahead:] if images == 4 else mean

@@ -6,7 +6,8 @@ starts from there, and the transformed kernel sits in the same order, so that no
 sorted.  Butterflies run over whole rows, which the compiler turns into vector instructions, and
 rows that are known to be zero, or of no interest, are left out.
 
-Where fields are even along both axes, a quarter of them is enough, see quarter.py.
+Of fields with a symmetry less is enough: a quarter if they are even along both axes (quarter.py),
+a half if they are their own image under a half turn, or in a mirror (half.py).
 """
 
 from __future__ import annotations
@@ -17,23 +18,14 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.foundation.compiled import kernel
-from microslip.models.squares.quarter import (
-    Folding,
-    apply_filter,
-    fold,
-    folded_filter,
-    folding,
-    gather,
-    spread,
-    unfold,
-)
+from microslip.models.squares import half, quarter
 from microslip.models.squares.transform import backward, forward
 from microslip.theory.hertz import G_STAR
 
 
 class Convolution(NamedTuple):
-    """All that the compiled convolution needs; P: padded cells along a side, of the quarter if it
-    is `folded`.
+    """All that the compiled convolution needs; P: padded cells along a side, of a quarter if that
+    is all there is; H: lateral frequencies that are kept, P but of a half.
 
     Attributes
     ----------
@@ -41,18 +33,21 @@ class Convolution(NamedTuple):
         Factors of P.
     roots : np.ndarray, shape (2, P)
         cos and sin of 2 pi k / P.
-    kernel : np.ndarray, shape (P, P)
-        Transform of the influence coefficients, real.
-    cross : np.ndarray, shape (2, P, P)
-        Transform of those on the conjugate traction, used only if `coupled`.
+    kernel : np.ndarray, shape (P, H)
+        Transform of the influence coefficients, real; of a quarter quarter.folded_filter.
+    cross : np.ndarray, shape (2, P, H)
+        Transform of those on the conjugate traction, used only if `coupled`; of a half what
+        multiplies the other transform, see half.halved_filter.
     coupled : bool
         Whether nu > 0.
     opposite : np.ndarray, shape (P,)
         Row of minus the frequency of each row.
-    folded : bool
-        Whether it is that of a quarter of even fields, whose filter is in `kernel` then.
+    images : int
+        Squares that one of them stands for, itself included: 1, of a half 2, of a quarter 4.
     folding : quarter.Folding
-        Used only if `folded`.
+        Of a quarter.
+    halving : half.Halving
+        Of a half.
     """
 
     radices: np.ndarray
@@ -61,39 +56,54 @@ class Convolution(NamedTuple):
     cross: np.ndarray
     coupled: bool
     opposite: np.ndarray
-    folded: bool
-    folding: Folding
+    images: int
+    folding: quarter.Folding
+    halving: half.Halving
 
 
 @lru_cache(maxsize=8)
 def square_convolution(
-    cells: int, poisson: float, modulus: float = G_STAR, quarter: bool = False
+    cells: int,
+    poisson: float,
+    modulus: float = G_STAR,
+    images: int = 1,
+    symmetry: str = half.TURN,
 ) -> tuple[Convolution, float, float]:
     """Convolution of `cells` x `cells` squares over [-1, 1]^2, their self-influence, and an
     upper bound on the eigenvalues (u_lim per unit traction).
 
-    modulus: G* in working units; quarter: of fields at nu = 0 that are even along both axes, on an
-    even number of cells, by their values where both coordinates are positive.
+    modulus: G* in working units; images: see Convolution, 4 for fields at nu = 0 that are even
+    along both axes, by those where both coordinates are positive; 2 for fields with a symmetry of
+    half.py, by those where the forward one is; both on an even number of cells.
     """
-    padded = _padded(cells // 2 if quarter else cells)
+    padded = _padded(cells // 2 if images == 4 else cells)
     radices = _radices(padded)
     turns = 2.0 * np.pi * np.arange(padded) / padded
     order = _order(list(radices))
     opposite = np.argsort(order)[-order % padded]
-    coefficients = influence(cells, 2 * padded if quarter else padded, poisson, modulus)
-    kernel, cross = (np.fft.fft2(part).T[np.ix_(order, order)] for part in coefficients)
+    coefficients = influence(cells, 2 * padded if images == 4 else padded, poisson, modulus)
+    if images == 2 and padded % 2 == 0:
+        # the offset that is its own negative is further than any, and would not be even
+        coefficients[1][padded // 2], coefficients[1][:, padded // 2] = 0.0, 0.0
+    halving = half.halving(order, opposite, cells, symmetry)
+    transforms = [np.fft.fft2(part) for part in coefficients]
+    if images == 2:
+        kernel, cross = half.halved_filter(transforms, order, halving.rows, cells, symmetry)
+    else:
+        kernel, cross = (part.T[np.ix_(order, order)] for part in transforms)
     largest = np.abs(kernel).max() + np.abs(cross).max()
     # each factor of the inverse transform brings its size along: divide once, here
     kernel, cross = (kernel / padded**2).real, cross / padded**2
     operator = Convolution(
         radices,
         np.stack([np.cos(turns), np.sin(turns)]),
-        folded_filter(kernel, opposite) if quarter else np.ascontiguousarray(kernel),
+        quarter.folded_filter(kernel, opposite) if images == 4 else np.ascontiguousarray(kernel),
         np.stack([cross.real, cross.imag]),
         poisson > 0.0,
         opposite,
-        quarter,
-        folding(order, opposite),
+        images,
+        quarter.folding(order, opposite),
+        halving,
     )
     return operator, float(coefficients[0][0, 0]), float(largest)
 
@@ -156,15 +166,18 @@ def _order(radices):
 
 def workspace(operator: Convolution) -> tuple[np.ndarray, np.ndarray]:
     """Scratch arrays of `convolve`: reusable, not shared between threads."""
-    padded = len(operator.opposite)
-    return np.zeros((2, padded, padded)), np.zeros((2, padded, padded))
+    return np.zeros((2, *operator.kernel.shape)), np.zeros((2, *operator.kernel.shape))
 
 
 @kernel
 def convolve(operator: Convolution, scratch: tuple, q: np.ndarray, out: np.ndarray) -> None:
-    """out = A q; q, out: forward and lateral parts, (2, n, n); scratch: from `workspace`."""
-    if operator.folded:
-        _convolve_folded(operator, scratch, q, out)
+    """out = A q; q, out: forward and lateral parts, (2, n, n), or of what there is
+    of them; scratch: from `workspace`."""
+    if operator.images == 4:
+        _convolve_quarter(operator, scratch, q, out)
+        return
+    if operator.images == 2:
+        _convolve_half(operator, scratch, q, out)
         return
     n = q.shape[1]
     first, second = scratch
@@ -210,16 +223,37 @@ def _multiply_coupled(operator, given, out):
 
 
 @kernel
-def _convolve_folded(operator, scratch, q, out):
+def _convolve_quarter(operator, scratch, q, out):
     """The same by cosine transforms, see quarter.py."""
     m, (first, second), folding = q.shape[1], scratch, operator.folding
     padded = first.shape[1]
-    spread(folding, q, first)
+    quarter.spread(folding, q, first)
     forward(first[0], first[1], m, operator.radices, operator.roots)
-    fold(folding, m, first, second)
+    quarter.fold(folding, m, first, second)
     forward(second[0], second[1], padded, operator.radices, operator.roots)
-    apply_filter(folding, operator.kernel, second)
+    quarter.apply_filter(folding, operator.kernel, second)
     backward(second[0], second[1], padded, operator.radices, operator.roots)
-    unfold(folding, m, second, first)
+    quarter.unfold(folding, m, second, first)
     backward(first[0], first[1], m, operator.radices, operator.roots)
-    gather(folding, first, out)
+    quarter.gather(folding, first, out)
+
+
+@kernel
+def _convolve_half(operator, scratch, q, out):
+    """The same of a half of the rows, see half.py."""
+    m, (first, second), halving = q.shape[1], scratch, operator.halving
+    half.turned(q, first)
+    forward(first[0], first[1], m, operator.radices, operator.roots)
+    half.completed(halving, m, first, second)
+    forward(second[0], second[1], second.shape[2], operator.radices, operator.roots)
+    if operator.coupled and halving.sign < 0.0:
+        half.multiply_mirrored(operator.kernel, operator.cross, operator.opposite, second)
+    elif operator.coupled:
+        half.multiply_turned(operator.kernel, operator.cross, second)
+    else:
+        second[0] *= operator.kernel
+        second[1] *= operator.kernel
+    backward(second[0], second[1], second.shape[2], operator.radices, operator.roots)
+    half.halved(halving, m, second, first)
+    backward(first[0], first[1], m, operator.radices, operator.roots)
+    half.turned_back(first, out)
