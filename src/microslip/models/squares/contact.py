@@ -154,7 +154,7 @@ class CartesianContact:
     def pulled_along(
         self, path: Path, standing: tuple, state: np.ndarray, tolerance: float, pulled: tuple
     ) -> PulledMarch:
-        """The PulledMarch of several contacts like this one, states (contacts, 2, cells, cells);
+        """The PulledMarch of several contacts like this one, states along the first axis;
         standing: shares, extents and displacements, see pulled_march.py; pulled: a pull.Body and
         where it is."""
         from microslip.models.squares.pulled_march import (  # only now: as for rings
