@@ -25,7 +25,7 @@ MAX_REMEMBERED = 4_000_000
 """Numbers that a march keeps as first guesses for the next one; longer marches keep none."""
 ROUNDED = 1e-10
 """Difference of two loads, over the largest, below which they are one number: those of a sphere on
-192 squares across differ from their images by a hundredth of it."""
+192 squares across differ from their images by less than a twentieth of it."""
 
 
 class CartesianContact:
