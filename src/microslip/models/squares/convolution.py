@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.foundation.compiled import kernel
+from microslip.models.point_fields import copy
 from microslip.models.squares import half, quarter
 from microslip.models.squares.transform import backward, forward
 from microslip.theory.hertz import G_STAR
@@ -171,41 +172,99 @@ def workspace(operator: Convolution) -> tuple[np.ndarray, np.ndarray]:
 
 @kernel
 def convolve(operator: Convolution, scratch: tuple, q: np.ndarray, out: np.ndarray) -> None:
-    """out = A q; q, out: forward and lateral parts, (2, n, n), or of what there is
-    of them; scratch: from `workspace`."""
+    """out = A q; q, out: forward and lateral parts, (2, n, n), or of what there is of them;
+    scratch: from `workspace`."""
+    (first, second), radices, roots = scratch, operator.radices, operator.roots
+    columns, kept = q.shape[1], second.shape[2]
+    _spread(operator, q, first)
+    forward(first[0], first[1], columns, radices, roots)
+    _turn_over(operator, columns, first, second)
+    forward(second[0], second[1], kept, radices, roots)
+    _multiply(operator, first, second)
+    backward(second[0], second[1], kept, radices, roots)
+    _turn_back(operator, columns, second, first)
+    backward(first[0], first[1], columns, radices, roots)
+    _gather(operator, first, out)
+
+
+@kernel
+def _spread(operator, q, first):
+    """Tractions to the rows where the transform wants them, and zeros to the others."""
     if operator.images == 4:
-        _convolve_quarter(operator, scratch, q, out)
-        return
-    if operator.images == 2:
-        _convolve_half(operator, scratch, q, out)
-        return
-    n = q.shape[1]
-    first, second = scratch
-    padded = first.shape[1]
-    first[0, :n, :n] = q[1]
-    first[1, :n, :n] = q[0]
-    first[:, n:, :n] = 0.0
-    forward(first[0], first[1], n, operator.radices, operator.roots)
-    for part in range(2):
-        for column in range(n):
-            for row in range(padded):
-                second[part, column, row] = first[part, row, column]
-    second[:, n:] = 0.0
-    forward(second[0], second[1], padded, operator.radices, operator.roots)
-    if operator.coupled:
-        first[:] = second
-        _multiply_coupled(operator, first, second)
+        quarter.spread(operator.folding, q, first)
+    elif operator.images == 2:
+        half.turned(q, first)
     else:
-        second[0] *= operator.kernel
-        second[1] *= operator.kernel
-    backward(second[0], second[1], padded, operator.radices, operator.roots)
-    for part in range(2):
-        for row in range(padded):
-            for column in range(n):
-                first[part, row, column] = second[part, column, row]
-    backward(first[0], first[1], n, operator.radices, operator.roots)
-    out[0] = first[1, :n, :n]
-    out[1] = first[0, :n, :n]
+        n = q.shape[1]
+        for part in range(2):
+            for row in range(first.shape[1]):
+                for column in range(n):
+                    first[part, row, column] = q[1 - part, row, column] if row < n else 0.0
+
+
+@kernel
+def _turn_over(operator, columns, first, second):
+    """Columns to rows, for the transform along the other axis."""
+    if operator.images == 4:
+        quarter.fold(operator.folding, columns, first, second)
+    elif operator.images == 2:
+        half.completed(operator.halving, columns, first, second)
+    else:
+        padded = first.shape[1]
+        for part in range(2):
+            for column in range(columns):
+                for row in range(padded):
+                    second[part, column, row] = first[part, row, column]
+            for row in range(columns, padded):
+                for column in range(padded):
+                    second[part, row, column] = 0.0
+
+
+@kernel
+def _multiply(operator, first, second):
+    """The transform times those of the influence coefficients; first: scratch."""
+    if operator.images == 4:
+        quarter.apply_filter(operator.folding, operator.kernel, second)
+    elif not operator.coupled:
+        for part in range(2):
+            for i in range(second.shape[1]):
+                for k in range(second.shape[2]):
+                    second[part, i, k] *= operator.kernel[i, k]
+    elif operator.images == 1:
+        copy(first, second)
+        _multiply_coupled(operator, first, second)
+    elif operator.halving.sign < 0.0:
+        half.multiply_mirrored(operator.kernel, operator.cross, operator.opposite, second)
+    else:
+        half.multiply_turned(operator.kernel, operator.cross, second)
+
+
+@kernel
+def _turn_back(operator, columns, second, first):
+    """Undo `_turn_over`."""
+    if operator.images == 4:
+        quarter.unfold(operator.folding, columns, second, first)
+    elif operator.images == 2:
+        half.halved(operator.halving, columns, second, first)
+    else:
+        for part in range(2):
+            for row in range(first.shape[1]):
+                for column in range(columns):
+                    first[part, row, column] = second[part, column, row]
+
+
+@kernel
+def _gather(operator, first, out):
+    """Undo `_spread`."""
+    if operator.images == 4:
+        quarter.gather(operator.folding, first, out)
+    elif operator.images == 2:
+        half.turned_back(first, out)
+    else:
+        for part in range(2):
+            for row in range(out.shape[1]):
+                for column in range(out.shape[2]):
+                    out[part, row, column] = first[1 - part, row, column]
 
 
 @kernel
@@ -220,40 +279,3 @@ def _multiply_coupled(operator, given, out):
             cr, ci = operator.cross[0, i, k], operator.cross[1, i, k]
             out[0, i, k] = operator.kernel[i, k] * given[0, i, k] + cr * real - ci * imag
             out[1, i, k] = operator.kernel[i, k] * given[1, i, k] + cr * imag + ci * real
-
-
-@kernel
-def _convolve_quarter(operator, scratch, q, out):
-    """The same by cosine transforms, see quarter.py."""
-    m, (first, second), folding = q.shape[1], scratch, operator.folding
-    padded = first.shape[1]
-    quarter.spread(folding, q, first)
-    forward(first[0], first[1], m, operator.radices, operator.roots)
-    quarter.fold(folding, m, first, second)
-    forward(second[0], second[1], padded, operator.radices, operator.roots)
-    quarter.apply_filter(folding, operator.kernel, second)
-    backward(second[0], second[1], padded, operator.radices, operator.roots)
-    quarter.unfold(folding, m, second, first)
-    backward(first[0], first[1], m, operator.radices, operator.roots)
-    quarter.gather(folding, first, out)
-
-
-@kernel
-def _convolve_half(operator, scratch, q, out):
-    """The same of a half of the rows, see half.py."""
-    m, (first, second), halving = q.shape[1], scratch, operator.halving
-    half.turned(q, first)
-    forward(first[0], first[1], m, operator.radices, operator.roots)
-    half.completed(halving, m, first, second)
-    forward(second[0], second[1], second.shape[2], operator.radices, operator.roots)
-    if operator.coupled and halving.sign < 0.0:
-        half.multiply_mirrored(operator.kernel, operator.cross, operator.opposite, second)
-    elif operator.coupled:
-        half.multiply_turned(operator.kernel, operator.cross, second)
-    else:
-        second[0] *= operator.kernel
-        second[1] *= operator.kernel
-    backward(second[0], second[1], second.shape[2], operator.radices, operator.roots)
-    half.halved(halving, m, second, first)
-    backward(first[0], first[1], m, operator.radices, operator.roots)
-    half.turned_back(first, out)

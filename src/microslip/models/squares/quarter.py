@@ -129,8 +129,9 @@ def apply_filter(folding: Folding, coefficients: np.ndarray, values: np.ndarray)
     for row in range(re.shape[0]):
         far, c, s = folding.opposite[row], folding.turn[0, row], folding.turn[1, row]
         if row == far:
-            re[row] *= coefficients[row]
-            im[row] *= coefficients[row]
+            for k in range(re.shape[1]):
+                re[row, k] *= coefficients[row, k]
+                im[row, k] *= coefficients[row, k]
         elif row < far:
             c, s = c * c - s * s, 2.0 * c * s
             for k in range(re.shape[1]):
