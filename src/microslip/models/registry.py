@@ -34,6 +34,7 @@ from microslip.models.reduced.rigid import RigidContact
 from microslip.models.reduced.slider import slider_contact
 from microslip.models.rings.contact import RadialContact
 from microslip.models.rings.side_by_side import RingsSideBySide
+from microslip.models.squares import half
 from microslip.models.squares.contact import CartesianContact
 from microslip.models.squares.side_by_side import SquaresSideBySide
 
@@ -121,6 +122,13 @@ def _refuse_rigid(motion, poisson):
     return _refuse_angles(motion, poisson) if motion.rotates else ""
 
 
+def _symmetry(motion):
+    """Of tractions on squares, as far as the pressure has it, too."""
+    if not motion.half_disc:
+        return ""
+    return half.MIRROR if motion.rotates else half.TURN
+
+
 _NO_ROTATION = _any_of(_refuse_rotation, _refuse_pulsation)
 
 MODELS = {
@@ -174,7 +182,7 @@ MODELS = {
     ),
     "cartesian": Model(
         lambda motion, poisson, cells, angles, focus: CartesianContact(
-            cells, poisson, motion.pressure
+            cells, poisson, motion.pressure, _symmetry(motion)
         ),
         _refuse_pulsation,
         side_by_side=SquaresSideBySide,

@@ -5,6 +5,9 @@ transform leaves its output in the order in which it was computed (digit-reverse
 starts from there, and the transformed kernel sits in the same order, so that nothing is ever
 sorted.  Butterflies run over whole rows, which the compiler turns into vector instructions, and
 rows that are known to be zero, or of no interest, are left out.
+
+Of fields with a symmetry less is enough: a quarter if they are even along both axes (quarter.py),
+a half if they are their own image under a half turn, or in a mirror (half.py).
 """
 
 from __future__ import annotations
@@ -15,12 +18,15 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.foundation.compiled import kernel
+from microslip.models.point_fields import copy
+from microslip.models.squares import half, quarter
 from microslip.models.squares.transform import backward, forward
 from microslip.theory.hertz import G_STAR
 
 
 class Convolution(NamedTuple):
-    """All that the compiled convolution needs; P: padded cells along a side.
+    """All that the compiled convolution needs; P: padded cells along a side, of a quarter if that
+    is all there is; H: lateral frequencies that are kept, P but of a half.
 
     Attributes
     ----------
@@ -28,14 +34,21 @@ class Convolution(NamedTuple):
         Factors of P.
     roots : np.ndarray, shape (2, P)
         cos and sin of 2 pi k / P.
-    kernel : np.ndarray, shape (P, P)
-        Transform of the influence coefficients, real.
-    cross : np.ndarray, shape (2, P, P)
-        Transform of those on the conjugate traction, used only if `coupled`.
+    kernel : np.ndarray, shape (P, H)
+        Transform of the influence coefficients, real; of a quarter quarter.folded_filter.
+    cross : np.ndarray, shape (2, P, H)
+        Transform of those on the conjugate traction, used only if `coupled`; of a half what
+        multiplies the other transform, see half.halved_filter.
     coupled : bool
         Whether nu > 0.
     opposite : np.ndarray, shape (P,)
         Row of minus the frequency of each row.
+    images : int
+        Squares that one of them stands for, itself included: 1, of a half 2, of a quarter 4.
+    folding : quarter.Folding
+        Of a quarter.
+    halving : half.Halving
+        Of a half.
     """
 
     radices: np.ndarray
@@ -44,30 +57,54 @@ class Convolution(NamedTuple):
     cross: np.ndarray
     coupled: bool
     opposite: np.ndarray
+    images: int
+    folding: quarter.Folding
+    halving: half.Halving
 
 
 @lru_cache(maxsize=8)
 def square_convolution(
-    cells: int, poisson: float, modulus: float = G_STAR
+    cells: int,
+    poisson: float,
+    modulus: float = G_STAR,
+    images: int = 1,
+    symmetry: str = half.TURN,
 ) -> tuple[Convolution, float, float]:
     """Convolution of `cells` x `cells` squares over [-1, 1]^2, their self-influence, and an
-    upper bound on the eigenvalues (u_lim per unit traction); modulus: G* in working units."""
-    padded = _padded(cells)
+    upper bound on the eigenvalues (u_lim per unit traction).
+
+    modulus: G* in working units; images: see Convolution, 4 for fields at nu = 0 that are even
+    along both axes, by those where both coordinates are positive; 2 for fields with a symmetry of
+    half.py, by those where the forward one is; both on an even number of cells.
+    """
+    padded = _padded(cells // 2 if images == 4 else cells)
     radices = _radices(padded)
     turns = 2.0 * np.pi * np.arange(padded) / padded
     order = _order(list(radices))
-    coefficients = influence(cells, padded, poisson, modulus)
-    kernel, cross = (np.fft.fft2(part).T[np.ix_(order, order)] for part in coefficients)
+    opposite = np.argsort(order)[-order % padded]
+    coefficients = influence(cells, 2 * padded if images == 4 else padded, poisson, modulus)
+    if images == 2 and padded % 2 == 0:
+        # the offset that is its own negative is further than any, and would not be even
+        coefficients[1][padded // 2], coefficients[1][:, padded // 2] = 0.0, 0.0
+    halving = half.halving(order, opposite, cells, symmetry)
+    transforms = [np.fft.fft2(part) for part in coefficients]
+    if images == 2:
+        kernel, cross = half.halved_filter(transforms, order, halving.rows, cells, symmetry)
+    else:
+        kernel, cross = (part.T[np.ix_(order, order)] for part in transforms)
     largest = np.abs(kernel).max() + np.abs(cross).max()
     # each factor of the inverse transform brings its size along: divide once, here
-    kernel, cross = kernel / padded**2, cross / padded**2
+    kernel, cross = (kernel / padded**2).real, cross / padded**2
     operator = Convolution(
         radices,
         np.stack([np.cos(turns), np.sin(turns)]),
-        np.ascontiguousarray(kernel.real),
+        quarter.folded_filter(kernel, opposite) if images == 4 else np.ascontiguousarray(kernel),
         np.stack([cross.real, cross.imag]),
         poisson > 0.0,
-        np.argsort(order)[-order % padded],
+        opposite,
+        images,
+        quarter.folding(order, opposite),
+        halving,
     )
     return operator, float(coefficients[0][0, 0]), float(largest)
 
@@ -116,7 +153,8 @@ def _power(number, prime):
 
 def _radices(padded):
     twos = _power(padded, 2)
-    return np.array([4] * (twos // 2) + [2] * (twos % 2) + [3] * _power(padded, 3))
+    radices = [4] * (twos // 2) + [2] * (twos % 2) + [3] * _power(padded, 3)
+    return np.array(radices, dtype=np.int64)  # also those of a single cell, which are none
 
 
 def _order(radices):
@@ -129,40 +167,104 @@ def _order(radices):
 
 def workspace(operator: Convolution) -> tuple[np.ndarray, np.ndarray]:
     """Scratch arrays of `convolve`: reusable, not shared between threads."""
-    padded = len(operator.opposite)
-    return np.zeros((2, padded, padded)), np.zeros((2, padded, padded))
+    return np.zeros((2, *operator.kernel.shape)), np.zeros((2, *operator.kernel.shape))
 
 
 @kernel
 def convolve(operator: Convolution, scratch: tuple, q: np.ndarray, out: np.ndarray) -> None:
-    """out = A q; q, out: forward and lateral parts, (2, n, n); scratch: from `workspace`."""
-    n = q.shape[1]
-    first, second = scratch
-    padded = first.shape[1]
-    first[0, :n, :n] = q[1]
-    first[1, :n, :n] = q[0]
-    first[:, n:, :n] = 0.0
-    forward(first[0], first[1], n, operator.radices, operator.roots)
-    for part in range(2):
-        for column in range(n):
-            for row in range(padded):
-                second[part, column, row] = first[part, row, column]
-    second[:, n:] = 0.0
-    forward(second[0], second[1], padded, operator.radices, operator.roots)
-    if operator.coupled:
-        first[:] = second
-        _multiply_coupled(operator, first, second)
+    """out = A q; q, out: forward and lateral parts, (2, n, n), or of what there is of them;
+    scratch: from `workspace`."""
+    (first, second), radices, roots = scratch, operator.radices, operator.roots
+    columns, kept = q.shape[1], second.shape[2]
+    _spread(operator, q, first)
+    forward(first[0], first[1], columns, radices, roots)
+    _turn_over(operator, columns, first, second)
+    forward(second[0], second[1], kept, radices, roots)
+    _multiply(operator, first, second)
+    backward(second[0], second[1], kept, radices, roots)
+    _turn_back(operator, columns, second, first)
+    backward(first[0], first[1], columns, radices, roots)
+    _gather(operator, first, out)
+
+
+@kernel
+def _spread(operator, q, first):
+    """Tractions to the rows where the transform wants them, and zeros to the others."""
+    if operator.images == 4:
+        quarter.spread(operator.folding, q, first)
+    elif operator.images == 2:
+        half.turned(q, first)
     else:
-        second[0] *= operator.kernel
-        second[1] *= operator.kernel
-    backward(second[0], second[1], padded, operator.radices, operator.roots)
-    for part in range(2):
-        for row in range(padded):
-            for column in range(n):
-                first[part, row, column] = second[part, column, row]
-    backward(first[0], first[1], n, operator.radices, operator.roots)
-    out[0] = first[1, :n, :n]
-    out[1] = first[0, :n, :n]
+        n = q.shape[1]
+        for part in range(2):
+            for row in range(first.shape[1]):
+                for column in range(n):
+                    first[part, row, column] = q[1 - part, row, column] if row < n else 0.0
+
+
+@kernel
+def _turn_over(operator, columns, first, second):
+    """Columns to rows, for the transform along the other axis."""
+    if operator.images == 4:
+        quarter.fold(operator.folding, columns, first, second)
+    elif operator.images == 2:
+        half.completed(operator.halving, columns, first, second)
+    else:
+        padded = first.shape[1]
+        for part in range(2):
+            for column in range(columns):
+                for row in range(padded):
+                    second[part, column, row] = first[part, row, column]
+            for row in range(columns, padded):
+                for column in range(padded):
+                    second[part, row, column] = 0.0
+
+
+@kernel
+def _multiply(operator, first, second):
+    """The transform times those of the influence coefficients; first: scratch."""
+    if operator.images == 4:
+        quarter.apply_filter(operator.folding, operator.kernel, second)
+    elif not operator.coupled:
+        for part in range(2):
+            for i in range(second.shape[1]):
+                for k in range(second.shape[2]):
+                    second[part, i, k] *= operator.kernel[i, k]
+    elif operator.images == 1:
+        copy(first, second)
+        _multiply_coupled(operator, first, second)
+    elif operator.halving.sign < 0.0:
+        half.multiply_mirrored(operator.kernel, operator.cross, operator.opposite, second)
+    else:
+        half.multiply_turned(operator.kernel, operator.cross, second)
+
+
+@kernel
+def _turn_back(operator, columns, second, first):
+    """Undo `_turn_over`."""
+    if operator.images == 4:
+        quarter.unfold(operator.folding, columns, second, first)
+    elif operator.images == 2:
+        half.halved(operator.halving, columns, second, first)
+    else:
+        for part in range(2):
+            for row in range(first.shape[1]):
+                for column in range(columns):
+                    first[part, row, column] = second[part, column, row]
+
+
+@kernel
+def _gather(operator, first, out):
+    """Undo `_spread`."""
+    if operator.images == 4:
+        quarter.gather(operator.folding, first, out)
+    elif operator.images == 2:
+        half.turned_back(first, out)
+    else:
+        for part in range(2):
+            for row in range(out.shape[1]):
+                for column in range(out.shape[2]):
+                    out[part, row, column] = first[1 - part, row, column]
 
 
 @kernel

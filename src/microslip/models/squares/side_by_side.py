@@ -14,7 +14,7 @@ from microslip.models.squares.contact import CartesianContact
 
 
 class SquaresSideBySide:
-    """The contacts of one body; states have shape (2, cells, cells of all).
+    """The contacts of one body; states are those of each, one beside the other along axis 2.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class SquaresSideBySide:
     ):
         self._one, self._count = contacts[0], len(contacts)
         self._shares, self._extents = np.array(shares), np.array(extents)
-        one, columns = self._one, len(self._one.bound)
+        one, columns = self._one, self._one.bound.shape[1]
         self.bound, self.forward_position, self.lateral_position = (
             np.tile(field, self._count)
             for field in (one.bound, one.forward_position, one.lateral_position)
@@ -72,7 +72,7 @@ class SquaresSideBySide:
         return replace(march, state=self._together(march.state))
 
     def _each(self, state):
-        """States of the contacts, (contacts, 2, cells, cells)."""
+        """States of the contacts, the first axis."""
         return np.stack(np.split(state, self._count, axis=-1))
 
     def _together(self, states):

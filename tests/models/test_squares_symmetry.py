@@ -1,0 +1,249 @@
+"""Squares that stand for their images against all of them, and where they are not enough."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from models.test_squares import direct_sum
+
+from microslip.models.contact import LATERAL, TORQUE, energy_norm, forces, forward_slip
+from microslip.models.path import make_path
+from microslip.models.pull import Body
+from microslip.models.registry import MODELS
+from microslip.models.squares import contact as squares_contact
+from microslip.models.squares.contact import CartesianContact
+from microslip.models.squares.convolution import convolve, square_convolution, workspace
+from microslip.models.squares.half import MIRROR, TURN
+from microslip.models.squares.side_by_side import SquaresSideBySide
+from microslip.motions.by_name import motion_named
+from microslip.pressures.by_name import HERTZ, pressure_named
+from microslip.solver.problem import Problem, Resolution
+from microslip.solver.simulate import simulate
+from microslip.solver.static_run import simulate_static
+
+ELLIPSE = "ellipse:ratio=0.6"
+LOOP = "elliptic:forward=0.6,lateral=1,phase=70"
+TOLERANCE = 1e-13
+"""Of steps: what differs by more than a thousand of them differs."""
+
+KINDS = {
+    "quarter": (4, TURN, 0.0),
+    "half turn": (2, TURN, 0.3),
+    "mirror image": (2, MIRROR, 0.3),
+    "mirror image at nu = 0": (2, MIRROR, 0.0),
+}
+"""Squares that one stands for, the symmetry of the motion, and Poisson's ratio."""
+MOTIONS = {
+    "quarter": ("transverse", "longitudinal", LOOP),
+    "half turn": ("transverse", "longitudinal", LOOP),
+    "mirror image": ("bore", "continuous-bore"),
+    "mirror image at nu = 0": ("bore",),
+}
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(20201109)
+
+
+def whole(kind, state):
+    """Fields (..., 2, m, m) or (..., 2, m, n) with their images, (..., 2, n, n)."""
+    images, symmetry, _ = KINDS[kind]
+    if images == 4:
+        state = np.concatenate([state[..., ::-1], state], axis=-1)
+    behind = state[..., ::-1, :]
+    if symmetry == MIRROR:
+        behind = behind * np.array([1.0, -1.0])[:, None, None]
+    elif images == 2:
+        behind = behind[..., ::-1]
+    return np.concatenate([behind, state], axis=-2)
+
+
+def some_state(kind, cells, rng):
+    return rng.normal(size=(2, cells // 2, cells // 2 if KINDS[kind][0] == 4 else cells))
+
+
+def both(kind, cells, pressure=HERTZ):
+    """All the squares, and those that stand for them."""
+    images, symmetry, nu = KINDS[kind]
+    fewer = CartesianContact(cells, nu, pressure, symmetry)
+    assert fewer.images == images and fewer.bound.size * images == cells**2
+    return CartesianContact(cells, nu, pressure), fewer
+
+
+def path_of(name, nu, steps=12, velocity=0.1):
+    motion = motion_named(name)
+    amplitude = 0.8 if motion.periodic else None
+    phase = np.linspace(-np.pi / 2, np.pi, steps + 1)
+    return make_path(lambda t: motion.displacement(t, velocity, amplitude, nu), phase)
+
+
+@pytest.mark.parametrize("cells", [2, 4, 6, 8, 10, 12, 14, 18])
+@pytest.mark.parametrize("kind", KINDS)
+def test_convolution_is_the_direct_sum_over_all_squares(kind, cells, rng):
+    """Padded to 1, 3, 6, 8, 9, 12, 16 and 18, of a half to 3, 8, 12, 16, 24, 27 and 36, so that
+    every kind of butterfly is in it, and odd lengths."""
+    images, symmetry, nu = KINDS[kind]
+    operator = square_convolution(cells, nu, images=images, symmetry=symmetry)[0]
+    state = some_state(kind, cells, rng)
+    out, again = np.empty_like(state), np.empty_like(state)
+    scratch = workspace(operator)
+    convolve(operator, scratch, state, out)
+    assert whole(kind, out) == pytest.approx(direct_sum(cells, nu, whole(kind, state)), abs=1e-13)
+    for part in scratch:  # what is left from other tractions does not show
+        part[:] = rng.normal(size=part.shape)
+    convolve(operator, scratch, state, again)
+    assert np.array_equal(again, out)
+
+
+@pytest.mark.parametrize("cells", [4, 8, 12])
+@pytest.mark.parametrize("kind", KINDS)
+def test_largest_eigenvalue_of_such_fields_is_bounded_closely(kind, cells):
+    _, contact = both(kind, cells)
+    shape = (2, *contact.bound.shape)
+    units = np.eye(np.prod(shape)).reshape(-1, *shape)
+    matrix = np.stack([contact.displacement(unit).ravel() for unit in units])
+    largest = np.linalg.eigvalsh(matrix)[-1]
+    assert largest < contact.largest < 2.5 * largest
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_squares_count_for_their_images(kind, rng):
+    """Areas, loads, forces, energies and mirror images; in no more room."""
+    every, fewer = both(kind, 8, pressure_named(ELLIPSE))
+    state = some_state(kind, 8, rng)
+    full = whole(kind, state)
+    assert fewer.weight.sum() == every.weight.sum() == 4.0
+    assert np.sum(fewer.weight * fewer.bound) == pytest.approx(1.0, abs=1e-14)
+    even = whole(kind, np.stack([fewer.bound, fewer.bound]))[0]
+    assert even == pytest.approx(every.bound, rel=1e-14)
+    assert (fewer.forward_position > 0.0).all()
+    kept = [0, LATERAL] if KINDS[kind][1] == TURN else [0, TORQUE]
+    assert forces(fewer, state)[kept] == pytest.approx(forces(every, full)[kept], abs=1e-13)
+    energies = energy_norm(every, full), energy_norm(fewer, state)
+    assert energies[1] == pytest.approx(energies[0], rel=1e-13)
+    assert np.array_equal(whole(kind, fewer.mirrored(state)), every.mirrored(full))
+    rooms = [workspace(contact.operator)[0].nbytes for contact in (every, fewer)]
+    assert rooms[1] <= 0.6 * rooms[0]
+
+
+@pytest.mark.parametrize("pressure", ["hertz", ELLIPSE, "ring:inner=0.4"])
+@pytest.mark.parametrize("kind, motion", [(k, m) for k, ms in MOTIONS.items() for m in ms])
+def test_a_march_is_that_of_all_squares(kind, motion, pressure):
+    contacts, path = both(kind, 12, pressure_named(pressure)), path_of(motion, KINDS[kind][2])
+    one, other = (contact.march(path, forward_slip(contact), TOLERANCE) for contact in contacts)
+    assert np.ptp(one.forces[:, 0]) > 0.01
+    assert other.forces == pytest.approx(one.forces, abs=1e-10)
+    assert np.all(other.forces[:, TORQUE if KINDS[kind][1] == TURN else LATERAL] == 0.0)
+    assert whole(kind, other.state) == pytest.approx(one.state, abs=1e-10)
+    assert whole(kind, other.stages) == pytest.approx(one.stages, abs=1e-10)
+    assert other.solves == one.solves and other.residual <= other.solves * TOLERANCE
+    again = contacts[1].march(path, forward_slip(contacts[1]), TOLERANCE)
+    assert np.array_equal(again.state, other.state) and np.array_equal(again.forces, other.forces)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_pulled_march_is_that_of_all_squares(kind):
+    path, body = path_of(MOTIONS[kind][0], KINDS[kind][2], steps=8), Body(0.4, 0.0, 0.3, 0.0)
+    one, other = (
+        contact.pulled_march(path, forward_slip(contact), TOLERANCE, body, np.zeros(2))
+        for contact in both(kind, 8)
+    )
+    assert np.ptp(one.body[:, 0]) > 0.1
+    assert other.body == pytest.approx(one.body, abs=1e-10)
+    assert other.forces == pytest.approx(one.forces, abs=1e-10)
+    assert whole(kind, other.state) == pytest.approx(one.state, abs=1e-10)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_they_stand_side_by_side(kind, rng):
+    """Displacements and mirror images of two contacts on one body."""
+    shares, extents = (0.7, 0.3), (1.25, 0.71)
+    one, other = (SquaresSideBySide([c, c], shares, extents) for c in both(kind, 6))
+    states = [some_state(kind, 6, rng) for _ in range(2)]
+    joined = np.concatenate(states, axis=-1)
+    full = np.concatenate([whole(kind, state) for state in states], axis=-1)
+
+    def spread(field):
+        return np.concatenate([whole(kind, part) for part in np.split(field, 2, -1)], axis=-1)
+
+    assert spread(other.displacement(joined)) == pytest.approx(one.displacement(full), abs=1e-13)
+    assert np.array_equal(spread(other.mirrored(joined)), one.mirrored(full))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("velocity", [0.0, 0.2])
+@pytest.mark.parametrize(
+    "motion, nu, images",
+    [("transverse", 0.0, 4), (LOOP, 0.0, 4), (LOOP, 0.3, 2), ("bore", 0.3, 2)],
+)
+def test_a_run_finds_what_one_on_all_squares_does(motion, nu, images, velocity, monkeypatch):
+    problem = Problem(motion_named(motion, ELLIPSE), velocity, 0.6, nu)
+    run_of = simulate if velocity else simulate_static
+    resolution, tolerance = Resolution(12, 1, 12), 1e-9
+    other = run_of(problem, "cartesian", resolution, tolerance)
+    monkeypatch.setattr(squares_contact, "_images", lambda *given: 1)
+    one = run_of(problem, "cartesian", resolution, tolerance)
+    assert one.converged and other.converged
+    assert other.work * one.solves * images == one.work * other.solves
+    assert other.mu == pytest.approx(one.mu, abs=2e-9)
+    assert other.torque == pytest.approx(one.torque, abs=2e-9)
+
+
+def images_of(motion, nu, cells=8, pressure="hertz"):
+    """Squares that one stands for in what the registry builds."""
+    contact = MODELS["cartesian"].build(motion_named(motion, pressure), nu, cells, 1, None)
+    assert contact.bound.size * contact.images == cells**2
+    return contact.images
+
+
+def test_fewer_squares_do_only_where_symmetry_lets_them():
+    assert images_of("transverse", 0.0) == images_of(LOOP, 0.0) == 4
+    assert images_of("transverse", 0.3) == images_of(LOOP, 0.3) == 2
+    assert (
+        images_of("bore", 0.0) == images_of("bore", 0.3) == images_of("continuous-bore", 0.0) == 2
+    )
+    assert images_of("transverse-bore", 0.0) == 1
+    assert images_of("transverse", 0.0, cells=7) == images_of("bore", 0.3, cells=7) == 1
+
+
+@pytest.mark.parametrize("cells", [24, 96, 192])
+def test_loads_of_ellipses_are_even_but_for_rounding(cells):
+    assert images_of("transverse", 0.0, cells, ELLIPSE) == 4
+
+
+PLACES = {
+    ((0, 3), (7, 3)): {(TURN, 0.0): 1, (MIRROR, 0.3): 2},
+    ((0, 3), (0, 4)): {(TURN, 0.0): 1, (MIRROR, 0.3): 1},
+    ((0, 3), (7, 4)): {(TURN, 0.0): 2, (MIRROR, 0.3): 1},
+    ((1, 3), (1, 4), (6, 3), (6, 4)): {(TURN, 0.0): 4, (MIRROR, 0.0): 2},
+}
+"""Squares with more load than their images, and what one square may stand for then."""
+
+
+@pytest.mark.parametrize("places", PLACES)
+@pytest.mark.parametrize("more", [1e-8, 0.5])
+def test_the_pressure_has_a_say(places, more):
+    """... unless what it says is rounding."""
+
+    def contact_of(more, symmetry, nu):
+        def cell_loads(cells):
+            loads = HERTZ.cell_loads(cells)
+            loads[tuple(zip(*places, strict=True))] += more * loads.max()
+            return loads
+
+        return CartesianContact(8, nu, replace(HERTZ, cell_loads=cell_loads), symmetry)
+
+    for (symmetry, nu), images in PLACES[places].items():
+        assert contact_of(more, symmetry, nu).images == images
+        assert contact_of(1e-13, symmetry, nu).images == (4 if (symmetry, nu) == (TURN, 0.0) else 2)
+
+
+def test_the_mean_of_the_images_is_taken():
+    """Of arithmetic progressions along both axes: 4 i + j."""
+    loads = np.arange(16.0).reshape(4, 4)
+    mean = squares_contact._mean_of_images
+    assert np.array_equal(mean(loads, 4, TURN), np.full((2, 2), 7.5))
+    assert np.array_equal(mean(loads, 2, TURN), np.full((2, 4), 7.5))
+    assert np.array_equal(mean(loads, 2, MIRROR), np.full((2, 4), 6.0) + np.arange(4))
+    assert np.array_equal(mean(loads, 1, TURN), loads)
