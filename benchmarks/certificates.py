@@ -1,13 +1,15 @@
 """Do the claimed errors hold?  Random points of all kinds, each against a finer reference.
 
-    python benchmarks/certificates.py [--points N] [--seed S] [--workers W] [--output FILE]
-                                      [--markdown FILE] [--again]
+    python benchmarks/certificates.py [--points N] [--first K] [--seed S] [--workers W]
+                                      [--output FILE] [--markdown FILE] [--again]
 
 The points are those of `blind_points.py`.  The reference is the same point at a tenth of the
 tolerance (at 1e-4 a quarter), which begins with finer runs.  What it leaves open, since it is not
 certain enough for that or did not converge, is decided by `finer.py`.  A claim holds if
 
     |mu_macro - reference| <= mu_macro_error <= tolerance.
+
+The table is that of the points from --first on: those of which nothing was chosen.
 
 Results go to a file of JSON lines, point by point, and an interrupted run goes on where it stopped.
 One that goes on under other sources first solves some of its points again, and ends if these have
@@ -174,6 +176,7 @@ def refuse_changed(seed: int, lines: list[dict]) -> None:
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--points", type=int, default=300)
+    parser.add_argument("--first", type=int, default=0, help="of the points, by its number")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--output", type=Path, help="results/certificates-SEED.jsonl unless given")
@@ -189,7 +192,8 @@ def main():
         output.replace(output.with_name(output.name + ".before"))
     refuse_changed(options.seed, list(lines.values()))
     with ProcessPoolExecutor(options.workers) as pool, output.open("a") as file:
-        wanted = [k for k in range(options.points) if k not in lines]
+        asked = range(options.first, options.points)
+        wanted = [k for k in asked if k not in lines]
         jobs = [pool.submit(examine, options.seed, k, references.get(k)) for k in wanted]
         for done, job in enumerate(as_completed(jobs), start=1):
             line = job.result()
@@ -198,7 +202,7 @@ def main():
             file.flush()
             print(f"\r{done} of {len(jobs)} points", end="", flush=True)
     print()
-    tables.publish(summary([lines[k] for k in range(options.points)]), options)
+    tables.publish(summary([lines[k] for k in asked]), options)
 
 
 if __name__ == "__main__":
