@@ -274,9 +274,10 @@ def mixed_difference(runs: Runs, chains: dict[str, Chain], name: str) -> float:
     for axis in (first, "angles"):
         base = runs.base[axis]
         last = chains[axis].indices[-1]
-        step = 1 if chains[axis].axis.regular else 2
         if axis == "angles":
             step = max(last - base - 1, 1)
+        else:
+            step = 1 if chains[axis].axis.regular else 2
         beside[axis] = min(base + step, last) if last > base else base - 1
     one, other = ({axis: index} for axis, index in beside.items())
     both, one, other, base = (getattr(runs(**at), name) for at in (beside, one, other, {}))

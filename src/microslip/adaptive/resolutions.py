@@ -182,5 +182,6 @@ def _steps(problem, model, tolerance):
         return Axis("steps", levels, base, first, caution=caution)
     base = STEPS.index(coarsest.steps) + levels_finer(1e-3 / tolerance) // 2
     caution, scatter = PROJECTED_CAUTION["steps"], PROJECTED_SCATTER
+    # counts that lie close together agree by chance where the error in time changes its sign
     first = (base - 2, base, base + 2)
     return Axis("steps", levels, base, first, projected=True, caution=caution, scatter=scatter)
