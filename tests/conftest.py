@@ -4,7 +4,8 @@ finished run.
 A file is one process's, since its tests share what is slow to make (--dist loadfile).
 
 Tests that are marked `long` take a second to a minute each: whole workflows, pages, figures, and
-finer runs of what something quicker shows, too. A run that names nothing leaves them out.
+finer runs of what something quicker shows, too. A run that names nothing leaves them out, and takes
+the first and the last case only of a test that is marked `slow`.
 Whatever is named on the command line runs whole, be it a file, a folder, an expression of -k or
 one of -m; `.ci/whole` runs everything.
 """
@@ -13,6 +14,7 @@ import gc
 import os
 import shutil
 import signal
+from collections import defaultdict
 
 import pytest
 import yaml
@@ -52,10 +54,17 @@ def pytest_configure(config):
 
 @pytest.hookimpl(tryfirst=True)  # before pytest leaves out what it is asked to leave out
 def pytest_collection_modifyitems(items):
-    """What is long is slow, too; files that take long come first."""
+    """What is long is slow, too, and what lies between the ends of slow cases is long; files that
+    take long come first."""
+    cases = defaultdict(list)
     for item in items:
         if item.get_closest_marker("long"):
             item.add_marker("slow")
+        elif item.get_closest_marker("slow"):
+            cases[item.nodeid.partition("[")[0]].append(item)
+    for of_one_test in cases.values():
+        for item in of_one_test[1:-1]:
+            item.add_marker("long")
 
     def place(item):
         found = (i for i, start in enumerate(FIRST) if item.path.name.startswith(start))

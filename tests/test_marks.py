@@ -25,7 +25,15 @@ def test_half_a_second():
 @pytest.mark.long
 def test_several_seconds():
     pass
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", range(4))
+def test_of_cases(case):
+    pass
 """
+ENDS = {"test_of_cases[0]", "test_of_cases[3]"}
+CASES = ENDS | {"test_of_cases[1]", "test_of_cases[2]"}
 QUICK, SLOW, LONG = "test_quick", "test_half_a_second", "test_several_seconds"
 
 
@@ -45,10 +53,10 @@ def folder(tmp_path_factory):
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (["-n1"], {QUICK, SLOW}),  # another process is handed what the first one was told
-        (["-n1", "tests"], {QUICK, SLOW, LONG}),
-        (["-n0", "-m", "slow"], {SLOW, LONG}),
-        (["-n0", "-k", "seconds"], {LONG}),
+        (["-n1"], {QUICK, SLOW} | ENDS),  # another process is handed what the first one was told
+        (["-n1", "tests"], {QUICK, SLOW, LONG} | CASES),
+        (["-n0", "-m", "slow"], {SLOW, LONG} | CASES),
+        (["-n0", "-k", "seconds or cases"], {LONG} | CASES),
     ],
 )
 def test_what_is_long_runs_when_something_is_named(arguments, expected, folder):
@@ -57,7 +65,7 @@ def test_what_is_long_runs_when_something_is_named(arguments, expected, folder):
 
 @pytest.mark.slow
 def test_everything_is_run_by_one_script(folder):
-    assert passed(["bash", ".ci/whole", "-n0"], folder) == {QUICK, SLOW, LONG}
+    assert passed(["bash", ".ci/whole", "-n0"], folder) == {QUICK, SLOW, LONG} | CASES
 
 
 def passed(command, folder):

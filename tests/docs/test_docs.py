@@ -52,8 +52,12 @@ LONG_PAGES = (
     "docs/how-to/extend.md",
     "docs/how-to/fit.md",
     "docs/how-to/loose.md",
+    "docs/how-to/sweeps.md",
+    "docs/tutorials/tutorial.md",
 )
 """Pages whose code takes several seconds, but for those that a newcomer reads first."""
+OPEN_A_SWEEP = ("README.md", "docs/how-to/workflow.md")
+"""Other pages that open a dataset, which is the sweep `transverse`."""
 SHARED = ("Snakefile", "README.md", "pyproject.toml")
 SHARED_FOLDERS = ("benchmarks", "config", "docs", "profiles", "tests", "workflow")
 
@@ -140,22 +144,45 @@ def tutorial_configuration():
     return load.from_mapping(yaml.safe_load(block.text))
 
 
-@pytest.fixture(scope="session")
-def computed(tmp_path_factory):
-    """A folder `results` with the datasets of the sweeps that the tutorial is about.
+def write_sweeps(folder, names):
+    """Compute sweeps that the tutorial is about and write their datasets to a folder `results`.
 
     They stand in for those of the full sweeps, too: results/transverse.nc and so on.
     """
     given = tutorial_configuration()
-    folder = tmp_path_factory.mktemp("docs") / "results"
     place = folder / Path(given.results).relative_to("results")
     store = Store(place)
-    for name, grid in given.sweeps.items():
+    for name in names:
+        grid = given.sweeps[name]
         points = [batches.answer(request, store)[0] for request in batches.PointRequests(grid)]
         settings = given.of_sweep(name)
         sweep_dataset.write_sweep(place / f"{name}.nc", grid, points, [], settings)
         for file in (f"{name}.nc", f".{name}.nc.sha256"):
             shutil.copy(place / file, folder)
+    return store
+
+
+@pytest.fixture(scope="session")
+def empty(tmp_path_factory):
+    """A folder `results` with nothing in it."""
+    folder = tmp_path_factory.mktemp("docs") / "results"
+    folder.mkdir()
+    return folder
+
+
+@pytest.fixture(scope="session")
+def with_a_sweep(tmp_path_factory):
+    """A folder `results` with the sweep that most lines open."""
+    folder = tmp_path_factory.mktemp("docs") / "results"
+    write_sweeps(folder, ["transverse"])
+    return folder
+
+
+@pytest.fixture(scope="session")
+def computed(tmp_path_factory):
+    """A folder `results` with all datasets that pages open."""
+    folder = tmp_path_factory.mktemp("docs") / "results"
+    store = write_sweeps(folder, tutorial_configuration().sweeps)
     # coarse, so that it takes seconds
     axes = {"velocity": [0.001, 10], "amplitude": [0, 3], "adaptive": {"error": 0.1}}
     map_ = certified_stub.configured("transverse", **axes)
@@ -262,17 +289,18 @@ def assert_said(said, expected, where):
         assert math.isclose(float(new), float(old), rel_tol=0, abs_tol=near), f"{where}: {said}"
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "page",
-    [
-        pytest.param(page, marks=pytest.mark.long if page in LONG_PAGES else ())
-        for page in PAGES
-        if blocks(page)
-    ],
-)
-def test_the_code_of_a_page_runs(page, computed, tmp_path, monkeypatch):
-    environment = make_place(page, tmp_path, computed)
+def opens(page):
+    """The fixture that makes the results that a page opens, and how long its test takes."""
+    if page in LONG_PAGES:
+        return pytest.param(page, "computed", marks=pytest.mark.long, id=page)
+    if page in OPEN_A_SWEEP:
+        return pytest.param(page, "with_a_sweep", marks=pytest.mark.slow, id=page)
+    return pytest.param(page, "empty", id=page)
+
+
+@pytest.mark.parametrize(("page", "results"), [opens(page) for page in PAGES if blocks(page)])
+def test_the_code_of_a_page_runs(page, results, request, tmp_path, monkeypatch):
+    environment = make_place(page, tmp_path, request.getfixturevalue(results))
     monkeypatch.chdir(tmp_path)
     namespace, said = {"__name__": "__main__"}, None
     for block in blocks(page):
