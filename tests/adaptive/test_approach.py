@@ -65,8 +65,8 @@ def exponents(velocities, excess):
     return np.diff(np.log(excess)) / np.diff(np.log(velocities))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("amplitude", [pytest.param(0.25, marks=pytest.mark.long), 0.5, 0.75])
+@pytest.mark.long
+@pytest.mark.parametrize("amplitude", [0.25, 0.5, 0.75])
 def test_transverse_marches_fall_to_the_closed_form(amplitude):
     mu, error = marched("transverse", amplitude, SLOW)
     exact = float(paper.static_limit_transverse(amplitude))

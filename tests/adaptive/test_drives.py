@@ -142,7 +142,7 @@ def test_large_transverse_amplitudes_are_those_of_a_rigid_contact(force):
     assert left[1] < 0.004 and left[1] < 0.4 * left[0]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_large_bore_amplitudes_are_those_of_a_rigid_contact():
     """Eq 21 at every instant, its velocity over that of the rotation, whose mean is 2/pi."""
     steady = brentq(lambda v: paper.bore_forward(v) - 0.5, 0.1, 2.0)

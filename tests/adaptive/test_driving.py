@@ -141,7 +141,7 @@ def test_stall_is_the_limit_of_slow_velocities():
     assert slow[1] == pytest.approx(line.stall_force, abs=3e-3)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_reversed_loop_drives_backward():
     ahead = microslip.drive("elliptic:forward_cycles=2,phase=20", 1.0, points=4)
     back = microslip.drive("elliptic:forward_cycles=2,phase=200", 1.0, points=4)

@@ -100,7 +100,7 @@ for path in sys.argv[1:]:
 """
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_damaged_pressures_are_refused_and_do_not_hang(tmp_path):
     paths = [tmp_path / f"{case}.nc" for case in odd.DAMAGES]
     for path, damaged in zip(paths, odd.DAMAGES.values(), strict=True):
@@ -174,7 +174,7 @@ def test_gc_forgets_no_configuration_that_is_given_apart(results, tmp_path, caps
     assert len([name for name in names(results) if name.startswith("points/")]) == before
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_gc_knows_a_folder_by_any_path(results, tmp_path, monkeypatch, capsys):  # noqa: F811
     monkeypatch.chdir(tmp_path)
     (tmp_path / "link").symlink_to(results)
@@ -213,7 +213,7 @@ def sweep(folder, *arguments, **environment):
     )
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_sweep_forgets_no_configuration_that_is_given_apart(tmp_path):
     done = sweep(tmp_path, "tiny.yaml", "--configfile", "tiny.yaml")
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)

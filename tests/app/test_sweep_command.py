@@ -152,8 +152,8 @@ def test_a_folder_that_is_gone_is_one_line(tmp_path):
     assert done.stderr == "microslip sweep: the current folder: No such file or directory\n"
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("option", ["-j0", pytest.param("-c -2", marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("option", ["-j0", "-c -2"])
 def test_plain_snakemake_is_told_that_it_has_no_cores(option, tmp_path):
     done = run([*SNAKEMAKE, *option.split(), "--configfile", ROOT / "config/smoke.yaml"], tmp_path)
     assert done.returncode == 1

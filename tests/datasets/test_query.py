@@ -348,7 +348,7 @@ def test_what_is_known_without_a_map(friction):
     assert SOURCES[int(static.source)] == "static limit"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("scene", ["transverse", "bore"])
 def test_brackets_hold_what_the_solver_says(tmp_path, scene):
     # The map itself is made by the solver, so small that most points lie beyond it.

@@ -57,7 +57,7 @@ def test_the_motion_is_its_own_mirror_image_half_a_period_later():
         assert other == pytest.approx(sign * one + way, abs=1e-12)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_static_limit_is_approached_by_marches():
     """All on the same few squares and steps, whose errors are the same in limit and marches."""
     scene, squares = motion_named("transverse-bore"), Resolution(16, 1, 48)

@@ -70,7 +70,7 @@ def test_where_all_slides_every_moment_is_a_steady_bore(velocity):
     assert found.mu_macro == pytest.approx(np.mean(load * steady), abs=0.015)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_which_way_it_turns_does_not_matter():
     one, other = (
         microslip.solve(f"normal:angle=1,phase={p}", 0.1, 0.6, tolerance=3e-3) for p in (40, 220)
@@ -108,7 +108,7 @@ def test_a_turning_contact_that_lifts_off_has_no_static_friction():
     assert found.converged and found.mu_macro <= found.mu_macro_error
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_slow_marches_end_in_the_limit():
     """Limit and marches are those of the same contact and steps, so that few of them tell."""
     still = Problem(motion_named(TURNING), 0.0, 0.5, 0.0)

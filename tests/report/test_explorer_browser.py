@@ -126,7 +126,7 @@ def record_at(records, name, velocity, amplitude):
 PLACES = [("transverse", 0.02, 0.6), ("transverse", 0.1, 1.2), ("bore", 0.1, 0.6), ("bore", 1, 1.2)]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "velocity", "amplitude"), PLACES)
 def test_a_click_shows_the_points_value_and_its_loop(made, page, name, velocity, amplitude):
     _, datasets, records = made

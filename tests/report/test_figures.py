@@ -310,6 +310,7 @@ def at_ratios(dataset, *ratios):
     return both.assign_attrs(tolerance=1e-3)
 
 
+@pytest.mark.long
 def test_what_poissons_ratio_changes(datasets):
     assert len(poisson.LOOKS) == drawing.MOST_POISSONS
     given = {name: at_ratios(datasets[name], 0.0, 0.5) for name in ("transverse", "bore")}

@@ -131,6 +131,7 @@ def test_maps_share_one_scale_and_their_labels():
     assert labels[0] == r"$x_{0}/u_{\mathrm{lim}}$"
 
 
+@pytest.mark.long
 def test_friction_below_zero_widens_the_scale_of_all():
     fills, contours, labels = small_maps.levels_of([spanning(), spanning(shift=-0.234)])
     assert (fills[0], fills[-1]) == pytest.approx((-0.3, 1.0))
@@ -159,6 +160,7 @@ def at_two_ratios(first):
     return xr.concat([first, other], "poisson", data_vars="all", combine_attrs="override")
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("unplaced")
 def test_all_of_poissons_ratios_are_drawn_whatever_else_is_in_the_group():
     figure = drawing.draw(

@@ -708,6 +708,7 @@ def test_an_exponent_that_could_not_be_fitted_is_left_out(small):
     assert "nan" not in " ".join(labels)
 
 
+@pytest.mark.long
 def test_an_axis_shorter_than_a_decade_has_labels(small):
     dataset = small["accuracy_cost"].copy(deep=True)
     dataset["scaling_iterations"][:] = np.linspace(12, 47, 15).reshape(3, 5)

@@ -91,6 +91,7 @@ def test_no_bore_takes_all_of_static_friction_away():
 
 def test_a_load_that_hertz_theory_does_not_know_is_refused():
     """A stroke of half of the ball needs a contact of its size to stick."""
-    asked = LATERAL | {"amplitude": "2.5 mm", "speed": "0 m/s", "reduction": "10 %"}
+    ball = {"young": "210 GPa", "nu": 0, "radius": "5 mm", "mu": 0.3, "frequency": "20 kHz"}
+    asked = ball | {"amplitude": "2.5 mm", "speed": "0 m/s", "reduction": "10 %"}
     with pytest.raises(InputError, match="^reduction = '10 %': it takes a load of .*Hertz"):
         microslip.predict("transverse", **asked)

@@ -51,7 +51,7 @@ def test_what_is_found_is_known_as_well_as_what_was_given():
     assert found.mu_macro_spread == pytest.approx(0.0, abs=1e-3)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_where_an_end_has_no_answer_the_spread_is_endless():
     """A load of nearly nothing slides as a rigid one, of which vibration takes 22 % at 0.8 times
     the velocity of the vibration, by Eq 6, and 18 % at 0.96 times: 20 % only below some speed."""

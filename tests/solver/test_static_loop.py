@@ -86,7 +86,7 @@ def test_where_all_slides_the_mean_of_the_directions_is_left():
     assert microslip.solve("elliptic", 0.0, 3.0).mu_macro == pytest.approx(0.0, abs=1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_mirror_images_have_the_same_limit_or_the_opposite_one():
     one, other = (
         microslip.solve(f"elliptic:forward=0.5,phase={p}", 0.0, 0.5, tolerance=3e-3)
@@ -154,7 +154,7 @@ def test_a_contact_that_lifts_off_has_no_limit_but_what_drives_it():
     assert along.converged and along.mu_macro < -0.4  # under load it only goes back
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_poissons_ratio_and_squares_without_symmetry_are_in():
     softer = microslip.solve("elliptic", 0.0, 0.5, poisson=0.4, tolerance=5e-2)
     assert softer.converged and softer.model == "polar"
