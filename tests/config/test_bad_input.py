@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from bad_input_tables.bad_command_lines import COMMAND_LINES, NAMES, NUMBERS, RESULTS
+from bad_input_tables.bad_command_lines import COMMAND_LINES, NUMBERS, RESULTS
 from bad_input_tables.bad_configurations import EXTENDED, FILES, KEYS, STUDIES, TOGETHER, changed
 
 import microslip

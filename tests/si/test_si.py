@@ -95,7 +95,7 @@ def test_the_unit_of_a_bore_leaves_half_the_radius_sticking():
     for other in (RIGID, STEEL, Material(70e9, 0.2)):
         contact = TwoBodies(STEEL, other, 0.005, 10.0, 0.3)
         a = contact.contact_radius
-        angle = 3 * 0.3 * 10.0 / (4 * math.pi * contact.G * a**2) * hertz.D_HALF
+        angle = 3 * 0.3 * 10.0 / (4 * math.pi * contact.G * a**2) * hertz.D_half()
         velocity, amplitude = groups(RealMotion("bore", 1e-3, angle, 100.0), contact)
         assert amplitude == pytest.approx(1.0)
         assert velocity == pytest.approx(1e-3 / (2 * math.pi * 100.0 * angle * a))

@@ -332,7 +332,7 @@ def test_static_limits_at_their_ends():
     small = np.geomspace(1e-12, 1e-6, 7)
     # There tau is that of the glued disc, (4 G phi/pi) r/sqrt(1 - r^2) with phi = 1 - c (nu = 0);
     # it costs 4 Integral tau r dr = (3/2) (1 - c), and D = (pi/2) (1 - c).
-    loss = 1.5 * 2 / np.pi * hertz.D_HALF * small
+    loss = 1.5 * 2 / np.pi * hertz.D_half() * small
     assert 1 - theory.static_limit_bore(small) == pytest.approx(loss, rel=1e-3, abs=1e-13)
     # Near full slip the inner contact is small: (6 sqrt(2)/5) c^(5/2).
     c = 1e-4

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.special import ellipk
+import scipy
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
@@ -30,7 +30,7 @@ def pressure(name: str, ratio: float, across: float) -> Pressure:
     return Pressure(
         name=name,
         summary=f"a Hertz contact on an ellipse of ratio {ratio:g}",
-        G_star=1.5 / np.pi * float(ellipk(1.0 - ratio**2)),
+        G_star=1.5 / np.pi * float(scipy.special.ellipk(1.0 - ratio**2)),
         torque=_torque(ratio),
         cell_loads=lambda cells: ellipse_loads(cells, axes),
         loading=hertz.mindlin_force,

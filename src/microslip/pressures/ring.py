@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from scipy.special import ellipkm1
+import scipy
 
 from microslip.foundation import spec
 from microslip.pressures.cell_loads import round_loads
@@ -73,7 +73,7 @@ def _largest_displacement(inner, top):
     def displacement(r):
         def of_circle(s):
             apart = max(((r - s) / (r + s)) ** 2, 1e-300)
-            kernel = 4.0 / np.pi * s / (r + s) * ellipkm1(apart)
+            kernel = 4.0 / np.pi * s / (r + s) * scipy.special.ellipkm1(apart)
             return kernel * top * np.sqrt(max((s - inner) * (1.0 - s), 0.0))
 
         parts = (inner, r), (r, 1.0)

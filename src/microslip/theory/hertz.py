@@ -6,10 +6,15 @@ is 3/4, tractions are in mu*F_z/a^2, torques in mu*F_z*a and angles in u_lim/a.
 
 Every function takes floats or arrays, broadcasts, and raises ValueError for an argument that is
 not finite or lies outside the range stated with it.
+
+Parts of SciPy are named in full, so that each is loaded when it is first called: a command that
+calls none does not wait for it.
 """
 
+from functools import cache
+
 import numpy as np
-from scipy.special import ellipe, ellipkm1, elliprd, elliprf
+import scipy
 
 G_STAR = 0.75
 """Reduced shear modulus 4G/(2-nu), dimensionless (from u_lim = 3 mu F_z / (4 G* a))."""
@@ -89,12 +94,14 @@ def D(c: np.ndarray | float) -> np.ndarray | float:
 def _D_of_log(log_c):
     """D as a function of ln c <= 0: accurate for c next to 1 and for c that underflows."""
     k_squared = 0.0 - np.expm1(2 * log_c)
-    near = k_squared / 3 * elliprd(0.0, np.exp(2 * np.maximum(log_c, -20.0)), 1.0)
+    near = k_squared / 3 * scipy.special.elliprd(0.0, np.exp(2 * np.maximum(log_c, -20.0)), 1.0)
     return np.where(log_c < -20.0, np.log(4.0) - 1 - log_c, near)
 
 
-D_HALF = float(D(0.5))
-"""D(1/2), the unit of the bore amplitude."""
+@cache
+def D_half() -> float:
+    """D(1/2), the unit of the bore amplitude."""
+    return float(D(0.5))
 
 
 def lubkin_angle(stick_radius: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
@@ -118,7 +125,7 @@ def lubkin_stick_radius(angle: np.ndarray | float, poisson: float = 0.0) -> np.n
     # that from the tangent at c = 1 the iterates approach the root from one side.
     log_c = -2 / np.pi * target
     for _ in range(30):
-        slope = ellipe(-np.expm1(2 * log_c))
+        slope = scipy.special.ellipe(-np.expm1(2 * log_c))
         change = (_D_of_log(log_c) - target) / slope
         log_c = np.minimum(log_c + change, 0.0)
         if np.all(np.abs(change) <= 1e-8 * np.abs(log_c)):
@@ -131,7 +138,7 @@ def bore_angle(amplitude: np.ndarray | float, poisson: float = 0.0) -> np.ndarra
 
     amplitude >= 0, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns u_lim/a.
     """
-    return checked("amplitude", amplitude) * _twist_unit(poisson) * D_HALF
+    return checked("amplitude", amplitude) * _twist_unit(poisson) * D_half()
 
 
 def bore_amplitude(angle: np.ndarray | float, poisson: float = 0.0) -> np.ndarray | float:
@@ -140,7 +147,7 @@ def bore_amplitude(angle: np.ndarray | float, poisson: float = 0.0) -> np.ndarra
     angle >= 0 in u_lim/a, 0 <= poisson <= 0.5 (broadcast), else ValueError. Returns a
     dimensionless array.
     """
-    return checked("angle", angle) / (_twist_unit(poisson) * D_HALF)
+    return checked("angle", angle) / (_twist_unit(poisson) * D_half())
 
 
 def _twist_unit(poisson):
@@ -197,11 +204,11 @@ def lubkin_share(r: np.ndarray | float, stick_radius: np.ndarray | float) -> np.
     # The sum is 1 - Lambda0 (Heuman), with incomplete integrals of modulus c at the angle
     # arcsin(rho). Of the two complementary angles this one keeps the share exact at r = 0.
     cos2, delta2 = (1 - rho) * (1 + rho), (1 - c * rho) * (1 + c * rho)
-    first = rho * elliprf(cos2, delta2, 1.0)
-    rest = rho**3 / 3 * elliprd(cos2, delta2, 1.0) + rho * np.sqrt(cos2 / delta2)
+    first = rho * scipy.special.elliprf(cos2, delta2, 1.0)
+    rest = rho**3 / 3 * scipy.special.elliprd(cos2, delta2, 1.0) + rho * np.sqrt(cos2 / delta2)
     # c^2 K(k) tends to 0 with c, though c^2 alone underflows first.
-    k_term = np.where(c > 1e-150, c * c * ellipkm1(np.maximum(c * c, 1e-300)), 0.0)
-    share = 2 / np.pi * (ellipe((1 - c) * (1 + c)) * first - k_term * rest)
+    k_term = np.where(c > 1e-150, c * c * scipy.special.ellipkm1(np.maximum(c * c, 1e-300)), 0.0)
+    share = 2 / np.pi * (scipy.special.ellipe((1 - c) * (1 + c)) * first - k_term * rest)
     return np.where(sticks, np.clip(share, 0.0, 1.0), 1.0)[()]
 
 
@@ -227,5 +234,7 @@ def lubkin_torque(stick_radius: np.ndarray | float) -> np.ndarray | float:
     start = np.sqrt(c)
     length = (1 - c) / (1 + start)
     t = start + length * _UNIT_NODES
-    integral = np.sum(_UNIT_WEIGHTS * 2 * t**5 * ellipe((1 - t) * (1 + t) * (1 + t * t)), axis=-1)
+    integral = np.sum(
+        _UNIT_WEIGHTS * 2 * t**5 * scipy.special.ellipe((1 - t) * (1 + t) * (1 + t * t)), axis=-1
+    )
     return 4 / np.pi * length[..., 0] * integral

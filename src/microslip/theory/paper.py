@@ -10,7 +10,7 @@ not finite or lies outside the range stated with it.
 """
 
 import numpy as np
-from scipy.special import ellipe, ellipkm1, elliprd, hyp2f1
+import scipy
 
 from microslip.theory import hertz
 from microslip.theory.hertz import checked
@@ -33,7 +33,9 @@ def large_amplitude_transverse(
     total = np.hypot(velocity, amplitude)
     q = np.where(amplitude > 0, velocity / np.where(total > 0, total, 1.0), 1.0)
     positive = np.maximum(q, np.finfo(float).tiny)
-    elliptic = np.where(q < 1e-9, np.log(4) - np.log(positive), ellipkm1(np.maximum(q, 1e-9) ** 2))
+    elliptic = np.where(
+        q < 1e-9, np.log(4) - np.log(positive), scipy.special.ellipkm1(np.maximum(q, 1e-9) ** 2)
+    )
     return (2 / np.pi * q * elliptic)[()]
 
 
@@ -125,7 +127,11 @@ def _ring_integrals(ratio):
     k = np.minimum(ratio, 1 / np.maximum(ratio, 1.0))
     # Carlson's R_D gives (E - (1 - k^2) K)/k without cancellation; it is infinite at k = 1 only.
     rest = np.maximum((1 - k) * (1 + k), 1e-100)
-    return ratio <= 1, 4 * ellipe(k * k), 4 / 3 * k * rest * elliprd(0.0, 1.0, rest)
+    return (
+        ratio <= 1,
+        4 * scipy.special.ellipe(k * k),
+        4 / 3 * k * rest * scipy.special.elliprd(0.0, 1.0, rest),
+    )
 
 
 def bore_forward(velocity: np.ndarray | float) -> np.ndarray | float:
@@ -142,7 +148,7 @@ def bore_forward(velocity: np.ndarray | float) -> np.ndarray | float:
 
 def _fast_forward(inverse):
     # Eq 21 at velocity 1/inverse >= 1: the power series of 4 E(k), integrated term by term.
-    return hyp2f1(-0.5, 0.5, 2.5, inverse**2)
+    return scipy.special.hyp2f1(-0.5, 0.5, 2.5, inverse**2)
 
 
 def bore_torque(velocity: np.ndarray | float) -> np.ndarray | float:
@@ -154,7 +160,7 @@ def bore_torque(velocity: np.ndarray | float) -> np.ndarray | float:
     velocity = checked("velocity", velocity)
     slow, inverse = np.minimum(velocity, 1.0) ** 2, 1 / np.maximum(velocity, 1.0)
     slow = 1 - slow + 0.375 * slow**2
-    fast = 16 / (15 * np.pi) * inverse * hyp2f1(0.5, 0.5, 3.5, inverse**2)
+    fast = 16 / (15 * np.pi) * inverse * scipy.special.hyp2f1(0.5, 0.5, 3.5, inverse**2)
     return np.where(velocity <= 1, slow, fast)[()]
 
 
@@ -200,7 +206,7 @@ def bore_amplitude_at(stick_radius: np.ndarray | float) -> np.ndarray | float:
     0 < stick_radius <= 1 (any shape), else ValueError.
     """
     stick_radius = checked("stick_radius", stick_radius, high=1.0, low_open=True)
-    return hertz.D(stick_radius) / hertz.D_HALF
+    return hertz.D(stick_radius) / hertz.D_half()
 
 
 def bore_stick_radius(amplitude: np.ndarray | float) -> np.ndarray | float:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from scipy.linalg import solve_triangular
+import scipy
 
 from microslip.models import contact
 from microslip.models.interrupts import unbroken
@@ -113,7 +113,7 @@ class RadialContact:
         """
         upper = np.triu(self._factor)
         np.fill_diagonal(upper, 1.0 / np.diag(upper))
-        part = solve_triangular(upper, self.weight, trans="T")
+        part = scipy.linalg.solve_triangular(upper, self.weight, trans="T")
         # w^T B^-1 w of the first k rings
         return np.concatenate([[0.0], np.cumsum(part**2) * self.radius / self.stiffness])
 

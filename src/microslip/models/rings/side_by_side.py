@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.linalg import block_diag
+import scipy
 
 from microslip.models.path import BodyPath
 from microslip.models.pull import Body, PulledMarch
@@ -39,7 +39,7 @@ class RingsSideBySide(RadialContact):
     ):
         scaled = list(zip(contacts, shares, extents, strict=True))
         super().__init__(
-            block_diag(*(one.influence * extent for one, _, extent in scaled)),
+            scipy.linalg.block_diag(*(one.influence * extent for one, _, extent in scaled)),
             np.concatenate([one.bound for one in contacts]),
             np.concatenate([one.weight * share for one, share, _ in scaled]),
             sum(one.stiffness * share / extent for one, share, extent in scaled),

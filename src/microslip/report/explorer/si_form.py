@@ -14,7 +14,7 @@ from microslip.si.inputs import LARGEST_MU
 from microslip.si.materials import MATERIALS
 from microslip.si.motions import MOTIONS
 from microslip.si.quantities import read
-from microslip.theory.hertz import D_HALF
+from microslip.theory.hertz import D_half
 
 SCENES = ("transverse", "bore")
 """Motions of the form."""
@@ -91,7 +91,7 @@ def packed() -> dict:
         "short": validity.SHORT,
         "rubbery": validity.RUBBERY,
         "senseless": validity.SENSELESS,
-        "half_stuck": D_HALF,
+        "half_stuck": D_half(),
         "largest_velocity": LARGEST["velocity"],
         "largest_amplitude": LARGEST["amplitude"],
     }

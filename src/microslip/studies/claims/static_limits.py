@@ -60,7 +60,7 @@ def asymptote(amplitude: np.ndarray) -> np.ndarray:
     uses is (2/pi) arcsin(r/c), and the integral of what is left closes with a Bessel function:
     3/4 (1 - J0(pi)) c^2. Eq 33 tends to 3/2 c^2. amplitude: any shape; dimensionless, never 0.
     """
-    radius = 4.0 / np.e * np.exp(-hertz.D_HALF * np.asarray(amplitude, float))
+    radius = 4.0 / np.e * np.exp(-hertz.D_half() * np.asarray(amplitude, float))
     return 0.75 * (1.0 - j0(np.pi)) * radius**2
 
 
