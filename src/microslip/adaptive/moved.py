@@ -22,7 +22,7 @@ from microslip.solver.method_names import SHIPPED
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
-from microslip.solver.static_run import simulate_static
+from microslip.solver.static_run import loop_focus, simulate_static
 
 PERIODICITY_SHARE = 0.07
 """Share of the tolerance that the distance from the periodic state may take."""
@@ -68,7 +68,8 @@ def marched(asked: Asked) -> Marched:
     if asked.tolerance is None:
         refuse_free(axes)
     share = PERIODICITY_SHARE * tolerance
-    settings = Settings(asked.how, budget=asked.budget)
+    focus = loop_focus(problem, asked.model)
+    settings = Settings(asked.how, budget=asked.budget, focus=focus)
 
     def run(resolution, guess, problem=problem):
         if asked.progress is not None:

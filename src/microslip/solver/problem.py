@@ -115,7 +115,7 @@ def _path(problem, steps, grading, integrator):
     return make_path(problem.displacement, phases, integrator, problem.depth)
 
 
-def _focus_strength(creep):
+def focus_strength(creep: float) -> float:
     """How closely rings should gather at the stick radius; creep: in a radian, in u_lim.
 
     Slip that is as small as the creep fills a layer whose width goes like creep^(2/3).  With ring
@@ -133,7 +133,7 @@ def _focus(problem):
     if radius is None or not motion.periodic:
         return radius
     creep = problem.creep
-    return Focus(radius, _focus_strength(creep) if creep > 0.0 else STATIC_FOCUS)
+    return Focus(radius, focus_strength(creep) if creep > 0.0 else STATIC_FOCUS)
 
 
 def build_contact(

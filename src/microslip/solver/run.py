@@ -28,17 +28,20 @@ class Settings:
         Whether to solve the steps of slow motions tighter.
     budget : budget.Budget or None
         What the marches may take, None: whatever they do.
+    focus : mesh.Focus or None
+        Where rings gather; None: where the motion says that the slip starts.
     """
 
     method: Method = SHIPPED
     tighter: bool = False
     budget: Budget | None = None
+    focus: Focus | None = None
 
     def contact(
         self, problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
     ) -> Contact:
         """The contact of a problem with the method's steps, whose marches count."""
-        contact = self.method.dressed(problem.contact(model, resolution, focus))
+        contact = self.method.dressed(problem.contact(model, resolution, focus or self.focus))
         return contact if self.budget is None else self.budget.metered(contact)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from microslip.models.rings.mesh import Focus
 from microslip.solver import anderson
 from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.power import oscillation_power
-from microslip.solver.problem import STRONGEST_FOCUS, Problem, Resolution
+from microslip.solver.problem import STRONGEST_FOCUS, Problem, Resolution, focus_strength
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run
 from microslip.solver.simulate import STEP_SHARE, mean_forces, periods_of
 from microslip.solver.snapshots import bounds_at_phases, frames
@@ -29,6 +30,10 @@ ENOUGH = 4.0
 MOST_PASSES = 4
 NOTHING_LEFT = 1e-2
 """Share of the largest bound that a ring outside of the stick radius may seem to have left."""
+SLOW_LOOP = 0.02
+"""Creep in a radian, in u_lim, below which what never slips in the limit decides a loop."""
+TELLING, TOLD = Resolution(24, 1, 32), 1e-3
+"""Resolution and tolerance at which its edge is found: to a tenth of the layer around it."""
 
 
 def simulate_static(
@@ -71,8 +76,40 @@ def _on_a_line(contact, problem, tolerance):
     )
 
 
+def loop_focus(problem: Problem, model: str) -> Focus | None:
+    """Where rings should gather for a slow loop in the plane: at the edge of what never slips in
+    the limit of vanishing velocity.
+
+    No formula tells it: of a circle it lies further in than that of a line which is as long, since
+    the slip never comes to rest.  None: where motion or model is another, or the motion is fast.
+    """
+    motion = problem.motion
+    loops = motion.periodic and not motion.rotates and not motion.straight and motion.depth is None
+    if model != "radial" or not loops or not 0.0 < problem.creep < SLOW_LOOP:
+        return None
+    radius = _limit_radius(motion, problem.amplitude)
+    return None if radius is None else Focus(radius, focus_strength(problem.creep))
+
+
+@lru_cache(maxsize=64)
+def _limit_radius(motion, amplitude):
+    """Edge of what never slips, over the contact radius, or None."""
+    limit = Problem(motion, 0.0, amplitude, 0.0)
+    try:
+        return _passes(limit, "radial", TELLING, TOLD, AS_SHIPPED)[1]
+    except (StepFailure, ArithmeticError, np.linalg.LinAlgError):
+        return None
+
+
 def _on_a_loop(problem, model, resolution, tolerance, settings):
-    """Rings are gathered at the edge of what never slips, which no formula tells, in passes."""
+    done, _ = _passes(problem, model, resolution, tolerance, settings)
+    spent = ("periods", "iterations", "solves", "work", "effort")
+    return replace(done[-1], **{name: sum(getattr(one, name) for one in done) for name in spent})
+
+
+def _passes(problem, model, resolution, tolerance, settings):
+    """Runs on rings that are gathered at the edge of what never slips, which no formula tells, and
+    the last radius of it, or None."""
     done, focus = [], None
     while len(done) < MOST_PASSES:
         contact = settings.contact(problem, model, resolution, focus)
@@ -83,8 +120,7 @@ def _on_a_loop(problem, model, resolution, tolerance, settings):
         if not run.converged or radius is None or (focus is not None and radius == focus.radius):
             break
         focus = Focus(radius, STRONGEST_FOCUS)
-    spent = ("periods", "iterations", "solves", "work", "effort")
-    return replace(run, **{name: sum(getattr(one, name) for one in done) for name in spent})
+    return done, radius
 
 
 def _stick_radius(contact, left):
