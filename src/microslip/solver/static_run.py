@@ -33,7 +33,7 @@ NOTHING_LEFT = 1e-2
 SLOW_LOOP = 0.02
 """Creep in a radian, in u_lim, below which what never slips in the limit decides a loop."""
 TELLING, TOLD = Resolution(24, 1, 32), 1e-3
-"""Resolution and tolerance at which its edge is found: to a tenth of the layer around it."""
+"""Resolution and tolerance at which its edge is found for that."""
 
 
 def simulate_static(
@@ -81,7 +81,19 @@ def loop_focus(problem: Problem, model: str) -> Focus | None:
     the limit of vanishing velocity.
 
     No formula tells it: of a circle it lies further in than that of a line which is as long, since
-    the slip never comes to rest.  None: where motion or model is another, or the motion is fast.
+    the slip never comes to rest.
+
+    Parameters
+    ----------
+    problem : problem.Problem
+        Any.
+    model : str
+        Name in models.registry.MODELS.
+
+    Returns
+    -------
+    mesh.Focus or None
+        None: motion or model is another, the motion is fast, or all of the contact slips.
     """
     motion = problem.motion
     loops = motion.periodic and not motion.rotates and not motion.straight and motion.depth is None
