@@ -4,18 +4,22 @@ Four times the rings, angles and steps that the point was certified with (no mor
 squares, 64 angles and 2048 steps in half a period), each refined by itself from a base that is
 finer than any certificate starts from, every periodic state searched for from scratch, to a tenth
 of the tolerance.  What two axes do together is measured from that base, too.  What is left of its
-own error is estimated from the run with half of the refinement.
+own error is estimated from the run with half of the refinement.  A state that does not become
+periodic tells nothing, and half of its refinement is taken.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 from microslip.adaptive.cells_policies import like_a_sphere
 from microslip.adaptive.choice import choose_model
 from microslip.solver.problem import Resolution
+from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
+from microslip.solver.stick_edge import found_focus
 
 SWEPT = {"radial": ((96, 1), (192, 1)), "polar": ((64, 12), (96, 24))}
 SWEPT_STEPS = 4
@@ -40,11 +44,14 @@ def reference(problem, tolerance, certified):
     stroke = min(max(kind.stroke(problem.amplitude, problem.poisson), 1.0), 16.0) ** 0.5
     stroke *= kind.cycles
 
+    settings = Settings(focus=found_focus(problem, model))
+
+    @lru_cache
     def run(resolution):
+        share = PERIODICITY * tolerance
         if problem.velocity == 0.0:
-            share = PERIODICITY * tolerance
-            return simulate_static(problem, model, resolution, share)
-        return simulate(problem, model, resolution, PERIODICITY * tolerance)
+            return simulate_static(problem, model, resolution, share, settings)
+        return simulate(problem, model, resolution, share, settings=settings)
 
     if kind.depth is not None:
         coarse, fine = (
@@ -59,10 +66,17 @@ def reference(problem, tolerance, certified):
     left = []  # distances from the periodic states
 
     def mean(**changes):
-        at = replace(base, **changes)
-        found = run(at)
+        found = run(replace(base, **changes))
         left.append(found.distance)
         return found.mu
+
+    def settled(axis, finest):
+        """The finest count along an axis, by halves, whose state becomes periodic."""
+        while finest > 2 * getattr(base, axis):
+            if run(replace(base, **{axis: finest})).converged:
+                break
+            finest //= 2
+        return finest
 
     at_base, mu, uncertainty = mean(), 0.0, 0.0
     used = Resolution(certified.cells, certified.angles, certified.steps_per_period // 2)
@@ -70,7 +84,7 @@ def reference(problem, tolerance, certified):
         if axis == "angles" and model != "polar":
             continue
         finest = max(FINER * getattr(used, axis), getattr(LEAST[model], axis))
-        finest = min(finest, getattr(MOST, axis))
+        finest = settled(axis, min(finest, getattr(MOST, axis)))
         coarse, fine = mean(**{axis: finest // 2}), mean(**{axis: finest})
         beyond = (fine - coarse) / 3.0  # second order
         mu += fine + beyond - at_base

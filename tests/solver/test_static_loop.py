@@ -7,10 +7,9 @@ from scipy.integrate import quad
 import microslip
 from microslip.motions.by_name import motion_named
 from microslip.solver.problem import Problem, Resolution
-from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 from microslip.solver.static_loop import largest_shift
-from microslip.solver.static_run import loop_focus, simulate_static
+from microslip.solver.static_run import simulate_static
 from microslip.theory import paper
 
 NARROW = "elliptic:forward=0.5,phase=30"
@@ -172,41 +171,3 @@ def test_a_state_that_does_not_settle_is_no_number(monkeypatch):
     monkeypatch.setattr("microslip.solver.static_run.MOST_ROUNDS", 1)
     found = microslip.solve(NARROW, 0.0, 0.5)
     assert not found.converged and "no periodic state" in found.reason
-
-
-def slow_circle(cells, focus=None):
-    problem, settings = Problem(motion_named("elliptic"), 1e-3, 0.375, 0.0), Settings(focus=focus)
-    return simulate(problem, "radial", Resolution(cells, 1, 32), 1e-5, settings=settings).mu
-
-
-@pytest.mark.slow
-def test_a_slow_circle_needs_few_rings_where_they_gather_at_what_never_slips():
-    """Many rings that gather elsewhere come to the same, and few of those do not."""
-    focus = loop_focus(Problem(motion_named("elliptic"), 1e-3, 0.375, 0.0), "radial")
-    fine = slow_circle(96)
-    few = [slow_circle(cells, focus) for cells in (12, 16, 24)]
-    assert few == pytest.approx([fine] * 3, abs=2e-4)
-    assert max(abs(slow_circle(cells) - fine) for cells in (12, 16, 24)) > 2e-3
-
-
-@pytest.mark.parametrize(
-    ("scene", "velocity", "amplitude", "model"),
-    [
-        ("transverse", 1e-3, 0.5, "radial"),  # a line, whose stick radius is known
-        ("elliptic:forward=0.5,phase=0", 1e-3, 0.5, "radial"),  # this is one, too
-        ("bore", 1e-3, 0.5, "polar"),
-        ("elliptic", 1e-3, 0.5, "polar"),
-        ("elliptic", 0.1, 0.5, "radial"),  # creep reaches everywhere
-        ("elliptic", 1e-3, 1.5, "radial"),  # nothing sticks
-        ("normal:lateral=1", 1e-3, 0.5, "radial"),  # the contact grows and shrinks
-    ],
-)
-def test_other_problems_know_where_their_rings_gather(scene, velocity, amplitude, model):
-    assert loop_focus(Problem(motion_named(scene), velocity, amplitude, 0.0), model) is None
-
-
-def test_a_circle_sticks_less_than_a_line_that_is_as_long():
-    motion = motion_named("elliptic")
-    for amplitude in (0.1, 0.375, 0.7):
-        focus = loop_focus(Problem(motion, 1e-3, amplitude, 0.0), "radial")
-        assert 0.2 < focus.radius < motion.focus(1e-3, amplitude, motion.pressure)

@@ -11,6 +11,7 @@ from microslip.adaptive.chains import EXTRAPOLATED_SHARES, JUDGED, Axis
 from microslip.pressures.by_name import HERTZ
 from microslip.solver.problem import Problem
 from microslip.solver.static_limit import at_turning_points
+from microslip.solver.stick_edge import found_focus
 
 RINGS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
 SQUARES = (8, 16, 32, 64, 128)
@@ -161,6 +162,13 @@ CELLS_POLICIES = (
         first=(8, 48),
         regular=False,
         judged=JUDGED,
+    ),
+    CellsPolicy(
+        "slow rotation under another pressure: rings gather where slip starts, and see a trend",
+        lambda problem, model: problem.motion.rotates and found_focus(problem, model) is not None,
+        base=8,
+        first=(8, 16),
+        made_for=1e-3,
     ),
     CellsPolicy(
         "rotation under another pressure: its peak falls between rings, and no trend is safe",

@@ -22,7 +22,8 @@ from microslip.solver.method_names import SHIPPED
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
-from microslip.solver.static_run import loop_focus, simulate_static
+from microslip.solver.static_run import simulate_static
+from microslip.solver.stick_edge import found_focus
 
 PERIODICITY_SHARE = 0.07
 """Share of the tolerance that the distance from the periodic state may take."""
@@ -68,7 +69,7 @@ def marched(asked: Asked) -> Marched:
     if asked.tolerance is None:
         refuse_free(axes)
     share = PERIODICITY_SHARE * tolerance
-    focus = loop_focus(problem, asked.model)
+    focus = found_focus(problem, asked.model)
     settings = Settings(asked.how, budget=asked.budget, focus=focus)
 
     def run(resolution, guess, problem=problem):

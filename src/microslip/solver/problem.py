@@ -116,12 +116,15 @@ def _path(problem, steps, grading, integrator):
 
 
 def focus_strength(creep: float) -> float:
-    """How closely rings should gather at the stick radius; creep: in a radian, in u_lim.
+    """How closely rings should gather at the stick radius; creep: in a radian, in u_lim, 0 in the
+    static limit.
 
     Slip that is as small as the creep fills a layer whose width goes like creep^(2/3).  With ring
     widths that grow quadratically from it, the square root of that is the right share of the mean
     width; in powers of two, so that points share grids.
     """
+    if creep == 0.0:
+        return STATIC_FOCUS
     layer = 2.0 ** round(np.log2(creep) / 3.0)
     return float(np.clip(1.0 - layer, WEAKEST_FOCUS, STRONGEST_FOCUS))
 
@@ -132,8 +135,7 @@ def _focus(problem):
     radius = motion.focus(problem.velocity, problem.amplitude, motion.pressure)
     if radius is None or not motion.periodic:
         return radius
-    creep = problem.creep
-    return Focus(radius, focus_strength(creep) if creep > 0.0 else STATIC_FOCUS)
+    return Focus((radius,), focus_strength(problem.creep))
 
 
 def build_contact(

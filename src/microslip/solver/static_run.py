@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import lru_cache
+from functools import partial
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from microslip.models.rings.mesh import Focus
 from microslip.solver import anderson
 from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.power import oscillation_power
-from microslip.solver.problem import STRONGEST_FOCUS, Problem, Resolution, focus_strength
+from microslip.solver.problem import STRONGEST_FOCUS, Problem, Resolution
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run
 from microslip.solver.simulate import STEP_SHARE, mean_forces, periods_of
 from microslip.solver.snapshots import bounds_at_phases, frames
@@ -28,12 +28,10 @@ MARCHES, MOST_ROUNDS = 120, 3
 ENOUGH = 4.0
 """Times the distance that was asked for, which does where rounding leaves no more to be had."""
 MOST_PASSES = 4
+MOST_EDGES = 4
+"""Of what never slips, beyond which they are taken for scatter."""
 NOTHING_LEFT = 1e-2
 """Share of the largest bound that a ring outside of the stick radius may seem to have left."""
-SLOW_LOOP = 0.02
-"""Creep in a radian, in u_lim, below which what never slips in the limit decides a loop."""
-TELLING, TOLD = Resolution(24, 1, 32), 1e-3
-"""Resolution and tolerance at which its edge is found for that."""
 
 
 def simulate_static(
@@ -76,73 +74,69 @@ def _on_a_line(contact, problem, tolerance):
     )
 
 
-def loop_focus(problem: Problem, model: str) -> Focus | None:
-    """Where rings should gather for a slow loop in the plane: at the edge of what never slips in
-    the limit of vanishing velocity.
-
-    No formula tells it: of a circle it lies further in than that of a line which is as long, since
-    the slip never comes to rest.
-
-    Parameters
-    ----------
-    problem : problem.Problem
-        Any.
-    model : str
-        Name in models.registry.MODELS.
-
-    Returns
-    -------
-    mesh.Focus or None
-        None: motion or model is another, the motion is fast, or all of the contact slips.
-    """
-    motion = problem.motion
-    loops = motion.periodic and not motion.rotates and not motion.straight and motion.depth is None
-    if model != "radial" or not loops or not 0.0 < problem.creep < SLOW_LOOP:
-        return None
-    radius = _limit_radius(motion, problem.amplitude)
-    return None if radius is None else Focus(radius, focus_strength(problem.creep))
-
-
-@lru_cache(maxsize=64)
-def _limit_radius(motion, amplitude):
-    """Edge of what never slips, over the contact radius, or None."""
-    limit = Problem(motion, 0.0, amplitude, 0.0)
-    try:
-        return _passes(limit, "radial", TELLING, TOLD, AS_SHIPPED)[1]
-    except (StepFailure, ArithmeticError, np.linalg.LinAlgError):
-        return None
-
-
 def _on_a_loop(problem, model, resolution, tolerance, settings):
-    done, _ = _passes(problem, model, resolution, tolerance, settings)
+    done, _ = gathered_on_a_loop(problem, model, resolution, tolerance, settings)
     spent = ("periods", "iterations", "solves", "work", "effort")
     return replace(done[-1], **{name: sum(getattr(one, name) for one in done) for name in spent})
 
 
-def _passes(problem, model, resolution, tolerance, settings):
-    """Runs on rings that are gathered at the edge of what never slips, which no formula tells, and
-    the last radius of it, or None."""
-    done, focus = [], None
-    while len(done) < MOST_PASSES:
-        contact = settings.contact(problem, model, resolution, focus)
+def gathered_on_a_loop(
+    problem: Problem, model: str, resolution: Resolution, tolerance: float, settings: Settings
+) -> tuple[list[Run], tuple[float, ...]]:
+    """Runs on rings that gather at the edges of what never slips, which no formula tells; arguments
+    as for `simulate_static`.
+
+    Returns the Runs, of which the last is the answer, and the radii of these edges, none if nothing
+    sticks, or everything, or the contact tells no radii.
+    """
+
+    def run_on(contact):
         path = problem.path(contact, resolution.steps, settings.method.integrator)
         run, left = _on_these_points(contact, problem, path, tolerance)
         done.append(run)
-        radius = _stick_radius(contact, left)
-        if not run.converged or radius is None or (focus is not None and radius == focus.radius):
+        return left if run.converged else None
+
+    done = []
+    radii = _gathered(partial(settings.contact, problem, model, resolution), run_on)
+    return done, radii
+
+
+def gathered_on_a_line(
+    problem: Problem, model: str, resolution: Resolution, tolerance: float
+) -> tuple[float, ...]:
+    """Radii of the edges of what never slips, as for `gathered_on_a_loop`, where the turning points
+    tell."""
+
+    def run_on(contact):
+        residual, _ = static_state(contact, problem.displacement, STEP_SHARE * tolerance)
+        bounds = np.broadcast_to(contact.bound, residual[0].shape)
+        return np.hypot(*residual) > NOTHING_LEFT * bounds.max()
+
+    return _gathered(partial(problem.contact, model, resolution), run_on)
+
+
+def _gathered(contact_at, run_on):
+    """Radii that stay where they are once rings gather there, or the last ones; run_on(contact) ->
+    which points have something left to resist with, or None."""
+    focus, radii = None, ()
+    for _ in range(MOST_PASSES):
+        contact = contact_at(focus)
+        radii = _stick_radii(contact, run_on(contact))
+        if not radii or (focus is not None and radii == focus.radii):
             break
-        focus = Focus(radius, STRONGEST_FOCUS)
-    return done, radius
+        focus = Focus(radii, STRONGEST_FOCUS)
+    return radii
 
 
-def _stick_radius(contact, left):
-    """Outer edge of the last ring of which more than half has something `left`, or None: there is
-    none, or the contact tells no edges."""
+def _stick_radii(contact, left):
+    """Radii between rings of which more than half has something `left` and others, the outermost
+    alone where there are too many; none where these are not known."""
     edges = getattr(contact, "edges", None)
     if left is None or edges is None:
-        return None
-    rings = np.flatnonzero(left.mean(axis=0) > 0.5)
-    return float(edges[rings[-1] + 1]) if rings.size and rings[-1] + 2 < len(edges) else None
+        return ()
+    sticks = (left.mean(axis=0) if left.ndim > 1 else left) > 0.5
+    radii = [float(radius) for radius in edges[1:-1][np.diff(sticks)]]
+    return tuple(radii if len(radii) <= MOST_EDGES else radii[-1:])
 
 
 def _on_these_points(contact, problem, path, tolerance):

@@ -94,7 +94,7 @@ class PolarContact:
             raise ValueError(f"angles = {angles}: allowed is an even number of at least 2")
         self.rings = make_rings(cells, focus, pressure)
         self.rotates, self.stiffness = rotates, pressure.stiffness
-        self.edges = np.sin(self.rings.psi) if pressure.inner == 0.0 else None
+        self.edges = np.sin(self.rings.psi)
         self.whole, self._half, self.angles = whole, angles, 2 * angles if whole else angles
         self._theta = theta = (np.arange(self.angles) + 0.5) * np.pi / angles
         self.lateral_position = np.cos(theta)[:, None] * self.rings.radius

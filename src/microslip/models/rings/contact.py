@@ -44,8 +44,7 @@ class RadialContact:
     Attributes
     ----------
     edges : np.ndarray or None, shape (cells + 1,)
-        Radii between the rings of the reference contact, None where there are none or it has a
-        hole.
+        Radii between the rings of the reference contact, None where there are none.
     """
 
     has_sensitivity = True
@@ -64,7 +63,7 @@ class RadialContact:
     ):
         self.influence = np.ascontiguousarray(influence, dtype=float)
         self.bound, self.weight, self.growth = bound, weight, growth
-        if growth is not None and growth.pressure.inner == 0.0:
+        if growth is not None:
             self.edges = growth.edges
         self.compliance = np.diag(self.influence)
         self.forward_position = self.lateral_position = np.zeros((1, len(bound)))

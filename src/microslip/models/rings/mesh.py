@@ -16,17 +16,17 @@ from microslip.pressures.pressure import Pressure
 
 
 class Focus(NamedTuple):
-    """A radius that rings gather at.
+    """Radii that rings gather at.
 
     Attributes
     ----------
-    radius : float
-        Over the contact radius, 0 to 1.
+    radii : tuple of float
+        Over the contact radius, 0 to 1, increasing.
     strength : float
         The width of the rings there is 1 - strength of the mean.
     """
 
-    radius: float
+    radii: tuple[float, ...]
     strength: float = 0.6
 
 
@@ -55,29 +55,37 @@ class Rings:
 def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressure = HERTZ) -> Rings:
     """Rings that are refined around a focus.
 
-    An edge lies on the focus exactly: the traction has a kink at the stick radius, and a ring that
-    straddles it costs an order of accuracy.
+    An edge lies on each radius of it exactly: the traction has a kink at the stick radius, and a
+    ring that straddles it costs an order of accuracy.
 
     Parameters
     ----------
     count : int
         Unknown radii.
     focus : Focus, float or None
-        A Focus or just its radius; None: nowhere.
+        A Focus or just a radius; None: nowhere.
     pressure : pressure.Pressure
         One that depends on the radius alone.
 
     Raises
     ------
     ValueError
-        For count < 2 or a focus outside 0..1.
+        For count < 2, or a focus outside 0..1 or without order.
     """
     if count < 2:
         raise ValueError(f"cells = {count}: allowed is a whole number of at least 2 rings")
     if focus is None:
-        psi = np.linspace(0.0, np.pi / 2, count + 1)
-    else:
-        psi = _focused(count, _as_focus(focus))
+        return _of_edges(np.linspace(0.0, np.pi / 2, count + 1), pressure)
+    radii, strength = _as_focus(focus)
+    # rings begin at the edge of a hole, if there is one
+    hole = pressure.inner**2
+    inside = np.sqrt(np.maximum(np.square(radii) - hole, 0.0) / (1.0 - hole))
+    places = np.arcsin(np.unique(inside)[: max(count // 2, 1)])
+    return _of_edges(_focused(count, places, strength), pressure)
+
+
+def _of_edges(psi, pressure):
+    """The Rings between edges that are those of a contact without a hole, at first."""
     if pressure.inner > 0.0:
         hole = pressure.inner**2
         psi = np.arcsin(np.sqrt(hole + (1.0 - hole) * np.sin(psi) ** 2))
@@ -85,27 +93,53 @@ def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressur
 
 
 def _as_focus(focus):
-    focus = focus if isinstance(focus, Focus) else Focus(focus)
-    if not (0.0 <= focus.radius <= 1.0 and 0.0 <= focus.strength < 1.0):
-        raise ValueError(f"focus = {focus}: allowed is a radius in 0..1 and a strength in 0..1")
+    focus = focus if isinstance(focus, Focus) else Focus((focus,))
+    radii = focus.radii
+    ordered = radii and all(one < other for one, other in zip(radii, radii[1:], strict=False))
+    within = radii and radii[0] >= 0.0 and radii[-1] <= 1.0 and 0.0 <= focus.strength < 1.0
+    if not (ordered and within):
+        raise ValueError(
+            f"focus = {focus}: allowed are radii in 0..1, increasing, and a strength in 0..1"
+        )
     return focus
 
 
-def _focused(count, focus):
-    """Edges in psi with one on the focus and widths that grow away from it on both sides."""
-    radius, strength = focus
-    centre, edge = np.arcsin(radius), np.pi / 2
-    inside = int(round(count * centre / edge))
-    inside = min(max(inside, count // 4, 1), count - max(count // 4, 1))
+def _focused(count, places, strength):
+    """Edges in psi with one on each of the places and widths that grow away from it on both sides.
+
+    Halfway between two places the one gives way to the other.
+    """
+    edge = np.pi / 2
 
     def spread(t):
         return (1 - strength) * t + strength * t * t
 
-    if radius in (0.0, 1.0):
+    if len(places) == 1 and places[0] in (0.0, edge):
         t = np.linspace(0.0, 1.0, count + 1)
-        return edge * spread(t) if radius == 0.0 else edge * (1.0 - spread(1.0 - t))
-    inner = centre * (1.0 - spread(1.0 - np.linspace(0.0, 1.0, inside + 1)))
-    outer = centre + (edge - centre) * spread(np.linspace(0.0, 1.0, count - inside + 1))
-    psi = np.concatenate([inner, outer[1:]])
-    psi[0], psi[-1] = 0.0, edge
-    return psi
+        return edge * spread(t) if places[0] == 0.0 else edge * (1.0 - spread(1.0 - t))
+    ends = [0.0, places[0]]
+    for place in places[1:]:
+        ends += [0.5 * (ends[-1] + place), place]
+    ends.append(edge)
+    psi, counts = [0.0], np.diff(_shared_out(count, ends))
+    for piece, rings in enumerate(counts):
+        start, width = ends[piece], ends[piece + 1] - ends[piece]
+        t = np.linspace(0.0, 1.0, rings + 1)
+        # a piece ends at a place, the next one begins there
+        share = 1.0 - spread(1.0 - t) if piece % 2 == 0 else spread(t)
+        psi += list((start + width * share)[1:])
+    psi[-1] = edge
+    return np.array(psi)
+
+
+def _shared_out(count, ends):
+    """How many of the rings lie before each of the ends: as their widths would have it, but some on
+    both sides of each place."""
+    least = max(count // (2 * len(ends) - 2), 1)
+    before = [int(round(count * end / ends[-1])) for end in ends]
+    for k in range(1, len(ends)):
+        before[k] = max(before[k], before[k - 1] + least)
+    before[-1] = count
+    for k in range(len(ends) - 2, 0, -1):
+        before[k] = min(before[k], before[k + 1] - least)
+    return before

@@ -1,0 +1,78 @@
+"""Where slow slip starts, found by a coarse run of the static limit if no formula tells."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from microslip.models.contact import StepFailure
+from microslip.models.rings.mesh import Focus
+from microslip.pressures.by_name import HERTZ
+from microslip.solver.problem import Problem, Resolution, focus_strength
+from microslip.solver.run import AS_SHIPPED
+from microslip.solver.static_limit import at_turning_points
+from microslip.solver.static_run import gathered_on_a_line, gathered_on_a_loop
+
+SLOW_LOOP, SLOW_LINE = 0.02, 0.01
+"""Creep in a radian, in u_lim, below which what never slips in the limit decides a motion."""
+TELLING_LOOP, TOLD = Resolution(24, 1, 32), 1e-3
+"""Resolution and tolerance at which its edge is found on a loop."""
+TELLING_LINE = Resolution(48, 2, 1)
+"""And on a line, where nothing is marched, so more rings are cheap."""
+
+
+def found_focus(problem: Problem, model: str) -> Focus | None:
+    """Where the rings of a slow motion should gather: at the edges of what never slips in the limit
+    of vanishing velocity.
+
+    No formula tells these for loops in the plane: of a circle the edge lies further in than that of
+    a line which is as long, since the slip never comes to rest.  For motions on a line there is
+    none under most pressures other than that of a sphere, and a contact with a hole sticks on a
+    ring, which has two.
+
+    Parameters
+    ----------
+    problem : problem.Problem
+        Any.
+    model : str
+        Name in models.registry.MODELS.
+
+    Returns
+    -------
+    mesh.Focus or None
+        None: a formula tells, the model has no rings, what sticks is not round, the motion is fast,
+        or all of the contact slips.
+    """
+    motion, creep = problem.motion, problem.creep
+    if model not in ("radial", "polar") or not motion.periodic or motion.depth is not None:
+        return None
+    if at_turning_points(motion):
+        wanted = motion.pressure is not HERTZ and motion.half_disc and creep < SLOW_LINE
+        radii = _radii_on_a_line(motion, problem.amplitude) if wanted else ()
+    else:
+        wanted = model == "radial" and not motion.rotates and 0.0 < creep < SLOW_LOOP
+        radii = _radii_on_a_loop(motion, problem.amplitude) if wanted else ()
+    return Focus(radii, focus_strength(creep)) if radii else None
+
+
+@lru_cache(maxsize=64)
+def _radii_on_a_line(motion, amplitude):
+    """Edges of what never slips, over the contact radius; Poisson's ratio moves them little."""
+    if motion.focus(0.0, amplitude, motion.pressure) is not None and not motion.rotates:
+        return ()  # ... of an indenter, by its profile
+    model = "polar" if motion.rotates else "radial"
+    try:
+        return gathered_on_a_line(Problem(motion, 0.0, amplitude, 0.0), model, TELLING_LINE, TOLD)
+    except (StepFailure, ArithmeticError, np.linalg.LinAlgError):
+        return ()
+
+
+@lru_cache(maxsize=64)
+def _radii_on_a_loop(motion, amplitude):
+    """Edge of what never slips, over the contact radius."""
+    limit = Problem(motion, 0.0, amplitude, 0.0)
+    try:
+        return gathered_on_a_loop(limit, "radial", TELLING_LOOP, TOLD, AS_SHIPPED)[1]
+    except (StepFailure, ArithmeticError, np.linalg.LinAlgError):
+        return ()

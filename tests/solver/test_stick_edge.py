@@ -1,0 +1,169 @@
+"""Where rings gather for slow motions: edges of what never slips, and what that is worth."""
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip.models.rings.mesh import Focus, make_rings
+from microslip.motions.by_name import motion_named
+from microslip.pressures.by_name import pressure_named
+from microslip.solver.problem import Problem, Resolution
+from microslip.solver.run import Settings
+from microslip.solver.simulate import simulate
+from microslip.solver.static_run import simulate_static
+from microslip.solver.stick_edge import found_focus
+from microslip.theory import hertz, indenters
+
+RING = "ring:inner=0.5"
+
+
+def focus_of(scene, velocity, amplitude, model, pressure="hertz"):
+    return found_focus(Problem(motion_named(scene, pressure), velocity, amplitude, 0.0), model)
+
+
+# The edges
+
+OTHERS = [
+    ("transverse", "hertz", 1e-3, 0.5, "radial"),  # a line, whose stick radius is known
+    ("transverse", "power:exponent=1", 1e-3, 0.5, "radial"),  # by the profile
+    ("elliptic:forward=0.5,phase=0", "hertz", 1e-3, 0.5, "radial"),  # this is a line, too
+    ("bore", "hertz", 1e-3, 0.5, "polar"),
+    ("bore", "punch", 1e-3, 0.5, "cartesian"),  # has no rings
+    ("bore", "punch", 0.1, 0.5, "polar"),  # creep reaches everywhere
+    ("transverse-bore", "punch", 1e-3, 0.5, "polar"),  # what sticks is not round
+    ("transverse", RING, 0.0, 1.5, "radial"),  # nothing sticks
+    ("continuous-bore", "punch", 1e-3, 0.0, "polar"),  # nothing oscillates
+    ("elliptic", "hertz", 1e-3, 0.5, "polar"),
+    ("elliptic", "hertz", 0.1, 0.5, "radial"),
+    ("elliptic", "hertz", 1e-3, 1.5, "radial"),
+    ("normal:lateral=1", "hertz", 1e-3, 0.5, "radial"),  # the contact grows and shrinks
+]
+
+
+@pytest.mark.parametrize(("scene", "pressure", "velocity", "amplitude", "model"), OTHERS)
+def test_other_problems_know_where_their_rings_gather(scene, pressure, velocity, amplitude, model):
+    assert focus_of(scene, velocity, amplitude, model, pressure) is None
+
+
+def test_a_circle_sticks_less_than_a_line_that_is_as_long():
+    motion = motion_named("elliptic")
+    for amplitude in (0.1, 0.375, 0.7):
+        (radius,) = focus_of("elliptic", 1e-3, amplitude, "radial").radii
+        assert 0.2 < radius < motion.focus(1e-3, amplitude, motion.pressure)
+
+
+@pytest.mark.parametrize("name", ["power:exponent=1", "power:exponent=8", "punch"])
+@pytest.mark.parametrize("amplitude", [0.3, 1.0])
+def test_a_bore_sticks_inside_the_radius_of_its_closed_form(name, amplitude):
+    (radius,) = focus_of("bore", 0.0, amplitude, "polar", name).radii
+    angle = float(hertz.bore_angle(amplitude))
+    assert radius == pytest.approx(
+        indenters.torsion_stick_radius(pressure_named(name), angle), abs=0.01
+    )
+
+
+@pytest.mark.parametrize(("scene", "model"), [("transverse", "radial"), ("bore", "polar")])
+def test_a_contact_with_a_hole_sticks_on_a_ring_that_gets_narrower(scene, model):
+    found = [focus_of(scene, 0.0, amplitude, model, RING).radii for amplitude in (0.1, 0.3, 0.7)]
+    inner, outer = np.transpose(found)
+    assert np.all(np.diff(inner) > 0.0) and np.all(np.diff(outer) < 0.0)
+    assert 0.5 < inner[0] < 0.52 and 0.97 < outer[0] < 1.0
+
+
+# Rings that gather at several radii
+
+
+@pytest.mark.parametrize("count", [4, 7, 12, 48])
+@pytest.mark.parametrize("pressure", ["hertz", RING])
+def test_an_edge_lies_on_every_radius_and_widths_grow_away_from_it(count, pressure):
+    focus = Focus((0.6, 0.9), 0.8)
+    edges = np.sin(make_rings(count, focus, pressure_named(pressure)).psi)
+    places = [int(np.argmin(np.abs(edges - radius))) for radius in focus.radii]
+    assert len(edges) == count + 1 and np.all(np.diff(edges) > 0.0)
+    assert edges[places] == pytest.approx(focus.radii, abs=1e-14)
+    if count >= 12:
+        widths = np.diff(make_rings(count, focus).psi)
+        for radius in focus.radii:
+            at = int(np.argmin(np.abs(np.sin(make_rings(count, focus).psi) - radius)))
+            assert widths[at] < widths[at + 1] and widths[at - 1] < widths[at - 2]
+
+
+def test_one_of_several_radii_that_coincide_with_few_rings_is_left():
+    edges = np.sin(make_rings(2, Focus((0.6, 0.9), 0.8)).psi)
+    assert edges == pytest.approx([0.0, 0.6, 1.0])
+
+
+@pytest.mark.parametrize("radii", [(), (0.9, 0.6), (0.5, 0.5), (-0.1,), (0.5, 1.1)])
+def test_radii_without_order_or_outside_are_refused(radii):
+    with pytest.raises(ValueError, match="allowed are radii in 0..1, increasing"):
+        make_rings(8, Focus(radii, 0.5))
+
+
+# What it is worth
+
+
+def slow_circle(cells, focus=None):
+    problem, settings = Problem(motion_named("elliptic"), 1e-3, 0.375, 0.0), Settings(focus=focus)
+    return simulate(problem, "radial", Resolution(cells, 1, 32), 1e-5, settings=settings).mu
+
+
+@pytest.mark.slow
+def test_a_slow_circle_needs_few_rings_where_they_gather_at_what_never_slips():
+    """Many rings that gather elsewhere come to the same, and few of those do not."""
+    focus = focus_of("elliptic", 1e-3, 0.375, "radial")
+    fine = slow_circle(96)
+    few = [slow_circle(cells, focus) for cells in (12, 16, 24)]
+    assert few == pytest.approx([fine] * 3, abs=2e-4)
+    assert max(abs(slow_circle(cells) - fine) for cells in (12, 16, 24)) > 2e-3
+
+
+def limit(cells, focus=None):
+    problem, settings = Problem(motion_named("transverse", RING), 0.0, 0.55, 0.0), Settings()
+    if focus:
+        settings = Settings(focus=focus)
+    return simulate_static(problem, "radial", Resolution(cells, 1, 4), 1e-6, settings).mu
+
+
+def test_the_limit_under_a_ring_falls_into_line_where_rings_gather_at_both_edges():
+    """Four times as many that gather nowhere lie on both sides of it, and further away."""
+    focus = focus_of("transverse", 0.0, 0.55, "radial", RING)
+    fine = limit(192, focus)
+    few = np.abs(np.array([limit(cells, focus) for cells in (24, 48)]) - fine)
+    many = np.array([limit(cells) for cells in (48, 96, 192)]) - fine
+    assert few.max() < 3e-4 and np.ptp(many) > 1e-3
+
+
+@pytest.mark.slow
+def test_limits_under_a_ring_are_those_of_squares():
+    for scene, amplitude in (("bore", 0.7), ("transverse", 0.5)):
+        at = {"pressure": RING, "poisson": 0.3}
+        rings = microslip.solve(scene, 0.0, amplitude, tolerance=1e-3, **at)
+        squares = microslip.solve(scene, 0.0, amplitude, tolerance=1e-2, model="cartesian", **at)
+        assert rings.converged and squares.converged
+        apart = abs(rings.mu_macro - squares.mu_macro)
+        assert apart <= rings.mu_macro_error + squares.mu_macro_error
+
+
+def slow_bores(name, rings, focused=True):
+    problem = Problem(motion_named("bore", name), 1e-3, 0.4, 0.0)
+    settings = Settings(focus=found_focus(problem, "polar") if focused else None)
+    found = (
+        simulate(problem, "polar", Resolution(cells, 4, 24), 1e-6, settings=settings).mu
+        for cells in rings
+    )
+    return np.array(list(found))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["power:exponent=8", "punch"])
+def test_slow_bores_fall_into_line_with_the_second_power_of_rings(name):
+    *mu, fine = slow_bores(name, (8, 16, 32, 64))
+    to_go = np.abs(mu - fine)
+    assert to_go[1] < 0.4 * to_go[0] and to_go[2] < 0.4 * to_go[1]
+
+
+@pytest.mark.slow
+def test_few_rings_do_under_a_cone_where_they_gather_inside_of_lubkins_radius():
+    few, fine = (6, 8, 12), slow_bores("power:exponent=1", (64,))
+    assert slow_bores("power:exponent=1", few) == pytest.approx(fine.repeat(3), abs=5e-4)
+    assert max(abs(slow_bores("power:exponent=1", few, focused=False) - fine)) > 5e-3
