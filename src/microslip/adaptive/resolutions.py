@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from microslip.adaptive.cells_policies import RINGS, cells_axis, levels_finer, like_a_sphere
+from microslip.adaptive.cells_policies import (
+    RINGS,
+    SLOW_CREEP,
+    cells_axis,
+    levels_finer,
+    like_a_sphere,
+)
 from microslip.adaptive.chains import JUDGED, Axis
 from microslip.models.registry import MODELS
 from microslip.solver.problem import Problem, Resolution
@@ -123,6 +129,10 @@ def _sweeping(problem, tolerance):
     levels = _step_levels(problem, [SWEEPING_STEPS * count for count in rings])
     base = 1 if tolerance >= 5e-3 else 2
     first = tuple(range(base - 1, base + 3))
+    if problem.motion.rotates and problem.creep < SLOW_CREEP:
+        # few rings are far off there, and finer runs that outweigh them cost more than they do
+        base = 1 if tolerance >= 1e-2 else 2
+        first = (base, base + 1, base + 2)
     return Axis("steps", levels, base, first, caution=SWEEPING_CAUTION, tied=(("cells", rings),))
 
 

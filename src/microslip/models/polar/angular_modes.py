@@ -249,4 +249,5 @@ def _columns(operator, unit, dense):
             flat[s, j] = 1.0
             apply_sectors(operator, unit, image)
             flat[s, j] = 0.0
-            dense[s, j] = images[s]
+            for i in range(dense.shape[2]):  # an assignment of rows takes seconds to compile
+                dense[s, j, i] = images[s, i]

@@ -149,7 +149,10 @@ def _matrix(contact, shape):
 @kernel
 def judge(points: Points, b: np.ndarray, q: np.ndarray, slip: np.ndarray) -> float:
     """Fill slip = b - A q, all (2, K), and return the residual of the step."""
-    slip[:] = b - (points.matrix @ q.ravel()).reshape(q.shape)
+    moved, n = points.matrix @ q.ravel(), q.shape[1]
+    for c in range(2):  # as loops, since assignments of arrays take seconds to compile
+        for i in range(n):
+            slip[c, i] = b[c, i] - moved[c * n + i]
     shape = (2, 1, q.shape[1])
     rows = q.reshape(shape), slip.reshape(shape)
     return coulomb_residual(rows[0], rows[1], points.bound, points.weight, points.scale)
@@ -179,7 +182,9 @@ def descend(
     for iteration in range(MAX_DESCENTS):
         if residual <= tolerance:
             return iteration, residual
-        q += length * slip
+        for c in range(2):
+            for i in range(q.shape[1]):
+                q[c, i] += length[i] * slip[c, i]
         project_in_place(q, points.bound)
         residual = judge(points, b, q, slip)
     return MAX_DESCENTS, residual

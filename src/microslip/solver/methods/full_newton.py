@@ -16,6 +16,14 @@ MAX_ITERATIONS = 60
 
 
 @kernel
+def _copy(out, values):
+    """out = values, (2, K) both; an assignment of arrays takes seconds to compile."""
+    for c in range(2):
+        for i in range(out.shape[1]):
+            out[c, i] = values[c, i]
+
+
+@kernel
 def _solve(points, b, q, slip, tolerance, settings):
     matrix, scale, bound = points.matrix, points.scale, points.bound
     n = q.shape[1]
@@ -24,8 +32,8 @@ def _solve(points, b, q, slip, tolerance, settings):
     residual = judge(points, b, trial, trial_slip)
     for iteration in range(MAX_ITERATIONS):
         if residual <= tolerance:
-            q[:] = trial
-            slip[:] = trial_slip
+            _copy(q, trial)
+            _copy(slip, trial_slip)
             return iteration, residual
         for i in range(n):
             x = trial[0, i] + trial_slip[0, i] / scale[i]
@@ -33,7 +41,8 @@ def _solve(points, b, q, slip, tolerance, settings):
             size = np.sqrt(x * x + y * y)
             if size <= bound[i]:  # sticks: no slip
                 for c in range(2):
-                    system[c * n + i] = matrix[c * n + i]
+                    for j in range(2 * n):
+                        system[c * n + i, j] = matrix[c * n + i, j]
                     right[c * n + i] = b[c, i]
                 continue
             # slips: dq = D (dq + dslip / scale), D the derivative of the projection
@@ -42,7 +51,9 @@ def _solve(points, b, q, slip, tolerance, settings):
             ends = (bound[i] * x, bound[i] * y)
             for c in range(2):
                 row = c * n + i
-                system[row] = (d[c][0] * matrix[i] + d[c][1] * matrix[n + i]) / scale[i]
+                for j in range(2 * n):
+                    system[row, j] = d[c][0] * matrix[i, j] + d[c][1] * matrix[n + i, j]
+                    system[row, j] /= scale[i]
                 system[row, i] -= d[c][0]
                 system[row, n + i] -= d[c][1]
                 system[row, row] += 1.0
@@ -52,7 +63,7 @@ def _solve(points, b, q, slip, tolerance, settings):
         trial = np.linalg.solve(system, right).reshape((2, n))
         residual = judge(points, b, trial, trial_slip)
     project_in_place(trial, bound)
-    q[:] = trial
+    _copy(q, trial)
     return MAX_ITERATIONS, judge(points, b, q, slip)
 
 
