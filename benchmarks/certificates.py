@@ -51,7 +51,7 @@ CONFIDENCE = 0.95
 """Of the bound on the share of those that do not."""
 SOURCES = ("space", "time", "periodicity", "solver", "model")
 """Of what is claimed, kept to see which is to blame."""
-LONGEST = 60.0
+LONGEST = 20.0
 """Seconds for a reference by a tighter tolerance; what takes longer is decided by `finer.py`."""
 
 

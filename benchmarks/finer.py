@@ -1,7 +1,7 @@
 """The same point four times as fine: a reference that shares no run with what it is to judge.
 
 Four times the rings, angles and steps that the point was certified with (no more than 192 rings or
-squares, 64 angles and 2048 steps in half a period), each refined by itself from a base that is
+squares, 32 angles and 2048 steps in half a period, or twice what it has), each refined by itself from a base that is
 finer than any certificate starts from, every periodic state searched for from scratch, to a tenth
 of the tolerance.  What two axes do together is measured from that base, too.  What is left of its
 own error is estimated from the run with half of the refinement.  A state that does not become
@@ -31,7 +31,7 @@ LEAST = {"radial": Resolution(64, 1, 96), "polar": Resolution(48, 16, 64)}
 BASE["cartesian"], LEAST["cartesian"] = Resolution(32, 1, 32), Resolution(96, 1, 64)
 PEAKED = 48
 """Rings of the base of rotations under pressures whose peak or edge coarser ones see by chance."""
-MOST = Resolution(192, 64, 2048)
+MOST = Resolution(192, 32, 2048)
 """Resolutions (steps in half a period) of the reference: its base, and bounds of its finest."""
 PERIODICITY = 0.1
 """Distance of the reference from its periodic states, over the tolerance."""
@@ -83,8 +83,8 @@ def reference(problem, tolerance, certified):
     for axis in ("cells", "angles", "steps"):
         if axis == "angles" and model != "polar":
             continue
-        finest = max(FINER * getattr(used, axis), getattr(LEAST[model], axis))
-        finest = settled(axis, min(finest, getattr(MOST, axis)))
+        has, most = getattr(used, axis), max(getattr(MOST, axis), 2 * getattr(used, axis))
+        finest = settled(axis, min(max(FINER * has, getattr(LEAST[model], axis)), most))
         coarse, fine = mean(**{axis: finest // 2}), mean(**{axis: finest})
         beyond = (fine - coarse) / 3.0  # second order
         mu += fine + beyond - at_base
