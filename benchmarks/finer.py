@@ -1,11 +1,11 @@
 """The same point four times as fine: a reference that shares no run with what it is to judge.
 
 Four times the rings, angles and steps that the point was certified with (no more than 192 rings or
-squares, 32 angles and 2048 steps in half a period, or twice what it has), each refined by itself from a base that is
-finer than any certificate starts from, every periodic state searched for from scratch, to a tenth
-of the tolerance.  What two axes do together is measured from that base, too.  What is left of its
-own error is estimated from the run with half of the refinement.  A state that does not become
-periodic tells nothing, and half of its refinement is taken.
+squares, 32 angles and 2048 steps in half a period, or twice what it has), each refined by itself
+from a base that is finer than any certificate starts from, every periodic state searched for from
+scratch, to a tenth of the tolerance.  What two axes do together is measured from that base, too.
+What is left of its own error is estimated from the run with half of the refinement.  A state that
+does not become periodic tells nothing, and half of its refinement is taken.
 """
 
 from __future__ import annotations
