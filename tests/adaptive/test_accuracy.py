@@ -136,7 +136,7 @@ coefficients = st.tuples(st.sampled_from([-1.0, 1.0]), st.floats(-2.0, 1.0)).map
 )
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=100, deadline=None, derandomize=True)
 @given(
     st.tuples(coefficients, coefficients, coefficients),
@@ -166,7 +166,7 @@ def share_covered(scatter, *terms, axes=("cells", "angles", "steps")):
 SEPARATE = ({"cells": 2}, {"angles": 2}, {"steps": 2})
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_scattered_errors_are_covered_nearly_always():
     assert share_covered(0.5, *SEPARATE) > 0.98
     assert share_covered(0.3, {"steps": 2}, axes=["steps"]) > 0.98

@@ -100,7 +100,7 @@ def test_what_no_configuration_asks_for_is_removed(results, tmp_path):
             assert store.read(batches.group(request), batches.key_of(request)) is not None
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_any_of_several_asks_for_stays(results, tmp_path, capsys):
     files = [str(tmp_path / "first.yaml"), str(tmp_path / "second.yaml")]
     assert leftovers.main(["--configfile", *files, "--delete"]) == 0

@@ -165,7 +165,7 @@ def test_odd_arguments_of_gc(arguments, word, tmp_path, monkeypatch, capsys):
     assert word in line
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_gc_forgets_no_configuration_that_is_given_apart(results, tmp_path, capsys):  # noqa: F811
     files = [str(tmp_path / "first.yaml"), str(tmp_path / "second.yaml")]
     apart = ["--configfile", files[0], "--configfile", files[1]]

@@ -175,6 +175,7 @@ def test_a_map_without_all_its_points_is_refused(dataset):
         dataset.isel(point=slice(0, 20)).friction.at(0.1, 1.0)
 
 
+@pytest.mark.long
 def test_of_other_motions_the_map_answers_and_nothing_beyond():
     """Along the motion friction is known in closed form, with a kink where nothing sticks."""
     axes = {"velocity": [0.01, 1], "amplitude": [0.1, 0.9], "group": "lines"}

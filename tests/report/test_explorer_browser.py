@@ -336,6 +336,7 @@ def test_a_finger_finds_every_control_of_the_phone(phone):
     assert all(phone.evaluate(size, id) >= 16 for id in ("button", "#value", "#limits label"))
 
 
+@pytest.mark.long
 def test_a_finger_scrolls_the_phone_and_zooms_no_chart(phone):
     for chart in CHARTS:
         axes = "(id) => { const l = element(id)._fullLayout; return [l.xaxis, l.yaxis, l.dragmode]"
@@ -347,6 +348,7 @@ def test_a_finger_scrolls_the_phone_and_zooms_no_chart(phone):
     assert "velocity 0.1, amplitude 1.2" in phone.inner_text("#certificate")
 
 
+@pytest.mark.long
 def test_the_form_fits_a_phone(phone):
     phone.get_by_role("button", name="A real contact").click()
     assert phone.evaluate("document.documentElement.scrollWidth") <= 400
@@ -357,6 +359,7 @@ def test_the_form_fits_a_phone(phone):
             assert bottom - top >= 44 and left >= 0 and right <= 400, selector
 
 
+@pytest.mark.long
 def test_turning_the_phone_lays_it_out_again(phone):
     phone.set_viewport_size({"width": 1000, "height": 600})
     phone.wait_for_timeout(300)

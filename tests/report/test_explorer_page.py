@@ -86,6 +86,7 @@ def test_every_sweep_is_a_map_or_lines_at_every_poissons_ratio(made):
     assert set(datasets) == set(maps) | set(lines) == set(content["made"])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["transverse", "ratios"])
 def test_maps_at_every_ratio_hold_the_points_of_the_dataset(made, name):
     dataset = made[0][name]

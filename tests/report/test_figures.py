@@ -251,6 +251,7 @@ def test_history_mean_and_phase(datasets):
     assert artists(figure, "forward")[0].get_xdata()[-1] == pytest.approx(4.0)
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("unplaced")
 @pytest.mark.parametrize(
     ("scene", "name", "label"),
@@ -366,6 +367,7 @@ def test_a_failed_save_leaves_the_old_file(figures, tmp_path, monkeypatch):
     assert [file.read_text() for file in tmp_path.iterdir()] == ["old"]
 
 
+@pytest.mark.long
 def test_the_users_settings_play_no_part_and_stay(datasets, figures, tmp_path):
     name = "fig5_transients"
     expected = drawing.save(figures[name], tmp_path / "expected.png").read_bytes()

@@ -102,6 +102,7 @@ def test_saves_whole_and_reproducibly(name, tmp_path, monkeypatch):
     assert len(list(tmp_path.glob("[!.]*"))) == 3
 
 
+@pytest.mark.long
 @each(["fig3_traction_field", "maps"])
 def test_a_page_is_the_same_when_it_is_drawn_again(name, drawn, tmp_path):
     """As a PDF, with its fonts and its hatches; all figures are written by the same few lines."""

@@ -154,7 +154,7 @@ def slow_bores(name, rings, focused=True):
     return np.array(list(found))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["power:exponent=8", "punch"])
 def test_slow_bores_fall_into_line_with_the_second_power_of_rings(name):
     *mu, fine = slow_bores(name, (8, 16, 32, 64))

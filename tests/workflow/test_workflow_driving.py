@@ -23,6 +23,7 @@ def test_lines_are_answered_in_batches_collected_and_drawn(project):
     assert planned == {"solve_batch": 2, "collect_study": 1, "draw_figure": 1, "driving": 1}
 
 
+@pytest.mark.long
 def test_what_is_drawn_twice_is_answered_once(project, tmp_path):
     """Two titles of one line are one request; two lines more are one job more."""
     other = project.copied(tmp_path / "other")

@@ -17,15 +17,8 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.foundation.compiled import kernel
-from microslip.models.interrupts import BETWEEN_LOOKS, interrupted
 from microslip.models.path import LoadingPath
-from microslip.models.point_fields import (
-    add,
-    copy,
-    move_forward,
-    rigid_displacement,
-    sum_forces,
-)
+from microslip.models.point_fields import copy, move_forward, rigid_displacement, sum_forces
 from microslip.models.pull import Pull, stage_load, stage_stiffness, starting_place
 from microslip.models.squares.convolution import convolve
 from microslip.models.squares.march import Squares, extrapolate, solve_step
@@ -155,7 +148,6 @@ def _sum_all(squares, carried, positions, q, one_contact, out):
             out[c] += carried.shares[one] * one_contact[c]
 
 
-@kernel
 def pulled_march(
     squares: Squares,
     standing: tuple,
@@ -165,6 +157,8 @@ def pulled_march(
     settings: tuple,
 ) -> tuple:
     """March along a path from which the contacts may stay behind, or run ahead.
+
+    It is not compiled, since a step takes milliseconds.
 
     Parameters
     ----------
@@ -190,37 +184,33 @@ def pulled_march(
         sum, iterations, whether it was interrupted.
     """
     steps, stages, (tolerance, holding) = path.stages.shape[0], path.stages.shape[1], settings
-    (positions, carried, moved), bound, contacts = standing, squares.bound, len(state)
+    (positions, carried, moved), contacts = standing, len(state)
     q = state.copy()
-    rigid, z, b = np.empty_like(q), np.empty_like(q), np.empty_like(q)
+    rigid, elastic = np.empty_like(q), np.empty_like(q)
     slips, forces = np.empty((stages, *q.shape)), np.empty((steps + 1, 3))
     before, body = np.empty((2, stages, *q.shape)), np.empty((steps + 1, 2))
     advances, rates, force = np.zeros(stages), np.zeros(stages), np.empty(3)
     lengths = np.full(contacts, 1.0 / squares.scale)
     _sum_all(squares, carried, positions, q, force, forces[0])
-    body[0, 0], body[0, 1] = starting_place(pull, forces[0, 0]), pull.start[1]
+    body[0] = starting_place(pull, forces[0, 0]), pull.start[1]
     for one in range(contacts):
-        convolve(squares.operator, squares.workspace, q[one], z[one])
+        convolve(squares.operator, squares.workspace, q[one], elastic[one])
         rigid_displacement(moved[one, 0], positions, rigid[one])
-        add(z[one], -1.0, rigid[one])
-        move_forward(z[one], -body[0, 0] / carried.extents[one])
-    total, iterations, spent = 0.0, 0, 0.0
+    z = elastic - rigid
+    _move_all(z, -body[0, 0], carried)
+    total, iterations = 0.0, 0
     for k in range(steps):
         for s in range(stages):
-            past_place, past_rate = body[k, 0], body[k, 1]
-            for j in range(s):
-                past_place += path.carry[s, j] * advances[j]
-                past_rate += path.carry[s, j] * rates[j]
+            past_place, past_rate = body[k] + path.carry[s, :s] @ np.stack([advances, rates], 1)[:s]
             for one in range(contacts):
                 rigid_displacement(moved[one, 1 + k * stages + s], positions, rigid[one])
-                copy(b[one], z[one])
-                add(b[one], 1.0, rigid[one])
-                for j in range(s):
-                    add(b[one], -path.carry[s, j], slips[j, one])
-                move_forward(b[one], past_place / carried.extents[one])
                 if k > 1:
                     start, earlier = before[0, s, one], before[1, s, one]
-                    extrapolate(start, start, earlier, bound, q[one])
+                    extrapolate(start, start, earlier, squares.bound, q[one])
+            b = z + rigid
+            for j in range(s):
+                b -= path.carry[s, j] * slips[j]
+            _move_all(b, past_place, carried)
             equation = Equation(
                 stage_stiffness(pull, pull.lengths[k]),
                 stage_load(pull, pull.lengths[k], past_place, past_rate),
@@ -230,23 +220,18 @@ def pulled_march(
             count, residual, advances[s] = solve_pulled_step(
                 squares, carried, b, (q, slips[s], lengths), equation, tolerance
             )
-            rates[s] = advances[s] / pull.lengths[k] - past_rate
-            spent += count * 100.0 * q[0].size
-            if count < 0 or (spent > BETWEEN_LOOKS and interrupted()):
+            if count < 0:
                 return q, body, forces, total, iterations, True
-            if spent > BETWEEN_LOOKS:
-                spent = 0.0
-            iterations += count
-            total += residual
-            for one in range(contacts):
-                copy(before[1, s, one], before[0, s, one])
-                copy(before[0, s, one], q[one])
-        body[k + 1, 0] = past_place + advances[stages - 1]
-        body[k + 1, 1] = advances[stages - 1] / pull.lengths[k]
-        for one in range(contacts):
-            copy(z[one], b[one])
-            add(z[one], -1.0, slips[stages - 1, one])
-            add(z[one], -1.0, rigid[one])
-            move_forward(z[one], -past_place / carried.extents[one])
+            rates[s] = advances[s] / pull.lengths[k] - past_rate
+            iterations, total = iterations + count, total + residual
+            before[1, s], before[0, s] = before[0, s], q
+        body[k + 1] = past_place + advances[-1], advances[-1] / pull.lengths[k]
+        z = b - slips[-1] - rigid
+        _move_all(z, -past_place, carried)
         _sum_all(squares, carried, positions, q, force, forces[k + 1])
     return q, body, forces, total, iterations, False
+
+
+def _move_all(displacement, place, carried):
+    """Add to displacements, (C, 2, n, n), that the body moves forward to a place."""
+    displacement[:, 0] += (place / carried.extents)[:, None, None]
