@@ -145,10 +145,11 @@ class Readings:
         """How far they leave a value open."""
         first = refines_cells(chains)
         finest = {} if first is None else {first: chains[first].indices[-1]}
-        resolution, value = self.runs.resolution(**finest), getattr(self.runs(**finest), name)
+        resolution, plain = self.runs.resolution(**finest), self.runs(**finest)
+        value = getattr(plain, name)
         for number, run in enumerate(self.readings):
             if (number, resolution) not in self.done:
-                self.done[number, resolution] = run(resolution, None)
+                self.done[number, resolution] = run(resolution, plain)  # which it is close to
         return READING_CAUTION * sum(
             abs(getattr(self.done[number, resolution], name) - value)
             for number in range(len(self.readings))
