@@ -10,7 +10,7 @@ from microslip.pressures.by_name import pressure_named
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
-from microslip.solver.static_run import simulate_static
+from microslip.solver.static_run import gathered_on_a_loop, simulate_static
 from microslip.solver.stick_edge import found_focus
 from microslip.theory import hertz, indenters
 
@@ -131,6 +131,18 @@ def test_the_limit_under_a_ring_falls_into_line_where_rings_gather_at_both_edges
     few = np.abs(np.array([limit(cells, focus) for cells in (24, 48)]) - fine)
     many = np.array([limit(cells) for cells in (48, 96, 192)]) - fine
     assert few.max() < 3e-4 and np.ptp(many) > 1e-3
+
+
+@pytest.mark.parametrize(("scene", "amplitude"), [("elliptic", 0.4), ("normal:lateral=1", 0.2)])
+def test_the_limit_on_a_loop_looks_for_the_edge_once(scene, amplitude):
+    """As many rings that look for it again and again come to the same."""
+    problem = Problem(motion_named(scene), 0.0, amplitude, 0.0)
+    focus, resolution = found_focus(problem, "radial"), Resolution(48, 1, 192)
+    by_itself, radii = gathered_on_a_loop(problem, "radial", resolution, 1e-5, Settings())
+    told = simulate_static(problem, "radial", resolution, 1e-5, Settings(focus=focus))
+    assert focus.radii == pytest.approx(radii, abs=5e-3)
+    assert told.mu == pytest.approx(by_itself[-1].mu, abs=5e-4)
+    assert len(by_itself) > 1 and told.solves < sum(run.solves for run in by_itself)
 
 
 @pytest.mark.slow

@@ -22,8 +22,8 @@ SLOW_CREEP = 3e-3
 """Creep in a radian (u_lim) below which the layer at the stick radius is thin: the coarsest rings
 agree with each other there before they see it, and prove nothing."""
 EDGE_CAUTION = 1.25
-"""Error over the spread of four runs where each gathers its rings at a stick radius that it finds
-by itself, to the width of a ring."""
+"""Error over the spread of four runs that gather their rings at a stick radius which a coarse run
+found, to the width of a ring."""
 ROUNDED = 1e-9
 """Difference of two torques below which they are one number."""
 PROJECTED_SHARES = 0.35, 0.45
@@ -147,7 +147,7 @@ CELLS_POLICIES = (
         first=(8, 16),
     ),
     CellsPolicy(
-        "static limit on a loop: each run finds the edge of what sticks by itself",
+        "static limit on a loop: rings gather at an edge of what sticks that a coarse run found",
         lambda problem, model: _is_static(problem) and not at_turning_points(problem.motion),
         base=24,
         first=(16, 48),

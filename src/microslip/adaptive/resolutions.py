@@ -15,6 +15,7 @@ from microslip.adaptive.chains import JUDGED, Axis
 from microslip.models.registry import MODELS
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.static_limit import at_turning_points
+from microslip.solver.stick_edge import found_focus
 
 ANGLES = (2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)
 STEPS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024, 1536, 2048)
@@ -44,7 +45,9 @@ the first power in the end, after it has changed its sign, and four runs do not 
 SWEEPING_STEPS = 4
 """Steps in half a period over rings where the edge of the contact sweeps over these.  They join it
 one by one, and the error scatters unless both are refined together."""
-SWEEPING_CAUTION = 1.5
+SWEEPING_CAUTION, TOLD_CAUTION = 1.5, 2.0
+"""Error over the spread of these runs, and where their rings gather at an edge that another run
+found: they lie closer together there than they are right."""
 LONGEST_STROKE = 16.0
 """Stroke in u_lim beyond which more steps are left to the estimate of the error."""
 
@@ -81,7 +84,7 @@ def plan(
     marches = motion.periodic and (problem.velocity > 0.0 or not at_turning_points(motion))
     sweeps = motion.depth is not None and marches and cells is None and steps is None
     if sweeps:
-        axes.append(_sweeping(problem, tolerance))
+        axes.append(_sweeping(problem, model, tolerance))
     elif "cells" in resolved:
         axes.append(
             cells_axis(problem, model, tolerance) if cells is None else _imposed("cells", cells)
@@ -123,7 +126,7 @@ def _all_together(problem, tolerance):
     return Axis("cells", rings, start, first, tied=tied, fitted=True, resolved=resolved)
 
 
-def _sweeping(problem, tolerance):
+def _sweeping(problem, model, tolerance):
     """Steps and rings together."""
     rings = RINGS[RINGS.index(BASE_RINGS) :]
     levels = _step_levels(problem, [SWEEPING_STEPS * count for count in rings])
@@ -133,7 +136,8 @@ def _sweeping(problem, tolerance):
         # few rings are far off there, and finer runs that outweigh them cost more than they do
         base = 1 if tolerance >= 1e-2 else 2
         first = (base, base + 1, base + 2)
-    return Axis("steps", levels, base, first, caution=SWEEPING_CAUTION, tied=(("cells", rings),))
+    caution = SWEEPING_CAUTION if found_focus(problem, model) is None else TOLD_CAUTION
+    return Axis("steps", levels, base, first, caution=caution, tied=(("cells", rings),))
 
 
 def _step_levels(problem, counts):

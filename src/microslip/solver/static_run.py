@@ -75,6 +75,10 @@ def _on_a_line(contact, problem, tolerance):
 
 
 def _on_a_loop(problem, model, resolution, tolerance, settings):
+    if settings.focus is not None:  # somebody has found the edges
+        contact = settings.contact(problem, model, resolution)
+        path = problem.path(contact, resolution.steps, settings.method.integrator)
+        return _on_these_points(contact, problem, path, tolerance)[0]
     done, _ = gathered_on_a_loop(problem, model, resolution, tolerance, settings)
     spent = ("periods", "iterations", "solves", "work", "effort")
     return replace(done[-1], **{name: sum(getattr(one, name) for one in done) for name in spent})

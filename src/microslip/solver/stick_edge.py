@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -16,8 +17,9 @@ from microslip.solver.static_run import gathered_on_a_line, gathered_on_a_loop
 
 SLOW_LOOP, SLOW_LINE = 0.02, 0.01
 """Creep in a radian, in u_lim, below which what never slips in the limit decides a motion."""
-TELLING_LOOP, TOLD = Resolution(24, 1, 32), 1e-3
-"""Resolution and tolerance at which its edge is found on a loop."""
+TELLING_LOOP, TELLING_SWEPT, TOLD = Resolution(24, 4, 32), Resolution(24, 4, 96), 1e-3
+"""Resolution and tolerance at which its edge is found on a loop, and where the load oscillates:
+there the edge of the contact sweeps over the rings, which asks for more steps."""
 TELLING_LINE = Resolution(48, 2, 1)
 """And on a line, where nothing is marched, so more rings are cheap."""
 
@@ -26,10 +28,10 @@ def found_focus(problem: Problem, model: str) -> Focus | None:
     """Where the rings of a slow motion should gather: at the edges of what never slips in the limit
     of vanishing velocity.
 
-    No formula tells these for loops in the plane: of a circle the edge lies further in than that of
+    No formula tells these for loops: of a circle in the plane the edge lies further in than that of
     a line which is as long, since the slip never comes to rest.  For motions on a line there is
     none under most pressures other than that of a sphere, and a contact with a hole sticks on a
-    ring, which has two.
+    ring, which has two.  Under a load that oscillates they are found for the limit alone.
 
     Parameters
     ----------
@@ -45,13 +47,14 @@ def found_focus(problem: Problem, model: str) -> Focus | None:
         or all of the contact slips.
     """
     motion, creep = problem.motion, problem.creep
-    if model not in ("radial", "polar") or not motion.periodic or motion.depth is not None:
+    if model not in ("radial", "polar") or not motion.periodic:
         return None
     if at_turning_points(motion):
         wanted = motion.pressure is not HERTZ and motion.half_disc and creep < SLOW_LINE
         radii = _radii_on_a_line(motion, problem.amplitude) if wanted else ()
     else:
-        wanted = model == "radial" and not motion.rotates and 0.0 < creep < SLOW_LOOP
+        slow = motion.depth is None and model == "radial" and creep < SLOW_LOOP
+        wanted = creep == 0.0 or slow
         radii = _radii_on_a_loop(motion, problem.amplitude) if wanted else ()
     return Focus(radii, focus_strength(creep)) if radii else None
 
@@ -70,9 +73,11 @@ def _radii_on_a_line(motion, amplitude):
 
 @lru_cache(maxsize=64)
 def _radii_on_a_loop(motion, amplitude):
-    """Edge of what never slips, over the contact radius."""
-    limit = Problem(motion, 0.0, amplitude, 0.0)
+    """Edges of what never slips, over the contact radius; Poisson's ratio moves them little."""
+    limit, model = Problem(motion, 0.0, amplitude, 0.0), "polar" if motion.rotates else "radial"
+    telling = TELLING_LOOP if motion.depth is None else TELLING_SWEPT
+    telling = replace(telling, steps=telling.steps * motion.cycles)
     try:
-        return gathered_on_a_loop(limit, "radial", TELLING_LOOP, TOLD, AS_SHIPPED)[1]
+        return gathered_on_a_loop(limit, model, telling, TOLD, AS_SHIPPED)[1]
     except (StepFailure, ArithmeticError, np.linalg.LinAlgError):
         return ()
