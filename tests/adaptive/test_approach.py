@@ -131,7 +131,7 @@ def test_certified_points_fall_towards_the_closed_form(
         pytest.param(0.25, 1e-4, 1e-3, marks=pytest.mark.long),
         (0.75, 1e-4, 1e-3),
         pytest.param(0.25, 1e-5, 1e-4, marks=pytest.mark.long),
-        (0.5, 1e-5, 1e-4),
+        pytest.param(0.5, 1e-5, 1e-4, marks=pytest.mark.long),
         pytest.param(0.25, 1e-5, 1e-3, marks=pytest.mark.long),
     ],
 )

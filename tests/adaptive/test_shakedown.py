@@ -52,7 +52,7 @@ POINTS += [
 ]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("scene", "amplitude", "share"), POINTS)
 def test_claims_hold_against_finer_runs(scene, amplitude, share):
     limit = microslip.solve(scene, 0.0, amplitude).mu_macro

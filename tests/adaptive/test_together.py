@@ -71,7 +71,7 @@ def test_all_levels_are_refined_at_once_each_run_from_the_one_before():
     assert (found.finest.cells, found.finest.angles, found.finest.steps) == expected[-1]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_scattered_errors_are_covered_nearly_always():
     draw, held = np.random.default_rng(5), []
     for seed in range(400):

@@ -61,7 +61,7 @@ def test_a_table_gives_both_numbers_a_figure_and_a_dataset(folder, capsys):
     )
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_rows_that_tell_mu_alone_are_exit_code_1(folder, capsys):
     velocity = np.geomspace(0.03, 0.3, 6)
     force = MU * LOAD * (1.0 + 1e-3 * np.cos(3.0 * np.arange(6)))

@@ -43,7 +43,7 @@ def test_each_line_is_the_prediction_of_its_contact(folder, capsys):
     assert float(lines[2].split()[1]) == pytest.approx(alone.mu_apparent, rel=1e-3)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_line_that_nothing_answers_does_not_take_the_others_with_it(folder, capsys):
     """At 4 m/s no load has two fifths of its friction taken away by this vibration."""
     text = "mu,speed\n# two days\n0.3 +- 0.03,10 mm/s\n0.3 +- 0.03,4 m/s\n"

@@ -106,7 +106,7 @@ def test_certificates_hold_against_finer_runs(place):
     assert abs(answer.mu_macro - finer.mu_macro) <= answer.mu_macro_error + finer.mu_macro_error
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("scene", ["normal", "normal:forward=0.5", "normal:lateral=1"])
 def test_errors_fall_with_rings_and_steps(scene):
     best = run(scene, 0.1, 0.7, cells=96, steps=512).mu

@@ -153,6 +153,7 @@ def check_nothing_cut_off(figure) -> None:
             assert axes.get_position().width * axes.figure.bbox.width > 0.26 * figure.bbox.width
 
 
+@pytest.mark.long
 def test_a_figure_says_what_made_it(datasets, tmp_path):
     made = datasets["bore"].assign_attrs(title="friction", source_digest="f00d", author="nobody")
     figure = drawing.draw("fig6_bore_map", {"bore": made})

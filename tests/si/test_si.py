@@ -139,7 +139,7 @@ def test_two_balls_are_one_ball_of_half_the_radius():
     [
         ("transverse", {"frequency": "20 kHz"}),
         pytest.param("transverse", {"frequency": "50 Hz"}, marks=pytest.mark.long),
-        ("bore", {"frequency": "20 kHz"}),
+        pytest.param("bore", {"frequency": "20 kHz"}, marks=pytest.mark.long),
     ],
 )
 def test_the_amplitude_that_halves_friction_does(scene, motion):

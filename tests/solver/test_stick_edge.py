@@ -107,7 +107,7 @@ def slow_circle(cells, focus=None):
     return simulate(problem, "radial", Resolution(cells, 1, 32), 1e-5, settings=settings).mu
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_slow_circle_needs_few_rings_where_they_gather_at_what_never_slips():
     """Many rings that gather elsewhere come to the same, and few of those do not."""
     focus = focus_of("elliptic", 1e-3, 0.375, "radial")
