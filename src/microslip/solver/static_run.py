@@ -75,10 +75,9 @@ def _on_a_line(contact, problem, tolerance):
 
 
 def _on_a_loop(problem, model, resolution, tolerance, settings):
-    if settings.focus is not None:  # somebody has found the edges
+    if settings.focus is not None:  # the edges are known
         contact = settings.contact(problem, model, resolution)
-        path = problem.path(contact, resolution.steps, settings.method.integrator)
-        return _on_these_points(contact, problem, path, tolerance)[0]
+        return _on_these_points(contact, problem, resolution, tolerance, settings)[0]
     done, _ = gathered_on_a_loop(problem, model, resolution, tolerance, settings)
     spent = ("periods", "iterations", "solves", "work", "effort")
     return replace(done[-1], **{name: sum(getattr(one, name) for one in done) for name in spent})
@@ -95,8 +94,7 @@ def gathered_on_a_loop(
     """
 
     def run_on(contact):
-        path = problem.path(contact, resolution.steps, settings.method.integrator)
-        run, left = _on_these_points(contact, problem, path, tolerance)
+        run, left = _on_these_points(contact, problem, resolution, tolerance, settings)
         done.append(run)
         return left if run.converged else None
 
@@ -143,8 +141,9 @@ def _stick_radii(contact, left):
     return tuple(radii if len(radii) <= MOST_EDGES else radii[-1:])
 
 
-def _on_these_points(contact, problem, path, tolerance):
+def _on_these_points(contact, problem, resolution, tolerance, settings):
     """The Run on one contact, and which points have something left to resist with, if any has."""
+    path = problem.path(contact, resolution.steps, settings.method.integrator)
     mirror = problem.motion.half_period_mirror
     distance = tolerance / FELT
     shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)

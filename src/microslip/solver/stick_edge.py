@@ -1,4 +1,7 @@
-"""Where slow slip starts, found by a coarse run of the static limit if no formula tells."""
+"""Where slow slip starts, found by a coarse run of the static limit where no number is at hand.
+
+Of indenters that turn there is an integral to search for a root (indenters.torsion_stick_radius);
+the run serves any pressure, and a test holds the two against each other."""
 
 from __future__ import annotations
 
@@ -28,10 +31,9 @@ def found_focus(problem: Problem, model: str) -> Focus | None:
     """Where the rings of a slow motion should gather: at the edges of what never slips in the limit
     of vanishing velocity.
 
-    No formula tells these for loops: of a circle in the plane the edge lies further in than that of
-    a line which is as long, since the slip never comes to rest.  For motions on a line there is
-    none under most pressures other than that of a sphere, and a contact with a hole sticks on a
-    ring, which has two.  Under a load that oscillates they are found for the limit alone.
+    Of a circle in the plane the edge lies further in than that of a line which is as long, since
+    the slip never comes to rest; a contact with a hole sticks on a ring, which has two edges.
+    Under a load that oscillates they are found for the limit alone.
 
     Parameters
     ----------
@@ -43,8 +45,8 @@ def found_focus(problem: Problem, model: str) -> Focus | None:
     Returns
     -------
     mesh.Focus or None
-        None: a formula tells, the model has no rings, what sticks is not round, the motion is fast,
-        or all of the contact slips.
+        None: the motion tells (Motion.focus) or is fast, the model has no rings, what sticks is not
+        round, or all of the contact slips.
     """
     motion, creep = problem.motion, problem.creep
     if model not in ("radial", "polar") or not motion.periodic:
