@@ -1,7 +1,7 @@
 """Do the claimed errors hold?  Random points of all kinds, each against a finer reference.
 
     python benchmarks/certificates.py [--points N] [--first K] [--seed S] [--workers W]
-                                      [--output FILE] [--markdown FILE] [--again]
+                                      [--output FILE] [--markdown FILE] [--again] [--keep]
 
 The points are those of `blind_points.py`.  The reference is the same point at a tenth of the
 tolerance (at 1e-4 a quarter), which begins with finer runs.  What it leaves open, since it is not
@@ -9,7 +9,8 @@ certain enough for that or did not converge, is decided by `finer.py`.  A claim 
 
     |mu_macro - reference| <= mu_macro_error <= tolerance.
 
-The table is that of the points from --first on: those of which nothing was chosen.
+The table is that of the points from --first on: those of which nothing was chosen.  References that
+`docs/measured/references-SEED.csv` has are not computed again; --keep adds those that are new.
 
 Results go to a file of JSON lines, point by point, and an interrupted run goes on where it stopped.
 One that goes on under other sources first solves some of its points again, and ends if these have
@@ -32,6 +33,7 @@ from pathlib import Path
 
 import blind_points
 import finer
+import known_references
 import numpy as np
 import tables
 from scipy.stats import beta
@@ -49,10 +51,12 @@ COVERED = 0.999
 """Share of the claims that are to hold, and that `factor_for` is for."""
 CONFIDENCE = 0.95
 """Of the bound on the share of those that do not."""
+DOCS = Path(__file__).parents[1] / "docs/measured"
 SOURCES = ("space", "time", "periodicity", "solver", "model")
 """Of what is claimed, kept to see which is to blame."""
-LONGEST = 20.0
-"""Seconds for a reference by a tighter tolerance; what takes longer is decided by `finer.py`."""
+LONGEST = 4.0
+"""Seconds for a reference by a tighter tolerance; what takes longer is decided by `finer.py`, which
+takes about as long for a slow rotation at 1e-3."""
 
 
 def examine(seed: int, k: int, known: dict | None = None) -> dict:
@@ -82,7 +86,7 @@ def examine(seed: int, k: int, known: dict | None = None) -> dict:
         "parts": [getattr(result, f"error_{source}") for source in SOURCES],
         "converged": result.converged,
         "seconds": round(seconds, 3),
-        **{name: known[name] for name in ("reference", "uncertainty", "by")},
+        **{name: known[name] for name in known_references.FOUND},
     }
 
 
@@ -181,14 +185,16 @@ def main():
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--output", type=Path, help="results/certificates-SEED.jsonl unless given")
     parser.add_argument("--again", action="store_true", help="solve anew, keep the references")
+    parser.add_argument("--keep", action="store_true", help="add to the references in docs")
     tables.add_markdown(parser)
     options = parser.parse_args()
     output = options.output or Path(f"results/certificates-{options.seed}.jsonl")
     output.parent.mkdir(parents=True, exist_ok=True)
     lines = {line["k"]: line for line in tables.parsed(output)}
-    references = {}
+    kept = DOCS / f"references-{options.seed}.csv"
+    references = known_references.read(kept, options.seed)
     if options.again:
-        references, lines = lines, {}
+        references, lines = {**references, **lines}, {}
         output.replace(output.with_name(output.name + ".before"))
     refuse_changed(options.seed, list(lines.values()))
     with ProcessPoolExecutor(options.workers) as pool, output.open("a") as file:
@@ -202,6 +208,8 @@ def main():
             file.flush()
             print(f"\r{done} of {len(jobs)} points", end="", flush=True)
     print()
+    if options.keep:
+        known_references.write(kept, {**references, **lines}, options.seed)
     tables.publish(summary([lines[k] for k in asked]), options)
 
 
