@@ -76,6 +76,8 @@ class Axis:
         See RESOLVED.
     judged : int
         Runs that the error is seen by once the axis was refined; 0: as many as it began with.
+    mixed : bool
+        What it does together with the cells is measured.
     """
 
     name: str
@@ -92,6 +94,7 @@ class Axis:
     fitted: bool = False
     resolved: float = RESOLVED
     judged: int = 0
+    mixed: bool = False
 
     @property
     def refines(self) -> tuple[str, ...]:
@@ -262,24 +265,31 @@ def refines_cells(chains: dict[str, Chain]) -> str | None:
     return next((name for name, chain in chains.items() if "cells" in chain.axis.refines), None)
 
 
-def mixed_difference(runs: Runs, chains: dict[str, Chain], name: str) -> float:
-    """How far the corrections along cells and angles fail to add up: their mixed difference.
+def mixed_difference(runs: Runs, chains: dict[str, Chain], name: str, other: str) -> float:
+    """How far the corrections along the cells and another axis fail to add up.
 
-    It is taken next to the finest angles, since few of them may hide what cells are worth, and, of
-    cells whose error is irregular, twice as fine: what is next to the base may differ by chance.
+    It is their mixed difference, taken next to the finest angles, since few of them may hide what
+    cells are worth, or at the first finer steps of their chain, and, of cells whose error is
+    irregular, twice as fine: what is next to the base may differ by chance.  0 where it is not to
+    be measured.
     """
     first = refines_cells(chains)
-    if first is None or "angles" not in chains or chains[first].axis.imposed:
+    if first is None or other not in chains or chains[first].axis.imposed:
         return 0.0
+    if not chains[other].axis.mixed:
+        return 0.0
+    finer = {first: 1 if chains[first].axis.regular else 2}
+    base, indices = runs.base[other], chains[other].indices
+    if other == "angles":
+        finer[other] = max(indices[-1] - base - 1, 1)
+    else:
+        finer[other] = next((index - base for index in indices if index > base), 1)
     beside = {}
-    for axis in (first, "angles"):
-        base = runs.base[axis]
-        last = chains[axis].indices[-1]
-        if axis == "angles":
-            step = max(last - base - 1, 1)
-        else:
-            step = 1 if chains[axis].axis.regular else 2
+    for axis, step in finer.items():
+        base, last = runs.base[axis], chains[axis].indices[-1]
         beside[axis] = min(base + step, last) if last > base else base - 1
-    one, other = ({axis: index} for axis, index in beside.items())
-    both, one, other, base = (getattr(runs(**at), name) for at in (beside, one, other, {}))
-    return both - one - other + base
+    both, at_cells, at_other, at_base = (
+        getattr(runs(**at), name)
+        for at in (beside, {first: beside[first]}, {other: beside[other]}, {})
+    )
+    return both - at_cells - at_other + at_base

@@ -3,7 +3,8 @@
 Each refinable axis (cells, angles, steps) has a chain of runs of its own, coarser and finer than a
 common base, so that what an axis contributes is seen by itself and nothing has to be run fine in
 all of them at once.  The answer is the base value plus the correction of every chain and the first
-mixed difference of cells and angles.  Where corrections do not add up (that mixed difference, and
+mixed differences of cells with angles and, at tight tolerances, with steps: the error in time may
+cancel on few rings and not on more.  Where corrections do not add up (those mixed differences, and
 time scatter in the differences of other chains) that counts as error too, and if it is the largest
 one the base itself is refined.
 
@@ -45,6 +46,9 @@ LARGEST_OPEN = 0.5
 """Share of the tolerance that the readings may take for runs to be refined for what is left."""
 LEAST_WORTH = 0.25
 """Share of the tolerance down to which an axis is refined where a worse one cannot be."""
+MIXED_SHARES = {"steps": 1.0, "angles": CALIBRATED}
+"""Error over the mixed difference of the cells and an axis, by the latter: that with the steps is
+taken twice as fine as the base, and is much the same at finer ones."""
 MOST_REBASED = 6
 SOURCES = {"cells": "space", "angles": "space", "steps": "time"}
 
@@ -136,10 +140,11 @@ class _Refinement:
         runs()  # the base first: its state is a guess for others
         asked = runs.quantity
         left = {name: c.error(asked) for name, c in chains.items() if not c.axis.imposed}
-        hidden = {"steps": 0.0, "angles": CALIBRATED * abs(mixed_difference(runs, chains, asked))}
+        mixed = {axis: abs(mixed_difference(runs, chains, asked, axis)) for axis in MIXED_SHARES}
+        hidden = {axis: MIXED_SHARES[axis] * mixed[axis] for axis in mixed}
         if "steps" in chains and len(chains) > 1:
-            scatter = chains["steps"].axis.scatter
-            hidden["steps"] = scatter * abs(chains["steps"].correction(asked))
+            scattered = chains["steps"].axis.scatter * abs(chains["steps"].correction(asked))
+            hidden["steps"] = max(hidden["steps"], scattered)
         errors = _errors(runs, chains, hidden, self.tolerance)
         reason = next((r.reason for r in runs.done.values() if not r.converged), "")
         return Estimate(errors, left, hidden, reason)
@@ -228,7 +233,8 @@ def _errors(runs, chains, hidden, tolerance):
 
 def _corrected(runs, chains, name):
     corrections = sum(chain.correction(name) for chain in chains.values())
-    return getattr(runs(), name) + corrections + mixed_difference(runs, chains, name)
+    mixed = sum(mixed_difference(runs, chains, name, axis) for axis in MIXED_SHARES)
+    return getattr(runs(), name) + corrections + mixed
 
 
 def _summary(runs, chains, errors, others, reason):

@@ -35,6 +35,9 @@ comes to lie scatters from run to run."""
 PROJECTED_CAUTION = {"angles": 1.3, "steps": 1.8}
 PROJECTED_SCATTER = 0.3
 """See chains.Axis."""
+MIXED_BELOW = 5e-4
+"""Tolerance below which what rings and steps do together is measured: the error in time may change
+its sign over the steps of few rings, and then says nothing of that of more."""
 TOGETHER_FROM, TOGETHER_RESOLVED = 1e-3, 0.9
 """Tolerance from which on rings, angles and steps of a bore are refined together, and the share of
 it below which none of these points claims its error to be: the few runs of a point may come to lie
@@ -173,10 +176,10 @@ def _angles(problem, tolerance):
     if coarsest is None:
         # only nu > 0 makes tractions of a translation depend on the angle, and only a little
         base = ANGLES.index(BASE_ANGLES) + (not motion.periodic) - (not motion.rotates)
-        return Axis("angles", ANGLES, base, (base - 1, base, base + 1))
+        return Axis("angles", ANGLES, base, (base - 1, base, base + 1), mixed=True)
     base = ANGLES.index(coarsest.angles) + levels_finer(1e-3 / tolerance)
     first, caution = (base, base + 1, base + 2), PROJECTED_CAUTION["angles"]
-    return Axis("angles", ANGLES, base, first, projected=True, caution=caution)
+    return Axis("angles", ANGLES, base, first, projected=True, caution=caution, mixed=True)
 
 
 def _steps(problem, model, tolerance):
@@ -198,4 +201,7 @@ def _steps(problem, model, tolerance):
     caution, scatter = PROJECTED_CAUTION["steps"], PROJECTED_SCATTER
     # counts that lie close together agree by chance where the error in time changes its sign
     first = (base - 2, base, base + 2)
-    return Axis("steps", levels, base, first, projected=True, caution=caution, scatter=scatter)
+    mixed = tolerance < MIXED_BELOW
+    return Axis(
+        "steps", levels, base, first, projected=True, caution=caution, scatter=scatter, mixed=mixed
+    )
