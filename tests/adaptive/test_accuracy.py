@@ -30,7 +30,7 @@ LEVELS = {
 def axis(name, regular=None, base=3, most=None):
     levels = LEVELS[name][:most]
     regular = name == "cells" if regular is None else regular
-    return Axis(name, levels, base, (base - 1, base, base + 1), regular)
+    return Axis(name, levels, base, (base - 1, base, base + 1), regular, mixed=name == "angles")
 
 
 def imposed(name, level):
@@ -302,6 +302,21 @@ def test_mixed_difference_is_added_and_counts_as_error():
     seen = [max(SPREAD * one, RESOLVED * 1e-1) for one in spread.values()]
     expected = failing_to_add_up + sum(seen)
     assert found.errors["space"] == pytest.approx(expected, rel=1e-9)
+
+
+def test_errors_in_time_that_cancel_on_the_base_are_seen_where_they_are_measured():
+    """On the cells of the base all steps agree, and on others they do not."""
+    for regular, coefficient in product((True, False), (3.0, -3.0)):
+        base = LEVELS["cells"][3]
+        cancels = -coefficient * base**12, {"steps": 2, "cells": 12}
+        terms = (coefficient, {"steps": 2}), cancels, (0.02, {"cells": 2})
+        doubled = replace(axis("steps"), first=(1, 3, 5))
+        alone, measured = (
+            certified(FakeRun(*terms), (axis("cells", regular), steps), 1e-2)
+            for steps in (doubled, replace(doubled, mixed=True))
+        )
+        assert alone.converged and abs(alone.mu - EXACT) > alone.error
+        assert measured.converged and abs(measured.mu - EXACT) <= measured.error
 
 
 def along(fake, name):
