@@ -1,8 +1,8 @@
 """References of the random points that are known: what judges a claim, kept apart from the claims.
 
-A reference costs far more than what it judges and does not depend on how estimates are made, so that
-those of `docs/measured/references-SEED.csv` serve every later state of the sources, and whoever has
-another code for the same contact.  A row says which point it is of in full.
+A reference costs far more than what it judges and does not depend on how estimates are made, so
+that those of `docs/measured/references-SEED.csv` serve every later state of the sources, and
+whoever has another code for the same contact.  A row says which point it is of in full.
 """
 
 from __future__ import annotations
