@@ -35,11 +35,13 @@ def read(path, seed: int) -> dict[int, dict]:
 
 
 def write(path, known: dict[int, dict], seed: int) -> None:
-    """All that is known, in the order of the points."""
+    """All that is known, in the order of the points, but what is less certain than its claim."""
     with path.open("w", encoding="utf-8", newline="") as file:
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(("k", *DRAWN, *FOUND))
         for k in sorted(known):
             point = blind_points.point(seed, k)
+            if known[k]["uncertainty"] > point["tolerance"]:
+                continue
             values = (format(known[k][name], DIGITS.get(name, "")) for name in FOUND)
             rows.writerow((k, *(point[name] for name in DRAWN), *values))
