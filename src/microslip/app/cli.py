@@ -7,9 +7,9 @@ import sys
 
 from microslip import __version__
 from microslip.app import (
-    command_line,
     drive_command,
     fit_command,
+    option_parser,
     predict_command,
     sweep_command,
     terminal,
@@ -22,9 +22,9 @@ RATIO = "a ratio: mean forward force over mu F_z; the coefficient felt is mu_app
 BORE = "Bore means spin: rotation about the contact normal."
 
 
-def build_parser(asked: str | None = None) -> command_line.OneLineParser:
+def build_parser(asked: str | None = None) -> option_parser.OneLineParser:
     """Parser of the command line, with all that follows the command `asked`."""
-    parser = command_line.OneLineParser(
+    parser = option_parser.OneLineParser(
         allow_abbrev=False,
         prog="microslip",
         description="How far friction falls when a frictional contact is vibrated: an elastic "
@@ -145,7 +145,7 @@ def _add_options(parser):
     for name, (metavar, text) in OPTIONS.items():
         parser.add_argument(
             *(f"--{name}", *OTHER_NAMES.get(name, ())),
-            action=command_line.Said,
+            action=option_parser.Said,
             default=DEFAULTS.get(name),
             metavar=metavar,
             help=text,
@@ -180,7 +180,7 @@ def main(arguments: list[str] | None = None) -> int:
         return sweep_command.main(arguments[1:])
     if arguments[:1] == ["point"]:
         arguments = _with_path(arguments)
-    options = build_parser(next(iter(arguments), None)).parse_args(command_line.joined(arguments))
+    options = build_parser(next(iter(arguments), None)).parse_args(option_parser.joined(arguments))
     if options.command == "predict":
         return predict_command.run(options)
     if options.command == "fit":

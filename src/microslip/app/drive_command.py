@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 
-from microslip.app.command_line import Said
+from microslip.app.option_parser import Said
 from microslip.app.terminal import complain
 
 OPTIONS = {

@@ -6,7 +6,7 @@ import argparse
 import json
 from pathlib import Path
 
-from microslip.app.command_line import Said
+from microslip.app.option_parser import Said
 from microslip.app.predicted_text import line
 from microslip.app.terminal import complain
 from microslip.foundation.errors import shown

@@ -13,7 +13,7 @@ import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from microslip.app.command_line import OneLineParser
+from microslip.app.option_parser import OneLineParser
 from microslip.app.plan import Plan
 from microslip.app.terminal import complain
 from microslip.config import load

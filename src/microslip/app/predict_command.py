@@ -8,7 +8,7 @@ import math
 import sys
 
 from microslip.app import predicted_driving, predicted_table
-from microslip.app.command_line import Said
+from microslip.app.option_parser import Said
 from microslip.app.predicted_text import (
     groups_of_drive,
     length,
