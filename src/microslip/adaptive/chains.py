@@ -269,21 +269,21 @@ def mixed_difference(runs: Runs, chains: dict[str, Chain], name: str, other: str
     """How far the corrections along the cells and another axis fail to add up.
 
     It is their mixed difference, taken next to the finest angles, since few of them may hide what
-    cells are worth, or at the first finer steps of their chain, and, of cells whose error is
-    irregular, twice as fine: what is next to the base may differ by chance.  0 where it is not to
-    be measured.
+    cells are worth, or at the first finer steps of their chain, and on cells next to the base but,
+    with steps or where their error is irregular, twice as fine: what is next to the base may differ
+    by chance.  0 where it is not to be measured.
     """
     first = refines_cells(chains)
     if first is None or other not in chains or chains[first].axis.imposed:
         return 0.0
     if not chains[other].axis.mixed:
         return 0.0
-    finer = {first: 1 if chains[first].axis.regular else 2}
     base, indices = runs.base[other], chains[other].indices
     if other == "angles":
+        finer = {first: 1 if chains[first].axis.regular else 2}
         finer[other] = max(indices[-1] - base - 1, 1)
     else:
-        finer[other] = next((index - base for index in indices if index > base), 1)
+        finer = {first: 2, other: next((index - base for index in indices if index > base), 1)}
     beside = {}
     for axis, step in finer.items():
         base, last = runs.base[axis], chains[axis].indices[-1]
