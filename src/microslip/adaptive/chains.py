@@ -263,33 +263,3 @@ def _line(values, levels):
 def refines_cells(chains: dict[str, Chain]) -> str | None:
     """Name of the axis that refines the cells, or None."""
     return next((name for name, chain in chains.items() if "cells" in chain.axis.refines), None)
-
-
-def mixed_difference(runs: Runs, chains: dict[str, Chain], name: str, other: str) -> float:
-    """How far the corrections along the cells and another axis fail to add up.
-
-    It is their mixed difference, taken next to the finest angles, since few of them may hide what
-    cells are worth, or at the first finer steps of their chain, and on cells next to the base but,
-    with steps or where their error is irregular, twice as fine: what is next to the base may differ
-    by chance.  0 where it is not to be measured.
-    """
-    first = refines_cells(chains)
-    if first is None or other not in chains or chains[first].axis.imposed:
-        return 0.0
-    if not chains[other].axis.mixed:
-        return 0.0
-    base, indices = runs.base[other], chains[other].indices
-    if other == "angles":
-        finer = {first: 1 if chains[first].axis.regular else 2}
-        finer[other] = max(indices[-1] - base - 1, 1)
-    else:
-        finer = {first: 2, other: next((index - base for index in indices if index > base), 1)}
-    beside = {}
-    for axis, step in finer.items():
-        base, last = runs.base[axis], chains[axis].indices[-1]
-        beside[axis] = min(base + step, last) if last > base else base - 1
-    both, at_cells, at_other, at_base = (
-        getattr(runs(**at), name)
-        for at in (beside, {first: beside[first]}, {other: beside[other]}, {})
-    )
-    return both - at_cells - at_other + at_base

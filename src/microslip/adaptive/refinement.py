@@ -26,6 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from statistics import fmean
 from typing import NamedTuple
 
 from microslip.adaptive.certified import Certified, nothing
@@ -35,9 +36,9 @@ from microslip.adaptive.chains import (
     Chain,
     Readings,
     Runs,
-    mixed_difference,
     refines_cells,
 )
+from microslip.adaptive.mixed_differences import mixed_differences
 from microslip.solver.budget import Spent
 from microslip.solver.problem import Resolution
 from microslip.solver.run import Run
@@ -47,8 +48,8 @@ LARGEST_OPEN = 0.5
 LEAST_WORTH = 0.25
 """Share of the tolerance down to which an axis is refined where a worse one cannot be."""
 MIXED_SHARES = {"steps": 1.0, "angles": CALIBRATED}
-"""Error over the mixed difference of the cells and an axis, by the latter: that with the steps is
-taken twice as fine as the base, and is much the same at finer ones."""
+"""Error over the largest mixed difference of the cells and an axis, by the latter: those with the
+steps are taken at twice the steps of the base, and are much the same at finer ones."""
 MOST_REBASED = 6
 SOURCES = {"cells": "space", "angles": "space", "steps": "time"}
 
@@ -140,8 +141,10 @@ class _Refinement:
         runs()  # the base first: its state is a guess for others
         asked = runs.quantity
         left = {name: c.error(asked) for name, c in chains.items() if not c.axis.imposed}
-        mixed = {axis: abs(mixed_difference(runs, chains, asked, axis)) for axis in MIXED_SHARES}
-        hidden = {axis: MIXED_SHARES[axis] * mixed[axis] for axis in mixed}
+        hidden = {
+            axis: share * max(map(abs, mixed_differences(runs, chains, asked, axis)))
+            for axis, share in MIXED_SHARES.items()
+        }
         if "steps" in chains and len(chains) > 1:
             scattered = chains["steps"].axis.scatter * abs(chains["steps"].correction(asked))
             hidden["steps"] = max(hidden["steps"], scattered)
@@ -233,7 +236,7 @@ def _errors(runs, chains, hidden, tolerance):
 
 def _corrected(runs, chains, name):
     corrections = sum(chain.correction(name) for chain in chains.values())
-    mixed = sum(mixed_difference(runs, chains, name, axis) for axis in MIXED_SHARES)
+    mixed = sum(fmean(mixed_differences(runs, chains, name, axis)) for axis in MIXED_SHARES)
     return getattr(runs(), name) + corrections + mixed
 
 
