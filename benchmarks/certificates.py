@@ -6,7 +6,7 @@
 The points are those of `blind_points.py`.  The reference is the same point at a tenth of the
 tolerance (at 1e-4 a quarter), which begins with finer runs.  What it leaves open, since it is not
 certain enough for that, did not converge or took long, is decided by `finer.py`, and what that
-leaves open by the tighter tolerance again, however long.  A claim holds if
+leaves open by the tighter tolerance again, with more time.  A claim holds if
 
     |mu_macro - reference| <= mu_macro_error <= tolerance.
 
@@ -58,10 +58,10 @@ SOURCES = ("space", "time", "periodicity", "solver", "model")
 LONGEST = 4.0
 """Seconds for a reference by a tighter tolerance; what takes longer is decided by `finer.py`, which
 takes about as long for a slow rotation at 1e-3."""
-EXACT = 1e-7
-"""Uncertainty of a closed form's own value, which no run could decide any better."""
 UNDECIDED = 200.0
-"""Seconds for one where that has not decided either."""
+"""Seconds for a reference by a tighter tolerance where `finer.py` has not decided either."""
+EXACT = 1e-7
+"""Uncertainty up to which a reference is a closed form, which no run could decide any better."""
 
 
 def examine(seed: int, k: int, known: dict | None = None) -> dict:

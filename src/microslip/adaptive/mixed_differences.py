@@ -13,30 +13,45 @@ def mixed_differences(
     These are their mixed differences: with the angles one, next to the finest of them, since few
     may hide what cells are worth, and, of cells whose error is irregular, twice as fine; with the
     steps two, at the first finer ones of their chain and both counts of cells, since one alone may
-    be small by chance where the cells scatter.  0 where none is to be measured.
+    be small by chance where the cells scatter.
+
+    Parameters
+    ----------
+    runs : chains.Runs
+        Those of all chains; what is lacking is done.
+    chains : dict of chains.Chain
+        By the names of their axes.
+    name : str
+        Of what is asked of a run: "mu", "torque".
+    other : str
+        "angles" or "steps".
+
+    Returns
+    -------
+    tuple of float
+        In the unit of what is asked (dimensionless); a single 0 where none is to be measured.
     """
     first = refines_cells(chains)
-    if first is None or other not in chains or chains[first].axis.imposed:
+    unmeasured = first is None or other not in chains or chains[first].axis.imposed
+    if unmeasured or not chains[other].axis.mixed:
         return (0.0,)
-    if not chains[other].axis.mixed:
-        return (0.0,)
-    base, indices = runs.base[other], chains[other].indices
-    if other == "angles":
-        beside = max(indices[-1] - base - 1, 1)
-        finer = (1,) if chains[first].axis.regular else (2,)
-    else:
-        beside = next((index - base for index in indices if index > base), 1)
-        finer = (1, 2)
 
     def at(axis, step):
         """A run beside the base: on the chain, or coarser where that ends at the base."""
         base, last = runs.base[axis], chains[axis].indices[-1]
         return {axis: min(base + step, last) if last > base else base - 1}
 
+    base, indices = runs.base[other], chains[other].indices
+    if other == "angles":
+        along = at(other, max(indices[-1] - base - 1, 1))
+        finer = (1,) if chains[first].axis.regular else (2,)
+    else:
+        along = at(other, next((index - base for index in indices if index > base), 1))
+        finer = (1, 2)
+
     def value(**indices):
         return getattr(runs(**indices), name)
 
-    along = at(other, beside)
     return tuple(
         value(**at(first, step), **along) - value(**at(first, step)) - value(**along) + value()
         for step in finer
