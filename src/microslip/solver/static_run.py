@@ -104,23 +104,27 @@ def gathered_on_a_loop(
 
 
 def gathered_on_a_line(
-    problem: Problem, model: str, resolution: Resolution, tolerance: float
+    problem: Problem,
+    model: str,
+    resolution: Resolution,
+    tolerance: float,
+    near: tuple[float, ...] = (),
 ) -> tuple[float, ...]:
     """Radii of the edges of what never slips, as for `gathered_on_a_loop`, where the turning points
-    tell."""
+    tell; near: what they are about, where that is known."""
 
     def run_on(contact):
         residual, _ = static_state(contact, problem.displacement, STEP_SHARE * tolerance)
         bounds = np.broadcast_to(contact.bound, residual[0].shape)
         return np.hypot(*residual) > NOTHING_LEFT * bounds.max()
 
-    return _gathered(partial(problem.contact, model, resolution), run_on)
+    return _gathered(partial(problem.contact, model, resolution), run_on, near)
 
 
-def _gathered(contact_at, run_on):
+def _gathered(contact_at, run_on, near=()):
     """Radii that stay where they are once rings gather there, or the last ones; run_on(contact) ->
     which points have something left to resist with, or None."""
-    focus, radii = None, ()
+    focus, radii = Focus(near, STRONGEST_FOCUS) if near else None, ()
     for _ in range(MOST_PASSES):
         contact = contact_at(focus)
         radii = _stick_radii(contact, run_on(contact))

@@ -23,8 +23,9 @@ SLOW_LOOP, SLOW_LINE = 0.02, 0.01
 TELLING_LOOP, TELLING_SWEPT, TOLD = Resolution(24, 4, 32), Resolution(24, 4, 96), 1e-3
 """Resolution and tolerance at which its edge is found on a loop, and where the load oscillates:
 there the edge of the contact sweeps over the rings, which asks for more steps."""
-TELLING_LINE = Resolution(48, 2, 1)
-"""And on a line, where nothing is marched, so more rings are cheap."""
+TELLING_LINE, TELLING_FINER = Resolution(48, 2, 1), Resolution(192, 2, 1)
+"""And on a line, where nothing is marched, so more rings are cheap.  Edges that were found to half
+a thousandth of the radius leave 1e-4 in the limit of a translation until rings are as narrow."""
 
 
 def found_focus(problem: Problem, model: str) -> Focus | None:
@@ -66,9 +67,12 @@ def _radii_on_a_line(motion, amplitude):
     """Edges of what never slips, over the contact radius; Poisson's ratio moves them little."""
     if motion.focus(0.0, amplitude, motion.pressure) is not None and not motion.rotates:
         return ()  # ... of an indenter, by its profile
-    model = "polar" if motion.rotates else "radial"
+    limit, model = Problem(motion, 0.0, amplitude, 0.0), "polar" if motion.rotates else "radial"
     try:
-        return gathered_on_a_line(Problem(motion, 0.0, amplitude, 0.0), model, TELLING_LINE, TOLD)
+        radii = gathered_on_a_line(limit, model, TELLING_LINE, TOLD)
+        if radii and not motion.rotates:
+            radii = gathered_on_a_line(limit, model, TELLING_FINER, TOLD, near=radii)
+        return radii
     except (StepFailure, ArithmeticError, np.linalg.LinAlgError):
         return ()
 
