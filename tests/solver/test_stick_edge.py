@@ -10,8 +10,12 @@ from microslip.pressures.by_name import pressure_named
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
-from microslip.solver.static_run import gathered_on_a_loop, simulate_static
-from microslip.solver.stick_edge import found_focus
+from microslip.solver.static_run import (
+    gathered_on_a_line,
+    gathered_on_a_loop,
+    simulate_static,
+)
+from microslip.solver.stick_edge import TELLING_FINER, TELLING_LINE, TOLD, found_focus
 from microslip.theory import hertz, indenters
 
 RING = "ring:inner=0.5"
@@ -68,6 +72,40 @@ def test_a_contact_with_a_hole_sticks_on_a_ring_that_gets_narrower(scene, model)
     inner, outer = np.transpose(found)
     assert np.all(np.diff(inner) > 0.0) and np.all(np.diff(outer) < 0.0)
     assert 0.5 < inner[0] < 0.52 and 0.97 < outer[0] < 1.0
+
+
+@pytest.mark.parametrize("amplitude", [0.1, 0.4, 0.8])
+def test_finer_rings_find_the_stick_radius_of_mindlin_from_what_coarse_ones_say(amplitude):
+    motion = motion_named("transverse")
+    limit, exact = Problem(motion, 0.0, amplitude, 0.0), np.sqrt(1.0 - amplitude)
+    near = gathered_on_a_line(limit, "radial", TELLING_LINE, TOLD)
+    assert near == pytest.approx([exact], abs=5e-3)
+    found = gathered_on_a_line(limit, "radial", TELLING_FINER, TOLD, near=near)
+    assert found == pytest.approx([exact], abs=5e-4)
+
+
+# Claims of narrow rings that slip little, and of wide ones: 1e-4 was missed by up to 4.9 times
+# where 48 rings told the edges.
+ON_RINGS = [
+    ("ring:inner=0.5", 0.0781),
+    ("ring:inner=0.5", 0.105),
+    ("ring:inner=0.5", 0.4365),
+    ("ring:inner=0.8", 0.0877),
+    ("ring:inner=0.2", 0.105),
+]
+
+
+@pytest.mark.parametrize(("pressure", "amplitude"), ON_RINGS)
+def test_the_claim_of_a_static_limit_on_a_ring_holds_against_far_more_rings(pressure, amplitude):
+    point = {"velocity": 0.0, "amplitude": amplitude, "pressure": pressure}
+    given = microslip.solve("transverse", **point, tolerance=1e-4)
+    counts = (288, 320, 352, 384)  # not one of them alone: the edges scatter over the rings
+    finer = [
+        microslip.solve("transverse", **point, tolerance=None, cells=count).mu_macro
+        for count in counts
+    ]
+    assert np.ptp(finer) < 4e-5
+    assert abs(given.mu_macro - np.mean(finer)) <= given.mu_macro_error
 
 
 # Rings that gather at several radii
