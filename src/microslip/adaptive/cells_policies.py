@@ -160,7 +160,9 @@ CELLS_POLICIES = (
     ),
     CellsPolicy(
         "static limit of a contact with a hole: rings gather at two edges that coarse runs found",
-        lambda problem, model: _is_static(problem) and found_focus(problem, model) is not None,
+        lambda problem, model: (
+            model == "radial" and _is_static(problem) and found_focus(problem, model) is not None
+        ),
         base=16,
         first=(8, 48),
         regular=False,
