@@ -24,9 +24,6 @@ agree with each other there before they see it, and prove nothing."""
 EDGE_CAUTION = 1.25
 """Error over the spread of four runs that gather their rings at a stick radius which a coarse run
 found, to the width of a ring."""
-TWO_EDGES_CAUTION = 1.6
-"""Likewise of two edges: where a narrow ring slips little, runs on 16 to 64 rings creep the same
-way, and claims would miss by up to 1.35 times without."""
 ROUNDED = 1e-9
 """Difference of two torques below which they are one number."""
 PROJECTED_SHARES = 0.35, 0.45
@@ -157,17 +154,6 @@ CELLS_POLICIES = (
         regular=False,
         judged=JUDGED,
         caution=EDGE_CAUTION,
-    ),
-    CellsPolicy(
-        "static limit of a contact with a hole: rings gather at two edges that coarse runs found",
-        lambda problem, model: (
-            model == "radial" and _is_static(problem) and found_focus(problem, model) is not None
-        ),
-        base=16,
-        first=(8, 48),
-        regular=False,
-        judged=JUDGED,
-        caution=TWO_EDGES_CAUTION,
     ),
     CellsPolicy(
         "static limit: a stick zone that is not circular cuts rings, and the corners are steep",

@@ -26,6 +26,9 @@ there the edge of the contact sweeps over the rings, which asks for more steps."
 TELLING_LINE, TELLING_FINER = Resolution(48, 2, 1), Resolution(192, 2, 1)
 """And on a line, where nothing is marched, so more rings are cheap.  Edges that were found to half
 a thousandth of the radius leave 1e-4 in the limit of a translation until rings are as narrow."""
+TOLD_FINER = 1e-5
+"""Tolerance on so many rings: at a larger one some that stick seem to have nothing left, and the
+search for the edge does not settle."""
 
 
 def found_focus(problem: Problem, model: str) -> Focus | None:
@@ -71,7 +74,7 @@ def _radii_on_a_line(motion, amplitude):
     try:
         radii = gathered_on_a_line(limit, model, TELLING_LINE, TOLD)
         if radii and not motion.rotates:
-            radii = gathered_on_a_line(limit, model, TELLING_FINER, TOLD, near=radii)
+            radii = gathered_on_a_line(limit, model, TELLING_FINER, TOLD_FINER, near=radii)
         return radii
     except (StepFailure, ArithmeticError, np.linalg.LinAlgError):
         return ()
