@@ -21,6 +21,7 @@ MODULE = '''
 import numpy as np
 
 LIMIT = 3  # a comment
+"""What it limits."""
 
 
 def double(x, *, factor=2.0):
@@ -41,6 +42,7 @@ class Thing:
         ("  # a comment", ""),
         ('"""Docstring."""', '"""Another one."""'),
         ('    """Docstring."""\n    return', "    return"),
+        ('"""What it limits."""\n', ""),
         ("\n\n\n", "\n"),
         ("factor * x", "(factor*x)"),
         ("(x, *, factor=2.0):", "(x: float, *, factor: float = 2.0) -> float:"),

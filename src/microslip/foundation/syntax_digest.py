@@ -26,8 +26,8 @@ def _dump(node, out):
     if isinstance(node, ast.AST):
         out.append(f"{type(node).__name__}(")
         for field, value in ast.iter_fields(node):
-            if field == "body" and _has_docstring(node):
-                value = value[1:]
+            if isinstance(value, list):
+                value = [item for item in value if not _is_text(item)]
             if field in HINTS and isinstance(node, HINTS[field]):
                 continue
             if value is not None and value != []:
@@ -43,13 +43,10 @@ def _dump(node, out):
         out.append(f"{node!r},")
 
 
-def _has_docstring(node):
-    kinds = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
-    if not isinstance(node, kinds) or not node.body:
-        return False
-    first = node.body[0]
+def _is_text(node):
+    """Whether it is a docstring, or what is said of a constant or a field below it."""
     return (
-        isinstance(first, ast.Expr)
-        and isinstance(first.value, ast.Constant)
-        and isinstance(first.value.value, str)
+        isinstance(node, ast.Expr)
+        and isinstance(node.value, ast.Constant)
+        and isinstance(node.value.value, str)
     )
