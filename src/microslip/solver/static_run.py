@@ -30,6 +30,9 @@ ENOUGH = 4.0
 MOST_PASSES = 4
 MOST_EDGES = 4
 """Of what never slips, beyond which they are taken for scatter."""
+SLIVER = 1e-3
+"""Width, over the contact radius, of what is taken for scatter between two edges: where little
+slips, rings next to an edge have almost nothing left on either side of it."""
 NOTHING_LEFT = 1e-2
 """Share of the largest bound that a ring outside of the stick radius may seem to have left."""
 
@@ -141,8 +144,18 @@ def _stick_radii(contact, left):
     if left is None or edges is None:
         return ()
     sticks = (left.mean(axis=0) if left.ndim > 1 else left) > 0.5
-    radii = [float(radius) for radius in edges[1:-1][np.diff(sticks)]]
+    radii = _without_slivers([float(radius) for radius in edges[1:-1][np.diff(sticks)]])
     return tuple(radii if len(radii) <= MOST_EDGES else radii[-1:])
+
+
+def _without_slivers(radii):
+    """Ascending radii without pairs that lie within a SLIVER of each other, the closest first."""
+    while len(radii) > 1:
+        closest = int(np.argmin(np.diff(radii)))
+        if radii[closest + 1] - radii[closest] > SLIVER:
+            break
+        radii = radii[:closest] + radii[closest + 2 :]
+    return radii
 
 
 def _on_these_points(contact, problem, resolution, tolerance, settings):
