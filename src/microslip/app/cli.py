@@ -14,6 +14,7 @@ from microslip.app import (
     sweep_command,
     terminal,
 )
+from microslip.app.printed_error import error_text
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
 
@@ -274,11 +275,12 @@ def _show(bar, resolution):
 
 def _as_text(result):
     if result.force is not None:
-        lines = [f"velocity = {result.velocity:.6g} +- {result.velocity_error:.1g}"]
+        lines = [f"velocity = {result.velocity:.6g} +- {error_text(result.velocity_error)}"]
     else:
-        lines = [f"mu_macro = {result.mu_macro:.6g} +- {result.mu_macro_error:.1g}", RATIO]
+        lines = [f"mu_macro = {result.mu_macro:.6g} +- {error_text(result.mu_macro_error)}", RATIO]
     if result.mu_torque is not None:
-        lines.append(f"mu_torque = {result.mu_torque:.6g} +- {result.mu_torque_error:.1g}")
+        error = error_text(result.mu_torque_error)
+        lines.append(f"mu_torque = {result.mu_torque:.6g} +- {error}")
     resolved = f"{result.cells} cells"
     if result.angles > 1:
         resolved += f" x {result.angles} angles"

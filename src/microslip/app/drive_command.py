@@ -6,6 +6,7 @@ import argparse
 import json
 
 from microslip.app.option_parser import Said
+from microslip.app.printed_error import error_text
 from microslip.app.terminal import complain
 
 OPTIONS = {
@@ -87,14 +88,15 @@ def _as_given(options, said, argument):
 
 
 def _as_text(line):
+    stall, no_load = map(error_text, (line.stall_force_error, line.no_load_velocity_error))
     lines = [
-        f"stall_force = {line.stall_force:.6g} +- {line.stall_force_error:.1g}",
-        f"no_load_velocity = {line.no_load_velocity:.6g} +- {line.no_load_velocity_error:.1g}",
+        f"stall_force = {line.stall_force:.6g} +- {stall}",
+        f"no_load_velocity = {line.no_load_velocity:.6g} +- {no_load}",
     ]
     if line.velocity.size:
         best = line.efficiency.argmax()
         largest, error = line.efficiency[best], line.efficiency_error[best]
-        lines.append(f"largest efficiency of these points = {largest:.4g} +- {error:.1g}")
+        lines.append(f"largest efficiency of these points = {largest:.4g} +- {error_text(error)}")
         lines += ["", "".join(f"{name:>{WIDTH}}" for name in COLUMNS)]
         rows = zip(*(getattr(line, name) for name in COLUMNS), strict=True)
         lines += ["".join(f"{value:{WIDTH}.4g}" for value in row) for row in rows]

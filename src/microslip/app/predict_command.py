@@ -18,6 +18,7 @@ from microslip.app.predicted_text import (
     unit_of_sought,
     walk,
 )
+from microslip.app.printed_error import error_text
 from microslip.app.terminal import complain
 from microslip.foundation.errors import InputError, shown
 from microslip.si.materials import MATERIALS
@@ -250,12 +251,12 @@ def _energy(found):
         return []
     error = found.vibration_power_error_W
     lines = [
-        line("power", f"{found.vibration_power_W:.4g} +- {error:.1g} W for the vibration"),
+        line("power", f"{found.vibration_power_W:.4g} +- {error_text(error)} W for the vibration"),
         line("", f"{found.drag_power_W:.4g} W for the drag"),
         line("energy", f"{found.energy_per_cycle_J:.4g} J a cycle turn into heat"),
     ]
     if found.torque_N_m is not None:
-        text = f"{found.torque_N_m:.4g} +- {found.torque_error_N_m:.1g} N m"
+        text = f"{found.torque_N_m:.4g} +- {error_text(found.torque_error_N_m)} N m"
         lines.insert(0, line("torque", text))
     return lines
 
@@ -276,8 +277,8 @@ def _size(found):
 def _friction(found):
     """Lines of the answer itself: which number is a ratio, and which a coefficient."""
     still, added = found.friction_force_still_N, ADDED.get(found.scene, "vibration")
-    ratio = f"{found.mu_macro:.4f} +- {found.mu_macro_error:.1g}"
-    coefficient = f"{found.mu_apparent:.4f} +- {found.mu_apparent_error:.1g}"
+    ratio = f"{found.mu_macro:.4f} +- {error_text(found.mu_macro_error)}"
+    coefficient = f"{found.mu_apparent:.4f} +- {error_text(found.mu_apparent_error)}"
     less = 100.0 * found.force_reduction
     lines = [
         line("mu_macro", f"{ratio}: ratio of friction with {added} to friction without"),

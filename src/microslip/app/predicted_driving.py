@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from microslip.app.predicted_text import length, line
+from microslip.app.printed_error import error_text
 from microslip.foundation.errors import InputError
 from microslip.foundation.spec import read
 
@@ -37,10 +38,10 @@ def as_text(found: object) -> str:
     lines.append(line("u_lim", length(found.u_lim_m)))
     lines.append(line("amplitude", f"dimensionless {found.amplitude:.4g}"))
     stall, speed = found.stall_force_N, 1e3 * found.no_load_speed_m_s
-    lines.append(line("stall force", f"{stall:.4g} +- {found.stall_force_error_N:.1g} N"))
+    lines.append(line("stall force", f"{stall:.4g} +- {error_text(found.stall_force_error_N)} N"))
     if math.isfinite(speed):
         error = 1e3 * found.no_load_speed_error_m_s
-        lines.append(line("no-load speed", f"{speed:.4g} +- {error:.1g} mm/s"))
+        lines.append(line("no-load speed", f"{speed:.4g} +- {error_text(error)} mm/s"))
     if len(found.speed_m_s):
         lines.append("".join(f"{name:>{WIDTH}}" for name in COLUMNS))
         rows = zip(

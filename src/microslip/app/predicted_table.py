@@ -8,11 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from microslip.app.predicted_text import runs_away, unit_of_sought
+from microslip.app.printed_error import error_text
 from microslip.foundation.errors import CacheError, InputError
 from microslip.si.prediction import Prediction
 
 ENDINGS = (".csv", ".nc")
 WIDTH = 13
+VALUE, SPREAD = "{:.4g}".format, "{:.2g}".format
+"""How numbers are written that are no errors."""
 
 
 @dataclass(frozen=True)
@@ -101,23 +104,25 @@ def as_text(answered: Answered) -> str:
 
 
 def _columns(found):
-    """Attribute of a Prediction, digits, and what has to be looked for if it is to be told, None
-    for anything, by the heading of their column."""
-    columns = {"mu_apparent": ("mu_apparent", 4, None), "+-": ("mu_apparent_error", 2, None)}
+    """Attribute of a Prediction, how it is written, and what has to be looked for if it is to be
+    told, None for anything, by the heading of their column."""
+    columns = {"mu_apparent": ("mu_apparent", VALUE, None)}
+    columns["+-"] = "mu_apparent_error", error_text, None
     if any(one.mu_apparent_spread is not None for one in found):
-        columns["spread"] = "mu_apparent_spread", 2, None
-    columns |= {"force N": ("friction_force_N", 4, None), "speed m/s": ("speed_m_s", 4, None)}
+        columns["spread"] = "mu_apparent_spread", SPREAD, None
+    columns["force N"] = "friction_force_N", VALUE, None
+    columns["speed m/s"] = "speed_m_s", VALUE, None
     for one in found:  # an empty cell may be what is looked for, another one in each line
         if one.sought is not None:
             unit = unit_of_sought(one)
-            columns.setdefault(f"{one.sought} {unit}", ("sought_value", 4, one.sought))
-            columns[f"+- {unit}"] = "sought_error", 2, one.sought
+            columns.setdefault(f"{one.sought} {unit}", ("sought_value", VALUE, one.sought))
+            columns[f"+- {unit}"] = "sought_error", error_text, one.sought
             if one.sought_spread is not None:
-                columns[f"spread {unit}"] = "sought_spread", 2, one.sought
+                columns[f"spread {unit}"] = "sought_spread", SPREAD, one.sought
     return columns
 
 
-def _text(one, attribute, digits, sought):
+def _text(one, attribute, written, sought):
     value = getattr(one, attribute)
     told = value is not None and sought in (None, one.sought)
-    return f"{format(value, f'.{digits}g') if told else '':>{WIDTH}}"
+    return f"{written(value) if told else '':>{WIDTH}}"

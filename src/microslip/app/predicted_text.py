@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from microslip.app.printed_error import error_text
 from microslip.si.prediction import Prediction
 from microslip.si.regimes import REGIMES
 
@@ -32,7 +33,7 @@ def _in_units(value, units):
 def _pair(value, error):
     """A length and its error, in one unit."""
     name, size = next((one for one in LENGTHS if value >= one[1]), LENGTHS[-1])
-    return f"{value / size:.4g} +- {error / size:.1g} {name}"
+    return f"{value / size:.4g} +- {error_text(error / size)} {name}"
 
 
 def _speed(value, error):
@@ -55,9 +56,11 @@ def looked_for(found: Prediction) -> list[str]:
     if found.sought == "speed":
         text = f"{_speed(found.speed_m_s, found.sought_error)}, the largest at which vibration"
     elif found.sought == "load":
-        text = f"{found.load_N:.4g} +- {found.sought_error:.1g} N, the largest at which vibration"
+        error = error_text(found.sought_error)
+        text = f"{found.load_N:.4g} +- {error} N, the largest at which vibration"
     elif found.scene == "bore":
-        text = f"{found.amplitude_si:.4g} +- {found.sought_error:.1g} rad, the least that"
+        error = error_text(found.sought_error)
+        text = f"{found.amplitude_si:.4g} +- {error} rad, the least that"
     else:
         text = f"{_pair(found.amplitude_si, found.sought_error)}, the least that"
     return [line("found", f"{found.sought} {text} {share}")]
