@@ -217,6 +217,21 @@ def test_a_negative_number_with_an_exponent_is_a_number(capsys):
     assert "velocity = '-1e-3'" in capsys.readouterr().err
 
 
+def test_a_negative_number_that_was_joined_to_its_option_counts_once(capsys):
+    """Behind its = it begins with a sign, as options do."""
+    words = ["--path", "forward_cycles=2,phase=0", "--velocity", "-0.5", "--amplitude", "-1"]
+    assert cli.main(["point", "elliptic", *words]) == 2
+    line = capsys.readouterr().err
+    assert "--amplitude = '-1'" in line and "twice" not in line
+
+
+def test_a_flag_may_be_repeated(capsys):
+    """It says the same both times."""
+    words = ["continuous-bore", "--velocity", "2", "--json", "--json"]
+    assert cli.main(["point", *words]) == 0
+    assert json.loads(capsys.readouterr().out)["velocity"] == 2.0
+
+
 def test_a_steady_scene_has_no_amplitude(capsys):
     assert cli.main(["point", "continuous-bore", "--velocity", "2", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["amplitude"] is None

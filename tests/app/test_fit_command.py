@@ -76,7 +76,7 @@ BAD = [
     (["none.csv", *SHARED], "CSV = 'none.csv': cannot be read"),
     (["measured.csv", "--load", "10 N"], "--frequency: it is missing"),
     (["measured.csv", *SHARED, "--speed", "1 mm/s"], "--speed = '1 mm/s': it is both"),
-    (["measured.csv", *SHARED, "--load", "10 kg"], "--load = '10 kg': the unit is kilogram"),
+    (["measured.csv", "--load", "10 kg", *SHARED[2:]], "--load = '10 kg': the unit is kilogram"),
     (["measured.csv", *SHARED, "--poisson", "0.7"], "--poisson = '0.7'"),
     (["measured.csv", *SHARED, "--figure", "fit.jpg"], "--figure = 'fit.jpg': allowed is a name"),
     (["measured.csv", *SHARED, "--output", "fit.csv"], "--output = 'fit.csv': allowed is a name"),

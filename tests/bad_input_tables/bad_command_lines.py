@@ -6,45 +6,49 @@ The option at fault, the value as it was given, and what is allowed.
 TRANSVERSE = "point transverse --velocity 0.5 --amplitude 0.5"
 BORE = "point bore --velocity 0.5 --amplitude 0.5"
 STEADY = "point continuous-bore --velocity 0.5"
-
-PULLED = "point transverse --amplitude 0.5"
+SHAKEN = "point transverse --amplitude 0.5"
+SPUN = "point bore --velocity 0.5"
 DRIVEN = "drive elliptic --path forward_cycles=2,phase=0"
+PREDICTED = (
+    "predict transverse --young '210 GPa' --radius '5 mm' --load '10 N' --mu 0.3 "
+    "--speed '1 mm/s' --amplitude '1 um' --frequency '20 kHz'"
+)
 
 FINITE = "a finite number of at least 0"
 RATIO = "at least 0 and at most 0.5"
 RANGE = "at least 1e-06 and at most 0.1"
 
-# Arguments to what was right: of an option given twice the later value counts.
+# Arguments to what is right without them, or with a velocity, a force or an amplitude alone.
 NUMBERS = [
-    (f"{TRANSVERSE} --velocity -1", "--velocity = '-1'", FINITE),
-    (f"{TRANSVERSE} --velocity -1e-3", "--velocity = '-1e-3'", FINITE),
-    (f"{TRANSVERSE} --velocity=-1e-3", "--velocity = '-1e-3'", FINITE),
-    (f"{TRANSVERSE} --velocity nan", "--velocity = 'nan'", FINITE),
-    (f"{TRANSVERSE} --velocity inf", "--velocity = 'inf'", FINITE),
-    (f"{TRANSVERSE} --velocity -inf", "--velocity = '-inf'", FINITE),
-    (f"{TRANSVERSE} --velocity 1e7", "--velocity = '1e7'", "at most 1e+06"),
-    (f"{TRANSVERSE} --velocity fast", "--velocity = 'fast'", "allowed is a number"),
-    (f"{TRANSVERSE} --velocity 0,5", "--velocity = '0,5'", "allowed is a number"),
-    (f"{TRANSVERSE} --velocity 0.1:1", "--velocity = '0.1:1'", "allowed is a number"),
-    (f"{TRANSVERSE} --velocity ''", "--velocity = ''", "allowed is a number"),
-    (f"{TRANSVERSE} --velocity '1\n2'", r"--velocity = '1\n2'", "allowed is a number"),
-    (f"{TRANSVERSE} --velocity", "--velocity", "expected one argument"),
-    (f"{BORE} --amplitude -0.5", "--amplitude = '-0.5'", FINITE),
-    (f"{BORE} --amplitude NaN", "--amplitude = 'NaN'", FINITE),
-    (f"{BORE} --amplitude 1e999", "--amplitude = '1e999'", FINITE),
-    (f"{BORE} --amplitude 1e300", "--amplitude = '1e300'", "at most 1e+06"),
-    (f"{BORE} --amplitude 30deg", "--amplitude = '30deg'", "allowed is a number"),
+    (f"{SHAKEN} --velocity -1", "--velocity = '-1'", FINITE),
+    (f"{SHAKEN} --velocity -1e-3", "--velocity = '-1e-3'", FINITE),
+    (f"{SHAKEN} --velocity=-1e-3", "--velocity = '-1e-3'", FINITE),
+    (f"{SHAKEN} --velocity nan", "--velocity = 'nan'", FINITE),
+    (f"{SHAKEN} --velocity inf", "--velocity = 'inf'", FINITE),
+    (f"{SHAKEN} --velocity -inf", "--velocity = '-inf'", FINITE),
+    (f"{SHAKEN} --velocity 1e7", "--velocity = '1e7'", "at most 1e+06"),
+    (f"{SHAKEN} --velocity fast", "--velocity = 'fast'", "allowed is a number"),
+    (f"{SHAKEN} --velocity 0,5", "--velocity = '0,5'", "allowed is a number"),
+    (f"{SHAKEN} --velocity 0.1:1", "--velocity = '0.1:1'", "allowed is a number"),
+    (f"{SHAKEN} --velocity ''", "--velocity = ''", "allowed is a number"),
+    (f"{SHAKEN} --velocity '1\n2'", r"--velocity = '1\n2'", "allowed is a number"),
+    (f"{SHAKEN} --velocity", "--velocity", "expected one argument"),
+    (f"{SPUN} --amplitude -0.5", "--amplitude = '-0.5'", FINITE),
+    (f"{SPUN} --amplitude NaN", "--amplitude = 'NaN'", FINITE),
+    (f"{SPUN} --amplitude 1e999", "--amplitude = '1e999'", FINITE),
+    (f"{SPUN} --amplitude 1e300", "--amplitude = '1e300'", "at most 1e+06"),
+    (f"{SPUN} --amplitude 30deg", "--amplitude = '30deg'", "allowed is a number"),
     (f"{TRANSVERSE} --contacts mass=1", "--contacts = 'mass=1'", "allowed: load, phase, amplitude"),
-    (f"{PULLED} --force -0.1", "--force = '-0.1'", "at least 0: transverse drives nothing"),
-    (f"{PULLED} --force nan", "--force = 'nan'", "a finite number"),
-    (f"{PULLED} --force 5N", "--force = '5N'", "allowed is a number"),
+    (f"{SHAKEN} --force -0.1", "--force = '-0.1'", "at least 0: transverse drives nothing"),
+    (f"{SHAKEN} --force nan", "--force = 'nan'", "a finite number"),
+    (f"{SHAKEN} --force 5N", "--force = '5N'", "allowed is a number"),
     (f"{TRANSVERSE} --force 0.1", "--force = '0.1'", "a force or a velocity, not both"),
-    (f"{PULLED} --force 0.1 --stiffness 1", "--stiffness = '1'", "none beside a force"),
-    (f"{PULLED} --force 0.1 --damping 1", "--damping = '1'", "none beside a force"),
-    (f"{PULLED} --force -1 --results new", "--force = '-1'", "at least 0: transverse drives"),
-    (f"{PULLED} --force 0.1 --contacts 'load=0'", "--contacts = 'load=0'", "in 0.001..1000"),
+    (f"{SHAKEN} --force 0.1 --stiffness 1", "--stiffness = '1'", "none beside a force"),
+    (f"{SHAKEN} --force 0.1 --damping 1", "--damping = '1'", "none beside a force"),
+    (f"{SHAKEN} --force -1 --results new", "--force = '-1'", "at least 0: transverse drives"),
+    (f"{SHAKEN} --force 0.1 --contacts 'load=0'", "--contacts = 'load=0'", "in 0.001..1000"),
     (
-        f"{PULLED} --force 0.1 --contacts 'phase=1;'",
+        f"{SHAKEN} --force 0.1 --contacts 'phase=1;'",
         "--contacts = 'phase=1;'",
         "contact 2: in it ''",
     ),
@@ -55,8 +59,8 @@ NUMBERS = [
         "--contacts = 'phase=1'",
         "does not oscillate",
     ),
-    (f"{PULLED} --force 0.1 --model rigid", "--model = 'rigid'", "does not know a force"),
-    (f"{PULLED} --force 0.1 --method march", "--method = 'march'", "shipped with a force"),
+    (f"{SHAKEN} --force 0.1 --model rigid", "--model = 'rigid'", "does not know a force"),
+    (f"{SHAKEN} --force 0.1 --method march", "--method = 'march'", "shipped with a force"),
     (f"{TRANSVERSE} --stiffness 0", "--stiffness = '0'", "a number above 0"),
     (f"{TRANSVERSE} --stiffness -1", "--stiffness = '-1'", FINITE),
     (f"{TRANSVERSE} --stiffness 1e7", "--stiffness = '1e7'", "at most 1e+06"),
@@ -95,27 +99,27 @@ MINUS, ARABIC_THREE, WIDE_ONE = "\N{MINUS SIGN}", "\N{ARABIC-INDIC DIGIT THREE}"
 
 # What Python's float takes and people do not mean, and what people mean and it does not take.
 GRAMMAR = [
-    (f"{TRANSVERSE} --velocity {MINUS}1", f"--velocity = '{MINUS}1'", FINITE),
-    (f"{TRANSVERSE} --velocity -1,5", "--velocity = '-1,5'", "with a point: -1.5"),
-    (f"{TRANSVERSE} --velocity 0,5", "--velocity = '0,5'", "with a point: 0.5"),
-    (f"{TRANSVERSE} --velocity 1,000.5", "--velocity = '1,000.5'", "allowed is a number"),
-    (f"{TRANSVERSE} --velocity 1_000", "--velocity = '1_000'", "allowed is a number"),
-    (f"{TRANSVERSE} --velocity {ARABIC_THREE}", f"'{ARABIC_THREE}'", "allowed is a number"),
-    (f"{TRANSVERSE} --velocity {WIDE_ONE}", f"'{WIDE_ONE}'", "allowed is a number"),
-    (f"{TRANSVERSE} --velocity 0x1", "--velocity = '0x1'", "allowed is a number"),
-    (f"{TRANSVERSE} --velocity 1d-3", "--velocity = '1d-3'", "allowed is a number"),
-    (f"{TRANSVERSE} --velocity 1/2", "--velocity = '1/2'", "allowed is a number"),
-    (f"{TRANSVERSE} --velocity '1 2'", "--velocity = '1 2'", "allowed is a number"),
-    (f"{TRANSVERSE} --velocity '- 1'", "--velocity = '- 1'", "allowed is a number"),
-    (f"{TRANSVERSE} --velocity --1", "unknown option --1;", "allowed: --help"),
-    (f"{TRANSVERSE} --velocity 1e400", "--velocity = '1e400'", "at most 1e+06"),
-    (f"{TRANSVERSE} --velocity -infinity", "--velocity = '-infinity'", FINITE),
-    (f"{TRANSVERSE} --velocity .", "--velocity = '.'", "allowed is a number"),
-    (f"{TRANSVERSE} --velocity e5", "--velocity = 'e5'", "allowed is a number"),
+    (f"{SHAKEN} --velocity {MINUS}1", f"--velocity = '{MINUS}1'", FINITE),
+    (f"{SHAKEN} --velocity -1,5", "--velocity = '-1,5'", "with a point: -1.5"),
+    (f"{SHAKEN} --velocity 0,5", "--velocity = '0,5'", "with a point: 0.5"),
+    (f"{SHAKEN} --velocity 1,000.5", "--velocity = '1,000.5'", "allowed is a number"),
+    (f"{SHAKEN} --velocity 1_000", "--velocity = '1_000'", "allowed is a number"),
+    (f"{SHAKEN} --velocity {ARABIC_THREE}", f"'{ARABIC_THREE}'", "allowed is a number"),
+    (f"{SHAKEN} --velocity {WIDE_ONE}", f"'{WIDE_ONE}'", "allowed is a number"),
+    (f"{SHAKEN} --velocity 0x1", "--velocity = '0x1'", "allowed is a number"),
+    (f"{SHAKEN} --velocity 1d-3", "--velocity = '1d-3'", "allowed is a number"),
+    (f"{SHAKEN} --velocity 1/2", "--velocity = '1/2'", "allowed is a number"),
+    (f"{SHAKEN} --velocity '1 2'", "--velocity = '1 2'", "allowed is a number"),
+    (f"{SHAKEN} --velocity '- 1'", "--velocity = '- 1'", "allowed is a number"),
+    (f"{SHAKEN} --velocity --1", "unknown option --1;", "allowed: --help"),
+    (f"{SHAKEN} --velocity 1e400", "--velocity = '1e400'", "at most 1e+06"),
+    (f"{SHAKEN} --velocity -infinity", "--velocity = '-infinity'", FINITE),
+    (f"{SHAKEN} --velocity .", "--velocity = '.'", "allowed is a number"),
+    (f"{SHAKEN} --velocity e5", "--velocity = 'e5'", "allowed is a number"),
     (f"{TRANSVERSE} --tolerance 1e-3\N{EN SPACE}1", "1'", "allowed is a number"),
     (f"{TRANSVERSE} --nu 0.7", "--nu = '0.7'", RATIO),
     (f"{TRANSVERSE} --nu=steel", "--nu = 'steel'", "allowed is a number"),
-    (f"{TRANSVERSE} --poisson 0.1 --nu 0,3", "--nu = '0,3'", "with a point: 0.3"),
+    (f"{TRANSVERSE} --nu 0,3", "--nu = '0,3'", "with a point: 0.3"),
     (f"{TRANSVERSE} --cells 1_0", "--cells = '1_0'", "a whole number"),
     (f"{TRANSVERSE} --cells 16.0", "--cells = '16.0'", "a whole number"),
     (f"{TRANSVERSE} --cells {ARABIC_THREE}2", f"'{ARABIC_THREE}2'", "a whole number"),
@@ -125,6 +129,26 @@ GRAMMAR = [
     ("point elliptic --velocity 1 --amplitude 1 --path forward=2", "--path = 'forward=2'", "0..1"),
     ("point elliptic --velocity 1 --amplitude 1 --path phas=2", "--path = 'phas=2'", "phas;"),
     (f"{TRANSVERSE} --pressure power:exponent=1_0", "'power:exponent=1_0'", "power:key=0.5"),
+]
+
+# argparse takes the last of two values.
+TWICE = [
+    (f"{TRANSVERSE} --velocity 0.2", "--velocity is given twice; allowed: once"),
+    (f"{TRANSVERSE} --velocity=0.5", "--velocity is given twice; allowed: once"),
+    (f"{TRANSVERSE} --velocity -0.2", "--velocity is given twice; allowed: once"),
+    (f"{BORE} --amplitude 1", "--amplitude is given twice; allowed: once"),
+    (f"{TRANSVERSE} --cells 8 --cells 16", "--cells is given twice; allowed: once"),
+    (f"{TRANSVERSE} --nu 0.1 --nu 0.2", "--nu is given twice; allowed: once"),
+    (f"{TRANSVERSE} --poisson 0.1 --nu=0.2", "--nu is given twice, as --poisson the first time;"),
+    ("point elliptic:phase=0 --velocity 1 --amplitude 1 --velocity 2", "--velocity is given twice"),
+    (f"{DRIVEN} --amplitude 1 --amplitude 1", "--amplitude is given twice; allowed: once"),
+    (f"{DRIVEN} --amplitude 1 --path phase=1", "--path is given twice; allowed: once"),
+    (f"{DRIVEN} --amplitude 1 --nu 0 --poisson 0", "--poisson is given twice, as --nu the first"),
+    (f"{PREDICTED} --speed '-1 mm/s'", "--speed is given twice; allowed: once"),
+    (f"{PREDICTED} --nu 0.3 --poisson 0.2", "--poisson is given twice, as --nu the first time;"),
+    (f"{PREDICTED} --table a-file --table a-file", "--table is given twice; allowed: once"),
+    ("fit transverse a-file --load '1 N' --load '2 N'", "--load is given twice; allowed: once"),
+    ("fit transverse a-file --poisson 0.3 --nu 0.2", "--nu is given twice, as --poisson the first"),
 ]
 
 NAMES = [
@@ -210,9 +234,9 @@ RESULTS = [
     (f"{TRANSVERSE} --results {'x' * 300}", "--results", "xxx", "File name too long"),
     (f"{TRANSVERSE} --results kept --method admm", "--method = 'admm'", "shipped with --results"),
     (f"{TRANSVERSE} --results kept --poisson 0.7", "--poisson = '0.7'", RATIO),
-    (f"{TRANSVERSE} --results kept --velocity nan", "--velocity = 'nan'", FINITE),
+    (f"{SHAKEN} --results kept --velocity nan", "--velocity = 'nan'", FINITE),
     (f"{TRANSVERSE} --results kept --cells 7", "--cells = '7'", "an even number"),
     (f"{BORE} --results kept --model slider", "--model = 'slider'", "does not apply to bore"),
 ]
 
-COMMAND_LINES = [*NUMBERS, *GRAMMAR, *NAMES, *OPTIONS, *RESULTS]
+COMMAND_LINES = [*NUMBERS, *GRAMMAR, *TWICE, *NAMES, *OPTIONS, *RESULTS]

@@ -39,6 +39,7 @@ class OneLineParser(argparse.ArgumentParser):
         """Before argparse does, which would rather say that the right one is missing."""
         known = self._option_string_actions
         commands = [a for a in self._actions if a.nargs == argparse.PARSER]
+        named = {}
         for word in words:
             if commands and not word.startswith("-"):
                 return self._refuse_command(word, commands[0])
@@ -46,9 +47,22 @@ class OneLineParser(argparse.ArgumentParser):
             strange = word.startswith("-") and name.strip("-") and name not in known
             if strange and not NEGATIVE.match(word):
                 self._refuse_option(name, [n for n in known if n.startswith("--")])
+            if name in known:
+                self._refuse_second(name, named.setdefault(known[name].dest, []))
         if commands and not {"-h", "--help", "--version"} & set(words):
             (command,) = commands
             self.error(f"{command.metavar} is missing; allowed: {', '.join(command.choices)}")
+
+    def _refuse_second(self, name, names):
+        """argparse would take the last of two values; names: those that an option has had so far.
+
+        A flag says the same twice, and what appends has a use for each.
+        """
+        action = self._option_string_actions[name]
+        names.append(name)
+        if len(names) > 1 and action.nargs != 0 and not isinstance(action, argparse._AppendAction):
+            same = "" if names[0] == name else f", as {names[0]} the first time"
+            self.error(f"{name} is given twice{same}; allowed: once")
 
     def _refuse_command(self, word, command):
         if word not in command.choices:
