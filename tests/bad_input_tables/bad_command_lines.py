@@ -17,6 +17,8 @@ PREDICTED = (
 FINITE = "a finite number of at least 0"
 RATIO = "at least 0 and at most 0.5"
 RANGE = "at least 1e-06 and at most 0.1"
+NEARER_0 = "nearer 0 than floating-point numbers can be; allowed is 0 or a number further from it"
+BEYOND = "beyond the range of floating-point numbers; allowed is a number within it"
 
 # Arguments to what is right without them, or with a velocity, a force or an amplitude alone.
 NUMBERS = [
@@ -35,7 +37,7 @@ NUMBERS = [
     (f"{SHAKEN} --velocity", "--velocity", "expected one argument"),
     (f"{SPUN} --amplitude -0.5", "--amplitude = '-0.5'", FINITE),
     (f"{SPUN} --amplitude NaN", "--amplitude = 'NaN'", FINITE),
-    (f"{SPUN} --amplitude 1e999", "--amplitude = '1e999'", FINITE),
+    (f"{SPUN} --amplitude 1e999", "--amplitude = '1e999'", BEYOND),
     (f"{SPUN} --amplitude 1e300", "--amplitude = '1e300'", "at most 1e+06"),
     (f"{SPUN} --amplitude 30deg", "--amplitude = '30deg'", "allowed is a number"),
     (f"{TRANSVERSE} --contacts mass=1", "--contacts = 'mass=1'", "allowed: load, phase, amplitude"),
@@ -112,7 +114,7 @@ GRAMMAR = [
     (f"{SHAKEN} --velocity '1 2'", "--velocity = '1 2'", "allowed is a number"),
     (f"{SHAKEN} --velocity '- 1'", "--velocity = '- 1'", "allowed is a number"),
     (f"{SHAKEN} --velocity --1", "unknown option --1;", "allowed: --help"),
-    (f"{SHAKEN} --velocity 1e400", "--velocity = '1e400'", "at most 1e+06"),
+    (f"{SHAKEN} --velocity 1e400", "--velocity = '1e400'", BEYOND),
     (f"{SHAKEN} --velocity -infinity", "--velocity = '-infinity'", FINITE),
     (f"{SHAKEN} --velocity .", "--velocity = '.'", "allowed is a number"),
     (f"{SHAKEN} --velocity e5", "--velocity = 'e5'", "allowed is a number"),
@@ -129,6 +131,36 @@ GRAMMAR = [
     ("point elliptic --velocity 1 --amplitude 1 --path forward=2", "--path = 'forward=2'", "0..1"),
     ("point elliptic --velocity 1 --amplitude 1 --path phas=2", "--path = 'phas=2'", "phas;"),
     (f"{TRANSVERSE} --pressure power:exponent=1_0", "'power:exponent=1_0'", "power:key=0.5"),
+]
+
+# Python's float takes these for 0 and for infinity.
+OUT_OF_RANGE = [
+    (f"{SHAKEN} --velocity 1e-400", "--velocity = '1e-400'", NEARER_0),
+    (f"{SHAKEN} --velocity -1e-400", "--velocity = '-1e-400'", NEARER_0),
+    (f"{SHAKEN} --velocity {MINUS}.001e-322", f"--velocity = '{MINUS}.001e-322'", NEARER_0),
+    (f"{SHAKEN} --velocity 1E-99999999999999999999", "--velocity = '1E-999", NEARER_0),
+    (f"{SHAKEN} --velocity 0.{'0' * 400}1", "--velocity = '0.000", NEARER_0),
+    (f"{SPUN} --amplitude 1e-400", "--amplitude = '1e-400'", NEARER_0),
+    (f"{SHAKEN} --force 2e-400", "--force = '2e-400'", NEARER_0),
+    (f"{SHAKEN} --force -1e400", "--force = '-1e400'", BEYOND),
+    (f"{SHAKEN} --force 1{'0' * 400}", "--force = '1000", BEYOND),
+    (f"{TRANSVERSE} --stiffness 1 --mass 1e-400", "--mass = '1e-400'", NEARER_0),
+    (f"{TRANSVERSE} --stiffness 1 --damping 1e-400", "--damping = '1e-400'", NEARER_0),
+    (f"{TRANSVERSE} --stiffness 1e-400", "--stiffness = '1e-400'", NEARER_0),
+    (f"{TRANSVERSE} --nu 1e-400", "--nu = '1e-400'", NEARER_0),
+    (f"{TRANSVERSE} --tolerance 1e-400", "--tolerance = '1e-400'", NEARER_0),
+    (f"{TRANSVERSE} --time-limit 1e-400", "--time-limit = '1e-400'", NEARER_0),
+    (f"{TRANSVERSE} --time-limit 1e400", "--time-limit = '1e400'", BEYOND),
+    (f"{TRANSVERSE} --contacts phase=1e-400", "--contacts", "'phase=1e-400'", NEARER_0),
+    (f"{TRANSVERSE} --pressure power:exponent=1e400", "'exponent=1e400'", BEYOND, "power:key=0.5"),
+    (f"{TRANSVERSE} --method admm:penalty=1e-400", "'penalty=1e-400'", NEARER_0, "admm:key=0.5"),
+    ("point elliptic --velocity 1 --amplitude 1 --path phase=1e-400", "--path", NEARER_0),
+    ("drive elliptic --path forward_cycles=2,phase=1e-400 --amplitude 1", "--path", NEARER_0),
+    (f"{DRIVEN} --amplitude 1e-400", "--amplitude = '1e-400'", NEARER_0),
+    (f"{DRIVEN} --amplitude 1 --time-limit 1e400", "--time-limit = '1e400'", BEYOND),
+    (f"{PREDICTED} --tolerance 1e-400", "--tolerance = '1e-400'", "below the range"),
+    (f"{PREDICTED} --nu 1e-400", "--nu = '1e-400'", "below the range"),
+    (f"{PREDICTED} --nu 0 --contacts 'phase=0;phase=1e-400'", "--contacts", NEARER_0),
 ]
 
 # argparse takes the last of two values.
@@ -239,4 +271,4 @@ RESULTS = [
     (f"{BORE} --results kept --model slider", "--model = 'slider'", "does not apply to bore"),
 ]
 
-COMMAND_LINES = [*NUMBERS, *GRAMMAR, *TWICE, *NAMES, *OPTIONS, *RESULTS]
+COMMAND_LINES = [*NUMBERS, *GRAMMAR, *OUT_OF_RANGE, *TWICE, *NAMES, *OPTIONS, *RESULTS]

@@ -34,15 +34,28 @@ def read(argument: str, text: str, whole: bool = False) -> float | int:
     Raises
     ------
     InputError
-        For any other text.
+        For any other text, and for numbers that are too small or too large for a float: that would
+        be 0 or infinite, which is another number than the one that was given.
     """
     plain = text.strip().replace(MINUS, "-", 1)
     if (WHOLE if whole else NUMBER).fullmatch(plain):
-        return int(plain) if whole else float(plain)
+        return int(plain) if whole else _float(argument, text, plain)
     hint = plain.replace(",", ".")
     if not whole and "," in plain and NUMBER.fullmatch(hint):
         raise InputError(argument, text, f"allowed is a number with a point: {hint}")
     raise InputError(argument, text, f"allowed is a {'whole ' if whole else ''}number")
+
+
+def _float(argument, text, plain):
+    """The float of a number's digits, `plain`; raises InputError where it is out of range."""
+    number, digits = float(plain), plain.lower().partition("e")[0]
+    if number == 0.0 and re.search("[1-9]", digits):
+        problem = "nearer 0 than floating-point numbers can be"
+        raise InputError(argument, text, f"{problem}; allowed is 0 or a number further from it")
+    if math.isinf(number) and "i" not in digits:
+        problem = "beyond the range of floating-point numbers"
+        raise InputError(argument, text, f"{problem}; allowed is a number within it")
+    return number
 
 
 def split(text: str, what: str, names: Iterable[str]) -> tuple[str, dict[str, float]]:
@@ -65,12 +78,15 @@ def numbers_in(part: str, text: str, what: str, example: str) -> dict[str, float
         key, equals, value = (word.strip() for word in one.partition("="))
         if key in numbers:
             raise InputError(what, text, f"{key} occurs twice; allowed: each number once")
+        problem = "allowed are numbers"
         try:
             numbers[key] = read(key, value)
-        except InputError:
+        except InputError as error:
             numbers[key] = math.nan
+            if NUMBER.fullmatch(value):  # so it is one, but out of range
+                problem = f"{error.allowed},"
         if not (key and equals and math.isfinite(numbers[key])):
-            raise InputError(what, text, f"in it {one!r}: allowed are numbers as in {example}")
+            raise InputError(what, text, f"in it {one!r}: {problem} as in {example}")
     return numbers
 
 

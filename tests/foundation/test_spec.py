@@ -1,0 +1,49 @@
+"""Numbers in texts: each is the float nearest to what is written, or it is refused."""
+
+import math
+
+import pytest
+
+from microslip.foundation import spec
+from microslip.foundation.errors import InputError
+
+
+@pytest.mark.parametrize("text", ["0", "-0", "0.000", "0e-400", "+.0E5", "00"])
+def test_what_is_written_as_0_is_0(text):
+    assert spec.read("size", text) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("text", "number"),
+    [
+        ("5e-324", math.ulp(0.0)),
+        ("2.3e-308", 2.3e-308),
+        ("1.7e308", 1.7e308),
+        ("inf", math.inf),
+        ("-Infinity", -math.inf),
+    ],
+)
+def test_the_ends_of_the_range_are_read(text, number):
+    assert spec.read("size", text) == number
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("2e-324", "nearer 0"),
+        ("-1e-400", "nearer 0"),
+        ("0.001e-330", "nearer 0"),
+        ("1.8e308", "beyond the range"),
+        ("-1E400", "beyond the range"),
+    ],
+)
+def test_a_number_that_would_be_0_or_infinite_is_refused(text, problem):
+    with pytest.raises(InputError, match=f"^size = '{text}': {problem}.*; allowed is "):
+        spec.read("size", text)
+
+
+@pytest.mark.parametrize("value", ["1e-400", "1e400"])
+def test_so_it_is_beside_a_name(value):
+    text = f"admm:penalty={value}"
+    with pytest.raises(InputError, match=f"in it 'penalty={value}': .* floating-point numbers"):
+        spec.split(text, "method", ["admm"])
