@@ -11,7 +11,7 @@ from microslip.adaptive.chains import EXTRAPOLATED_SHARES, JUDGED, Axis
 from microslip.pressures.by_name import HERTZ
 from microslip.solver.problem import Problem
 from microslip.solver.static_limit import at_turning_points
-from microslip.solver.stick_edge import found_focus
+from microslip.solver.stick_edge import SLOW_LOOP, found_focus
 
 RINGS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
 SQUARES = (8, 16, 32, 64, 128)
@@ -24,6 +24,8 @@ agree with each other there before they see it, and prove nothing."""
 EDGE_CAUTION = 1.25
 """Error over the spread of four runs that gather their rings at a stick radius which a coarse run
 found, to the width of a ring."""
+LOOP_CAUTION = 1.6
+"""The same of slow loops, whose edges move while they are found."""
 ROUNDED = 1e-9
 """Difference of two torques below which they are one number."""
 PROJECTED_SHARES = 0.35, 0.45
@@ -53,6 +55,9 @@ class CellsPolicy:
         Cells there may be.
     regular, caution, shares, judged
         See chains.Axis.
+    regular_below : float
+        Tolerance below which the error is taken to fall smoothly in any case: enough rings are run
+        there that they do not agree by chance.
     made_for : float or None
         Tolerance that all of them are for, which are finer where it is; None: whatever it is.
     """
@@ -66,6 +71,7 @@ class CellsPolicy:
     caution: float = 1.0
     shares: tuple[float, float] = EXTRAPOLATED_SHARES
     judged: int = 0
+    regular_below: float = 0.0
     made_for: float | None = None
 
     def axis(self, tolerance: float) -> Axis:
@@ -77,7 +83,7 @@ class CellsPolicy:
             self.levels,
             base=self.levels.index(self.base) + finer,
             first=tuple(range(coarsest, finest + 1)),
-            regular=self.regular,
+            regular=self.regular or tolerance < self.regular_below,
             caution=self.caution,
             shares=self.shares,
             judged=self.judged,
@@ -87,6 +93,16 @@ class CellsPolicy:
 def _is_slow(problem):
     """Whether the layer at the stick radius is thin."""
     return problem.motion.periodic and 0.0 < problem.creep < SLOW_CREEP
+
+
+def is_slow_loop(problem: Problem, model: str) -> bool:
+    """Whether a translation whose halves are not lateral mirror images, or that never comes to
+    rest, is so slow that rings gather at an edge of what sticks."""
+    motion = problem.motion
+    if model != "radial" or motion.depth is not None or problem.parts:
+        return False
+    loop = not (motion.straight and motion.half_period_mirror)
+    return loop and motion.periodic and 0.0 < problem.creep < SLOW_LOOP
 
 
 def like_a_sphere(problem: Problem) -> bool:
@@ -201,6 +217,16 @@ CELLS_POLICIES = (
         first=(8, 16),
         shares=PROJECTED_SHARES,
         made_for=1e-3,
+    ),
+    CellsPolicy(
+        "slow loop: rings come to lie on an edge that a coarse run found, and few agree by chance",
+        is_slow_loop,
+        base=12,
+        first=(12, 24),
+        regular=False,
+        regular_below=3e-3,
+        judged=JUDGED,
+        caution=LOOP_CAUTION,
     ),
     CellsPolicy(
         "translation on a loop at nu > 0",

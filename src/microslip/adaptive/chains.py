@@ -219,7 +219,7 @@ class Chain:
         if self.axis.projected:
             return CALIBRATED * self.axis.caution * _largest_projection(values, levels)
         spread = max(values) - min(values)
-        return spread if self.axis.imposed else SPREAD * self.axis.caution * spread
+        return self.axis.caution * spread * (1.0 if self.axis.imposed else SPREAD)
 
 
 def _extrapolation(values, levels):

@@ -8,6 +8,7 @@ from microslip.adaptive.cells_policies import (
     RINGS,
     SLOW_CREEP,
     cells_axis,
+    is_slow_loop,
     levels_finer,
     like_a_sphere,
 )
@@ -32,6 +33,9 @@ COUPLED_STEPS, COUPLED_RUNS = 48, 5
 """Steps at the tolerance 1e-3 where contacts that turn work against each other on one body, and the
 runs whose spread is the error: which of them slides changes within a step, and where in it that
 comes to lie scatters from run to run."""
+DOUBLED_STEPS, DOUBLED_CAUTION = (4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048), 1.25
+"""Steps of a slow loop, each level twice the last one, since runs that lie closer together agree by
+chance, and the error in time over their spread."""
 PROJECTED_CAUTION = {"angles": 1.3, "steps": 1.8}
 PROJECTED_SCATTER = 0.3
 """See chains.Axis."""
@@ -90,22 +94,27 @@ def plan(
         axes.append(_sweeping(problem, model, tolerance))
     elif "cells" in resolved:
         axes.append(
-            cells_axis(problem, model, tolerance) if cells is None else _imposed("cells", cells)
+            cells_axis(problem, model, tolerance)
+            if cells is None
+            else _imposed("cells", cells, motion)
         )
     if "angles" in resolved:
         # only nu > 0 makes tractions of a translation depend on the angle, and only a little
         axes.append(_angles(problem, tolerance))
     if marches and not sweeps:
         axes.append(
-            _steps(problem, model, tolerance) if steps is None else _imposed("steps", steps // 2)
+            _steps(problem, model, tolerance)
+            if steps is None
+            else _imposed("steps", steps // 2, motion)
         )
     return Resolution(cells=1, angles=1, steps=STEPS[0]), tuple(axes)
 
 
-def _imposed(name, count):
+def _imposed(name, count, motion):
     """An axis whose resolution is asked for; two coarser ones show what it is worth."""
     levels = (count // 2, round(0.75 * count), count)
-    return Axis(name, levels, 2, (0, 1, 2), imposed=True)
+    caution = 1.0 if motion.depth is None else SWEEPING_CAUTION
+    return Axis(name, levels, 2, (0, 1, 2), imposed=True, caution=caution)
 
 
 def _falls_smoothly(problem, model):
@@ -182,7 +191,18 @@ def _angles(problem, tolerance):
     return Axis("angles", ANGLES, base, first, projected=True, caution=caution, mixed=True)
 
 
+def _doubled_steps(problem, tolerance):
+    """The axis of the steps of a slow loop."""
+    wanted = BASE_STEPS * max((1e-3 / tolerance) ** 0.5, 1.0)
+    base = next(k for k, count in enumerate(DOUBLED_STEPS) if count >= wanted)
+    levels = _step_levels(problem, DOUBLED_STEPS)
+    first = tuple(range(base - 2, base + 1))
+    return Axis("steps", levels, base, first, caution=DOUBLED_CAUTION)
+
+
 def _steps(problem, model, tolerance):
+    if is_slow_loop(problem, model):
+        return _doubled_steps(problem, tolerance)
     motion, levels, coarsest = problem.motion, _step_levels(problem, STEPS), _coarsest(problem)
     if coarsest is None:
         few_unknowns = model == "radial" and motion.half_period_mirror

@@ -94,17 +94,23 @@ class CreepRate:
     Attributes
     ----------
     static_force : float
-        Mean forward force of the static limit, over mu F_z.
+        Mean forward force of the static limit, over mu F_z; NaN where it is not known.
+    full : float
+        That of full slip, the largest that it can be.
     gain : float
         Force that a contact which does not slip gains in a march over a (half) period.
     """
 
     static_force: float
+    full: float
     gain: float
 
     def force_error(self, residual: float, force: float) -> float:
         """Error of the mean forward force that a residual of the plain map stands for."""
-        return abs(force - self.static_force) * residual / self.gain
+        excess = abs(force - self.static_force)
+        if np.isnan(excess):  # a state below the limit has lost what it takes long to gain
+            excess = max(abs(force), abs(self.full - force))
+        return excess * residual / self.gain
 
 
 @dataclass(frozen=True, eq=False)

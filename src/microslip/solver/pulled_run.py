@@ -145,7 +145,7 @@ class _Pulled:
     def _map(self, static_force, rate):
         creep_rate = None
         if self.drive.force is None:
-            creep_rate = CreepRate(static_force, rate * self.interval)
+            creep_rate = CreepRate(static_force, self.problem.mean_load, rate * self.interval)
         mirror = self.problem.motion.half_period_mirror
         return PulledMap(self.contact, self.path, self.body, creep_rate, mirror)
 

@@ -75,7 +75,7 @@ class Run:
     state, inverse : np.ndarray or None
         For other runs of the point: the periodic tractions, and period_map.PeriodicState.inverse.
     static_force : float
-        Mean forward force of the static limit, also for other runs.
+        Mean forward force of the static limit, also for other runs; NaN where it is not known.
     velocity : float
         Mean forward velocity, in the unit of the motion, where a force pulls; else NaN.
     power : float
@@ -98,7 +98,7 @@ class Run:
     reason: str
     state: np.ndarray | None = None
     inverse: np.ndarray | None = None
-    static_force: float = 0.0
+    static_force: float = np.nan
     velocity: float = np.nan
     power: float = np.nan
     retried: int = 0

@@ -137,7 +137,10 @@ class _Search:
         self.contact, self.problem, self.method, self.steps = contact, problem, method, steps
         self.tolerance, self.step_tolerance = tolerance, step_tolerance
         interval = np.pi if problem.motion.half_period_mirror else 2.0 * np.pi
-        self.creep_rate = CreepRate(0.0, contact.stiffness * problem.creep * interval)
+        # the limit of a loop is not looked for; a search that is not prepared comes from above
+        limit = 0.0 if problem.motion.straight or not contact.sticks else np.nan
+        gain = contact.stiffness * problem.creep * interval
+        self.creep_rate = CreepRate(limit, problem.mean_load, gain)
         self.path = self._path(steps)
         self.done = []
 

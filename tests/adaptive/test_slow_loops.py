@@ -1,0 +1,57 @@
+"""Slow loops, whose few rings and steps agree by chance, against many of both."""
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip.adaptive.resolutions import plan
+from microslip.motions.by_name import motion_named
+from microslip.solver.period_map import CreepRate
+from microslip.solver.problem import Problem
+
+SHARP = "punch:flat=0.95"
+# scene, pressure, velocity, amplitude, and rings and steps that leave much less than is claimed
+OFF = [
+    ("forward=0.97,phase=90,forward_cycles=2", SHARP, 2.2886e-4, 0.9255, 24, 512),
+    ("forward=0.44,phase=60,forward_cycles=2", "power:exponent=30", 7.717e-5, 0.6333, 64, 256),
+    ("forward=0.59,phase=10,forward_cycles=2", SHARP, 5.261e-4, 0.9505, 96, 256),
+    ("forward=0.81,phase=0", "power:exponent=30", 5.147e-4, 0.7301, 64, 128),
+]
+
+
+@pytest.mark.parametrize(("path", "pressure", "velocity", "amplitude", "cells", "steps"), OFF)
+def test_claims_hold_where_few_rings_and_steps_agree_by_chance(
+    path, pressure, velocity, amplitude, cells, steps
+):
+    point = {"velocity": velocity, "amplitude": amplitude, "pressure": pressure}
+    many = microslip.solve(f"elliptic:{path}", **point, tolerance=None, cells=cells, steps=steps)
+    for tolerance in (1e-2, 5e-3):
+        given = microslip.solve(f"elliptic:{path}", **point, tolerance=tolerance)
+        assert given.converged
+        assert abs(given.mu_macro - many.mu_macro) <= given.mu_macro_error
+
+
+def test_a_slow_loop_that_lost_what_it_takes_long_to_gain_is_not_periodic():
+    """Its force was 0.015 in place of 0.114, and a wide tolerance took what was left for little."""
+    scene = "elliptic:forward=0.73,phase=90,forward_cycles=3,lateral_cycles=2"
+    point = {"velocity": 1.3964e-4, "amplitude": 0.7675, "pressure": "punch:flat=0.8"}
+    many = microslip.solve(scene, **point, tolerance=None, cells=24, steps=288)
+    given = microslip.solve(scene, **point, tolerance=0.1)
+    assert abs(given.mu_macro - many.mu_macro) <= given.mu_macro_error < 0.1
+
+
+def test_a_creep_rate_without_a_known_limit_takes_the_largest_excess():
+    known, unknown = CreepRate(0.3, 1.0, 2e-3), CreepRate(np.nan, 1.0, 2e-3)
+    assert known.force_error(1e-3, 0.5) == pytest.approx(0.1)
+    for force in (0.1, 0.5, 0.9):
+        limits = [CreepRate(limit, 1.0, 2e-3) for limit in np.linspace(0.0, 1.0, 11)]
+        largest = max(limit.force_error(1e-3, force) for limit in limits)
+        assert unknown.force_error(1e-3, force) == pytest.approx(largest)
+
+
+@pytest.mark.parametrize("velocity", [1e-4, 1.0])
+def test_steps_of_a_loop_are_doubled_where_it_is_slow(velocity):
+    problem = Problem(motion_named("elliptic"), velocity, 0.6, 0.0)
+    steps = next(axis for axis in plan(problem, "radial", 1e-2)[1] if axis.name == "steps")
+    ratios = np.divide(steps.levels[1:], steps.levels[:-1])
+    assert np.all(ratios == 2.0) == (velocity < 1.0)
