@@ -95,14 +95,19 @@ def _is_slow(problem):
     return problem.motion.periodic and 0.0 < problem.creep < SLOW_CREEP
 
 
-def is_slow_loop(problem: Problem, model: str) -> bool:
-    """Whether a translation whose halves are not lateral mirror images, or that never comes to
-    rest, is so slow that rings gather at an edge of what sticks."""
+def is_loop(problem: Problem, model: str) -> bool:
+    """Whether rings are marched through a translation whose halves are not lateral mirror images,
+    or that never comes to rest."""
     motion = problem.motion
     if model != "radial" or motion.depth is not None or problem.parts:
         return False
-    loop = not (motion.straight and motion.half_period_mirror)
-    return loop and motion.periodic and 0.0 < problem.creep < SLOW_LOOP
+    back = motion.straight and motion.half_period_mirror
+    return motion.periodic and problem.velocity > 0.0 and not back
+
+
+def _is_slow_loop(problem, model):
+    """Whether it is so slow that rings gather at an edge of what sticks."""
+    return is_loop(problem, model) and problem.creep < SLOW_LOOP
 
 
 def like_a_sphere(problem: Problem) -> bool:
@@ -220,7 +225,7 @@ CELLS_POLICIES = (
     ),
     CellsPolicy(
         "slow loop: rings come to lie on an edge that a coarse run found, and few agree by chance",
-        is_slow_loop,
+        _is_slow_loop,
         base=12,
         first=(12, 24),
         regular=False,

@@ -8,7 +8,7 @@ from microslip.adaptive.cells_policies import (
     RINGS,
     SLOW_CREEP,
     cells_axis,
-    is_slow_loop,
+    is_loop,
     levels_finer,
     like_a_sphere,
 )
@@ -34,7 +34,7 @@ COUPLED_STEPS, COUPLED_RUNS = 48, 5
 runs whose spread is the error: which of them slides changes within a step, and where in it that
 comes to lie scatters from run to run."""
 DOUBLED_STEPS, DOUBLED_CAUTION = (4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048), 1.25
-"""Steps of a slow loop, each level twice the last one, since runs that lie closer together agree by
+"""Steps of a loop, each level twice the last one, since runs that lie closer together agree by
 chance, and the error in time over their spread."""
 PROJECTED_CAUTION = {"angles": 1.3, "steps": 1.8}
 PROJECTED_SCATTER = 0.3
@@ -192,8 +192,8 @@ def _angles(problem, tolerance):
 
 
 def _doubled_steps(problem, tolerance):
-    """The axis of the steps of a slow loop."""
-    wanted = BASE_STEPS * max((1e-3 / tolerance) ** 0.5, 1.0)
+    """The axis of the steps of a loop."""
+    wanted = max(RADIAL_STEPS * (1e-3 / tolerance) ** 0.5, BASE_STEPS)
     base = next(k for k, count in enumerate(DOUBLED_STEPS) if count >= wanted)
     levels = _step_levels(problem, DOUBLED_STEPS)
     first = tuple(range(base - 2, base + 1))
@@ -201,7 +201,7 @@ def _doubled_steps(problem, tolerance):
 
 
 def _steps(problem, model, tolerance):
-    if is_slow_loop(problem, model):
+    if is_loop(problem, model):
         return _doubled_steps(problem, tolerance)
     motion, levels, coarsest = problem.motion, _step_levels(problem, STEPS), _coarsest(problem)
     if coarsest is None:

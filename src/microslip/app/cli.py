@@ -14,12 +14,9 @@ from microslip.app import (
     sweep_command,
     terminal,
 )
-from microslip.app.printed_error import error_text
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
 
-RATIO = "a ratio: mean forward force over mu F_z; the coefficient felt is mu_apparent = mu mu_macro"
-"""What is said beside a number."""
 BORE = "Bore means spin: rotation about the contact normal."
 
 
@@ -208,7 +205,9 @@ def main(arguments: list[str] | None = None) -> int:
     if options.json:
         print(json.dumps({"amplitude": None} | plain(result.to_dict())))
     else:
-        print(_as_text(result))
+        from microslip.app.point_text import as_text  # only now: it knows the models
+
+        print(as_text(result))
     return 0 if result.converged else 1
 
 
@@ -271,25 +270,6 @@ def _show(bar, resolution):
     cells, angles, steps = resolution.cells, resolution.angles, resolution.steps
     bar.set_description(f"{cells} cells, {angles} angles, {steps} steps")
     bar.update()
-
-
-def _as_text(result):
-    if result.force is not None:
-        lines = [f"velocity = {result.velocity:.6g} +- {error_text(result.velocity_error)}"]
-    else:
-        lines = [f"mu_macro = {result.mu_macro:.6g} +- {error_text(result.mu_macro_error)}", RATIO]
-    if result.mu_torque is not None:
-        error = error_text(result.mu_torque_error)
-        lines.append(f"mu_torque = {result.mu_torque:.6g} +- {error}")
-    resolved = f"{result.cells} cells"
-    if result.angles > 1:
-        resolved += f" x {result.angles} angles"
-    if result.steps_per_period:
-        resolved += f", {result.steps_per_period} steps a period"
-    lines.append(f"model {result.model}" + (f" ({resolved})" if result.cells else ""))
-    if not result.converged:
-        lines.append(f"NOT CONVERGED: {result.reason}")
-    return "\n".join(lines)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,44 @@
+"""What `microslip point` prints of an answer."""
+
+from __future__ import annotations
+
+from microslip.adaptive.result import Result
+from microslip.app.printed_error import error_text
+
+RATIO = "a ratio: mean forward force over mu F_z; the coefficient felt is mu_apparent = mu mu_macro"
+"""What is said beside a number."""
+OWN_EQUATIONS = (
+    "an approximation: the error is that of its own equations, not of what they leave out"
+)
+
+
+def as_text(result: Result) -> str:
+    """Lines on standard output for a Result."""
+    if result.force is not None:
+        lines = [f"velocity = {result.velocity:.6g} +- {error_text(result.velocity_error)}"]
+    else:
+        lines = [f"mu_macro = {result.mu_macro:.6g} +- {error_text(result.mu_macro_error)}", RATIO]
+    if result.mu_torque is not None:
+        error = error_text(result.mu_torque_error)
+        lines.append(f"mu_torque = {result.mu_torque:.6g} +- {error}")
+    resolved = f"{result.cells} cells"
+    if result.angles > 1:
+        resolved += f" x {result.angles} angles"
+    if result.steps_per_period:
+        resolved += f", {result.steps_per_period} steps a period"
+    lines.append(f"model {result.model}" + (f" ({resolved})" if result.cells else ""))
+    if _leaves_something_out(result):
+        lines.append(OWN_EQUATIONS)
+    if not result.converged:
+        lines.append(f"NOT CONVERGED: {result.reason}")
+    return "\n".join(lines)
+
+
+def _leaves_something_out(result):
+    """Whether no refinement of the model would find what the contact does."""
+    from microslip.models.registry import MODELS
+    from microslip.motions.by_name import motion_named
+
+    if result.model not in MODELS:
+        return False  # a closed form, whose error is known
+    return not MODELS[result.model].exact(motion_named(result.scene, result.pressure))

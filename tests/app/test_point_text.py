@@ -1,0 +1,21 @@
+"""What `microslip point` prints beside the numbers."""
+
+import pytest
+
+from microslip.app.cli import main
+from microslip.app.point_text import OWN_EQUATIONS
+
+POINT = ["point", "transverse", "--velocity", "0.1", "--amplitude", "1"]
+STEADY = ["point", "continuous-bore", "--velocity", "0.8"]
+
+
+@pytest.mark.parametrize("model", ["rigid", "slider", "dahl", "mdr"])
+def test_an_approximation_that_was_asked_for_says_so(model, capsys):
+    assert main([*POINT, "--model", model]) == 0
+    assert OWN_EQUATIONS in capsys.readouterr().out.splitlines()
+
+
+@pytest.mark.parametrize("words", [POINT, [*POINT, "--model", "radial"], STEADY])
+def test_what_is_right_does_not(words, capsys):
+    assert main(words) == 0
+    assert OWN_EQUATIONS not in capsys.readouterr().out
