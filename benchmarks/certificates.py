@@ -26,16 +26,15 @@ import one_thread  # noqa: F401
 # isort: split
 
 import argparse
-import json
 import math
 import time
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 import blind_points
 import finer
 import known_references
 import numpy as np
+import resumable
 import tables
 from scipy.stats import beta
 
@@ -214,17 +213,14 @@ def main():
         references, lines = {**references, **lines}, {}
         output.replace(output.with_name(output.name + ".before"))
     refuse_changed(options.seed, list(lines.values()))
-    with ProcessPoolExecutor(options.workers) as pool, output.open("a") as file:
-        asked = range(options.first, options.points)
-        wanted = [k for k in asked if k not in lines]
-        jobs = [pool.submit(examine, options.seed, k, references.get(k)) for k in wanted]
-        for done, job in enumerate(as_completed(jobs), start=1):
-            line = job.result()
-            lines[line["k"]] = line
-            file.write("\n" * (done == 1) + json.dumps(line) + "\n")
-            file.flush()
-            print(f"\r{done} of {len(jobs)} points", end="", flush=True)
-    print()
+    asked = range(options.first, options.points)
+    resumable.add_lines(
+        output,
+        lines,
+        asked,
+        lambda k: (examine, options.seed, k, references.get(k)),
+        options.workers,
+    )
     if options.keep:
         known_references.write(kept, {**references, **lines}, options.seed)
     tables.publish(summary([lines[k] for k in asked]), options)

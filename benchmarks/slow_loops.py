@@ -18,12 +18,11 @@ import one_thread  # noqa: F401
 # isort: split
 
 import argparse
-import json
 import time
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 import numpy as np
+import resumable
 import tables
 
 import microslip
@@ -144,16 +143,9 @@ def main():
     output = options.output or Path(f"results/slow-loops-{options.seed}.jsonl")
     output.parent.mkdir(parents=True, exist_ok=True)
     lines = {line["k"]: line for line in tables.parsed(output)}
-    with ProcessPoolExecutor(options.workers) as pool, output.open("a") as file:
-        wanted = [k for k in range(options.points) if k not in lines]
-        jobs = [pool.submit(examine, options.seed, k) for k in wanted]
-        for done, job in enumerate(as_completed(jobs), start=1):
-            line = job.result()
-            lines[line["k"]] = line
-            file.write(json.dumps(line) + "\n")
-            file.flush()
-            print(f"\r{done} of {len(jobs)} points", end="", flush=True)
-    print()
+    resumable.add_lines(
+        output, lines, range(options.points), lambda k: (examine, options.seed, k), options.workers
+    )
     tables.publish(summary([lines[k] for k in range(options.points)]), options)
 
 

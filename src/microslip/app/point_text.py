@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from microslip.adaptive.result import Result
 from microslip.app.printed_error import error_text
+from microslip.models.registry import MODELS
+from microslip.motions.by_name import motion_named
 
 RATIO = "a ratio: mean forward force over mu F_z; the coefficient felt is mu_apparent = mu mu_macro"
 """What is said beside a number."""
@@ -36,9 +38,6 @@ def as_text(result: Result) -> str:
 
 def _leaves_something_out(result):
     """Whether no refinement of the model would find what the contact does."""
-    from microslip.models.registry import MODELS
-    from microslip.motions.by_name import motion_named
-
     if result.model not in MODELS:
         return False  # a closed form, whose error is known
     return not MODELS[result.model].exact(motion_named(result.scene, result.pressure))

@@ -53,13 +53,12 @@ def looked_for(found: Prediction) -> list[str]:
     if found.sought is None:
         return []
     share = f"takes {found.understood['reduction']} away"
+    error = error_text(found.sought_error)
     if found.sought == "speed":
         text = f"{_speed(found.speed_m_s, found.sought_error)}, the largest at which vibration"
     elif found.sought == "load":
-        error = error_text(found.sought_error)
         text = f"{found.load_N:.4g} +- {error} N, the largest at which vibration"
     elif found.scene == "bore":
-        error = error_text(found.sought_error)
         text = f"{found.amplitude_si:.4g} +- {error} rad, the least that"
     else:
         text = f"{_pair(found.amplitude_si, found.sought_error)}, the least that"

@@ -137,7 +137,7 @@ class _Search:
         self.contact, self.problem, self.method, self.steps = contact, problem, method, steps
         self.tolerance, self.step_tolerance = tolerance, step_tolerance
         interval = np.pi if problem.motion.half_period_mirror else 2.0 * np.pi
-        # the limit of a loop is not looked for; a search that is not prepared comes from above
+        # a search that is prepared finds the limit of a line, and none that of a loop
         limit = 0.0 if problem.motion.straight or not contact.sticks else np.nan
         gain = contact.stiffness * problem.creep * interval
         self.creep_rate = CreepRate(limit, problem.mean_load, gain)
