@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from operator import attrgetter
 
 import numpy as np
 
@@ -105,14 +105,18 @@ class Axis:
 class Runs:
     """Runs at (cells, angles, steps), given as indices into the levels of the axes; each once.
 
-    quantity: name of what is asked of a run.Run.
+    read(run) returns the quantity to be refined, a float, from a run.Run.
     """
 
     def __init__(
-        self, run: Callable | None, coarsest: Resolution, axes: Sequence[Axis], quantity: str = "mu"
+        self,
+        run: Callable | None,
+        coarsest: Resolution,
+        axes: Sequence[Axis],
+        read: Callable = attrgetter("mu"),
     ):
         self.run, self.coarsest, self.axes = run, coarsest, {axis.name: axis for axis in axes}
-        self.quantity = quantity
+        self.read = read
         self.base = {axis.name: axis.base for axis in axes}
         self.done = {}
 
@@ -144,18 +148,17 @@ class Readings:
     def __init__(self, runs: Runs, readings: Sequence[Callable]):
         self.runs, self.readings, self.done = runs, readings, {}
 
-    def open(self, chains: dict[str, Chain], name: str) -> float:
-        """How far they leave a value open."""
+    def open(self, chains: dict[str, Chain], read: Callable) -> float:
+        """How far they leave the value read(run) open."""
         first = refines_cells(chains)
         finest = {} if first is None else {first: chains[first].indices[-1]}
         resolution, plain = self.runs.resolution(**finest), self.runs(**finest)
-        value = getattr(plain, name)
+        value = read(plain)
         for number, run in enumerate(self.readings):
             if (number, resolution) not in self.done:
                 self.done[number, resolution] = run(resolution, plain)  # which it is close to
         return READING_CAUTION * sum(
-            abs(getattr(self.done[number, resolution], name) - value)
-            for number in range(len(self.readings))
+            abs(read(self.done[number, resolution]) - value) for number in range(len(self.readings))
         )
 
 
@@ -177,8 +180,9 @@ class Chain:
         refined = self.axis.judged and len(self.indices) > began
         return self.axis.judged if refined else began
 
-    def values(self, name: str) -> list[float]:
-        return [getattr(self.runs(**{self.axis.name: index}), name) for index in self.indices]
+    def values(self, read: Callable) -> list:
+        """read(run) for each run of the chain: numbers, or vectors of one shape."""
+        return [read(self.runs(**{self.axis.name: index})) for index in self.indices]
 
     def rebase(self) -> None:
         """Go on from a new base: no more runs than the error needs, up to the base at least."""
@@ -192,19 +196,19 @@ class Chain:
         self.indices.append(self.indices[-1] + 1)
         return True
 
-    def correction(self, name: str) -> float:
-        """What the chain adds to the value at the base."""
-        values = self.values(name)
-        added = values[-1] - getattr(self.runs(), name)
+    def correction(self, read: Callable) -> float | np.ndarray:
+        """The chain's addition to the value at the base, a linear combination of its values."""
+        values = self.values(read)
+        added = values[-1] - read(self.runs())
         if self.axis.regular:
             added += _extrapolation(values, self.levels)
         if self.axis.fitted:
-            added += _line(values[-FITTED:], self.levels[-FITTED:]).limit - values[-1]
+            added += _limit(values[-FITTED:], self.levels[-FITTED:]) - values[-1]
         return added
 
-    def error(self, name: str) -> float:
+    def error(self, read: Callable) -> float:
         """Estimated error after the correction."""
-        values, levels = self.values(name), self.levels
+        values, levels = self.values(read), self.levels
         if self.axis.regular:
             beyond = _extrapolation(values, levels)
             before = _extrapolation(values[:-1], levels[:-1])
@@ -214,7 +218,7 @@ class Chain:
         values, levels = values[-self.judged :], levels[-self.judged :]
         if self.axis.fitted:
             share, share_of_scatter = FITTED_SHARES
-            scatter = _line(values, levels).scatter
+            scatter = _scatter(values, levels)
             return share * _largest_projection(values, levels) + share_of_scatter * scatter
         if self.axis.projected:
             return CALIBRATED * self.axis.caution * _largest_projection(values, levels)
@@ -235,29 +239,26 @@ def _largest_projection(values, levels):
     )
 
 
-class _Line(NamedTuple):
-    """A line through values over the inverse square of their levels.
-
-    Attributes
-    ----------
-    limit : float
-        Where it says that they go.
-    scatter : float
-        Of a value at the last level about it: what is scattered falls as the error does.
-    """
-
-    limit: float
-    scatter: float
-
-
 def _line(values, levels):
+    """Limit and slope of a line through values over the inverse square of their levels; the values
+    and the terms of the line, each times a scale with which all values scatter equally."""
     scale = (np.array(levels) / levels[-1]) ** 2
-    # each value times its scale, so that all of them scatter alike
     terms = np.stack([scale, np.ones(len(levels))], axis=1)
-    given = scale * np.array(values)
-    (limit, slope), *_ = np.linalg.lstsq(terms, given, rcond=None)
-    missed = given - terms @ [limit, slope]
-    return _Line(float(limit), float(np.sqrt(missed @ missed / (len(levels) - 2))))
+    scaled = (scale * np.array(values).T).T
+    return np.linalg.lstsq(terms, scaled, rcond=None)[0], scaled, terms
+
+
+def _limit(values, levels):
+    """Value of the line at infinitely fine levels."""
+    return _line(values, levels)[0][0]
+
+
+def _scatter(values, levels):
+    """Standard deviation of a value at the last level about the line: the scatter falls as the
+    error does."""
+    line, scaled, terms = _line(values, levels)
+    residual = scaled - terms @ line
+    return float(np.sqrt(residual @ residual / (len(levels) - 2)))
 
 
 def refines_cells(chains: dict[str, Chain]) -> str | None:

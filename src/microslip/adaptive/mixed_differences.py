@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from microslip.adaptive.chains import Chain, Runs, refines_cells
 
 
 def mixed_differences(
-    runs: Runs, chains: dict[str, Chain], name: str, other: str
+    runs: Runs, chains: dict[str, Chain], read: Callable, other: str
 ) -> tuple[float, ...]:
     """How far the corrections along the cells and another axis fail to add up.
 
@@ -21,15 +23,15 @@ def mixed_differences(
         Those of all chains; what is lacking is done.
     chains : dict of chains.Chain
         By the names of their axes.
-    name : str
-        Of what is asked of a run: "mu", "torque".
+    read : callable
+        read(run) returns the quantity, a number or a vector.
     other : str
         "angles" or "steps".
 
     Returns
     -------
     tuple of float
-        In the unit of what is asked (dimensionless); a single 0 where none is to be measured.
+        In the unit of the quantity (dimensionless); a single 0 where none is to be measured.
     """
     first = refines_cells(chains)
     unmeasured = first is None or other not in chains or chains[first].axis.imposed
@@ -50,7 +52,7 @@ def mixed_differences(
         finer = (1, 2)
 
     def value(**indices):
-        return getattr(runs(**indices), name)
+        return read(runs(**indices))
 
     return tuple(
         value(**at(first, step), **along) - value(**at(first, step)) - value(**along) + value()

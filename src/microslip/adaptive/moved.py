@@ -13,7 +13,7 @@ from microslip.adaptive.chains import Axis
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.closed_forms import closed_form, no_vibration
 from microslip.adaptive.continuation import run_safely
-from microslip.adaptive.refinement import certify
+from microslip.adaptive.refinement import certify, run_tolerance
 from microslip.adaptive.resolutions import plan
 from microslip.adaptive.result import Result, of_closed_form
 from microslip.motions.by_name import read_otherwise
@@ -25,8 +25,6 @@ from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
 from microslip.solver.stick_edge import found_focus
 
-PERIODICITY_SHARE = 0.07
-"""Share of the tolerance that the distance from the periodic state may take."""
 CLOSED_FORM = "closed-form"
 
 
@@ -68,7 +66,7 @@ def marched(asked: Asked) -> Marched:
     coarsest, axes = plan(problem, asked.model, tolerance, asked.cells, asked.steps, together=True)
     if asked.tolerance is None:
         refuse_free(axes)
-    share = PERIODICITY_SHARE * tolerance
+    share = run_tolerance(coarsest, axes, tolerance)
     focus = found_focus(problem, asked.model)
     settings = Settings(asked.how, budget=asked.budget, focus=focus)
 

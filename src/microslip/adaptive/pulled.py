@@ -8,8 +8,8 @@ from functools import partial
 
 from microslip.adaptive.asked import Asked, refuse_free, verdict
 from microslip.adaptive.chains import Runs
-from microslip.adaptive.moved import CLOSED_FORM, PERIODICITY_SHARE
-from microslip.adaptive.refinement import certify
+from microslip.adaptive.moved import CLOSED_FORM
+from microslip.adaptive.refinement import certify, run_tolerance
 from microslip.adaptive.resolutions import plan
 from microslip.adaptive.result import Result
 from microslip.adaptive.several import solve_each
@@ -235,8 +235,8 @@ def _given_up(asked, drive, reason):
 def _certified(asked, drive, accuracy):
     """The certified.Certified to an accuracy, and what was refined."""
     problem, tolerance = asked.problem, accuracy.tolerance
-    share = accuracy._replace(tolerance=PERIODICITY_SHARE * tolerance)
     coarsest, axes = plan(problem, asked.model, tolerance, asked.cells, asked.steps)
+    share = accuracy._replace(tolerance=run_tolerance(coarsest, axes, tolerance))
     if asked.tolerance is None:
         refuse_free(axes)
     settings = Settings(asked.how, budget=asked.budget)

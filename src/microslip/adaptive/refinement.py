@@ -20,14 +20,18 @@ one the base itself is refined.
 - readings: where the pressure is known on a grid alone, the finest run along the cells is done
   again for every other pressure that the same numbers may stand for; how far these are apart is an
   error that no refinement removes.
+- periodicity, solver: the answer is a linear combination of runs, and so are its distance from the
+  periodic state and its residual: sum |c_i| d_i of the runs.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from statistics import fmean
+from operator import attrgetter
 from typing import NamedTuple
+
+import numpy as np
 
 from microslip.adaptive.certified import Certified, nothing
 from microslip.adaptive.chains import (
@@ -51,6 +55,8 @@ MIXED_SHARES = {"steps": 1.0, "angles": CALIBRATED}
 """Error over the largest mixed difference of the cells and an axis, by the latter: those with the
 steps are taken at twice the steps of the base, and are much the same at finer ones."""
 MOST_REBASED = 6
+PERIODICITY_SHARE = 0.07
+"""Share of the tolerance that distances from the periodic states may take together."""
 SOURCES = {"cells": "space", "angles": "space", "steps": "time"}
 
 
@@ -86,7 +92,8 @@ def certify(
         stays too large, or a run raised budget.Spent: then it is what was known before that run,
         NaN if that was nothing yet.
     """
-    refinement = _Refinement(Runs(run, coarsest, axes, quantity), axes, tolerance, readings)
+    runs = Runs(run, coarsest, axes, attrgetter(quantity))
+    refinement = _Refinement(runs, axes, tolerance, readings)
     known = None
     try:
         while True:
@@ -139,14 +146,13 @@ class _Refinement:
         """An Estimate from the chains as they are; does the runs that they lack."""
         runs, chains = self.runs, self.chains
         runs()  # the base first: its state is a guess for others
-        asked = runs.quantity
-        left = {name: c.error(asked) for name, c in chains.items() if not c.axis.imposed}
+        left = {name: c.error(runs.read) for name, c in chains.items() if not c.axis.imposed}
         hidden = {
-            axis: share * max(map(abs, mixed_differences(runs, chains, asked, axis)))
+            axis: share * max(map(abs, mixed_differences(runs, chains, runs.read, axis)))
             for axis, share in MIXED_SHARES.items()
         }
         if "steps" in chains and len(chains) > 1:
-            scattered = chains["steps"].axis.scatter * abs(chains["steps"].correction(asked))
+            scattered = chains["steps"].axis.scatter * abs(chains["steps"].correction(runs.read))
             hidden["steps"] = max(hidden["steps"], scattered)
         errors = _errors(runs, chains, hidden, self.tolerance)
         reason = next((r.reason for r in runs.done.values() if not r.converged), "")
@@ -161,7 +167,7 @@ class _Refinement:
         if error > self.goal:
             return False
         if self.goal == self.tolerance:
-            left_open = self.readings.open(self.chains, self.runs.quantity)
+            left_open = self.readings.open(self.chains, self.runs.read)
             if error + left_open > self.tolerance and left_open <= LARGEST_OPEN * self.tolerance:
                 self.goal = self.tolerance - left_open
                 return error <= self.goal
@@ -227,30 +233,57 @@ def _errors(runs, chains, hidden, tolerance):
     errors = {"space": hidden["angles"], "time": hidden["steps"]}
     for name, chain in chains.items():
         floor = 0.0 if chain.axis.imposed else chain.axis.resolved * tolerance
-        errors[SOURCES[name]] += max(chain.error(runs.quantity), floor)
+        errors[SOURCES[name]] += max(chain.error(runs.read), floor)
+    weights = np.abs(_weights(runs, chains))
     done = runs.done.values()
-    errors["periodicity"] = float(max(r.distance for r in done))
-    errors["solver"] = float(max(r.solver_residual for r in done))
+    errors["periodicity"] = _weighted(weights, [r.distance for r in done])
+    errors["solver"] = _weighted(weights, [r.solver_residual for r in done])
     return errors
 
 
-def _corrected(runs, chains, name):
-    corrections = sum(chain.correction(name) for chain in chains.values())
-    mixed = sum(fmean(mixed_differences(runs, chains, name, axis)) for axis in MIXED_SHARES)
-    return getattr(runs(), name) + corrections + mixed
+def _weighted(weights, errors):
+    """Sum of errors times weights; the error of a run without weight does not count, even if it is
+    infinite."""
+    return float(sum(w * e for w, e in zip(weights, errors, strict=True) if w > 0.0))
+
+
+def _corrected(runs, chains, read):
+    """The answer: a linear combination of read(run) over the runs."""
+    corrections = sum(chain.correction(read) for chain in chains.values())
+    mixed = [mixed_differences(runs, chains, read, axis) for axis in MIXED_SHARES]
+    return read(runs()) + corrections + sum(sum(each) / len(each) for each in mixed)
+
+
+def _weights(runs, chains):
+    """Weight of each of the runs in the answer, shape (len(runs.done),)."""
+    _corrected(runs, chains, lambda run: 0.0)  # does the runs that are missing
+    units = dict(zip(map(id, runs.done.values()), np.eye(len(runs.done)), strict=True))
+    return _corrected(runs, chains, lambda run: units[id(run)])
+
+
+def run_tolerance(coarsest: Resolution, axes: Sequence[Axis], tolerance: float) -> float:
+    """Distance from the periodic state that each run may keep.
+
+    The answer is a combination sum c_i f_i of runs; the distances may add up to PERIODICITY_SHARE
+    of the tolerance.  The c_i follow from the levels of the axes before anything is run.
+    """
+    planned = Runs(lambda resolution, guess: resolution, coarsest, axes)
+    weights = _weights(planned, {axis.name: Chain(planned, axis) for axis in axes})
+    return PERIODICITY_SHARE * tolerance / max(float(np.sum(np.abs(weights))), 1.0)
 
 
 def _summary(runs, chains, errors, others, reason):
     """The Certified of chains that are fine enough, or as fine as they get."""
-    torque_error = sum(chain.error("torque") for chain in chains.values())
+    torque = attrgetter("torque")
+    torque_error = sum(chain.error(torque) for chain in chains.values())
     if others.readings:
-        errors = errors | {"model": others.open(chains, runs.quantity)}
-        torque_error += others.open(chains, "torque")
+        errors = errors | {"model": others.open(chains, runs.read)}
+        torque_error += others.open(chains, torque)
     done = [*runs.done.values(), *others.done.values()]
     reason = reason or next((r.reason for r in done if not r.converged), "")
     return Certified(
-        mu=_corrected(runs, chains, runs.quantity),
-        torque=_corrected(runs, chains, "torque"),
+        mu=float(_corrected(runs, chains, runs.read)),
+        torque=float(_corrected(runs, chains, torque)),
         errors=errors,
         torque_error=torque_error,
         finest=runs.resolution(**{name: chain.indices[-1] for name, chain in chains.items()}),

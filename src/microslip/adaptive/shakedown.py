@@ -16,9 +16,8 @@ from dataclasses import asdict, dataclass, fields, replace
 from microslip.adaptive.asked import Asked, budget_for, verdict
 from microslip.adaptive.checks import checked_point, checked_request, refuse_bounds
 from microslip.adaptive.choice import choose_model
-from microslip.adaptive.moved import PERIODICITY_SHARE
 from microslip.adaptive.pulled import refuse_drive
-from microslip.adaptive.refinement import certify
+from microslip.adaptive.refinement import certify, run_tolerance
 from microslip.adaptive.resolutions import plan
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
@@ -214,12 +213,12 @@ def _certified(asked, force):
     planned = replace(asked.problem, velocity=PLANNED_VELOCITY)
     coarsest, axes = plan(planned, asked.model, asked.tolerance)
     axes = [replace(axis, regular=False, projected=False, caution=CAUTION) for axis in axes]
+    left = run_tolerance(coarsest, axes, asked.tolerance)
     settings, finest = Settings(asked.how, budget=asked.budget), {}
 
     def run(resolution, guess):
         if asked.progress is not None:
             asked.progress(resolution)
-        left = PERIODICITY_SHARE * asked.tolerance
         finest[resolution] = run_to_rest(
             asked.problem, force, asked.model, resolution, left, settings
         )
