@@ -17,6 +17,7 @@ _WHERE = {
     "solve_stored": "microslip.sweeps.solve_stored",
     "predict": "microslip.si.predict",
     "predict_table": "microslip.si.table",
+    "Material": "microslip.si.materials",
     "fit": "microslip.si.fitting.fit",
     "Fit": "microslip.si.fitting.fitted",
     "to_xarray": "microslip.datasets.of_records",

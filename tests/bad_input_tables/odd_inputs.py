@@ -158,7 +158,7 @@ PREDICTIONS = [
     ({"counterbody": "inf GPa, 0.3"}, "it is not finite"),
     ({"counter_radius": "-4 mm"}, "allowed is a hollow wider than the sphere"),
     ({"counter_radius": "flat"}, "--counter-radius = 'flat'"),
-    ({"hardness": "60 HRB"}, "'HRB' is none of the units"),
+    ({"hardness": "60 HRB"}, "the scale HRB is not known; allowed are Vickers"),
     ({"density": "7.85"}, "--density = '7.85': 7.85 is a number without a unit"),
     ({"tolerance": "1e-3 N"}, "--tolerance = '1e-3 N'"),
     ({"tolerance": "none"}, "--tolerance = 'none'"),

@@ -42,7 +42,16 @@ LENGTHS = [
     ("1e\u22126 m", 1e-6),  # Unicode minus
     ("\u22126 mm", -6e-3),
     ("-6 mm", -6e-3),
-    ("\uff15 mm", 5e-3),  # full-width five, which float takes
+    (
+        "\uff15 mm",
+        "where a number was expected, since numbers have the digits 0 to 9",
+    ),  # full-width five
+    (
+        "\u0665 mm",
+        "where a number was expected, since numbers have the digits 0 to 9",
+    ),  # Arabic-Indic five
+    ("5.\uff15 mm", "since numbers have the digits 0 to 9"),
+    ("1e\u0663 mm", "then"),
     ("1 \u00b5m", 1e-6),  # micro sign
     ("1 \u03bcm", 1e-6),  # Greek mu
     ("1 um", 1e-6),
@@ -54,6 +63,9 @@ LENGTHS = [
     ("1 thou", 25.4e-6),
     ("3 \u00c5", 3e-10),
     ("0 mm", 0.0),
+    ("0", 0.0),  # the same in all units
+    ("0.0", 0.0),
+    ("1/4 inch", "did you mean '0.25 inch'?"),
     (0.005, 5e-3),
     (Decimal("0.005"), 5e-3),
     (Fraction(1, 8), 0.125),
@@ -179,7 +191,8 @@ RATES = [  # unit, value in Hz; in rad/s it is 2 pi times as much
     ("10 Hz*rad", "leaves open whether 2 pi"),
     ("10 deg*Hz", "leaves open whether 2 pi"),
     (Q(10, "Hz*rad"), "leaves open whether 2 pi"),
-    ("10 hz", "capitals count"),
+    ("10 hz", "capitals count (did you mean Hz?)"),
+    ("300 RPM", "capitals count (did you mean rpm?)"),
     ("10 KHz", "capitals count"),
     ("10 Bq", "'Bq' is none of the units"),
     ("10 rads/s", "'rads' is none of the units"),
@@ -216,7 +229,7 @@ OTHERS = [
     ("210e3 N/mm\u00b2", "Pa", 210e9),
     ("2.1 Mbar", "Pa", 210e9),
     ("210 mPa", "Pa", 0.21),
-    ("210 Mpa", "Pa", "capitals count"),
+    ("210 Mpa", "Pa", "capitals count (did you mean MPa or mPa?)"),
     ("210 gpa", "Pa", "capitals count"),
     ("210 G Pa", "Pa", "read 'G' and stopped at 'Pa'"),
     ("210 at", "Pa", "'at' is none of the units"),
@@ -226,9 +239,12 @@ OTHERS = [
     ("10 kg*m/s^2", "N", 10.0),
     ("1,5 N", "N", "decimals follow a point"),
     ("1 kg", "N", "the unit is kilogram"),
+    ("500 g", "N", "for its weight write gf or kgf, as in '500 gf'"),
+    ("500 gf", "N", 4.903325),
     ("10 kn", "N", "the unit is knot"),
     ("10 Nm", "N", "'Nm' is none of the units"),
     ("3.6 km/h", "m/s", 1.0),
+    ("100 rpm", "m/s", "its speed is the rate in rad/s times a radius"),
     ("60 mm/min", "m/s", 1e-3),
     ("1 ft/s", "m/s", 0.3048),
     ("1 mm/s^1", "m/s", 1e-3),

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+import pandas as pd
 import pytest
 from bad_input_tables.odd_quantities import Q
 from scipy.integrate import quad
@@ -292,7 +294,14 @@ def test_a_hardness_is_a_pressure_on_any_scale(text, pressure):
 
 @pytest.mark.parametrize(
     ("text", "said"),
-    [("80 HRC", "20 to 68 HRC"), ("HV", "the text is empty"), ("-3 HV", "above 0"), ("7", "unit")],
+    [
+        ("80 HRC", "20 to 68 HRC"),
+        ("HV", "the text is empty"),
+        ("-3 HV", "above 0"),
+        ("7", "unit"),
+        ("200 HB", "about 211 HV"),  # HB = 0.95 HV, ISO 18265
+        ("90 HRB", "Vickers and Rockwell C"),
+    ],
 )
 def test_a_hardness_that_is_none_is_refused(text, said):
     with pytest.raises(InputError, match=said) as caught:
@@ -327,6 +336,55 @@ def test_what_was_not_checked_is_said():
     assert microslip.predict("transverse", **MILD | both).not_checked == ()
     glass = BALL | {"material": "glass", "amplitude": "1 um", "frequency": "1 kHz"}
     assert microslip.predict("transverse", **glass).not_checked == ()
+
+
+def test_a_missing_property_is_said_with_its_body():
+    given = MILD | {"material": "glass", "young": None, "nu": None, "counterbody": "gold"}
+    found = microslip.predict("transverse", **given)
+    assert found.not_checked == (
+        "whether the bodies stay elastic (no hardness given for the counterbody)",
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "shear_modulus"),
+    [
+        ("brass", 37.3e9),  # Kaye and Laby, 2.2.2
+        ("copper", 48.3e9),
+        ("gold", 27.0e9),
+        ("alumina", 169e9),  # R. G. Munro, 1997
+        ("diamond", 535e9),  # H. J. McSkimin and P. Andreatch, J. Appl. Phys. 43, 1972
+        ("bearing-steel", 79.6e9),
+        ("CoCrMo", 88e9),
+    ],
+)
+def test_two_elastic_constants_of_a_material_give_the_published_third(name, shear_modulus):
+    assert microslip.predict("transverse", **MILD | _of(name)).u_lim_m > 0.0
+    assert MATERIALS[name].shear_modulus == pytest.approx(shear_modulus, rel=0.012)
+
+
+def _of(name):
+    return {"material": name, "young": None, "nu": None}
+
+
+def test_a_material_of_ones_own_and_a_pair_of_numbers_are_bodies():
+    gold = microslip.Material(young="79 GPa", poisson=0.42)
+    told = [
+        microslip.predict("transverse", **MILD | {"counterbody": body})
+        for body in ("79 GPa, 0.42", (79e9, 0.42), ("79 GPa", 0.42), gold)
+    ]
+    assert told[1:] == told[:1] * 3
+    with pytest.raises(InputError, match="its Poisson's ratio 0.6: .* at most 0.5"):
+        microslip.predict("transverse", **MILD | {"counterbody": (79e9, 0.6)})
+
+
+@pytest.mark.parametrize(
+    "speeds", [np.array([1e-3, 2e-3]), ["1 mm/s"], pd.Series([1e-3]), Q([1.0], "m/s")]
+)
+def test_several_speeds_are_for_predict_table(speeds):
+    with pytest.raises(InputError, match="predict_table") as caught:
+        microslip.predict("transverse", **MILD | {"speed": speeds})
+    assert caught.value.argument == "speed"
 
 
 def test_materials_say_where_their_numbers_are_from():

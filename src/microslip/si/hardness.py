@@ -18,7 +18,14 @@ ROCKWELL = np.array([20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0, 65.0,
 VICKERS = np.array([238.0, 266.0, 302.0, 345.0, 392.0, 446.0, 513.0, 595.0, 697.0, 832.0, 940.0])
 """Of the same steels (ASTM E140, Table 1)."""
 
+VICKERS_OVER_BRINELL = 1.0 / 0.95
+"""Of unalloyed and low-alloy steels, 80 to 650 HV (ISO 18265, Table A.1)."""
+ALLOWED = (
+    "allowed are Vickers and Rockwell C, as in '200 HV' and '60 HRC', and pressures, as '7 GPa'"
+)
+
 _SCALE = re.compile(r"(.*?)\s*(HV|HRC)", re.S)
+_OTHER_SCALE = re.compile(r"(.*?)\s*(HBW?|HBS|HR[ABD-Z]|HK|HS|Shore.*|Mohs)", re.S)
 
 
 def read_hardness(name: str, value: object) -> Given:
@@ -28,6 +35,7 @@ def read_hardness(name: str, value: object) -> Given:
     """
     scale = _SCALE.fullmatch(value.strip()) if isinstance(value, str) else None
     if scale is None:
+        _refuse_other_scale(name, value)
         return read(name, value, "Pa")
     try:
         number = read(name, scale[1], "").si
@@ -40,3 +48,15 @@ def read_hardness(name: str, value: object) -> Given:
         number = float(np.interp(number, ROCKWELL, VICKERS))
     pressure = number * KILOGRAM_FORCE_PER_SQUARE_MM / PROJECTED
     return Given(pressure, f"{' '.join(value.split())} = {pressure / 1e9:.3g} GPa")
+
+
+def _refuse_other_scale(name, value):
+    """Raise InputError for a hardness on another scale."""
+    scale = _OTHER_SCALE.fullmatch(value.strip()) if isinstance(value, str) else None
+    if scale is None:
+        return
+    hint = f"the scale {scale[2]} is not known; "
+    if scale[2].startswith("HB"):
+        number = VICKERS_OVER_BRINELL * read(name, scale[1], "").si
+        hint = f"a Brinell hardness; of steels it is about {number:.0f} HV; "
+    raise InputError(name, value, f"{hint}{ALLOWED}")

@@ -83,22 +83,27 @@ def read_body(young: object, nu: object, material: object) -> Body:
 
 
 def read_counterbody(given: object) -> Body:
-    """The body opposite: a Material, a name, "E, nu", or None, which is rigid; raises
-    InputError."""
+    """The body opposite: a Material, a name, "E, nu", a pair (E, nu), or None, which is rigid.
+
+    Raises InputError.
+    """
     if given is None:
         return Body(RIGID, "rigid, as none was given")
     if isinstance(given, Material):
         return Body(given, _numbers(given))
-    if not isinstance(given, str):
-        raise InputError("counterbody", given, f"allowed is a text, {EXAMPLE}, or a Material")
-    parts = [part.strip() for part in given.split(",")]
-    if len(parts) == 1:
+    pair = isinstance(given, tuple | list)
+    if not (pair or isinstance(given, str)):
+        allowed = f"allowed is a text, {EXAMPLE}, a pair of both, or a Material"
+        raise InputError("counterbody", given, allowed)
+    parts = list(given) if pair else [part.strip() for part in given.split(",")]
+    if len(parts) == 1 and not pair:
         try:
             return _named(parts[0])
         except InputError as error:
             raise InputError("counterbody", given, f"{error.allowed}, or {EXAMPLE}") from None
     if len(parts) != 2:
-        raise InputError("counterbody", given, f"{len(parts) - 1} commas in it; allowed: {EXAMPLE}")
+        problem = f"{len(parts)} values" if pair else f"{len(parts) - 1} commas in it"
+        raise InputError("counterbody", given, f"{problem}; allowed: {EXAMPLE}")
     try:
         young = read("Young's modulus", parts[0], "Pa")
         return _elastic(young, _read_poisson("Poisson's ratio", parts[1]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 from dataclasses import dataclass
 
@@ -72,12 +73,62 @@ MATERIALS = {
     "titanium": Material(113.8e9, 0.342, 4430.0, source="ASM Handbook, Vol. 2: Ti-6Al-4V"),
     "concrete": Material(33e9, 0.2, 2400.0, source="EN 1992-1-1, Table 3.1: C30/37; EN 1991-1-1"),
     "glass": Material(70e9, 0.2, 2500.0, 6e9, source="EN 572-1, Table 1: soda lime; Knoop"),
+    "bearing-steel": Material(
+        *(207e9, 0.3, 7810.0, 7.4e9),
+        source="ISO/TR 10657 (E, nu of bearing steel); 100Cr6 through-hardened to 700 HV",
+    ),
+    "brass": Material(
+        *(101e9, 0.35, 8530.0),
+        source="N. E. Dowling, Mechanical Behavior of Materials, Table 5.2: 70Cu-30Zn; ASM "
+        "Handbook, Vol. 2: density of C26000",
+    ),
+    "copper": Material(
+        *(130e9, 0.343, 8960.0),
+        source="N. E. Dowling, Mechanical Behavior of Materials, Table 5.2; CRC Handbook: density",
+    ),
+    "gold": Material(
+        *(78e9, 0.44, 19300.0),
+        source="Kaye and Laby, Tables of Physical and Chemical Constants, 2.2.2; CRC Handbook: "
+        "density",
+    ),
+    "PTFE": Material(
+        *(0.5e9, 0.46, 2170.0),
+        source="DuPont, Teflon PTFE Properties Handbook: unfilled, 23 degC",
+    ),
+    "PEEK": Material(
+        *(4.0e9, 0.4, 1300.0),
+        source="Victrex, Materials Properties Guide: PEEK 450G, unfilled, 23 degC",
+    ),
+    "CoCrMo": Material(
+        *(230e9, 0.3, 8300.0),
+        source="J. Jagatia and Z. M. Jin, Proc. IMechE H 215, 2001: Co-28Cr-6Mo (ISO 5832-12)",
+    ),
+    "alumina": Material(
+        *(416e9, 0.231, 3984.0, 16.2e9),
+        source="R. G. Munro, J. Am. Ceram. Soc. 80, 1919, 1997: sintered, 99.5 %; 15 GPa Vickers",
+    ),
+    "zirconia": Material(
+        *(210e9, 0.3, 6050.0, 12.7e9),
+        source="C. Piconi and G. Maccauro, Biomaterials 20, 1999: Y-TZP, 1200 HV",
+    ),
+    "diamond": Material(
+        *(1143e9, 0.0691, 3515.0, 68.6e9),
+        source="C. A. Klein and G. F. Cardinale, Diamond Relat. Mater. 2, 1993: polycrystalline; "
+        "CRC Handbook: density, Knoop 7000",
+    ),
     "rigid": RIGID,
 }
+GRADES = {"100cr6": "bearing-steel", "52100": "bearing-steel", "ti-6al-4v": "titanium"}
+"""What the materials are called as well, in lower case, for hints."""
 
 
 def material_named(name: object) -> Material:
-    """The Material of this name; raises InputError, with those there are, if none."""
-    if not isinstance(name, str) or name not in MATERIALS:
-        raise InputError("material", name, f"allowed is one of {', '.join(MATERIALS)}")
-    return MATERIALS[name]
+    """The Material of this name; raises InputError, with all names and a hint, if there is none."""
+    if isinstance(name, str) and name in MATERIALS:
+        return MATERIALS[name]
+    allowed = f"allowed is one of {', '.join(MATERIALS)}"
+    names = {known.lower(): known for known in MATERIALS} | GRADES
+    near = difflib.get_close_matches(str(name).lower(), names, n=1)
+    raise InputError(
+        "material", name, allowed + (f" (did you mean {names[near[0]]}?)" if near else "")
+    )

@@ -88,9 +88,9 @@ def predict(
     young, nu : quantity
         Young's modulus, Pa, and Poisson's ratio of the body.
     material : str or Material
-        The same in one: a name in materials.MATERIALS, or a materials.Material.
-    counterbody : str or Material, optional
-        "rigid", a material, or E and nu as in "70 GPa, 0.22"; rigid if not given.
+        The body by the name of a material, or as a microslip.Material.
+    counterbody : str, Material or pair of quantities, optional
+        "rigid", a material, or E and nu as in "70 GPa, 0.22" or (70e9, 0.22); rigid if not given.
     counter_radius : quantity, optional
         Radius of the counterbody, m, negative if hollow; flat if not given.
     radius_across : quantity, optional

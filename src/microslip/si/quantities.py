@@ -1,8 +1,8 @@
 """Numbers with units: texts such as "210 GPa" to SI values, by a strict grammar.
 
-A text is one number and one unit.  The number is what Python's float takes, without underscores and
-with the Unicode minus as a minus; the unit is what `units` reads.  Nothing else passes: of a text
-that is not understood from its first to its last character, no part counts.
+A text is one number and one unit.  The number is what Python's float takes, in the digits 0 to 9,
+without underscores and with the Unicode minus as a minus; the unit is what `units` reads.  Nothing
+else passes: of a text that is not understood from its first to its last character, no part counts.
 """
 
 from __future__ import annotations
@@ -38,8 +38,16 @@ EXAMPLES = {
 RATES = ("Hz", "rad/s")
 """Units of what may be given by periods or by angles."""
 
-_NUMBER = re.compile(r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?")
+OTHER_KINDS = {
+    ("N", (("gram", 1),)): "a mass; for its weight write gf or kgf, as in '500 gf'",
+    ("m/s", tuple(TURN_RATE.items())): "a rotation; its speed is the rate in rad/s times a radius",
+}
+"""Hints by the SI unit that is needed and the root units of the one that was written instead."""
+
+_NUMBER = re.compile(r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?", re.ASCII)
 _NOT_FINITE = re.compile(r"[+\-−]?(?:infinity|inf|nan)(?![^\W\d_])", re.IGNORECASE)
+_FRACTION = re.compile(r"/\s*([1-9]\d*)\s*(.*)", re.ASCII | re.DOTALL)
+"""What follows the numerator of a fraction."""
 
 
 @dataclass(frozen=True)
@@ -91,8 +99,8 @@ def read(
     name : str
         Name of the argument, for messages.
     value : object
-        Text of one number and one unit ("5 mm"), pint quantity, or a plain number, which is taken
-        to be in the SI unit already.
+        Text of one number and one unit ("5 mm"; 0 may have none), pint quantity, or a plain number,
+        which is taken to be in the SI unit already.
     unit : str
         The SI unit, a key of EXAMPLES.  Hz and rad/s take both cyclic frequencies (Hz, cps) and
         angular ones (rad/s, deg/s, rpm, turn/s): one turn is 2 pi, exactly.
@@ -168,17 +176,29 @@ def _split(text):
     if not text:
         raise UnitError("the text is empty")
     if number is None:
-        raise UnitError(f"stopped at {text!r}, where a number was expected")
+        hint = _of_other_digits(text.lstrip("+-−."))
+        raise UnitError(f"stopped at {text!r}, where a number was expected{hint}")
     return number[0].replace("−", "-"), text[number.end() :].lstrip()
 
 
 def _stopped(read_so_far, rest):
     hint = ", since decimals follow a point and nothing parts thousands" if "," in rest else ""
-    return f"read {read_so_far} and stopped at {rest!r}{hint}"
+    fraction = _FRACTION.fullmatch(rest)
+    if fraction:
+        value = exact(Decimal(read_so_far), Decimal(1), Decimal(fraction[1]))
+        hint = f" (did you mean {f'{value!r} {fraction[2]}'.strip()!r}?)"
+    return f"read {read_so_far} and stopped at {rest!r}{hint or _of_other_digits(rest)}"
+
+
+def _of_other_digits(text):
+    """A hint if a text begins with a digit of another script than Latin."""
+    return ", since numbers have the digits 0 to 9" if re.match(r"(?![0-9])\d", text) else ""
 
 
 def _with_unit(digits, rest, unit):
     """Value of a number with the text of its unit, and what there is to say of it."""
+    if not rest and Decimal(digits) == 0:  # 0 is the same in all units
+        return 0.0, f" {unit}"
     if not rest:
         raise UnitError(f"{digits} is a number without a unit")
     if not (rest[0].isalpha() or rest[0] == "°"):
@@ -204,7 +224,8 @@ def _ratio(found: Unit, unit):
         return found.factor * turn, Decimal(1)
     _refuse_periods(found)
     if found.root != wanted.root:
-        raise UnitError(f"the unit is {_named(found)}")
+        kind = OTHER_KINDS.get((unit, tuple(found.root.items())))
+        raise UnitError(f"the unit is {_named(found)}{f', of {kind}' if kind else ''}")
     return found.factor, wanted.factor
 
 

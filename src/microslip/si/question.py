@@ -85,6 +85,10 @@ def asked(scene: str, given: Mapping[str, object]) -> Question:
 
     Raises InputError for each of them that is none.
     """
+    for name, value in given.items():
+        if name != "counterbody" and _is_sequence(value):
+            allowed = "allowed is one value; predict_table takes a sequence, with many contacts"
+            raise InputError(name, value, allowed)
     if not isinstance(given["power"], bool):
         raise InputError("power", given["power"], "allowed is True or False")
     if given["mu"] is None:
@@ -127,6 +131,14 @@ def asked(scene: str, given: Mapping[str, object]) -> Question:
         about = {name: text for name, text in about.items() if name != sought}
     settings = (sought, share and share.si, accepted.si, about)
     return Question(given, contact, motion, drive, bodies, carriers, *settings)
+
+
+def _is_sequence(value):
+    """Whether a value is an array, a list or a column of a table, with a unit or without."""
+    values = getattr(value, "magnitude", value)  # of a pint quantity
+    if isinstance(values, str | bytes | Mapping):
+        return False
+    return hasattr(values, "__len__") and getattr(values, "ndim", 1) > 0
 
 
 def _share(reduction, pulls):

@@ -158,9 +158,20 @@ def _refuse_strange(name):
     if known and not _is_plural_symbol(name, base):
         return
     hint = " (the mil of workshops is thou)" if name in ("mil", "mils") else ""
+    meant = _in_other_capitals(name)
+    remedy = f" (did you mean {' or '.join(meant)}?)" if meant else ", as in MPa and Hz"
     raise UnitError(
-        f"{name!r} is none of the units that are known here{hint}; capitals count, as in MPa and Hz"
+        f"{name!r} is none of the units that are known here{hint}; capitals count{remedy}"
     )
+
+
+def _in_other_capitals(name):
+    """Symbols of units that differ from a name by capitals alone, such as MPa and mPa for Mpa."""
+    units = registry()
+    prefixes = {units.get_symbol(f"{prefix}meter").removesuffix("m") for prefix in PREFIXES}
+    symbols = {units.get_symbol(base) for base in OTHER}
+    symbols |= {prefix + units.get_symbol(base) for base in METRIC for prefix in prefixes}
+    return sorted(symbol for symbol in symbols if symbol.lower() == name.lower())
 
 
 def _is_plural_symbol(name, base):

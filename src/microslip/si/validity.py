@@ -145,16 +145,18 @@ CHECKS = (
     (
         Rule(
             (("rubbers", 1.0, 0.0),),
-            f"Poisson's ratio from {RUBBERY:g} on is that of rubber, whose modulus rises with the "
-            "frequency and whose losses inside rub too: give Young's modulus at this frequency; "
-            "the losses are left out",
+            f"Poisson's ratio from {RUBBERY:g} on is that of rubber and soft polymers, whose "
+            "modulus rises with the frequency and whose losses inside rub too: give Young's "
+            "modulus at this frequency; the losses are left out",
         ),
     ),
 )
 """Rules in the order in which they are told; of those that stand together the first that holds."""
 PROPERTIES = {"hardness": "whether the bodies stay elastic", "density": "inertia"}
 """What a body may come without, and what cannot be checked then."""
-NOT_GIVEN = "{what} (no {name} given)"
+NOT_GIVEN = "{what} (no {name} given for {whose})"
+SIDES = ("the body", "the counterbody")
+"""How the two bodies are called in sentences."""
 
 
 def broken_assumptions(contact: TwoBodies, motion: RealMotion) -> list[str]:
@@ -175,12 +177,13 @@ def _holds(rule, known):
 
 
 def unchecked(contact: TwoBodies) -> list[str]:
-    """What could not be checked, for want of which property: list of texts."""
-    return [
-        NOT_GIVEN.format(what=what, name=name)
-        for name, what in PROPERTIES.items()
-        if any(getattr(b, name) is None and not b.rigid for b in contact.bodies)
-    ]
+    """What could not be checked, for want of which property of which body: list of texts."""
+    sides, found = list(zip(SIDES, contact.bodies, strict=True)), []
+    for name, what in PROPERTIES.items():
+        whose = [side for side, b in sides if getattr(b, name) is None and not b.rigid]
+        if whose:
+            found.append(NOT_GIVEN.format(what=what, name=name, whose=" and ".join(whose)))
+    return found
 
 
 def measures(contact: TwoBodies, motion: RealMotion) -> dict[str, float | None]:

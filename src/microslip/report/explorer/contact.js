@@ -169,9 +169,12 @@ function warningsOf(si, measures) {
 }
 
 function uncheckedOf(si, { bodies }) {
-  return Object.entries(si.properties)
-    .filter(([name]) => bodies.some((body) => body[name] === null && body.young !== Infinity))
-    .map(([name, what]) => si.not_given.replace("{what}", what).replace("{name}", name));
+  return Object.entries(si.properties).flatMap(([name, what]) => {
+    const whose = si.whose.filter((_, k) =>
+      bodies[k][name] === null && bodies[k].young !== Infinity).join(" and ");
+    const said = si.not_given.replace("{what}", what).replace("{name}", name);
+    return whose ? [said.replace("{whose}", whose)] : [];
+  });
 }
 
 // All that is said of a question; `maps`: certified maps. Raises Refusal for what is no contact. Where

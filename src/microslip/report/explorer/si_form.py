@@ -86,6 +86,7 @@ def packed() -> dict:
         "checks": [[rule._asdict() for rule in rules] for rules in validity.CHECKS],
         "properties": validity.PROPERTIES,
         "not_given": validity.NOT_GIVEN,
+        "whose": validity.SIDES,
         "adhesion": validity.ADHESION,
         "range": validity.RANGE,
         "short": validity.SHORT,
