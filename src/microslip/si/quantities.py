@@ -8,7 +8,6 @@ else passes: of a text that is not understood from its first to its last charact
 from __future__ import annotations
 
 import math
-import re
 import sys
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
@@ -17,7 +16,17 @@ from numbers import Real
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.si.units import TURN_RATE, Unit, UnitError, exact, full_turn, read_unit, si_unit
+from microslip.si.units import (
+    TURN_RATE,
+    Unit,
+    UnitError,
+    exact,
+    full_turn,
+    read_unit,
+    si_unit,
+    split_number,
+    stopped,
+)
 from microslip.si.units import registry as registry  # whoever builds quantities for this module
 
 EXAMPLES = {
@@ -43,11 +52,6 @@ OTHER_KINDS = {
     ("m/s", tuple(TURN_RATE.items())): "a rotation; its speed is the rate in rad/s times a radius",
 }
 """Hints by the SI unit that is needed and the root units of the one that was written instead."""
-
-_NUMBER = re.compile(r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?", re.ASCII)
-_NOT_FINITE = re.compile(r"[+\-−]?(?:infinity|inf|nan)(?![^\W\d_])", re.IGNORECASE)
-_FRACTION = re.compile(r"/\s*([1-9]\d*)\s*(.*)", re.ASCII | re.DOTALL)
-"""What follows the numerator of a fraction."""
 
 
 @dataclass(frozen=True)
@@ -146,7 +150,7 @@ def _described(unit):
 
 
 def _from_text(text, unit):
-    digits, rest = _split(text)
+    digits, rest = split_number(text)
     try:
         zero = Decimal(digits) == 0
     except InvalidOperation:  # an exponent of twenty digits, which float takes all the same
@@ -157,7 +161,7 @@ def _from_text(text, unit):
         raise UnitError(f"read {digits}, which is beyond the range of floating-point numbers")
     if unit == "":
         if rest not in ("", "%", "percent"):
-            raise UnitError(_stopped(digits, rest))
+            raise UnitError(stopped(digits, rest))
         value = exact(Decimal(digits), Decimal(1), Decimal(100 if rest else 1))
         shown = ""
     else:
@@ -167,34 +171,6 @@ def _from_text(text, unit):
     return Given(value, f"{' '.join(text.split())}{shown}")
 
 
-def _split(text):
-    """The number at the start of a text, as digits that float takes, and what follows it."""
-    text = text.strip()
-    number = _NUMBER.match(text)
-    if _NOT_FINITE.match(text):
-        raise UnitError("it is not finite")
-    if not text:
-        raise UnitError("the text is empty")
-    if number is None:
-        hint = _of_other_digits(text.lstrip("+-−."))
-        raise UnitError(f"stopped at {text!r}, where a number was expected{hint}")
-    return number[0].replace("−", "-"), text[number.end() :].lstrip()
-
-
-def _stopped(read_so_far, rest):
-    hint = ", since decimals follow a point and nothing parts thousands" if "," in rest else ""
-    fraction = _FRACTION.fullmatch(rest)
-    if fraction:
-        value = exact(Decimal(read_so_far), Decimal(1), Decimal(fraction[1]))
-        hint = f" (did you mean {f'{value!r} {fraction[2]}'.strip()!r}?)"
-    return f"read {read_so_far} and stopped at {rest!r}{hint or _of_other_digits(rest)}"
-
-
-def _of_other_digits(text):
-    """A hint if a text begins with a digit of another script than Latin."""
-    return ", since numbers have the digits 0 to 9" if re.match(r"(?![0-9])\d", text) else ""
-
-
 def _with_unit(digits, rest, unit):
     """Value of a number with the text of its unit, and what there is to say of it."""
     if not rest and Decimal(digits) == 0:  # 0 is the same in all units
@@ -202,7 +178,7 @@ def _with_unit(digits, rest, unit):
     if not rest:
         raise UnitError(f"{digits} is a number without a unit")
     if not (rest[0].isalpha() or rest[0] == "°"):
-        raise UnitError(_stopped(digits, rest))
+        raise UnitError(stopped(digits, rest))
     try:
         found = read_unit(rest)
     except UnitError as error:

@@ -1,4 +1,4 @@
-"""Units of texts: a strict grammar, a list of the names that count, and pint for their values."""
+"""Numbers and units of texts: a strict grammar, the names that count, and pint for their values."""
 
 from __future__ import annotations
 
@@ -44,6 +44,10 @@ CYCLIC = ("hertz", "counts_per_second")
 TURN_RATE = {"radian": 1, "second": -1}
 """Root units of what turns; pint itself takes radians for pure numbers."""
 
+_NUMBER = re.compile(r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?", re.ASCII)
+_NOT_FINITE = re.compile(r"[+\-−]?(?:infinity|inf|nan)(?![^\W\d_])", re.IGNORECASE)
+_FRACTION = re.compile(r"/\s*([1-9]\d*)\s*(.*)", re.ASCII | re.DOTALL)
+"""What follows the numerator of a fraction."""
 _NAME = re.compile(r"[^\W\d⁻¹²³]+|°")
 _POWER = re.compile(r"\s*(?:\^|\*\*)\s*(-?[1-9])(?!\d)|(⁻?[¹²³])(?!\w)")
 _SIGN = re.compile(r"\s*(?:([*·⋅])(?!\*)|(/))\s*")
@@ -200,3 +204,32 @@ def exact(number: Decimal, ratio: Decimal, over: Decimal = Decimal(1)) -> float:
     """number * ratio / over as a float, rounded once."""
     with localcontext(_EXACT):
         return float(number * ratio / over)
+
+
+def split_number(text: str) -> tuple[str, str]:
+    """The number at the start of a text, as digits that float takes, and what follows it."""
+    text = text.strip()
+    number = _NUMBER.match(text)
+    if _NOT_FINITE.match(text):
+        raise UnitError("it is not finite")
+    if not text:
+        raise UnitError("the text is empty")
+    if number is None:
+        hint = _of_other_digits(text.lstrip("+-−."))
+        raise UnitError(f"stopped at {text!r}, where a number was expected{hint}")
+    return number[0].replace("−", "-"), text[number.end() :].lstrip()
+
+
+def stopped(read_so_far: str, rest: str) -> str:
+    """Where reading stopped, with a hint at what may be meant."""
+    hint = ", since decimals follow a point and nothing parts thousands" if "," in rest else ""
+    fraction = _FRACTION.fullmatch(rest)
+    if fraction:
+        value = exact(Decimal(read_so_far), Decimal(1), Decimal(fraction[1]))
+        hint = f" (did you mean {f'{value!r} {fraction[2]}'.strip()!r}?)"
+    return f"read {read_so_far} and stopped at {rest!r}{hint or _of_other_digits(rest)}"
+
+
+def _of_other_digits(text):
+    """A hint if a text begins with a digit of another script than Latin."""
+    return ", since numbers have the digits 0 to 9" if re.match(r"(?![0-9])\d", text) else ""
