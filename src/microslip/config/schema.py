@@ -122,8 +122,6 @@ def _as_number(text):
         value = float(text)
     except ValueError:
         return "allowed: a number"
-    if not text.isascii():
-        return "allowed: a number, in the digits 0 to 9"
     if not math.isfinite(value):
         return "allowed: a finite number"
     mantissa, _, exponent = text.lower().partition("e")
