@@ -199,6 +199,11 @@ def test_a_contact_that_sticks_drives_nothing():
     [
         (("transverse", 1.0), "scene = 'transverse': allowed is a motion that drives"),
         (("elliptic", 1.0), "scene = 'elliptic': allowed is a motion that drives"),
+        # after half a period of the common divisor the way back is the image of the way forward
+        (("elliptic:lateral=0.8,lateral_cycles=2,phase=70", 1.7), "a motion that drives"),
+        (("elliptic:forward_cycles=6,lateral_cycles=2,phase=30", 1.0), "a motion that drives"),
+        (("normal:forward=1,normal_cycles=2", 1.0), "a motion that drives"),
+        (("normal:forward=1,lateral=1,lateral_cycles=2,normal_cycles=4", 1.0), "that drives"),
         ((EIGHT, 0.0), "amplitude = 0.0: allowed is a number above 0"),
         ((EIGHT, -1.0), "amplitude = -1.0"),
         ((EIGHT, None), "amplitude = None"),

@@ -12,6 +12,7 @@ import numpy as np
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
+from microslip.motions.mirror_image import reverses_forward
 from microslip.motions.motion import HALF_PERIOD, LOOP, Motion, stick_focus
 
 SUMMARY = "sliding forward while oscillating along two directions"
@@ -55,7 +56,6 @@ def motion(
     ahead, aside, _ = displacement(LOOP, 0.0, 1.0, 0.0)
     reach = float(np.hypot(ahead, aside).max())
     mirrored = lateral_cycles % 2 == 1 and (forward == 0.0 or forward_cycles % 2 == 0)
-    both_odd = forward_cycles % 2 == lateral_cycles % 2 == 1
     simple = forward_cycles == lateral_cycles == 1.0
     return Motion(
         name=name,
@@ -69,6 +69,8 @@ def motion(
         amplitude_label="A / u_lim",
         turns=lambda velocity, amplitude: HALF_PERIOD if mirrored else WHOLE_PERIOD,
         straight=simple and (forward == 0.0 or lead % np.pi == 0.0),
-        drives=forward > 0.0 and lateral > 0.0 and not both_odd,
+        drives=forward > 0.0
+        and lateral > 0.0
+        and not reverses_forward(forward=int(forward_cycles), lateral=int(lateral_cycles)),
         cycles=int(max(forward_cycles if forward else 1.0, lateral_cycles if lateral else 1.0)),
     )

@@ -54,7 +54,7 @@ class Motion:
         The oscillation alone goes to and fro on a line, from the phase -pi/2 to pi/2.
     drives : bool
         The oscillation alone may drive the contact forward, so that friction may be negative;
-        without it the mean force resists, see theory/bounds.py.
+        without it the mean force resists, see theory/bounds.py and mirror_image.reverses_forward.
     cycles : int
         Of the oscillation in a period, along the direction that has more.
     half_disc : bool

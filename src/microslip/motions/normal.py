@@ -17,6 +17,7 @@ import numpy as np
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
 from microslip.motions.elliptic import MOST_CYCLES
+from microslip.motions.mirror_image import reverses_forward
 from microslip.motions.motion import Motion, within_rings
 from microslip.theory import hertz, oscillating_load
 
@@ -102,7 +103,12 @@ def motion(
     turns_odd = angle == 0.0 or angle_cycles % 2 == 1
     ahead_even = forward == 0.0 or forward_cycles % 2 == 0
     mirrored = normal_cycles % 2 == 0 and aside_odd and turns_odd and ahead_even
-    opposite = normal_cycles % 2 == 0 and aside_odd and forward_cycles % 2 == 1
+    reverses = reverses_forward(
+        forward=int(forward_cycles),
+        lateral=int(lateral_cycles) if lateral else 0,
+        angle=int(angle_cycles) if angle else 0,
+        load=int(normal_cycles),
+    )
     alone = lateral == forward == angle == 0.0
     return Motion(
         name=name,
@@ -117,7 +123,7 @@ def motion(
         amplitude_label="A",
         turns=turns,
         straight=alone,
-        drives=forward > 0.0 and not opposite,
+        drives=forward > 0.0 and not reverses,
         cycles=int(
             max(
                 normal_cycles,

@@ -16,8 +16,9 @@ All hold for any nu and any stiffness.  Arguments are the paper's dimensionless 
 Friction never falls with the forward velocity: two marches of the same oscillation at velocities v1
 and v2 that have become periodic dissipate no less than nothing on the difference of their motions,
 (mu1 - mu2)(v1 - v2) >= 0, since Coulomb's law at given pressure is monotone and the half-space is
-elastic.  Where half a period later the oscillation is its own negative, friction is odd in the
-velocity, and so it is never negative for v > 0.  Other paths may drive the contact (scene.drives).
+elastic.  Where the oscillation reverses its forward motion under the same load half a period later
+(motions/mirror_image.py), friction is odd in the velocity, and so it is never negative for v > 0.
+Other motions may drive the contact (Motion.drives).
 """
 
 from __future__ import annotations
