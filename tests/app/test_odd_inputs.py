@@ -109,6 +109,8 @@ GOOD = {
     "history": {"scene": "transverse", "velocity": 0.5, "amplitude": 0.5, "cells": 4, "steps": 8},
     "period": {"scene": "transverse", "velocity": 0.5, "amplitude": 0.5, "cells": 4, "steps": 8},
     "traction_field": {"scene": "continuous-bore", "velocity": 0.5},
+    "drive": {"scene": "normal:forward=1,phase=90", "amplitude": 0.5},
+    "shakedown": {"scene": "transverse", "amplitude": 0.5, "force": 0.1},
     "solve_stored": {"scene": "transverse", "velocity": 0.5, "amplitude": 0.5},
     "open_map": {"name": "transverse"},
     "Material": {"young": "210 GPa", "poisson": 0.3},

@@ -243,7 +243,7 @@ SPAN, HUGE, HIDDEN = np.timedelta64(16), 10**5000, np.ma.array(0.5, mask=True)
 NO_NUMBERS = [None, [0.5], {"a": 1}, "0.5", b"0.5", True, np.True_, 0.5j, Decimal("0.5")]
 NO_NUMBERS += [Fraction(1, 2), np.array([0.5]), np.array(0.5), HIDDEN, SPAN, float, pd.NA]
 NO_NUMBERS += [datetime.datetime(2020, 1, 1), pd.Timestamp("2020-01-01"), HUGE]
-NAMES = [None, 1, ["a"], b"a", HUGE, np.array(["a"]), SPAN]
+NAMES = [None, 1, ["a"], b"a", HUGE, np.array(["a"]), SPAN, pd.Series(["hertz", "a"])]
 
 CALLS = [("solve", {"velocity": value}, "velocity = ") for value in NO_NUMBERS]
 CALLS += [("solve", {"poisson": value}, "poisson = ") for value in NO_NUMBERS]
@@ -286,6 +286,13 @@ CALLS += [
     ("history", {"steps": 10**12}, "steps = 1000000000000: allowed is"),
     ("history", {"steps": HUGE}, "steps = "),
     ("history", {"cells": SPAN}, "cells = "),
+    ("history", {"cells": 1}, "cells = 1: allowed is a whole number of at least 2"),
+    *(
+        (function, {"pressure": pd.Series(["hertz", "punch"])}, "pressure = ")
+        for function in ("history", "period", "drive", "shakedown")
+    ),
+    ("drive", {"progress": 5}, "progress = 5: allowed is a function"),
+    ("shakedown", {"progress": 5}, "progress = 5: allowed is a function"),
     ("history", {"cells": 10**7}, "cells = 10000000: allowed is"),
     ("history", {"start": ["full-slip"]}, "start = ['full-slip']: allowed is one of"),
     ("history", {"start": np.array(["full-slip", "a"])}, "start = "),

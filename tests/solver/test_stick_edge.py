@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import microslip
+from microslip.foundation.errors import InputError
 from microslip.models.rings.mesh import Focus, make_rings
 from microslip.motions.by_name import motion_named
 from microslip.pressures.by_name import pressure_named
@@ -155,6 +156,15 @@ def test_two_rings_have_room_for_the_first_of_two_radii():
 def test_radii_without_order_or_outside_are_refused(radii):
     with pytest.raises(ValueError, match="allowed are radii in 0..1, increasing"):
         make_rings(8, Focus(radii, 0.5))
+
+
+@pytest.mark.parametrize(
+    ("pressure", "radii"),
+    [("hertz", (0.0, 0.5)), ("hertz", (0.5, 1.0)), ("ring:inner=0.5", (0.3, 0.7))],
+)
+def test_several_radii_of_which_one_is_an_edge_already_are_refused(pressure, radii):
+    with pytest.raises(InputError, match="allowed are several radii between"):
+        make_rings(8, Focus(radii), pressure_named(pressure))
 
 
 # What it is worth

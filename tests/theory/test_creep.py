@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from microslip.foundation.errors import InputError
 from microslip.theory.creep import antiphase_creep, bore_creep, transverse_creep
 from microslip.theory.hertz import mindlin_force
 from microslip.theory.paper import bore_forward
@@ -41,6 +42,11 @@ def test_ends(creep):
     assert np.isinf(creep(1.0, 1.0)) and np.isinf(creep(1.5, 1.0))
     with pytest.raises(ValueError, match="force = -0.1"):
         creep(-0.1, 1.0)
+
+
+def test_a_force_that_rounding_does_not_tell_from_full_friction_is_refused():
+    with pytest.raises(InputError, match="force = 0.99999999999999: allowed are forces up to"):
+        bore_creep(1.0 - 1e-14, 1.0)
 
 
 @pytest.mark.parametrize("force", [0.02, 0.3, 0.8])

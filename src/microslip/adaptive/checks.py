@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from microslip.foundation.arguments import LARGEST, LARGEST_BODY, count, is_real, real
 from microslip.foundation.errors import InputError
 from microslip.motions.by_name import motion_named
@@ -110,6 +112,12 @@ def refuse_bounds(**given: float | None) -> None:
     for name, value in given.items():
         if value is not None and not (is_real(value) and value > 0.0):
             raise InputError(name, value, "allowed is a number above 0")
+
+
+def refuse_progress(progress: Callable | None) -> None:
+    """Raise InputError where `progress` is neither None nor callable."""
+    if progress is not None and not callable(progress):
+        raise InputError("progress", progress, "allowed is a function of one argument")
 
 
 def _count(name, value, low):

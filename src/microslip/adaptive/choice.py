@@ -40,6 +40,8 @@ def choose_model(
     InputError
         For an unknown model or one that does not apply.
     """
+    if not isinstance(model, str) or model not in ("auto", *MODELS):
+        raise InputError("model", model, f"allowed is one of auto, {', '.join(MODELS)}")
     if model == "auto":
         by_squares = static and motion.depth is None and not motion.half_disc
         if by_squares or not motion.pressure.is_round:
@@ -56,8 +58,6 @@ def choose_model(
                 given = ("pressure", motion.pressure.name)
             raise InputError(*given, f"does not go with {motion.name}: {why}")
         return name
-    if not isinstance(model, str) or model not in MODELS:
-        raise InputError("model", model, f"allowed is one of auto, {', '.join(MODELS)}")
     refusal = MODELS[model].refuses(motion, poisson)
     if refusal:
         raise InputError("model", model, f"does not apply to {motion.name}: {refusal}")

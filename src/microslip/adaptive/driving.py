@@ -34,7 +34,12 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.adaptive.asked import TOLERANCE, Asked, budget_for
-from microslip.adaptive.checks import checked_driving, checked_request, refuse_bounds
+from microslip.adaptive.checks import (
+    checked_driving,
+    checked_request,
+    refuse_bounds,
+    refuse_progress,
+)
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.driving_line import DrivingLine
 from microslip.adaptive.moved import marched
@@ -102,6 +107,7 @@ def drive(
     tolerance, _, _ = checked_request(tolerance, None, None)
     points = count("points", points, 2, most=MOST_POINTS)
     refuse_bounds(most_work=most_work, time_limit=time_limit)
+    refuse_progress(progress)
     name = choose_model(motion, poisson, model)
     asked = Asked(
         problem=Problem(motion, 0.0, amplitude, poisson),

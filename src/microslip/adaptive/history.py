@@ -73,7 +73,7 @@ def history(
     scene, velocity, amplitude, pressure, poisson, model
         As for `microslip.solve`; velocity above 0.
     cells : int or None
-        Rings or squares.
+        Rings, or squares along a side, at least 2.
     steps : int or None
         Per period (steady motions: over the whole travel).
     start : str
@@ -104,7 +104,7 @@ def history(
     if start == "full-rotation" and not motion.rotates:
         raise InputError("start", start, f"the {motion.name} scene does not rotate")
     if cells is not None:
-        count("cells", cells, 1, most=LARGEST["cells"])
+        count("cells", cells, 2, most=LARGEST["cells"])
     if steps is not None:
         count("steps", steps, 1, most=LARGEST["steps"])
     steps = int(steps or STEPS)

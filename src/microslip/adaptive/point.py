@@ -12,6 +12,7 @@ from microslip.adaptive.checks import (
     checked_point,
     checked_request,
     refuse_bounds,
+    refuse_progress,
 )
 from microslip.adaptive.choice import choose_model, method_refusal
 from microslip.adaptive.result import Result
@@ -107,8 +108,7 @@ def solve(
     )
     tolerance, cells, steps = checked_request(tolerance, cells, steps)
     refuse_bounds(most_work=most_work, time_limit=time_limit)
-    if progress is not None and not callable(progress):
-        raise InputError("progress", progress, "allowed is a function of one argument")
+    refuse_progress(progress)
     name = choose_model(motion, poisson, model, static=drive is None and velocity == 0.0)
     how = method_named(method)
     _refuse_method(motion, name, method, how)

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields, replace
 
 from microslip.adaptive.asked import Asked, budget_for, verdict
-from microslip.adaptive.checks import checked_point, checked_request, refuse_bounds
+from microslip.adaptive.checks import checked_point, checked_request, refuse_bounds, refuse_progress
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.pulled import refuse_drive
 from microslip.adaptive.refinement import certify, run_tolerance
@@ -154,6 +154,7 @@ def shakedown(
         raise InputError("tolerance", tolerance, "allowed is a number")
     tolerance, _, _ = checked_request(tolerance, None, None)
     refuse_bounds(most_work=most_work, time_limit=time_limit)
+    refuse_progress(progress)
     name = choose_model(motion, poisson, model)
     problem = without_forward_motion(Problem(motion, 0.0, amplitude, poisson))
     refuse_drive(problem, Drive(force=force), name)

@@ -52,8 +52,8 @@ def motion_named(name: str, pressure: str = HERTZ.name) -> Motion:
     """The motion of this name, or of a family for the numbers that follow its name, such as
     "elliptic:forward=0.5,phase=90", under the pressure of this name (see pressures.by_name).
     Raises InputError saying what is allowed."""
-    motion = _motion_named(name)
-    return motion if pressure == HERTZ.name else _under(motion, pressure_named(pressure))
+    motion, under = _motion_named(name), pressure_named(pressure)
+    return motion if under is HERTZ else _under(motion, under)
 
 
 def read_otherwise(motion: Motion) -> list[Motion]:

@@ -9,11 +9,13 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
+from microslip.foundation.errors import InputError
 from microslip.theory.hertz import checked
 from microslip.theory.paper import bore_forward
 
 _FASTEST = 1e6
-"""Velocity above which a bore lacks less of full friction than any force here does."""
+"""Largest velocity of a steady bore: its friction, 1 - 0.1/v^2, is within 1e-13 of full friction,
+so that rounding of the force (1e-16) already moves the velocity by 1e-3 of itself."""
 
 
 def transverse_creep(
@@ -48,8 +50,9 @@ def transverse_creep(
 def bore_creep(force: np.ndarray | float, amplitude: np.ndarray | float) -> np.ndarray | float:
     """Mean velocity under oscillating bore, (2/pi) E^-1(P) with the friction E of Eq 21.
 
-    Arguments and errors as `transverse_creep`.  In the unit of the velocity of that motion, which
-    is proportional to the amplitude, so that nothing else depends on it.
+    Arguments and errors are those of `transverse_creep`; forces between 1 - 1e-13 and 1 are
+    refused, too.  The velocity is in the unit of that motion, which is proportional to the
+    amplitude, so that it does not depend on the amplitude.
     """
     steady = np.vectorize(_steady_bore, otypes=[float])(checked("force", force))
     return np.broadcast_arrays(2.0 / np.pi * steady, checked("amplitude", amplitude))[0].copy()
@@ -59,6 +62,9 @@ def _steady_bore(force):
     """Velocity of a steady bore whose forward friction is `force` (inverse of Eq 21)."""
     if force >= 1.0:
         return np.inf
+    if force > bore_forward(_FASTEST):
+        allowed = "allowed are forces up to 1 - 1e-13, and from 1 on, where the contact runs away"
+        raise InputError("force", float(force), allowed)
     return brentq(lambda velocity: float(bore_forward(velocity)) - force, 0.0, _FASTEST, xtol=1e-14)
 
 

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from microslip.foundation.errors import InputError
 from microslip.pressures.by_name import HERTZ
 from microslip.pressures.pressure import Pressure
 
@@ -69,17 +70,21 @@ def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressur
 
     Raises
     ------
-    ValueError
-        For count < 2, or a focus outside 0..1 or without order.
+    InputError
+        For count < 2, or a focus outside 0..1 or without order; for several radii of which one lies
+        on the edge of the contact or of its hole, or in the middle, where an edge is in any case.
     """
     if count < 2:
-        raise ValueError(f"cells = {count}: allowed is a whole number of at least 2 rings")
+        raise InputError("cells", count, "allowed is a whole number of at least 2 rings")
     if focus is None:
         return _of_edges(np.linspace(0.0, np.pi / 2, count + 1), pressure)
     radii, strength = _as_focus(focus)
     # rings begin at the edge of a hole, if there is one
     hole = pressure.inner**2
     inside = np.sqrt(np.maximum(np.square(radii) - hole, 0.0) / (1.0 - hole))
+    if len(radii) > 1 and not 0.0 < inside[0] <= inside[-1] < 1.0:
+        allowed = f"allowed are several radii between {pressure.inner:g} and 1, ends not included"
+        raise InputError("focus", radii, allowed)
     places = np.arcsin(np.unique(inside)[: max(count // 2, 1)])
     return _of_edges(_focused(count, places, strength), pressure)
 
@@ -98,9 +103,8 @@ def _as_focus(focus):
     ordered = radii and all(one < other for one, other in zip(radii, radii[1:], strict=False))
     within = radii and radii[0] >= 0.0 and radii[-1] <= 1.0 and 0.0 <= focus.strength < 1.0
     if not (ordered and within):
-        raise ValueError(
-            f"focus = {focus}: allowed are radii in 0..1, increasing, and a strength in 0..1"
-        )
+        allowed = "allowed are radii in 0..1, increasing, and a strength in 0..1"
+        raise InputError("focus", focus, allowed)
     return focus
 
 
