@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from microslip.app.job_log import job_log, plain_words
+from microslip.foundation.errors import SolverError
 from microslip.sweeps.sealed_files import CacheError
 
 FULL = Path("/dev/full")
@@ -44,6 +45,12 @@ def test_a_job_that_fails_on_a_full_disk_says_one_line(capsys):
     with pytest.raises(SystemExit), job_log(FULL):
         raise CacheError("cannot write x: No space left on device")
     assert capsys.readouterr().err == "Error: cannot write x: No space left on device\n"
+
+
+def test_a_batch_in_which_every_point_failed_is_one_line(tmp_path, capsys):
+    with pytest.raises(SystemExit), job_log(tmp_path / "log"):
+        raise SolverError("every point of this batch failed (6)")
+    assert capsys.readouterr().err == "Error: every point of this batch failed (6)\n"
 
 
 def test_a_log_that_cannot_be_opened_gives_one_line(tmp_path):

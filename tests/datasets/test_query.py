@@ -2,6 +2,7 @@
 
 import errno
 import json
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +27,16 @@ def made_up(velocity=VELOCITY, amplitude=AMPLITUDE, error=0.0, **more):
     """A map of Eq 6 with a stiffer amplitude: smooth, 1 at amplitude 0, rising with velocity."""
     v, a = np.meshgrid(velocity, amplitude)
     return map_of(paper.large_amplitude_transverse(v, a**1.5), velocity, amplitude, error, **more)
+
+
+def test_a_dataset_can_be_pickled_after_it_was_asked():
+    data = made_up()
+    place = {"velocity": 0.3, "amplitude": 1.1}
+    answer = data.friction.at(**place)
+    copy = pickle.loads(pickle.dumps(data))
+    assert copy.identical(data)
+    assert copy.friction.at(**place).identical(answer)
+    assert pickle.loads(pickle.dumps(data.friction)).at(**place).identical(answer)
 
 
 # Interpolation

@@ -58,6 +58,18 @@ def test_trials_are_rows_with_their_errors(accuracy):
     assert (rows_of(accuracy, point="steady").trial_steps.values == 0).all()
 
 
+def test_the_dataset_names_every_computer_that_it_was_timed_on():
+    def timed(request):
+        result = accuracy_result(request)
+        if "seconds" in result:
+            host = "a" if request["kind"] == "scaling" else "b"
+            result["machine"] = {"cpu": "AMD EPYC 7B13", "host": host, "threads": 1}
+        return result
+
+    data = registry.build("accuracy", configured(), answered(timed)[0])
+    assert data.timed_on == ("AMD EPYC 7B13, host a, threads 1; AMD EPYC 7B13, host b, threads 1")
+
+
 def test_the_choice_that_follows_a_tolerance_claims_an_error(accuracy):
     auto = rows_of(accuracy, point="mid", model="auto")
     assert set(auto.trial_method.values) == {"shipped"}

@@ -15,7 +15,7 @@ from stubs.sweep_stub import EFFORT, Solver
 import microslip
 from microslip.config import load
 from microslip.datasets import netcdf, point_variables, sweep_dataset
-from microslip.foundation.errors import InputError
+from microslip.foundation.errors import InputError, SolverError
 from microslip.sweeps import batches, sealed_files
 from microslip.sweeps.cache import Store
 from microslip.sweeps.sealed_files import CacheError
@@ -123,7 +123,7 @@ def test_errors_convergence_and_effort_are_there(tmp_path, monkeypatch):
 
 def test_a_point_that_the_solver_failed_at_is_a_gap(tmp_path, monkeypatch, solver):
     def fail(*_, **__):
-        raise RuntimeError("stalled")
+        raise SolverError("stalled")
 
     monkeypatch.setattr("microslip.solve", fail)
     data = built("continuous_bore", tmp_path)
@@ -256,14 +256,14 @@ def test_large_datasets_are_chunked_and_open_with_dask(tmp_path, monkeypatch, so
 
 def test_a_single_run_that_fails_is_left_out_and_listed(tmp_path, monkeypatch, solver):
     def fail(*_, **__):
-        raise ValueError("a root finder found none")
+        raise SolverError("a root finder found none")
 
     monkeypatch.setattr("microslip.history", fail, raising=False)
     data = built("transverse", tmp_path)
     assert not [name for name in data.variables if name.startswith("history_")]
     assert data.converged.all()
     *_, last = sweep_dataset.report(data)
-    assert last == "  single runs left out: history: ValueError: a root finder found none"
+    assert last == "  single runs left out: history: SolverError: a root finder found none"
     with on_disk("continuous_bore", tmp_path) as data:
         assert "transient_torque" not in data and "field_bound" not in data
 

@@ -4,12 +4,16 @@ import errno
 import json
 import math
 
+import numpy as np
 import pytest
 from stubs.sweep_stub import EFFORT, Solver
 
+import microslip
 from microslip.config import load
 from microslip.foundation import source_digest
-from microslip.foundation.errors import InputError
+from microslip.foundation.errors import InputError, SolverError
+from microslip.models.contact import StepFailure
+from microslip.solver.budget import Spent
 from microslip.sweeps import batch_files, evaluate, sealed_files
 from microslip.sweeps import batches as sweep
 from microslip.sweeps.cache import Store
@@ -94,11 +98,21 @@ def test_what_a_batch_holds_is_what_the_solver_said(monkeypatch, store, tmp_path
         list(sweep.records_for(requests, paths))
 
 
-def test_a_batch_with_a_point_that_failed_is_whole_and_made_again(monkeypatch, store, tmp_path):
-    def fail(*_, **__):
-        raise MemoryError
+def failing_at(monkeypatch, error, amplitude=2.0):
+    """Have the stub of the solver raise an error at one amplitude."""
+    Solver(monkeypatch)
+    solve = microslip.solve
 
-    monkeypatch.setattr("microslip.solve", fail, raising=False)
+    def fail(scene, velocity, place, **settings):
+        if place == amplitude:
+            raise error
+        return solve(scene, velocity, place, **settings)
+
+    monkeypatch.setattr("microslip.solve", fail)
+
+
+def test_a_batch_with_a_point_that_failed_is_whole_and_made_again(monkeypatch, store, tmp_path):
+    failing_at(monkeypatch, SolverError("stalled"))
     records, done = sweep.run_batch(requests_of(), store)
     path = tmp_path / "batch.json"
     batch_files.write_batch(path, records, done["final"])
@@ -173,50 +187,73 @@ def test_points_that_do_not_converge_are_data(monkeypatch, store):
     assert record["result"]["reason"] == "no periodic state"
 
 
-ERRORS = [
-    ZeroDivisionError("division"),
-    RuntimeError("stalled"),
-    ValueError("f(a) and f(b) must have different signs"),
-    AssertionError("not so"),
-    KeyError("q"),
-    RecursionError("too deep"),
-    MemoryError("no room"),
+GAPS = [
+    SolverError("stalled"),
+    StepFailure("diverged"),
+    Spent("the work is spent"),
     InputError("velocity", -1, "allowed is a number of at least 0"),
 ]
 
 
-@pytest.mark.parametrize("error", ERRORS, ids=lambda error: type(error).__name__)
+@pytest.mark.parametrize("error", GAPS, ids=lambda error: type(error).__name__)
 def test_a_point_at_which_the_solver_fails_is_data_too(monkeypatch, store, error):
-    def fail(*_, **__):
-        raise error
-
-    monkeypatch.setattr("microslip.solve", fail, raising=False)
+    failing_at(monkeypatch, error)
     records, _ = sweep.run_batch(requests_of(), store)
-    assert not any(record["result"]["converged"] for record in records)
-    record, _ = sweep.answer(requests_of()[0], store)
-    assert record["result"]["reason"] == f"{type(error).__name__}: {error}"
-    assert not list(store.folder.rglob("*.json"))  # whoever asks next has it computed again
+    assert [record["result"]["converged"] for record in records] == 4 * [True] + 2 * [False]
+    assert records[-1]["result"]["reason"] == f"{type(error).__name__}: {error}"
+    assert len(list(store.folder.rglob("*.json"))) == 4  # the others are computed again
+
+
+ERRORS_OF_THE_CODE = [
+    TypeError("unsupported operand"),
+    ZeroDivisionError("division"),
+    ValueError("f(a) and f(b) must have different signs"),
+    np.linalg.LinAlgError("Singular matrix"),
+    AssertionError("not so"),
+    KeyError("q"),
+    RecursionError("too deep"),
+    MemoryError("no room"),
+]
+
+
+@pytest.mark.parametrize("error", ERRORS_OF_THE_CODE, ids=lambda error: type(error).__name__)
+def test_an_error_of_the_code_fails_the_batch(monkeypatch, store, error):
+    failing_at(monkeypatch, error)
+    with pytest.raises(type(error)):
+        sweep.run_batch(requests_of(), store)
+    assert len(list(store.folder.rglob("*.json"))) == 4  # the points before it are kept
+
+
+def test_a_batch_in_which_every_point_fails_is_no_data(monkeypatch, store):
+    Solver(monkeypatch)
+
+    def fail(*_, **__):
+        raise SolverError("stalled")
+
+    monkeypatch.setattr("microslip.solve", fail)
+    with pytest.raises(SolverError, match=r"every point of this batch failed \(6\).*: stalled"):
+        sweep.run_batch(requests_of(), store)
 
 
 @pytest.mark.parametrize("kind", sorted(sweep.FOLDERS))
-def test_whatever_is_raised_is_a_gap_for_every_kind_of_request(monkeypatch, kind):
+def test_a_failure_of_the_solver_is_a_gap_for_every_kind_of_request(monkeypatch, kind):
     def fail(request):
-        raise ValueError("a root finder\nfound none")
+        raise SolverError("a root finder\nfound none")
 
     monkeypatch.setitem(evaluate._KINDS, kind, fail)
     result = evaluate.computed({"kind": kind})
     assert result["converged"] is False
-    assert result["reason"] == "ValueError: a root finder found none"
+    assert result["reason"] == "SolverError: a root finder found none"
     assert not evaluate.is_final(result)
 
 
 def test_a_point_that_failed_is_computed_again_and_kept_then(monkeypatch, store):
     def fail(*_, **__):
-        raise MemoryError
+        raise SolverError("stalled")
 
     monkeypatch.setattr("microslip.solve", fail, raising=False)
     request = requests_of()[0]
-    assert sweep.answer(request, store)[0]["result"]["reason"] == "MemoryError:"
+    assert sweep.answer(request, store)[0]["result"]["reason"] == "SolverError: stalled"
     solver = Solver(monkeypatch)
     assert sweep.answer(request, store)[0]["result"]["converged"]
     assert sweep.answer(request, store)[0]["result"]["converged"]

@@ -8,6 +8,7 @@ import pytest
 import microslip
 from microslip.app import cli
 from microslip.config import load
+from microslip.foundation.errors import InputError, SolverError
 from microslip.sweeps import batches
 from microslip.sweeps.cache import Store
 from microslip.sweeps.sealed_files import CacheError
@@ -65,9 +66,20 @@ def test_other_physics_tolerance_or_resolution_is_another_point(tmp_path, monkey
     assert len(calls) == 5
 
 
+def test_a_velocity_below_0_is_answered_where_the_motion_drives(tmp_path, monkeypatch):
+    calls = counting(monkeypatch)
+    place = ("normal:forward=1,phase=90", -0.1, 0.5)
+    for _ in range(2):
+        found = microslip.solve_stored(*place, results=tmp_path, tolerance=1e-1)
+    assert without_time(found) == without_time(microslip.solve(*place, tolerance=1e-1))
+    assert len(calls) == 1 + 1
+    with pytest.raises(InputError, match="^velocity = -0.1: "):
+        microslip.solve_stored("transverse", -0.1, 0.5, results=tmp_path)
+
+
 def test_a_failure_comes_back_as_one(tmp_path, monkeypatch):
     def fail(*_, **__):
-        raise ArithmeticError("no such contact")
+        raise SolverError("no such contact")
 
     monkeypatch.setattr(microslip, "solve", fail)
     answer = microslip.solve_stored(*PLACE, results=tmp_path, **SETTINGS)

@@ -10,7 +10,7 @@ from microslip.app.bucket import Bucket
 from microslip.app.plan import Plan
 from microslip.app.progress import Watch
 from microslip.config import schema
-from microslip.foundation import canonical, source_digest
+from microslip.foundation import canonical, machine, source_digest
 from microslip.report.explorer import explorer
 from microslip.sweeps import batch_plans, batches, cache, map_rounds
 
@@ -101,7 +101,12 @@ def requests_of(group, batch):
         requests = PLAN.batches_in(group).get(batch)
     else:
         requests = PLAN.requests_of(group, batch)
-    if requests is None:  # in a job, where the sources are no longer those of the plan
+    if requests is None:  # in a job, where the sources or the CPU are not those of the plan
+        if group in PLAN.groups_of("accuracy_cost"):
+            sys.exit(
+                f"Error: {group}: times on {machine.cpu_model()} were not planned; the solver was "
+                "edited, or the plan was made on another CPU: plan and time on the same model"
+            )
         sys.exit(f"Error: {batches.SourcesEdited('the solver')}")
     return canonical.canonical_json(requests)
 

@@ -11,7 +11,7 @@ from microslip.adaptive.choice import choose_model
 from microslip.adaptive.history import ANGLES, STEP_TOLERANCE
 from microslip.adaptive.whole_disc import points_of, whole_disc
 from microslip.foundation.arguments import LARGEST, count
-from microslip.foundation.errors import InputError
+from microslip.foundation.errors import InputError, SolverError
 from microslip.models.contact import FORWARD, LATERAL, TORQUE
 from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.simulate import simulate
@@ -28,7 +28,7 @@ MIRRORED_FORCES = np.array([1.0, -1.0, -1.0])
 """Signs of the forces half a period later."""
 
 
-class NoPeriodicState(ValueError):
+class NoPeriodicState(SolverError, ValueError):
     """There are no tractions to show: the march broke off, as the message says."""
 
 

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from microslip.foundation.errors import SolverError
 from microslip.sweeps.sealed_files import NO_WRITING, CacheError, advice
 
 
@@ -50,7 +51,7 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
     try:
         yield log
         failed = False
-    except CacheError as error:
+    except (CacheError, SolverError) as error:
         log.error("Error: %s", error)
     except Exception as error:
         if getattr(error, "errno", None) in NO_WRITING:

@@ -1,4 +1,4 @@
-"""The errors that a user can mend: bad input, and a folder that cannot hold results."""
+"""Errors that callers handle: bad input, a failure of the solver, an unusable results folder."""
 
 from __future__ import annotations
 
@@ -37,6 +37,13 @@ class InputError(ValueError):
     def renamed(self, argument: str, value: object = None) -> InputError:
         """The same about another argument, and another value unless that is None."""
         return InputError(argument, self.value if value is None else value, self.allowed)
+
+
+class SolverError(RuntimeError):
+    """The solver failed at a point: a step stays unsolved, or tractions are not finite.
+
+    Only this error becomes a gap in a dataset.  Its message is the reason that the point gives.
+    """
 
 
 class CacheError(RuntimeError):

@@ -7,6 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
+from microslip.foundation.errors import SolverError
 from microslip.models.path import Path
 
 FORWARD, LATERAL, TORQUE = range(3)
@@ -45,7 +46,7 @@ class March:
     stages: np.ndarray | None = None
 
 
-class StepFailure(ArithmeticError):
+class StepFailure(SolverError):
     """A march cannot go on: tractions are not finite, or a step stays unsolved.  The message is the
     reason that a result gives."""
 

@@ -11,6 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from microslip.models.contact import StepFailure
 from microslip.solver.period_map import Goal, PeriodicState, PeriodMap
 
 FORCING = 1e-3
@@ -94,6 +95,9 @@ class Anderson:
             return image
         scaled = [(change * self.scale).ravel() for change in self.changes]
         differences = np.stack([b - a for a, b in pairwise(scaled)], axis=1)
-        weights = np.linalg.lstsq(differences, scaled[-1], rcond=1e-9)[0]
+        try:
+            weights = np.linalg.lstsq(differences, scaled[-1], rcond=1e-9)[0]
+        except np.linalg.LinAlgError as error:
+            raise StepFailure(f"diverged: {error}") from error
         moves = [b - a for a, b in pairwise(self.images)]
         return image - sum(w * move for w, move in zip(weights, moves, strict=True))

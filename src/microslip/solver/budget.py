@@ -10,10 +10,11 @@ from __future__ import annotations
 import math
 import time
 
+from microslip.foundation.errors import SolverError
 from microslip.models.contact import Contact, March
 
 
-class Spent(RuntimeError):
+class Spent(SolverError):
     """A point has taken what it may.  The message says of what, for the reason of its result."""
 
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from microslip.models.contact import StepFailure
 from microslip.solver.period_map import Goal, MarchInterval, PeriodicState, PeriodMap
 
 NEUTRAL = 1e-10
@@ -110,7 +111,10 @@ class Corrector:
     def _invert(self):
         damped = self._system.copy()
         damped.flat[:: len(damped) + 1] += 1.0 + max(self.damping, NEUTRAL)
-        self.inverse = np.linalg.inv(damped)
+        try:
+            self.inverse = np.linalg.inv(damped)
+        except np.linalg.LinAlgError as error:
+            raise StepFailure(f"diverged: {error}") from error
 
     def _update(self, moved, changed):
         """Broyden's update: the inverse turns `changed` into `moved` from now on."""

@@ -95,7 +95,7 @@ def simulate_pulled(
     pulled.slope = accuracy.slope
     try:
         return pulled.run(accuracy.tolerance * pulled.force_of_answer, guess)
-    except (StepFailure, ArithmeticError, np.linalg.LinAlgError) as failure:
+    except StepFailure as failure:
         return failed_run(str(failure))
 
 

@@ -77,11 +77,11 @@ def simulate(
     """
     method = settings.method
     absolute = tolerance * problem.mean_load  # inside of a run forces are over mu F_z
-    if method.run is not None:
-        return method.run(problem, model, resolution, absolute)
     try:
+        if method.run is not None:
+            return method.run(problem, model, resolution, absolute)
         run = _run(problem, model, resolution, absolute, guess, settings)
-    except (StepFailure, ArithmeticError, np.linalg.LinAlgError) as failure:
+    except StepFailure as failure:
         return failed_run(str(failure))
     if method.extrapolated and run.converged:
         half = replace(resolution, steps=max(resolution.steps // 2, 1))

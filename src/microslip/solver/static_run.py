@@ -53,7 +53,7 @@ def simulate_static(
         if at_turning_points(problem.motion):
             return _on_a_line(settings.contact(problem, model, resolution), problem, tolerance)
         return _on_a_loop(problem, model, resolution, tolerance, settings)
-    except (StepFailure, ArithmeticError, np.linalg.LinAlgError) as failure:
+    except StepFailure as failure:
         return failed_run(str(failure))
 
 

@@ -6,10 +6,14 @@
 - point: an ordinary point of a sweep, solved tightly, that the others are compared with;
 - drive: the line of a motion that drives, from stall to no load;
 - scaling: what a step costs at one size.
+
+Requests that are timed (trial, choice, scaling) name the model of the CPU, so that times of
+different CPUs have different keys and never meet in one chart.
 """
 
 from microslip.config.records import StudyPoint
 from microslip.foundation.canonical import number
+from microslip.foundation.machine import cpu_model
 from microslip.studies.ladders import Level, exact_model
 
 RINGS_TOLERANCE, TOLERANCE = 1e-6, 3e-5
@@ -34,6 +38,7 @@ def trial(
     """One timed run; level: ladders.Level.  A steady motion takes no steps."""
     return of_point(point) | {
         "kind": "trial",
+        "cpu": cpu_model(),
         "model": model,
         "method": method,
         "cells": level.cells,
@@ -46,8 +51,8 @@ def trial(
 
 def choice(point: StudyPoint, tolerance: float, repeats: int) -> dict:
     """One timed solve, as anybody would call it."""
-    kind = {"kind": "choice", "tolerance": number(tolerance), "repeats": repeats}
-    return of_point(point) | kind
+    kind = {"kind": "choice", "cpu": cpu_model(), "tolerance": number(tolerance)}
+    return of_point(point) | kind | {"repeats": repeats}
 
 
 def probe(
@@ -76,4 +81,4 @@ def reference(point: StudyPoint, tolerance: float | None = None) -> dict:
 def scaling(model: str, cells: int | None, angles: int, steps: int | None) -> dict:
     """What a step costs with so many cells and angles, over a period of `steps` steps."""
     sizes = {"cells": cells, "angles": angles, "steps": steps}
-    return {"kind": "scaling", "model": model, "poisson": "0"} | sizes
+    return {"kind": "scaling", "cpu": cpu_model(), "model": model, "poisson": "0"} | sizes

@@ -10,18 +10,22 @@ from microslip.foundation.canonical import canonical_json, sha256
 
 
 class Answers:
-    """Results by request; takes note of their names and of the versions of libraries behind them.
+    """Results by request. Collects the keys of the results, the versions of the libraries that
+    computed them, and the computers that times were measured on (machines, a list of dicts).
 
     answer(request) -> record, see microslip.sweeps.batches.
     """
 
     def __init__(self, answer: Callable):
-        self.answer, self.keys, self.versions = answer, set(), set()
+        self.answer, self.keys, self.versions, self.machines = answer, set(), set(), []
 
     def __call__(self, request):
         record = self.answer(request)
         self.keys.add(record["key"])
         self.versions.add(canonical_json(record["versions"]))
+        machine = record["result"].get("machine")
+        if machine is not None and machine not in self.machines:
+            self.machines.append(machine)
         return record["result"]
 
 

@@ -19,6 +19,7 @@ from microslip.config.extended import solver_names
 from microslip.config.records import HISTORIES_OF_SWEEP, Configuration, Sweep
 from microslip.foundation import source_digest
 from microslip.foundation.canonical import number
+from microslip.foundation.errors import SolverError
 from microslip.motions.body_contacts import contacts_of, written
 from microslip.sweeps import batch_files, evaluate
 from microslip.sweeps.cache import Store
@@ -187,7 +188,8 @@ def run_batch(
 
     progress: wraps the list of requests and yields them one by one, such as tqdm. The records
     depend on the requests and the solver alone; times and counts are in the statistics. name: of
-    the batch where it was planned; raises SourcesEdited if it has another one by now.
+    the batch where it was planned; raises SourcesEdited if it has another one by now. Raises
+    SolverError where the solver fails at every point of the batch.
     """
     if name not in (None, name_of_batch(requests)):
         raise SourcesEdited("the solver")
@@ -199,6 +201,9 @@ def run_batch(
         seconds += took
         if not record["result"].get("converged", True):
             log.info("not converged: %s: %s", label(request), record["result"]["reason"])
+    if records and all(record["result"].get("crashed") for record in records):
+        first = f"{label(requests[0])}: {records[0]['result']['reason']}"
+        raise SolverError(f"every point of this batch failed ({len(records)}), first {first}")
     final = all(evaluate.is_final(record["result"]) for record in records)
     statistics = {"points": len(records), "computed": computed, "solver_seconds": seconds}
     statistics["final"] = final

@@ -11,7 +11,8 @@ from statistics import median
 
 import microslip
 from microslip.config.axes import DRIVES
-from microslip.foundation.errors import NO_WRITING, CacheError
+from microslip.foundation import machine
+from microslip.foundation.errors import InputError, SolverError
 
 log = logging.getLogger(__name__)
 
@@ -19,26 +20,20 @@ SHORTEST = 0.02
 """CPU seconds that are worth a reading of the clock; shorter runs are read together."""
 LONG_ENOUGH = 2.0
 """CPU seconds of readings after which no more are taken."""
-FIRST_COUNTS = 8.0
-"""CPU seconds of a first call from which on it is the only one; loading kernels takes some 0.1."""
 
 
 def computed(request: dict, time_limit: float | None = None) -> dict:
     """Ask the solver; the result as a dict of values that JSON can hold.
 
-    time_limit: of a point, as for microslip.solve. Whatever is raised is an answer, too: a result
-    that is not converged, with the exception as its reason in one line, and `crashed`. One point
-    that fails is a gap in the map, not the end of the sweep. But a full disk is nothing of the
-    point's: CacheError and the OSError of one go on.
+    time_limit: of a point, as for microslip.solve. Where the solver fails (SolverError) or refuses
+    the request (InputError) the result is not converged and `crashed`, with the error as its reason
+    in one line: a gap in the dataset. Any other exception propagates: it is an error of the code or
+    of the machine.
     """
     try:
         limits = {} if time_limit is None else {"time_limit": time_limit}
         return plain(_KINDS[request["kind"]](request, **limits))
-    except CacheError:
-        raise
-    except Exception as error:
-        if isinstance(error, OSError) and error.errno in NO_WRITING:
-            raise
+    except (SolverError, InputError) as error:
         log.debug("%s", request, exc_info=True)
         reason = " ".join(f"{type(error).__name__}: {error}".split())
         return {"converged": False, "crashed": True, "reason": reason}
@@ -47,8 +42,7 @@ def computed(request: dict, time_limit: float | None = None) -> dict:
 def is_final(result: dict) -> bool:
     """Whether equal requests have this result for ever.
 
-    Not so what ran out of time or of memory, or fell over what the next version of a library or of
-    the machine may do: that is asked again.
+    False for a point that ran out of time or at which the solver failed: it is computed again.
     """
     return not result.get("crashed") and result.get("exhausted") != "time"
 
@@ -56,15 +50,11 @@ def is_final(result: dict) -> bool:
 def timed(run: Callable, repeats: int) -> tuple[object, float]:
     """Return what `run()` gives and the CPU seconds that it takes, compiled and with warm caches.
 
-    The first call is not counted, unless it takes so long that compiling is next to nothing of it.
-    The seconds are the median of `repeats` readings, or fewer if they take long. CPU time does not
-    count what other processes do on the same cores meanwhile.
+    The first call is never timed, since it may compile. The seconds are the median of `repeats`
+    readings, or fewer if they take long. CPU time does not count what other processes do on the
+    same cores meanwhile.
     """
-    begun = time.process_time()
     result = run()
-    first = time.process_time() - begun
-    if first > FIRST_COUNTS:
-        return result, first
     readings, spent, calls = [], 0.0, 1
     while len(readings) < repeats and (spent < LONG_ENOUGH or not readings):
         begun = time.process_time()
@@ -149,7 +139,7 @@ def _scaling(request):
     from microslip.adaptive import single_run
 
     sizes = [request["cells"], request["angles"], float(request["poisson"]), request["steps"]]
-    return single_run.measure_steps(request["model"], *sizes)
+    return single_run.measure_steps(request["model"], *sizes) | {"machine": machine.describe()}
 
 
 def _run(request):
@@ -248,7 +238,7 @@ def _found(look):
 
 def _timed(run, repeats):
     result, seconds = timed(run, repeats)
-    return dict(result) | {"seconds": seconds}
+    return dict(result) | {"seconds": seconds, "machine": machine.describe()}
 
 
 def plain(value: object) -> object:

@@ -72,7 +72,7 @@ def solve_stored(
     started = time.perf_counter()
     drive = checked_drive(velocity, force, stiffness, mass, damping)
     kind, place, amplitude, poisson = checked_point(
-        scene, 0.0 if velocity is None else velocity, amplitude, poisson, pressure
+        scene, 0.0 if velocity is None else velocity, amplitude, poisson, pressure, backward=True
     )
     tolerance, cells, steps = checked_request(tolerance, cells, steps)
     refuse_bounds(time_limit=time_limit)

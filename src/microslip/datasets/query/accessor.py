@@ -42,7 +42,7 @@ class Friction(Inverse):
 
     def __init__(self, dataset: xr.Dataset):
         try:
-            self._motion = motion_named(dataset.attrs.get("scene"))
+            motion = motion_named(dataset.attrs.get("scene"))
         except ValueError:
             raise ValueError(
                 "no scene of microslip: allowed is the dataset of a sweep, with its attributes"
@@ -54,7 +54,8 @@ class Friction(Inverse):
                 "certified map, and sel and interp"
             )
         self._dataset = dataset
-        self._scene = self._motion.name
+        # Not the motion itself: it holds functions without a name, which cannot be pickled.
+        self._scene, self._periodic = motion.name, motion.periodic
         self._pressure = dataset.attrs.get("pressure", "hertz")
         self._limits_known = beyond.known_of(dataset)
         self._nodes = NodesOnce()
@@ -112,7 +113,7 @@ class Friction(Inverse):
         if cells.is_certified(self._dataset):
             nodes = cells.cells_of(self._dataset)
         else:
-            nodes = self._nodes.of(self._dataset, periodic=self._motion.periodic, poisson=poisson)
+            nodes = self._nodes.of(self._dataset, periodic=self._periodic, poisson=poisson)
         if self._limits_known:
             refuse_negative(nodes)
         nu = poisson_within(nodes.poisson, poisson)
@@ -164,7 +165,7 @@ class Friction(Inverse):
             As `at` does, and for less than two of them.
         """
         wanted = {"velocity": [0.0] if cells.is_static(self._dataset) else velocity}
-        if self._motion.periodic:
+        if self._periodic:
             wanted["amplitude"] = amplitude
         return self.at(**axes_of_grid(self._dataset, wanted), **settings)
 
@@ -179,7 +180,7 @@ class Friction(Inverse):
         return velocity, amplitude
 
     def _labelled(self, velocity, amplitude):
-        if (amplitude is None) == self._motion.periodic:
+        if (amplitude is None) == self._periodic:
             need = "none" if amplitude is not None else "a number"
             raise InputError("amplitude", amplitude, f"allowed for {self._scene} is {need}")
         velocity = labelled("velocity", velocity)

@@ -75,7 +75,7 @@ class Inverse:
         InputError
             For both or neither of the two, and as `at`.
         """
-        periodic = self._motion.periodic
+        periodic = self._periodic
         known = {"velocity": velocity, "amplitude": amplitude}
         known = {name: value for name, value in known.items() if value is not None}
         if len(known) != (1 if periodic else 0):

@@ -65,7 +65,10 @@ class DenseContact:
             for values in (contact.compliance, contact.bound, contact.weight)
         )
         self.points = Points(_matrix(contact, self.shape), *flat)
-        self.settings = prepare(self.points.matrix, self.points.scale, **parameters)
+        try:
+            self.settings = prepare(self.points.matrix, self.points.scale, **parameters)
+        except np.linalg.LinAlgError as error:
+            raise StepFailure(f"the method does not apply: {error}") from error
 
     def __getattr__(self, name):
         return getattr(self.contact, name)

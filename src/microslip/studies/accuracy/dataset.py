@@ -16,9 +16,9 @@ from microslip.studies.tables import Answers, columns, finished, value_of, varia
 from microslip.theory import paper
 
 MEASURED = (
-    "seconds are CPU times measured in the runs that made this file: medians, compiled, one "
-    "thread. They belong to the machine, and come out a little different each time; everything "
-    "else is reproducible."
+    "seconds are CPU times measured in the runs that made this file: medians, compiled, after one "
+    "run that is not timed. They belong to the machine, see timed_on, and vary a little; all other "
+    "values are reproducible."
 )
 
 GROUPS = {
@@ -89,7 +89,8 @@ def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
     models = list(study.SCALING_SIZES)
     coords["scaling_model"] = variable("scaling_model", models, "contact model", str)
     title = "Accuracy and cost of methods for the friction of a vibrated Hertz contact"
-    return finished(variables, coords, title, answers, asdict(settings), comment=MEASURED)
+    measured = {"comment": MEASURED, "timed_on": _timed_on(answers)}
+    return finished(variables, coords, title, answers, asdict(settings), **measured)
 
 
 def report(dataset: xr.Dataset) -> Iterator[str]:
@@ -102,6 +103,15 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
             f"{point}: {own.sum()} trials, {bad or 'none'} not converged, "
             f"reference within {error:.1e}"
         )
+
+
+def _timed_on(answers):
+    """Every computer that a time was measured on, as one text."""
+    named = (
+        f"{machine['cpu']}, host {machine['host']}, threads {machine['threads']}"
+        for machine in answers.machines
+    )
+    return "; ".join(sorted(named))
 
 
 # Points and trials

@@ -1,0 +1,51 @@
+"""Describes the computer that a time is measured on."""
+
+from __future__ import annotations
+
+import functools
+import os
+import platform
+import subprocess
+from pathlib import Path
+
+CPU_LIST = Path("/proc/cpuinfo")
+"""Where Linux describes the processors."""
+
+
+@functools.cache
+def cpu_model() -> str:
+    """Model name of the processor, such as "AMD EPYC 7B13", or else its architecture."""
+    named = _from_linux() or _from_macos() or platform.processor() or platform.machine()
+    return " ".join(named.split()) or "unknown"
+
+
+def describe() -> dict[str, str | int]:
+    """Processor (cpu), name of the computer (host) and threads that a linear algebra call may use
+    (threads)."""
+    return {"cpu": cpu_model(), "host": platform.node(), "threads": _threads()}
+
+
+def _from_linux():
+    try:
+        lines = CPU_LIST.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return ""
+    return next((line.partition(":")[2] for line in lines if line.startswith("model name")), "")
+
+
+def _from_macos():
+    if platform.system() != "Darwin":
+        return ""
+    command = ["sysctl", "-n", "machdep.cpu.brand_string"]
+    return subprocess.run(command, capture_output=True, text=True, check=False).stdout
+
+
+def _threads():
+    for name in (
+        "OPENBLAS_NUM_THREADS",
+        "OMP_NUM_THREADS",
+    ):  # the first one set counts
+        value = os.environ.get(name, "")
+        if value.isdigit() and int(value) > 0:
+            return int(value)
+    return os.cpu_count() or 1
