@@ -13,6 +13,7 @@ from microslip.datasets.query.answers import (
     FASTER,
     MAP,
     NARROWER,
+    OUTSIDE,
     SLOWER,
     SOLVER,
     STATIC,
@@ -96,7 +97,8 @@ class Friction(Inverse):
         -------
         xarray.Dataset
             mu_macro, mu_macro_error and source, an index into SOURCES with its meanings in
-            flag_meanings.
+            flag_meanings.  The attribute `note` counts the points outside the tabulated range whose
+            error estimate is larger than that of the map, and names the remedy, `tolerance`.
 
         Raises
         ------
@@ -138,7 +140,8 @@ class Friction(Inverse):
                 raise InputError("tolerance", tolerance, "allowed is a number above 0")
             point = flat_velocity, flat_amplitude
             self._solve((value, error, source), point, nu, tolerance)
-        return answered(self._scene, velocity, (value, error, source), nu)
+        found = answered(self._scene, velocity, (value, error, source), nu)
+        return found.assign_attrs(self._note(error, source))
 
     def on_grid(
         self, velocity: object = 49, amplitude: object = 49, **settings: float | None
@@ -206,6 +209,22 @@ class Friction(Inverse):
         value, error = within(*tables, velocity, rows)
         return value, error, np.full(len(value), MAP)
 
+    def _note(self, error, source):
+        """{"note": text} where points outside the tabulated range have a larger error estimate."""
+        about = self._dataset.attrs
+        try:
+            usual = float(about.get("error", about.get("tolerance", 0.0)))
+        except (TypeError, ValueError):
+            usual = 0.0
+        wide = np.isin(source, OUTSIDE) & (error > max(usual, beyond.ROUNDING))
+        if not wide.any():
+            return {}
+        count = f"{wide.sum()} of {len(wide)} points" if len(wide) > 1 else "the point"
+        return {
+            "note": f"{count} outside the tabulated range, error estimate up to "
+            f"{error[wide].max():.2g}: friction.at(..., tolerance=1e-3) computes them"
+        }
+
     # Steady motion
 
     def _steady(self, nodes, velocity, nu):
@@ -222,11 +241,6 @@ class Friction(Inverse):
         table, limits = self._table(nodes, nu), beyond.LIMITS[self._scene]
         slowest, fastest = table.columns.values[[0, -1]]
         narrowest, widest = table.rows.values[[0, -1]]
-        if limits.static_needs_nu_0 and nu > 0.0 and (velocity < slowest).any():
-            raise ValueError(
-                f"velocity = {velocity.min():g}: allowed for nu = {nu:g} is {slowest:g} or more: "
-                "the static limit is proved for nu = 0; microslip.solve computes it"
-            )
         # Outward from the nearest point on the edge of the map; above it, first down to where the
         # limit for large amplitudes is the same.
         wide = amplitude > widest
@@ -238,27 +252,27 @@ class Friction(Inverse):
         )
         source = np.full(len(value), MAP)
         last = (part[-1] for part in (table.values, table.errors))
+        held, ratio = np.fmin(amplitude, widest), np.full_like(value, nu)
         far = np.zeros_like(value)
         far[wide] = beyond.distances(limits, table.columns.values, *last, below[wide], widest)
         for where, code, rule, coordinates, end in (
             (amplitude < narrowest, NARROWER, beyond.narrower, (amplitude,), narrowest),
-            (below < slowest, SLOWER, beyond.slower, (below, np.fmin(amplitude, widest)), slowest),
-            (below > fastest, FASTER, beyond.faster, (below, np.fmin(amplitude, widest)), fastest),
+            (below < slowest, SLOWER, beyond.slower, (below, held, ratio), slowest),
+            (below > fastest, FASTER, beyond.faster, (below, held), fastest),
             (wide, WIDER, beyond.wider, (far, velocity, amplitude), widest),
         ):
             if where.any():
-                edge = beyond.Edge(value[where], error[where])
+                edge = beyond.Estimate(value[where], error[where])
                 at = (part[where] for part in coordinates)
                 value[where], error[where] = rule(limits, edge, *at, end)
                 source[where] = code
         value, error = beyond.within_the_balance(limits, value, error, velocity, amplitude)
-        for where, code, known in (
-            (velocity == 0.0, STATIC, limits.static),
-            (amplitude == 0.0, STILL, np.ones_like),
-        ):
-            if where.any():
-                value[where], error[where] = known(amplitude[where]), beyond.ROUNDING
-                source[where] = code
+        slow = velocity == 0.0
+        if slow.any():
+            value[slow], error[slow] = limits.static(amplitude[slow], nu)
+            source[slow] = STATIC
+        still = amplitude == 0.0
+        value[still], error[still], source[still] = 1.0, beyond.ROUNDING, STILL
         return value, error, source
 
     # The solver

@@ -20,6 +20,8 @@ SOURCES = (
 )
 """Where an answer comes from, by its code in the variable `source`."""
 (MAP, STILL, STATIC, SLOWER, FASTER, WIDER, NARROWER, EXACT, SOLVER) = range(len(SOURCES))
+OUTSIDE = (STATIC, SLOWER, FASTER, WIDER, NARROWER)
+"""Sources of answers outside the tabulated range."""
 
 
 def answered(

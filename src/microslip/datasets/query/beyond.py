@@ -1,13 +1,17 @@
-"""Friction where a map ends: limits that are proved, and brackets between them and the map.
+"""Friction outside the tabulated range: proved limits, and brackets between them and the map.
 
-Known without a map: friction without vibration (1), the static limit, the largest drop that
-the energy balance allows.  Between these and the edge of a map a value is bracketed, as friction
-rises with the velocity (bounds.py) and, in all that was computed, falls with the amplitude; what a
-bracket leaves open is in the error.
+Proved without a map: friction is 1 without vibration, it tends to the static limit for vanishing
+velocity, never falls with the velocity (bounds.py), and the energy balance bounds its drop below 1.
+Computed everywhere: friction falls with the amplitude.
 
-For large amplitudes friction tends to a limit (Eqs 6 and 29), but not from one side: how far it is
-from there changes its sign with the velocity.  The largest distance that the upper edge of the map
-shows within a decade of velocities is taken for that of all larger amplitudes.
+At the edge of a map the bracket is as narrow as the error estimate there.  Outward it opens as two
+powers of the coordinate allow: the distance of friction from its limit follows a power law whose
+local exponent lies between 0 and twice the asymptotic one.  Local exponents of computed points:
+0 to 1 towards the static limit, 1.2 to 2.5 towards fast sliding, 0.6 to 2 towards no vibration.
+
+For large amplitudes friction tends to a limit (Eqs 6 and 29) from both sides: the sign of the
+distance depends on the velocity.  The largest distance at the upper edge of the map within a decade
+of velocities bounds the distance at all larger amplitudes.
 """
 
 from __future__ import annotations
@@ -24,7 +28,32 @@ from microslip.theory.exact import LARGEST_DROPS, STATIC_LIMITS
 
 ROUNDING = 1e-12
 SLOW_EXPONENT = 2.0 / 3.0
-"""Friction comes close to its static limit about as this power of the velocity."""
+"""Power of the velocity with which friction approaches its static limit."""
+FAST_EXPONENT = 2.0
+"""Power of 1 / velocity with which friction approaches 1 in fast sliding (Eqs 6 and 29)."""
+NARROW_EXPONENT = 1.0
+"""Power of the amplitude with which friction departs from 1."""
+WIDE_EXPONENT = 1.0
+"""Power of 1 / amplitude with which friction approaches its limit for large amplitudes."""
+STEEPEST = 2.0
+"""Largest local exponent of a power law, relative to the asymptotic one."""
+POISSON_DROP = 0.1
+"""Static friction under transverse motion: its largest drop with Poisson's ratio nu, divided by
+(nu / (2 - nu))^2.  Computed by solve("transverse", 0, A, poisson=nu): at most 0.067, near A = 0.9,
+for nu from 0.1 to 0.5."""
+
+
+class Estimate(NamedTuple):
+    """Friction and its error estimate.
+
+    Attributes
+    ----------
+    value, error : np.ndarray, shape (n,)
+        Dimensionless.
+    """
+
+    value: np.ndarray
+    error: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -33,10 +62,10 @@ class Limits:
 
     Attributes
     ----------
-    static : callable
-        Limit for vanishing velocity, of the amplitude.
-    static_needs_nu_0 : bool
-        Whether that is proved for Poisson's ratio 0 alone.
+    static_at_nu_0 : callable
+        Limit for vanishing velocity at Poisson's ratio 0, of the amplitude.
+    poisson_drop : float
+        Largest drop of that limit with Poisson's ratio nu, divided by (nu / (2 - nu))^2.
     large : callable
         Limit for large amplitudes.
     same_limit : callable
@@ -45,18 +74,24 @@ class Limits:
         Upper bound of 1 - mu_macro.
     """
 
-    static: Callable
-    static_needs_nu_0: bool
+    static_at_nu_0: Callable
+    poisson_drop: float
     large: Callable
     same_limit: Callable
     drop: Callable
+
+    def static(self, amplitude: np.ndarray, nu: float) -> Estimate:
+        """Limit for vanishing velocity at Poisson's ratio `nu`, and its error bound."""
+        high = np.asarray(self.static_at_nu_0(amplitude), float)
+        low = np.maximum(high - self.poisson_drop * (nu / (2.0 - nu)) ** 2, 0.0)
+        return Estimate((high + low) / 2.0, (high - low) / 2.0 + ROUNDING)
 
 
 def _limits(motion, same_limit):
     static, large = STATIC_LIMITS[motion], FORMS[motion]["mu_large_amplitude"]
     return Limits(
         static.function,
-        not static.any_poisson,
+        0.0 if static.any_poisson else POISSON_DROP,
         lambda *point: large.function(*point[: len(large.arguments)]),
         same_limit,
         np.vectorize(LARGEST_DROPS[motion], otypes=[float]),
@@ -88,57 +123,60 @@ def is_alone(dataset: xr.Dataset) -> bool:
     return not {"drive", "contacts"} & set(dataset.attrs)
 
 
-class Edge(NamedTuple):
-    """What is known at the edge of a map.
-
-    Attributes
-    ----------
-    value, error : np.ndarray, shape (n,)
-        Friction there, dimensionless.
-    """
-
-    value: np.ndarray
-    error: np.ndarray
-
-
 def slower(
-    limits: Limits, edge: Edge, velocity: np.ndarray, amplitude: np.ndarray, slowest: float
+    limits: Limits,
+    edge: Estimate,
+    velocity: np.ndarray,
+    amplitude: np.ndarray,
+    nu: float,
+    slowest: float,
 ) -> tuple:
     """Value and error for velocities from 0 to the slowest of a map, shape (n,) each.
 
-    edge: at the slowest velocity and the same amplitudes.
+    edge: at the slowest velocity and the same amplitudes; nu: Poisson's ratio.
     """
-    static = limits.static(amplitude)
-    high = np.maximum(edge.value + edge.error, static)
+    static = limits.static(amplitude, nu)
+    least = np.maximum(static.value - static.error, 0.0)
+    # Friction never falls with the velocity.
+    high = np.maximum(edge.value + edge.error, static.value + static.error)
     share = (velocity / slowest) ** SLOW_EXPONENT
-    return _within(static, high, static + share * (edge.value - static))
+    low = least + share**STEEPEST * np.maximum(edge.value - edge.error - least, 0.0)
+    return _within(low, high, static.value + share * (edge.value - static.value))
 
 
 def faster(
-    limits: Limits, edge: Edge, velocity: np.ndarray, amplitude: np.ndarray, fastest: float
+    limits: Limits, edge: Estimate, velocity: np.ndarray, amplitude: np.ndarray, fastest: float
 ) -> tuple:
-    """... for velocities above the fastest of a map; the edge is NaN where nothing is known."""
+    """Value and error for velocities above the fastest of a map, shape (n,) each.
+
+    edge: at the fastest velocity and the same amplitudes; NaN where the map has no value.
+    """
     low = 1.0 - limits.drop(velocity, amplitude)
-    low = np.clip(np.fmax(low, edge.value - edge.error), 0.0, 1.0)
-    far = 1.0 - (1.0 - edge.value) * (fastest / velocity) ** 2
-    return _within(low, np.ones_like(low), np.where(np.isnan(far), low, far))
+    low = np.clip(np.fmax(low, edge.value - edge.error), 0.0, 1.0)  # never falls with the velocity
+    share = (fastest / velocity) ** FAST_EXPONENT
+    gap = np.fmax(1.0 - edge.value - edge.error, 0.0)
+    high = np.maximum(1.0 - share**STEEPEST * gap, low)
+    far = 1.0 - (1.0 - edge.value) * share
+    return _within(low, high, np.where(np.isnan(far), low, far))
 
 
 def wider(
     limits: Limits,
-    edge: Edge,
+    edge: Estimate,
     distance: np.ndarray,
     velocity: np.ndarray,
     amplitude: np.ndarray,
     widest: float,
 ) -> tuple:
-    """... for amplitudes above the largest of a map.
+    """Value and error for amplitudes above the largest of a map, shape (n,) each.
 
     edge: at the largest amplitude, at the velocity with the same limit; distance: see `distances`.
     """
     end = limits.large(velocity, amplitude)
-    left = (edge.value - end) * widest / amplitude
-    return np.clip(end + left, 0.0, 1.0), distance + np.abs(left) + edge.error
+    share = (widest / amplitude) ** WIDE_EXPONENT
+    gap = (edge.value - end) * share
+    away = (distance + np.abs(gap)) * (1.0 - share**STEEPEST)
+    return np.clip(end + gap, 0.0, 1.0), away + edge.error
 
 
 def distances(
@@ -161,11 +199,16 @@ def distances(
     return np.where(near, off, 0.0).max(axis=1)
 
 
-def narrower(limits: Limits, edge: Edge, amplitude: np.ndarray, narrowest: float) -> tuple:
-    """... for amplitudes from 0 to the smallest of a map."""
+def narrower(limits: Limits, edge: Estimate, amplitude: np.ndarray, narrowest: float) -> tuple:
+    """Value and error for amplitudes from 0 to the smallest of a map, shape (n,) each.
+
+    edge: at the smallest amplitude and the same velocities.
+    """
     low = np.clip(edge.value - edge.error, 0.0, 1.0)
-    guess = 1.0 - (1.0 - edge.value) * amplitude / narrowest
-    return _within(low, np.ones_like(low), guess)
+    share = (amplitude / narrowest) ** NARROW_EXPONENT
+    gap = np.maximum(1.0 - edge.value - edge.error, 0.0)
+    high = np.maximum(1.0 - share**STEEPEST * gap, low)
+    return _within(low, high, 1.0 - (1.0 - edge.value) * share)
 
 
 def within_the_balance(

@@ -3,7 +3,11 @@
 // It says what friction.at says in Python; datasets/query/beyond.py tells why.
 
 const ROUNDING = 1e-12;
-const SLOW_EXPONENT = 2 / 3; // of the velocity with which friction comes close to its static limit
+const SLOW_EXPONENT = 2 / 3; // power of the velocity with which friction approaches its static limit
+const FAST_EXPONENT = 2; // power of 1 / velocity with which it approaches 1
+const NARROW_EXPONENT = 1; // power of the amplitude with which it departs from 1
+const WIDE_EXPONENT = 1; // power of 1 / amplitude with which it approaches its limit for large ones
+const STEEPEST = 2; // largest local exponent of a power law, relative to the asymptotic one
 
 // A guess brought into its bracket, and how far the bracket reaches from there.
 function bracketed(low, high, guess) {
@@ -53,10 +57,6 @@ function frictionAt(map, velocity, amplitude, poisson) {
   const limits = map.has_limits ? LIMITS[map.scene] : undefined;
   if (limits === undefined) return mapAlone(map, velocity, amplitude, nu);
   const [slowest, fastest] = map.velocity, [narrowest, widest] = map.amplitude;
-  if (limits.stillNeedsPoisson0 && nu > 0 && velocity < slowest) {
-    refuse("velocity", general(velocity), `allowed for nu = ${general(nu)} is ${general(slowest)} or more: ` +
-      "the static limit is proved for nu = 0; microslip.solve computes it");
-  }
   if (amplitude === 0) return { value: 1, error: ROUNDING, source: "no vibration" };
   const wide = amplitude > widest;
   const below = wide ? limits.sameLimit(velocity, amplitude, widest) : velocity;
@@ -65,32 +65,45 @@ function frictionAt(map, velocity, amplitude, poisson) {
   let source = "map";
   if (amplitude < narrowest) {
     const low = clipped(value - error, 0, 1);
-    [value, error] = bracketed(low, 1, 1 - ((1 - value) * amplitude) / narrowest);
+    const share = (amplitude / narrowest) ** NARROW_EXPONENT, gap = Math.max(1 - value - error, 0);
+    const high = Math.max(1 - share ** STEEPEST * gap, low);
+    [value, error] = bracketed(low, high, 1 - (1 - value) * share);
     source = "between map and no vibration";
   }
   const held = Math.min(amplitude, widest);
   if (below < slowest) {
-    const still = limits.still(held, map.rule), share = (below / slowest) ** SLOW_EXPONENT;
-    [value, error] = bracketed(still, Math.max(value + error, still), still + share * (value - still));
+    const still = staticLimit(map, limits, held, nu), least = Math.max(still.value - still.error, 0);
+    const share = (below / slowest) ** SLOW_EXPONENT;
+    const low = least + share ** STEEPEST * Math.max(value - error - least, 0);
+    const high = Math.max(value + error, still.value + still.error);
+    [value, error] = bracketed(low, high, still.value + share * (value - still.value));
     source = "between static limit and map";
   } else if (below > fastest) {
     const low = clipped(largestKnown(1 - limits.drop(below, held), value - error), 0, 1);
-    const far = 1 - (1 - value) * (fastest / below) ** 2;
-    [value, error] = bracketed(low, 1, Number.isNaN(far) ? low : far);
+    const share = (fastest / below) ** FAST_EXPONENT, gap = largestKnown(1 - value - error, 0);
+    const high = Math.max(1 - share ** STEEPEST * gap, low), far = 1 - (1 - value) * share;
+    [value, error] = bracketed(low, high, Number.isNaN(far) ? low : far);
     source = "between map and fast sliding";
   }
   if (wide) {
     const end = limits.large(velocity, amplitude, map.rule);
-    const left = ((value - end) * widest) / amplitude;
-    error = distanceAt(map, limits, below, nu) + Math.abs(left) + error;
-    value = clipped(end + left, 0, 1);
+    const share = (widest / amplitude) ** WIDE_EXPONENT, gap = (value - end) * share;
+    error += (distanceAt(map, limits, below, nu) + Math.abs(gap)) * (1 - share ** STEEPEST);
+    value = clipped(end + gap, 0, 1);
     source = "between map and large amplitude";
   }
   [value, error] = withinTheBalance(limits, value, error, velocity, amplitude);
   if (velocity === 0) {
-    [value, error, source] = [limits.still(amplitude, map.rule), ROUNDING, "static limit"];
+    return { ...staticLimit(map, limits, amplitude, nu), source: "static limit" };
   }
   return { value, error: Number.isNaN(value) || Number.isNaN(error) ? Infinity : error, source };
+}
+
+// Friction in the limit of vanishing velocity and the bound of its error, at any Poisson's ratio.
+function staticLimit(map, limits, amplitude, poisson) {
+  const high = limits.still(amplitude, map.rule);
+  const low = Math.max(high - limits.poissonDrop * (poisson / (2 - poisson)) ** 2, 0);
+  return { value: (high + low) / 2, error: (high - low) / 2 + ROUNDING };
 }
 
 // No worse than the energy balance allows; NaN stays what it is.

@@ -96,14 +96,14 @@ function largeBore(velocity, _amplitude, rule) {
 const LIMITS = {
   transverse: {
     still: staticTransverse,
-    stillNeedsPoisson0: true,
+    poissonDrop: 0.1, // POISSON_DROP of datasets/query/beyond.py
     large: largeTransverse,
     sameLimit: (velocity, amplitude, other) => (velocity * other) / amplitude,
     drop: (velocity, amplitude) => (amplitude === 0 ? 0 : 1 / ((velocity / amplitude) ** 2 + 0.5)),
   },
   bore: {
     still: staticBore,
-    stillNeedsPoisson0: false,
+    poissonDrop: 0,
     large: largeBore,
     sameLimit: (velocity) => velocity,
     drop: (velocity, amplitude) => {
