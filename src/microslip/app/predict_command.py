@@ -11,6 +11,7 @@ from microslip.app import predicted_driving, predicted_table
 from microslip.app.option_parser import Said
 from microslip.app.predicted_text import (
     groups_of_drive,
+    largest_pressure,
     length,
     line,
     looked_for,
@@ -210,7 +211,7 @@ def _as_text(found):
         line("contact radius", length(found.contact_radius_m)),
         *_indentation(found),
         line("u_lim", length(found.u_lim_m)),
-        line("largest pressure", f"{found.largest_pressure_Pa / 1e6:.4g} MPa"),
+        line("largest pressure", largest_pressure(found)),
     ]
     if found.amplitude is not None:
         lines.append(line("amplitude", f"{_size(found)}dimensionless {found.amplitude:.4g}"))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from microslip.app.printed_error import error_text
 from microslip.si.prediction import Prediction
 from microslip.si.regimes import REGIMES
@@ -23,6 +25,12 @@ def line(title: str, text: str) -> str:
 def length(metres: float) -> str:
     """A length in the unit that suits it."""
     return _in_units(metres, LENGTHS)
+
+
+def largest_pressure(found: Prediction) -> str:
+    """The largest pressure with its unit."""
+    pressure = found.largest_pressure_Pa
+    return "infinite, at the tip" if math.isinf(pressure) else f"{pressure / 1e6:.4g} MPa"
 
 
 def _in_units(value, units):

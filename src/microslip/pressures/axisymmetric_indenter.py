@@ -28,6 +28,8 @@ at the centre."""
 SMALLEST_CONTACT = 1e-100
 _GRID = np.linspace(0.0, 1.0, 257)
 _CORRECTIONS = 6
+_REFINEMENTS = 3
+"""Grids on which the largest bound is searched, each 128 times finer than the one before."""
 
 
 def indenter(
@@ -39,6 +41,7 @@ def indenter(
     *,
     flat: float = 0.0,
     of_load: Callable | None = None,
+    largest: float | None = None,
 ) -> Pressure:
     """The Pressure of an axisymmetric indenter; all functions are of arrays.
 
@@ -56,6 +59,8 @@ def indenter(
         Radius of a flat end, over the contact radius.
     of_load : callable or None
         of_load(share): depth of a share of the load; None: it is searched for.
+    largest : float or None
+        Largest friction bound, or infinity; None: it is searched for, and has to be finite.
 
     Returns
     -------
@@ -119,6 +124,16 @@ def indenter(
             c = np.clip(c - (load(c, c) - share) / np.maximum(rise, 1e-300), low, high)
         return np.where(share > 0.0, depth(c), 0.0)[()]
 
+    def peak():
+        """Largest bound: the best point of a grid, refined between its neighbours."""
+        low, high = 0.0, 1.0
+        for _ in range(_REFINEMENTS):
+            r = np.linspace(low, high, len(_GRID))
+            values = bound(r)
+            best = int(values.argmax())
+            low, high = r[max(best - 1, 0)], r[min(best + 1, len(r) - 1)]
+        return float(values[best])
+
     def ring_loads(psi):
         return -np.diff(_outside(np.sin(psi), 1.0))
 
@@ -130,6 +145,7 @@ def indenter(
         summary=summary,
         G_star=G_star,
         torque=float(moment_outside(0.0)),
+        largest=peak() if largest is None else largest,
         cell_loads=lambda cells: round_loads(cells, ring_loads),
         ring_means=lambda psi: of_radii(ring_loads, ring_moments, psi),
         bound=bound,

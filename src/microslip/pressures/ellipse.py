@@ -32,6 +32,7 @@ def pressure(name: str, ratio: float, across: float) -> Pressure:
         summary=f"a Hertz contact on an ellipse of ratio {ratio:g}",
         G_star=1.5 / np.pi * float(scipy.special.ellipk(1.0 - ratio**2)),
         torque=_torque(ratio),
+        largest=1.5 / (np.pi * ratio),
         cell_loads=lambda cells: ellipse_loads(cells, axes),
         loading=hertz.mindlin_force,
         hertzian=True,

@@ -30,6 +30,7 @@ PRESSURE = Pressure(
     summary="a sphere on a flat",
     G_star=hertz.G_STAR,
     torque=hertz.TORQUE_FULL_SLIP,
+    largest=1.5 / np.pi,
     cell_loads=ellipse_loads,
     ring_means=_hertz_means,
     bound=_hertz_bound,

@@ -215,9 +215,15 @@ def _pressure(name, grid):
         summary="a pressure from a file",
         G_star=_largest_displacement(cell_loads(fine)),
         torque=_mean_distance(grid, middles, half),
+        largest=float(grid.values.max()) * half**2 / _total(grid),
         cell_loads=cell_loads,
         mirrored=False,  # what is measured never is
     )
+
+
+def _total(grid):
+    """Load of the grid."""
+    return float(grid.loads(*(side.edges(1) for side in (grid.forward, grid.lateral))).sum())
 
 
 def _mean_distance(grid, middles, half):

@@ -31,6 +31,8 @@ class Pressure:
         Reduced shear modulus 4G/(2 - nu).
     torque : float
         Of a contact that slips everywhere about its centre, in mu F_z a.
+    largest : float
+        Largest friction bound, or infinity; largest pressure over F_z / a^2.
     cell_loads : callable
         cell_loads(cells): load on each of cells x cells squares over [-1, 1]^2, forward axis first,
         sum 1.
@@ -69,6 +71,7 @@ class Pressure:
     summary: str
     G_star: float
     torque: float
+    largest: float
     cell_loads: Callable
     mirrored: bool = True
     ring_means: Callable | None = None

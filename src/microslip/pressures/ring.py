@@ -52,6 +52,7 @@ def pressure(name: str, inner: float) -> Pressure:
         summary=f"a ring-shaped contact with a hole of {inner:g} of its radius",
         G_star=_largest_displacement(inner, top),
         torque=float(ring_moments(whole).sum()),
+        largest=top * half,
         cell_loads=lambda cells: round_loads(cells, ring_loads, inner),
         ring_means=lambda psi: of_radii(ring_loads, ring_moments, psi),
         bound=bound,

@@ -179,7 +179,8 @@ def _of_size(body, other, carried, mu, shape):
     plain = TwoBodies(body.material, other.material, 1.0, force.si / contacts, coefficient.si)
     try:
         contact = of_size(plain, size.si, pressure)
-        good = all(0.0 < one < math.inf for one in (contact.u_lim, contact.largest_pressure))
+        sizes = (contact.u_lim, contact.load / size.si**2)
+        good = all(0.0 < one < math.inf for one in sizes) and contact.largest_pressure > 0.0
     except (ArithmeticError, ValueError) as error:
         if isinstance(error, InputError) and error.argument == "pressure":
             raise

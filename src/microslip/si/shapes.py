@@ -6,8 +6,6 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-import numpy as np
-
 from microslip.foundation.errors import InputError
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.ellipse import SMALLEST_RATIO
@@ -15,8 +13,6 @@ from microslip.si.bodies import TwoBodies
 
 ROUND = 1e-6
 """Relative difference of two radii that make a circle."""
-SQUARES = 64
-"""Across a contact that the largest pressure is looked for on."""
 
 
 @dataclass(frozen=True)
@@ -64,9 +60,8 @@ class ShapedContact(TwoBodies):
 
     @property
     def largest_pressure(self) -> float:
-        """Mean over the square of SQUARES across that has most of the load, Pa."""
-        side = 2.0 * self.size / SQUARES
-        return float(np.max(self._record.cell_loads(SQUARES))) * self.load / side**2
+        """Largest pressure, Pa; infinite at the tip of a cone."""
+        return self._record.largest * (self.load / self.size**2)
 
 
 def ellipse_of_radii(forward: float, lateral: float) -> tuple[float, float]:

@@ -8,6 +8,7 @@ explorer's page does, takes the rules from here.
 from __future__ import annotations
 
 import math
+import sys
 from typing import NamedTuple
 
 from microslip.si.bodies import TwoBodies
@@ -93,6 +94,11 @@ def _atomic(measure, name):
 
 CHECKS = (
     (
+        Rule(
+            (("largest_pressure", 1.0, sys.float_info.max),),
+            "the pressure is infinite at the tip of the indenter, so that the contact yields there "
+            "under any load; the mean pressure is {mean_pressure:.2g} Pa",
+        ),
         Rule(
             (("largest_pressure", YIELDS_AT, "hardness"),),
             f"the largest pressure, {{largest_pressure:.2g}} Pa, is above {YIELDS_AT:g} of the "
@@ -181,7 +187,7 @@ def unchecked(contact: TwoBodies) -> list[str]:
     sides, found = list(zip(SIDES, contact.bodies, strict=True)), []
     for name, what in PROPERTIES.items():
         whose = [side for side, b in sides if getattr(b, name) is None and not b.rigid]
-        if whose:
+        if whose and not (name == "hardness" and math.isinf(contact.largest_pressure)):
             found.append(NOT_GIVEN.format(what=what, name=name, whose=" and ".join(whose)))
     return found
 
@@ -196,6 +202,7 @@ def _of_bodies(contact):
     hard = [body.hardness for body in contact.bodies if body.hardness is not None]
     found = {
         "largest_pressure": pressure,
+        "mean_pressure": contact.load / (math.pi * a**2),
         "hardness": min(hard, default=None),
         "contact_radius": a,
         "radius": contact.radius,
@@ -210,6 +217,7 @@ def _of_bodies(contact):
     }
     for side, body in zip(("first", "second"), contact.bodies, strict=True):
         known = body.hardness is not None or body.rigid or body.poisson >= RUBBERY
+        known = known or math.isinf(pressure)  # a warning of its own
         found[f"{side}_young"] = None if known else body.young
         found[f"{side}_pressure"] = None if known else pressure / body.young
     return found
