@@ -18,13 +18,14 @@ def test_rows_and_fit_are_drawn_where_they_are():
     upper, lower = drawing.draw("fit", {"fit": dataset}).axes
     assert len(lines(upper, "fitted")) == 2 and lower.get_xscale() == "log"
     drawn = np.concatenate([line.get_xydata() for line in lines(upper, "fitted")])
-    expected = np.stack([1e3 * dataset.speed_m_s, dataset.fitted], axis=1)  # mm/s and N
+    # mm/s and N; the curve of the model, finer than the rows
+    expected = np.stack([1e3 * dataset.curve_speed_m_s, dataset.curve_fitted], axis=1)
     assert drawn == pytest.approx(expected)
     assert lower.get_xlabel() == "speed (mm/s)" and upper.get_ylabel() == "friction force (N)"
     left = np.concatenate([line.get_ydata() for line in lines(lower, "residual")])
     assert left == pytest.approx(dataset.residual.values)
     titles = [text.get_text() for text in upper.get_legend().get_texts()]
-    assert titles == ["amplitude 300 nm", "amplitude 600 nm"]
+    assert titles == ["amplitude 300 nm", "amplitude 600 nm", "lines: model"]
     assert [len(axes.patches) for axes in (upper, lower)] == [0, 1]  # two standard errors
     for number in (r"0.3 \pm 0.01$", r"300 \pm 30$ nm"):  # with the halves of their intervals
         assert number in upper.get_title(loc="left")
@@ -41,7 +42,10 @@ def test_rows_of_more_conditions_than_looks_are_one_series():
     dataset["amplitude_si"] = "row", np.repeat(np.arange(1.0, 11.0), 2)
     dataset["speed_m_s"] = "row", np.linspace(0.0, 1.0, 20)
     upper, lower = drawing.draw("fit", {"fit": dataset}).axes
-    assert len(lines(upper, "fitted")) == 1 and lower.get_xscale() == "linear"
+    (dashes,) = lines(upper, "fitted")  # rows of several conditions are not joined
+    assert dashes.get_linestyle() == "None" and dashes.get_marker() == "_"
+    assert dashes.get_ydata() == pytest.approx(dataset.fitted.values)
+    assert lower.get_xscale() == "linear"
 
 
 def test_a_dataset_without_rows_is_refused():

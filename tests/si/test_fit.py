@@ -39,6 +39,9 @@ class Closed(SolvedFriction):
     def errors(self, points):
         return np.full(self.count, 1e-6 + abs(self.off))
 
+    def rough(self, points):
+        return ratio(points)
+
 
 def ratio(points):
     amplitude = np.maximum(points.amplitude, 1e-12)
@@ -67,6 +70,30 @@ SHARED = {"frequency": FREQUENCY, "load": LOAD}
 
 def fitted(table, **more):
     return microslip.fit("transverse", table, **SHARED | more)
+
+
+# The curve of the model
+
+
+def test_the_curve_is_that_of_the_model_between_the_rows(closed):
+    table = conditions(8)
+    table["friction"] = force(table)
+    found = microslip.fit("transverse", table, **SHARED)
+    curve = found.curve
+    assert len(curve.fitted) > 10 * len(found.fitted)
+    for row, amplitude in enumerate(found.amplitude_si):
+        here = (curve.speed_m_s == found.speed_m_s[row]) & (curve.amplitude_si == amplitude)
+        assert curve.fitted[here] == pytest.approx([found.fitted[row]], rel=1e-12)
+    fine = {"speed": curve.speed_m_s, "amplitude": curve.amplitude_si}
+    assert curve.fitted == pytest.approx(force(fine), rel=1e-4)
+
+
+def test_rows_that_share_no_condition_have_no_curve(closed):
+    table = conditions(8)
+    for name in ("speed", "amplitude"):
+        table[name] = table[name] * np.linspace(1.0, 1.2, 8)
+    table["friction"] = force(table)
+    assert len(microslip.fit("transverse", table, **SHARED).curve.fitted) == 0
 
 
 # The groups
@@ -229,7 +256,8 @@ def test_rows_that_tell_neither_are_refused(closed):
         ({"mu": [0.3] * 16}, "both friction and mu"),
         ({"mu_error": [0.3] * 16}, "mu_error without mu"),
         ({"friction": [1.0] * 15}, "several lengths"),
-        ({"friction": [1.0] * 15 + [math.nan]}, "finite numbers"),
+        ({"friction": [1.0] * 15 + [math.nan]}, "empty in row 16; allowed: a number in every row"),
+        ({"friction": [1.0] * 15 + [math.inf]}, "finite numbers"),
         ({"friction": ["1"] * 16}, "a sequence of numbers"),
         ({"friction_error": [0.1] * 15 + [0.0]}, "above 0"),
         ({"speed": -np.ones(16)}, "at least 0"),

@@ -3,6 +3,9 @@
 import numpy as np
 import xarray as xr
 
+FINE = 50
+"""Points of each curve of the model."""
+
 
 def fitted(rows=12, errors=True):
     """Friction that rises with the speed, and residuals of up to two standard errors."""
@@ -21,7 +24,18 @@ def fitted(rows=12, errors=True):
         "fitted_error": np.full(rows, 3e-3),
         "residual": residual,
     }
+    fine = np.tile(np.geomspace(1e-3, 0.3, FINE), 2)
+    size = np.repeat([3e-7, 6e-7], FINE)
+    curve = {
+        "speed_m_s": fine,
+        "amplitude_si": size,
+        "row_load_N": np.full(2 * FINE, 10.0),
+        "frequency_Hz": np.full(2 * FINE, 2e4),
+        "fitted": 3.0 * fine / (fine + 1e4 * size),
+        "fitted_error": np.full(2 * FINE, 3e-3),
+    }
     numbers = {"mu": 0.3, "mu_low": 0.29, "mu_high": 0.31}
     numbers |= {"u_lim_m": 3e-7, "u_lim_low_m": 2.8e-7, "u_lim_high_m": 3.3e-7}
     variables = {name: ("row", values) for name, values in found.items()} | numbers
+    variables |= {f"curve_{name}": ("curve_point", values) for name, values in curve.items()}
     return xr.Dataset(variables, attrs={"scene": "transverse", "quantity": "friction"})

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from microslip.report.figures import style as look
 from microslip.report.figures.data import finite_or_nan, require
 from microslip.report.figures.lines import LOOKS
+from microslip.si.fitting.curves import abscissa as abscissa_of
 
 CONDITIONS = {
     "speed_m_s": ("speed", "m/s"),
@@ -21,6 +22,7 @@ CONDITIONS = {
 MEASURED = {"friction": ("friction force", "N"), "mu": ("coefficient of friction", "")}
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 VARIABLES = ("measured", "measured_error", "fitted", "fitted_error", "residual", *CONDITIONS)
+CURVE = tuple(f"curve_{name}" for name in ("fitted", "fitted_error", *CONDITIONS))
 BAND = 2.0
 """Standard errors within which about 95 % of the residuals are."""
 WIDE = 10.0
@@ -31,17 +33,20 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw measured and fitted friction above, residuals below.
 
     The abscissa is the condition with the most values; rows that differ in another one have a look
-    of their own.  What the model may be off is a band around its line.
+    of their own.  The line is the model curve, with a band for the error of the model; a row that
+    no curve passes through has a short dash there.
     """
-    require(name, "fit", dataset, VARIABLES)
-    abscissa = max(CONDITIONS, key=lambda each: len(np.unique(dataset[each].values)))
+    require(name, "fit", dataset, (*VARIABLES, *CURVE))
+    abscissa = abscissa_of({each: dataset[each].values for each in CONDITIONS})
     figure = look.new_figure(look.SINGLE, 4.0)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
     along, label = _scaled(abscissa, dataset)
     what, unit = MEASURED[dataset.attrs["quantity"]]
     factor, unit = _prefix(dataset["measured"].values, unit) if unit else (1.0, "dimensionless")
     for (title, chosen), style in zip(_series(dataset, abscissa), LOOKS, strict=False):
-        _rows(upper, dataset.isel(row=chosen), along[chosen], factor, style, title)
+        rows = dataset.isel(row=chosen)
+        _rows(upper, rows, along[chosen], factor, style, title)
+        _model(upper, dataset, rows, abscissa, factor, style)
         color, marker, _ = style
         left = dataset["residual"].values[chosen]
         lower.plot(along[chosen], left, marker, color=color, markersize=3.2, gid="residual")
@@ -52,6 +57,8 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     upper.set_ylabel(f"{what} ({unit})")
     lower.set_ylabel("residual, standard\nerrors (dimensionless)")
     lower.set_xlabel(label)
+    if len(upper.get_legend_handles_labels()[1]) > 1:
+        upper.plot([], [], color=look.GREY, linewidth=1.0, label="lines: model")
     upper.legend(loc="best", fontsize=look.SMALLEST)
     look.letter(upper, "a", _found(dataset), look.SINGLE - 0.6)
     look.letter(lower, "b")
@@ -66,13 +73,8 @@ def _rows(
     style: tuple,
     title: str,
 ) -> None:
-    """Marks with error bars for what was measured, a line with its band for what was fitted."""
-    color, marker, linestyle = style
-    order = np.argsort(along, kind="stable")
-    fitted, off = (rows[name].values[order] / factor for name in ("fitted", "fitted_error"))
-    band = {"color": color, "alpha": 0.2, "linewidth": 0, "gid": "model-error"}
-    axes.fill_between(along[order], fitted - off, fitted + off, **band)
-    axes.plot(along[order], fitted, color=color, linestyle=linestyle, linewidth=1.0, gid="fitted")
+    """Marks with error bars for the measured friction."""
+    color, marker, _ = style
     axes.errorbar(
         along,
         rows["measured"].values / factor,
@@ -83,9 +85,34 @@ def _rows(
         linestyle="none",
         elinewidth=0.7,
         capsize=1.5,
-        label=title or "measured; line: fitted",
+        label=title or "measured; line: model",
         gid="measured",
     )
+
+
+def _model(
+    axes: Axes, dataset: xr.Dataset, rows: xr.Dataset, abscissa: str, factor: float, style: tuple
+) -> None:
+    """The model curve of rows that share all conditions but the abscissa, else a dash at each."""
+    color, _, linestyle = style
+    others = [each for each in CONDITIONS if each != abscissa]
+    along, fitted, off = (
+        dataset[f"curve_{each}"].values for each in (abscissa, "fitted", "fitted_error")
+    )
+    own = [np.unique(rows[each].values) for each in others]
+    here = np.zeros(len(along), bool)
+    if all(len(values) == 1 for values in own):
+        conditions = [dataset[f"curve_{each}"].values for each in others]
+        here = np.logical_and.reduce([a == b for a, b in zip(conditions, own, strict=True)])
+    unit, _ = _prefix(dataset[abscissa].values, "")
+    if here.any():
+        x, y, error = along[here] / unit, fitted[here] / factor, off[here] / factor
+        band = {"color": color, "alpha": 0.2, "linewidth": 0, "gid": "model-error"}
+        axes.fill_between(x, y - error, y + error, **band)
+        axes.plot(x, y, color=color, linestyle=linestyle, linewidth=1.0, gid="fitted")
+    else:
+        x, y = rows[abscissa].values / unit, rows["fitted"].values / factor
+        axes.plot(x, y, "_", color=color, markersize=7.0, markeredgewidth=1.0, gid="fitted")
 
 
 def _series(dataset: xr.Dataset, abscissa: str) -> list[tuple[str, np.ndarray]]:

@@ -10,6 +10,7 @@ import numpy as np
 from microslip.foundation.errors import InputError
 from microslip.si.dimensionless import RealMotion
 from microslip.si.fitting import estimate
+from microslip.si.fitting.curves import curve_of
 from microslip.si.fitting.fitted import Fit
 from microslip.si.fitting.friction_models import FrictionModel
 from microslip.si.fitting.scales import Displacement, Modulus
@@ -109,6 +110,7 @@ def concluded(settled: Settled, confidence: float, texts: dict) -> Fit:
         residual=np.divide(
             rows.value - fitted, noise, out=np.zeros_like(fitted), where=noise > 0.0
         ),
+        curve=curve_of(scale, model, mu, size),
     )
 
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from microslip.si.fitting.curves import Curve
+
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -63,6 +65,8 @@ class Fit:
         What the model says, and the largest error that it may have there, in the same unit.
     residual : np.ndarray, shape (rows,)
         Measured less fitted over the standard error, dimensionless.
+    curve : Curve
+        Friction of the model between the rows, for figures.
     """
 
     scene: str
@@ -99,25 +103,33 @@ class Fit:
     fitted: np.ndarray = field(repr=False)
     fitted_error: np.ndarray = field(repr=False)
     residual: np.ndarray = field(repr=False)
+    curve: Curve = field(repr=False)
 
     def to_dict(self) -> dict:
-        """Fields as a plain dict, arrays and tuples as lists."""
+        """Fields as a plain dict, arrays and tuples as lists; without the curve."""
 
         def plain(value):
             if isinstance(value, np.ndarray):
                 return value.tolist()
             return list(value) if isinstance(value, tuple) else value
 
-        return {each.name: plain(getattr(self, each.name)) for each in fields(self)}
+        names = (each.name for each in fields(self) if each.name != "curve")
+        return {name: plain(getattr(self, name)) for name in names}
 
     def to_xarray(self) -> xr.Dataset:
-        """Rows as variables over `row`, other numbers without a dimension, texts as attributes."""
+        """Rows as variables over `row`, other numbers without a dimension, texts as attributes.
+
+        The curve is in variables `curve_NAME` over `curve_point`.
+        """
         import xarray as xr
 
         units = self._units()
         found, about = {}, {}
         for name, value in ((each.name, getattr(self, each.name)) for each in fields(self)):
-            if isinstance(value, np.ndarray):
+            if isinstance(value, Curve):
+                for part, values in value._asdict().items():
+                    found[f"curve_{part}"] = ("curve_point", values, {"units": units[part]})
+            elif isinstance(value, np.ndarray):
                 found[name] = ("row", value, {"units": units[name]})
             elif isinstance(value, dict):
                 about[name] = "; ".join(f"{key}: {text}" for key, text in value.items())

@@ -46,6 +46,9 @@ class FrictionModel(Protocol):
     def errors(self, points: Points) -> np.ndarray:
         """Largest error of `at` next to the points of the last anchor."""
 
+    def rough(self, points: Points) -> np.ndarray:
+        """mu_macro at any points, without what the anchor corrects at the rows."""
+
 
 class MapFriction:
     """A dataset of a sweep with its accessor `friction`, see datasets.query.
@@ -88,6 +91,8 @@ class MapFriction:
             )
             points = Points(*(np.clip(part, *ends) for part, ends in parts))
         return self._answer(points)[0]
+
+    rough = at
 
     def anchor(self, points: Points) -> None:
         """Nothing to do: a map is as right everywhere."""
@@ -159,6 +164,9 @@ class SolvedFriction:
 
     def errors(self, points: Points) -> np.ndarray:
         return self._errors
+
+    def rough(self, points: Points) -> np.ndarray:
+        return np.where(points.amplitude > 0.0, self._coarse(points), 1.0)
 
     def _coordinates(self, points):
         """Logarithms of amplitude and ratio, within the range of the coarse map."""

@@ -128,6 +128,10 @@ def _column(name, values):
     if len(column) > MOST_ROWS:
         raise InputError(name, len(column), f"allowed are at most {MOST_ROWS} rows")
     column = column.astype(float)
+    if np.isnan(column).any():
+        row = int(np.flatnonzero(np.isnan(column))[0]) + 1
+        allowed = f"empty in row {row}; allowed: a number in every row, leave out the others"
+        raise InputError(name, None, allowed)
     least = -np.inf if name in ("friction", "mu") else 0.0
     zero = name in ("speed", "amplitude", "friction", "mu")
     bad = ~np.isfinite(column) | (column < least) | ((column == 0.0) & (not zero))

@@ -49,6 +49,9 @@ def read_table(content: bytes, unit_of_amplitude: str) -> dict[str, list[float]]
     thousands = csv_text.Thousands(separator, names)
     for where, line in lines:
         cells = csv_text.row(where, line, separator, range(len(names)))
+        if "" in cells:
+            allowed = "allowed: a number in every row; leave out the row, or fill the cell"
+            raise ValueError(f"line {where}: {names[cells.index('')]} is empty; {allowed}")
         for name, unit, cell in zip(names, units, cells, strict=True):
             wanted = unit_of_amplitude if name == "amplitude" else COLUMNS[name]
             table[name].append(_value(where, name, f"{cell} {unit}".strip(), wanted))

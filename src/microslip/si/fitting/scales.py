@@ -49,9 +49,9 @@ class Displacement:
         """N."""
         return float(self.rows.load.mean())
 
-    def points(self, mu: float, scale: float) -> Points:
-        """Velocity and amplitude of each row."""
-        rows = self.rows
+    def points(self, mu: float, scale: float, rows: Measured | None = None) -> Points:
+        """Velocity and amplitude of each row; rows: others than those of the fit."""
+        rows = self.rows if rows is None else rows
         u_lim = scale * (rows.load / self.mean_load) ** (2.0 / 3.0)
         omega = 2.0 * math.pi * rows.frequency
         return Points(rows.speed / (omega * u_lim), rows.amplitude / u_lim)
@@ -106,9 +106,9 @@ class Modulus:
         other = body if self.alike else RIGID
         return TwoBodies(body, other, self.radius, self.mean_load, mu)
 
-    def points(self, mu: float, scale: float) -> Points:
-        """Velocity and amplitude of each row."""
-        rows, contact = self.rows, self.contact(mu, scale)
+    def points(self, mu: float, scale: float, rows: Measured | None = None) -> Points:
+        """Velocity and amplitude of each row; rows: others than those of the fit."""
+        rows, contact = self.rows if rows is None else rows, self.contact(mu, scale)
         share = rows.load / self.mean_load
         u_lim = contact.u_lim * share ** (2.0 / 3.0)
         omega = 2.0 * math.pi * rows.frequency
