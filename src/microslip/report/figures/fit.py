@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from microslip.report.figures import style as look
 from microslip.report.figures.data import finite_or_nan, require
@@ -57,9 +58,10 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     upper.set_ylabel(f"{what} ({unit})")
     lower.set_ylabel("residual, standard\nerrors (dimensionless)")
     lower.set_xlabel(label)
-    if len(upper.get_legend_handles_labels()[1]) > 1:
-        upper.plot([], [], color=look.GREY, linewidth=1.0, label="lines: model")
-    upper.legend(loc="best", fontsize=look.SMALLEST)
+    handles = upper.get_legend_handles_labels()[0]
+    if len(handles) > 1:
+        handles.append(Line2D([], [], color=look.GREY, linewidth=1.0, label="lines: model"))
+    upper.legend(handles=handles, loc="best", fontsize=look.SMALLEST)
     look.letter(upper, "a", _found(dataset), look.SINGLE - 0.6)
     look.letter(lower, "b")
     return figure
