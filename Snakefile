@@ -40,7 +40,7 @@ import os
 
 from snakemake.utils import min_version
 
-min_version("9.0")
+min_version("9.4")
 
 
 report: "workflow/report/workflow.rst"

@@ -41,9 +41,9 @@ def label(axes: Axes, contours: ContourSet, levels: Iterable[float], size: float
         for _, place, turn in sorted(places, key=lambda found: found[0]):
             if _inside(axes, place, turn, box) and not _within(obstacles, place, turn, box).any():
                 at = axes.transData.inverted().transform(place)
-                contours.clabel(
-                    [level], fmt=text, fontsize=size, inline_spacing=2, manual=[tuple(at)]
-                )
+                # The nearest contour is labelled.  All levels are candidates, since Matplotlib 3.10
+                # looks a level up by a wrong index in a list of some of them.
+                contours.clabel(fmt=text, fontsize=size, inline_spacing=2, manual=[tuple(at)])
                 taken.append(_grid(place, turn, box))
                 break
 

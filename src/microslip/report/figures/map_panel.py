@@ -58,8 +58,8 @@ def fill(
         colors=signed.inks(lines, fills),
         linestyles=["dashed" if level < 0 else "solid" for level in lines],
         linewidths=[1.1 if level == 0 else 0.7 for level in lines],
-        gid="contours",
     )
+    contours.set_gid("contours")
     axes.set_xscale("log")
     axes.set(xlim=(velocity[0], velocity[-1]), ylim=(amplitude[0], amplitude[-1]))
     axes.xaxis.set_major_locator(LogLocator(numticks=12))
