@@ -314,6 +314,16 @@ def test_a_comment_is_no_edit_and_a_removed_or_half_written_file_is_one(package)
     assert sources.edited(SOLVER) == ["hertz.py", "solver/run.py"]
 
 
+def test_a_file_that_is_no_python_counts_by_its_bytes_and_imports_nothing(package):
+    digests = []
+    for text in ("def load(", "def load(x", "\0"):
+        (package / "hertz.py").write_text(text)
+        sources = Sources(package)
+        assert sources.closure(["hertz.py"]) == {"hertz.py"}
+        digests.append(sources.digest(["hertz.py"]))
+    assert len(set(digests)) == 3
+
+
 SESSION = """
 import json, sys, warnings
 from pathlib import Path

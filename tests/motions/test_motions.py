@@ -1,6 +1,11 @@
 """Scenes: what their displacement promises, and the zigzag against closed forms."""
 
 import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -138,3 +143,66 @@ def test_a_motion_is_one_file(cube, capsys):
     )
     with pytest.raises(ValueError, match="allowed is one of transverse, .*, sine-cubed"):
         microslip.solve("cubed", 0.1, 0.5)
+
+
+BROKEN = {
+    "unfinished.py": ("MOTION = replace(", "SyntaxError in line 1"),
+    "no_package.py": ("\nimport no_such_package", "ModuleNotFoundError in line 2"),
+    "number.py": ("MOTION = 3", "MOTION is no Motion"),
+    "no_function.py": ("DEFAULTS = {}", "no function motion"),
+    "fails.py": (
+        'DEFAULTS = {"x": 1.0}\ndef motion(name, x):\n    return 1 / 0',
+        "ZeroDivisionError in line 3",
+    ),
+}
+
+
+@pytest.fixture
+def broken(tmp_path):
+    """A folder of motions with files that cannot be used; the registry is restored afterwards."""
+    registries = (by_name.MOTIONS, by_name.FAMILIES, by_name.BROKEN)
+    before, path = [dict(registry) for registry in registries], list(motions.__path__)
+    for name, (text, _) in BROKEN.items():
+        (tmp_path / name).write_text(text)
+    by_name.find(tmp_path)
+    yield tmp_path
+    for registry, old in zip(registries, before, strict=True):
+        registry.clear()
+        registry.update(old)
+    motions.__path__[:] = path
+    for name in BROKEN:
+        sys.modules.pop(f"{motions.__name__}.{name.removesuffix('.py')}", None)
+
+
+@pytest.mark.parametrize("file", BROKEN)
+def test_a_broken_file_is_an_error_of_its_motion_alone(broken, capsys, file):
+    name, cause = file.removesuffix(".py").replace("_", "-"), BROKEN[file][1]
+    with pytest.raises(microslip.InputError) as caught:
+        microslip.solve(name, 0.1, 0.5)
+    assert caught.value.argument == "scene"
+    assert str(broken / file) in str(caught.value) and cause in str(caught.value)
+    arguments = ["--velocity", "0.1", "--amplitude", "0.5", "--json"]
+    assert main(["point", name, *arguments]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert str(broken / file) in line and cause in line
+    assert main(["point", "longitudinal", *arguments]) == 0
+
+
+@pytest.mark.long
+def test_broken_files_in_the_package_do_not_end_other_commands(tmp_path):
+    """Their sources count for no result, and digests are computed all the same."""
+    package = Path(microslip.__file__).parent
+    without = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(package, tmp_path / "microslip", ignore=without)
+    for folder in ("motions", "pressures", "solver/methods"):
+        (tmp_path / "microslip" / folder / "unfinished.py").write_text("MOTION = replace(")
+    command = [sys.executable, "-m", "microslip", "point", "longitudinal", "--velocity", "0.1"]
+    command += ["--amplitude", "0.5", "--results", "results"]
+    place = os.environ | {"PYTHONPATH": str(tmp_path)}
+    done = subprocess.run(command, cwd=tmp_path, env=place, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    command[command.index("--results") :] = ["--method", "unfinished"]
+    done = subprocess.run(command, cwd=tmp_path, env=place, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "unfinished.py cannot be imported: SyntaxError in line 1" in done.stderr
+    assert done.stderr.count("\n") == 1

@@ -394,3 +394,15 @@ def test_a_pressure_is_one_file(blunt):
     assert exact.model == "closed-form"
     for found in (rings, springs):
         assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error + 1e-8
+
+
+def test_a_broken_file_is_an_error_of_its_pressure_alone(tmp_path, monkeypatch):
+    monkeypatch.setattr(by_name, "BROKEN", dict(getattr(by_name, "BROKEN", {})))
+    monkeypatch.setattr(pressures, "__path__", list(pressures.__path__))
+    file = tmp_path / "unfinished.py"
+    file.write_text("import no_such_package")
+    by_name.find(tmp_path)
+    with pytest.raises(microslip.InputError, match="No module named 'no_such_package'") as caught:
+        microslip.solve("longitudinal", 0.1, 0.5, pressure="unfinished:share=1")
+    assert caught.value.argument == "pressure" and str(file) in str(caught.value)
+    assert microslip.solve("longitudinal", 0.1, 0.5, pressure="power:exponent=1").converged

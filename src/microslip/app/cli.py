@@ -57,12 +57,16 @@ def build_parser(asked: str | None = None) -> option_parser.OneLineParser:
 
 def _add_motions(parser):
     """A parser for each motion; what they are is asked of the solver, so only where it counts."""
-    from microslip.motions.by_name import FAMILIES, MOTIONS
+    from microslip.motions.by_name import FAMILIES, MOTIONS, motion_named
 
     scenes = parser.add_subparsers(dest="scene", required=True, metavar="SCENE")
-    known = {name: (scene.summary, scene.periodic, None) for name, scene in MOTIONS.items()}
-    known |= {name: (family.SUMMARY, True, family.HELP) for name, family in FAMILIES.items()}
-    for name, (summary, periodic, path) in known.items():
+    for name in (*MOTIONS, *FAMILIES):
+        family = FAMILIES.get(name)
+        try:
+            record = motion_named(name)
+        except InputError:  # in a file of the user: see _problem_of_motion
+            continue
+        summary = getattr(family, "SUMMARY", record.summary)
         scene = scenes.add_parser(
             name,
             help=summary,
@@ -71,18 +75,18 @@ def _add_motions(parser):
             f"of it sticking.{f'  {BORE}' if 'bore' in name else ''}",
             allow_abbrev=False,
         )
-        record = MOTIONS.get(name) or FAMILIES[name].motion(name, **FAMILIES[name].DEFAULTS)
         scene.add_argument(
             "--velocity",
             metavar="V",
             help=f"{record.velocity_label}; 0: v -> 0; below 0 where the motion drives; left out "
             "under a force",
         )
-        if periodic:
+        if record.periodic:
             scene.add_argument(
                 "--amplitude", required=True, metavar="A", help=record.amplitude_label
             )
-        if path:
+        if family:
+            path = getattr(family, "HELP", f"of {', '.join(family.DEFAULTS)}")
             scene.add_argument("--path", metavar="NUMBERS", help=path)
         _add_options(scene)
 
@@ -177,6 +181,10 @@ def main(arguments: list[str] | None = None) -> int:
     if arguments[:1] == ["sweep"]:  # not for argparse: what follows is Snakemake's
         return sweep_command.main(arguments[1:])
     if arguments[:1] == ["point"]:
+        problem = _problem_of_motion(arguments[1:2])
+        if problem:
+            terminal.complain(f"microslip point: {problem}")
+            return 2
         arguments = _with_path(arguments)
     options = build_parser(next(iter(arguments), None)).parse_args(option_parser.joined(arguments))
     if options.command == "predict":
@@ -209,6 +217,19 @@ def main(arguments: list[str] | None = None) -> int:
 
         print(as_text(result))
     return 0 if result.converged else 1
+
+
+def _problem_of_motion(words):
+    """The InputError of a motion whose file cannot be used; None for all other words."""
+    from microslip.motions.by_name import BROKEN, FAMILIES, motion_named
+
+    name = words[0].partition(":")[0] if words else ""
+    if name in FAMILIES or name.replace("-", "_") in BROKEN:
+        try:
+            motion_named(name)
+        except InputError as error:
+            return error.renamed("SCENE")
+    return None
 
 
 def _with_path(words):

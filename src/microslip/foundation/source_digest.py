@@ -124,12 +124,7 @@ class Sources:
         except OSError:
             return name in self.contents
         then = self.contents.get(name, now)
-        if now == then:
-            return False
-        try:
-            return _digest_of(now) != _digest_of(then)
-        except (SyntaxError, ValueError):
-            return True  # it is being edited
+        return now != then and _digest_of(now) != _digest_of(then)
 
     def _has(self, folder, file):
         return f"{folder}/{file}.py" in self.contents or _of_ones_own(folder, file) is not None
@@ -195,7 +190,10 @@ def _imports_of(content, place, deep):
     import ast
 
     package = place[0]
-    statements = [ast.parse(content)]
+    try:
+        statements = [ast.parse(content)]
+    except (SyntaxError, ValueError):  # a broken file, which no result can depend on
+        return
     while statements:
         node = statements.pop()
         if isinstance(node, ast.Import):
@@ -223,7 +221,10 @@ def _may_import(node):
 def _digest_of(content):
     from microslip.foundation.syntax_digest import digest_of_source
 
-    return digest_of_source(content.decode("utf-8"))
+    try:
+        return digest_of_source(content.decode("utf-8"))
+    except (SyntaxError, ValueError):  # a broken file: by its bytes
+        return hashlib.sha256(content).hexdigest()
 
 
 # Of the package that is running

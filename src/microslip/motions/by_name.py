@@ -10,13 +10,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import lru_cache
-from importlib import import_module
 
 import numpy as np
 
 from microslip import motions
 from microslip.foundation.errors import InputError
-from microslip.foundation.families import modules_in, record_named
+from microslip.foundation.families import missing_parts, modules_in, record_named
 from microslip.motions.motion import Motion
 from microslip.pressures.by_name import HERTZ, pressure_named
 
@@ -28,22 +27,27 @@ FAMILIES = {}
 """Name -> module with DEFAULTS, numbers and their values if not given, and motion(name, ...)."""
 
 
+BROKEN = {}
+"""File -> its path and why it cannot be used."""
+
+
 def find(folder: str) -> None:
-    """Make the motions in a folder known: those of the package, or one's own."""
-    for file, module in modules_in(folder, motions):
-        _add(file, module)
+    """Register the motions in a folder: those of the package, or the user's own.
+
+    A file that cannot be used is an InputError where a motion of its name is requested.
+    """
+    modules = dict(modules_in(folder, motions, BROKEN))
+    for file in dict.fromkeys((*(file for file in _FIRST if file in modules), *modules)):
+        name, module = file.replace("_", "-"), modules[file]
+        reason = missing_parts(module, "MOTION", Motion, "motion")
+        if reason:
+            BROKEN[file] = reason
+        elif hasattr(module, "MOTION"):
+            MOTIONS[name] = module.MOTION
+        elif hasattr(module, "DEFAULTS"):
+            FAMILIES[name] = module
 
 
-def _add(file, module):
-    name = file.replace("_", "-")
-    if hasattr(module, "MOTION"):
-        MOTIONS[name] = module.MOTION
-    elif hasattr(module, "DEFAULTS"):
-        FAMILIES[name] = module
-
-
-for _file in _FIRST:
-    _add(_file, import_module(f"{motions.__name__}.{_file}"))
 for _folder in list(motions.__path__):
     find(_folder)
 
@@ -80,4 +84,4 @@ def _motion_named(name):
     known = [*MOTIONS, *FAMILIES]
     if not isinstance(name, str):
         raise InputError("scene", name, f"allowed is one of {', '.join(known)}")
-    return record_named(name, "scene", FAMILIES, known, make="motion")
+    return record_named(name, "scene", FAMILIES, known, make="motion", broken=BROKEN)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from microslip import pressures
 from microslip.foundation.errors import InputError
-from microslip.foundation.families import modules_in, record_named
+from microslip.foundation.families import missing_parts, modules_in, record_named
 from microslip.pressures.hertz import PRESSURE as HERTZ
 from microslip.pressures.pressure import Pressure
 
@@ -25,10 +25,20 @@ SOURCES = {}
 """Word -> module with pressure(name), for names that begin with the word and a colon."""
 
 
+BROKEN = {}
+"""File -> its path and why it cannot be used."""
+
+
 def find(folder: str) -> None:
-    """Make the families in a folder known: those of the package, or one's own."""
-    for file, module in modules_in(folder, pressures):
-        if hasattr(module, "PRESSURE"):
+    """Register the pressures in a folder: those of the package, or the user's own.
+
+    A file that cannot be used is an InputError where a pressure of its name is requested.
+    """
+    for file, module in modules_in(folder, pressures, BROKEN):
+        reason = missing_parts(module, "PRESSURE", Pressure, "pressure")
+        if reason:
+            BROKEN[file] = reason
+        elif hasattr(module, "PRESSURE"):
             PRESSURES[file] = module.PRESSURE
         elif hasattr(module, "DEFAULTS"):
             FAMILIES[file.replace("_", "-")] = module
@@ -52,4 +62,4 @@ def pressure_named(name: str) -> Pressure:
     word, colon, _ = name.partition(":")
     if colon and word in SOURCES:
         return SOURCES[word].pressure(name)
-    return record_named(name, "pressure", FAMILIES, known, make="pressure")
+    return record_named(name, "pressure", FAMILIES, known, make="pressure", broken=BROKEN)

@@ -19,6 +19,7 @@ from pathlib import Path
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
+from microslip.foundation.families import described
 from microslip.solver import methods
 
 SHIPPED = "shipped"
@@ -27,16 +28,34 @@ METHODS = Path(methods.__file__).parent
 
 @cache
 def names() -> tuple[str, ...]:
-    """Names of all methods, the one that ships first."""
+    """Names of all methods, the one that ships first; without those whose file is no Python."""
     stems = (file.stem for file in METHODS.glob("[!_]*.py"))
     # not a copy or a checkpoint of one, which nobody means
-    return (SHIPPED, *sorted(stem.replace("_", "-") for stem in stems if stem.isidentifier()))
+    every = sorted(stem.replace("_", "-") for stem in stems if stem.isidentifier())
+    return (SHIPPED, *(name for name in every if not isinstance(_parsed(name), str)))
+
+
+@cache
+def _parsed(name):
+    """The syntax tree of a method's file; a text that says what is wrong with it; None if it is
+    not there."""
+    file = METHODS / f"{name.replace('-', '_')}.py"
+    try:
+        return ast.parse(file.read_text(encoding="utf-8"), file)
+    except FileNotFoundError:
+        return None
+    except (OSError, SyntaxError, ValueError) as error:
+        return f"{file} cannot be imported: {described(error, file)}"
 
 
 def split(text: str) -> tuple[str, dict[str, float]]:
     """Name and numbers (dict) of a method; raises InputError if the text cannot be read."""
     if not isinstance(text, str):
         raise InputError("method", text, f"allowed is one of {', '.join(names())}")
+    name = text.partition(":")[0]
+    reason = _parsed(name) if name.replace("-", "_").isidentifier() else None
+    if isinstance(reason, str):
+        raise InputError("method", text, reason)
     return spec.split(text, "method", names())
 
 
@@ -83,7 +102,13 @@ def method_named(text: str) -> object:  # of a module that is not imported here
     name, numbers = split(text)
     if name == SHIPPED:
         return import_module("microslip.solver.method").SHIPPED
-    method = import_module(f"{methods.__name__}.{name.replace('-', '_')}").METHOD
+    file = name.replace("-", "_")
+    try:
+        method = import_module(f"{methods.__name__}.{file}").METHOD
+    except (Exception, SystemExit) as error:  # the code of a user may raise anything
+        path = METHODS / f"{file}.py"
+        reason = f"{path} cannot be imported: {described(error, path)}"
+        raise InputError("method", text, reason) from error
     return replace(method, parameters={**method.parameters, **numbers})
 
 
@@ -100,8 +125,7 @@ def declared(name: str, field: str) -> object:
     """
     if name == SHIPPED:
         return None
-    file = METHODS / f"{name.replace('-', '_')}.py"
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+    for node in ast.walk(_parsed(name)):
         if isinstance(node, ast.keyword) and node.arg == field:
             return ast.literal_eval(node.value)
     return None
