@@ -1,5 +1,6 @@
 """The line of progress of a whole run."""
 
+import re
 import time
 
 import pytest
@@ -36,6 +37,15 @@ def test_points_of_all_jobs_rate_and_end_are_shown(tmp_path, capsys):
     said = capsys.readouterr().err
     assert "5/5" in said
     assert "point/s" in said
+
+
+def test_points_are_shown_where_nobody_knows_how_many_there_will_be(tmp_path, capsys):
+    path = tmp_path / "done"
+    shown = progress.Watch(path)
+    shown.start(None)
+    list(progress.counted(range(5), path))
+    shown.stop()
+    assert re.search(r"points: 5point \[.*point/s\]", capsys.readouterr().err)
 
 
 @pytest.mark.parametrize("total", [0, 3])

@@ -29,14 +29,17 @@ def test_maps_of_creep_show_threshold_rest_and_the_rigid_contact():
         assert tops[0] == pytest.approx(tops[1], abs=1e-9)
 
 
-def test_points_of_a_map_that_did_not_converge_are_marked():
-    broken = creep("bore")
+@pytest.mark.parametrize("panel", [0, 1])
+def test_points_of_a_map_that_did_not_converge_are_marked(panel):
+    datasets = {"creep_transverse": creep("transverse"), "creep_bore": creep("bore")}
+    broken = list(datasets.values())[panel]
     broken["converged"][2, 3] = 0
-    figure = drawing.draw(
-        "creep_maps", {"creep_transverse": creep("transverse"), "creep_bore": broken}
-    )
-    plain, marked = (by_gid(axes, "unconverged")[0].get_xydata() for axes in figure.axes[:2])
+    figure = drawing.draw("creep_maps", datasets)
+    marks = [by_gid(axes, "unconverged")[0].get_xydata() for axes in figure.axes[:2]]
+    plain, marked = marks[1 - panel], marks[panel]
     assert len(plain) == 0
+    (legend,) = figure.legends
+    assert "not converged" in [text.get_text() for text in legend.get_texts()]
     assert marked.tolist() == [[FORCES[3], float(broken["amplitude"][2])]]
 
 

@@ -1,8 +1,11 @@
 """Sweeps: requests, batches of them, and answers from the store or the solver."""
 
 import errno
+import io
 import json
 import math
+from collections import Counter
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -118,6 +121,24 @@ def test_a_batch_with_a_point_that_failed_is_whole_and_made_again(monkeypatch, s
     batch_files.write_batch(path, records, done["final"])
     assert batch_files.read_batch(path) == records
     assert batch_files.why_not_whole(path) == "it has points that failed"
+
+
+def test_the_file_of_a_batch_is_not_opened_for_each_of_its_records(monkeypatch, store, tmp_path):
+    Solver(monkeypatch)
+    requests = requests_of()
+    paths = [tmp_path / "0.json", tmp_path / "1.json"]
+    for path, part in zip(paths, (requests[:3], requests[3:]), strict=True):
+        batch_files.write_batch(path, sweep.run_batch(part, store)[0])
+    opened, open_file = [], io.open
+
+    def counted(file, *arguments, **settings):
+        opened.append(Path(file))
+        return open_file(file, *arguments, **settings)
+
+    monkeypatch.setattr("builtins.open", counted)
+    monkeypatch.setattr(io, "open", counted)  # what pathlib calls
+    assert len(list(sweep.records_for(requests, paths))) == 6
+    assert max(Counter(opened).values()) <= 2  # once for the places, once for the content
 
 
 BATCH_DAMAGE = {

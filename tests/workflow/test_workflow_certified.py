@@ -9,6 +9,7 @@ import microslip
 from microslip.app import leftovers
 from microslip.app.plan import Plan
 from microslip.config import load
+from microslip.sweeps import map_rounds
 
 pytestmark = pytest.mark.long
 
@@ -44,6 +45,13 @@ def test_one_command_makes_a_map_whose_error_holds_everywhere(finished):
     answer = data.friction.at(velocity=0.7, amplitude=1.9)
     rigid = microslip.solve("transverse", 0.7, 1.9, model="rigid", tolerance=0.01)
     assert abs(float(answer.mu_macro) - rigid.mu_macro) <= float(answer.mu_macro_error)
+
+
+def test_the_points_of_all_rounds_are_counted(finished):
+    """How many there will be is known at the end alone, so the line has no total."""
+    files = finished.folder.glob("results/rounds/*/*/*.json")
+    rounds = map_rounds.read_rounds([file for file in files if file.stem.isdecimal()])
+    assert f"points: {sum(len(one['nodes']) for one in rounds)}point [" in finished.said
 
 
 def test_a_second_run_has_nothing_to_do_and_a_plain_one_makes_no_map(finished):

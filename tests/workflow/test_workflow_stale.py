@@ -9,7 +9,7 @@ import time
 import pytest
 import xarray as xr
 import yaml
-from stubs.workflow_project import AXES, RUN, SNAKEMAKE, TINY, jobs_in
+from stubs.workflow_project import AXES, ENVIRONMENT, RUN, SNAKEMAKE, TINY, jobs_in
 
 from microslip.sweeps import sealed_files
 
@@ -22,6 +22,30 @@ DRAWN = {"collect": 1, "draw_figure": 2, "all": 1}
 def velocities(project, name="transverse"):
     with xr.open_dataset(project.folder / "results" / f"{name}.nc") as data:
         return list(data.velocity.values)
+
+
+COUNTING = """
+import atexit, hashlib
+names, digest = [], hashlib.file_digest
+
+def counted(file, *arguments):
+    names.append(file.name)
+    return digest(file, *arguments)
+
+hashlib.file_digest = counted
+atexit.register(lambda: open("hashed.txt", "w").write("\\n".join(names)))
+"""
+
+
+@pytest.mark.long
+def test_planning_reads_each_output_once(finished, tmp_path):
+    project = finished.copied(tmp_path / "copy")
+    (project.folder / "sitecustomize.py").write_text(COUNTING)
+    environment = ENVIRONMENT | {"PYTHONPATH": "."}
+    command = [SNAKEMAKE, "--dry-run", *RUN]
+    subprocess.run(command, cwd=project.folder, env=environment, check=True, capture_output=True)
+    hashed = (project.folder / "hashed.txt").read_text().split()
+    assert len(hashed) == len(set(hashed)) == 3 + 3 + 2 * 6  # datasets, pages, figures
 
 
 @pytest.fixture(scope="module")

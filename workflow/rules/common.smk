@@ -183,10 +183,12 @@ def make_ready():
 
 
 def points_to_do():
-    """Points in the jobs that this run is about to do."""
-    asked = [
-        job.wildcards for job in workflow.dag.needrun_jobs() if "batch" in job.wildcards.keys()
-    ]
+    """Number of points in the jobs of this run; None if a round of a certified map is among them,
+    since its answers decide how many follow."""
+    jobs = list(workflow.dag.needrun_jobs())
+    if any("round" in job.wildcards.keys() for job in jobs):
+        return None
+    asked = [job.wildcards for job in jobs if "batch" in job.wildcards.keys()]
     # Where this is a module, others may have batches too.
     known = [w for w in asked if w[0] in PLAN.groups]
     return sum(len(PLAN.batches_in(w[0]).get(w.batch, ())) for w in known)

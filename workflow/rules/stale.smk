@@ -25,10 +25,8 @@ def look_after(*files):
     for file in files:
         there = placed(file)
         if ASKING and os.path.lexists(there):
-            if sealed_files.is_damaged(there):
-                make_again(there, "it is damaged")
-            elif not sealed_files.is_made_of(there, PLAN.fingerprint_of(file)):
-                make_again(there)
+            if not sealed_files.is_made_of(there, PLAN.fingerprint_of(file)):
+                make_again(there, "it is damaged" if sealed_files.is_damaged(there) else "")
 
 
 def whole_batches(*groups):

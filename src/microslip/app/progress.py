@@ -34,9 +34,13 @@ class Watch:
         """path: of the file that jobs add to; it is emptied by `start`."""
         self.path, self.stopped, self.thread = Path(path), threading.Event(), None
 
-    def start(self, total: int) -> None:
-        """Begin to show progress; total: points that there are to do."""
-        if not total:
+    def start(self, total: int | None) -> None:
+        """Begin to show progress.
+
+        total: number of points to do; None: not known yet, so that their number and rate are shown
+        without an end; 0: nothing is shown.
+        """
+        if total == 0:
             return
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)

@@ -54,7 +54,8 @@ def why_not_whole(path: Path) -> str:
 class Records:
     """Records in the files of batches, found by their keys wherever they lie.
 
-    Where they lie is remembered, and not what they hold, so that memory does not grow with them.
+    The places of all records and the content of one file are in memory, so that memory hardly grows
+    with the number of records.  A file is read again only after a record of another one.
 
     Parameters
     ----------
@@ -68,7 +69,7 @@ class Records:
     """
 
     def __init__(self, paths: Iterable[str | Path]):
-        self._places = {}
+        self._places, self._read = {}, (None, b"")
         for path in paths:
             content, _ = _batch_content(path)
             if not content:
@@ -85,9 +86,9 @@ class Records:
         if key not in self._places:
             return None
         path, begin, length = self._places[key]
-        with open(path, "rb") as file:
-            file.seek(begin)
-            return json.loads(file.read(length))["record"]
+        if path != self._read[0]:
+            self._read = path, Path(path).read_bytes()
+        return json.loads(self._read[1][begin : begin + length])["record"]
 
 
 KEY = re.compile(rb'{"checksum":"[0-9a-f]{64}","record":{"key":"([0-9a-f]{64})"')

@@ -13,7 +13,6 @@ from matplotlib.patches import Patch
 from microslip.config.quantities import AMPLITUDE, DRIVES, VELOCITY
 from microslip.report.figures import style as look
 from microslip.report.figures.data import curve, limit, require, sweep
-from microslip.report.figures.map_panel import unconverged
 from microslip.theory.catalogue import STATIC
 
 DECADES = np.linspace(-3.0, 1.0, 17)
@@ -23,25 +22,27 @@ LINES = (0.01, 0.1, 1.0)
 RIGID = "velocity_large_amplitude"
 NEEDED = ("force", "amplitude", "velocity", "converged", RIGID, STATIC)
 STAYS = {"facecolor": look.PALE, "edgecolor": "none"}
+UNCONVERGED = {"color": look.BLACK, "marker": "x", "linestyle": "none"}
 
 
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
     """Draw the velocity over force and amplitude, sideways and under oscillating bore."""
-    figure = look.new_figure(look.DOUBLE, 3.3)
+    figure, marked = look.new_figure(look.DOUBLE, 3.3), False
     panels = figure.subplots(1, len(datasets))
     for axes, letter, dataset in zip(panels, look.letters(len(datasets)), datasets, strict=True):
         require(name, dataset.attrs.get("title", name), dataset, NEEDED)
-        filled, hatched = _map(axes, dataset, letter)
+        filled, has_marks = _map(axes, dataset, letter)
+        marked |= has_marks
     bar = figure.colorbar(filled, ax=list(panels), pad=0.02, ticks=np.arange(-3.0, 2.0))
     bar.ax.set_yticklabels([f"${look.number(10.0**power)}$" for power in np.arange(-3.0, 2.0)])
     bar.set_label("mean velocity  (dimensionless)")
     bar.ax.tick_params(direction="out")
-    _legend(figure, hatched)
+    _legend(figure, marked)
     return figure
 
 
 def _map(axes: Axes, dataset: xr.Dataset, letter: str) -> tuple[ContourSet, bool]:
-    """One map; returns its bands, and whether a cell is hatched."""
+    """One map; returns its bands, and whether a point is marked as not converged."""
     scene = dataset.attrs["scene"]
     part, poisson = sweep(dataset.assign(mu_macro=dataset["velocity"]), ("amplitude", "force"))
     part = part.transpose("amplitude", "force", ...)
@@ -81,17 +82,17 @@ def _map(axes: Axes, dataset: xr.Dataset, letter: str) -> tuple[ContourSet, bool
     note = "velocity " + look.axis(VELOCITY[scene]).removeprefix(VELOCITY[scene].text).strip()
     look.letter(axes, letter, note + (rf", $\nu = {look.number(poisson)}$" if poisson else ""))
     bad = np.argwhere(part["converged"].values == 0)
-    axes.plot(force[bad[:, 1]], amplitude[bad[:, 0]], "x", color=look.BLACK, gid="unconverged")
+    axes.plot(force[bad[:, 1]], amplitude[bad[:, 0]], gid="unconverged", **UNCONVERGED)
     return bands, bool(len(bad))
 
 
-def _legend(figure: Figure, hatched: bool) -> None:
+def _legend(figure: Figure, marked: bool) -> None:
     rigid = {"color": look.VERMILLION, "linestyle": look.DASHED, "linewidth": 1.0}
     handles = [
         Line2D([], [], color=look.BLACK, linewidth=1.3, label="static limit: threshold"),
         Patch(label="comes to rest", **STAYS),
         Line2D([], [], label="rigid contact, at the same velocities", **rigid),
     ]
-    if hatched:
-        handles.append(unconverged("not converged"))
+    if marked:
+        handles.append(Line2D([], [], label="not converged", **UNCONVERGED))
     figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
