@@ -28,16 +28,16 @@ def together(first=0):
 
 
 class FakeRun:
-    """Runs whose mu is EXACT and errors of the second power of all levels, of which a share is
-    random."""
+    """Runs whose mu is EXACT and errors of a power of all levels, of which a share is random."""
 
-    def __init__(self, coefficients, scatter=0.0, seed=0):
+    def __init__(self, coefficients, scatter=0.0, seed=0, power=2):
         self.coefficients, self.scatter, self.seed = coefficients, scatter, seed
+        self.power = power
         self.asked, self.guesses, self.runs = [], [], []
 
     def __call__(self, resolution, guess):
         levels = resolution.cells, resolution.angles, resolution.steps
-        error = sum(c / n**2 for c, n in zip(self.coefficients, levels, strict=True))
+        error = sum(c / n**self.power for c, n in zip(self.coefficients, levels, strict=True))
         draw = np.random.default_rng([self.seed, *levels])
         error *= 1.0 + self.scatter * draw.uniform(-1.0, 1.0)
         self.asked.append(levels)
@@ -60,6 +60,22 @@ def test_an_error_of_second_order_is_extrapolated_to_the_exact_value():
     share, _ = FITTED_SHARES
     assert found.errors["space"] == pytest.approx(max(share * h[len(fake.asked) - 1], least))
     assert found.errors["time"] == 0.0
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 3e-4])
+@pytest.mark.parametrize("coefficient", [-0.02, 0.03, 0.1])
+def test_an_error_of_first_order_is_covered(coefficient, tolerance):
+    found = certified(FakeRun((coefficient, 0.0, 0.0), power=1), tolerance, first=1)
+    assert abs(found.mu - EXACT) <= found.error
+
+
+@pytest.mark.slow
+def test_few_rings_that_converge_slowly_are_refined():
+    """From 8 to 16 rings the error of this bore falls with the first power only.  Separate chains
+    from bases of 24 to 96 rings settle at 0.34733."""
+    result = microslip.solve("bore", 0.11150298626945476, 3.3085697949922066)
+    assert result.converged
+    assert result.mu_macro == pytest.approx(0.34733, abs=result.mu_macro_error)
 
 
 def test_all_levels_are_refined_at_once_each_run_from_the_one_before():

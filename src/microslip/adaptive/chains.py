@@ -26,8 +26,8 @@ FITTED, JUDGED = 3, 4
 """Runs that a fitted value is extrapolated from, and those that its error is seen by, and that of a
 static limit which was refined."""
 FITTED_SHARES = 1.0, 1.0
-"""Errors of fitted axes over the largest projection, and over the scatter about the line: chosen on
-random bores, of which none is off by more than that and the share below which no claim goes."""
+"""Errors of fitted axes over the largest projection, and over the scatter about the line:
+calibrated on the random bores of benchmarks/certificates.py."""
 RESOLVED = 0.125
 """Share of the tolerance below which no axis claims its error to be: nothing was run to see it."""
 READING_CAUTION = 2.5
@@ -218,17 +218,20 @@ class Chain:
         values, levels = values[-self.judged :], levels[-self.judged :]
         if self.axis.fitted:
             share, share_of_scatter = FITTED_SHARES
-            scatter = _scatter(values, levels)
-            return share * _largest_projection(values, levels) + share_of_scatter * scatter
+            # few rings may converge with the first power; the answer assumes the second
+            first = values[-1] + _extrapolation(values, levels, order=1)
+            unseen = abs(first - _limit(values[-FITTED:], levels[-FITTED:]))
+            seen = max(share * _largest_projection(values, levels), unseen)
+            return seen + share_of_scatter * _scatter(values, levels)
         if self.axis.projected:
             return CALIBRATED * self.axis.caution * _largest_projection(values, levels)
         spread = max(values) - min(values)
         return self.axis.caution * spread * (1.0 if self.axis.imposed else SPREAD)
 
 
-def _extrapolation(values, levels):
-    """What second-order convergence would still add to the last of the values."""
-    return (values[-1] - values[-2]) / ((levels[-1] / levels[-2]) ** 2 - 1.0)
+def _extrapolation(values, levels, order=2):
+    """What convergence of an order would still add to the last of the values."""
+    return (values[-1] - values[-2]) / ((levels[-1] / levels[-2]) ** order - 1.0)
 
 
 def _largest_projection(values, levels):

@@ -16,7 +16,8 @@ one the base itself is refined.
 - steps: the error scatters about its trend, since a ring starts to slip somewhere within a step; so
   it is taken as over the angles.
 - all together, of bores at tight tolerances: a line through the last runs is extrapolated; a share
-  of the largest projection, and the scatter about the line, stay as error.
+  of the largest projection, or the distance to the extrapolation of first order if that is larger,
+  and the scatter about the line, stay as error.
 - readings: where the pressure is known on a grid alone, the finest run along the cells is done
   again for every other pressure that the same numbers may stand for; how far these are apart is an
   error that no refinement removes.
