@@ -231,6 +231,46 @@ def test_a_fast_contact_is_where_its_friction_is_the_force():
     assert found.velocity == pytest.approx(finer.velocity, abs=error)
 
 
+LIGHT = {
+    "natural frequency 32": ({"amplitude": 2.356, "force": 0.8082, "mass": 0.001453}, 1.65908),
+    "natural frequency 30": ({"amplitude": 1.906, "force": 0.7855, "mass": 0.00162}, 1.14432),
+    "natural frequency 36": ({"amplitude": 0.8955, "force": 0.8108, "mass": 0.001146}, 0.38067),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3])
+@pytest.mark.parametrize(("place", "velocity"), LIGHT.values(), ids=LIGHT)
+def test_steps_resolve_the_natural_oscillation_of_a_light_mass(place, velocity, tolerance):
+    """The velocities are those of runs with 3072 imposed steps in a period."""
+    found = microslip.solve("zigzag", **place, tolerance=tolerance)
+    assert found.converged
+    assert found.velocity == pytest.approx(velocity, abs=found.velocity_error)
+
+
+@pytest.mark.slow
+def test_steps_resolve_a_light_mass_on_a_spring():
+    """The friction is that of a run with 48 rings and 4056 imposed steps in a period."""
+    body = {"stiffness": 0.3379, "mass": 0.001225}
+    found = microslip.solve("zigzag", 0.948, 1.93, **body, pressure="punch")
+    assert found.converged
+    assert found.mu_macro == pytest.approx(0.773748, abs=found.mu_macro_error)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("mass", "imposed"),
+    [(1e-8, {}), (0.001453, {"cells": 12, "steps": 48})],
+    ids=["free", "imposed"],
+)
+def test_a_mass_too_light_for_the_steps_is_not_converged(mass, imposed):
+    found = microslip.solve(
+        "zigzag", amplitude=2.356, force=0.8082, mass=mass, tolerance=1e-2, **imposed
+    )
+    assert not found.converged
+    assert found.reason.startswith("mass too small")
+
+
 def test_what_runs_away_says_so():
     for force in (1.0, 1.7):
         found = microslip.solve("transverse", amplitude=0.5, force=force)

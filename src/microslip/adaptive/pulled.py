@@ -10,7 +10,7 @@ from microslip.adaptive.asked import Asked, refuse_free, verdict
 from microslip.adaptive.chains import Runs
 from microslip.adaptive.moved import CLOSED_FORM
 from microslip.adaptive.refinement import certify, run_tolerance
-from microslip.adaptive.resolutions import plan
+from microslip.adaptive.resolutions import plan, with_mass
 from microslip.adaptive.result import Result
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
@@ -29,7 +29,7 @@ from microslip.motions.drive import Drive
 from microslip.solver.body_run import simulate_each
 from microslip.solver.budget import Spent
 from microslip.solver.method_names import SHIPPED
-from microslip.solver.problem import Problem
+from microslip.solver.problem import Problem, Resolution
 from microslip.solver.pulled_run import Accuracy, simulate_pulled
 from microslip.solver.run import Settings
 
@@ -37,6 +37,8 @@ STEADY_ERROR = 1e-9
 """Of the velocity of a steady motion, over 1 and the velocity."""
 COARSE_TOLERANCE = 1e-2
 """Of the runs that tell about which velocity a force belongs to."""
+COARSEST = Resolution(cells=8, angles=4, steps=4)
+"""A contact of which only the stiffness is of interest."""
 FIRST_VELOCITY = 0.1
 """For which these are planned."""
 SLOWEST_SHARE = 0.3
@@ -236,6 +238,8 @@ def _certified(asked, drive, accuracy):
     """The certified.Certified to an accuracy, and what was refined."""
     problem, tolerance = asked.problem, accuracy.tolerance
     coarsest, axes = plan(problem, asked.model, tolerance, asked.cells, asked.steps)
+    contact = problem.contact(asked.model, COARSEST)
+    axes, unresolved = with_mass(axes, problem, contact, drive.mass, tolerance)
     share = accuracy._replace(tolerance=run_tolerance(coarsest, axes, tolerance))
     if asked.tolerance is None:
         refuse_free(axes)
@@ -253,7 +257,10 @@ def _certified(asked, drive, accuracy):
         for other in read_otherwise(problem.motion)
     ]
     quantity = "mu" if drive.force is None else "velocity"
-    return certify(run, coarsest, axes, tolerance, readings, quantity), axes
+    certified = certify(run, coarsest, axes, tolerance, readings, quantity)
+    if unresolved and certified.converged:
+        certified = replace(certified, converged=False, reason=unresolved)
+    return certified, axes
 
 
 def _between(value, least, most):

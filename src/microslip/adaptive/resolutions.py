@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
+
+import numpy as np
 
 from microslip.adaptive.cells_policies import (
     RINGS,
@@ -13,6 +17,7 @@ from microslip.adaptive.cells_policies import (
     like_a_sphere,
 )
 from microslip.adaptive.chains import JUDGED, Axis
+from microslip.models.contact import Contact
 from microslip.models.registry import MODELS
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.static_limit import at_turning_points
@@ -55,6 +60,11 @@ one by one, and the error scatters unless both are refined together."""
 SWEEPING_CAUTION, TOLD_CAUTION = 1.5, 2.0
 """Error over the spread of these runs, and where their rings gather at an edge that another run
 found: they lie closer together there than they are right."""
+LONGEST_NATURAL_STEP = 1.0
+"""Longest step at the tolerance 1e-2, in radians of the natural oscillation of a mass against the
+contact: within about a radian second-order steps converge, and differences show their error."""
+MOST_MASS_STEPS = 8192
+"""Steps in half a period that a mass may ask for: runs over 24 rings take a few seconds then."""
 LONGEST_STROKE = 16.0
 """Stroke in u_lim beyond which more steps are left to the estimate of the error."""
 
@@ -108,6 +118,68 @@ def plan(
             else _imposed("steps", steps // 2, motion)
         )
     return Resolution(cells=1, angles=1, steps=STEPS[0]), tuple(axes)
+
+
+class WithMass(NamedTuple):
+    """Axes whose steps suit a mass.
+
+    Attributes
+    ----------
+    axes : tuple of chains.Axis
+        To be refined.
+    reason : str
+        Why their steps do not resolve the natural oscillation of the mass; "" if they do.
+    """
+
+    axes: tuple[Axis, ...]
+    reason: str
+
+
+def with_mass(
+    axes: Sequence[Axis], problem: Problem, contact: Contact, mass: float, tolerance: float
+) -> WithMass:
+    """Shorten the steps of axes until they resolve a mass that oscillates against the contact.
+
+    The natural frequency is sqrt(stiffness / mass), with the stiffness of the contact (1.5 for a
+    sphere at nu = 0), over that of the vibration.  Runs whose steps are longer than a radian of it
+    may agree with each other, but not with the solution.  A spring that is s times stiffer than the
+    contact raises the frequency by the square root of s, and lowers the force of the oscillation on
+    the contact by s.  An error of second order then asks for the same steps.
+
+    Parameters
+    ----------
+    axes : sequence of chains.Axis
+        As planned without a mass.
+    problem : problem.Problem
+        Its path is cut into steps.
+    contact : contact.Contact
+        A contact of the problem at any resolution.
+    mass : float
+        Over mu F_z / (u_lim omega^2).
+    tolerance : float
+        Absolute, on the answer.
+    """
+    steps = next((axis for axis in axes if "steps" in axis.refines), None)
+    if mass == 0.0 or steps is None:
+        return WithMass(tuple(axes), "")
+    count = steps.levels[steps.base]
+    frequency = (contact.stiffness / mass) ** 0.5
+    longest = float(np.diff(problem.path(contact, count).phase).max())
+    allowed = LONGEST_NATURAL_STEP
+    if not steps.imposed:
+        allowed *= (tolerance / 1e-2) ** 0.5  # second order in time
+    finer = max(longest * frequency / allowed, 1.0)
+    if finer > 1.0 and (steps.imposed or finer * count > MOST_MASS_STEPS):
+        most = 2 * (count if steps.imposed else MOST_MASS_STEPS)
+        return WithMass(
+            tuple(axes),
+            f"mass too small for {most} steps in a period: it oscillates against the contact at"
+            f" {frequency:.3g} times the frequency of the vibration, which takes"
+            f" {2 * int(np.ceil(finer * count))}",
+        )
+    levels = tuple(2 * int(np.ceil(0.5 * finer * level)) for level in steps.levels)
+    finer_axis = replace(steps, levels=levels) if finer > 1.0 else steps
+    return WithMass(tuple(finer_axis if axis is steps else axis for axis in axes), "")
 
 
 def _imposed(name, count, motion):
