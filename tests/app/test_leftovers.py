@@ -124,3 +124,69 @@ def test_a_configuration_that_cannot_be_read_removes_nothing(results, tmp_path, 
     assert leftovers.main(["--configfile", str(tmp_path / "none.yaml"), "--delete"]) == 2
     assert "none.yaml: cannot be read" in capsys.readouterr().err
     assert names(results) == before
+
+
+def only_one_dataset(results, tmp_path):
+    """A configuration, of another sweep, and a folder of results with a sealed dataset alone."""
+    path = tmp_path / "one.yaml"
+    path.write_text(yaml.safe_dump({"results": str(results), "sweeps": {"bore": AXES}}))
+    with sealed_files.writing_beside(results / "pendulum.nc", sealed=True) as beside:
+        beside.write_bytes(b"content")
+    return path
+
+
+def test_no_folder_above_the_results_is_removed(tmp_path):
+    """Nor the folder of results itself, however its path is written."""
+    results = tmp_path / "above" / "results"
+    configuration = only_one_dataset(results, tmp_path)
+    given = f"{tmp_path}/above/results/../results/."
+    configuration.write_text(yaml.safe_dump({"results": given, "sweeps": {"bore": AXES}}))
+    assert leftovers.main(["--configfile", str(configuration), "--delete"]) == 0
+    assert results.is_dir() and not any(results.iterdir())
+
+
+@pytest.mark.parametrize("linked", ["figures", "points", "points/bore", "batches", "rounds"])
+def test_nothing_behind_a_link_is_removed(tmp_path, linked):
+    results, elsewhere = tmp_path / "results", tmp_path / "elsewhere"
+    configuration = only_one_dataset(results, tmp_path)
+    key = "0" * 64
+    inside = {
+        "figures": "map.png",
+        "points": f"bore/00/{key}.json",
+        "points/bore": f"00/{key}.json",
+        "batches": "bore/0123456789abcdef.json",
+        "rounds": "certified_bore/0123/0.json",
+    }
+    with sealed_files.writing_beside(elsewhere / inside[linked], sealed=True) as beside:
+        beside.write_bytes(b"content")
+    (results / linked).parent.mkdir(exist_ok=True)
+    (results / linked).symlink_to(elsewhere)
+    before = names(elsewhere)
+    assert leftovers.main(["--configfile", str(configuration), "--delete"]) == 0
+    assert names(elsewhere) == before and (results / linked).is_symlink()
+    assert not (results / "pendulum.nc").exists()
+
+
+def test_a_folder_of_results_may_be_a_link(tmp_path):
+    elsewhere = tmp_path / "disk"
+    only_one_dataset(elsewhere, tmp_path)
+    (tmp_path / "results").symlink_to(elsewhere)
+    configuration = tmp_path / "linked.yaml"
+    given = {"results": str(tmp_path / "results"), "sweeps": {"bore": AXES}}
+    configuration.write_text(yaml.safe_dump(given))
+    assert leftovers.main(["--configfile", str(configuration), "--delete"]) == 0
+    assert elsewhere.is_dir() and not any(elsewhere.iterdir())
+
+
+def test_a_damaged_round_keeps_the_points_of_its_motion(results, tmp_path, capsys):
+    map_ = AXES | {"velocity": [0.1, 2], "adaptive": {"error": 0.1}}
+    configuration = tmp_path / "map.yaml"
+    given = {"results": str(results), "sweeps": {"bore": map_}}
+    configuration.write_text(yaml.safe_dump(given))
+    plan = Plan(load.load(configuration))
+    file = results / plan.rounds_folder("certified_bore") / "0.json"
+    sealed_files.write_atomically(file, b'{"nodes": [')
+    points = names(results / "points")
+    assert leftovers.main(["--configfile", str(configuration), "--delete"]) == 0
+    assert f"{file} is damaged" in capsys.readouterr().err
+    assert names(results / "points") == points and file.exists()

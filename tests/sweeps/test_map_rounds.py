@@ -7,6 +7,7 @@ from microslip.config import load
 from microslip.config.records import ConfigError
 from microslip.sweeps import map_rounds
 from microslip.sweeps.batches import key_of
+from microslip.sweeps.sealed_files import CacheError
 
 GIVEN = {"velocity": [0.01, 1], "amplitude": [0, 2], "adaptive": {"error": 0.02}}
 
@@ -94,3 +95,23 @@ def test_other_motions_and_pressures_are_certified_likewise():
 def test_what_cannot_be_certified_is_refused(given, at_fault):
     with pytest.raises(ConfigError, match=at_fault):
         configured(**given)
+
+
+def test_a_file_of_a_round_is_whole_or_refused_by_name(tmp_path):
+    """A flipped bit that leaves valid JSON is found, too."""
+    (map_,) = configured().certified.values()
+    first = map_rounds.next_round(map_, {}, 50)
+    path, content = tmp_path / "0.json", map_rounds.text_of(first)
+    path.write_bytes(content)
+    assert map_rounds.read_round(path) == first
+    assert map_rounds.why_not_whole(path) == ""
+    other_node = content.replace(b"0.5", b"0.4", 1)
+    assert other_node != content
+    for damaged in (other_node, content[:-1], content[: len(content) // 2], b"", b"[]", b"\xff"):
+        path.write_bytes(damaged)
+        assert map_rounds.why_not_whole(path) == "it is damaged"
+        with pytest.raises(CacheError, match="0.json is damaged; run again"):
+            map_rounds.read_round(path)
+    path.unlink()
+    with pytest.raises(CacheError, match="cannot read .*0.json"):
+        map_rounds.read_round(path)

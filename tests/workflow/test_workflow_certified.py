@@ -120,3 +120,39 @@ def test_a_sweep_of_forces_makes_a_map_of_creep(tmp_path):
     plan = Plan(load.from_mapping(given))
     assert not any(leftovers.left_over(results, [plan]).values())
     assert "Nothing to be done" in project.run("drives")
+
+
+def truncated(path):
+    path.write_bytes(path.read_bytes()[:-80])
+
+
+def with_another_node(path):
+    """Valid JSON as before, with a digit of a node changed."""
+    content = path.read_text()
+    assert "0.5" in content
+    path.write_text(content.replace("0.5", "0.4", 1))
+
+
+@pytest.mark.parametrize("damaged", [truncated, with_another_node])
+@pytest.mark.parametrize("which", ["round", "part"])
+def test_a_damaged_file_of_a_round_is_named_and_made_again(
+    finished, tmp_path, capsys, damaged, which
+):
+    project = finished.copied(tmp_path / "damaged")
+    results = project.folder / "results"
+    (folder,) = results.glob("rounds/certified_transverse/*")
+    path = folder / ("1.json" if which == "round" else "0-0.json")
+    whole, points = path.read_bytes(), project.points()
+    damaged(path)
+    configuration = str(project.folder / "tiny.yaml")
+    left = leftovers.left_over(results, [Plan(load.load(configuration))])
+    assert not any(left.values())
+    if which == "round":
+        assert f"{path} is damaged" in capsys.readouterr().err
+    said = project.run("certified")
+    relative = path.relative_to(project.folder).as_posix()
+    assert said.count(f"{relative} is made again: it is damaged") == 1
+    assert path.read_bytes() == whole
+    assert certified(project) == certified(finished)
+    assert project.points() == points
+    assert "Nothing to be done" in project.run("certified")

@@ -1,5 +1,6 @@
 # What the rules share: the checked configuration, and the batches it leads to.
 
+import functools
 from itertools import count
 
 from snakemake.io import get_flag_value
@@ -122,6 +123,17 @@ def histories_for(name):
     return whole_batches(*PLAN.groups_beside(name))
 
 
+@functools.cache
+def damaged_rounds(name):
+    """Files of the rounds of a map that this run has to make again, and why.
+
+    They are looked at once, before any of them is made in this run.
+    """
+    paths = glob(f"{placed(PLAN.rounds_folder(name))}/*.json") if ASKING else ()
+    reasons = {path: map_rounds.why_not_whole(path) for path in paths}
+    return {path: why for path, why in reasons.items() if why}
+
+
 def round_files(name):
     """Files of the rounds of a map, one by one; Snakemake goes on here when the next is there."""
     if STORED_ELSEWHERE:
@@ -129,6 +141,8 @@ def round_files(name):
     for number in count():
         path = f"{placed(PLAN.rounds_folder(name))}/{number}.json"
         if workflow.is_main_process:
+            if path in damaged_rounds(name):
+                make_again(path, damaged_rounds(name)[path])
             chosen = os.path.basename(PLAN.rounds_folder(name))
             checkpoints.next_round.get(certified=name, chosen=chosen, round=number)
         yield path
@@ -142,9 +156,13 @@ def answered_rounds(name, most):
         parts = map_rounds.read_round(path)["parts"]
         if not parts:
             break
-        folder = f"{RESULTS}/{PLAN.rounds_folder(name)}"
-        rounds.append(f"{folder}/{number}.json")
-        batches_there += [f"{folder}/{number}-{part}.json" for part in range(parts)]
+        folder = PLAN.rounds_folder(name)
+        files = [f"{folder}/{number}-{part}.json" for part in range(parts)]
+        for file in map(placed, files):
+            if file in damaged_rounds(name):
+                make_again(file, damaged_rounds(name)[file])
+        rounds.append(f"{RESULTS}/{folder}/{number}.json")
+        batches_there += in_results(files)
     return {"rounds": rounds, "batches": batches_there}
 
 

@@ -17,6 +17,7 @@ from microslip.app.option_parser import OneLineParser
 from microslip.app.plan import Plan
 from microslip.app.terminal import complain
 from microslip.config import load
+from microslip.config.extended import solver_names
 from microslip.config.records import ConfigError, Configuration
 from microslip.sweeps import batch_plans, batches, cache, map_rounds, sealed_files
 
@@ -32,7 +33,8 @@ KINDS = ("points and single runs", "batches", "datasets, pages and figures")
 def asked_for(plans: Iterable[Plan], folder: Path = Path()) -> set[str]:
     """Paths, inside the folder of results, of all that some of the plans would make.
 
-    Which points a certified map has is known from the rounds in that folder.
+    Which points a certified map has is known from the rounds in that folder.  Where one of them is
+    damaged, all points of the motion count as requested.
     """
     found = set()
     for plan in plans:
@@ -44,8 +46,19 @@ def asked_for(plans: Iterable[Plan], folder: Path = Path()) -> set[str]:
             found |= {path.relative_to(folder).as_posix() for path in rounds}
             for path in rounds:
                 if path.stem.isdecimal():
-                    found |= {_path_of(r) for r in map_rounds.read_round(path)["requests"]}
+                    found |= _points_of(path, plan.configuration.certified[name], folder)
     return found
+
+
+def _points_of(path, map_, folder):
+    """Paths of the points of a round; of all points of the motion if its file is damaged."""
+    try:
+        round_ = map_rounds.read_round(path)
+    except sealed_files.CacheError:
+        group = f"{batches.FOLDERS['point']}/{solver_names(map_.sweep)[0].partition(':')[0]}"
+        complain(f"{path} is damaged; the next run makes it again; all files in {group} are kept")
+        return {file.relative_to(folder).as_posix() for file in (folder / group).rglob("*.json")}
+    return {_path_of(request) for request in round_["requests"]}
 
 
 def _path_of(request):
@@ -56,11 +69,20 @@ def _path_of(request):
 def there(folder: Path) -> Iterator[tuple[str, Path]]:
     """(kind of KINDS, path) of every file in a folder of results that a run has made.
 
-    A folder or a link under the name of one is somebody's own.
+    A folder under the name of a file belongs to the user, and so do links and all that lies behind
+    one: it may be outside the folder of results.
     """
     for kind, path in _named(folder):
-        if path.is_file() and not path.is_symlink():
+        if path.is_file() and not any(part.is_symlink() for part in (path, *_above(path, folder))):
             yield kind, path
+
+
+def _above(path, folder):
+    """Folders that a path lies in, below a folder of results, the innermost first."""
+    for parent in path.parents:
+        if parent == folder:
+            return
+        yield parent
 
 
 def _named(folder):
@@ -90,17 +112,20 @@ def left_over(folder: Path, plans: Iterable[Plan]) -> dict[str, list[Path]]:
     return found
 
 
-def remove(paths: Iterable[Path]) -> None:
-    """Remove files with their seals, and folders that are empty then."""
+def remove(paths: Iterable[Path], folder: Path) -> None:
+    """Remove files of a folder of results with their seals, and folders inside it that are empty
+    then."""
     for path in paths:
         for file in (path, sealed_files.seal_of(path)):
             try:
                 file.unlink(missing_ok=True)
             except OSError as error:
                 raise sealed_files.CacheError(sealed_files.advice("remove", file, error)) from error
-        for folder in path.parents[:2]:
-            if not any(folder.iterdir()):
-                folder.rmdir()
+        for inner in _above(path, folder):
+            try:
+                inner.rmdir()
+            except OSError:  # it is not empty
+                break
 
 
 def main(arguments: list[str]) -> int:
@@ -118,7 +143,7 @@ def main(arguments: list[str]) -> int:
         )
         _say(found, folder, options.delete, options.list)
         if options.delete:
-            remove(path for paths in found.values() for path in paths)
+            remove((path for paths in found.values() for path in paths), folder)
     except (ConfigError, sealed_files.CacheError) as error:
         complain(f"microslip gc: {error}")
         return 2

@@ -15,10 +15,12 @@ from pathlib import Path
 from microslip.config.extended import solver_names
 from microslip.config.records import CertifiedMap
 from microslip.foundation.canonical import canonical_json
+from microslip.sweeps import batch_files
 from microslip.sweeps.batches import PointRequests, key_of
 from microslip.sweeps.creep_coordinates import CreepCoordinates, scaled_velocity
 from microslip.sweeps.map_cells import Answers, Refinement, refined
 from microslip.sweeps.map_coordinates import MapCoordinates
+from microslip.sweeps.sealed_files import CacheError, advice
 from microslip.theory.kinks import kinks_of
 
 LEAST_PARTS = 4
@@ -100,15 +102,41 @@ def refinement_of(map_: CertifiedMap, known: Answers) -> Refinement:
 
 
 def text_of(round_: dict) -> bytes:
-    """What the file of a round holds."""
-    return f"{canonical_json(round_)}\n".encode()
+    """Content of the file of a round: one line of JSON, then the checksum of that line."""
+    return batch_files.with_checksum(f"{canonical_json(round_)}\n".encode())
+
+
+def round_in(content: bytes) -> dict | None:
+    """The round in the content of a file; None if it is damaged."""
+    line, _ = batch_files.without_checksum(content)
+    return json.loads(line) if line else None
+
+
+def why_not_whole(path: str | Path) -> str:
+    """Why the file of a round or of a part of one has to be made again; "" if it has not.
+
+    Raises CacheError if there is no such file or reading is not allowed.
+    """
+    if Path(path).stem.isdecimal():
+        return "" if round_in(_content(path)) else "it is damaged"
+    return batch_files.why_not_whole(path)
 
 
 def read_round(path: str | Path) -> dict:
-    """The round in a file."""
-    return json.loads(Path(path).read_text(encoding="utf-8"))
+    """The round in a file; raises CacheError, one line, if it is damaged or cannot be read."""
+    round_ = round_in(_content(path))
+    if round_ is None:
+        raise CacheError(f"{path} is damaged; run again: it is made again from finished points")
+    return round_
 
 
 def read_rounds(paths: Sequence[str | Path]) -> list[dict]:
-    """The rounds in files, in their order."""
+    """The rounds in files, in their order; raises CacheError as `read_round`."""
     return [read_round(path) for path in paths]
+
+
+def _content(path):
+    try:
+        return Path(path).read_bytes()
+    except OSError as error:
+        raise CacheError(advice("read", path, error)) from error
