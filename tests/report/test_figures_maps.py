@@ -13,7 +13,7 @@ import xarray as xr
 from matplotlib.colors import to_rgb
 
 from microslip.datasets.query import open_map
-from microslip.report.figures import drawing, map_panel, signed, small_maps
+from microslip.report.figures import drawing, map_panel, signed, small_maps, ticks
 from microslip.report.figures import style as look
 from microslip.report.figures.surface import refined
 from microslip.theory import paper
@@ -129,6 +129,63 @@ def test_what_is_not_known_stays_open_and_its_neighbours_do_not():
     assert np.array_equal(hole, inside)
     plane = np.add.outer(fine_y, np.log2(fine_x))
     np.testing.assert_allclose(fine[~hole], plane[~hole], atol=1e-9)
+
+
+# What the points support
+
+
+def drawn(dataset):
+    """The panel of a map that is drawn alone, and its contours."""
+    dataset.attrs = {"title": "m", "group": "motions"}
+    figure = drawing.draw("extended_motions", {"m": dataset})
+    (axes,) = test_figures.artists(figure, "map")
+    (lines,) = test_figures.artists(axes, "contours")
+    return axes, lines
+
+
+def test_a_coarse_map_shows_its_points_and_no_contours_that_they_cannot_support():
+    axes, lines = drawn(mapped(5, 5))
+    (points,) = test_figures.artists(axes, "points")
+    assert len(points.get_xdata()) == 25
+    for level, path in zip(lines.levels, lines.get_paths(), strict=True):
+        for velocity, amplitude in path.vertices:
+            true = float(paper.large_amplitude_transverse(velocity, amplitude))
+            assert abs(true - level) < 0.1  # half the distance of two contours
+    axes, lines = drawn(mapped(25, 25))
+    assert not test_figures.artists(axes, "points")
+    assert all(len(path.vertices) for path in lines.get_paths())
+
+
+def test_contours_of_a_steep_map_of_few_points_are_left_out():
+    dataset = mapped(5, 5)
+    dataset["mu_macro"][:] = np.where(np.add.outer(np.arange(5), np.arange(5)) > 4, 1.0, 0.0)
+    _, lines = drawn(dataset)
+    assert not any(len(path.vertices) for path in lines.get_paths())
+
+
+# Ticks of short ranges
+
+
+@pytest.mark.parametrize(
+    ("low", "high"), [(0.1, 0.13), (0.05, 0.2), (0.02, 0.6), (1e-3, 10), (2e-5, 3e-5), (1.0, 1.002)]
+)
+@pytest.mark.parametrize("width", [1.2, 3.0])
+def test_labels_of_a_logarithmic_axis_do_not_collide(low, high, width):
+    with look.style():
+        figure = look.new_figure(width, 1.5)
+        axes = figure.subplots()
+        axes.set(xscale="log", xlim=(low, high))
+        ticks.logarithmic(axes.xaxis)
+        figure.draw_without_rendering()
+        drawn = (*axes.xaxis.get_major_ticks(), *axes.xaxis.get_minor_ticks())
+        shown = [
+            tick.label1.get_window_extent()
+            for tick in drawn
+            if tick.label1.get_text() and low * 0.9999 <= tick.get_loc() <= high * 1.0001
+        ]
+        assert len(shown) >= 2
+        shown.sort(key=lambda box: box.x0)
+        assert all(a.x1 < b.x0 for a, b in zip(shown, shown[1:], strict=False))
 
 
 # Numbers on contours

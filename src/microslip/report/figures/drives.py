@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from microslip.config.quantities import DRIVES, VELOCITY
 from microslip.report.figures import style as look
+from microslip.report.figures import ticks
 from microslip.report.figures.cuts import computed
 from microslip.report.figures.data import at_one_poisson, require
 
@@ -61,7 +62,7 @@ def _over_velocity(axes: Axes, given: dict[str, xr.Dataset]) -> None:
     velocity = moved["velocity"].values
     axes.set_xscale("log")
     axes.set(xlim=(velocity[velocity > 0.0][0], velocity[-1]))
-    look.logarithmic(axes.xaxis)
+    ticks.logarithmic(axes.xaxis)
     axes.set_xlabel(look.axis(VELOCITY["transverse"]))
     look.unit_range(axes)
     axes.set_ylabel(look.FRICTION.replace("  (", "\n("))
@@ -81,7 +82,7 @@ def _over_mass(axes: Axes, given: dict[str, xr.Dataset]) -> None:
         computed(axes, part["mass"].values, *columns, label, color=color, marker=marker)
     axes.set_xscale("log")
     axes.set(xlim=(bodies["mass"].values[0], bodies["mass"].values[-1]))
-    look.logarithmic(axes.xaxis)
+    ticks.logarithmic(axes.xaxis)
     axes.set_xlabel(look.axis(DRIVES["mass"]))
     axes.set_ylabel(look.FRICTION.replace("  (", "\n("))
     at = look.conditions([(VELOCITY["transverse"].latex, velocity)])

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from microslip.report.figures import style as look
+from microslip.report.figures import ticks
 from microslip.report.figures.data import finite_or_nan, require
 from microslip.report.figures.lines import LOOKS
 from microslip.si.fitting.curves import abscissa as abscissa_of
@@ -55,6 +56,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     lower.axhline(0.0, color=look.GREY, linewidth=0.7, zorder=0.5)
     if along.min() > 0.0 and along.max() > WIDE * along.min():
         lower.set_xscale("log")
+        ticks.logarithmic(lower.xaxis)
     upper.set_ylabel(f"{what} ({unit})")
     lower.set_ylabel("residual, standard\nerrors (dimensionless)")
     lower.set_xlabel(label)

@@ -10,9 +10,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import LogLocator
 
 from microslip.report.figures import style as look
+from microslip.report.figures import ticks
 from microslip.report.figures.data import finite_or_nan, limit
 from microslip.report.figures.formulas import mathtext
 
@@ -59,7 +59,7 @@ def draw(name: str, datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Fi
     axes.set_xlabel(_axis_label(dim, (d[dim].attrs.get("formula", "") for d in datasets)))
     if dim == "velocity":
         axes.set_xscale("log")
-        axes.xaxis.set_major_locator(LogLocator(numticks=12))
+        ticks.logarithmic(axes.xaxis)
     axes.margins(x=0.02)
     # A legend leaves out what begins with an underscore.
     shown = [look.wrapped(title, 1.35, 8.0) for title in titles]

@@ -7,15 +7,17 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.contour import ContourSet
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import LogLocator
 
-from microslip.report.figures import contour_labels, signed
+from microslip.report.figures import contour_labels, signed, ticks
 from microslip.report.figures import style as look
-from microslip.report.figures.surface import refined
+from microslip.report.figures.surface import refined, supported
 
 FILL_LEVELS = np.linspace(0.0, 1.0, 21)
 LINE_LEVELS = np.linspace(0.1, 0.9, 9)
+FEW = len(LINE_LEVELS)
+"""Points along an axis below which they are drawn: more than one contour may pass between two."""
 
 
 def fill(
@@ -28,6 +30,9 @@ def fill(
 ) -> tuple[ContourSet, int]:
     """Fill a panel with `mu_macro` over velocity and amplitude, interpolated as `friction.at` does.
 
+    Contours end where the points do not support them. Then the points are drawn, and where they are
+    few.
+
     fills, lines, labelled: levels of bands, of contours (dashed below 0, and heavier at 0 where
     there are such) and of those that have a number, ascending; size: of the numbers. Returns the
     bands, for a colour bar, and the number of hatched cells.
@@ -37,7 +42,8 @@ def fill(
         raise ValueError("a map needs two amplitudes and two positive velocities at least")
     shown = shown.transpose("amplitude", "velocity", ...)
     velocity, amplitude = shown["velocity"].values, shown["amplitude"].values
-    x, y, values = refined(velocity, amplitude, shown["mu_macro"].values)
+    points = velocity, amplitude, shown["mu_macro"].values
+    x, y, values = refined(*points)
 
     colours, norm = signed.scale(fills)
     filled = axes.contourf(
@@ -50,10 +56,9 @@ def fill(
     )
     filled.set_edgecolor("face")  # no hairlines between the bands in a PDF
     filled.set_linewidth(0.3)
+    known = supported((x, y, values), points, lines)
     contours = axes.contour(
-        x,
-        y,
-        values,
+        *known,
         levels=lines,
         colors=signed.inks(lines, fills),
         linestyles=["dashed" if level < 0 else "solid" for level in lines],
@@ -62,7 +67,11 @@ def fill(
     contours.set_gid("contours")
     axes.set_xscale("log")
     axes.set(xlim=(velocity[0], velocity[-1]), ylim=(amplitude[0], amplitude[-1]))
-    axes.xaxis.set_major_locator(LogLocator(numticks=12))
+    ticks.logarithmic(axes.xaxis)
+    if min(shown.sizes[dim] for dim in ("velocity", "amplitude")) < FEW or np.ma.count(
+        known[2]
+    ) < np.ma.count(values):
+        axes.plot(*(part.ravel() for part in np.meshgrid(velocity, amplitude)), **POINTS)
     axes.tick_params(which="both", direction="out", top=False, right=False)
     look.after_layout(axes.figure, lambda: contour_labels.label(axes, contours, labelled, size))
     return filled, _hatch(axes, velocity, amplitude, shown["converged"].values != 0)
@@ -74,6 +83,20 @@ _HATCHED = {
     "linewidth": 0.0,
     "hatch": "//////",
 }
+
+
+POINTS = {"linestyle": "none", "marker": "o", "markersize": 3.0, "color": look.BLACK}
+POINTS |= {"markeredgecolor": "white", "markeredgewidth": 0.4, "clip_on": False, "gid": "points"}
+
+
+def shows_points(axes: Axes) -> bool:
+    """Whether `fill` has drawn the points of the map in a panel."""
+    return any(line.get_gid() == POINTS["gid"] for line in axes.get_lines())
+
+
+def computed_points() -> Line2D:
+    """What a legend shows for the points of a map."""
+    return Line2D([], [], label="computed points", **POINTS)
 
 
 def unconverged(label: str) -> Patch:

@@ -12,9 +12,16 @@ from matplotlib.figure import Figure
 
 from microslip.config.quantities import AMPLITUDE, VELOCITY
 from microslip.report.figures import style as look
+from microslip.report.figures import ticks
 from microslip.report.figures.cuts import computed
 from microslip.report.figures.data import at_each_poisson, curve, limit, require, sweep
-from microslip.report.figures.map_panel import LINE_LEVELS, fill, unconverged
+from microslip.report.figures.map_panel import (
+    LINE_LEVELS,
+    computed_points,
+    fill,
+    shows_points,
+    unconverged,
+)
 from microslip.theory.catalogue import FORMS, STATIC
 
 NOTHING = 0.02
@@ -140,10 +147,13 @@ def _map(axes: Axes, dataset: xr.Dataset, plan: Map, letter: str, note: str) -> 
     axes.set_xlabel(look.axis(shown[0]))
     axes.set_ylabel(look.axis(shown[1]) if grid.is_first_col() else "")
     look.letter(axes, letter, note)
+    handles = [computed_points()] if shows_points(axes) else []
     if hatched:
         text = f"not converged ({hatched} of {dataset['mu_macro'].size})"
+        handles.append(unconverged(text))
+    if handles:
         axes.legend(
-            handles=[unconverged(text)],
+            handles=handles,
             loc="lower right",
             bbox_to_anchor=(1.0, 1.0),
             borderaxespad=0.2,
@@ -190,7 +200,7 @@ def _large_cut(axes: Axes, shown: list[tuple[xr.Dataset, float]], plan: Map, let
     velocity = shown[0][0]["velocity"].values
     axes.set_xscale("log")
     axes.set(xlabel=look.axis(VELOCITY[plan.key]), xlim=(velocity[velocity > 0][0], velocity[-1]))
-    look.logarithmic(axes.xaxis)
+    ticks.logarithmic(axes.xaxis)
 
 
 def _overlay(axes: Axes, dataset: xr.Dataset, overlay: Overlay, **at: float) -> None:

@@ -13,6 +13,7 @@ from scipy import ndimage
 
 from microslip.config.quantities import AMPLITUDE, VELOCITY
 from microslip.report.figures import style as look
+from microslip.report.figures import ticks
 from microslip.report.figures.data import require
 
 MOTIONS = ("transverse", "bore")
@@ -75,7 +76,7 @@ def _panel(axes: Axes, dataset: xr.Dataset, scene: str, models: list[str]) -> No
         _name_regions(axes, x, y, codes == code, look.model(name)[2])
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
     for axis in (axes.xaxis, axes.yaxis) if logarithmic else (axes.xaxis,):
-        look.logarithmic(axis)
+        ticks.logarithmic(axis)
     axes.tick_params(which="both", direction="out", top=False, right=False)
 
 

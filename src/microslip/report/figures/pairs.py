@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from microslip.config.quantities import DRIVES, VELOCITY
 from microslip.report.figures import style as look
+from microslip.report.figures import ticks
 from microslip.report.figures.cuts import computed
 from microslip.report.figures.data import at_one_poisson, require
 from microslip.report.figures.drives import SPRINGS
@@ -41,7 +42,7 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
     for axes in (left, right):
         axes.set_xscale("log")
         axes.set(xlim=(velocity[0] / MARGIN, velocity[-1] * MARGIN))
-        look.logarithmic(axes.xaxis)
+        ticks.logarithmic(axes.xaxis)
         axes.set_xlabel(look.axis(VELOCITY["transverse"]))
         look.unit_range(axes)
     left.set_ylabel(look.FRICTION.replace("  (", "\n("))

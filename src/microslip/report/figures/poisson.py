@@ -8,14 +8,13 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator
 
 from microslip.config.quantities import MU_MACRO
-from microslip.report.figures import contour_labels
+from microslip.report.figures import contour_labels, ticks
 from microslip.report.figures import style as look
 from microslip.report.figures.data import require
 from microslip.report.figures.formulas import mathtext
-from microslip.report.figures.surface import refined
+from microslip.report.figures.surface import refined, supported
 
 LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9)
 LOOKS = (
@@ -67,7 +66,7 @@ def _contours(axes: Axes, shown: xr.Dataset, letter: str) -> None:
     for index, (color, linestyle) in enumerate(LOOKS[: shown.sizes["poisson"]]):
         one = shown.isel(poisson=index)
         lines = axes.contour(
-            *_refined(one, "mu_macro"),
+            *supported(_refined(one, "mu_macro"), _points(one, "mu_macro"), LEVELS),
             levels=LEVELS,
             colors=[color],
             linestyles=[linestyle],
@@ -88,7 +87,12 @@ def _contours(axes: Axes, shown: xr.Dataset, letter: str) -> None:
 
 def _refined(one: xr.Dataset, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The fine grid of a map, and a variable there."""
-    return refined(one["velocity"].values, one["amplitude"].values, one[name].values)
+    return refined(*_points(one, name))
+
+
+def _points(one: xr.Dataset, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Velocities and amplitudes of the points of a map, and a variable there."""
+    return one["velocity"].values, one["amplitude"].values, one[name].values
 
 
 def _change(axes: Axes, shown: xr.Dataset, letter: str) -> None:
@@ -121,5 +125,5 @@ def _share(axes: Axes, shown: xr.Dataset) -> None:
     )
     axes.set_xlabel(f"forward velocity  {velocity_unit}".strip())
     axes.set_ylabel(f"amplitude  {amplitude_unit}".strip())
-    axes.xaxis.set_major_locator(LogLocator(numticks=12))
+    ticks.logarithmic(axes.xaxis)
     axes.tick_params(which="both", direction="out", top=False, right=False)

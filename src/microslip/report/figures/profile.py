@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from microslip.report.figures import style as look
+from microslip.report.figures import ticks
 from microslip.report.figures.data import require
 from microslip.report.figures.lines import LOOKS
 
@@ -70,7 +71,7 @@ def _panel(axes: Axes, contest: xr.Dataset, of_models: bool) -> None:
             gid=f"profile {names[index]}",
         )
     axes.set(xscale="log", xlim=(1.0, high))
-    look.logarithmic(axes.xaxis, 8)
+    ticks.logarithmic(axes.xaxis, 8)
     axes.set_xlabel(r"CPU time over the least  $t/t_\mathrm{best}$")
     axes.set_ylabel("share of points  (dimensionless)")
     look.unit_range(axes)

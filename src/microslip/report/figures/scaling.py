@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator
 
 from microslip.report.figures import style as look
+from microslip.report.figures import ticks
 from microslip.report.figures.data import require
 
 PANELS = (
@@ -66,11 +66,8 @@ def _panel(axes: Axes, dataset: xr.Dataset, what: str) -> None:
             sizes = of_model["scaling_label"].values.astype(str)
             _size(axes, x[-1], y[-1], sizes[kept][order][-1])
     axes.margins(0.06, 0.14)
-    for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
-        look.logarithmic(axis, 6)
-        if high < 30 * low:  # powers of ten alone would be too few
-            axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-            axis.set_major_formatter(lambda value, _: f"${look.number(value)}$")
+    for axis in (axes.xaxis, axes.yaxis):
+        ticks.logarithmic(axis, 6)
 
 
 def _size(axes: Axes, x: float, y: float, text: str) -> None:

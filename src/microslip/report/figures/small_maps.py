@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from microslip.report.figures import style as look
 from microslip.report.figures.formulas import mathtext
-from microslip.report.figures.map_panel import fill, unconverged
+from microslip.report.figures.map_panel import computed_points, fill, shows_points, unconverged
 
 COLUMNS = {1: 1, 2: 2, 4: 2}
 """Columns of panels by their number; more than these have three."""
@@ -62,8 +62,10 @@ def draw(name: str, datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Fi
     bar = figure.colorbar(filled, ax=used, pad=0.02, aspect=20 * rows, ticks=ticks)
     bar.set_label(look.FRICTION if rows > 1 or columns < 3 else look.FRICTION.replace("  (", "\n("))
     bar.ax.tick_params(direction="out")
-    if hatched:
-        figure.legend(handles=[unconverged("not converged")], loc="outside lower right")
+    handles = [computed_points()] if any(map(shows_points, used)) else []
+    handles += [unconverged("not converged")] if hatched else []
+    if handles:
+        figure.legend(handles=handles, loc="outside lower right", ncols=len(handles))
     return figure
 
 

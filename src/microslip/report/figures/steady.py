@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from microslip.config.quantities import FORCE_FORWARD, TORQUE, VELOCITY
 from microslip.report.figures import style as look
+from microslip.report.figures import ticks
 from microslip.report.figures.cuts import computed
 from microslip.report.figures.data import curve, limit, require, sweep
 
@@ -42,7 +43,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
         )
     if velocity[0] > 0 and velocity[-1] >= 20 * velocity[0]:
         axes.set_xscale("log")
-        look.logarithmic(axes.xaxis)
+        ticks.logarithmic(axes.xaxis)
     axes.set_xlim(velocity[0], velocity[-1])
     axes.set_xlabel(look.axis(VELOCITY["continuous-bore"]))
     axes.set_ylabel(f"force  {FORCE_FORWARD.math}\ntorque  {TORQUE.math}")

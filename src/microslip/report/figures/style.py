@@ -11,10 +11,8 @@ import matplotlib
 import matplotlib.style
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
 
 from microslip.config.quantities import MU_MACRO, Quantity
 from microslip.report.figures.formulas import mathtext
@@ -132,12 +130,6 @@ def number(value: float) -> str:
     mantissa, exponent = text.split("e")
     power = f"10^{{{int(exponent)}}}"
     return power if mantissa == "1" else rf"{mantissa}\times {power}"
-
-
-def logarithmic(axis: Axis, ticks: int = 12) -> None:
-    """Powers of ten alone have labels on an axis, at most so many."""
-    axis.set_major_locator(LogLocator(numticks=ticks))
-    axis.set_minor_formatter(NullFormatter())
 
 
 def conditions(pairs: Iterable[tuple[str, float]]) -> str:

@@ -9,6 +9,7 @@ is within their error, and would be drawn as an island that nobody computed.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -48,6 +49,50 @@ def refined(
     known = np.where(np.isfinite(values), values, np.nan)
     fine = _along(rows, y, _along(columns, x, known.T).T)
     return x, y, np.ma.masked_invalid(fine)
+
+
+def supported(
+    surface: tuple[np.ndarray, ...], points: tuple[np.ndarray, ...], levels: Sequence[float]
+) -> tuple[np.ndarray, np.ndarray, np.ma.MaskedArray]:
+    """A fine grid without the cells in which the points cannot support contours.
+
+    The place of a contour is known where interpolation is off by less than half the distance
+    between two levels, by what it misses when points are left out.
+
+    Parameters
+    ----------
+    surface : tuple of ndarray
+        The fine grid, as `refined` returns it.
+    points : tuple of ndarray
+        The arguments of `refined`.
+    levels : sequence of float
+        The levels of the contours, ascending.
+
+    Returns
+    -------
+    tuple of ndarray
+        The surface, masked inside such cells.
+    """
+    from microslip.datasets.query.interpolation import Axis, largest_around
+
+    (x, y, fine), (velocity, amplitude, values) = surface, points
+    columns, rows = Axis(np.asarray(velocity, float)), Axis(np.asarray(amplitude, float))
+    known = np.where(np.isfinite(values), values, np.nan)
+    off = np.zeros((len(amplitude) - 1, len(velocity) - 1))
+    for missed in (rows.misses(known), columns.misses(known.T).T):
+        nodes = largest_around(np.nan_to_num(missed))
+        off += np.maximum.reduce([nodes[:-1, :-1], nodes[1:, :-1], nodes[:-1, 1:], nodes[1:, 1:]])
+    kept = off <= np.diff(levels).min(initial=np.inf) / 2.0
+    # A line between two cells stays if either of them does.
+    rows, columns = _cells(amplitude, y), _cells(velocity, x)
+    some = np.logical_or.reduce([kept[np.ix_(i, j)] for i in rows for j in columns])
+    return x, y, np.ma.masked_where(~some, fine)
+
+
+def _cells(nodes: np.ndarray, at: np.ndarray) -> list[np.ndarray]:
+    """Indices of the cells on both sides of each place, which are the same inside a cell."""
+    sides = (np.searchsorted(nodes, at, side) for side in ("left", "right"))
+    return [np.clip(side - 1, 0, len(nodes) - 2) for side in sides]
 
 
 def _along(axis: Axis, points: np.ndarray, table: np.ndarray) -> np.ndarray:
