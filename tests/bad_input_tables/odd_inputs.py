@@ -214,9 +214,12 @@ PREDICTIONS = [
         },
         "--drive-stiffness = '1 N/um': allowed is none for continuous-bore, which is steady",
     ),
-    ({"scene": "Transverse"}, "SCENE = 'Transverse': allowed is one of transverse"),
+    (
+        {"scene": "Transverse"},
+        "SCENE = 'Transverse': did you mean transverse? allowed is one of transverse",
+    ),
     ({"scene": "transverse "}, "SCENE = 'transverse '"),
-    ({"scene": "elliptic:forward=0.5"}, "SCENE = 'elliptic:forward=0.5'"),
+    ({"scene": "normal:forward=0.5"}, "SCENE = 'normal:forward=0.5'"),
 ]
 
 # The same contact in other words: what is changed, and what it is equal to.

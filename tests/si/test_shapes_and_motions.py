@@ -1,5 +1,6 @@
 """Contacts that are no spheres and motions that are no lines, in SI units."""
 
+import json
 import math
 
 import pytest
@@ -8,8 +9,10 @@ from scipy.optimize import minimize_scalar
 from scipy.special import ellipk
 
 import microslip
+from microslip import motions
 from microslip.app import cli
 from microslip.foundation.errors import InputError
+from microslip.motions import by_name
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealMotion, groups, solver_scene
 from microslip.si.materials import RIGID, Material
@@ -266,7 +269,12 @@ def test_the_command_line_takes_them_and_says_so(capsys):
         ("elliptic", {}, "forward_amplitude", "elliptic needs it"),
         ("elliptic", {"forward_amplitude": "1 deg"}, "forward_amplitude", "the unit is degree"),
         ("elliptic", {"load_amplitude": "1 N"}, "load_amplitude", "elliptic has none"),
-        ("normal", {"load_amplitude": "11 N"}, "load_amplitude", "at most the load"),
+        (
+            "normal",
+            {"amplitude": None, "load_amplitude": "6 N", "contacts": "load=1;load=1"},
+            "load_amplitude",
+            "at most the load",
+        ),
         ("normal", {"load_amplitude": "0 N"}, "load_amplitude", "above 0"),
         ("elliptic", {"amplitude": 0, "forward_amplitude": 0}, "amplitude", "above 0"),
         ("elliptic", {"forward_amplitude": 0, "phase": "1 m"}, "phase", "the unit is meter"),
@@ -288,3 +296,104 @@ def test_what_does_not_fit_together_is_refused(scene, change, named, said):
 def test_an_unknown_pressure_is_refused():
     with pytest.raises(InputError, match="pressure = 'rong'"):
         microslip.predict("transverse", **ASKED, contact_radius="1 mm", pressure="rong")
+
+
+# Motions of one's own
+
+LOPSIDED = '''
+from dataclasses import replace
+import numpy as np
+from microslip.motions import bore, transverse
+
+def displacement(phase, velocity, amplitude, poisson):
+    """Lateral y~ sin^3 t."""
+    return velocity * phase, amplitude * np.sin(phase) ** 3, np.zeros_like(phase)
+
+MOTION = replace({motion}.MOTION, name="{name}", summary="moving as it likes"{more})
+'''
+
+
+@pytest.fixture
+def own(tmp_path):
+    """Two motions in files of one's own: a translation of another shape, and the bore once more."""
+    known, path = dict(by_name.MOTIONS), list(motions.__path__)
+    for name, motion, more in (
+        ("sine-cubed", "transverse", ", displacement=displacement"),
+        ("own-bore", "bore", ""),
+    ):
+        file = tmp_path / f"{name.replace('-', '_')}.py"
+        file.write_text(LOPSIDED.format(name=name, motion=motion, more=more))
+    by_name.find(tmp_path)
+    yield
+    by_name.MOTIONS.clear()
+    by_name.MOTIONS.update(known)
+    motions.__path__[:] = path
+
+
+@pytest.mark.slow
+def test_a_motion_of_ones_own_is_answered_in_units_as_without(own, capsys):
+    found = microslip.predict("sine-cubed", **SPHERE)
+    assert (found.velocity, found.amplitude) == pytest.approx(
+        (1e-2 / (2.0 * math.pi * 2e4 * found.u_lim_m), 3e-7 / found.u_lim_m), rel=1e-12
+    )
+    assert found.understood["scene"] == "sine-cubed: the sphere is moving as it likes"
+    point = ["--velocity", repr(found.velocity), "--amplitude", repr(found.amplitude)]
+    point += ["--poisson", repr(found.poisson)]
+    assert cli.main(["point", "sine-cubed", *point, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["mu_macro"] == found.mu_macro
+    words = [f"--{name}={value}" for name, value in SPHERE.items()]
+    assert cli.main(["predict", "sine-cubed", *words, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["mu_macro"] == found.mu_macro
+
+
+@pytest.mark.slow
+def test_the_amplitude_of_a_rotation_of_ones_own_is_an_angle(own, capsys):
+    spin = SPHERE | {"amplitude": "0.2 deg", "tolerance": 1e-2}
+    found, bore = (microslip.predict(scene, **spin) for scene in ("own-bore", "bore"))
+    assert (found.velocity, found.amplitude) == (bore.velocity, bore.amplitude)
+    assert found.mu_macro == bore.mu_macro
+    with pytest.raises(InputError, match="units of rad"):
+        microslip.predict("own-bore", **spin | {"amplitude": "1 um"})
+    assert cli.main(["predict", "own-bore", *(f"--{k}={v}" for k, v in spin.items())]) == 0
+    assert "0.003491 rad" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_numbers_after_the_name_of_a_family_are_taken_as_by_solve():
+    """Without its forward half the ellipse is the transverse motion."""
+    line = microslip.predict("elliptic:forward=0,phase=0", **SPHERE)
+    assert line.mu_macro == microslip.predict("transverse", **SPHERE).mu_macro
+
+
+@pytest.mark.parametrize(
+    ("scene", "said"),
+    [
+        ("normal:lateral=0.5", "normal with a load_amplitude"),
+        ("transverse-bore:angle=0.5", "for both see transverse-bore"),
+        ("transvers", "did you mean transverse"),
+    ],
+)
+def test_a_motion_without_a_meaning_in_units_is_refused(scene, said):
+    with pytest.raises(InputError, match=said) as caught:
+        microslip.predict(scene, **SPHERE)
+    assert caught.value.argument == "scene"
+
+
+# A load that parts the bodies
+
+
+@pytest.mark.slow
+def test_a_load_amplitude_above_the_load_parts_the_bodies():
+    """The load is 10 N + 15 N sin t where that is above 0: its mean is an integral by hand."""
+    given = SPHERE | {"load_amplitude": "15 N", "speed": "1 mm/s", "counterbody": "steel"}
+    del given["amplitude"]
+    found = microslip.predict("normal", **given, power=False)
+    gone = math.acos(10.0 / 15.0)  # half of the phases without contact, about 3 pi/2
+    mean = 10.0 * (1.0 - gone / math.pi) + 15.0 * math.sin(gone) / math.pi
+    answer = microslip.solve("normal", found.velocity, 1.5, poisson=0.3)
+    assert found.mu_macro == answer.mu_macro
+    assert found.friction_force_N == pytest.approx(0.3 * mean * found.mu_macro, rel=1e-9)
+    assert found.drag_power_W == pytest.approx(1e-3 * found.friction_force_N, rel=1e-12)
+    assert sum(f"{mean:.4g} N" in text for text in found.warnings) == 1
+    half = microslip.predict("normal", **given | {"speed": None, "force": 0.15 * mean})
+    assert half.force == pytest.approx(0.5, rel=1e-9)

@@ -23,7 +23,7 @@ from microslip.app.printed_error import error_text
 from microslip.app.terminal import complain
 from microslip.foundation.errors import InputError, shown
 from microslip.si.materials import MATERIALS
-from microslip.si.motions import COMBINED, MOTIONS
+from microslip.si.motions import COMBINED, MOTIONS, unit_of_amplitude
 
 OPTIONS = {
     "young": ("E", "Young's modulus of the body, such as '210 GPa'"),
@@ -79,13 +79,11 @@ OPTIONS = {
 }
 OTHER_NAMES = {"nu": ("--poisson",)}
 UNDERSTOOD = ("scene", "body", "counterbody", "radius", "counter_radius", "radius_across")
-UNDERSTOOD += ("contact_radius", "pressure", "load", "contacts", "mu", "speed")
-UNDERSTOOD += ("force", "drive_stiffness", "mass", "damping")
+UNDERSTOOD += ("contact_radius", "pressure", "load", "contacts", "mu", "speed", "force")
+UNDERSTOOD += ("drive_stiffness", "mass", "damping")
 UNDERSTOOD += ("amplitude", "forward_amplitude", "rotation_amplitude", "load_amplitude", "phase")
 UNDERSTOOD += ("frequency", "rotation", "reduction")
 """What a Prediction has understood, in the order of the answer."""
-
-
 ADDED = {"bore": "spin", "continuous-bore": "spin", "transverse-bore": "vibration and spin"}
 """What is said to take friction away, where that is not vibration alone."""
 
@@ -102,7 +100,9 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "friction that is felt.",
     )
     scenes = "; ".join(f"{name}: it {what}" for name, what in MOTIONS.items())
-    parser.add_argument("scene", metavar="SCENE", help=f"what the sphere does. {scenes}")
+    parser.add_argument(
+        "scene", metavar="SCENE", help=f"what the sphere does. {scenes}; or another motion of point"
+    )
     for name, (metavar, text) in OPTIONS.items():
         parser.add_argument(
             *(f"--{name}", *OTHER_NAMES.get(name, ())),
@@ -272,7 +272,7 @@ def _size(found):
     if found.scene in COMBINED:
         return "the largest is "
     size = found.amplitude_si
-    return f"{size:.4g} rad, " if found.scene == "bore" else f"{length(size)}, "
+    return f"{size:.4g} rad, " if unit_of_amplitude(found.scene) == "rad" else f"{length(size)}, "
 
 
 def _friction(found):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from microslip.app.printed_error import error_text
+from microslip.si.motions import unit_of_amplitude
 from microslip.si.prediction import Prediction
 from microslip.si.regimes import REGIMES
 
@@ -51,7 +52,7 @@ def _speed(value, error):
 
 def unit_of_sought(found: Prediction) -> str:
     """Unit of what was looked for."""
-    if found.sought == "amplitude" and found.scene == "bore":
+    if found.sought == "amplitude" and unit_of_amplitude(found.scene) == "rad":
         return "rad"
     return {"amplitude": "m", "speed": "m/s", "load": "N"}[found.sought]
 
@@ -66,7 +67,7 @@ def looked_for(found: Prediction) -> list[str]:
         text = f"{_speed(found.speed_m_s, found.sought_error)}, the largest at which vibration"
     elif found.sought == "load":
         text = f"{found.load_N:.4g} +- {error} N, the largest at which vibration"
-    elif found.scene == "bore":
+    elif unit_of_sought(found) == "rad":
         text = f"{found.amplitude_si:.4g} +- {error} rad, the least that"
     else:
         text = f"{_pair(found.amplitude_si, found.sought_error)}, the least that"

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from microslip.motions.by_name import motion_named
 from microslip.si.bodies import TwoBodies
-from microslip.si.motions import COMBINED, PARTS
+from microslip.si.motions import COMBINED, MOTIONS, PARTS, is_steady, unit_of_amplitude
 from microslip.theory import hertz
 
 
@@ -30,12 +31,17 @@ class RealMotion:
     @property
     def steady(self) -> bool:
         """Whether nothing oscillates."""
-        return self.scene == "continuous-bore"
+        return is_steady(self.scene)
+
+    @property
+    def spins(self) -> bool:
+        """Whether the amplitude is an angle."""
+        return unit_of_amplitude(self.scene) == "rad"
 
     @property
     def swing(self) -> tuple[float, float]:
         """Half strokes along the surface, m, and in rotation, rad, each at its largest."""
-        if self.scene == "bore":
+        if self.spins:
             return 0.0, self.amplitude or 0.0
         along = math.hypot(self.amplitude or 0.0, self.forward_amplitude or 0.0)
         return along, self.rotation_amplitude or 0.0
@@ -73,27 +79,36 @@ def groups(motion: RealMotion, contact: TwoBodies) -> tuple[float | None, float 
     motion: RealMotion; contact: bodies.TwoBodies.  amplitude: None for a steady bore.  velocity:
     None where the speed is.
     """
-    velocity = None if motion.speed is None else _over(motion.speed, speed_unit(motion, contact))
-    if motion.scene == "continuous-bore":
-        return velocity, None
-    if motion.scene == "bore":
-        if motion.amplitude == 0.0:
-            return (None if velocity is None else 0.0), 0.0
-        angle = motion.amplitude * contact.contact_radius / contact.u_lim
-        return velocity, float(hertz.bore_amplitude(angle, contact.poisson))
+    unit = speed_unit(motion, contact)
+    velocity = None if motion.speed is None else _over(motion.speed, unit)
+    if motion.spins and unit == 0.0:
+        velocity = None if velocity is None else 0.0
+    return velocity, _size(motion, contact)
+
+
+def _size(motion, contact):
+    """The amplitude as microslip.solve takes it; None for a steady motion."""
+    if motion.steady:
+        return None
     if motion.scene in COMBINED:
-        return velocity, max(parts(motion, contact).values())
-    return velocity, motion.amplitude / contact.u_lim
+        return max(parts(motion, contact).values())
+    if not motion.spins:
+        return motion.amplitude / contact.u_lim
+    angle = motion.amplitude * contact.contact_radius / contact.u_lim
+    return float(hertz.bore_amplitude(angle, contact.poisson)) if angle else 0.0
 
 
 def speed_unit(motion: RealMotion, contact: TwoBodies) -> float:
     """Forward speed whose group is 1, m/s; it may be rounded to nothing."""
-    if motion.scene == "continuous-bore":
+    if motion.steady:
         return motion.rotation * contact.contact_radius
     omega = 2.0 * math.pi * motion.frequency
     if motion.scene == "bore":
         return omega * motion.amplitude * contact.contact_radius
-    return omega * contact.u_lim
+    if motion.scene in MOTIONS:
+        return omega * contact.u_lim
+    record, size = motion_named(motion.scene), _size(motion, contact)
+    return omega * contact.u_lim * record.creep(1.0, size, contact.poisson)
 
 
 def _over(speed, unit):
@@ -101,6 +116,19 @@ def _over(speed, unit):
     if speed == 0.0:
         return 0.0
     return speed / unit if unit > 0.0 else math.inf
+
+
+def mean_load(motion: RealMotion, contact: TwoBodies) -> float:
+    """Mean normal load, N: more than the load where its oscillation parts the bodies."""
+    if motion.load_amplitude is None or motion.load_amplitude <= contact.load:
+        return contact.load
+    named = motion_named(solver_scene(motion, contact), contact.pressure)
+    return contact.load * float(named.mean_load(_size(motion, contact), named.pressure))
+
+
+def full_friction(motion: RealMotion, contact: TwoBodies) -> float:
+    """mu times the mean normal load, N, the unit of mu_macro and of forces."""
+    return contact.mu * mean_load(motion, contact)
 
 
 @dataclass(frozen=True)
@@ -126,7 +154,8 @@ class RealDrive:
 def drive_groups(drive: RealDrive, motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
     """force, stiffness, mass and damping as microslip.solve takes them, those that are not None.
 
-    They are over mu F_z, mu F_z / u_lim, mu F_z / (u_lim omega^2) and mu F_z / (u_lim omega).
+    The force is over mu times the mean load, the others over mu F_z / u_lim, mu F_z / (u_lim
+    omega^2) and mu F_z / (u_lim omega), F_z the load.
     """
     still = contact.mu * contact.load
     stiffness = still / contact.u_lim
@@ -134,7 +163,7 @@ def drive_groups(drive: RealDrive, motion: RealMotion, contact: TwoBodies) -> di
     if motion.frequency is not None:
         omega = 2.0 * math.pi * motion.frequency
     found = {
-        "force": (drive.force, 1.0 / still),
+        "force": (drive.force, 1.0 / full_friction(motion, contact)),
         "stiffness": (drive.stiffness, 1.0 / stiffness),
         "mass": (drive.mass, omega * omega / stiffness),
         "damping": (drive.damping, omega / stiffness),
@@ -148,7 +177,7 @@ def largest_slip_speed(motion: RealMotion, contact: TwoBodies) -> float:
     NaN where the contact runs away.
     """
     edge, speed = contact.contact_radius, motion.speed
-    if motion.scene == "continuous-bore":
+    if motion.steady:
         return math.hypot(speed, motion.rotation * edge)
     along, turned = motion.swing
     return speed + 2.0 * math.pi * motion.frequency * (along + edge * turned)

@@ -10,7 +10,7 @@ from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.pressures.by_name import pressure_named
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealMotion, groups, solver_scene
+from microslip.si.dimensionless import RealMotion, full_friction, groups, solver_scene
 
 
 def energy_fields(
@@ -18,7 +18,7 @@ def energy_fields(
 ) -> dict:
     """Fields of a Prediction that follow from the answer: drag, of all contacts together, and
     torque of a steady spin."""
-    still = contact.mu * contact.load * contacts
+    still = full_friction(motion, contact) * contacts
     drag = still * answer.mu_macro * motion.speed
     found = {"drag_power_W": drag}
     if answer.mu_torque is None:
@@ -54,8 +54,9 @@ def vibration_fields(
     point = min(velocity, LARGEST["velocity"]), size
     settings = {"poisson": contact.poisson, "pressure": contact.pressure, "tolerance": tolerance}
     found = vibration_power(solver_scene(motion, contact), *point, **settings)
-    unit = contact.mu * contact.load * contact.u_lim * 2.0 * math.pi * motion.frequency
-    drag = contact.mu * contact.load * answer.mu_macro * motion.speed
+    still = full_friction(motion, contact)
+    unit = still * contact.u_lim * 2.0 * math.pi * motion.frequency
+    drag = still * answer.mu_macro * motion.speed
     total = drag + unit * found.value
     return {
         "vibration_power_W": unit * found.value,

@@ -6,11 +6,12 @@ import math
 from dataclasses import dataclass, replace
 
 from microslip.foundation.errors import InputError
+from microslip.si import motions
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealMotion
 from microslip.si.hardness import read_hardness
 from microslip.si.materials import RIGID, Material, material_named
-from microslip.si.motions import COMBINED, MOTIONS, PARTS, TAKES, UNIT_OF_AMPLITUDE
+from microslip.si.motions import COMBINED, PARTS, TAKES
 from microslip.si.quantities import read
 from microslip.si.shapes import elliptic, of_size
 from microslip.si.validity import SENSELESS
@@ -263,9 +264,8 @@ def read_motion(
     sought: what is looked for; an amplitude may be missing then.  A speed that is not given is
     None.  others: what scenes that oscillate in several ways take besides, see motions.TAKES.
     """
-    if not isinstance(scene, str) or scene not in MOTIONS:
-        raise InputError("scene", scene, f"allowed is one of {', '.join(MOTIONS)}")
-    steady = scene == "continuous-bore"
+    motions.check_scene(scene)
+    steady = motions.is_steady(scene)
     given = {"amplitude": amplitude, "frequency": frequency, "rotation": rotation, **others}
     needed = ("rotation",) if steady else (*COMBINED.get(scene, ("amplitude",)), "frequency")
     for name, value in given.items():
@@ -282,13 +282,13 @@ def read_motion(
     else:
         for name, (_, unit) in PARTS.items():
             if given.get(name) is not None:
-                wanted = UNIT_OF_AMPLITUDE.get(scene, unit)
+                wanted = motions.unit_of_amplitude(scene) or unit
                 found[name] = read(name, given[name], wanted, low_open=name == "load_amplitude")
         if given.get("phase") is not None:
             found["phase"] = read("phase", given["phase"], "rad", low=-LARGEST_PHASE)
         found["frequency"] = read("frequency", frequency, "Hz")
     motion = RealMotion(scene, **{"speed": None} | {name: one.si for name, one in found.items()})
-    texts = {"scene": f"{scene}: the sphere {MOTIONS[scene]}"}
+    texts = {"scene": f"{scene}: the sphere {motions.description(scene)}"}
     sizes = [found[name].si for name in PARTS if name in found]
     if scene in COMBINED and max(sizes) == 0.0:
         raise InputError(needed[0], given[needed[0]], "allowed is above 0 where no other one is")

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 
 from microslip.adaptive.point import solve
-from microslip.si.dimensionless import solver_scene
+from microslip.si.dimensionless import full_friction, solver_scene
 from microslip.si.drives import checked_drive_groups
 from microslip.si.energy import energy_fields, vibration_fields
 from microslip.si.motions import COMBINED
@@ -78,7 +78,8 @@ def predict(
     ----------
     scene : str
         "transverse", "longitudinal", "zigzag", "bore" (the sphere spins to and fro about the
-        contact normal) or "continuous-bore" (it spins steadily).
+        contact normal), "continuous-bore" (it spins steadily), "elliptic", "transverse-bore",
+        "normal", or another motion that `microslip.solve` takes, which translates or rotates.
     radius, load, mu : quantity
         Radius of the sphere, m; normal force, N; coefficient of friction without vibration.
     speed : quantity
@@ -186,7 +187,7 @@ def _answered(question):
             pulled |= vibration_fields(contact, motion, answer, question.tolerance)
     most = carriers.most_loaded(contact)
     doubts = tuple(broken_assumptions(most, motion)), tuple(unchecked(most))
-    still = contact.mu * contact.load * carriers.count
+    still = full_friction(motion, contact) * carriers.count
     pulled["load_N"] = contact.load * carriers.count
     found = _prediction(contact, (motion, still, doubts), velocity, (answer, limit), question.about)
     return replace(found, **pulled)
@@ -234,7 +235,7 @@ def _prediction(contact, moved, velocity, answers, understood):
         pressure=contact.pressure,
         frequency_Hz=motion.frequency,
         rotation_rad_s=motion.rotation,
-        velocity=None if motion.scene == "bore" and not motion.amplitude else velocity,
+        velocity=None if motion.spins and not motion.amplitude else velocity,
         amplitude=answer.amplitude,
         mu_macro=answer.mu_macro,
         mu_macro_error=answer.mu_macro_error,

@@ -41,7 +41,8 @@ class Prediction:
     mu_apparent, mu_apparent_error : float
         A coefficient of friction, dimensionless: the one that is felt, mu mu_macro.
     friction_force_N, friction_force_still_N : float
-        Mean forward force with and without vibration, N.
+        Mean forward force with and without vibration, N, under the same mean load: that of the
+        oscillating load where it parts the bodies.
     force_reduction : float
         1 - mu_macro, dimensionless.
     mu_static, mu_static_error : float or None

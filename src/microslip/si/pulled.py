@@ -19,7 +19,14 @@ from microslip.foundation.errors import InputError
 from microslip.motions.drive import Drive
 from microslip.pressures.by_name import pressure_named
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealDrive, RealMotion, groups, solver_scene, speed_unit
+from microslip.si.dimensionless import (
+    RealDrive,
+    RealMotion,
+    full_friction,
+    groups,
+    solver_scene,
+    speed_unit,
+)
 from microslip.si.reduction import friction_of
 from microslip.si.regimes import natural_frequency, regime
 from microslip.si.several import Carriers
@@ -100,7 +107,7 @@ def about_drive(
         The answer for a vanishing speed, None for a steady motion.
     """
     (contact, carriers), (drive, pulling) = carried, pulls
-    still = contact.mu * contact.load * carriers.count
+    still = full_friction(motion, contact) * carriers.count
     share, error = _threshold(motion, carried, pulling, limit)
     fields = {
         "force_N": drive.force,

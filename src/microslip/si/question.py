@@ -116,8 +116,9 @@ def asked(scene: str, given: Mapping[str, object]) -> Question:
     shape = {name: given[name] for name in (*SHAPES, "mu")}
     load = ANY_LOAD if sought == "load" else given["load"]
     contact, touched = read_contact(*bodies, load=load, contacts=carriers.count, **shape)
-    if motion.load_amplitude is not None and motion.load_amplitude > contact.load:
-        allowed = "allowed is at most the load: beyond it the bodies part"
+    loaded = motion.load_amplitude
+    if several and loaded is not None and loaded * carriers.widest > contact.load:
+        allowed = "allowed is at most the load beside contacts: beyond it the bodies part"
         raise InputError("load_amplitude", given["load_amplitude"], allowed)
     about, share = touched | moved | pulls | several, None
     if sought is None:
@@ -162,7 +163,7 @@ def checked_groups(
         )
     if size is not None and not size <= LARGEST["amplitude"]:
         unit = "the angle that leaves half of the contact sticking"
-        if motion.scene != "bore":
+        if not motion.spins:
             unit = f"the {contact.u_lim:.3g} m that let the whole contact slide"
         raise InputError(
             "amplitude",

@@ -11,7 +11,7 @@ from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealMotion, groups, solver_scene, speed_unit
-from microslip.si.motions import COMBINED, MOTIONS, UNIT_OF_AMPLITUDE
+from microslip.si.motions import COMBINED, check_scene, unit_of_amplitude
 
 LARGEST_AMPLITUDE = 1e4
 """Dimensionless amplitude beyond which no smaller friction is looked for."""
@@ -90,10 +90,9 @@ def sought_by(scene: str, reduction: object, given: Mapping[str, object]) -> str
     Raises InputError for a scene that is none or has no such thing, and where more than one thing
     or nothing is left to look for.
     """
-    if not isinstance(scene, str) or scene not in MOTIONS:
-        raise InputError("scene", scene, f"allowed is one of {', '.join(MOTIONS)}")
+    check_scene(scene)
     missing = [name for name in SOUGHT if given[name] is None]
-    single = scene in UNIT_OF_AMPLITUDE
+    single = unit_of_amplitude(scene) is not None
     if reduction is None:
         if given["load"] is None:
             raise InputError("load", None, "needed")
@@ -149,7 +148,7 @@ def with_reduction(
 
     if share < tolerance:
         raise InputError("reduction", given, f"allowed is at least the tolerance, {tolerance:g}")
-    if motion.scene == "bore" and share == 1.0:
+    if motion.spins and share == 1.0:
         allowed = "allowed is less than all of it: the centre of a contact that turns always sticks"
         raise InputError("reduction", given, allowed)
     line = _LINES[sought](contact, motion, share)
@@ -192,7 +191,7 @@ def with_reduction(
 
 def _amplitudes(contact, motion, _share):
     """Places are logarithms of amplitudes."""
-    unit = contact.u_lim / (contact.contact_radius if motion.scene == "bore" else 1.0)
+    unit = contact.u_lim / (contact.contact_radius if motion.spins else 1.0)
     slides = "the one that lets the contact slide"
     return _Line(
         lambda place: (contact, replace(motion, amplitude=unit * math.exp(place))),
@@ -210,7 +209,7 @@ def _speeds(contact, motion, _share):
     motion = replace(motion, speed=0.0)
     _, size = groups(motion, contact)
     unit = speed_unit(motion, contact)
-    if motion.scene in UNIT_OF_AMPLITUDE and motion.scene != "bore" or motion.scene in COMBINED:
+    if not motion.spins and not motion.steady:
         unit *= max(1.0, size)  # a rigid contact compares the speed with that of the vibration
     slowest, fastest = SPEEDS
     return _Line(

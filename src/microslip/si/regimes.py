@@ -18,6 +18,7 @@ from __future__ import annotations
 import math
 
 from microslip.motions.drive import Drive
+from microslip.si.motions import is_along_the_pull
 
 SAME = 0.01
 """Of mu_macro: two drives with less between them are as good as one."""
@@ -29,8 +30,6 @@ LEAST_FORCE = 0.03
 """Over mu F_z: a force that changes by this hardly changes."""
 ALONG = 10.0
 """How much further both are where the vibration is along the direction of the pull."""
-ALONG_THE_PULL = ("longitudinal", "elliptic", "normal")
-"""Scenes whose vibration is along it, or may be; or whose load, and so the force, goes with it."""
 HARMONICS = 4
 """Multiples of the basic frequency that count."""
 REGIMES = {
@@ -47,13 +46,13 @@ def regime(scene: str, amplitude: float, drive: Drive) -> str:
     Parameters
     ----------
     scene : str
-        Of motions.MOTIONS, not a steady one.
+        As for microslip.predict, not a steady one.
     amplitude : float
         In the group of the scene.
     drive : drive.Drive
         With stiffness, mass and damping in working units.
     """
-    first, further = (1, ALONG) if scene in ALONG_THE_PULL else (2, 1.0)
+    first, further = (1, ALONG) if is_along_the_pull(scene) else (2, 1.0)
     swings = [n * first for n in range(1, HARMONICS + 1)]
     answers = [math.hypot(drive.stiffness - drive.mass * n * n, drive.damping * n) for n in swings]
     if min(answers) >= STIFFER * CONTACT_STIFFNESS * further:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.si.motions import UNIT_OF_AMPLITUDE
+from microslip.si.motions import unit_of_amplitude
 from microslip.si.predict import predict, unattained
 from microslip.si.prediction import Prediction
 from microslip.si.question import asked
@@ -149,7 +149,7 @@ def as_dataset(scene: str, cases: Mapping[str, object], found: Sequence[Predicti
         f"case_{name}": ("case", ["" if one is None else str(one) for one in values])
         for name, values in cases.items()
     }
-    amplitude = variables["amplitude_si"][2]["units"] = UNIT_OF_AMPLITUDE.get(scene, "m")
+    amplitude = variables["amplitude_si"][2]["units"] = unit_of_amplitude(scene) or "m"
     units = {"amplitude": amplitude, "speed": "m s-1", "load": "N"}
     sought = {one.sought for one in found} - {None}
     if sought:  # one for all cases, or another for some, which `sought` tells

@@ -12,7 +12,7 @@ import sys
 from typing import NamedTuple
 
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealMotion, largest_slip_speed
+from microslip.si.dimensionless import RealMotion, largest_slip_speed, mean_load
 
 YIELDS_AT = 0.57
 """Largest Hertz pressure over hardness at which plastic flow sets in below the surface: 1.6 of the
@@ -139,6 +139,13 @@ CHECKS = (
         _adhesive("DMT", (LONG, 1.0, "tabor")),
         _adhesive("between JKR and DMT"),
     ),
+    (
+        Rule(
+            (("mean_load", 1.0 + 1e-9, "load"),),
+            "the load oscillates to below 0: the bodies part in every cycle, and friction is over "
+            "the mean load as it is then, {mean_load:.4g} N",
+        ),
+    ),
     (_atomic("u_lim", "u_lim"),),
     (_atomic("amplitude", "the amplitude"),),
     (
@@ -240,6 +247,7 @@ def _of_motion(contact, motion):
     """What the motion is beside the contact, and beside waves where a density is known."""
     steady, along = motion.frequency is None, motion.swing[0]
     found = {"amplitude": along, "stroke": None if steady else along / contact.contact_radius}
+    found["mean_load"] = mean_load(motion, contact)
     known = [b for b in contact.bodies if b.density is not None and not b.rigid]
     if not known:
         return found | {"crossing": None, "slip_speed": None}
