@@ -7,6 +7,8 @@ import pytest
 from scipy.optimize import brentq
 
 import microslip
+from microslip.foundation.arguments import SMALLEST_STIFFNESS
+from microslip.foundation.errors import InputError
 from microslip.models.path import EULER
 from microslip.motions.by_name import motion_named
 from microslip.motions.drive import Drive
@@ -220,6 +222,101 @@ def test_friction_through_a_spring_is_that_of_the_prototype(body):
     stiffness, mass = body
     found = moving_at(problem, Drive(stiffness=stiffness, mass=mass), method=euler)
     assert found.mu == pytest.approx(SPRINGS[body], rel=0.003)
+
+
+# A period that begins without contact, and a body that does not remember
+
+
+def springs_on_a_spring(velocity, amplitude, stiffness, count, steps):
+    """Mean force over mean load, by independent springs that a soft spring pulls (nu = 0: exact).
+
+    What a spring at x can hold is its overlap d - x^2 with a sphere whose load, d^(3/2), oscillates
+    and is 0 at the start, where the soft spring is relaxed.
+    """
+    widest = (1.0 + amplitude) ** (1.0 / 3.0)
+    edges = np.linspace(0.0, widest, count + 1)
+    x, width = 0.5 * (edges[1:] + edges[:-1]), 1.5 * np.diff(edges)
+    phase = np.linspace(-0.5 * np.pi, 1.5 * np.pi, steps + 1)
+    load = np.maximum(1.0 + amplitude * np.sin(phase), 0.0)
+    stretch, place, force = np.zeros(count), velocity * phase[0], np.zeros(steps + 1)
+    for k in range(1, steps + 1):
+        overlap = np.maximum(load[k] ** (2.0 / 3.0) - x**2, 0.0)
+
+        def moved(step, k=k, stretch=stretch, overlap=overlap):
+            return np.clip(stretch + step, -overlap, overlap)
+
+        def left(step, k=k, place=place, moved=moved):
+            return moved(step) @ width - stiffness * (velocity * phase[k] - place - step)
+
+        step = brentq(left, -10.0, 10.0, xtol=1e-12)
+        stretch, place = moved(step), place + step
+        force[k] = stretch @ width
+    return force[:-1].mean() / load[:-1].mean()
+
+
+def test_a_soft_spring_pulls_a_contact_that_lifts_off():
+    found = microslip.solve("normal", 0.4, 1.35, stiffness=0.05)
+    expected = springs_on_a_spring(0.4, 1.35, 0.05, 400, 1000)  # 0.03288 with 1600 and 4000
+    assert found.converged
+    assert abs(found.mu_macro - expected) <= found.mu_macro_error
+
+
+@pytest.mark.slow
+def test_a_soft_spring_pulls_a_contact_that_lifts_off_and_oscillates_sideways():
+    """A small dashpot makes the body remember where it is, and changes the force by that much."""
+    place, dashpot = ("normal:lateral=0.9,phase=90", 0.15, 1.3), 1e-4
+    free = microslip.solve(*place, stiffness=0.3)
+    held = microslip.solve(*place, stiffness=0.3, damping=dashpot)
+    assert free.converged and held.converged
+    assert apart(free, held) < 1.0
+    # 0.05777 with 48 rings and 1024 steps of the plain march of reference_pull.py
+    assert abs(free.mu_macro - 0.0577) <= free.mu_macro_error
+
+
+CLOSE = [
+    ("transverse", 0.9999, {}),
+    ("elliptic:forward_cycles=2", -0.99999, {}),
+    ("bore", 1.0 - 1e-12, {}),
+    ("normal", 0.9999, {"mass": 1.0}),
+]
+
+
+@pytest.mark.parametrize(("scene", "force", "body"), CLOSE)
+def test_a_force_next_to_full_friction_is_refused_before_anything_runs(scene, force, body):
+    with pytest.raises(InputError, match=f"force = {force!r}: allowed is a force below 0.9999 "):
+        microslip.solve(scene, amplitude=1.0, force=force, progress=fail, **body)
+
+
+def fail(resolution):
+    raise AssertionError("work has started")
+
+
+def test_a_steady_rotation_is_refused_only_where_rounding_hides_its_velocity():
+    with pytest.raises(InputError, match="force = .*: allowed is a force below 0.9999999 "):
+        microslip.solve("continuous-bore", force=1.0 - 1e-9)
+    found = microslip.solve("continuous-bore", force=1.0 - 1e-6)
+    # 1 - 0.1 / v^2, the series of Eq 21 for fast sliding
+    assert found.velocity == pytest.approx(np.sqrt(0.1e6), rel=1e-5)
+
+
+def test_where_nothing_has_to_be_found_any_force_is_answered():
+    assert microslip.solve("longitudinal", amplitude=0.5, force=0.99999).velocity == 0.0
+    away = microslip.solve("normal", amplitude=0.5, force=0.99999)
+    assert "runs away" in away.reason
+    assert "runs away" in microslip.solve("transverse", amplitude=0.5, force=1.0).reason
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_spring_softer_than_rounding_allows_is_refused():
+    with pytest.raises(InputError, match="stiffness = 1e-300: allowed is a number above 0, at"):
+        microslip.solve("transverse", 0.1, 1.0, stiffness=1e-300)
+
+
+@pytest.mark.slow
+def test_the_softest_spring_allowed_has_the_friction_of_a_soft_one():
+    soft = microslip.solve("transverse", 0.1, 1.0, stiffness=1e-3)
+    softest = microslip.solve("transverse", 0.1, 1.0, stiffness=SMALLEST_STIFFNESS)
+    assert softest.converged and apart(soft, softest) < 1.0
 
 
 def test_a_fast_contact_is_where_its_friction_is_the_force():

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from microslip.foundation.arguments import LARGEST, LARGEST_BODY, count, is_real, real
+from microslip.foundation.arguments import (
+    LARGEST,
+    LARGEST_BODY,
+    SMALLEST_STIFFNESS,
+    count,
+    is_real,
+    real,
+)
 from microslip.foundation.errors import InputError
 from microslip.motions.by_name import motion_named
 from microslip.motions.drive import Drive
@@ -91,8 +98,9 @@ def checked_drive(
                 allowed = "allowed beside a stiffness alone, for a velocity moves any body"
                 raise InputError(name, body[name], allowed)
         return None
-    if body["stiffness"] == 0.0:
-        allowed = f"allowed is a number above 0 and at most {LARGEST_BODY:g}"
+    if body["stiffness"] < SMALLEST_STIFFNESS:
+        allowed = "allowed is a number above 0, at least "
+        allowed += f"{SMALLEST_STIFFNESS:g} and at most {LARGEST_BODY:g}"
         raise InputError("stiffness", stiffness, allowed)
     return Drive(None, body["stiffness"], body["mass"] or 0.0, body["damping"] or 0.0)
 

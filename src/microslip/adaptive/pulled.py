@@ -16,6 +16,7 @@ from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
     is_even,
     oscillates,
+    refuse_nearly_full,
     refuse_steady,
     runs_away,
     steady_velocity,
@@ -63,6 +64,7 @@ def refuse_drive(problem: Problem, drive: Drive, model: str) -> None:
     if drive.force is not None:
         if not motion.periodic:
             refuse_steady(motion, drive.force)
+        refuse_nearly_full(problem, drive)
     elif motion.periodic and problem.velocity == 0.0 and not is_even(problem):
         allowed = f"allowed is a number above 0 where a spring pulls {motion.name}"
         raise InputError("velocity", 0.0, allowed)

@@ -23,6 +23,12 @@ from microslip.theory import paper
 RETURNED = 1e-12
 """Share of the amplitude below which a forward oscillation is rounding."""
 
+CLOSEST_FORCE = 0.9999
+"""Force from which on up to 1 no run finds a velocity: tried with transverse oscillation, runs are
+solved up to 0.9998, where a period already takes the contact 200 amplitudes further."""
+CLOSEST_STEADY_FORCE = 1.0 - 1e-7
+"""Largest force on a steady rotation: rounding of its friction, 1.1e-16, moves the velocity by
+1.1e-16 / (2 (1 - force)) of itself, which reaches the stated error (1e-9) here."""
 FIRST_CREEP, FACTOR = 0.1, 4.0
 SLOWEST, FASTEST = 1e-6, 1e6
 """Creep in a radian at which the search for a velocity begins, what it is multiplied by from one
@@ -115,6 +121,23 @@ def runs_away(problem: Problem, drive: Drive) -> str:
             "its mean, and friction holds no more than that"
         )
     return ""
+
+
+def refuse_nearly_full(problem: Problem, drive: Drive) -> None:
+    """Raise InputError for a force so close to full friction that no velocity can be computed."""
+    steady = not problem.motion.periodic
+    closest = CLOSEST_STEADY_FORCE if steady else CLOSEST_FORCE
+    if not closest <= abs(drive.force) < 1.0 or runs_away(problem, drive):
+        return
+    if not steady and not oscillates(problem if drive.mass else without_forward_motion(problem)):
+        return
+    allowed = (
+        f"allowed is a force below {closest:.9g} (of mu times the mean normal load), or from 1 "
+    )
+    allowed += (
+        "on, where the contact runs away; in between the velocity is too large to be computed"
+    )
+    raise InputError("force", drive.force, allowed)
 
 
 def refuse_steady(motion: Motion, force: float) -> None:

@@ -14,7 +14,7 @@ from microslip.adaptive.under_force import (
     oscillates_forward,
     without_forward_motion,
 )
-from microslip.foundation.arguments import LARGEST, LARGEST_BODY
+from microslip.foundation.arguments import LARGEST, LARGEST_BODY, SMALLEST_STIFFNESS
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Drive
 from microslip.pressures.by_name import pressure_named
@@ -83,6 +83,8 @@ def within_range(pulling: dict[str, float]) -> dict[str, float]:
     body = {name: value for name, value in pulling.items() if name != "force"}
     scale = max(1.0, max(body.values(), default=0.0) / LARGEST_BODY)
     asked = {name: value / scale for name, value in body.items()}
+    if "stiffness" in asked:  # a softer spring pulls with the force of the softest
+        asked["stiffness"] = max(asked["stiffness"], SMALLEST_STIFFNESS)
     if "force" in pulling:
         asked["force"] = min(pulling["force"], LARGEST_FORCE)
     return asked

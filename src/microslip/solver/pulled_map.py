@@ -56,7 +56,9 @@ class PulledMap(PeriodMap):
         self._shape = (2, *np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape))
         self._points = int(np.prod(self._shape))
         spread = np.broadcast_to(contact.bound, self._shape[1:])
-        self._spread = spread / np.sum(contact.weight * spread)
+        load = float(np.sum(contact.weight * spread))
+        # a period that begins without contact has no tractions there to correct
+        self._spread = spread / load if load > 0.0 else 0.0 * spread
         interval, stiffness = path.phase[-1] - path.phase[0], contact.stiffness
         self._mass = min(body.mass, stiffness * interval**2)
         self._held = body.stiffness * min(1.0, body.stiffness / stiffness)
