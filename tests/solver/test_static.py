@@ -22,7 +22,7 @@ def oscillation(scene, amplitude, poisson=0.0):
 
 def numerical_limit(scene, amplitude, model, cells, angles=1, poisson=0.0):
     contact = contact_for(scene, amplitude, model, cells, angles, poisson)
-    residual, _ = static_state(contact, oscillation(scene, amplitude, poisson), 1e-10)
+    residual, *_ = static_state(contact, oscillation(scene, amplitude, poisson), 1e-10)
     return float(np.sum(contact.weight * residual[0]))
 
 

@@ -166,7 +166,7 @@ def periodic_force(velocity, share, search):
     motion = Problem(TRANSVERSE, velocity, 0.5, 0.0)
     contact = RadialContact.resolved(16, TRANSVERSE.focus(velocity, 0.5, TRANSVERSE.pressure))
     path = motion.path(contact, 32)
-    room, oscillating = static_state(contact, motion.oscillation, 1e-12)
+    room, oscillating, *_ = static_state(contact, motion.oscillation, 1e-12)
     found = search(PeriodMap(contact, path), oscillating + share * room, Goal(1e-6, 1e-9))
     assert found.converged
     return path.mean(found.forces)[FORWARD]

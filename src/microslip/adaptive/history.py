@@ -11,9 +11,10 @@ from microslip.adaptive.choice import choose_model
 from microslip.adaptive.whole_disc import points_of, whole_disc
 from microslip.foundation.arguments import LARGEST, count, real
 from microslip.foundation.errors import InputError
-from microslip.models.contact import forward_slip, full_slip
+from microslip.models.contact import StepFailure, forward_slip, full_slip
 from microslip.models.path import make_path
 from microslip.solver.problem import Problem, Resolution, build_contact
+from microslip.solver.run import unsolved
 from microslip.solver.steady import steady_state
 
 STARTS = ("stress-free", "full-slip", "full-rotation")
@@ -93,6 +94,8 @@ def history(
     ------
     InputError
         For bad input; it names the argument.
+    microslip.models.contact.StepFailure
+        Where a step stays unsolved.
     """
     motion, velocity, amplitude, poisson = checked_point(
         scene, velocity, amplitude, poisson, pressure
@@ -120,6 +123,9 @@ def history(
     total = steps * (periods if motion.periodic else 1)
     path = make_path(problem.displacement, np.linspace(0.0, end, total + 1), depth=problem.depth)
     march = contact.march(path, _start(contact, start), STEP_TOLERANCE)
+    failure = unsolved(march.residual, march.solves, STEP_TOLERANCE)
+    if failure:
+        raise StepFailure(f"velocity = {velocity!r}: {failure}")
     return History(
         phase=path.phase,
         displacement_forward=path.positions[:, 0],
@@ -158,6 +164,8 @@ def traction_field(
     ------
     InputError
         For bad input, or another motion.
+    microslip.models.contact.StepFailure
+        Where the march does not settle, or a step stays unsolved.
     """
     motion, velocity, _, poisson = checked_point(scene, velocity, amplitude, poisson)
     if motion.periodic:
@@ -169,6 +177,11 @@ def traction_field(
     problem = Problem(motion, velocity, None, poisson)
     contact = _contact(problem, "polar", cells)
     found = steady_state(contact, problem.displacement, velocity, 1e-6, STEP_TOLERANCE)
+    if not found.converged:
+        failure = (
+            f"no steady state: {found.distance:.1e} left, residual {found.solver_residual:.1e}"
+        )
+        raise StepFailure(f"velocity = {velocity!r}: {failure}")
     (forward,), (lateral,) = whole_disc(contact, -found.state[None])
     forward_position, lateral_position, bound, _ = points_of(contact)
     return {

@@ -14,6 +14,7 @@ from microslip.foundation.arguments import LARGEST, count
 from microslip.foundation.errors import InputError, SolverError
 from microslip.models.contact import FORWARD, LATERAL, TORQUE
 from microslip.solver.problem import Problem, Resolution, build_contact
+from microslip.solver.run import unsolved
 from microslip.solver.simulate import simulate
 from microslip.solver.snapshots import bounds_at_phases, frames
 
@@ -148,7 +149,8 @@ def period(
         raise NoPeriodicState(f"velocity = {velocity!r}: {run.reason}")
     contact = build_contact(problem, "polar", resolution)
     path = problem.path(contact, steps // 2)
-    tractions, forces = frames(contact, path, run.state, STEP_TOLERANCE)
+    tractions, forces, residual, solves = frames(contact, path, run.state, STEP_TOLERANCE)
+    reason = run.reason or unsolved(residual, solves, STEP_TOLERANCE)
     slip = _slip(contact, path, tractions)
     bounds = np.broadcast_to(bounds_at_phases(contact, path), tractions[:, 0].shape)
     phase = path.phase
@@ -181,8 +183,8 @@ def period(
         slip_lateral,
         along & (np.hypot(forward, lateral) >= ON_BOUND * bound),
         mu_macro=run.mu,
-        converged=run.converged,
-        reason=run.reason,
+        converged=run.converged and not reason,
+        reason=reason,
     )
 
 

@@ -21,8 +21,8 @@ from microslip.solver.body_run import simulate_each
 from microslip.solver.period_map import MOST_MARCHES, CreepRate, Goal
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.pulled_map import PulledMap
-from microslip.solver.run import Run, Settings, failed_run
-from microslip.solver.simulate import mean_forces, periods_of, step_share
+from microslip.solver.run import Run, Settings, failed_run, unsolved
+from microslip.solver.simulate import mean_forces, periods_of, stages_of, step_share
 
 MARCHES = 2 * MOST_MARCHES
 """Of a search: a body may swing."""
@@ -197,13 +197,10 @@ class _Pulled:
     def _summary(self, done, static_force, step_tolerance):
         problem, unit, found = self.problem, self.force_of_answer, done[-1]
         forward, _, torque = mean_forces(self.contact, problem, self.path, found.forces)
-        stages = self.path.stages.shape[0] * self.path.stages.shape[1]
-        solved = found.solver_residual <= stages * step_tolerance
-        periods, reason = periods_of(sum(one.marches for one in done), problem.motion), ""
+        periods = periods_of(sum(one.marches for one in done), problem.motion)
+        reason = unsolved(found.solver_residual, stages_of(self.path), step_tolerance)
         if not found.converged:
             reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
-        elif not solved:
-            reason = f"a step was left unsolved: residual {found.solver_residual:.1e}"
         ahead = float(found.body[-1, 0] - found.body[0, 0]) / self.interval
         creep = problem.motion.creep(1.0, problem.amplitude, problem.poisson)
         return Run(
@@ -216,7 +213,7 @@ class _Pulled:
             solves=sum(one.solves for one in done) + self._spent("solves"),
             work=sum(one.solves for one in done) * found.start.size + self._spent("work"),
             effort=sum(one.iterations for one in done) * found.start.size + self._spent("effort"),
-            converged=found.converged and solved,
+            converged=not reason,
             reason=reason,
             state=found.start,
             static_force=static_force,

@@ -104,6 +104,23 @@ class Run:
     retried: int = 0
 
 
+def unsolved(residual: float, solves: int, step_tolerance: float) -> str:
+    """Why stages are not solved to their tolerance, as one line; "" if they are.
+
+    Parameters
+    ----------
+    residual : float
+        Sum over the stages of what the step solver left, a force over mu F_z.
+    solves : int
+        Number of these stages.
+    step_tolerance : float
+        Of each stage, likewise.
+    """
+    if residual <= solves * step_tolerance:
+        return ""
+    return f"a step was left unsolved: residual {residual:.1e}"
+
+
 def failed_run(reason: str) -> Run:
     """The Run of a march that could not go on: no number, and why."""
     return Run(np.nan, np.nan, np.inf, np.inf, 0.0, 0, 0, 0, 0, False, reason)

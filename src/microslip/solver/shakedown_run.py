@@ -18,7 +18,7 @@ from microslip.models.pull import Body
 from microslip.motions.motion import HALF_PERIOD
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.pulled_map import PulledMap
-from microslip.solver.run import Run, Settings, failed_run
+from microslip.solver.run import Run, Settings, failed_run, unsolved
 
 FIRST_LOOK, MOST_INTERVALS = 16, 16384
 """(Half) periods after which it is first looked at what is left, and the most that are marched."""
@@ -122,7 +122,17 @@ class _Walk:
                 if left <= tolerance or self._creeps():
                     break
                 look = round(look * LOOKS[look % 3 == 0])
-        return self._summary((pushed, begun), left, left <= tolerance, state)
+        solves = self.solves + self.map.solves
+        reason = unsolved(self.residual, solves, step_tolerance)
+        if left > tolerance:
+            reason = f"still moves after {self._periods:g} periods, by {self.gone[-1]:.1e} in the "
+            reason += "last march"
+        return self._summary((pushed, begun), left, reason, state)
+
+    @property
+    def _periods(self):
+        """Full periods marched so far."""
+        return float(self.map.marches * self.interval / (2.0 * np.pi))
 
     def _still(self):
         """The path on which the force alone grows: one step, since slip only grows with it."""
@@ -175,14 +185,12 @@ class _Walk:
         before, last = sum(self.gone[count // 4 : count // 2]), sum(self.gone[count // 2 :])
         return max(before, 0.0), max(last, 0.0)
 
-    def _summary(self, parts, left, converged, state):
+    def _summary(self, parts, left, reason, state):
         pushed, begun = parts
         marched = np.cumsum([begun, *self.gone])
         added = marched[-1] + (0.5 * left if np.isfinite(left) else 0.0)
         most = int(np.searchsorted(np.maximum.accumulate(marched), MOST_SHARE * added))
         periods = self.interval / (2.0 * np.pi)
-        count = float(self.map.marches * periods)
-        reason = f"still moves after {count:g} periods, by {self.gone[-1]:.1e} in the last march"
         solves = self.solves + self.map.solves
         iterations = self.iterations + self.map.iterations
         return ShakedownRun(
@@ -190,13 +198,13 @@ class _Walk:
             torque=0.0,
             distance=0.5 * left,
             solver_residual=self.residual / self.contact.stiffness,
-            periods=count,
+            periods=self._periods,
             iterations=iterations,
             solves=solves,
             work=solves * state.size,
             effort=iterations * state.size,
-            converged=converged,
-            reason="" if converged else reason,
+            converged=not reason,
+            reason=reason,
             state=state,
             displacement=float(pushed + added),
             pushed=float(pushed),

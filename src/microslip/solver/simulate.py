@@ -13,7 +13,7 @@ from microslip.motions.motion import Motion
 from microslip.solver.period_map import MOST_MARCHES, CreepRate, Goal, PeriodMap
 from microslip.solver.power import oscillation_power
 from microslip.solver.problem import Problem, Resolution
-from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run
+from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run, unsolved
 from microslip.solver.static_limit import static_state
 from microslip.solver.steady import steady_state
 
@@ -182,11 +182,13 @@ class _Search:
         contact, creep = self.contact, self.problem.creep
         if not (contact.sticks and self.problem.motion.straight):
             return slipping
-        residual, oscillating = static_state(contact, self.problem.oscillation, self.step_tolerance)
-        force = float(forces(contact, residual)[FORWARD])
-        self.creep_rate = replace(self.creep_rate, static_force=force)
+        limit = static_state(contact, self.problem.oscillation, self.step_tolerance)
+        if not unsolved(limit.solver_residual, limit.solves, self.step_tolerance):
+            force = float(forces(contact, limit.residual)[FORWARD])
+            self.creep_rate = replace(self.creep_rate, static_force=force)
         excess = min(SLOW_EXCESS * creep ** (2.0 / 3.0), LARGEST_EXCESS)
-        return project(residual + oscillating + excess * slipping, contact.bound)
+        start = limit.residual + limit.oscillating + excess * slipping
+        return project(start, contact.bound)
 
     def _find_in_stages(self, start):
         """From coarse steps to the steps asked for, each on the result of the last."""
@@ -217,13 +219,10 @@ class _Search:
         full = self.problem.mean_load
         forward, _, torque = mean_forces(self.contact, self.problem, self.path, found.forces)
         solves = sum(one.solves for one in self.done)
-        solved = found.solver_residual <= _solved_sum(self.path, self.step_tolerance)
         periods = periods_of(sum(one.marches for one in self.done), self.problem.motion)
-        reason = ""
+        reason = unsolved(found.solver_residual, stages_of(self.path), self.step_tolerance)
         if not found.converged:
             reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
-        elif not solved:
-            reason = f"a step was left unsolved: residual {found.solver_residual:.1e}"
         return Run(
             mu=float(forward) / full,
             torque=float(torque) / self.problem.motion.pressure.torque,
@@ -234,7 +233,7 @@ class _Search:
             solves=solves,
             work=solves * found.start.size,
             effort=sum(one.iterations for one in self.done) * found.start.size,
-            converged=found.converged and solved,
+            converged=not reason,
             reason=reason,
             state=found.start,
             inverse=found.inverse,
@@ -260,9 +259,9 @@ def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarr
     return [problem.mean_load, 0.0, 0.0] - path.mean(full - forces)
 
 
-def _solved_sum(path, step_tolerance):
-    """Largest sum of residuals that a march solved to `step_tolerance` can leave."""
-    return path.stages.shape[0] * path.stages.shape[1] * step_tolerance
+def stages_of(path: Path) -> int:
+    """Number of stages of a march along a path."""
+    return path.stages.shape[0] * path.stages.shape[1]
 
 
 def _steady_run(contact, problem, tolerance, step_tolerance):

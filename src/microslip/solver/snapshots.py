@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,9 +11,28 @@ from microslip.models.contact import Contact
 from microslip.models.path import Path
 
 
-def frames(
-    contact: Contact, path: Path, state: np.ndarray, tolerance: float
-) -> tuple[np.ndarray, np.ndarray]:
+class Frames(NamedTuple):
+    """A march at every phase of its path.
+
+    Attributes
+    ----------
+    tractions : np.ndarray, shape (steps + 1, 2, ...)
+        Forward and lateral.
+    forces : np.ndarray, shape (steps + 1, 3)
+        See contact.March.
+    residual : float
+        Sum over the stages of what the step solver left, a force over mu F_z.
+    solves : int
+        Number of these stages.
+    """
+
+    tractions: np.ndarray
+    forces: np.ndarray
+    residual: float
+    solves: int
+
+
+def frames(contact: Contact, path: Path, state: np.ndarray, tolerance: float) -> Frames:
     """Tractions and forces at every phase of a path.
 
     Parameters
@@ -28,15 +48,13 @@ def frames(
 
     Returns
     -------
-    tractions : np.ndarray, shape (steps + 1, 2, ...)
-        Forward and lateral.
-    forces : np.ndarray, shape (steps + 1, 3)
-        See contact.March.
+    Frames
+        What the march leaves at these phases.
     """
     if path.depth is not None:  # bounds belong to the path as a whole
         march = contact.march(path, state, tolerance)
-        return contact.at_phases(march, state), march.forces
-    tractions, forces = [state], []
+        return Frames(contact.at_phases(march, state), march.forces, march.residual, march.solves)
+    tractions, forces, residual, solves = [state], [], 0.0, 0
     for k in range(path.steps):
         step = replace(
             path,
@@ -47,7 +65,9 @@ def frames(
         march = contact.march(step, tractions[-1], tolerance)
         tractions.append(march.state)
         forces += list(march.forces[1 if forces else 0 :])
-    return np.array(tractions), np.array(forces)
+        residual += march.residual
+        solves += march.solves
+    return Frames(np.array(tractions), np.array(forces), residual, solves)
 
 
 def bounds_at_phases(contact: Contact, path: Path) -> np.ndarray:

@@ -15,6 +15,7 @@ a loop, and a load that oscillates, are in static_loop.py.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -34,17 +35,41 @@ def at_turning_points(motion: Motion) -> bool:
     return motion.straight and motion.depth is None
 
 
+class StaticState(NamedTuple):
+    """The static limit at the first turning point, see the docstring of this module.
+
+    Attributes
+    ----------
+    residual, oscillating : np.ndarray
+        Constant tractions R, and tractions q_osc; shape of the contact's states.
+    solver_residual : float
+        Sum over the steps of what the step solver left, a force over mu F_z.
+    solves : int
+        Number of these steps.
+    """
+
+    residual: np.ndarray
+    oscillating: np.ndarray
+    solver_residual: float
+    solves: int
+
+
 def oscillating_part(contact: Contact, oscillation: Callable, step_tolerance: float) -> np.ndarray:
     """Tractions at the first turning point under the oscillation alone, mean removed.
 
     oscillation(phase) -> rigid displacement without forward motion; the phase -pi/2 is the turning
     point meant.  Shape of the contact's states.
     """
-    shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
-    quarter = make_path(oscillation, np.linspace(0.0, np.pi / 2, STEPS // 2 + 1), EULER)
     # by Masing's rule the first quarter from a stress-free start already ends on the closed loop,
     # and at the other turning point tractions are the same with the opposite sign
-    return -contact.march(quarter, np.zeros((2, *shape)), step_tolerance).state
+    return -_quarter_march(contact, oscillation, step_tolerance).state
+
+
+def _quarter_march(contact, oscillation, step_tolerance):
+    """The March from a stress-free start to the second turning point."""
+    shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
+    quarter = make_path(oscillation, np.linspace(0.0, np.pi / 2, STEPS // 2 + 1), EULER)
+    return contact.march(quarter, np.zeros((2, *shape)), step_tolerance)
 
 
 def residual_part(oscillating: np.ndarray, bound: np.ndarray) -> np.ndarray:
@@ -68,9 +93,8 @@ def residual_part(oscillating: np.ndarray, bound: np.ndarray) -> np.ndarray:
     return np.where(size < bound, residual, 0.0)
 
 
-def static_state(
-    contact: Contact, oscillation: Callable, step_tolerance: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Residual and oscillating tractions of the static limit (see the module's docstring)."""
-    oscillating = oscillating_part(contact, oscillation, step_tolerance)
-    return residual_part(oscillating, contact.bound), oscillating
+def static_state(contact: Contact, oscillation: Callable, step_tolerance: float) -> StaticState:
+    """The StaticState of a contact; arguments as for `oscillating_part`."""
+    march = _quarter_march(contact, oscillation, step_tolerance)
+    residual = residual_part(-march.state, contact.bound)
+    return StaticState(residual, -march.state, march.residual, march.solves)

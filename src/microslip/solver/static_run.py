@@ -13,10 +13,10 @@ from microslip.solver import anderson
 from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.power import oscillation_power
 from microslip.solver.problem import STRONGEST_FOCUS, Problem, Resolution
-from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run
-from microslip.solver.simulate import STEP_SHARE, mean_forces, periods_of
+from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run, unsolved
+from microslip.solver.simulate import STEP_SHARE, mean_forces, periods_of, stages_of
 from microslip.solver.snapshots import bounds_at_phases, frames
-from microslip.solver.static_limit import STEPS, at_turning_points, static_state
+from microslip.solver.static_limit import at_turning_points, static_state
 from microslip.solver.static_loop import largest_shift
 
 FELT = 4.0
@@ -58,22 +58,24 @@ def simulate_static(
 
 
 def _on_a_line(contact, problem, tolerance):
-    force, solves = 0.0, 0
+    force, solves, left, step_tolerance = 0.0, 0, 0.0, STEP_SHARE * tolerance
     if contact.sticks:
-        residual, _ = static_state(contact, problem.displacement, STEP_SHARE * tolerance)
-        force, solves = float(forces(contact, residual)[FORWARD]), STEPS // 2
+        limit = static_state(contact, problem.displacement, step_tolerance)
+        force = float(forces(contact, limit.residual)[FORWARD])
+        solves, left = limit.solves, limit.solver_residual
+    reason = unsolved(left, solves, step_tolerance)
     return Run(
         mu=force / problem.mean_load,
         torque=0.0,
         distance=0.0,
-        solver_residual=STEP_SHARE * tolerance * solves,
+        solver_residual=left / problem.mean_load,
         periods=0.0,  # a quarter of one tells the limit, and nothing is searched for
         iterations=0,
         solves=solves,
         work=solves * 2 * contact.forward_position.size,
         effort=0,
-        converged=True,
-        reason="",
+        converged=not reason,
+        reason=reason,
     )
 
 
@@ -117,9 +119,11 @@ def gathered_on_a_line(
     tell; near: what they are about, where that is known."""
 
     def run_on(contact):
-        residual, _ = static_state(contact, problem.displacement, STEP_SHARE * tolerance)
-        bounds = np.broadcast_to(contact.bound, residual[0].shape)
-        return np.hypot(*residual) > NOTHING_LEFT * bounds.max()
+        limit = static_state(contact, problem.displacement, STEP_SHARE * tolerance)
+        if unsolved(limit.solver_residual, limit.solves, STEP_SHARE * tolerance):
+            return None
+        bounds = np.broadcast_to(contact.bound, limit.residual[0].shape)
+        return np.hypot(*limit.residual) > NOTHING_LEFT * bounds.max()
 
     return _gathered(partial(problem.contact, model, resolution), run_on, near)
 
@@ -173,8 +177,10 @@ def _on_these_points(contact, problem, resolution, tolerance, settings):
         if found.converged:
             break
     force, left = mean_forces(contact, problem, path, found.forces)[FORWARD], None
+    residual, solves = found.solver_residual, stages_of(path)
     if contact.sticks:
-        tractions, _ = frames(contact, path, found.start, inner)
+        tractions, _, again, solved_again = frames(contact, path, found.start, inner)
+        residual, solves = residual + again, solves + solved_again
         bounds = np.broadcast_to(bounds_at_phases(contact, path), tractions[:, 0].shape)
         if mirror:
             bounds = np.concatenate([bounds, bounds])
@@ -183,20 +189,20 @@ def _on_these_points(contact, problem, resolution, tolerance, settings):
         force += float(np.sum(contact.weight * shift))
         left = shift > NOTHING_LEFT * bounds.max()
     near = found.converged or found.distance <= ENOUGH * distance  # and its error is told
-    periods, reason = periods_of(found.marches, problem.motion), ""
+    periods, reason = periods_of(found.marches, problem.motion), unsolved(residual, solves, inner)
     if not near:
         reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
     run = Run(
         mu=float(force) / problem.mean_load,
         torque=0.0,
         distance=FELT * found.distance / problem.mean_load,
-        solver_residual=found.solver_residual / problem.mean_load,
+        solver_residual=residual / problem.mean_load,
         periods=periods,
         iterations=found.iterations,
         solves=found.solves,
         work=found.solves * found.start.size,
         effort=found.iterations * found.start.size,
-        converged=near,
+        converged=not reason,
         reason=reason,
         # a constant traction does no work on a motion that returns
         power=oscillation_power(problem, path, found.forces),

@@ -1,0 +1,89 @@
+"""Steps not solved to their tolerance show in the error, in `converged`, or as a failure."""
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip.adaptive import period
+from microslip.foundation.errors import SolverError
+from microslip.models.polar.contact import PolarContact
+from microslip.models.rings.contact import RadialContact
+from microslip.motions.by_name import motion_named
+from microslip.solver.problem import Problem, Resolution
+from microslip.solver.static_run import simulate_static
+from microslip.theory import paper
+
+LOOSE = 5e-2
+"""Residual that every step may leave here, a force over mu F_z."""
+RINGS = 5e-4
+"""Error of the limit on 32 rings whose steps are solved."""
+
+
+@pytest.fixture
+def loose_steps(monkeypatch):
+    """Contacts whose steps are solved to LOOSE alone."""
+
+    def loosen(contact, name):
+        march = getattr(contact, name)
+
+        def loosely(self, path, state, tolerance, *others, **settings):
+            return march(self, path, state, LOOSE, *others, **settings)
+
+        monkeypatch.setattr(contact, name, loosely)
+
+    for contact in (RadialContact, PolarContact):
+        loosen(contact, "march")
+        loosen(contact, "pulled_march")
+
+
+def static_run(amplitude):
+    problem = Problem(motion_named("transverse"), 0.0, amplitude, 0.0)
+    return simulate_static(problem, "radial", Resolution(32, 2, 1), 1e-5)
+
+
+@pytest.mark.parametrize("amplitude", [0.2, 0.5, 0.8])
+def test_the_static_limit_on_a_line_includes_the_residual_of_its_steps(amplitude, loose_steps):
+    run = static_run(amplitude)
+    assert not run.converged and "unsolved" in run.reason
+    error = abs(run.mu - paper.static_limit_transverse(amplitude))
+    assert RINGS < error <= run.solver_residual + RINGS
+
+
+def test_solved_steps_have_the_limit_of_the_closed_form():
+    run = static_run(0.5)
+    assert run.converged and run.solver_residual <= 2e-7
+    assert abs(run.mu - paper.static_limit_transverse(0.5)) <= RINGS
+
+
+def test_the_static_limit_on_a_loop_does_not_converge(loose_steps):
+    problem = Problem(motion_named("elliptic"), 0.0, 0.5, 0.0)
+    run = simulate_static(problem, "radial", Resolution(12, 2, 16), 1e-4)
+    assert not run.converged and run.solver_residual > 1e-4
+
+
+def test_a_history_fails(loose_steps):
+    with pytest.raises(SolverError, match="a step was left unsolved: residual"):
+        microslip.history("transverse", 0.1, 1.0, cells=8, steps=32, periods=1)
+
+
+def test_a_traction_field_fails(loose_steps):
+    with pytest.raises(SolverError, match="no steady state: .* residual"):
+        microslip.traction_field("continuous-bore", 0.3, cells=8)
+
+
+def test_a_period_does_not_converge_where_only_its_last_march_is_unsolved(monkeypatch):
+    """The search is solved; the march that shows the tractions step by step is not."""
+
+    def loosely(contact, path, state, tolerance, frames=period.frames):
+        return frames(contact, path, state, LOOSE)
+
+    monkeypatch.setattr(period, "frames", loosely)
+    found = microslip.period("transverse", 0.1, 1.0, cells=8, angles=4, steps=32)
+    assert not found.converged and "unsolved" in found.reason
+    assert np.isfinite(found.mu_macro)
+
+
+@pytest.mark.slow
+def test_a_shakedown_does_not_converge(loose_steps):
+    found = microslip.shakedown("transverse", 0.5, 0.2, tolerance=3e-2)
+    assert not found.converged and "unsolved" in found.reason
