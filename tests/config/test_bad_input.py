@@ -15,6 +15,7 @@ from bad_input_tables.bad_configurations import EXTENDED, FILES, KEYS, STUDIES, 
 import microslip
 from microslip.app import cli
 from microslip.config import load, schema
+from microslip.config.strict_yaml import StrictLoader
 from microslip.foundation.arguments import LARGEST
 
 SOURCE = str(Path(microslip.__file__).parent.parent)
@@ -142,3 +143,37 @@ def test_a_file_that_is_no_configuration_is_one_line(case, tmp_path):
 )
 def test_a_file_that_cannot_be_read_is_one_line(name, part, tmp_path):
     assert refusal(tmp_path / name) == f"{tmp_path / name}: {part}"
+
+
+BOMB = "a0: &a0 [x]\n" + "".join(
+    f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 10)}]\n" for i in range(1, 8)
+)
+MERGED = "a0: &a0 {x: 1}\n" + "".join(
+    f"a{i}: &a{i} {{<<: [{', '.join([f'*a{i - 1}'] * 10)}]}}\n" for i in range(1, 8)
+)
+
+
+@pytest.mark.parametrize("text", [BOMB, MERGED], ids=["lists", "merged"])
+def test_aliases_that_stand_for_millions_of_values_are_refused(text, tmp_path, monkeypatch):
+    """... before anything is made of them."""
+    monkeypatch.setattr(
+        StrictLoader, "construct_document", lambda *args: pytest.fail("it was constructed")
+    )
+    path = tmp_path / "sweep.yaml"
+    path.write_text(text)
+    message = refusal(path)
+    assert message.startswith(f"{path}: ")
+    assert "more than 100000 values" in message
+
+
+def test_aliases_within_reason_are_values_as_any_other(tmp_path):
+    path = tmp_path / "sweep.yaml"
+    first = "transverse: {velocity: &v [1, 2], amplitude: [0, 1]}"
+    path.write_text(f"sweeps:\n  {first}\n  bore: {{velocity: *v, amplitude: [0, 1]}}\n")
+    assert load.load(path).grids["bore"].velocity == (1.0, 2.0)
+
+
+def test_a_configuration_without_an_end_is_refused(tmp_path):
+    path = tmp_path / "sweep.yaml"
+    path.write_bytes(b"#" * 1_000_001)
+    assert refusal(path) == f"{path}: larger than 1 MB; allowed: at most that"

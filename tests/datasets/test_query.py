@@ -5,6 +5,7 @@ import json
 import pickle
 from pathlib import Path
 
+import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
@@ -536,3 +537,19 @@ def test_what_cannot_be_opened_is_one_line(results, tmp_path):
     path.write_bytes(path.read_bytes()[:-100])
     with pytest.raises(CacheError, match="transverse.nc is damaged"):
         open_map("transverse", results)
+
+
+def test_a_dataset_that_declares_more_than_it_holds_is_refused_unread(tmp_path):
+    """Also in a group; a map of our own is opened."""
+    for group in ("/", "history"):
+        path = tmp_path / f"{len(group)}.nc"
+        with netCDF4.Dataset(path, "w") as file:
+            file.scene = "transverse"
+            place = file if group == "/" else file.createGroup(group)
+            place.createDimension("velocity", 10**12)
+            place.createVariable("velocity", "f8", ("velocity",), chunksizes=(1024,))
+        with pytest.raises(CacheError, match="velocity has 1000000000000 values in a file of "):
+            open_map(path)
+    made_up().to_netcdf(tmp_path / "small.nc")
+    with open_map(tmp_path / "small.nc") as data:
+        assert data.mu_macro.shape == (13, 13)

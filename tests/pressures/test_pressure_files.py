@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 
+import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
@@ -351,6 +352,36 @@ def test_netcdf_is_read_with_its_units_whatever_its_name(tmp_path):
     data.transpose("lateral", "forward").to_netcdf(tmp_path / "q.nc", format="NETCDF3_CLASSIC")
     loads = pressure_named(f"file:{tmp_path / 'q.nc'}").cell_loads(2)
     assert loads == pytest.approx(values / 10.0, abs=1e-12)
+
+
+@pytest.mark.slow
+def test_sizes_that_netcdf_declares_are_checked_before_they_are_read(tmp_path):
+    """A file of some kB can declare more than any memory holds."""
+
+    def declared(rows, chunk):
+        path = tmp_path / "p.nc"
+        with netCDF4.Dataset(path, "w") as file:
+            file.createDimension("forward", rows)
+            file.createDimension("lateral", 4)
+            file.createVariable("forward", "f8", ("forward",), chunksizes=chunk[:1])
+            file.createVariable("lateral", "f8", ("lateral",))
+            file.createVariable("pressure", "f8", ("forward", "lateral"), chunksizes=chunk)
+        assert path.stat().st_size < 20_000
+        return f"file:{path}"
+
+    said = refusal(declared(10**12, (1024, 4)))
+    assert "the dimension forward has 1000000000000 points; allowed: at most 1000000" in said
+    said = refusal(declared(None, (10**8, 4)))
+    assert "forward is stored in chunks of 100000000; allowed" in said
+
+
+def test_scattered_points_do_not_make_a_huge_grid(tmp_path, monkeypatch):
+    """Points on a diagonal have as many coordinates each way as there are points."""
+    monkeypatch.setattr("microslip.pressures.grid_csv.MOST_POINTS", 10)
+    monkeypatch.setattr(np, "zeros", lambda *args: pytest.fail("it was allocated"))
+    lines = "".join(f"{i},{i},1\n" for i in range(5))
+    said = refusal(text(tmp_path / "p.csv", f"forward,lateral,pressure\n{lines}"))
+    assert "5 points do not fill a grid of 5 x 5" in said
 
 
 @pytest.mark.slow

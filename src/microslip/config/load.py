@@ -29,10 +29,14 @@ from microslip.config.records import (
 from microslip.config.strict_yaml import StrictLoader
 from microslip.foundation.canonical import number
 from microslip.foundation.errors import InputError
+from microslip.foundation.user_files import content_of
 from microslip.solver import method_names
 
 # The points of a study's map are computed by every model, at every tolerance.
 MOST_MAP_POINTS = 10_000
+
+# Bytes of a configuration; that of the paper has 18 kB, and PyYAML reads about 100 kB a second.
+MOST_BYTES = 1_000_000
 
 # Up to these amplitudes there is static friction to be judged, by the maps of the paper.
 STATIC_AMPLITUDES = {"transverse": 1.0, "bore": 5.0}
@@ -51,13 +55,14 @@ def read_yaml(path: str | os.PathLike) -> dict:
 
     Raises ConfigError, one line with the file, and the line in it that is at fault.
     """
+    if "\0" in str(path):
+        raise ConfigError(f"{str(path)!r}: cannot be read: no name of a file")
     try:
-        with open(path, "rb") as file:
-            content = file.read()
+        content = content_of(path, MOST_BYTES)
     except OSError as error:
         raise ConfigError(_one_line(f"{path}: cannot be read: {error.strerror}")) from None
-    except ValueError:  # of a name that no file can have
-        raise ConfigError(f"{str(path)!r}: cannot be read: no name of a file") from None
+    except ValueError as error:
+        raise ConfigError(f"{path}: {error}") from None
     try:
         mapping = yaml.load(_as_text(content, path), StrictLoader)
     except RecursionError:

@@ -9,6 +9,11 @@ from typing import IO
 
 import yaml
 
+MOST_VALUES = 100_000
+"""Keys and values of a file after aliases are replaced by what they stand for.
+
+Checking that many takes a few seconds."""
+
 
 class StrictLoader(yaml.SafeLoader):
     """Loader of plain data, for yaml.load.
@@ -20,6 +25,15 @@ class StrictLoader(yaml.SafeLoader):
     def __init__(self, stream: str | bytes | IO):
         super().__init__(stream)
         self._checked = []
+
+    def get_single_node(self) -> yaml.Node | None:
+        """The document; refuses one whose aliases stand for too much, before anything is made."""
+        node = super().get_single_node()
+        if node is not None and _expanded_size(node, {}) > MOST_VALUES:
+            raise yaml.constructor.ConstructorError(
+                None, None, f"more than {MOST_VALUES} values, aliases replaced by what they are for"
+            )
+        return node
 
     def flatten_mapping(self, node: yaml.MappingNode) -> None:
         if not any(node is other for other in self._checked):  # afterwards it has what is merged
@@ -71,6 +85,21 @@ class StrictLoader(yaml.SafeLoader):
             raise yaml.constructor.ConstructorError(
                 None, None, f"{node.tag.rpartition(':')[2]}: {error}", node.start_mark
             ) from None
+
+
+def _expanded_size(node, sizes):
+    """Number of nodes in a tree that repeats what has several aliases; sizes: those known by id.
+
+    A node inside itself counts once: whoever reads the document refuses it.
+    """
+    if id(node) not in sizes:
+        sizes[id(node)] = 1
+        if isinstance(node, yaml.MappingNode):
+            children = [child for pair in node.value for child in pair]
+        else:
+            children = node.value if isinstance(node, yaml.SequenceNode) else ()
+        sizes[id(node)] += sum(_expanded_size(child, sizes) for child in children)
+    return sizes[id(node)]
 
 
 StrictLoader.add_constructor("tag:yaml.org,2002:int", StrictLoader.construct_yaml_int)

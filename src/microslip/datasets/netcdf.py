@@ -17,6 +17,8 @@ from collections.abc import Mapping
 import netCDF4
 import xarray as xr
 
+from microslip.foundation.errors import CacheError
+
 Groups = Mapping[str, tuple[str, tuple[str, ...]]]
 
 
@@ -83,6 +85,28 @@ def characters_of(name: str) -> str:
     return f"characters_of_{name}"
 
 
+def refuse_oversized(path: str | os.PathLike[str]) -> None:
+    """Raise CacheError for a file that declares more values than it has bytes.
+
+    xarray reads coordinates into memory when it opens a file.  Every dataset of a sweep has numbers
+    of several bytes each in it, also where somebody has compressed it.
+    """
+    size = os.stat(path).st_size
+    with netCDF4.Dataset(path) as file:
+        groups = [file]
+        while groups:
+            group = groups.pop()
+            groups += group.groups.values()
+            lengths = {name: len(dimension) for name, dimension in group.dimensions.items()}
+            lengths |= {name: variable.size for name, variable in group.variables.items()}
+            for name, length in lengths.items():
+                if length > size:
+                    raise CacheError(
+                        f"{path}: {name} has {length} values in a file of {size} bytes; allowed: a "
+                        "dataset as the workflow makes it"
+                    )
+
+
 def group_names(path: str | os.PathLike[str]) -> tuple[str, ...]:
     """Names of the groups of a file, in their order there."""
     with netCDF4.Dataset(path) as file:
@@ -94,8 +118,9 @@ def whole(path: str | os.PathLike[str]) -> xr.Dataset:
 
     A table of it would hold every combination of axes that have nothing to do with each other;
     what draws and what judges picks variables by name.  Raises what xarray raises for a file that
-    is none.
+    is none, and CacheError for one that declares too much.
     """
+    refuse_oversized(path)
     with xr.open_dataset(path, engine="netcdf4") as file:
         found = file.load()
     for group in group_names(path):

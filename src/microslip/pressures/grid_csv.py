@@ -70,6 +70,11 @@ def _filled(table, places):
     if len(table) == 0:
         raise ValueError("no points; allowed: a line with three numbers for each point of a grid")
     (forward, i), (lateral, j) = (_distinct(column) for column in table.T[:2])
+    if len(forward) * len(lateral) > MOST_POINTS:  # and there are fewer: no room for the rest
+        raise ValueError(
+            f"{len(table)} points do not fill a grid of {len(forward)} x {len(lateral)}; allowed: "
+            "every point of a regular grid once"
+        )
     values, given = np.zeros((2, len(forward), len(lateral)))
     np.add.at(given, (i, j), 1.0)
     values[i, j] = table[:, 2]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import subprocess
 import sys
 import tempfile
@@ -15,6 +16,8 @@ from microslip.pressures.grid_units import COLUMNS, MOST_POINTS
 BEGINNINGS = (b"\x89HDF", b"CDF\x01", b"CDF\x02", b"CDF\x05")
 LONGEST = 30
 """Seconds that a file may take to be opened; a good one takes some hundredths."""
+LARGEST_CHUNK = 100_000_000
+"""Bytes of a chunk, which HDF5 reads as a whole; the largest default of netCDF is 16 MB."""
 TRY = "import sys, netCDF4; netCDF4.Dataset(sys.argv[1]).close()"
 ALLOWED = "allowed: a variable pressure with the dimensions and coordinates forward and lateral"
 
@@ -34,6 +37,7 @@ def grid(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         path.write_bytes(content)
         _refuse_endless(path)
         try:
+            _refuse_oversized(path)
             with xr.open_dataset(path, engine="netcdf4", decode_times=False) as data:
                 return _grid(data)
         except (OSError, RuntimeError, AttributeError, TypeError) as error:
@@ -52,6 +56,30 @@ def _refuse_endless(path):
         raise ValueError(
             f"not a netCDF file that can be read: not opened within {LONGEST} s"
         ) from None
+
+
+def _refuse_oversized(path):
+    """Raise ValueError for declared sizes that are too large, before anything is allocated.
+
+    xarray reads the coordinates of all dimensions when it opens a file, and HDF5 whole chunks.
+    """
+    import netCDF4  # only here: it takes a while to load
+
+    with netCDF4.Dataset(path) as file:
+        for name, dimension in file.dimensions.items():
+            if len(dimension) > MOST_POINTS:
+                raise ValueError(
+                    f"the dimension {name} has {len(dimension)} points; allowed: at most "
+                    f"{MOST_POINTS}"
+                )
+        for name, variable in file.variables.items():
+            chunk = variable.chunking()  # None in files of netCDF 3
+            size = getattr(variable.dtype, "itemsize", 1)  # texts of any length have none
+            if isinstance(chunk, list) and math.prod(chunk) * size > LARGEST_CHUNK:
+                raise ValueError(
+                    f"{name} is stored in chunks of {' x '.join(map(str, chunk))}; allowed: chunks "
+                    f"of at most {LARGEST_CHUNK / 1e6:g} MB"
+                )
 
 
 def _grid(data):

@@ -11,10 +11,10 @@ import csv
 import os
 import re
 from collections.abc import Collection
-from pathlib import Path
 
 from microslip.foundation import csv_text
 from microslip.foundation.errors import InputError
+from microslip.foundation.user_files import content_of
 
 NUMBER = re.compile(r"[+−-]?[\d.,]+([eE][+−-]?\d+)?", re.A)
 """What is meant to be a number; whether it is one is decided where it is read."""
@@ -26,7 +26,7 @@ def cases_of_file(
     """The columns of a file, as microslip.predict_table takes them, and the numbers of the lines
     that they come from; raises InputError."""
     try:
-        return read_cases(Path(path).read_bytes(), names)
+        return read_cases(content_of(path), names)
     except OSError as error:
         problem = f"cannot be read ({error.strerror}); allowed is a file of CSV"
         raise InputError("table", str(path), problem) from None

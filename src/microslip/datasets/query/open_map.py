@@ -17,7 +17,7 @@ from pathlib import Path
 import xarray as xr
 
 from microslip.config.records import SCENE_OF_SWEEP
-from microslip.datasets.netcdf import group_names
+from microslip.datasets.netcdf import group_names, refuse_oversized
 from microslip.datasets.query.accessor import Friction
 from microslip.datasets.query.answers import SOURCES
 from microslip.datasets.query.creep import Creep
@@ -95,6 +95,7 @@ def _found(name, results, chunks, group):
         raise CacheError(f"{path} is not there: run the workflow first, or name its results folder")
     if is_damaged(path):
         raise CacheError(f"{path} is damaged: run the workflow again, which makes it anew")
+    refuse_oversized(path)
     dataset = _opened(path, chunks=chunks)
     if "scene" not in dataset.attrs or not dataset.variables.keys() & SOLVED:
         dataset.close()

@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from microslip.foundation.errors import InputError
+from microslip.foundation.user_files import content_of
 from microslip.si.fitting.measured_csv import COLUMNS, MOST_ROWS, read_table
 from microslip.si.motions import UNIT_OF_AMPLITUDE
 from microslip.si.quantities import read
@@ -99,7 +99,7 @@ def _table(given, unit):
     """Columns as arrays of floats."""
     if isinstance(given, str | os.PathLike):
         try:
-            return {k: np.array(v) for k, v in read_table(Path(given).read_bytes(), unit).items()}
+            return {k: np.array(v) for k, v in read_table(content_of(given), unit).items()}
         except OSError as error:
             problem = f"cannot be read ({error.strerror}); allowed is a file of CSV"
             raise InputError("measured", str(given), problem) from None
