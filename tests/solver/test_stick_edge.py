@@ -8,6 +8,7 @@ from microslip.foundation.errors import InputError
 from microslip.models.rings.mesh import Focus, make_rings
 from microslip.motions.by_name import motion_named
 from microslip.pressures.by_name import pressure_named
+from microslip.solver.budget import Budget, Spent
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
@@ -19,6 +20,7 @@ from microslip.solver.static_run import (
 from microslip.solver.stick_edge import (
     TELLING_FINER,
     TELLING_LINE,
+    TELLING_SWEPT,
     TOLD,
     TOLD_FINER,
     found_focus,
@@ -246,3 +248,38 @@ def test_few_rings_do_under_a_cone_where_they_gather_inside_of_lubkins_radius():
     few, fine = (6, 8, 12), slow_bores("power:exponent=1", (64,))
     assert slow_bores("power:exponent=1", few) == pytest.approx(fine.repeat(3), abs=5e-4)
     assert max(abs(slow_bores("power:exponent=1", few, focused=False) - fine)) > 5e-3
+
+
+# What the search may take
+
+SWEPT = "normal:lateral=1,angle=1"
+"""A static limit whose edges are found before anything else runs."""
+
+
+@pytest.mark.parametrize("bound", [{"most_work": 1.0}, {"time_limit": 1e-9}], ids=list)
+def test_bounds_of_a_point_hold_for_the_search_of_its_edges(bound):
+    seen, spent = [], "work" if "most_work" in bound else "time"
+    found = microslip.solve(SWEPT, 0.0, 0.4375, progress=seen.append, **bound)
+    assert seen == [TELLING_SWEPT]  # nothing else has begun
+    assert not found.converged and np.isnan(found.mu_macro)
+    assert found.exhausted == spent
+    assert "no error is known yet" in found.reason
+
+
+def test_the_work_of_a_search_counts_whether_it_was_done_before_or_not():
+    problem = Problem(motion_named("elliptic"), 0.0, 0.4321, 0.0)
+    first, later, seen = Budget(), Budget(), []
+    focus = found_focus(problem, "radial", first, seen.append)
+    assert len(seen) >= 1 and first.work > 0
+    assert found_focus(problem, "radial", later, seen.append) == focus
+    assert later.counts() == first.counts()
+    with pytest.raises(Spent, match="the work that the point may take"):
+        found_focus(problem, "radial", Budget(most_work=first.work - 1))
+
+
+@pytest.mark.slow
+def test_a_driving_line_and_a_shakedown_end_where_the_search_does():
+    line = microslip.drive("elliptic:forward_cycles=2,phase=10", 0.4444, most_work=1.0)
+    assert not line.converged and "no error is known yet" in line.reason
+    rest = microslip.shakedown("normal:lateral=0.5", 0.4321, 0.05, most_work=1.0)
+    assert not rest.converged and "no error is known yet" in rest.reason

@@ -54,6 +54,12 @@ class Certified:
         return sum(self.errors.values())
 
 
+def given_up(spent: Exception) -> Certified:
+    """The Certified of a point whose budget was spent (budget.Spent) before its first run."""
+    certified = nothing(Resolution(0, 0, 0))
+    return replace(certified, reason=f"{spent}: no error is known yet")
+
+
 def nothing(coarsest: Resolution) -> Certified:
     """The Certified of a point of which no error is known yet."""
     errors = dict.fromkeys(("space", "time", "periodicity", "solver"), np.inf)

@@ -9,6 +9,7 @@ from functools import partial
 from typing import NamedTuple
 
 from microslip.adaptive.asked import TOLERANCE, Asked, refuse_free, verdict
+from microslip.adaptive.certified import given_up
 from microslip.adaptive.chains import Axis
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.closed_forms import closed_form, no_vibration
@@ -18,6 +19,7 @@ from microslip.adaptive.resolutions import plan
 from microslip.adaptive.result import Result, of_closed_form
 from microslip.motions.by_name import read_otherwise
 from microslip.motions.motion import Motion
+from microslip.solver.budget import Spent
 from microslip.solver.method_names import SHIPPED
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.run import Settings
@@ -61,13 +63,14 @@ class Marched(NamedTuple):
 
 
 def marched(asked: Asked) -> Marched:
-    """The Marched of a point with a velocity of at least 0."""
+    """The Marched of a point with a velocity of at least 0; raises budget.Spent where the search
+    for stick edges takes more than the point may."""
     problem, motion, tolerance = asked.problem, asked.problem.motion, asked.accuracy
+    focus = found_focus(problem, asked.model, asked.budget, asked.progress)
     coarsest, axes = plan(problem, asked.model, tolerance, asked.cells, asked.steps, together=True)
     if asked.tolerance is None:
         refuse_free(axes)
     share = run_tolerance(coarsest, axes, tolerance)
-    focus = found_focus(problem, asked.model)
     settings = Settings(asked.how, budget=asked.budget, focus=focus)
 
     def run(resolution, guess, problem=problem):
@@ -96,8 +99,12 @@ def solve_moved(asked: Asked) -> Result:
     exact = known_exactly(asked)
     if exact is not None:
         return exact
-    motion, (run, coarsest, axes, readings) = asked.problem.motion, marched(asked)
-    certified = certify(run, coarsest, axes, asked.accuracy, readings)
+    motion, axes = asked.problem.motion, ()
+    try:
+        run, coarsest, axes, readings = marched(asked)
+        certified = certify(run, coarsest, axes, asked.accuracy, readings)
+    except Spent as spent:
+        certified = given_up(spent)
     steady = not motion.periodic
     return Result(
         **asked.point,

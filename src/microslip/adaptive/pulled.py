@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import partial
 
 from microslip.adaptive.asked import Asked, refuse_free, verdict
+from microslip.adaptive.certified import given_up
 from microslip.adaptive.chains import Runs
 from microslip.adaptive.moved import CLOSED_FORM
 from microslip.adaptive.refinement import certify, run_tolerance
@@ -33,6 +34,7 @@ from microslip.solver.method_names import SHIPPED
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.pulled_run import Accuracy, simulate_pulled
 from microslip.solver.run import Settings
+from microslip.solver.stick_edge import found_focus
 
 STEADY_ERROR = 1e-9
 """Of the velocity of a steady motion, over 1 and the velocity."""
@@ -206,6 +208,8 @@ def _near(asked, drive):
     exactly, unless it is so slow that this would take finer ones.
     """
     moving = replace(asked.problem, velocity=FIRST_VELOCITY)
+    # the plan depends on where slip starts, and finds it again by itself
+    found_focus(moving, asked.model, asked.budget, asked.progress)
     coarsest, axes = plan(moving, asked.model, COARSE_TOLERANCE, asked.cells, asked.steps)
     if asked.tolerance is None:
         refuse_free(axes)
@@ -239,6 +243,10 @@ def _given_up(asked, drive, reason):
 def _certified(asked, drive, accuracy):
     """The certified.Certified to an accuracy, and what was refined."""
     problem, tolerance = asked.problem, accuracy.tolerance
+    try:
+        found_focus(problem, asked.model, asked.budget, asked.progress)
+    except Spent as spent:
+        return given_up(spent), ()
     coarsest, axes = plan(problem, asked.model, tolerance, asked.cells, asked.steps)
     contact = problem.contact(asked.model, COARSEST)
     axes, unresolved = with_mass(axes, problem, contact, drive.mass, tolerance)

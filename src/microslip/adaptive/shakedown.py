@@ -14,6 +14,7 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields, replace
 
 from microslip.adaptive.asked import Asked, budget_for, verdict
+from microslip.adaptive.certified import given_up
 from microslip.adaptive.checks import checked_point, checked_request, refuse_bounds, refuse_progress
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.pulled import refuse_drive
@@ -29,9 +30,11 @@ from microslip.adaptive.under_force import (
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Drive
+from microslip.solver.budget import Spent
 from microslip.solver.problem import Problem
 from microslip.solver.run import Settings
 from microslip.solver.shakedown_run import run_to_rest
+from microslip.solver.stick_edge import found_focus
 
 TOLERANCE = 1e-2
 """Of the displacement, in u_lim, unless told otherwise."""
@@ -212,6 +215,10 @@ def _threshold(asked, force):
 def _certified(asked, force):
     """Fields of a Shakedown that comes of runs."""
     planned = replace(asked.problem, velocity=PLANNED_VELOCITY)
+    try:  # the plan depends on where slip starts, and finds it again by itself
+        found_focus(planned, asked.model, asked.budget, asked.progress)
+    except Spent as spent:
+        return _fields(asked, given_up(spent), (), None)
     coarsest, axes = plan(planned, asked.model, asked.tolerance)
     axes = [replace(axis, regular=False, projected=False, caution=CAUTION) for axis in axes]
     left = run_tolerance(coarsest, axes, asked.tolerance)
@@ -226,9 +233,14 @@ def _certified(asked, force):
         return finest[resolution]
 
     certified = certify(run, coarsest, axes, asked.tolerance, (), "displacement")
+    last = finest[max(finest, key=lambda one: (one.cells, one.steps))] if finest else None
+    return _fields(asked, certified, axes, last)
+
+
+def _fields(asked, certified, axes, last):
+    """Fields of a Shakedown from its Certified and its finest ShakedownRun, if there is one."""
     said = verdict(asked, certified, axes, asked.tolerance)
     taken = {field.name for field in fields(Shakedown)}
-    last = finest[max(finest, key=lambda one: (one.cells, one.steps))] if finest else None
     return {name: value for name, value in said.items() if name in taken} | {
         "displacement": float(certified.mu),
         "displacement_error": float(certified.error),

@@ -11,7 +11,7 @@ import math
 import time
 
 from microslip.foundation.errors import SolverError
-from microslip.models.contact import Contact, March
+from microslip.models.contact import Contact
 
 
 class Spent(SolverError):
@@ -52,12 +52,19 @@ class Budget:
         """The contact, whose marches count from now on."""
         return _Metered(contact, self)
 
-    def take(self, march: March) -> None:
-        """Count a models.contact.March; raises Spent where that was too much."""
-        unknowns = march.state.size
-        self.iterations += march.iterations
-        self.work += march.solves * unknowns
-        self.effort += march.iterations * unknowns
+    def take(self, solves: int, iterations: int, unknowns: int) -> None:
+        """Count a march; raises Spent where that was too much.
+
+        Parameters
+        ----------
+        solves, iterations : int
+            Step solves and step-solver iterations of the march.
+        unknowns : int
+            Of each step.
+        """
+        self.iterations += iterations
+        self.work += solves * unknowns
+        self.effort += iterations * unknowns
         if self.work > self.most_work:
             self.exhausted = "work"
             raise Spent(f"the work that the point may take, {self.most_work:.3g}, is spent")
@@ -86,5 +93,5 @@ class _Metered:
         return self._taken(self._contact.pulled_march(*path, **settings))
 
     def _taken(self, found):
-        self._budget.take(found)
+        self._budget.take(found.solves, found.iterations, found.state.size)
         return found

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
@@ -89,11 +89,17 @@ def _on_a_loop(problem, model, resolution, tolerance, settings):
 
 
 def gathered_on_a_loop(
-    problem: Problem, model: str, resolution: Resolution, tolerance: float, settings: Settings
+    problem: Problem,
+    model: str,
+    resolution: Resolution,
+    tolerance: float,
+    settings: Settings,
+    progress: Callable | None = None,
 ) -> tuple[list[Run], tuple[float, ...]]:
     """Runs on rings that gather at the edges of what never slips, which no formula tells; arguments
     as for `simulate_static`.
 
+    progress: called with the Resolution of every run before it starts, None: nothing is.
     Returns the Runs, of which the last is the answer, and the radii of these edges, none if nothing
     sticks, or everything, or the contact tells no radii.
     """
@@ -104,7 +110,7 @@ def gathered_on_a_loop(
         return left if run.converged else None
 
     done = []
-    radii = _gathered(partial(settings.contact, problem, model, resolution), run_on)
+    radii = _gathered(_contacts(problem, model, resolution, settings, progress), run_on)
     return done, radii
 
 
@@ -114,6 +120,9 @@ def gathered_on_a_line(
     resolution: Resolution,
     tolerance: float,
     near: tuple[float, ...] = (),
+    *,
+    settings: Settings = AS_SHIPPED,
+    progress: Callable | None = None,
 ) -> tuple[float, ...]:
     """Radii of the edges of what never slips, as for `gathered_on_a_loop`, where the turning points
     tell; near: what they are about, where that is known."""
@@ -125,7 +134,18 @@ def gathered_on_a_line(
         bounds = np.broadcast_to(contact.bound, limit.residual[0].shape)
         return np.hypot(*limit.residual) > NOTHING_LEFT * bounds.max()
 
-    return _gathered(partial(problem.contact, model, resolution), run_on, near)
+    return _gathered(_contacts(problem, model, resolution, settings, progress), run_on, near)
+
+
+def _contacts(problem, model, resolution, settings, progress):
+    """contact(focus) -> the contact of a run that is about to start."""
+
+    def contact(focus):
+        if progress is not None:
+            progress(resolution)
+        return settings.contact(problem, model, resolution, focus)
+
+    return contact
 
 
 def _gathered(contact_at, run_on, near=()):

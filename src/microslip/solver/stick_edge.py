@@ -5,14 +5,16 @@ the run serves any pressure, and a test holds the two against each other."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 
 from microslip.models.contact import StepFailure
 from microslip.models.rings.mesh import Focus
 from microslip.pressures.by_name import HERTZ
+from microslip.solver.budget import Budget
 from microslip.solver.problem import Problem, Resolution, focus_strength
-from microslip.solver.run import AS_SHIPPED
+from microslip.solver.run import Settings
 from microslip.solver.static_limit import at_turning_points
 from microslip.solver.static_run import gathered_on_a_line, gathered_on_a_loop
 
@@ -29,7 +31,12 @@ TOLD_FINER = 1e-5
 search for the edge does not settle."""
 
 
-def found_focus(problem: Problem, model: str) -> Focus | None:
+def found_focus(
+    problem: Problem,
+    model: str,
+    budget: Budget | None = None,
+    progress: Callable | None = None,
+) -> Focus | None:
     """Where the rings of a slow motion should gather: at the edges of what never slips in the limit
     of vanishing velocity.
 
@@ -43,48 +50,104 @@ def found_focus(problem: Problem, model: str) -> Focus | None:
         Any.
     model : str
         Name in models.registry.MODELS.
+    budget : budget.Budget or None
+        What the runs of the search may take; None: as much as they do.
+    progress : callable or None
+        Called with the Resolution of every run of the search before it starts.
 
     Returns
     -------
     mesh.Focus or None
         None: the motion tells (Motion.focus) or is fast, the model has no rings, what sticks is not
         round, or all of the contact slips.
+
+    Raises
+    ------
+    budget.Spent
+        Where the budget is.
     """
     motion, creep = problem.motion, problem.creep
     if model not in ("radial", "polar") or not motion.periodic:
         return None
     if at_turning_points(motion):
         wanted = motion.pressure is not HERTZ and motion.half_disc and creep < SLOW_LINE
-        radii = _radii_on_a_line(motion, problem.amplitude) if wanted else ()
+        search = _on_a_line
     else:
         slow = motion.depth is None and model == "radial" and creep < SLOW_LOOP
         wanted = creep == 0.0 or slow
-        radii = _radii_on_a_loop(motion, problem.amplitude) if wanted else ()
+        search = _on_a_loop
+    if not wanted:
+        return None
+    radii = search(motion, problem.amplitude).within(budget or Budget(), progress)
     return Focus(radii, focus_strength(creep)) if radii else None
 
 
-@lru_cache(maxsize=64)
-def _radii_on_a_line(motion, amplitude):
-    """Edges of what never slips, over the contact radius; Poisson's ratio moves them little."""
-    if motion.focus(0.0, amplitude, motion.pressure) is not None and not motion.rotates:
-        return ()  # ... of an indenter, by its profile
-    limit, model = Problem(motion, 0.0, amplitude, 0.0), "polar" if motion.rotates else "radial"
-    try:
-        radii = gathered_on_a_line(limit, model, TELLING_LINE, TOLD)
-        if radii and not motion.rotates:
-            radii = gathered_on_a_line(limit, model, TELLING_FINER, TOLD_FINER, near=radii)
-        return radii
-    except StepFailure:
-        return ()
+class _EdgeSearch:
+    """A search for the edges of what never slips, done once.
+
+    `radii` are these edges over the contact radius, None until they are found.  What its marches
+    took counts for every point that uses them, so that the work which a point may take does not
+    depend on what was asked before.
+    """
+
+    def __init__(self, locate):
+        self.locate, self.radii, self.marches = locate, None, []
+
+    def within(self, budget, progress):
+        """The radii; raises Spent where the budget is."""
+        if self.radii is None:
+            metered = _Recorder(budget)
+            self.radii = self.locate(Settings(budget=metered), progress)
+            self.marches = metered.marches
+        else:
+            for march in self.marches:
+                budget.take(*march)
+        return self.radii
+
+
+class _Recorder(Budget):
+    """A budget that remembers what each march took from another one."""
+
+    def __init__(self, budget):
+        super().__init__()
+        self.budget, self.marches = budget, []
+
+    def take(self, solves, iterations, unknowns):
+        self.budget.take(solves, iterations, unknowns)
+        self.marches.append((solves, iterations, unknowns))
 
 
 @lru_cache(maxsize=64)
-def _radii_on_a_loop(motion, amplitude):
-    """Edges of what never slips, over the contact radius; Poisson's ratio moves them little."""
-    limit, model = Problem(motion, 0.0, amplitude, 0.0), "polar" if motion.rotates else "radial"
+def _on_a_line(motion, amplitude):
+    """The _EdgeSearch of a motion on a line; Poisson's ratio moves the edges little."""
+
+    def locate(settings, progress):
+        if motion.focus(0.0, amplitude, motion.pressure) is not None and not motion.rotates:
+            return ()  # ... of an indenter, by its profile
+        limit, model = Problem(motion, 0.0, amplitude, 0.0), "polar" if motion.rotates else "radial"
+        try:
+            search = partial(gathered_on_a_line, limit, model, settings=settings, progress=progress)
+            radii = search(TELLING_LINE, TOLD)
+            if radii and not motion.rotates:
+                radii = search(TELLING_FINER, TOLD_FINER, near=radii)
+            return radii
+        except StepFailure:
+            return ()
+
+    return _EdgeSearch(locate)
+
+
+@lru_cache(maxsize=64)
+def _on_a_loop(motion, amplitude):
+    """The _EdgeSearch of a motion on a loop; Poisson's ratio moves the edges little."""
     telling = TELLING_LOOP if motion.depth is None else TELLING_SWEPT
     telling = replace(telling, steps=telling.steps * motion.cycles)
-    try:
-        return gathered_on_a_loop(limit, model, telling, TOLD, AS_SHIPPED)[1]
-    except StepFailure:
-        return ()
+
+    def locate(settings, progress):
+        limit, model = Problem(motion, 0.0, amplitude, 0.0), "polar" if motion.rotates else "radial"
+        try:
+            return gathered_on_a_loop(limit, model, telling, TOLD, settings, progress)[1]
+        except StepFailure:
+            return ()
+
+    return _EdgeSearch(locate)
