@@ -3,6 +3,7 @@
 import json
 import math
 
+import pandas as pd
 import pytest
 import xarray as xr
 
@@ -66,6 +67,33 @@ def test_a_line_that_nothing_answers_does_not_take_the_others_with_it(folder, ca
     assert spread / load == pytest.approx(1.5 * 0.1, rel=0.05)
 
 
+@pytest.mark.slow
+def test_a_line_that_cannot_be_leaves_the_others_their_answers_and_labels(folder, capsys):
+    text = "label;load [N];amplitude [um];speed\nfirst;10;0,3;10 mm/s\nsecond;20;-0,1;1 cm/s\n"
+    text += "third;20;0,1;\nfourth;20;0,1\n;;;\n"
+    (folder / "contacts.csv").write_text(text)
+    words = [*COMMAND, "--decimal", ",", "--output", "found.csv"]
+    assert cli.main([*words, "--json"]) == 1
+    out, complaints = capsys.readouterr()
+    first, *others = json.loads(out)
+    assert (first["line"], first["label"], first["error"]) == (2, "first", None)
+    assert first["amplitude_si"] == pytest.approx(3e-7) and first["mu_apparent"] > 0.0
+    said = ["amplitude = '-0.1 um'", "speed = None: needed", "line 5: 3 cells; allowed: 4"]
+    assert [part in one["error"] for part, one in zip(said, others, strict=True)] == [True] * 3
+    lines = [line for line in complaints.splitlines() if line.startswith("microslip predict: ")]
+    assert [line.split(": ")[1] for line in lines] == ["line 3", "line 4", "line 5"]
+    kept = pd.read_csv(folder / "found.csv")
+    assert kept.label.tolist()[:3] == ["first", "second", "third"]
+    assert kept.error.isna().tolist() == [True, False, False, False]
+    assert cli.main(words) == 1
+    heading, row, *rest = capsys.readouterr().out.splitlines()
+    assert heading.split()[:2] == ["line", "label"] and row.split()[:2] == ["2", "first"]
+    assert [line.split() for line in rest[:2]] == [
+        ["3", "second", "no", "prediction"],
+        ["4", "third", "no", "prediction"],
+    ]
+
+
 @pytest.mark.long
 def test_each_line_may_look_for_something_else(folder, capsys):
     text = "load [N],amplitude [um],reduction\n10,,0.3\n,0.3,0.3\n10,0.3,\n"
@@ -83,9 +111,8 @@ def test_each_line_may_look_for_something_else(folder, capsys):
 @pytest.mark.parametrize(
     ("changed", "words", "said"),
     [
-        ("20,0.1,", [], "--speed: in line 3: needed, or a force in its place"),
-        ("20,-0.1,1 cm/s", [], "--amplitude = '-0.1 um': in line 3: allowed is a finite value"),
-        ("20,0.1", [], "--table = 'contacts.csv': line 3: 2 cells; allowed: 3"),
+        ("20,0.1,1 cm/s", ["--encoding", "klingon"], "--encoding = 'klingon': allowed is the name"),
+        ("20,0.1,1 cm/s", ["--decimal", ";"], "--decimal = ';': allowed is '.' or ','"),
         ("20,0.1,1 cm/s", ["--load", "1 N"], "--load = '1 N': allowed once"),
         ("20,0.1,1 cm/s", ["--output", "found.txt"], "a name that ends in .csv or .nc"),
         ("20,0.1,1 cm/s", ["--output", "contacts.csv"], "another file than the table"),

@@ -274,6 +274,20 @@ def test_what_csv_may_look_like(tmp_path, content):
     assert loads == pytest.approx(np.array([[0.1, 0.2], [0.3, 0.4]]), abs=1e-12)
 
 
+def test_a_spreadsheet_with_decimal_commas_in_windows_1252_is_read_if_declared(tmp_path):
+    """Empty rows and columns at the end, as spreadsheets write them, do not count."""
+    rows = ["forward [mm];lateral [µm];pressure;;"]
+    rows += ["0,0;0;1,0;;", "0;1000;2;;", "1,0;0;3;;", "1;1000,0;4,0;;", ";;;;", ";;;;"]
+    (tmp_path / "p.csv").write_bytes("\r\n".join(rows).encode("cp1252"))
+    name = f"file:{tmp_path / 'p.csv'},decimal=comma,encoding=cp1252"
+    record = pressure_named(name)
+    assert record.cell_loads(2) == pytest.approx(np.array([[0.1, 0.2], [0.3, 0.4]]), abs=1e-12)
+    assert record.name.endswith(",decimal=comma,encoding=cp1252")
+    assert "line 1: byte 0xb5 is not UTF-8" in refusal(f"file:{tmp_path / 'p.csv'},decimal=comma")
+    assert "decimal is point or comma" in refusal(f"file:{tmp_path / 'p.csv'},decimal=dot")
+    assert "such as utf-8 or cp1252" in refusal(f"file:{tmp_path / 'p.csv'},encoding=klingon")
+
+
 @pytest.mark.parametrize(
     ("content", "problem"),
     [
@@ -286,12 +300,12 @@ def test_what_csv_may_look_like(tmp_path, content):
         (HEAD + "0,0,a\n", "line 2: pressure is 'a'; allowed: a number"),
         (HEAD + "0,0,1_0\n", "line 2: pressure is '1_0'; allowed: a number"),
         (HEAD + "0,0,\n", "line 2: pressure is ''; allowed: a number"),
-        (HEAD + "0,0\n", "line 2: 2 values; allowed: 3"),
-        (HEAD + "0,5,0,1\n", "line 2: 4 values; allowed: 3"),
+        (HEAD + "0,0\n", "line 2: 2 cells; allowed: 3"),
+        (HEAD + "0,5,0,1\n", "line 2: 4 cells; allowed: 3"),
         ("forward;lateral;pressure\n0;0;1\n0,5;0;1\n", "line 3: '0,5' has a decimal comma"),
         ("forward\tlateral\tpressure\n0\t0\t1,5\n", "line 2: '1,5' has a decimal comma"),
         (HEAD + "0,0,1\n0,1,1\n1,0,1\n", "3 points do not fill a grid of 2 x 2, there is none at "),
-        (HEAD + "0,0,1\n0,1,1\n1,0,1\n1,1", "line 5: 2 values; allowed: 3"),
+        (HEAD + "0,0,1\n0,1,1\n1,0,1\n1,1", "line 5: 2 cells; allowed: 3"),
         (HEAD + "0,0,1\n0,1,1\n1,0,1\n1,1,-1\n", "line 5: pressure is -1; allowed: a finite"),
         (HEAD + "0,0,0\n0,1,0\n1,0,0\n1,1,0\n", "it is 0 everywhere"),
         (HEAD + "0,0,1\n# x\n0,1,nan\n", "line 4: pressure is nan; allowed: a finite number"),

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import microslip
@@ -48,9 +49,38 @@ def test_arrays_in_the_si_are_cases():
         ({"load": ["10 N"], "speed": [0.1, 0.2]}, "columns of one length"),
         ({"load": []}, "1 to 100000 cases"),
         ({"mu": [0.3]}, "allowed once"),
-        (CASES | {"load": ["10 kg", "20 N"]}, "load = '10 kg': in case 0: the unit is kilogram"),
+        (CASES | {"load": ["10 kg", "1 s"]}, "load = '10 kg': in case 0: the unit is kilogram"),
     ],
 )
 def test_a_table_that_is_none_is_refused(cases, said):
     with pytest.raises(InputError, match=said):
         microslip.predict_table("transverse", cases, **SHARED)
+
+
+@pytest.mark.slow
+def test_a_case_that_cannot_be_has_its_error_and_the_others_their_answers(tmp_path):
+    cases = CASES | {"load": ["10 kg", "20 N"], "label": ["heavy", "light"]}
+    table = microslip.predict_table("transverse", cases, tolerance=0.01, **SHARED)
+    assert "load = '10 kg': the unit is kilogram" in str(table.error.values[0])
+    assert table.error.values[1] == "" and table.label.values.tolist() == ["heavy", "light"]
+    assert table.converged.values.tolist() == [False, True]
+    assert math.isnan(table.mu_macro.values[0]) and table.mu_macro.values[1] > 0.0
+    table.to_netcdf(tmp_path / "table.nc", engine="netcdf4")
+
+
+@pytest.mark.slow
+def test_pandas_tables_and_files_are_cases(tmp_path):
+    """A frame as pandas.read_csv makes it, a series with an index of its own, and the file."""
+    text = "label;load [N];speed [mm/s];amplitude [um];reduction\na;10;1,5;1;\nb;20;2,5;0,3;\n"
+    (tmp_path / "cases.csv").write_text(text)
+    shared = SHARED | {"tolerance": 0.01}
+    frame = pd.read_csv(tmp_path / "cases.csv", sep=";", decimal=",")
+    series = {name: pd.Series(values, index=[7, 3]) for name, values in CASES.items()}
+    by_file = microslip.predict_table("transverse", tmp_path / "cases.csv", decimal=",", **shared)
+    by_frame = microslip.predict_table("transverse", frame, **shared)
+    assert by_frame.mu_macro.values.tolist() == by_file.mu_macro.values.tolist()
+    assert by_frame.speed_m_s.values.tolist() == [1.5e-3, 2.5e-3]
+    assert by_frame.label.values.tolist() == ["a", "b"]
+    by_series = microslip.predict_table("transverse", series, **shared)
+    plain = microslip.predict_table("transverse", CASES, **shared)
+    assert by_series.mu_macro.values.tolist() == plain.mu_macro.values.tolist()

@@ -23,6 +23,8 @@ OPTIONS = {
     "map": ("FILE", "dataset of a sweep of this motion, which answers in place of the solver"),
     "confidence": ("P", "of the intervals (0.95)"),
     "tolerance": ("T", "largest accepted error of mu_macro where the solver answers (1e-3)"),
+    "decimal": ("MARK", "the decimal mark of the table, a point or a comma (.)"),
+    "encoding": ("NAME", "the encoding of the table, such as cp1252 (utf-8)"),
     "figure": ("FILE", "draws measured and fitted friction into this .png or .pdf"),
     "output": ("FILE", "writes rows, fitted friction and residuals into this .nc"),
 }
@@ -41,8 +43,8 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         "under vibration.  A row of the CSV file is a measurement; its heading names columns with "
         "their units: some of speed [mm/s], amplitude [um], frequency [kHz], load [N]; friction "
         "[N] or mu; friction_error [N] or mu_error.",
-        epilog="Exit codes: 0 both numbers are told, 1 mu alone is, 2 bad input, or rows that tell "
-        "neither.",
+        epilog="Exit codes: 0 both numbers are told, 1 mu alone is, or lines that cannot be read "
+        "were left out, 2 bad input, or rows that tell neither.",
     )
     scenes = ", ".join(UNIT_OF_AMPLITUDE)
     parser.add_argument("scene", metavar="SCENE", help=f"the motion: {scenes}")
@@ -76,7 +78,9 @@ def run(options: argparse.Namespace) -> int:
         complain(f"microslip fit: {error}")
         return 2
     print(json.dumps(plain(found.to_dict())) if options.json else _as_text(found))
-    return 0 if len(found.told) == 2 else 1
+    for text in found.left_out:
+        complain(f"microslip fit: {text}; left out")
+    return 0 if len(found.told) == 2 and not found.left_out else 1
 
 
 def _opened(path):

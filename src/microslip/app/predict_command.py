@@ -76,6 +76,8 @@ OPTIONS = {
         "speed, relative (1e-2)",
     ),
     "points": ("N", "with --driving: on the line, its ends included (9)"),
+    "decimal": ("MARK", "with --table: the decimal mark of the file, a point or a comma (.)"),
+    "encoding": ("NAME", "with --table: the encoding of the file, such as cp1252 (utf-8)"),
 }
 OTHER_NAMES = {"nu": ("--poisson",)}
 UNDERSTOOD = ("scene", "body", "counterbody", "radius", "counter_radius", "radius_across")
@@ -143,7 +145,7 @@ def run(options: argparse.Namespace) -> int:
     given = {name: getattr(options, name) for name in typed}
     try:
         if options.table is not None:
-            text, converged = _of_table(options, given)
+            text, converged = predicted_table.answer(options, given, list(OPTIONS))
         else:
             found = _found(options, given)
             as_text = predicted_driving.as_text if options.driving else _as_text
@@ -160,30 +162,13 @@ def run(options: argparse.Namespace) -> int:
     return 0 if converged else 1
 
 
-def _of_table(options, given):
-    """The answer to a table, as text, and whether all of it converged; raises InputError."""
-    from microslip.sweeps.evaluate import plain
-
-    if options.driving or "points" in given:
-        raise InputError("table", options.table, "allowed without --driving")
-    predicted_table.refuse_output(options.output, options.table)
-    columns = [name.replace("-", "_") for name in OPTIONS if name != "points"]
-    shared = given | {"power": options.power}
-    answered = predicted_table.ask(options.scene, options.table, shared, columns)
-    if options.output is not None:
-        predicted_table.write(options.output, answered)
-    lines = zip(answered.lines, answered.found, strict=True)
-    dicts = [{"line": line} | plain(one.to_dict()) for line, one in lines]
-    text = json.dumps(dicts) if options.json else predicted_table.as_text(answered)
-    return text, all(one.converged for one in answered.found)
-
-
 def _found(options, given):
     """The answer to the options that were given, a dict; raises InputError."""
     from microslip import predict
 
-    if options.output is not None:
-        raise InputError("output", options.output, "allowed with --table alone")
+    for name in ("output", "decimal", "encoding"):
+        if getattr(options, name) is not None:
+            raise InputError(name, getattr(options, name), "allowed with --table alone")
     if options.driving:
         return predicted_driving.ask(options.scene, given)
     if "points" in given:

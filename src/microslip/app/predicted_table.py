@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import argparse
+import json
 import os
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -9,9 +11,13 @@ from pathlib import Path
 
 from microslip.app.predicted_text import runs_away, unit_of_sought
 from microslip.app.printed_error import error_text
+from microslip.app.terminal import complain
+from microslip.foundation.csv_text import LABELS
 from microslip.foundation.errors import CacheError, InputError
-from microslip.si.prediction import Prediction
+from microslip.si.prediction import NoPrediction, Prediction
 
+FORMAT = ("decimal", "encoding")
+"""Options that say how the file is written."""
 ENDINGS = (".csv", ".nc")
 WIDTH = 13
 VALUE, SPREAD = "{:.4g}".format, "{:.2g}".format
@@ -30,29 +36,89 @@ class Answered:
         Columns of the file.
     lines : list of int
         Numbers of the lines of the file that they come from.
-    found : list of Prediction
+    found : list of Prediction or NoPrediction
         Of each line.
     """
 
     scene: str
     cases: dict[str, list[str | None]]
     lines: list[int]
-    found: list[Prediction]
+    found: list[Prediction | NoPrediction]
+
+    @property
+    def labels(self) -> dict[str, list[str | None]]:
+        """Columns of texts that are carried through."""
+        return {name: texts for name, texts in self.cases.items() if name in LABELS}
+
+    @property
+    def errors(self) -> list[str]:
+        """What is wrong with lines that have no prediction."""
+        pairs = zip(self.lines, self.found, strict=True)
+        texts = ((line, one.error) for line, one in pairs if isinstance(one, NoPrediction))
+        return [
+            f"line {line}: {text}" if isinstance(text, InputError) else text for line, text in texts
+        ]
+
+    def to_dicts(self) -> list[dict]:
+        """A dict for each line with its number, its labels and an error, which may be None."""
+        dicts = []
+        for row, (line, one) in enumerate(zip(self.lines, self.found, strict=True)):
+            labels = {name: texts[row] for name, texts in self.labels.items()}
+            if isinstance(one, NoPrediction):
+                dicts.append({"line": line} | labels | {"error": str(one.error)})
+            else:
+                dicts.append({"line": line} | labels | {"error": None} | one.to_dict())
+        return dicts
 
 
-def ask(scene: str, path: str, given: Mapping[str, object], columns: Collection[str]) -> Answered:
+def answer(
+    options: argparse.Namespace, given: Mapping[str, object], columns: Collection[str]
+) -> tuple[str, bool]:
+    """The answer to a table as text, and whether all of it converged.
+
+    What is wrong with lines that have no prediction goes to standard error.  options: those of
+    predict; given: the ones that were typed; columns: names of all.  Raises InputError.
+    """
+    from microslip.sweeps.evaluate import plain
+
+    if options.driving or "points" in given:
+        raise InputError("table", options.table, "allowed without --driving")
+    refuse_output(options.output, options.table)
+    names = [name.replace("-", "_") for name in columns]
+    shared = {name: value for name, value in given.items() if name not in FORMAT}
+    format = {name: given[name] for name in FORMAT if name in given}
+    names = [name for name in names if name not in ("points", *FORMAT)]
+    answered = ask(options.scene, options.table, shared | {"power": options.power}, names, **format)
+    if options.output is not None:
+        write(options.output, answered)
+    for text in answered.errors:
+        complain(f"microslip predict: {text}")
+    text = json.dumps(plain(answered.to_dicts())) if options.json else as_text(answered)
+    return text, all(one.converged for one in answered.found)
+
+
+def ask(
+    scene: str,
+    path: str,
+    given: Mapping[str, object],
+    columns: Collection[str],
+    **format: str,
+) -> Answered:
     """The cases of a file and their predictions, with a line of progress; raises InputError.
 
-    given: options by name that all cases share; columns: of predict's arguments.
+    given: options by name that all cases share; columns: of predict's arguments; format: decimal
+    and encoding of the file.
     """
     from tqdm import tqdm
 
     from microslip.si.table import predictions
     from microslip.si.table_csv import cases_of_file
 
-    cases, lines = cases_of_file(path, [name for name in columns if name != "power"])
-    found = predictions(scene, cases, given, [f"line {line}" for line in lines])
-    return Answered(scene, cases, lines, list(tqdm(found, "contacts", len(lines), leave=False)))
+    read = cases_of_file(path, [name for name in columns if name != "power"], **format)
+    names = [f"line {line}" for line in read.lines]
+    found = predictions(scene, read.columns, given, names, read.errors)
+    answers = list(tqdm(found, "contacts", len(names), leave=False))
+    return Answered(scene, read.columns, read.lines, answers)
 
 
 def refuse_output(path: str | None, table: str) -> None:
@@ -90,11 +156,18 @@ def write(path: str, answered: Answered) -> None:
 
 def as_text(answered: Answered) -> str:
     """A row for each case, and what is said against it below the table."""
-    columns = _columns(answered.found)
-    rows = ["".join(f"{title:>{WIDTH}}" for title in ("line", *columns))]
+    columns = _columns([one for one in answered.found if isinstance(one, Prediction)])
+    labels = answered.labels
+    rows = ["".join(f"{title:>{WIDTH}}" for title in ("line", *labels, *columns))]
     remarks = []
-    for line, one in zip(answered.lines, answered.found, strict=True):
-        rows.append(f"{line:>{WIDTH}}{''.join(_text(one, *about) for about in columns.values())}")
+    for row, (line, one) in enumerate(zip(answered.lines, answered.found, strict=True)):
+        texts = "".join(f" {column[row] or '':>{WIDTH - 1}}" for column in labels.values())
+        if isinstance(one, NoPrediction):
+            rows.append(f"{line:>{WIDTH}}{texts}  no prediction")
+            continue
+        rows.append(
+            f"{line:>{WIDTH}}{texts}{''.join(_text(one, *about) for about in columns.values())}"
+        )
         if one.outcome == "runs away":
             remarks.append(f"line {line}: {runs_away(one)}")
         elif not one.converged:

@@ -1,14 +1,23 @@
-"""CSV as people write it: lines that count, words of a line, points that may part thousands."""
+"""CSV as people write it: headings with units, labels, decimal commas, empty rows and columns."""
 
 from __future__ import annotations
 
+import codecs
+import csv
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+
+from microslip.foundation.errors import InputError
 
 SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
 HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\]|\(([^()]*)\))?")
 """The name of a column, with its unit in brackets or without."""
-ENCODING = "allowed: UTF-8, which spreadsheets call CSV UTF-8"
+LABELS = ("label", "name", "id", "sample", "comment")
+"""Columns of texts that are carried through to the output."""
+ENCODING = (
+    "allowed: UTF-8, which spreadsheets call CSV UTF-8, or encoding = the name of another one"
+)
+DECIMALS = (".", ",")
 PURE = {"", "1", "-"}
 """Units that say that there is none."""
 SPREADSHEET_ERROR = re.compile(r"#(N/A|NV|[A-Z/0]+[!?])")
@@ -16,37 +25,58 @@ SPREADSHEET_ERROR = re.compile(r"#(N/A|NV|[A-Z/0]+[!?])")
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+", re.A)
 """A number with points between thousands, or with three decimals."""
 UNGROUPED = re.compile(r"[+-]?[1-9]\d{0,2}", re.A)
+EMPTY = re.compile(r"[\s,;\"]*")
+"""A line of empty cells."""
+DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])|^([+−-]?),(?=[0-9])")
 
 
-def lines(content: bytes) -> Iterator[tuple[int, str]]:
+def check_format(decimal: object, encoding: object) -> None:
+    """Raise InputError unless both are known: the decimal mark and the encoding of a file."""
+    if decimal not in DECIMALS:
+        raise InputError("decimal", decimal, "allowed is '.' or ','")
+    try:
+        codecs.lookup(encoding)
+        "".encode(encoding)  # not one from bytes to bytes
+    except (LookupError, TypeError, ValueError):
+        allowed = "allowed is the name of an encoding, such as utf-8 or cp1252"
+        raise InputError("encoding", encoding, allowed) from None
+
+
+def lines(content: bytes, encoding: str = "utf-8") -> Iterator[tuple[int, str]]:
     """Number and text of each line that counts: not those that are empty or begin with #.
 
     Raises
     ------
     ValueError
-        For what is no text in UTF-8; the message begins with the line.
+        For what is no text in the encoding; the message begins with the line.
     """
-    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+    is_utf_8 = codecs.lookup(encoding).name == "utf-8"
+    if is_utf_8 and content.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise ValueError(f"line 1: UTF-16; {ENCODING}")
     try:
-        text = content.decode("utf-8-sig")
+        text = content.decode("utf-8-sig" if is_utf_8 else encoding)
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         byte = f"byte 0x{content[error.start]:02x}"
-        raise ValueError(f"line {line}: {byte} is not UTF-8; {ENCODING}") from None
+        name = "UTF-8" if is_utf_8 else encoding
+        raise ValueError(f"line {line}: {byte} is not {name}; {ENCODING}") from None
     if "\0" in text:
         line = text.count("\n", 0, text.index("\0")) + 1
         raise ValueError(f"line {line}: not text; allowed: CSV or netCDF")
     text = text.replace("\r\n", "\n").replace("\r", "\n")
     for number, line in enumerate(text.split("\n"), 1):
         text = line.strip()
-        if text and (not text.startswith("#") or SPREADSHEET_ERROR.match(text)):
-            yield number, line.rstrip()
+        counts = not text.startswith("#") or SPREADSHEET_ERROR.match(text)
+        if counts and not EMPTY.fullmatch(text):
+            yield number, line.rstrip("\r")
 
 
 def words(line: str, separator: str) -> list[str]:
-    """The cells of a line, without spaces and quotes around them."""
-    return [word.strip().strip("\"'").strip() for word in line.split(separator)]
+    """The cells of a heading, without spaces and quotes around them and empty ones at the end."""
+    found = [word.strip().strip("\"'").strip() for word in line.split(separator)]
+    while len(found) > 1 and not found[-1]:
+        found.pop()
+    return found
 
 
 def columns(
@@ -57,8 +87,8 @@ def columns(
     Raises
     ------
     ValueError
-        For a heading that is none, a column that is not among the names, and one that is there
-        twice; the message begins with the line and ends with what is allowed.
+        For a heading that is none, a column that is not among the names and the LABELS, and one
+        that is there twice; the message begins with the line and ends with what is allowed.
     """
     for separator in SEPARATORS:
         found = [HEADING.fullmatch(word) for word in words(heading, separator)]
@@ -66,30 +96,94 @@ def columns(
             break
     else:
         raise ValueError(f"line {where}: the heading is {heading[:80]!r}; {allowed}")
-    given = [match[1].lower() for match in found]
-    for name in given:
-        if name not in names:
-            raise ValueError(f"line {where}: a column {name!r}; {allowed}")
-        if given.count(name) > 1:
+    given = [name_and_unit(match) for match in found]
+    every = [name for name, _ in given]
+    for name in every:
+        if name not in names and name not in LABELS:
+            carried = f"a column of texts to carry through is named one of {', '.join(LABELS)}"
+            raise ValueError(f"line {where}: a column {name!r}; {allowed}; {carried}")
+        if every.count(name) > 1:
             raise ValueError(f"line {where}: {name} is there twice; allowed: once")
-    units = [match[2] if match[3] is None else match[3] for match in found]
-    units = [unit and unit.strip() for unit in units]
-    return separator, list(zip(given, units, strict=True))
+    return separator, given
 
 
-def row(where: int, line: str, separator: str, order: Sequence[int]) -> list[str]:
-    """The cells of a line in another order; raises ValueError unless there are as many."""
-    cells = words(line, separator)
-    if separator != "," and "," in line:
-        word = next(word for word in cells if "," in word)
-        raise ValueError(f"line {where}: {word!r} has a decimal comma; allowed: a decimal point")
-    if len(cells) != len(order):
-        hint = "; decimal commas are not allowed" if len(cells) > len(order) else ""
-        raise ValueError(
-            f"line {where}: {len(cells)} values; allowed: {len(order)}, parted by a "
-            f"{SEPARATORS[separator]} as in the heading{hint}"
-        )
-    return [cells[i] for i in order]
+def name_and_unit(heading: re.Match) -> tuple[str, str | None]:
+    """Name and unit of a match of HEADING; the unit None without brackets."""
+    unit = heading[2] if heading[3] is None else heading[3]
+    return heading[1].lower(), unit and unit.strip()
+
+
+def by_names(table: Mapping | object) -> dict[str, list]:
+    """Columns of a mapping or a pandas DataFrame as lists, None for missing values.
+
+    Numbers under a heading with a unit become texts with it.  Values that are no sequences stay as
+    they are.
+    """
+    given = table if isinstance(table, Mapping) else {name: table[name] for name in table.columns}
+    found = {}
+    for name, values in given.items():
+        heading = HEADING.fullmatch(name) if isinstance(name, str) else None
+        if isinstance(values, str | bytes) or not hasattr(values, "__len__"):
+            found[name] = values
+            continue
+        values = [None if _is_missing(value) else value for value in values]
+        if heading and (heading[2] is not None or heading[3] is not None):
+            name, unit = name_and_unit(heading)
+            unit = "" if unit in PURE else unit
+            values = [v if v is None else f"{_digits(v)} {unit}".strip() for v in values]
+        found[name] = values
+    return found
+
+
+def is_table(value: object) -> bool:
+    """Whether a value is a mapping of columns or a pandas DataFrame."""
+    return isinstance(value, Mapping) or hasattr(value, "columns") and hasattr(value, "iloc")
+
+
+def _is_missing(value):
+    """Whether a value is None, or the NaN, NA or NaT of pandas, which differ from themselves."""
+    if value is None or type(value).__name__ == "NAType":
+        return True
+    return type(value).__name__ == "NaTType" or isinstance(value, float) and value != value
+
+
+def _digits(value):
+    return repr(float(value)) if isinstance(value, float) else str(value)
+
+
+def cells(where: int, line: str, separator: str, count: int) -> list[str]:
+    """The cells of a line; raises ValueError unless there are `count`, and empty ones behind."""
+    try:
+        rows = csv.reader([line], delimiter=separator, strict=True, skipinitialspace=True)
+        found = [cell.strip() for cell in next(rows)]
+    except csv.Error as error:
+        allowed = "allowed are cells in whole pairs of double quotes, within one line"
+        raise ValueError(f"line {where}: {error}; {allowed}") from None
+    while len(found) > count and not found[-1]:
+        found.pop()
+    if len(found) != count:
+        parted = f"parted by a {SEPARATORS[separator]} as in the heading"
+        hint = "; for decimal commas in quotes give decimal = ','" if len(found) > count else ""
+        allowed = f"{count}, {parted}, one with such a sign in double quotes{hint}"
+        raise ValueError(f"line {where}: {len(found)} cells; allowed: {allowed}")
+    return found
+
+
+def with_point(where: int, name: str, cell: str, decimal: str) -> str:
+    """A cell with decimal points in its numbers.
+
+    Raises ValueError for a number with another decimal mark than the declared one.
+    """
+    cell = cell.strip("'").strip()
+    if decimal == ".":
+        if re.match(r"[+−-]?\d*,\d", cell, re.ASCII):
+            allowed = "allowed: a decimal point, or decimal = ','"
+            raise ValueError(f"line {where}: {cell!r} has a decimal comma; {allowed}")
+        return cell
+    if re.search(r"\d\.\d", cell):
+        allowed = "allowed: no points where commas are decimal"
+        raise ValueError(f"line {where}: {name} is {cell!r}; {allowed}")
+    return DECIMAL_COMMA.sub(r"\1.", cell)
 
 
 class Thousands:

@@ -23,7 +23,9 @@ GRID = "cells"
 """What the values of a grid are unless the name says something else."""
 DIGITS = 16
 MOST_BYTES = 100_000_000
-OPTIONS = re.compile(r"(?:^|,)(grid|sha256)=([^,]*)$")
+OPTIONS = re.compile(r"(?:^|,)(grid|sha256|decimal|encoding)=([^,]*)$")
+DECIMALS = {"point": ".", "comma": ","}
+"""Decimal marks by the words that names have for them."""
 EXAMPLE = "a file, as in file:measured.csv or file:measured.csv,grid=samples"
 
 _PLACES: dict[str, Path] = {}
@@ -42,11 +44,15 @@ class NamedFile:
         What the values of the grid are, see pressures.measured.READINGS.
     digest : str
         First DIGITS hexadecimal digits of the SHA-256 of its content; empty if it is not known.
+    decimal, encoding : str
+        A key of DECIMALS, and the encoding of the file.
     """
 
     path: str
     grid: str = GRID
     digest: str = ""
+    decimal: str = "point"
+    encoding: str = "utf-8"
 
     @property
     def name(self) -> str:
@@ -59,7 +65,10 @@ class NamedFile:
         return self._text(f"{self.path},sha256={self.digest}")
 
     def _text(self, file):
-        return f"{PREFIX}{file}" + (f",grid={self.grid}" if self.grid != GRID else "")
+        usual = NamedFile("")
+        options = {name: getattr(self, name) for name in ("grid", "decimal", "encoding")}
+        unusual = [f",{k}={v}" for k, v in options.items() if v != getattr(usual, k)]
+        return f"{PREFIX}{file}" + "".join(unusual)
 
 
 def speaks_of_file(name: object) -> bool:
@@ -74,7 +83,10 @@ def parsed(name: str) -> NamedFile:
         if found[1] in options:
             raise InputError("pressure", name, f"{found[1]} occurs twice; allowed: once")
         options[found[1]], path = found[2], path[: found.start()]
-    file = NamedFile(path, options.get("grid", GRID), options.get("sha256", ""))
+    digest = options.pop("sha256", "")
+    file = NamedFile(path, digest=digest, **options)
+    if file.decimal not in DECIMALS:
+        raise InputError("pressure", name, "allowed for decimal is point or comma")
     if not (file.path or file.digest) or "\0" in path:
         raise InputError("pressure", name, f"allowed is {EXAMPLE}")
     return file

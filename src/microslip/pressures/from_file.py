@@ -5,11 +5,12 @@ variable `pressure` with the coordinates `forward` and `lateral`.  The points fi
 grid.  ",grid=samples" after the path says that the values hold at the points, with bilinear ones
 between them; without it they are means over cells of the grid's own step around the points, which
 is what sensors give, and what makes the load the sum of values times areas whatever the grid.
+",decimal=comma" and ",encoding=cp1252" say how a CSV is written.
 """
 
 from __future__ import annotations
 
-from microslip.foundation import named_files
+from microslip.foundation import csv_text, named_files
 from microslip.foundation.errors import InputError
 from microslip.pressures import grid_csv, grid_netcdf
 from microslip.pressures.measured import READINGS, of_grid
@@ -58,5 +59,11 @@ def _of_content(file, content):
     for begins, kind in PACKED.items():
         if content.startswith(begins):
             raise ValueError(f"packed ({kind}); allowed: CSV or netCDF as it is")
-    reader = grid_netcdf if content.startswith(grid_netcdf.BEGINNINGS) else grid_csv
-    return of_grid(file.name, *reader.grid(content), file.grid)
+    if content.startswith(grid_netcdf.BEGINNINGS):
+        return of_grid(file.name, *grid_netcdf.grid(content), file.grid)
+    decimal = named_files.DECIMALS[file.decimal]
+    try:
+        csv_text.check_format(decimal, file.encoding)
+    except InputError as error:
+        raise InputError("pressure", file.encoding, error.allowed) from None
+    return of_grid(file.name, *grid_csv.grid(content, decimal, file.encoding), file.grid)

@@ -16,23 +16,29 @@ SAME = 1e-9
 ALLOWED = "forward,lateral,pressure in any order, with units such as forward [mm] if at all"
 
 
-def grid(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def grid(
+    content: bytes, decimal: str = ".", encoding: str = "utf-8"
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Coordinates and pressures of a CSV file, shapes (n,), (m,) and (n, m).
 
     Columns are parted by commas, semicolons or tabs.  Lines that are empty or begin with # do not
-    count.
+    count.  decimal, encoding: the decimal mark, and the encoding of the file.
 
     Raises
     ------
     ValueError
         For anything else; the message begins with the line.
     """
-    lines = csv_text.lines(content)
+    lines = csv_text.lines(content, encoding)
     where, heading = next(lines, (1, ""))
     separator, order, units = _columns(where, heading)
     rows, places, thousands = [], [], csv_text.Thousands(separator, COLUMNS)
     for where, line in lines:
-        words = csv_text.row(where, line, separator, order)
+        cells = csv_text.cells(where, line, separator, len(order))
+        places_and_names = zip(order, COLUMNS, strict=True)
+        words = [
+            csv_text.with_point(where, name, cells[i], decimal) for i, name in places_and_names
+        ]
         rows.append([_number(where, *word) for word in zip(COLUMNS, words, strict=True)])
         places.append(where)
         thousands.see(where, words)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
 
+from microslip.foundation.errors import InputError
+
 
 @dataclass(frozen=True)
 class Prediction:
@@ -197,3 +199,19 @@ class Prediction:
             "warnings": list(self.warnings),
             "not_checked": list(self.not_checked),
         }
+
+
+@dataclass(frozen=True)
+class NoPrediction:
+    """A case of a table that cannot be answered.
+
+    Attributes
+    ----------
+    error : InputError or str
+        What is wrong with it.
+    """
+
+    error: InputError | str
+    warnings: tuple = ()
+    not_checked: tuple = ()
+    converged: bool = False

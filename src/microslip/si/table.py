@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
 from inspect import signature
@@ -9,12 +10,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from microslip.foundation import csv_text
 from microslip.foundation.errors import InputError
 from microslip.si.motions import unit_of_amplitude
 from microslip.si.predict import predict, unattained
-from microslip.si.prediction import Prediction
+from microslip.si.prediction import NoPrediction, Prediction
 from microslip.si.question import asked
 from microslip.si.reduction import NotAttainedError
+from microslip.si.table_csv import cases_of_file
 from microslip.si.uncertain import without_spreads
 
 if TYPE_CHECKING:
@@ -31,16 +34,26 @@ NAMES = ("outcome", "regime", "sought", "contacts")
 """Texts that no case may have; what no case has besides is a number."""
 
 
-def predict_table(scene: str, cases: Mapping[str, object], **shared: object) -> xr.Dataset:
+def predict_table(
+    scene: str,
+    cases: Mapping[str, object] | str | os.PathLike,
+    *,
+    decimal: str = ".",
+    encoding: str = "utf-8",
+    **shared: object,
+) -> xr.Dataset:
     """Predictions for a table of contacts.
 
     Parameters
     ----------
     scene : str
         As for `microslip.predict`.
-    cases : mapping
-        Sequences of one length by the names of predict's arguments: {"load": ["1 N", "10 N"]}; None
-        is what a case does not have.
+    cases : mapping, pandas DataFrame or path of a CSV file
+        Sequences of one length by the names of predict's arguments: {"load": ["1 N", "10 N"]}, or
+        {"load [N]": [1, 10]}; None or NaN is what a case does not have.  Columns named label, name,
+        id, sample or comment are carried through.
+    decimal, encoding : str
+        The decimal mark of the file, "." or ",", and its encoding, such as "cp1252".
     shared
         What all cases have in common, as for `microslip.predict`.
 
@@ -48,14 +61,24 @@ def predict_table(scene: str, cases: Mapping[str, object], **shared: object) -> 
     -------
     xarray.Dataset
         Every field of Prediction over `case`, NaN for what a case does not have, with units; texts
-        joined by semicolons.  `case_` and a name in front is what was given.
+        joined by semicolons.  `case_` and a name in front is what was given; `error` says what is
+        wrong with a case that has no prediction, and is empty for the others.
 
     Raises
     ------
     InputError
-        As predict does, with the number of the case in front of what is allowed.
+        For what is no table, and where no case can be answered: as predict does for the first one,
+        with its number in front of what is allowed.
     """
-    return as_dataset(scene, cases, list(predictions(scene, cases, shared)))
+    names, errors = None, {}
+    if isinstance(cases, str | os.PathLike):
+        every = [name for name in signature(predict).parameters if name not in ("scene", "power")]
+        found = cases_of_file(cases, every, decimal=decimal, encoding=encoding)
+        cases, errors = found.columns, found.errors
+        names = [f"line {line}" for line in found.lines]
+    elif csv_text.is_table(cases):
+        cases = csv_text.by_names(cases)
+    return as_dataset(scene, cases, list(predictions(scene, cases, shared, names, errors)))
 
 
 def predictions(
@@ -63,36 +86,58 @@ def predictions(
     cases: Mapping[str, object],
     shared: Mapping[str, object],
     names: Sequence[str] | None = None,
-) -> Iterator[Prediction]:
-    """The prediction of each case in turn; names: of the cases, for messages.
+    errors: Mapping[int, str] | None = None,
+) -> Iterator[Prediction | NoPrediction]:
+    """The prediction of each case in turn.
 
-    All cases are read before the first one is solved; raises InputError as predict_table does.  A
-    case that nothing has the wanted reduction of is not converged, and says so.
+    All cases are read before the first one is solved.  A case that nothing has the wanted reduction
+    of is not converged, and says so.
+
+    Parameters
+    ----------
+    scene, cases, shared
+        As for predict_table, the cases as lists.
+    names : sequence of str, optional
+        Of the cases, for messages.
+    errors : mapping, optional
+        What is known to be wrong with cases, by their numbers.
+
+    Raises
+    ------
+    InputError
+        As predict_table does.
     """
-    count = number_of(cases, shared)
+    count, errors = number_of(cases, shared), dict(errors or {})
     names = names or [f"case {case}" for case in range(count)]
+    arguments = {name: values for name, values in cases.items() if name not in csv_text.LABELS}
     several = [
-        shared | {name: values[case] for name, values in cases.items()} for case in range(count)
+        shared | {name: values[case] for name, values in arguments.items()} for case in range(count)
     ]
-    for name, given in zip(names, several, strict=True):
-        _in_case(name, _question, scene, given)
-    pairs = zip(names, several, strict=True)
-    return (_in_case(name, _prediction, scene, given) for name, given in pairs)
+    for case, given in enumerate(several):
+        if case not in errors:
+            try:
+                _question(scene, **given)
+            except InputError as error:
+                errors[case] = error
+    if len(errors) == count:
+        first = next((one for one in errors.values() if isinstance(one, InputError)), None)
+        if first is None:
+            raise InputError("cases", None, errors[0])
+        where = names[next(case for case, one in errors.items() if one is first)]
+        raise InputError(first.argument, first.value, f"in {where}: {first.allowed}")
+    return (
+        NoPrediction(errors[case]) if case in errors else _prediction(scene, given)
+        for case, given in enumerate(several)
+    )
 
 
-def _in_case(name, ask, scene, given):
-    """What is answered; what is wrong is told with the name of the case."""
-    try:
-        return ask(scene, **given)
-    except InputError as error:
-        raise InputError(error.argument, error.value, f"in {name}: {error.allowed}") from None
-
-
-def _prediction(scene, **given):
+def _prediction(scene, given):
     try:
         return predict(scene, **given)
     except NotAttainedError as error:
         return unattained(_question(scene, **given), error.allowed)
+    except InputError as error:
+        return NoPrediction(error)
 
 
 def _question(scene, **given):
@@ -124,13 +169,15 @@ def number_of(cases: Mapping[str, object], shared: Mapping[str, object]) -> int:
     return count
 
 
-def as_dataset(scene: str, cases: Mapping[str, object], found: Sequence[Prediction]) -> xr.Dataset:
+def as_dataset(
+    scene: str, cases: Mapping[str, object], found: Sequence[Prediction | NoPrediction]
+) -> xr.Dataset:
     """What predict_table returns, of the predictions of all cases."""
     import xarray as xr
 
     variables = {}
     for field in fields(Prediction):
-        values = [getattr(one, field.name) for one in found]
+        values = [getattr(one, field.name, None) for one in found]
         if field.name in ("scene", "understood"):
             continue
         if field.name in TEXTS:
@@ -139,19 +186,23 @@ def as_dataset(scene: str, cases: Mapping[str, object], found: Sequence[Predicti
             column, about = ["" if value is None else value for value in values], {}
             if field.name not in NAMES and all(value is None for value in values):
                 column, about = np.full(len(found), np.nan), {"units": _unit(field.name)}
-        elif isinstance(values[0], bool):
+        elif any(isinstance(value, bool) for value in values):
             column, about = values, {}
         else:
             column = [np.nan if value is None else float(value) for value in values]
             about = {"units": _unit(field.name)}
         variables[field.name] = "case", column, about
     variables |= {
-        f"case_{name}": ("case", ["" if one is None else str(one) for one in values])
+        name if name in csv_text.LABELS else f"case_{name}": (
+            *("case", ["" if one is None else str(one) for one in values]),
+        )
         for name, values in cases.items()
     }
     amplitude = variables["amplitude_si"][2]["units"] = unit_of_amplitude(scene) or "m"
     units = {"amplitude": amplitude, "speed": "m s-1", "load": "N"}
-    sought = {one.sought for one in found} - {None}
+    errors = [str(getattr(one, "error", "")) for one in found]
+    variables["error"] = "case", errors, {"long_name": "what is wrong with the case"}
+    sought = {getattr(one, "sought", None) for one in found} - {None}
     if sought:  # one for all cases, or another for some, which `sought` tells
         for name in ("sought_error", "sought_spread"):
             unit = units[next(iter(sought))] if len(sought) == 1 else "SI unit of what is sought"

@@ -7,26 +7,53 @@ load [N],speed [mm/s],counterbody
 
 from __future__ import annotations
 
-import csv
 import os
 import re
 from collections.abc import Collection
+from dataclasses import dataclass
 
 from microslip.foundation import csv_text
+from microslip.foundation.csv_text import LABELS
 from microslip.foundation.errors import InputError
 from microslip.foundation.user_files import content_of
 
 NUMBER = re.compile(r"[+−-]?[\d.,]+([eE][+−-]?\d+)?", re.A)
 """What is meant to be a number; whether it is one is decided where it is read."""
+TEXTS = ("material", "pressure", "contacts", *LABELS)
+"""Columns whose cells are no quantities."""
+
+
+@dataclass(frozen=True)
+class Cases:
+    """Contacts of a file.
+
+    Attributes
+    ----------
+    columns : dict of list
+        Texts with their units by the names of predict's arguments and of labels, None for an empty
+        cell.
+    lines : list of int
+        Numbers of the lines that they come from, the first one of the file being 1.
+    errors : dict of str
+        Messages about cells that cannot be read, by the place of their line in `lines`.
+    """
+
+    columns: dict[str, list[str | None]]
+    lines: list[int]
+    errors: dict[int, str]
 
 
 def cases_of_file(
-    path: str | os.PathLike, names: Collection[str]
-) -> tuple[dict[str, list[str | None]], list[int]]:
-    """The columns of a file, as microslip.predict_table takes them, and the numbers of the lines
-    that they come from; raises InputError."""
+    path: str | os.PathLike,
+    names: Collection[str],
+    *,
+    decimal: str = ".",
+    encoding: str = "utf-8",
+) -> Cases:
+    """The contacts of a file; raises InputError."""
+    csv_text.check_format(decimal, encoding)
     try:
-        return read_cases(content_of(path), names)
+        return read_cases(content_of(path), names, decimal=decimal, encoding=encoding)
     except OSError as error:
         problem = f"cannot be read ({error.strerror}); allowed is a file of CSV"
         raise InputError("table", str(path), problem) from None
@@ -35,62 +62,65 @@ def cases_of_file(
 
 
 def read_cases(
-    content: bytes, names: Collection[str]
-) -> tuple[dict[str, list[str | None]], list[int]]:
-    """Columns of a table by their names: texts with their units, None for an empty cell; and the
-    numbers of the lines, the first one of the file being 1.
+    content: bytes, names: Collection[str], *, decimal: str = ".", encoding: str = "utf-8"
+) -> Cases:
+    """Contacts of the content of a file.
 
     Columns are parted by commas, semicolons or tabs, and a cell that has one of these in it is in
     double quotes.  Cells under a heading with a unit are numbers in that unit, others are texts as
-    microslip.predict reads them.  Lines that are empty or begin with # do not count.
+    microslip.predict reads them.  Lines that are empty or begin with # do not count, and empty
+    columns at the end neither.
 
     Parameters
     ----------
     content : bytes
         The file.
     names : collection of str
-        Columns that there may be.
+        Columns that there may be besides labels.
+    decimal, encoding : str
+        The decimal mark, and the encoding of the file.
 
     Raises
     ------
     ValueError
-        For anything else; the message begins with the line.
+        For what is no table, and where no line can be read; the message begins with the line.
     """
-    lines = csv_text.lines(content)
+    lines = csv_text.lines(content, encoding)
     where, heading = next(lines, (1, ""))
     allowed = f"allowed: some of {', '.join(names)}, with a unit or without, as in speed [mm/s]"
     separator, columns = csv_text.columns(where, heading, names, allowed)
-    table, numbers = {name: [] for name, _ in columns}, []
-    thousands = csv_text.Thousands(separator, tuple(table))
+    cases = Cases({name: [] for name, _ in columns}, [], {})
+    quantities = [name for name, _ in columns if name not in TEXTS]
+    thousands = csv_text.Thousands(separator if decimal == "." else ",", quantities)
     for where, line in lines:
-        cells = _cells(where, line, separator)
-        numbers.append(where)
-        if len(cells) != len(columns):
-            parted = f"parted by a {csv_text.SEPARATORS[separator]} as in the heading"
-            problem = f"{len(cells)} cells; allowed: {len(columns)}, {parted}"
-            raise ValueError(f"line {where}: {problem}, one with such a sign in double quotes")
-        for (name, unit), cell in zip(columns, cells, strict=True):
-            table[name].append(_text(where, name, cell, unit))
-        thousands.see(where, cells)
+        texts = dict.fromkeys(cases.columns)
+        try:
+            cells = csv_text.cells(where, line, separator, len(columns))
+            pairs = zip(columns, cells, strict=True)
+            for (name, unit), cell in sorted(pairs, key=lambda pair: pair[0][0] not in LABELS):
+                texts[name] = _text(where, name, cell, unit, decimal)
+            given = dict(zip(cases.columns, cells, strict=True))
+            thousands.see(where, [given[name] for name in quantities])
+        except ValueError as error:
+            cases.errors[len(cases.lines)] = str(error)
+        cases.lines.append(where)
+        for name, text in texts.items():
+            cases.columns[name].append(text)
     thousands.refuse()
-    if not numbers:
+    if not cases.lines:
         raise ValueError(f"line {where}: no line follows the heading; allowed: one for a contact")
-    return table, numbers
+    if len(cases.errors) == len(cases.lines):
+        raise ValueError(cases.errors[0])
+    return cases
 
 
-def _cells(where, line, separator):
-    try:
-        return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, strict=True))]
-    except csv.Error as error:
-        allowed = "allowed are cells in whole pairs of double quotes, within one line"
-        raise ValueError(f"line {where}: {error}; {allowed}") from None
-
-
-def _text(where, name, cell, unit):
+def _text(where, name, cell, unit, decimal):
     """A cell as predict takes it."""
     if not cell:
         return None
-    if unit is None:
+    if name not in TEXTS:
+        cell = csv_text.with_point(where, name, cell, decimal)
+    if unit is None or name in LABELS:
         return cell
     if not NUMBER.fullmatch(cell):
         allowed = f"allowed is a number, or a heading without a unit: {name}"

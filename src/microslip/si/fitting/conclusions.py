@@ -97,6 +97,8 @@ def concluded(settled: Settled, confidence: float, texts: dict) -> Fit:
         reason="" if 1 in told else _open(scale, np.exp(ends[1])),
         warnings=tuple(_warnings(settled, allowed if 1 in told else 0.0, chance)),
         understood=texts,
+        labels=measured.labels,
+        left_out=measured.left_out,
         speed_m_s=measured.speed,
         amplitude_si=measured.amplitude,
         frequency_Hz=measured.frequency,

@@ -39,6 +39,8 @@ def fit(
     counterbody: object = None,
     confidence: object = None,
     tolerance: object = None,
+    decimal: str = ".",
+    encoding: str = "utf-8",
 ) -> Fit:
     """What measured friction tells: mu, and u_lim or the shear modulus.
 
@@ -50,10 +52,11 @@ def fit(
     ----------
     scene : str
         "transverse", "longitudinal", "zigzag" or "bore"; a bore needs a radius.
-    measured : path or mapping
-        A CSV file with a heading such as `speed [mm/s],amplitude [um],friction [N]`, or columns in
-        the SI by these names: speed, amplitude, frequency, load; friction (the mean forward force)
-        or mu (the same over the load); friction_error or mu_error, standard errors, if known.
+    measured : path, mapping or pandas DataFrame
+        A CSV file with a heading such as `speed [mm/s],amplitude [um],friction [N]`, or columns
+        under such headings, in the SI where they have no unit: speed, amplitude, frequency, load;
+        friction (the mean forward force) or mu (the same over the load); friction_error or
+        mu_error, standard errors, if known; texts named label, name, id, sample or comment.
     map : xarray.Dataset, optional
         Of a sweep of this motion, see open_map: it answers at once.  Without it the solver does.
     speed, amplitude, frequency, load : quantity, optional
@@ -69,6 +72,8 @@ def fit(
         Of the intervals, 0.95 if not given.
     tolerance : quantity, optional
         Largest accepted error of mu_macro where the solver answers, 1e-3 if not given.
+    decimal, encoding : str
+        The decimal mark of the file, "." or ",", and its encoding, such as "cp1252".
 
     Returns
     -------
@@ -84,7 +89,7 @@ def fit(
     if not isinstance(scene, str) or scene not in UNIT_OF_AMPLITUDE:
         raise InputError("scene", scene, f"allowed is one of {', '.join(UNIT_OF_AMPLITUDE)}")
     shared = {"speed": speed, "amplitude": amplitude, "frequency": frequency, "load": load}
-    rows = read_measured(scene, measured, **shared)
+    rows = read_measured(scene, measured, decimal=decimal, encoding=encoding, **shared)
     _refuse_too_few(rows, measured)
     scale, texts = _scale(scene, rows, nu, radius, counterbody)
     accepted = CONFIDENCE if confidence is None else read("confidence", confidence, "").si

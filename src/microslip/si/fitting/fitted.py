@@ -55,6 +55,10 @@ class Fit:
         What makes the answer doubtful.
     understood : dict of str
         What was asked.
+    labels : dict of list
+        Columns of texts in the table, by their names.
+    left_out : tuple of str
+        Lines of the table that cannot be read, and why; the fit is without them.
     speed_m_s, amplitude_si, frequency_Hz, row_load_N : np.ndarray, shape (rows,)
         Conditions of each row; the amplitude in m, or rad for a bore.
     velocity, amplitude : np.ndarray, shape (rows,)
@@ -92,6 +96,8 @@ class Fit:
     reason: str
     warnings: tuple
     understood: dict = field(repr=False)
+    labels: dict = field(repr=False)
+    left_out: tuple
     speed_m_s: np.ndarray = field(repr=False)
     amplitude_si: np.ndarray = field(repr=False)
     frequency_Hz: np.ndarray = field(repr=False)
@@ -131,6 +137,8 @@ class Fit:
                     found[f"curve_{part}"] = ("curve_point", values, {"units": units[part]})
             elif isinstance(value, np.ndarray):
                 found[name] = ("row", value, {"units": units[name]})
+            elif name == "labels":
+                found |= {label: ("row", texts) for label, texts in value.items()}
             elif isinstance(value, dict):
                 about[name] = "; ".join(f"{key}: {text}" for key, text in value.items())
             elif isinstance(value, tuple):

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from microslip.foundation import csv_text
 from microslip.foundation.errors import InputError
 from microslip.foundation.user_files import content_of
 from microslip.si.fitting.measured_csv import COLUMNS, MOST_ROWS, read_table
@@ -33,6 +33,10 @@ class Measured:
         "friction", a force in N, or "mu", a coefficient.
     texts : dict of str
         What was understood of what all rows share.
+    labels : dict of list
+        Columns of texts, by their names.
+    left_out : tuple of str
+        Lines that cannot be read, and why.
     """
 
     speed: np.ndarray
@@ -43,6 +47,8 @@ class Measured:
     error: np.ndarray
     quantity: str
     texts: dict
+    labels: dict = field(default_factory=dict)
+    left_out: tuple = ()
 
     @property
     def has_errors(self) -> bool:
@@ -59,20 +65,25 @@ class Measured:
         return len(np.unique(np.stack([getattr(self, name) for name in CONDITIONS]), axis=1).T)
 
 
-def read_measured(scene: str, given: object, **shared: object) -> Measured:
-    """The rows of a CSV file or of a mapping of columns, checked; raises InputError.
+def read_measured(
+    scene: str, given: object, *, decimal: str = ".", encoding: str = "utf-8", **shared: object
+) -> Measured:
+    """The rows of a CSV file or of a table of columns, checked; raises InputError.
 
     Parameters
     ----------
     scene : str
         One of motions.UNIT_OF_AMPLITUDE.
-    given : path or mapping
-        The file, see `measured_csv`, or columns in the SI by their names.
+    given : path, mapping or pandas DataFrame
+        The file, see `measured_csv`, or columns by their names: in the SI, or with a unit as in
+        "speed [mm/s]".
+    decimal, encoding : str
+        The decimal mark and the encoding of the file.
     shared : quantity or None
         speed, amplitude, frequency and load where they are no columns.
     """
     unit = UNIT_OF_AMPLITUDE[scene]
-    table = _table(given, unit)
+    table, labels, left_out = _table(given, unit, decimal, encoding)
     count = len(next(iter(table.values())))
     if count == 0:
         raise InputError("measured", given, "no rows; allowed is a row for each measurement")
@@ -92,33 +103,60 @@ def read_measured(scene: str, given: object, **shared: object) -> Measured:
         raise InputError("measured", given, "no row with an amplitude above 0; nothing vibrates")
     quantity = _quantity(table, given)
     error = table.get(f"{quantity}_error", np.full(count, np.nan))
-    return Measured(**columns, value=table[quantity], error=error, quantity=quantity, texts=texts)
+    values = {"value": table[quantity], "error": error, "labels": labels, "left_out": left_out}
+    return Measured(**columns, **values, quantity=quantity, texts=texts)
 
 
-def _table(given, unit):
-    """Columns as arrays of floats."""
+def _table(given, unit, decimal, encoding):
+    """Columns as arrays of floats, labels as lists, and messages about lines that are left out."""
+    csv_text.check_format(decimal, encoding)
     if isinstance(given, str | os.PathLike):
         try:
-            return {k: np.array(v) for k, v in read_table(content_of(given), unit).items()}
+            content = content_of(given)
+            rows = read_table(content, unit, decimal=decimal, encoding=encoding)
+            columns = {name: np.array(values) for name, values in rows.columns.items()}
+            return columns, rows.labels, tuple(rows.left_out)
         except OSError as error:
             problem = f"cannot be read ({error.strerror}); allowed is a file of CSV"
             raise InputError("measured", str(given), problem) from None
         except ValueError as error:
             raise InputError("measured", str(given), str(error)) from None
-    if not isinstance(given, Mapping):
+    if not csv_text.is_table(given):
         raise InputError("measured", given, "allowed is the path of a CSV file, or its columns")
+    given = _without_empty_rows(csv_text.by_names(given))
+    labels = {name: given.pop(name) for name in csv_text.LABELS if name in given}
     strange = [name for name in given if name not in COLUMNS]
     if strange or not given:
         which = repr(strange[0]) if strange else "nothing"
         allowed = f"a column {which}; allowed are some of {', '.join(COLUMNS)}"
         raise InputError("measured", list(given), allowed)
-    table = {name: _column(name, values) for name, values in given.items()}
+    table = {name: _column(name, values, unit) for name, values in given.items()}
     if len({len(column) for column in table.values()}) > 1:
         raise InputError("measured", list(given), "columns of several lengths; allowed is one")
-    return table
+    return table, labels, ()
 
 
-def _column(name, values):
+def _without_empty_rows(table):
+    """Columns without rows of missing values alone; of several lengths they stay as they are."""
+    lists = [values for values in table.values() if isinstance(values, list)]
+    if not lists or len(lists) < len(table) or len({len(values) for values in lists}) > 1:
+        return dict(table)
+    rows = zip(*lists, strict=True)
+    kept = [i for i, row in enumerate(rows) if any(value is not None for value in row)]
+    return {name: [values[i] for i in kept] for name, values in table.items()}
+
+
+def _column(name, values, unit_of_amplitude):
+    if isinstance(values, list) and any(isinstance(value, str) for value in values):
+        unit = unit_of_amplitude if name == "amplitude" else COLUMNS[name]
+        low = -np.inf if name in ("friction", "mu") else 0.0
+        try:
+            values = [read(name, value, unit, low=low, low_open=False).si for value in values]
+        except InputError as error:
+            allowed = f"allowed is a sequence of numbers, in {COLUMNS[name]}"
+            raise InputError(name, values, f"{allowed}; {error}") from None
+    if isinstance(values, list):
+        values = [np.nan if value is None else value for value in values]
     try:
         column = np.array(values)
     except ValueError:

@@ -6,6 +6,8 @@ speed [mm/s],amplitude [um],friction [N]
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from microslip.foundation import csv_text
 from microslip.foundation.errors import InputError
 from microslip.si.quantities import read
@@ -24,11 +26,26 @@ COLUMNS = {
 MOST_ROWS = 10_000
 
 
-def read_table(content: bytes, unit_of_amplitude: str) -> dict[str, list[float]]:
-    """Columns of a table in the SI, by their names.
+class Rows(NamedTuple):
+    """Rows of a table.
+
+    columns: values in the SI by their names; labels: texts of columns that are carried through;
+    lines: numbers of the lines; left_out: messages about lines that cannot be read.
+    """
+
+    columns: dict[str, list[float]]
+    labels: dict[str, list[str]]
+    lines: list[int]
+    left_out: list[str]
+
+
+def read_table(
+    content: bytes, unit_of_amplitude: str, *, decimal: str = ".", encoding: str = "utf-8"
+) -> Rows:
+    """Rows of a table, with columns in the SI.
 
     Columns are parted by commas, semicolons or tabs.  Lines that are empty or begin with # do not
-    count.
+    count, and empty columns at the end neither.
 
     Parameters
     ----------
@@ -36,30 +53,45 @@ def read_table(content: bytes, unit_of_amplitude: str) -> dict[str, list[float]]
         The file.
     unit_of_amplitude : str
         "m" or "rad".
+    decimal, encoding : str
+        The decimal mark, and the encoding of the file.
 
     Raises
     ------
     ValueError
-        For anything else; the message begins with the line.
+        For what is no table, and where no line can be read; the message begins with the line.
     """
-    lines = csv_text.lines(content)
+    lines = csv_text.lines(content, encoding)
     where, heading = next(lines, (1, ""))
     separator, names, units = _columns(where, heading)
-    table = {name: [] for name in names}
-    thousands = csv_text.Thousands(separator, names)
+    numbers = [name for name in names if name in COLUMNS]
+    texts = [name for name in names if name not in COLUMNS]
+    rows = Rows({name: [] for name in numbers}, {name: [] for name in texts}, [], [])
+    thousands = csv_text.Thousands(separator if decimal == "." else ",", numbers)
     for where, line in lines:
-        cells = csv_text.row(where, line, separator, range(len(names)))
-        if "" in cells:
-            allowed = "allowed: a number in every row; leave out the row, or fill the cell"
-            raise ValueError(f"line {where}: {names[cells.index('')]} is empty; {allowed}")
-        for name, unit, cell in zip(names, units, cells, strict=True):
-            wanted = unit_of_amplitude if name == "amplitude" else COLUMNS[name]
-            table[name].append(_value(where, name, f"{cell} {unit}".strip(), wanted))
-        thousands.see(where, cells)
-        if len(table[names[0]]) > MOST_ROWS:
+        try:
+            cells = csv_text.cells(where, line, separator, len(names))
+            given = dict(zip(names, cells, strict=True))
+            values = {}
+            for name, unit in zip(names, units, strict=True):
+                if name in COLUMNS:
+                    wanted = unit_of_amplitude if name == "amplitude" else COLUMNS[name]
+                    values[name] = _value(where, name, given[name], unit, wanted, decimal)
+            thousands.see(where, [given[name] for name in numbers])
+        except ValueError as error:
+            rows.left_out.append(str(error))
+            continue
+        rows.lines.append(where)
+        for name, value in values.items():
+            rows.columns[name].append(value)
+        for name in texts:
+            rows.labels[name].append(given[name])
+        if len(rows.lines) > MOST_ROWS:
             raise ValueError(f"line {where}: more than {MOST_ROWS} rows; allowed: at most that")
     thousands.refuse()
-    return table
+    if rows.left_out and not rows.lines:
+        raise ValueError(rows.left_out[0])
+    return rows
 
 
 def _columns(where, heading):
@@ -67,16 +99,20 @@ def _columns(where, heading):
     allowed = f"allowed: some of {', '.join(COLUMNS)}, each with its unit, as in speed [mm/s]"
     separator, columns = csv_text.columns(where, heading, COLUMNS, allowed)
     for name, unit in columns:
-        if COLUMNS[name] and not unit:
+        if COLUMNS.get(name) and not unit:
             raise ValueError(f"line {where}: {name} has no unit; {allowed}")
     names, units = zip(*((name, unit or "") for name, unit in columns), strict=True)
     return separator, list(names), ["" if unit in csv_text.PURE else unit for unit in units]
 
 
-def _value(where, name, text, unit):
+def _value(where, name, cell, unit, wanted, decimal):
+    if not cell:
+        allowed = "allowed: a number in every row; leave out the row, or fill the cell"
+        raise ValueError(f"line {where}: {name} is empty; {allowed}")
+    text = f"{csv_text.with_point(where, name, cell, decimal)} {unit}".strip()
     low = -float("inf") if name in ("friction", "mu") else 0.0
     open_below = name not in ("speed", "amplitude", "friction", "mu")
     try:
-        return read(name, text, unit, low=low, low_open=open_below).si
+        return read(name, text, wanted, low=low, low_open=open_below).si
     except InputError as error:
         raise ValueError(f"line {where}: {error}") from None
