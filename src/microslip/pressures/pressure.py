@@ -1,14 +1,16 @@
 """The record of a pressure: what carries the load, and how much friction each point may take.
 
 Working units, dimensionless: a = 1 (outer radius, or half the longer side of what bounds the
-contact), mu F_z = 1 and u_lim = 1.  Here u_lim is the displacement at which the whole contact
-slides, pushed in one direction from rest: the largest displacement that full slip of the whole
-contact causes anywhere,
+contact), mu F_z = 1 and u_lim = 1.  Here u_lim is the largest displacement that full slip of the
+whole contact causes anywhere, by its mean compliance over the directions,
 
     u_lim = max of 1/(pi G*) Integral mu p(z') / |z - z'| dA',
 
 which for every indenter pressed to a depth d is mu d E*/G*, the usual 3 mu F_z/(4 G* a) for a
-sphere.  What these units leave of the stiffness is the number G*, 3/4 for a sphere.
+sphere.  The contact of a round body slides everywhere from u_lim on, pushed in one direction from
+rest, and so does any contact at nu = 0.  Others at nu > 0 do so some percent before or after, by
+direction.
+What these units leave of the stiffness is the number G*, 3/4 for a sphere.
 """
 
 from __future__ import annotations
