@@ -237,8 +237,10 @@ def test_what_did_not_converge_says_so(page):
     assert "not converged: made up" in page.inner_text("#certificate")
     assert "not converged (1 of 9)" in page.inner_text("#map")
     click_on_map(page, 1, 1.2)
-    assert page.inner_text("#run") == "No period was found: none to be found"
-    assert page.locator("#disc").is_hidden()
+    said = page.inner_text("#run")
+    assert said.startswith("No period was found: none to be found Drawn below: the nearest point")
+    assert said.endswith("at velocity 1, amplitude 0.6.")
+    assert page.locator("#disc").is_visible()  # of the nearest point that has a period
     page.locator("#velocity").press("Home")
     assert "static limit" in page.inner_text("#run")
     page.locator("#amplitude").press("Home")
@@ -346,6 +348,39 @@ def test_a_finger_scrolls_the_phone_and_zooms_no_chart(phone):
     assert not phone.locator(".modebar-btn").count()
     click_on_map(phone, 0.1, 1.2)  # a tap still chooses a point
     assert "velocity 0.1, amplitude 1.2" in phone.inner_text("#certificate")
+
+
+def test_a_link_reproduces_the_state(made, page, browser):
+    select(page, "bore")
+    click_on_map(page, 0.1, 0.6)
+    page.get_by_label("Eq 29").uncheck()
+    page.get_by_role("button", name="A real contact").click()
+    page.get_by_label("motion", exact=True).select_option("bore")
+    page.get_by_label("normal load", exact=True).fill("7.5")
+    page.wait_for_timeout(600)
+    other = browser.new_page()
+    other.goto(page.url)
+    other.locator("body[data-ready]").wait_for()
+    assert other.input_value("#si-load") == "7.5"
+    state = (
+        "[STATE.shown.id, STATE.row, STATE.column, [...STATE.hidden], STATE.asking, STATE.contact]"
+    )
+    assert other.evaluate(state) == page.evaluate(state)
+    assert other.evaluate("linkOf(STATE)") == page.evaluate("linkOf(STATE)")
+    other.close()
+    page.get_by_label("Eq 29").check()
+    page.get_by_label("normal load", exact=True).fill("10")
+    page.get_by_role("button", name="A real contact").click()
+
+
+def test_the_form_opens_in_view_on_a_phone(phone):
+    phone.set_viewport_size({"width": 375, "height": 700})
+    phone.get_by_role("button", name="A real contact").click()
+    phone.wait_for_timeout(200)
+    ((left, right, top, _),) = phone.evaluate(BOXES, "#contact-form")
+    assert 0 <= left < right <= 375
+    assert -2 <= top < 350
+    assert phone.evaluate("document.documentElement.scrollWidth") <= 375
 
 
 @pytest.mark.long

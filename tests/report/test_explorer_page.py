@@ -191,6 +191,81 @@ def test_every_sweep_can_be_looked_at_and_left_again(made):
     assert said[7] == [True, False, True]
 
 
+def test_the_steady_bore_has_an_answer_at_every_place(made):
+    dataset = made[0]["continuous_bore"]
+    said = page_says(
+        made[1],
+        "element('tabs').children[2].fire('click')",
+        "element('along').value = '1', element('along').fire('input', { target: { value: '1' } })",
+        "[element('line-view').hidden, element('line-value').text, element('line-facts').text]",
+        "[element('along-value').value, element('lines-chart').layout.shapes[0].x0]",
+    )
+    hidden, value, facts = said[2]
+    mu, torque = (float(dataset[name][1]) for name in ("mu_macro", "mu_torque"))
+    assert not hidden and value.startswith(f"mu_macro {mu:.5g} ± ")
+    theory = paper.bore_forward(float(dataset.velocity[1]))
+    assert f"Eq 21 {float(theory):.5g}" in facts and f"M_z,0 {torque:.5g} ± " in facts
+    assert said[3][1] == float(dataset.velocity[1])
+
+
+SLOW = (typed("speed", "0.001"), picked("speed_unit", "um/s"))
+
+
+def test_a_slow_contact_lies_between_the_static_limit_and_the_map_in_the_units_of_the_form(made):
+    said = page_says(
+        made[1],
+        ASK,
+        *NO_NU,
+        *SLOW,
+        "STATE.contact",
+        "[element('contact-note').text, element('contact-still').text]",
+    )
+    contact, (note, still) = said[-2:]
+    assert contact["friction"]["source"] == "between static limit and map"
+    static = paper.static_limit_transverse(contact["amplitude"])
+    assert contact["static_friction"]["value"] == pytest.approx(static, abs=1e-9)
+    assert contact["slowest"]["speed"] == pytest.approx(1e-3 / contact["velocity"] * 1e-9, rel=1e-9)
+    speed = note.split("begins at a forward speed of ")[1].split(" for this contact")[0]
+    number, unit = speed.split()
+    assert unit == "um/s"
+    assert float(number) == pytest.approx(1e6 * contact["slowest"]["speed"], rel=1e-3)
+    assert still.startswith(f"Coefficient at vanishing speed: {0.3 * static:.3g}"[:-1])
+
+
+def test_the_coefficient_at_vanishing_speed_needs_no_map(made):
+    said = page_says(
+        made[1], ASK, picked("scene", "bore"), "[STATE.contact, element('contact-still').text]"
+    )
+    contact, still = said[-1]
+    assert contact["refused"].startswith("this page holds no certified map")
+    static = paper.static_limit_bore(contact["amplitude"])
+    assert contact["static_friction"]["value"] == pytest.approx(static, abs=1e-9)
+    assert still.startswith("Coefficient at vanishing speed: ")
+
+
+def test_the_address_holds_the_state_and_restores_it(made):
+    before = page_says(
+        made[1],
+        "element('tabs').children[1].fire('click')",
+        "selectAndMark(1, 2)",
+        "element('limits').children[0].children[0].checked = false",
+        "element('limits').children[0].children[0].fire('change')",
+        ASK,
+        picked("scene", "bore"),
+        typed("load", "7.5"),
+        picked("load_unit", "kgf"),
+        "[linkOf(STATE), STATE.contact]",
+    )
+    link, contact = before[-1]
+    (said,) = page_says(
+        made[1],
+        f"readLink('#{link}'), [linkOf(STATE), STATE.contact, element('si-load').value]",
+    )
+    assert said == [link, contact, "7.5"]
+    (said,) = page_says(made[1], "readLink('#sweep=none&amplitude=x'), STATE.shown.name")
+    assert said == "transverse"
+
+
 def test_poissons_ratios_are_a_list(made):
     said = page_says(
         made[1],

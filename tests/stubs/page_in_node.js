@@ -4,6 +4,7 @@
 class Element {
   constructor(tag) {
     Object.assign(this, { tag, id: "", children: [], listeners: {}, attributes: {}, dataset: {}, style: {} });
+    this.classList = { toggle() {} };
     Object.assign(this, { textContent: "", className: "", hidden: false, value: "", data: [] });
   }
 
@@ -79,6 +80,9 @@ const Plotly = {
     Object.assign(element.layout, change);
   },
 };
+const location = { hash: "" };
+const history = { replaceState(_state, _title, address) { location.hash = address; } };
+const addEventListener = () => {};
 const matchMedia = () => ({ matches: false, addEventListener() {} });
 const requestAnimationFrame = () => 1, cancelAnimationFrame = () => {};
 

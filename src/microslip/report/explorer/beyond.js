@@ -72,7 +72,7 @@ function frictionAt(map, velocity, amplitude, poisson) {
   }
   const held = Math.min(amplitude, widest);
   if (below < slowest) {
-    const still = staticLimit(map, limits, held, nu), least = Math.max(still.value - still.error, 0);
+    const still = staticLimit(map.rule, limits, held, nu), least = Math.max(still.value - still.error, 0);
     const share = (below / slowest) ** SLOW_EXPONENT;
     const low = least + share ** STEEPEST * Math.max(value - error - least, 0);
     const high = Math.max(value + error, still.value + still.error);
@@ -94,14 +94,14 @@ function frictionAt(map, velocity, amplitude, poisson) {
   }
   [value, error] = withinTheBalance(limits, value, error, velocity, amplitude);
   if (velocity === 0) {
-    return { ...staticLimit(map, limits, amplitude, nu), source: "static limit" };
+    return { ...staticLimit(map.rule, limits, amplitude, nu), source: "static limit" };
   }
   return { value, error: Number.isNaN(value) || Number.isNaN(error) ? Infinity : error, source };
 }
 
 // Friction in the limit of vanishing velocity and the bound of its error, at any Poisson's ratio.
-function staticLimit(map, limits, amplitude, poisson) {
-  const high = limits.still(amplitude, map.rule);
+function staticLimit(rule, limits, amplitude, poisson) {
+  const high = limits.still(amplitude, rule);
   const low = Math.max(high - limits.poissonDrop * (poisson / (2 - poisson)) ** 2, 0);
   return { value: (high + low) / 2, error: (high - low) / 2 + ROUNDING };
 }

@@ -17,6 +17,7 @@ from microslip.report.explorer.limits import limits_of
 from microslip.report.figures.data import at_each_poisson, require, sweep
 from microslip.report.figures.formulas import html
 from microslip.sweeps.evaluate import plain
+from microslip.theory.catalogue import FORMS
 
 POINTS = ("mu_macro", "mu_macro_error", "converged", "model", "reason")
 AXES = ("mass", "damping", "stiffness", "amplitude", "force", "velocity")
@@ -97,7 +98,23 @@ def _lines(name, dataset):
         "limits": []
         if pulled
         else [one for one in limits_of(shown, poisson) if one["dims"] == [along]],
+        "beside": _torque(shown, along),
     }
+
+
+def _torque(shown, along):
+    """The torque of a steady bore, which its chart does not draw: its values and closed form."""
+    if "mu_torque" not in shown or shown["mu_torque"].dims != (along,):
+        return []
+    theory = FORMS["continuous-bore"]["mu_torque_theory"]
+    found = {
+        "label": "torque  M_z/M_z,0",
+        "values": plain(shown["mu_torque"].values),
+        "errors": plain(shown["mu_torque_error"].values),
+    }
+    if theory.name in shown:
+        found["theory"] = {"label": theory.label, "values": plain(shown[theory.name].values)}
+    return [found]
 
 
 def about(name: str, dataset: xr.Dataset, poisson: float) -> dict:

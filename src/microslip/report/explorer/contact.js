@@ -102,6 +102,11 @@ function contactOf(si, { bodies, radius, load, mu }) {
   return found;
 }
 
+// The forward speed at the dimensionless velocity 1, in m/s; 0 for a bore without an amplitude.
+function speedUnitOf({ scene, amplitude, frequency }, contact) {
+  return 2 * Math.PI * frequency * (scene === "bore" ? amplitude * contact.a : contact.u_lim);
+}
+
 // The dimensionless groups of the motion: [velocity, amplitude].
 function groupsOf(si, { scene, speed, amplitude, frequency }, contact) {
   const omega = 2 * Math.PI * frequency;
@@ -207,7 +212,11 @@ function answerOf(si, maps, question) {
     static_friction: null,
     refused: null,
     near: null,
+    slowest: null,
   };
+  // What is proved needs no map.
+  const still = staticLimit(si.rule, LIMITS[question.scene], amplitude, contact.poisson);
+  said.static_friction = amplitude === 0 ? { value: 1, error: ROUNDING } : still;
   const map = mapFor(maps, question.scene, contact.poisson);
   if (map === undefined) {
     return { ...said, refused: `this page holds no certified map of ${question.scene}` };
@@ -223,7 +232,11 @@ function answerOf(si, maps, question) {
       return poisson === contact.poisson ? null : { poisson, ...frictionAt(map, fast, amplitude, poisson) };
     });
   }
-  said.static_friction = unlessRefused(() => frictionAt(map, 0, amplitude, contact.poisson));
+  said.slowest = {
+    speed: map.velocity[0] * speedUnitOf(question, contact),
+    friction: unlessRefused(() => frictionAt(map, map.velocity[0], amplitude, contact.poisson)),
+    map_error: map.error,
+  };
   return said;
 }
 

@@ -49,6 +49,7 @@ ASSETS += (
     "lines.js",
     "views.js",
     "form.js",
+    "link.js",
     "page.js",
 )
 """What the page is made of besides numbers and plotly.js, in the order in which scripts run."""

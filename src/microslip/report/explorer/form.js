@@ -3,6 +3,16 @@
 const SI = NUMBERS.si;
 const PREFIXES = { "-12": "p", "-9": "n", "-6": "µ", "-3": "m", 0: "", 3: "k", 6: "M", 9: "G" };
 const TEXTS = {}; // what the form holds, by the names of fields
+const ONE_COLUMN = matchMedia("(max-width: 1199px)"); // as in style.css
+
+// Puts a text into a field of the form, unless it is none or no choice of its list.
+function fillField(id, text) {
+  if (!(id in TEXTS)) return;
+  const control = element(`si-${id}`), before = control.value;
+  control.value = text;
+  if (control.value === text) TEXTS[id] = text;
+  else control.value = before;
+}
 
 // Where the contact of the form lies on a map: [velocity, amplitude], null if it is none of its motion.
 function contactOn(map) {
@@ -88,11 +98,14 @@ function offerContact() {
     arrange();
     if (STATE.asking) {
       answerForm();
-      element("contact-view").scrollIntoView?.({ block: "nearest" }); // on a phone it is far below
+      redraw();
+      // Beside the map it is in view already; in one column the page goes to its beginning.
+      if (ONE_COLUMN.matches) element("contact-view").scrollIntoView?.({ block: "start" });
     } else {
       STATE.contact = null;
       redraw();
     }
+    writeLink();
   });
 }
 
@@ -107,6 +120,7 @@ function showFields() {
 
 function answerForm() {
   showFields();
+  writeLink();
   STATE.contact = null;
   try {
     STATE.contact = answerOf(SI, NUMBERS.certified, questionOf(SI, TEXTS));
@@ -115,6 +129,7 @@ function answerForm() {
     if (!(error instanceof Refusal)) throw error;
     paragraph("contact-value", error.message, true);
     paragraph("contact-note", "");
+    paragraph("contact-still", "");
     table("contact-facts", []);
     element("contact-warnings").replaceChildren();
   }
@@ -135,13 +150,15 @@ function tellContact(said) {
     paragraph("contact-value", `Coefficient of friction ${times(said.mu)} with vibration, instead of ` +
       `${digits(said.mu)}: a force of ${times(said.still / 10 ** power)} ${PREFIXES[power]}N, instead of ${inUnit(said.still, "N")}`);
     paragraph("contact-note", `Ratio of both (mu_macro): ${withError(friction.value, friction.error)}; ` +
-      `source: ${friction.source}.${outside(said)}`);
+      `source: ${friction.source}.${approach(said)}${outside(said)}`);
   } else {
     const at = near ? ` At Poisson's ratio ${digits(near.poisson)} the ratio mu_macro would be ` +
       `${withError(near.value, near.error)}; what Poisson's ratio changes is not in that error.` : "";
     paragraph("contact-value", `No certified friction: ${said.refused}.`, true);
     paragraph("contact-note", at.trim() + outside(said));
   }
+  paragraph("contact-still", static_friction ? `Coefficient at vanishing speed: ` +
+    `${withError(said.mu * static_friction.value, said.mu * static_friction.error)}.` : "");
   table("contact-facts", [
     ["velocity (dimensionless)", digits(said.velocity)],
     ["amplitude (dimensionless)", digits(said.amplitude)],
@@ -150,8 +167,6 @@ function tellContact(said) {
     ["contact radius", inUnit(said.contact_radius, "m")],
     ["indentation", inUnit(said.indentation, "m")],
     ["largest pressure", inUnit(said.largest_pressure, "Pa")],
-    ["coefficient at vanishing speed", static_friction ? withError(said.mu * static_friction.value,
-      said.mu * static_friction.error) : "not known here"],
   ]);
   const lines = [...said.warnings.map((text) => `Warning: ${text}`),
     ...said.not_checked.map((text) => `Not checked: ${text}`)];
@@ -161,6 +176,24 @@ function tellContact(said) {
     return item;
   }));
 }
+
+// A speed in the unit that the form has for it.
+function inSpeedUnit(speed) {
+  const { units } = SI.fields.speed, unit = units.find(({ name }) => name === TEXTS.speed_unit) ?? units[0];
+  return `${digits(speed / unit.factor)} ${unit.name}`;
+}
+
+// Of a contact slower than its map: between which coefficients it lies, and at which speeds these hold.
+function approach({ friction, slowest, static_friction, mu }) {
+  const remedy = friction.error > slowest.map_error && OUTSIDE_MAP.test(friction.source)
+    ? " Outside the certified range: microslip predict computes it to any tolerance." : "";
+  if (!["between static limit and map", "static limit"].includes(friction.source) || !slowest.friction) return remedy;
+  const coefficient = ({ value, error }) => withError(mu * value, mu * error);
+  return ` The map begins at a forward speed of ${inSpeedUnit(slowest.speed)} for this contact, where the coefficient is ` +
+    `${coefficient(slowest.friction)}; towards speed 0 it falls to ${coefficient(static_friction)}.${remedy}`;
+}
+
+const OUTSIDE_MAP = /^between /;
 
 // Whether the star of the contact is on the map beside the form.
 function outside({ scene, velocity, amplitude, poisson }) {

@@ -29,8 +29,16 @@ function drawLines(element, lines) {
   Plotly.react(element, [...limits, ...series], layout({
     xaxis: axis(x.label, x.log ? ratios : {}),
     yaxis: axis(y.label, y.log ? ratios : {}),
+    shapes: [],
     showlegend: limits.length + series.length > 1,
     legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom", font: { size: 10 } },
     margin: { l: 56, r: 10, t: BAR + 24, b: 42 },
   }), config());
+}
+
+// A dotted line at the place that is selected.
+function markLine(element, at) {
+  const line = { color: VERMILLION, width: 1.2, dash: "dot" };
+  const up = { type: "line", yref: "paper", y0: 0, y1: 1, x0: at, x1: at, line };
+  Plotly.relayout(element, { shapes: element.layout.xaxis.type === "log" && !(at > 0) ? [] : [up] });
 }

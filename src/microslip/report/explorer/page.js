@@ -2,7 +2,7 @@
 
 const element = (id) => document.getElementById(id);
 const STATE = { shown: null, map: null, row: 0, column: 0, frame: 0, period: null, disc: null,
-  hidden: new Set(), asking: false, contact: null };
+  at: 0, hidden: new Set(), asking: false, contact: null };
 const SECONDS = 4; // that a period takes when it plays
 let playing = 0; // the request for the next picture, 0 at rest
 
@@ -20,16 +20,49 @@ function show(entry) {
   } else {
     paragraph("lines-title", entry.title);
     drawLines(element("lines-chart"), entry);
+    element("along").max = entry.x.values.length - 1;
+    paragraph("along-label", plainText(entry.x.label));
+    selectOnLine(entry.x.values.length >> 1);
   }
+}
+
+// A label without the markup that plotly knows.
+function plainText(label) {
+  return label.replace(/<[^>]*>/g, "");
+}
+
+// The answer at one place of lines: every value with its error, and the limits there.
+function selectOnLine(at) {
+  const { shown } = STATE, { x, y, series, limits, beside } = shown;
+  STATE.at = at;
+  element("along").value = at;
+  element("along-value").value = digits(x.values[at]);
+  const valueOf = ({ values, errors, converged }) => values[at] === null ? "none"
+    : `${digits(values[at], 5)} ± ${errors[at] === null ? "unknown" : errors[at].toPrecision(2)}` +
+      (converged === undefined || converged[at] ? "" : " (not converged)");
+  const name = y.label === "mean velocity" ? y.label : "mu_macro";
+  paragraph("line-value", series.length === 1 ? `${name} ${valueOf(series[0])}` : `${name}, ${series.length} lines`);
+  const rows = series.length === 1 ? [] : series.map((one) => [one.label || "computed", valueOf(one)]);
+  rows.push(...limits.map((given) => [given.label, digits(given.values[at], 5)]));
+  for (const one of beside ?? []) {
+    rows.push([one.label, valueOf(one)]);
+    if (one.theory) rows.push([one.theory.label, digits(one.theory.values[at], 5)]);
+  }
+  table("line-facts", rows);
+  paragraph("line-note", `At ${plainText(x.label)} = ${digits(x.values[at])}, Poisson's ratio ${digits(shown.poisson)}.`);
+  markLine(element("lines-chart"), x.values[at]);
+  writeLink();
 }
 
 // The same again, after what is beside it has changed.
 function redraw() {
-  const { shown, map, row, column } = STATE;
+  const { shown, map, row, column, at } = STATE;
   if (shown !== map) {
     show(shown);
+    selectOnLine(at);
     return;
   }
+  arrange();
   drawMap(element("map"), map, row, column, contactOn(map));
   select(row, column);
 }
@@ -37,6 +70,13 @@ function redraw() {
 // With a contact asked for, its words take the place of those of the point.
 function arrange() {
   const isMap = sweepOf(STATE.shown).kind === "map";
+  // Beside the form, and where there are no periods, the cuts fill the right half of a wide page.
+  const beside = isMap && !ONE_COLUMN.matches && (STATE.asking || STATE.shown.periods.count === 0);
+  const right = STATE.asking ? "contact-view" : "point-view";
+  element(beside ? right : "map-view").append(element("cuts"));
+  element("map").classList.toggle("tall", beside); // plotly has a class of its own there
+  element("lines-view").classList.toggle("wide", !STATE.asking);
+  element("line-view").hidden = STATE.asking || isMap;
   element("contact-view").hidden = !STATE.asking;
   element("point-view").hidden = STATE.asking || !isMap;
   element("ask").setAttribute("aria-pressed", String(STATE.asking));
@@ -69,10 +109,13 @@ function select(row, column) {
     element(`${name}-value`).value = shown;
   }
   drawCuts();
-  STATE.period = periodAt(map, row, column);
+  // Where a point has no period, that of the nearest point is drawn, and the words say so.
+  const place = periodAt(map, row, column) ? [row, column] : nearestPeriod(map, row, column);
+  STATE.period = place && periodAt(map, ...place);
   STATE.disc = STATE.period && discOf(STATE.period);
-  tell();
-  element("inside").style.visibility = STATE.period ? "visible" : "hidden";
+  tell(place);
+  writeLink();
+  element("inside").hidden = STATE.period === null;
   if (!STATE.period || STATE.asking) {
     pause(); // what is hidden has no size to draw in
     return;
@@ -80,10 +123,20 @@ function select(row, column) {
   const { mu_macro, mu_macro_error } = map.points;
   STATE.frame = Math.min(STATE.frame, map.periods.frames);
   element("phase").max = map.periods.frames;
-  drawForces(element("history"), element("loop"), STATE.period, mu_macro[row][column],
-    mu_macro_error[row][column], STATE.frame);
+  drawForces(element("history"), element("loop"), STATE.period, mu_macro[place[0]][place[1]],
+    mu_macro_error[place[0]][place[1]], STATE.frame);
   drawDisc(element("disc"), STATE.disc, STATE.frame);
   tellPhase();
+}
+
+// The point next to a place of the map that has a period: [row, column], null if none has.
+function nearestPeriod(map, row, column) {
+  let found = null, least = Infinity;
+  (map.periods.index ?? []).forEach((line, i) => line.forEach((k, j) => {
+    const distance = Math.hypot(i - row, j - column);
+    if (k >= 0 && distance < least) [found, least] = [[i, j], distance];
+  }));
+  return found;
 }
 
 function selectAndMark(row, column) {
@@ -118,7 +171,8 @@ function paragraph(id, text, bad = false) {
   element(id).className = bad ? "bad" : "";
 }
 
-function tell() {
+// drawn: the place of the period that is drawn, null for none.
+function tell(drawn) {
   const { map, row, column, period } = STATE;
   const at = (name) => map.points[name][row][column];
   paragraph("value", muText(map, row, column));
@@ -137,6 +191,11 @@ function tell() {
   if (!period) {
     const missing = map.periods.index !== null && map.amplitude[row] > 0 && map.velocity[column] > 0;
     paragraph("run", whyNone(map, row, column), missing);
+    return;
+  }
+  if (drawn[0] !== row || drawn[1] !== column) {
+    paragraph("run", `${whyNone(map, row, column)} Drawn below: the nearest point that has a period, at velocity ` +
+      `${digits(map.velocity[drawn[1]])}, amplitude ${digits(map.amplitude[drawn[0]])}.`);
     return;
   }
   const p = map.periods;
@@ -212,7 +271,9 @@ function connect() {
   element("phase").addEventListener("input", (e) => {
     pause();
     showFrame(Number(e.target.value));
+    writeLink();
   });
+  element("along").addEventListener("input", (e) => selectOnLine(Number(e.target.value)));
   element("play").addEventListener("click", () => (playing ? pause() : play()));
 }
 
@@ -224,6 +285,7 @@ function offerLimits(map) {
     box.addEventListener("change", () => {
       STATE.hidden[box.checked ? "delete" : "add"](given.label);
       drawCuts();
+      writeLink();
     });
     label.title = given.long_name;
     label.append(box, lineLike(given), given.label);
@@ -264,4 +326,7 @@ offerContact();
 show(SWEEPS[0].entries[0]);
 connectCharts();
 PHONE.addEventListener("change", redraw);
+ONE_COLUMN.addEventListener("change", redraw);
+readLink(location.hash);
+addEventListener("hashchange", () => readLink(location.hash));
 document.body.dataset.ready = "yes";

@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass
 
 from microslip.foundation.arguments import LARGEST
+from microslip.report.explorer.certified import gauss_rule
 from microslip.si import validity
 from microslip.si.inputs import LARGEST_MU
 from microslip.si.materials import MATERIALS
@@ -93,6 +94,7 @@ def packed() -> dict:
         "rubbery": validity.RUBBERY,
         "senseless": validity.SENSELESS,
         "half_stuck": D_half(),
+        "rule": gauss_rule(),
         "largest_velocity": LARGEST["velocity"],
         "largest_amplitude": LARGEST["amplitude"],
     }

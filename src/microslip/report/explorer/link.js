@@ -1,0 +1,60 @@
+// The state of the page as the part of its address behind the #, so that a link reproduces it.
+
+const LINK_DELAY = 250; // ms; browsers refuse more than some 200 changes of the address in 30 s
+let linkTimer = 0;
+
+// What is selected and typed, as text of an address.
+function linkOf(state) {
+  const { shown, map } = state, said = new URLSearchParams();
+  said.set("sweep", shown.name);
+  said.set("poisson", String(shown.poisson));
+  if (shown === map) {
+    said.set("amplitude", String(map.amplitude[state.row]));
+    said.set("velocity", String(map.velocity[state.column]));
+    if (state.period) said.set("frame", String(state.frame));
+  } else {
+    said.set("at", String(shown.x.values[state.at]));
+  }
+  for (const label of state.hidden) said.append("without", label);
+  if (state.asking) {
+    said.set("contact", "open");
+    for (const [name, text] of Object.entries(TEXTS)) said.set(`contact.${name}`, text);
+  }
+  return said.toString();
+}
+
+// Writes the state into the address, once it has come to rest.
+function writeLink() {
+  if (!document.body.dataset.ready) return;
+  clearTimeout(linkTimer);
+  linkTimer = setTimeout(() => history.replaceState(null, "", `#${linkOf(STATE)}`), LINK_DELAY);
+}
+
+// Index of the value that a text names, or the one that is selected already.
+function indexNamed(values, text, selected) {
+  const index = values.findIndex((value) => String(value) === text);
+  return index < 0 ? selected : index;
+}
+
+// Shows the state that an address names; what it does not name, or names wrongly, stays.
+function readLink(address) {
+  const said = new URLSearchParams(address.replace(/^#/, ""));
+  const entries = SWEEPS.find((one) => one.name === said.get("sweep"))?.entries;
+  if (!entries) return;
+  for (const [name, text] of said) {
+    if (name.startsWith("contact.")) fillField(name.slice("contact.".length), text);
+  }
+  STATE.hidden = new Set(said.getAll("without"));
+  STATE.asking = said.get("contact") === "open";
+  show(entries.find((one) => String(one.poisson) === said.get("poisson")) ?? entries[0]);
+  if (STATE.asking) answerForm();
+  const { map, shown } = STATE;
+  if (shown === map) {
+    const frame = Number(said.get("frame"));
+    if (frame >= 0) STATE.frame = Math.floor(frame); // drawn no later than the last one
+    selectAndMark(indexNamed(map.amplitude, said.get("amplitude"), STATE.row),
+      indexNamed(map.velocity, said.get("velocity"), STATE.column));
+  } else {
+    selectOnLine(indexNamed(shown.x.values, said.get("at"), STATE.at));
+  }
+}
