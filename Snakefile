@@ -5,7 +5,8 @@
 #   batches of a sweep --> collect --> results/{transverse,bore,continuous_bore}.nc
 #   datasets --> draw_figure --> results/figures/fig{1..6}_*.{png,pdf}
 #
-# snakemake, or snakemake all, makes the above. snakemake --report report.zip makes one page of
+# snakemake, or snakemake all, makes the above; snakemake fig2 makes one figure with its dataset.
+# snakemake --report report.zip makes one page of
 # figures, captions and what made them.
 #
 # Two studies compare methods: snakemake accuracy, snakemake stability; a third one judges what the

@@ -2,8 +2,9 @@
 
     python benchmarks/sweep_cost.py [--config FILE] [--markdown FILE]
 
-Solves every point of every sweep once and sums up the time spent in the solver, which the datasets
-leave out because it differs from run to run.
+Solves every point of every sweep once, the single runs beside them and some of the periods that the
+explorer shows, and sums up the time spent in the solver. The datasets leave it out, because it
+differs from run to run. The mean times are the typical values in microslip/app/dry_run.py.
 """
 
 from __future__ import annotations
@@ -13,7 +14,8 @@ import one_thread  # noqa: F401
 # isort: split
 
 import argparse
-from itertools import product
+import time
+from itertools import groupby, product
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +24,8 @@ from tqdm import tqdm
 
 import microslip
 from microslip.config import load
+from microslip.report.explorer import explorer
+from microslip.sweeps import batches, evaluate
 
 
 def cost(sweep):
@@ -41,16 +45,43 @@ def cost(sweep):
                 steps=sweep.steps,
             )
         )
-    seconds = np.array([answer.solve_time_s for answer in answers])
+    seconds = [answer.solve_time_s for answer in answers]
     return {
         "sweep": sweep.name,
         "points": len(answers),
         "converged": sum(answer.converged for answer in answers),
         "tolerance": f"{sweep.tolerance:g}",
         "largest error": f"{max(answer.mu_macro_error for answer in answers):.1e}",
-        "solver time, s": f"{seconds.sum():.1f}",
+        **columns_of(seconds),
+    }
+
+
+def cost_beside(configuration, name):
+    """Rows of the single runs beside a sweep, and of every 20th period behind its map."""
+    requests = batches.history_requests(configuration, name)
+    if name in explorer.maps_of(configuration):
+        requests += explorer.period_requests(configuration, name)[::20]
+    for kind, group in groupby(requests, key=lambda request: request["kind"]):
+        seconds = []
+        for request in group:
+            began = time.process_time()
+            evaluate.computed(request)
+            seconds.append(time.process_time() - began)
+        yield {
+            "sweep": f"{name}: {kind}",
+            "points": len(seconds),
+            **dict.fromkeys(("converged", "tolerance", "largest error"), "-"),
+            **columns_of(seconds),
+        }
+
+
+def columns_of(seconds):
+    """The columns of a row that hold times; seconds: of each point."""
+    return {
+        "solver time, s": f"{np.sum(seconds):.1f}",
+        "mean, ms": f"{1e3 * np.mean(seconds):.1f}",
         "median, ms": f"{1e3 * np.median(seconds):.1f}",
-        "slowest, ms": f"{1e3 * seconds.max():.0f}",
+        "slowest, ms": f"{1e3 * np.max(seconds):.0f}",
     }
 
 
@@ -60,7 +91,9 @@ def main():
     tables.add_markdown(parser)
     options = parser.parse_args()
     microslip.warm_up()
-    rows = [cost(sweep) for sweep in load.load(options.config).sweeps.values()]
+    configuration = load.load(options.config)
+    rows = [cost(sweep) for sweep in configuration.sweeps.values()]
+    rows += [row for name in configuration.sweeps for row in cost_beside(configuration, name)]
     tables.publish(tables.markdown(rows), options)
 
 

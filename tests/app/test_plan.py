@@ -3,7 +3,9 @@
 import pytest
 from stubs.workflow_project import AXES, TINY
 
+from microslip.app import figure_targets
 from microslip.app.plan import Plan
+from microslip.app.sweep_command import TARGETS
 from microslip.config import load
 from microslip.foundation import source_digest
 from microslip.report.figures import drawing
@@ -20,6 +22,23 @@ def test_a_sweep_too_small_for_a_map_has_no_map():
         "figures/fig1_force_history.pdf",
     ]
     assert "figures/fig2_transverse_map.png" in plan().figure_files(["transverse"])
+
+
+def test_each_figure_is_a_target_and_those_of_the_paper_by_their_numbers():
+    targets = figure_targets.targets_of(plan())
+    paper = {f"fig{n}" for n in range(1, 7)}
+    assert paper <= set(targets)
+    assert all(targets[name].startswith(f"{name}_") for name in paper)
+    assert set(plan().figures) <= {*targets, *TARGETS}
+    assert not set(targets) & set(TARGETS)
+
+
+def test_a_figure_without_data_says_what_it_lacks():
+    small = plan(sweeps={"transverse": {**AXES, "amplitude": [1]}})
+    assert "needs the sweep bore" in figure_targets.why_no_figure(small, "fig6_bore_map")
+    assert "several velocities and amplitudes" in figure_targets.why_no_figure(
+        small, "fig2_transverse_map"
+    )
 
 
 def test_a_job_may_be_a_point():

@@ -68,8 +68,10 @@ REFUSED = [
     ("-nj0", "--jobs = 0", CORES),
     ("--no-such-option", "unrecognized arguments: --no-such-option"),
     ("--cores 1 --configfile", "argument --configfile", "expected at least one argument"),
-    ("al", "TARGET = 'al'", "did you mean all?", "explorer_all, or a file"),
+    ("al", "TARGET = 'al'", "did you mean all?", "explorer_all, a figure such as fig2, or a file"),
     ("bore", "TARGET = 'bore'", "allowed is one of all,"),
+    ("fig7", "TARGET = 'fig7'", "a figure such as fig2"),
+    ("fig2_transverse", "TARGET = 'fig2_transverse'", "did you mean fig2_transverse_map?"),
     ("-n --config poisson", "--config = 'poisson'", "KEY=VALUE"),
     ("-n --config 1=2", "--config = '1=2'", "KEY=VALUE"),
     ("-n --configfile none.yaml", "--configfile: none.yaml: cannot be read: No such file"),
@@ -100,9 +102,10 @@ class Here:
 def here(monkeypatch, tmp_path):
     """Has the command start no process, in a folder of its own."""
     monkeypatch.chdir(tmp_path)
+    # First, since some of its plugins start a process when they are imported.
+    monkeypatch.setattr("snakemake.cli.main", lambda *_: pytest.fail("Snakemake has started"))
     monkeypatch.setattr(sweep_command.subprocess, "Popen", Here)
     monkeypatch.setattr(sweep_command.signal, "signal", lambda *_: None)
-    monkeypatch.setattr("snakemake.cli.main", lambda *_: pytest.fail("Snakemake has started"))
     return tmp_path
 
 

@@ -64,6 +64,32 @@ def test_an_edit_makes_again_what_it_concerns_and_comments_and_dates_do_not_coun
 
 
 @pytest.mark.long
+def test_a_dry_run_says_how_much_there_is_to_solve(project):
+    tolerance = {**AXES, "tolerance": 2e-2}
+    project.configure({**TINY, "sweeps": {"transverse": tolerance, "bore": AXES}})
+    done = project.snakemake(*RUN, "--dry-run")
+    assert done.returncode == 0
+    (line,) = [line for line in done.stderr.splitlines() if line.startswith("To solve:")]
+    assert re.match(r"To solve: 4 points, about \d+ seconds on 2 cores\.$", line)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("target", ["fig2", "fig2_transverse_map"])
+def test_a_figure_is_a_target_by_its_number_and_by_its_name(project, target):
+    for path in (project.folder / "results").glob("figures/fig*.png"):
+        path.unlink()
+    assert project.planned(target) == {"draw_figure": 1, target: 1}
+    project.configure({**TINY, "sweeps": {"bore": AXES}})
+    done = project.snakemake(target, *RUN, "--dry-run")
+    line = done.stderr.strip().splitlines()[-1]
+    assert done.returncode == 1
+    assert line == (
+        "Error in tiny.yaml: fig2_transverse_map needs the sweep transverse, "
+        "which the configuration has not"
+    )
+
+
+@pytest.mark.long
 def test_what_is_damaged_is_made_again_where_it_is_needed(project):
     """And what a killed run has left half written is cleared before that."""
     results, before = project.folder / "results", project.points()

@@ -1,12 +1,13 @@
 # What the rules share: the checked configuration, and the batches it leads to.
 
+import atexit
 import functools
 from itertools import count
 
 from snakemake.io import get_flag_value
 from snakemake.logging import logger as snakemake_log
 
-from microslip.app import job_log, plan
+from microslip.app import dry_run, job_log, plan
 from microslip.app.bucket import Bucket
 from microslip.app.plan import Plan
 from microslip.app.progress import Watch
@@ -200,16 +201,46 @@ def make_ready():
     WATCH.start(points_to_do())
 
 
-def points_to_do():
-    """Number of points in the jobs of this run; None if a round of a certified map is among them,
-    since its answers decide how many follow."""
-    jobs = list(workflow.dag.needrun_jobs())
-    if any("round" in job.wildcards.keys() for job in jobs):
-        return None
+def planned_jobs():
+    """Jobs of this run, finished or not: a dry run takes all of them for finished at its end."""
+    return list(workflow.dag.needrun_jobs(exclude_finished=False))
+
+
+def has_rounds():
+    """Whether the jobs of this run refine a certified map."""
+    return any("round" in job.wildcards.keys() for job in planned_jobs())
+
+
+def batches_to_do():
+    """Group and requests of each batch that this run solves."""
+    jobs = planned_jobs()
     asked = [job.wildcards for job in jobs if "batch" in job.wildcards.keys()]
     # Where this is a module, others may have batches too.
     known = [w for w in asked if w[0] in PLAN.groups]
-    return sum(len(PLAN.batches_in(w[0]).get(w.batch, ())) for w in known)
+    return [(w[0], PLAN.batches_in(w[0]).get(w.batch, ())) for w in known]
+
+
+def points_to_do():
+    """Number of points in the jobs of this run; None if a round of a certified map is among them,
+    since its answers decide how many follow."""
+    return None if has_rounds() else sum(len(requests) for _, requests in batches_to_do())
+
+
+def tell_work():
+    """At the end of a dry run: how many points there are to solve, and about how long it takes."""
+    planned = workflow.is_main_process and workflow.scheduler is not None and workflow.dryrun
+    jobs = planned_jobs() if planned else []
+    if not jobs:
+        return
+    cores = workflow.resource_settings.cores or workflow.resource_settings.nodes or 1
+    compiles = any("warm_up" in job.rule.name for job in jobs)
+    work = {"compiles": compiles, "rounds": has_rounds()}
+    for line in dry_run.summary(batches_to_do(), PLACE, cores, **work):
+        print(line, file=sys.stderr)
+
+
+if MAIN:
+    atexit.register(tell_work)
 
 
 def show_the_end():

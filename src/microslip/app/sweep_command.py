@@ -44,6 +44,8 @@ of the paper are transverse, bore (spin: rotation about the contact normal) and 
 
   TARGET             what to make, by name or a file such as results/bore.nc:
 {_LISTED}
+    fig1 ... fig6   one figure of the paper with its datasets; other figures by their names, such as
+                    stability_atlas
   --configfile FILE  what to compute; without it config/config.yaml, or where there is no such file
                      the sweeps of the paper. It takes all names that follow: targets come before it
   --cores N          jobs at the same time, 1 or more; all cores unless said otherwise

@@ -20,6 +20,7 @@ from microslip.app.sweep_command import RULES, TARGETS
 from microslip.app.terminal import complain
 from microslip.config import load, schema
 from microslip.foundation.errors import InputError
+from microslip.report.figures import drawing
 
 KEY_AND_VALUE = re.compile(r"[A-Za-z_][\w-]*\w=")
 
@@ -75,10 +76,10 @@ def _check(arguments):
         if isinstance(count, int) and count < 1:
             raise InputError(f"--{name}", count, "allowed is a whole number of at least 1, or all")
     for target in options.targets:
-        if not {".", "/"} & set(target) and target not in {*TARGETS, *RULES}:
-            hint = schema.near_miss(target, list(TARGETS))
-            allowed = f"{hint}allowed is one of {', '.join(TARGETS)}, or a file"
-            raise InputError("TARGET", target, allowed)
+        if not _may_be_made(target):
+            hint = schema.near_miss(target, [*TARGETS, *drawing.SHORT_NAMES, *drawing.FIGURES])
+            allowed = f"allowed is one of {', '.join(TARGETS)}, a figure such as fig2, or a file"
+            raise InputError("TARGET", target, hint + allowed)
     for entry in options.config or ():
         if not KEY_AND_VALUE.match(entry):
             raise InputError("--config", entry, "allowed is KEY=VALUE")
@@ -88,6 +89,17 @@ def _check(arguments):
         )
     for file in options.configfile or ():
         load.read_yaml(os.path.relpath(file))
+
+
+def _may_be_made(target):
+    """Whether a target is a file, a target of the workflow or the name of a figure.
+
+    The configuration decides which figures of groups and of certified maps there are.
+    """
+    figures = (*drawing.FIGURES, *drawing.SHORT_NAMES)
+    of_configuration = target.startswith((drawing.figure_of(""), drawing.CERTIFIED))
+    is_file = bool({".", "/"} & set(target))
+    return is_file or of_configuration or target in (*TARGETS, *RULES, *figures)
 
 
 def _parsed(arguments):

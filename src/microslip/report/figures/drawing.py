@@ -53,6 +53,9 @@ FIGURES = {name: tuple(datasets) for name, (_, *datasets) in _DRAWN.items()}
 """Every figure and its datasets, but for those of groups in `extended`, which have the names that
 `figure_of` gives and all the datasets of their group, and of certified maps."""
 
+SHORT_NAMES = {name.partition("_")[0]: name for name in FIGURES if name.startswith("fig")}
+"""Figures of the paper by their numbers: fig1 to fig6."""
+
 ON_DEMAND = {"fit": ("fit",)}
 """Figures that commands draw of answers of their own, and no workflow makes; likewise."""
 CERTIFIED = "certified_"

@@ -1,0 +1,56 @@
+"""How long the first run of the workflow takes, when nothing is compiled and nothing is solved.
+
+    python benchmarks/first_run.py [--cores N] [--markdown FILE]
+
+Runs the default configuration in an empty folder with an empty cache of compiled code.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import tables
+
+from microslip.foundation import machine
+
+ROOT = Path(__file__).parents[1]
+STEPS = {
+    "compile the solver": ["warm_up", "warm_up_angles"],
+    "solve all points, collect and draw": ["all"],
+    "the same again: nothing to do": ["all"],
+}
+
+
+def row(step, targets, folder, cores):
+    """Run some targets; one row of the table."""
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(folder / "compiled")}
+    environment["PYTHONPATH"] = str(ROOT / "src")
+    command = [sys.executable, "-m", "microslip", "sweep", *targets, "--cores", str(cores)]
+    before, begun = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+    subprocess.run(command, cwd=folder, env=environment, check=True, stdout=subprocess.DEVNULL)
+    took, after = time.perf_counter() - begun, resource.getrusage(resource.RUSAGE_CHILDREN)
+    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return {"step": step, "wall clock, s": f"{took:.0f}", "CPU time, s": f"{seconds:.0f}"}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--cores", type=int, default=2)
+    tables.add_markdown(parser)
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as place:
+        rows = [row(*step, Path(place), options.cores) for step in STEPS.items()]
+    load = f"mean load {os.getloadavg()[2]:.1f} of {os.cpu_count()} cores"
+    note = f"{options.cores} jobs at a time on {machine.cpu_model()}, {load}."
+    tables.publish(f"{tables.markdown(rows)}\n\n{note}\n", options)
+
+
+if __name__ == "__main__":
+    main()
