@@ -118,6 +118,15 @@ def test_bad_arguments_are_one_line_before_snakemake_starts(arguments, parts, he
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("target", ["fig2", "fig6_bore_map", "extended_motions"])
+def test_a_figure_is_handed_to_snakemake_as_a_target(target, here, monkeypatch):
+    started = []
+    monkeypatch.setattr("snakemake.cli.main", started.append)
+    in_process.run("sweep", target)
+    assert target in started[0]
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("case", SHOWN)
 def test_a_file_that_is_no_configuration_is_one_line(case, here):
     content, *parts = FILES[case]

@@ -232,10 +232,12 @@ def tell_work():
     jobs = planned_jobs() if planned else []
     if not jobs:
         return
-    cores = workflow.resource_settings.cores or workflow.resource_settings.nodes or 1
+    work = batches_to_do()
+    # Of -j 2 a dry run makes one core and two nodes; -j unlimited is sys.maxsize.
+    cores = workflow.resource_settings.nodes or workflow.resource_settings.cores or 1
+    cores = cores if cores < sys.maxsize else max(len(work), 1)
     compiles = any("warm_up" in job.rule.name for job in jobs)
-    work = {"compiles": compiles, "rounds": has_rounds()}
-    for line in dry_run.summary(batches_to_do(), PLACE, cores, **work):
+    for line in dry_run.summary(work, PLACE, cores, compiles=compiles, rounds=has_rounds()):
         print(line, file=sys.stderr)
 
 
