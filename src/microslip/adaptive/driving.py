@@ -34,7 +34,6 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.adaptive.asked import TOLERANCE, Asked, budget_for
-from microslip.adaptive.certified import given_up
 from microslip.adaptive.checks import (
     checked_driving,
     checked_request,
@@ -50,7 +49,6 @@ from microslip.foundation.arguments import count
 from microslip.foundation.errors import InputError
 from microslip.motions.mirror_image import mirror_image
 from microslip.motions.motion import LOOP
-from microslip.solver.budget import Spent
 from microslip.solver.problem import Problem
 
 POINTS, MOST_POINTS = 9, 1000
@@ -175,7 +173,11 @@ class _Contact:
 
     def _certified(self, velocity, quantity):
         if (velocity, quantity) not in self.done:
-            found = self._refined(velocity, quantity)
+            run, coarsest, axes, readings = self._marched(velocity)
+            if quantity == "power":
+                run = self._power_as_force(run)
+                readings = [self._power_as_force(other) for other in readings]
+            found = certify(run, coarsest, axes, self.asked.tolerance, readings)
             reason = found.reason
             if found.converged and found.error > self.asked.tolerance:
                 reason = f"the estimated error of its {quantity} is {found.error:.1e}"
@@ -183,17 +185,6 @@ class _Contact:
                 reason = f"velocity = {self.sign * velocity:g}: {reason}"
             self.done[velocity, quantity] = Known(float(found.mu), float(found.error), reason)
         return self.done[velocity, quantity]
-
-    def _refined(self, velocity, quantity):
-        """The Certified at a velocity."""
-        try:
-            run, coarsest, axes, readings = self._marched(velocity)
-        except Spent as spent:
-            return given_up(spent)
-        if quantity == "power":
-            run = self._power_as_force(run)
-            readings = [self._power_as_force(other) for other in readings]
-        return certify(run, coarsest, axes, self.asked.tolerance, readings)
 
     def _marched(self, velocity):
         if velocity not in self.done:

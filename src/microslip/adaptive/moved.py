@@ -9,7 +9,6 @@ from functools import partial
 from typing import NamedTuple
 
 from microslip.adaptive.asked import TOLERANCE, Asked, refuse_free, verdict
-from microslip.adaptive.certified import given_up
 from microslip.adaptive.chains import Axis
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.closed_forms import closed_form, no_vibration
@@ -63,10 +62,15 @@ class Marched(NamedTuple):
 
 
 def marched(asked: Asked) -> Marched:
-    """The Marched of a point with a velocity of at least 0; raises budget.Spent where the search
-    for stick edges takes more than the point may."""
+    """The Marched of a point with a velocity of at least 0.
+
+    Where the search for stick edges takes more than the point may, its run raises budget.Spent.
+    """
     problem, motion, tolerance = asked.problem, asked.problem.motion, asked.accuracy
-    focus = found_focus(problem, asked.model, asked.budget, asked.progress)
+    try:
+        focus = found_focus(problem, asked.model, asked.budget, asked.progress)
+    except Spent as spent:
+        return _nothing_to_run(spent)
     coarsest, axes = plan(problem, asked.model, tolerance, asked.cells, asked.steps, together=True)
     if asked.tolerance is None:
         refuse_free(axes)
@@ -94,17 +98,22 @@ def marched(asked: Asked) -> Marched:
     return Marched(run, coarsest, axes, readings)
 
 
+def _nothing_to_run(spent):
+    """The Marched of a point whose budget was spent before its first run."""
+
+    def run(resolution, guess):
+        raise spent
+
+    return Marched(run, Resolution(0, 0, 0), (), [])
+
+
 def solve_moved(asked: Asked) -> Result:
     """The certified friction, a result.Result; see microslip.solve."""
     exact = known_exactly(asked)
     if exact is not None:
         return exact
-    motion, axes = asked.problem.motion, ()
-    try:
-        run, coarsest, axes, readings = marched(asked)
-        certified = certify(run, coarsest, axes, asked.accuracy, readings)
-    except Spent as spent:
-        certified = given_up(spent)
+    motion, (run, coarsest, axes, readings) = asked.problem.motion, marched(asked)
+    certified = certify(run, coarsest, axes, asked.accuracy, readings)
     steady = not motion.periodic
     return Result(
         **asked.point,
