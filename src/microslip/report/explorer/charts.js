@@ -127,6 +127,7 @@ function drawMap(element, map, row, column, contact) {
     margin: { l: 52, r: 10, t: BAR, b: 42 },
     legend: { orientation: "h", x: 0, xanchor: "left", y: 1.01, yanchor: "bottom" },
   }), config());
+  Plotly.Plots?.resize(element); // its height depends on what is beside it
 }
 
 // The contact of the form, a place [velocity, amplitude] on the map, or null.
