@@ -57,7 +57,7 @@ def nothing_runs(monkeypatch):
     def work(*_, **__):
         raise AssertionError("work has started")
 
-    for module in ("predict", "reduction", "pulled"):
+    for module in ("static_limit", "reduction", "pulled"):
         monkeypatch.setattr(f"microslip.si.{module}.solve", work)
 
 

@@ -270,7 +270,7 @@ def test_a_dataset_says_what_it_is_of(monkeypatch, tmp_path):
     assert data.velocity.formula == scene.velocity_label
     assert data.amplitude.long_name == f"amplitude, {scene.amplitude_label}"
     assert not [name for name in data if "static" in name]
-    assert list(sweep_dataset.report(data, "circle")) == ["circle: 4 points, none not converged"]
+    assert list(sweep_dataset.report(data, "circle")) == ["circle: 4 points, all converged"]
     for variable in data.variables.values():
         assert variable.attrs["long_name"]
 

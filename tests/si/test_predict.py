@@ -168,21 +168,24 @@ def test_the_command_line_answers_in_words(capsys):
 
 def test_an_answer_that_is_no_number_says_why(monkeypatch, capsys):
     """In the amplitude that is asked for, and in the search for one."""
-    from microslip.si import predict, reduction
+    from microslip.si import reduction, static_limit
 
     def lost(*given, **settings):
         found = microslip.solve(*given, **settings)
         return replace(found, mu_macro=math.nan, converged=False, reason="lost on the way")
 
-    monkeypatch.setattr(predict, "solve", lost)
+    monkeypatch.setattr(static_limit, "solve", lost)
     monkeypatch.setattr(reduction, "solve", lost)
-    for motion in ({"amplitude": "1 um"}, {"reduction": "50 %"}):
+    for motion, name in (
+        ({"amplitude": "1 um"}, "mu_macro"),
+        ({"reduction": "50 %"}, "amplitude"),
+    ):
         words = options(**BALL, **motion, material="steel", frequency="20 kHz")
         assert cli.main(["predict", "transverse", *words, "--json"]) == 1
         said = json.loads(capsys.readouterr().out)
         assert (said["mu_macro"], said["reason"]) == (None, "lost on the way")
         assert cli.main(["predict", "transverse", *words]) == 1
-        assert "NOT CONVERGED: lost on the way" in capsys.readouterr().out
+        assert f"NOT CONVERGED: {name}: lost on the way" in capsys.readouterr().out
 
 
 def test_an_answer_can_be_written_in_any_alphabet(monkeypatch):

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import pytest
 import microslip
 from microslip.app import cli
 from microslip.foundation.errors import InputError
+from microslip.foundation.number_text import number_text
 
 EIGHT = "elliptic:forward_cycles=2,phase=0"
 PRESSED = "normal:forward=1,phase=150"
@@ -66,10 +68,14 @@ def test_the_command_line_says_the_same(capsys):
     assert said["force_N"] == pytest.approx(found.force_N.tolist())
     assert cli.main(words(EIGHT, points="3")) == 0
     text = capsys.readouterr().out
-    assert f"stall force       {found.stall_force_N:.4g} +- " in text
-    assert f"{1e3 * found.no_load_speed_m_s:.4g} +- " in text
-    middle = f"{1e3 * found.speed_m_s[1]:13.4g}{found.force_N[1]:13.4g}"
-    assert f"{middle}{found.power_out_W[1]:13.4g}{found.power_in_W[1]:13.4g}" in text
+    assert text.split("\n\n")[1] == f"{found}\n".split("\n\n")[1]
+    stall = number_text(found.stall_force_N, found.stall_force_error_N, "N")
+    assert f"\nstall force       {stall}\n" in text
+    (row,) = re.findall(rf"^ *{1e3 * found.speed_m_s[1]:.4g}  .*$", text, re.MULTILINE)
+    _, force, power_out, power_in, efficiency = re.split(r" {2,}", row.strip())
+    assert force == number_text(found.force_N[1], found.force_error_N[1])
+    assert efficiency == number_text(found.efficiency[1], found.efficiency_error[1])
+    assert all(" +- " in cell for cell in (power_out, power_in))
 
 
 REFUSED = {

@@ -82,7 +82,7 @@ def test_the_command_line_takes_spreads(capsys):
         ({"load": "10 +- 1 N"}, "load = '10 .- 1 N': in it '10': 10 is a number without a unit"),
         ({"mu": "0.3 +- "}, "in it '': the text is empty"),
         ({"mu": "0.3 +- -0.1"}, "in it '-0.1'"),
-        ({"rotation": "10 rad/s +- 1 %"}, "rotation = '10 rad/s .- 1 %'"),
+        ({"tolerance": "0.01 +- 1 %"}, "tolerance = '0.01 .- 1 %'"),
         ({"mu": "9 +- 5"}, "mu = '9': at an end of its spread, 14: mu: allowed is a finite value"),
     ],
 )

@@ -58,11 +58,13 @@ def solve(
     amplitude : float or None
         The paper's dimensionless group likewise; None for continuous-bore.
     force : float or None
-        Pulls in place of the velocity; over mu times the mean normal load.
+        Prescribed forward force divided by mu times the mean normal load, as mu_macro is.  Give
+        either this or the velocity.
     stiffness, mass, damping : float or None
         A spring pulls with the velocity at its far end, over mu F_z / u_lim, a body of a mass, over
-        mu F_z / (u_lim omega^2), which a dashpot holds, over mu F_z / (u_lim omega).  A mass may be
-        under a force, too.
+        mu F_z / (u_lim omega^2), which a dashpot holds, over mu F_z / (u_lim omega).  Here F_z is
+        the reference load, which is the load without oscillation.  A mass may be under a force,
+        too.
     contacts : str or None
         Of a body that several contacts carry, such as "phase=0;phase=180": the load of each, over
         that of another, its phase in degrees, and its share of the amplitude, all 1, 0 and 1 if not

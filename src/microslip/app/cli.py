@@ -91,14 +91,15 @@ def _add_motions(parser):
         _add_options(scene)
 
 
+F_Z = "; F_z is the load without oscillation (the reference load)"
 OPTIONS = {
     "force": (
         "P",
         "pulls in place of a velocity, over mu times the mean normal load; asks for the velocity",
     ),
-    "stiffness": ("K", "of a spring whose far end has the velocity, over mu F_z / u_lim"),
-    "mass": ("M", "of what the spring or the force pulls, over mu F_z / (u_lim omega^2) (0)"),
-    "damping": ("C", "of a dashpot beside the spring, over mu F_z / (u_lim omega) (0)"),
+    "stiffness": ("K", f"of a spring whose far end has the velocity, over mu F_z / u_lim{F_Z}"),
+    "mass": ("M", f"of what the spring or the force pulls, over mu F_z / (u_lim omega^2){F_Z} (0)"),
+    "damping": ("C", f"of a dashpot beside the spring, over mu F_z / (u_lim omega){F_Z} (0)"),
     "contacts": (
         "TEXT",
         "of a body on several, such as 'phase=0;phase=180': load (1, over that of another), phase "

@@ -6,8 +6,8 @@ import argparse
 import json
 
 from microslip.app.option_parser import Said
-from microslip.app.printed_error import error_text
 from microslip.app.terminal import complain
+from microslip.foundation.number_text import aligned, number_text
 
 OPTIONS = {
     "amplitude": ("A", "of the oscillation, in the motion's own unit, as for point"),
@@ -24,8 +24,13 @@ OPTIONS = {
 }
 OTHER_NAMES = {"poisson": ("--nu",)}
 REALS = ("amplitude", "poisson", "tolerance", "time_limit")
-COLUMNS = ("velocity", "force", "power_out", "power_in", "efficiency")
-WIDTH = 12
+COLUMNS = ("force", "power_out", "power_in", "efficiency")
+"""Fields of the line that have an error."""
+REFERENCE_LOADS = (
+    "u_lim is that of the load without oscillation (the reference load); forces and powers are "
+    "over mu times the mean load"
+)
+"""Sentence beside the answer where the normal load oscillates."""
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -88,20 +93,20 @@ def _as_given(options, said, argument):
 
 
 def _as_text(line):
-    stall, no_load = map(error_text, (line.stall_force_error, line.no_load_velocity_error))
-    lines = [
-        f"stall_force = {line.stall_force:.6g} +- {stall}",
-        f"no_load_velocity = {line.no_load_velocity:.6g} +- {no_load}",
-    ]
+    stall = number_text(line.stall_force, line.stall_force_error)
+    no_load = number_text(line.no_load_velocity, line.no_load_velocity_error)
+    lines = [f"stall_force = {stall}", f"no_load_velocity = {no_load}"]
+    if line.scene.startswith("normal"):
+        lines.append(REFERENCE_LOADS)
     if line.velocity.size:
         best = line.efficiency.argmax()
-        largest, error = line.efficiency[best], line.efficiency_error[best]
-        lines.append(f"largest efficiency of these points = {largest:.4g} +- {error_text(error)}")
-        lines += ["", "".join(f"{name:>{WIDTH}}" for name in COLUMNS)]
-        rows = zip(*(getattr(line, name) for name in COLUMNS), strict=True)
-        lines += ["".join(f"{value:{WIDTH}.4g}" for value in row) for row in rows]
+        largest = number_text(line.efficiency[best], line.efficiency_error[best])
+        columns = {"velocity": (line.velocity, None)} | {
+            name: (getattr(line, name), getattr(line, f"{name}_error")) for name in COLUMNS
+        }
+        lines += [f"largest efficiency of these points = {largest}", "", *aligned(columns)]
     if not line.converged:
-        lines.append(f"NOT CONVERGED: {line.reason}")
+        lines.append(f"NOT CONVERGED: force or power: {line.reason}")
     elif line.reason:
         lines.append(line.reason)
     return "\n".join(lines)

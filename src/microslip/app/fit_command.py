@@ -7,10 +7,10 @@ import json
 from pathlib import Path
 
 from microslip.app.option_parser import Said
-from microslip.app.predicted_text import line
 from microslip.app.terminal import complain
 from microslip.foundation.errors import shown
 from microslip.si.motions import UNIT_OF_AMPLITUDE
+from microslip.si.printed_lines import line
 
 OPTIONS = {
     "speed": ("V", "forward speed of all rows, such as '1 mm/s', if it is no column"),

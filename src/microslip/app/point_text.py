@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from microslip.adaptive.result import Result
-from microslip.app.printed_error import error_text
+from microslip.foundation.number_text import number_text
 from microslip.models.registry import MODELS
 from microslip.motions.by_name import motion_named
 
@@ -13,16 +13,20 @@ OWN_EQUATIONS = (
     "an approximation: the error is that of its own equations, not of what they leave out"
 )
 
+DIGITS = 6
+"""Significant digits of numbers known exactly."""
+
 
 def as_text(result: Result) -> str:
     """Lines on standard output for a Result."""
     if result.force is not None:
-        lines = [f"velocity = {result.velocity:.6g} +- {error_text(result.velocity_error)}"]
+        lines = [f"velocity = {number_text(result.velocity, result.velocity_error, digits=DIGITS)}"]
     else:
-        lines = [f"mu_macro = {result.mu_macro:.6g} +- {error_text(result.mu_macro_error)}", RATIO]
+        ratio = number_text(result.mu_macro, result.mu_macro_error, digits=DIGITS)
+        lines = [f"mu_macro = {ratio}", RATIO]
     if result.mu_torque is not None:
-        error = error_text(result.mu_torque_error)
-        lines.append(f"mu_torque = {result.mu_torque:.6g} +- {error}")
+        torque = number_text(result.mu_torque, result.mu_torque_error, digits=DIGITS)
+        lines.append(f"mu_torque = {torque}")
     resolved = f"{result.cells} cells"
     if result.angles > 1:
         resolved += f" x {result.angles} angles"
@@ -32,7 +36,8 @@ def as_text(result: Result) -> str:
     if _leaves_something_out(result):
         lines.append(OWN_EQUATIONS)
     if not result.converged:
-        lines.append(f"NOT CONVERGED: {result.reason}")
+        quantity = "mu_macro" if result.force is None else "velocity"
+        lines.append(f"NOT CONVERGED: {quantity}: {result.reason}")
     return "\n".join(lines)
 
 

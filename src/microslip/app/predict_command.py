@@ -4,26 +4,14 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import sys
 
 from microslip.app import predicted_driving, predicted_table
 from microslip.app.option_parser import Said
-from microslip.app.predicted_text import (
-    groups_of_drive,
-    largest_pressure,
-    length,
-    line,
-    looked_for,
-    threshold,
-    unit_of_sought,
-    walk,
-)
-from microslip.app.printed_error import error_text
 from microslip.app.terminal import complain
 from microslip.foundation.errors import InputError, shown
 from microslip.si.materials import MATERIALS
-from microslip.si.motions import COMBINED, MOTIONS, unit_of_amplitude
+from microslip.si.motions import MOTIONS
 
 OPTIONS = {
     "young": ("E", "Young's modulus of the body, such as '210 GPa'"),
@@ -79,15 +67,28 @@ OPTIONS = {
     "decimal": ("MARK", "with --table: the decimal mark of the file, a point or a comma (.)"),
     "encoding": ("NAME", "with --table: the encoding of the file, such as cp1252 (utf-8)"),
 }
+GROUPS = {
+    "bodies": (
+        *("young", "nu", "material", "counterbody", "radius", "counter-radius", "radius-across"),
+        *("contact-radius", "pressure", "mu", "hardness", "density"),
+        *("counter-hardness", "counter-density"),
+    ),
+    "load": ("load", "contacts"),
+    "motion": (
+        *("amplitude", "forward-amplitude", "rotation-amplitude", "load-amplitude", "phase"),
+        *("frequency", "rotation", "reduction"),
+    ),
+    "drive": ("speed", "force", "drive-stiffness", "mass", "damping"),
+    "output": ("tolerance", "points", "decimal", "encoding"),
+}
+"""Options by the headings of the help."""
+ABOUT_GROUPS = {
+    "drive": "Where the normal load oscillates there are two reference loads: stiffness, mass and "
+    "damping are made dimensionless by mu times the load without oscillation, force and mu_macro "
+    "by mu times the mean load.",
+}
+"""Sentences below headings of the help."""
 OTHER_NAMES = {"nu": ("--poisson",)}
-UNDERSTOOD = ("scene", "body", "counterbody", "radius", "counter_radius", "radius_across")
-UNDERSTOOD += ("contact_radius", "pressure", "load", "contacts", "mu", "speed", "force")
-UNDERSTOOD += ("drive_stiffness", "mass", "damping")
-UNDERSTOOD += ("amplitude", "forward_amplitude", "rotation_amplitude", "load_amplitude", "phase")
-UNDERSTOOD += ("frequency", "rotation", "reduction")
-"""What a Prediction has understood, in the order of the answer."""
-ADDED = {"bore": "spin", "continuous-bore": "spin", "transverse-bore": "vibration and spin"}
-"""What is said to take friction away, where that is not vibration alone."""
 
 
 def add_parser(commands: argparse._SubParsersAction) -> None:
@@ -99,41 +100,45 @@ def add_parser(commands: argparse._SubParsersAction) -> None:
         description="How much friction falls in a contact given in SI units, and how far to trust "
         "that.  All quantities take units.  The answer has two kinds of numbers: mu_macro is a "
         "ratio, the friction with vibration over that without; mu_apparent is the coefficient of "
-        "friction that is felt.",
+        "friction that is felt.  A number with a standard uncertainty, such as '0.15 +- 0.05' or "
+        "'10 N +- 5 %', gives intervals and the probability of each outcome.",
     )
     scenes = "; ".join(f"{name}: it {what}" for name, what in MOTIONS.items())
     parser.add_argument(
         "scene", metavar="SCENE", help=f"what the sphere does. {scenes}; or another motion of point"
     )
-    for name, (metavar, text) in OPTIONS.items():
-        parser.add_argument(
-            *(f"--{name}", *OTHER_NAMES.get(name, ())),
-            dest=name.replace("-", "_"),
-            action=Said,
-            metavar=metavar,
-            help=text,
-        )
-    parser.add_argument(
-        "--power", action="store_true", help="says what it takes to vibrate the contact, too"
+    for title, names in GROUPS.items():
+        group = parser.add_argument_group(title, ABOUT_GROUPS.get(title))
+        for name in names:
+            metavar, text = OPTIONS[name]
+            group.add_argument(
+                *(f"--{name}", *OTHER_NAMES.get(name, ())),
+                dest=name.replace("-", "_"),
+                action=Said,
+                metavar=metavar,
+                help=text,
+            )
+        if title == "drive":
+            group.add_argument(
+                "--driving",
+                action="store_true",
+                help="ask what a motion that drives by itself pulls with, such as "
+                "elliptic:forward_cycles=2,phase=0: stall force, no-load speed, power and "
+                "efficiency",
+            )
+    group.add_argument(
+        "--power", action="store_true", help="also compute the power that vibrates the contact"
     )
-    parser.add_argument(
-        "--driving",
-        action="store_true",
-        help="ask what a motion that drives by itself pulls with, such as "
-        "elliptic:forward_cycles=2,phase=0: stall force, no-load speed, power and efficiency",
-    )
-    parser.add_argument(
+    group.add_argument(
         "--table",
         metavar="CSV",
         help="a contact for every line of a file, whose heading names some of the options, as in "
         "load [N],speed [mm/s],material; the others are shared",
     )
-    parser.add_argument(
+    group.add_argument(
         "--output", metavar="FILE", help="with --table: writes all that is found into a .csv or .nc"
     )
-    parser.add_argument(
-        "--json", action="store_true", help="print one JSON object and nothing else"
-    )
+    group.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -148,8 +153,7 @@ def run(options: argparse.Namespace) -> int:
             text, converged = predicted_table.answer(options, given, list(OPTIONS))
         else:
             found = _found(options, given)
-            as_text = predicted_driving.as_text if options.driving else _as_text
-            text = json.dumps(plain(found.to_dict())) if options.json else as_text(found)
+            text = json.dumps(plain(found.to_dict())) if options.json else str(found)
             converged = found.converged
     except InputError as error:
         complain(f"microslip predict: {_complaint(error, typed)}")
@@ -183,102 +187,3 @@ def _complaint(error, typed):
     flag = error.value is True or error.value is None
     given = "" if flag else f" = {shown(error.value)}"
     return " ".join(f"{option}{given}: {error.allowed}".split())
-
-
-def _as_text(found):
-    lines = [
-        line(name.replace("_", " "), found.understood[name])
-        for name in UNDERSTOOD
-        if name in found.understood
-    ]
-    lines += [
-        "",
-        line("contact radius", length(found.contact_radius_m)),
-        *_indentation(found),
-        line("u_lim", length(found.u_lim_m)),
-        line("largest pressure", largest_pressure(found)),
-    ]
-    if found.amplitude is not None:
-        lines.append(line("amplitude", f"{_size(found)}dimensionless {found.amplitude:.4g}"))
-    if found.velocity is not None and found.force_N is None:
-        lines.append(line("velocity", f"dimensionless {found.velocity:.4g}"))
-    lines += looked_for(found)
-    lines += groups_of_drive(found)
-    lines += _friction(found) if found.force_N is None else walk(found)
-    lines += _spread(found) + _energy(found)
-    if not found.converged and found.outcome != "runs away":
-        lines.append(f"NOT CONVERGED: {found.reason}")
-    lines += [f"warning: {text}" for text in found.warnings]
-    lines += [f"not checked: {text}" for text in found.not_checked]
-    return "\n".join(lines)
-
-
-def _spread(found):
-    """The line of what follows from the spreads of what was given."""
-    if found.mu_apparent_spread is None:
-        return []
-    if found.force_N is not None:
-        return [
-            line("spread", f"{found.speed_spread_m_s:.2g} m/s of the speed, from what was given")
-        ]
-    shares = [
-        f"{found.mu_apparent_spread:.2g} of mu_apparent",
-        f"{found.friction_force_spread_N:.2g} N of the force",
-    ]
-    if found.sought is not None:
-        unit = unit_of_sought(found)
-        shares.insert(0, f"{found.sought_spread:.2g} {unit} of the {found.sought}")
-    return [line("spread", f"{', '.join(shares)}, from the spreads of what was given")]
-
-
-def _energy(found):
-    """Lines of torque and power, where they are known and more than the force tells."""
-    if found.vibration_power_W is None:
-        return []
-    error = found.vibration_power_error_W
-    lines = [
-        line("power", f"{found.vibration_power_W:.4g} +- {error_text(error)} W for the vibration"),
-        line("", f"{found.drag_power_W:.4g} W for the drag"),
-        line("energy", f"{found.energy_per_cycle_J:.4g} J a cycle turn into heat"),
-    ]
-    if found.torque_N_m is not None:
-        text = f"{found.torque_N_m:.4g} +- {error_text(found.torque_error_N_m)} N m"
-        lines.insert(0, line("torque", text))
-    return lines
-
-
-def _indentation(found):
-    depth = found.indentation_m
-    return [] if math.isnan(depth) else [line("indentation", length(depth))]
-
-
-def _size(found):
-    """The amplitude with its unit and a comma; of several the dimensionless one is the largest."""
-    if found.scene in COMBINED:
-        return "the largest is "
-    size = found.amplitude_si
-    return f"{size:.4g} rad, " if unit_of_amplitude(found.scene) == "rad" else f"{length(size)}, "
-
-
-def _friction(found):
-    """Lines of the answer itself: which number is a ratio, and which a coefficient."""
-    still, added = found.friction_force_still_N, ADDED.get(found.scene, "vibration")
-    ratio = f"{found.mu_macro:.4f} +- {error_text(found.mu_macro_error)}"
-    coefficient = f"{found.mu_apparent:.4f} +- {error_text(found.mu_apparent_error)}"
-    less = 100.0 * found.force_reduction
-    lines = [
-        line("mu_macro", f"{ratio}: ratio of friction with {added} to friction without"),
-        line(
-            "mu_apparent",
-            f"{coefficient}: coefficient of friction with {added}, "
-            f"instead of {found.understood['mu']}",
-        ),
-        line(
-            "friction force",
-            f"{found.friction_force_N:.4g} N instead of {still:.4g} N: {less:.1f} % less",
-        ),
-    ]
-    if found.mu_static is not None:
-        text = f"{found.mu_static_apparent:.4f}: coefficient of friction at vanishing speed"
-        lines.append(line("static friction", text))
-    return lines + threshold(found)

@@ -9,19 +9,17 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from microslip.app.predicted_text import runs_away, unit_of_sought
-from microslip.app.printed_error import error_text
 from microslip.app.terminal import complain
 from microslip.foundation.csv_text import LABELS
 from microslip.foundation.errors import CacheError, InputError
+from microslip.foundation.number_text import SEPARATOR, number_text
 from microslip.si.prediction import NoPrediction, Prediction
+from microslip.si.printed_lines import not_converged, runs_away, unit_of_sought
 
 FORMAT = ("decimal", "encoding")
 """Options that say how the file is written."""
 ENDINGS = (".csv", ".nc")
 WIDTH = 13
-VALUE, SPREAD = "{:.4g}".format, "{:.2g}".format
-"""How numbers are written that are no errors."""
 
 
 @dataclass(frozen=True)
@@ -158,44 +156,64 @@ def as_text(answered: Answered) -> str:
     """A row for each case, and what is said against it below the table."""
     columns = _columns([one for one in answered.found if isinstance(one, Prediction)])
     labels = answered.labels
-    rows = ["".join(f"{title:>{WIDTH}}" for title in ("line", *labels, *columns))]
+    headings = [heading for titles in columns.values() for heading in titles if heading]
+    rows = ["".join(f"{title:>{WIDTH}}" for title in ("line", *labels, *headings))]
     remarks = []
     for row, (line, one) in enumerate(zip(answered.lines, answered.found, strict=True)):
         texts = "".join(f" {column[row] or '':>{WIDTH - 1}}" for column in labels.values())
         if isinstance(one, NoPrediction):
             rows.append(f"{line:>{WIDTH}}{texts}  no prediction")
             continue
-        rows.append(
-            f"{line:>{WIDTH}}{texts}{''.join(_text(one, *about) for about in columns.values())}"
-        )
+        cells = [cell for about, titles in columns.items() for cell in _cells(one, about, titles)]
+        rows.append(f"{line:>{WIDTH}}{texts}{''.join(f'{cell:>{WIDTH}}' for cell in cells)}")
         if one.outcome == "runs away":
             remarks.append(f"line {line}: {runs_away(one)}")
-        elif not one.converged:
-            remarks.append(f"line {line}: NOT CONVERGED: {one.reason}")
+        remarks += [f"line {line}: {text}" for text in not_converged(one)]
         remarks += [f"line {line}: warning: {text}" for text in one.warnings]
     return "\n".join(rows + remarks)
 
 
+@dataclass(frozen=True)
+class _Quantity:
+    """Names of a field of a Prediction, of its error and of its standard uncertainty, empty where
+    it has none; sought: what has to be looked for if it is to be shown, None for anything."""
+
+    value: str
+    error: str = ""
+    spread: str = ""
+    sought: str | None = None
+
+
 def _columns(found):
-    """Attribute of a Prediction, how it is written, and what has to be looked for if it is to be
-    told, None for anything, by the heading of their column."""
-    columns = {"mu_apparent": ("mu_apparent", VALUE, None)}
-    columns["+-"] = "mu_apparent_error", error_text, None
-    if any(one.mu_apparent_spread is not None for one in found):
-        columns["spread"] = "mu_apparent_spread", SPREAD, None
-    columns["force N"] = "friction_force_N", VALUE, None
-    columns["speed m/s"] = "speed_m_s", VALUE, None
+    """Headings of the columns of value, error and spread, empty where there is no column, by the
+    quantity in them."""
+    spread = any(one.mu_apparent_spread is not None for one in found)
+    forced = any(one.force_N is not None for one in found)
+    columns = {
+        _Quantity("mu_apparent", "mu_apparent_error", "mu_apparent_spread"): (
+            *("mu_apparent", "+-"),
+            "spread" if spread else "",
+        ),
+        _Quantity("friction_force_N", "friction_force_error_N"): ("force N", "+- N", ""),
+        _Quantity("speed_m_s", "speed_error_m_s"): ("speed m/s", "+- m/s" if forced else "", ""),
+    }
     for one in found:  # an empty cell may be what is looked for, another one in each line
         if one.sought is not None:
             unit = unit_of_sought(one)
-            columns.setdefault(f"{one.sought} {unit}", ("sought_value", VALUE, one.sought))
-            columns[f"+- {unit}"] = "sought_error", error_text, one.sought
-            if one.sought_spread is not None:
-                columns[f"spread {unit}"] = "sought_spread", SPREAD, one.sought
+            quantity = _Quantity("sought_value", "sought_error", "sought_spread", one.sought)
+            *_, before = columns.get(quantity, ("",))
+            known = before if one.sought_spread is None else f"spread {unit}"
+            columns[quantity] = f"{one.sought} {unit}", f"+- {unit}", known
     return columns
 
 
-def _text(one, attribute, written, sought):
-    value = getattr(one, attribute)
-    told = value is not None and sought in (None, one.sought)
-    return f"{written(value) if told else '':>{WIDTH}}"
+def _cells(one, quantity, headings):
+    """Texts of the columns of one quantity: to the digits that its error allows."""
+    value = getattr(one, quantity.value)
+    if value is None or quantity.sought not in (None, one.sought):
+        return ["" for heading in headings if heading]
+    error = getattr(one, quantity.error) or 0.0
+    number, _, shown = number_text(value, error).partition(SEPARATOR)
+    spread = getattr(one, quantity.spread) if quantity.spread else None
+    texts = number, shown or "0", "" if spread is None else number_text(spread, digits=2)
+    return [text for text, heading in zip(texts, headings, strict=True) if heading]

@@ -146,7 +146,8 @@ def report(dataset: xr.Dataset, name: str | None = None) -> Iterator[str]:
     """
     converged = dataset["converged"]
     bad = np.argwhere(~converged.values)
-    yield f"{name or dataset.scene}: {converged.size} points, {len(bad) or 'none'} not converged"
+    failed = f"{len(bad)} not converged" if len(bad) else "all converged"
+    yield f"{name or dataset.scene}: {converged.size} points, {failed}"
     for index in bad:
         point = dataset.isel(dict(zip(converged.dims, index, strict=True)))
         where = ", ".join(f"{dim} {float(point[dim]):g}" for dim in converged.dims)

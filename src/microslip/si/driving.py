@@ -12,6 +12,7 @@ from microslip.adaptive.driving import POINTS, drive
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.si.dimensionless import RealMotion
+from microslip.si.driving_text import driving_text
 from microslip.si.inputs import read_body, read_contact, read_counterbody
 from microslip.si.quantities import read
 from microslip.si.validity import broken_assumptions, unchecked
@@ -81,6 +82,10 @@ class RealDrivingLine:
     reason: str
     warnings: tuple
     not_checked: tuple
+
+    def __str__(self) -> str:
+        """The lines that `microslip predict --driving` prints."""
+        return driving_text(self)
 
     def to_dict(self) -> dict:
         """Fields as a plain dict, arrays as lists."""

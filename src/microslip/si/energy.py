@@ -10,7 +10,13 @@ from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.pressures.by_name import pressure_named
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealMotion, full_friction, groups, solver_scene
+from microslip.si.dimensionless import (
+    RealMotion,
+    full_friction,
+    groups,
+    solver_scene,
+    speed_unit,
+)
 
 
 def energy_fields(
@@ -19,20 +25,27 @@ def energy_fields(
     """Fields of a Prediction that follow from the answer: drag, of all contacts together, and
     torque of a steady spin."""
     still = full_friction(motion, contact) * contacts
+    speed_error = 0.0
+    if answer.force is not None:
+        speed_error = answer.velocity_error * speed_unit(motion, contact)
     drag = still * answer.mu_macro * motion.speed
-    found = {"drag_power_W": drag}
+    drag_error = still * (answer.mu_macro_error * motion.speed + answer.mu_macro * speed_error)
+    found = {"drag_power_W": drag, "drag_power_error_W": drag_error}
     if answer.mu_torque is None:
         return found
     unit = still * contact.contact_radius * pressure_named(contact.pressure).torque
     torque = unit * answer.mu_torque
-    spin = torque * motion.rotation
+    spin, spin_error = torque * motion.rotation, unit * answer.mu_torque_error * motion.rotation
+    turn = 2.0 * math.pi / motion.rotation
     return found | {
         "torque_N_m": torque,
         "torque_error_N_m": unit * answer.mu_torque_error,
         "vibration_power_W": spin,
-        "vibration_power_error_W": unit * answer.mu_torque_error * motion.rotation,
+        "vibration_power_error_W": spin_error,
         "dissipated_power_W": drag + spin,
-        "energy_per_cycle_J": (drag + spin) * 2.0 * math.pi / motion.rotation,
+        "dissipated_power_error_W": drag_error + spin_error,
+        "energy_per_cycle_J": (drag + spin) * turn,
+        "energy_per_cycle_error_J": (drag_error + spin_error) * turn,
     }
 
 
@@ -58,9 +71,13 @@ def vibration_fields(
     unit = still * contact.u_lim * 2.0 * math.pi * motion.frequency
     drag = still * answer.mu_macro * motion.speed
     total = drag + unit * found.value
+    error = still * answer.mu_macro_error * motion.speed + unit * found.error
     return {
         "vibration_power_W": unit * found.value,
         "vibration_power_error_W": unit * found.error,
+        "vibration_power_reason": found.reason,
         "dissipated_power_W": total,
+        "dissipated_power_error_W": error,
         "energy_per_cycle_J": total / motion.frequency,
+        "energy_per_cycle_error_J": error / motion.frequency,
     }

@@ -5,20 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from microslip.adaptive.point import solve
-from microslip.si.dimensionless import full_friction, solver_scene
+from microslip.si.dimensionless import full_friction
 from microslip.si.drives import checked_drive_groups
 from microslip.si.energy import energy_fields, vibration_fields
-from microslip.si.motions import COMBINED
 from microslip.si.prediction import Prediction
 from microslip.si.pulled import about_drive, answer_of, with_speed
-from microslip.si.question import TOLERANCE, Question, asked, checked_groups
+from microslip.si.question import Question, asked, checked_groups
 from microslip.si.reduction import with_reduction
+from microslip.si.static_limit import static_limit
 from microslip.si.uncertain import with_spreads
 from microslip.si.validity import broken_assumptions, unchecked
-
-TOLERANCE_OF_LIMIT = 1e-2
-"""Of mu_static where several oscillations meet: it takes a minute and more to know it better."""
 
 UNKNOWN_WITHOUT = {
     "amplitude": ("amplitude_si",),
@@ -164,20 +160,12 @@ def _answered(question):
         pulled |= {"sought": question.sought, "sought_error": found.error}
         if question.sought == "load":
             contact = question.under(found.contact.load)
-    velocity, size = checked_groups(contact, motion, given)
+    velocity, _ = checked_groups(contact, motion, given)
     pulling = checked_drive_groups(carriers.share_of(drive), motion, contact, given)
     answer = answer_of(contact, motion, pulling, question.tolerance, carriers)
-    limit = None
-    if size is not None:
-        exactly = question.tolerance
-        if given["force"] is not None:
-            exactly = min(exactly, TOLERANCE)
-        if motion.scene in COMBINED:
-            exactly = max(exactly, TOLERANCE_OF_LIMIT)
-        settings = {"poisson": contact.poisson, "pressure": contact.pressure}
-        settings |= carriers.settings
-        named = solver_scene(motion, contact)
-        limit = solve(named, 0.0, size, tolerance=exactly, **settings)
+    limit = static_limit(
+        contact, motion, carriers, question.tolerance, under_force=given["force"] is not None
+    )
     pulled |= about_drive((contact, carriers), motion, (drive, pulling), answer, limit)
     if velocity is None:
         velocity, motion = answer.velocity, with_speed(motion, contact, answer)
@@ -185,6 +173,7 @@ def _answered(question):
         pulled |= energy_fields(contact, motion, answer, carriers.count)
         if given["power"]:
             pulled |= vibration_fields(contact, motion, answer, question.tolerance)
+            pulled["converged"] = not pulled.get("vibration_power_reason")
     most = carriers.most_loaded(contact)
     doubts = tuple(broken_assumptions(most, motion)), tuple(unchecked(most))
     still = full_friction(motion, contact) * carriers.count
@@ -242,14 +231,17 @@ def _prediction(contact, moved, velocity, answers, understood):
         mu_apparent=contact.mu * answer.mu_macro,
         mu_apparent_error=contact.mu * answer.mu_macro_error,
         friction_force_N=still * answer.mu_macro,
+        friction_force_error_N=still * answer.mu_macro_error,
         friction_force_still_N=still,
         force_reduction=1.0 - answer.mu_macro,
         mu_static=None if limit is None else limit.mu_macro,
         mu_static_error=None if limit is None else limit.mu_macro_error,
         mu_static_apparent=None if limit is None else contact.mu * limit.mu_macro,
+        mu_static_apparent_error=None if limit is None else contact.mu * limit.mu_macro_error,
+        mu_static_reason="" if limit is None else limit.reason,
         model=answer.model,
-        converged=answer.converged and (limit is None or limit.converged),
-        reason=answer.reason or ("" if limit is None else limit.reason),
+        converged=answer.converged,
+        reason=answer.reason,
         warnings=warnings,
         not_checked=not_checked,
         counterbody=understood["counterbody"],

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field
 
 from microslip.foundation.errors import InputError
+from microslip.si.prediction_text import prediction_text
 
 
 @dataclass(frozen=True)
@@ -42,19 +43,27 @@ class Prediction:
         A ratio, dimensionless: mean forward force with vibration over that without, mu F_z.
     mu_apparent, mu_apparent_error : float
         A coefficient of friction, dimensionless: the one that is felt, mu mu_macro.
-    friction_force_N, friction_force_still_N : float
-        Mean forward force with and without vibration, N, under the same mean load: that of the
-        oscillating load where it parts the bodies.
+    friction_force_N, friction_force_error_N, friction_force_still_N : float
+        Mean forward force with vibration, its error estimate, and the force without vibration, N,
+        under the same mean load: that of the oscillating load where it parts the bodies.
     force_reduction : float
-        1 - mu_macro, dimensionless.
+        1 - mu_macro, dimensionless; its error estimate is mu_macro_error.
     mu_static, mu_static_error : float or None
         A ratio: mu_macro in the limit of vanishing speed; None for steady motions.
-    mu_static_apparent : float or None
+    mu_static_apparent, mu_static_apparent_error : float or None
         The coefficient of friction there, mu mu_static; None for steady motions.
+    mu_static_reason : str
+        Why mu_static is not within its tolerance; else empty.
+    mu_static_spread, mu_static_low, mu_static_high : float or None
+        Standard uncertainty of mu_static that follows from those of the inputs, and the ends of an
+        interval with 95 % probability; None where every input is exact.
+    mu_static_apparent_spread, mu_static_apparent_low, mu_static_apparent_high : float or None
+        Standard uncertainty and 95 % interval of mu_static_apparent.
     model : str
         Contact model that gave mu_macro, or "closed-form".
     converged, reason : bool, str
-        Whether the error is within the tolerance, and why not; NaN has its reason there, too.
+        Whether the error of the requested quantity is within the tolerance, and why not: of
+        mu_macro, or of the speed under a force, and of vibration_power_W if it was requested.
     warnings : tuple of str
         Where an assumption of the theory breaks.
     not_checked : tuple of str
@@ -68,18 +77,29 @@ class Prediction:
         whether it moves; None where a speed was given, or the solver has no answer.
     speed_error_m_s, velocity_error : float or None
         Largest error that speed and velocity may have under a force, by estimate.
-    displacement_per_cycle_m : float or None
+    displacement_per_cycle_m, displacement_per_cycle_error_m : float or None
         Mean forward displacement in a period of the oscillation, m; None for steady motions.
-    time_to_1_mm_s, time_to_contact_radius_s : float or None
-        How long a contact that a force moves takes to walk so far, s.
+    time_to_1_mm_s, time_to_1_mm_error_s : float or None
+        Time in which a contact that a force moves goes 1 mm, s.
+    time_to_contact_radius_s, time_to_contact_radius_error_s : float or None
+        Time in which it goes one contact radius, s.
     displacement_m, displacement_error_m, cycles_to_rest : float or None
         How far a contact that stays under a force goes forward before it stands, with its error,
         and after how many periods nine tenths of what the vibration adds are gone.  None for what
         moves, has a mass or is not round.
     force_threshold_N, force_threshold_error_N : float or None
         Constant force from which on the contact moves, N; None where it is not known.
-    safety_factor : float or None
+    force_threshold_spread_N, force_threshold_low_N, force_threshold_high_N : float or None
+        Standard uncertainty and 95 % interval of the threshold, N.
+    safety_factor, safety_factor_error : float or None
         That threshold over the force; None without a force.
+    safety_factor_spread, safety_factor_low, safety_factor_high : float or None
+        Standard uncertainty and 95 % interval of the safety factor.
+    probability_stays, probability_moves, probability_runs_away : float or None
+        Probability of each outcome under a force, for independent inputs with normal distributions;
+        None where every input is exact or the threshold is not known.
+    probability_error : float or None
+        Largest error of these probabilities, by estimate.
     regime : str or None
         A key of regimes.REGIMES, of what is pulled through a spring or has a mass; else None.
     natural_frequency : float or None
@@ -94,12 +114,15 @@ class Prediction:
         powers are those of the body then, and sizes and groups of a contact with the mean load.
     torque_N_m, torque_error_N_m : float or None
         Torque that a steady spin takes, N m, and its error; None for motions that oscillate.
-    drag_power_W : float or None
+    drag_power_W, drag_power_error_W : float or None
         Mean work of the forward force in a second, W.
     vibration_power_W, vibration_power_error_W : float or None
         Mean work of the oscillation, or of the spin, in a second, W; of oscillations where it was
         asked for.
-    dissipated_power_W, energy_per_cycle_J : float or None
+    vibration_power_reason : str or None
+        Why the vibration power is not within the tolerance, else empty or None.
+    dissipated_power_W, dissipated_power_error_W : float or None
+    energy_per_cycle_J, energy_per_cycle_error_J : float or None
         Both powers together, W, which friction turns into heat, and what a period or a turn of it
         costs, J.
     load_N : float
@@ -131,11 +154,14 @@ class Prediction:
     mu_apparent: float
     mu_apparent_error: float
     friction_force_N: float
+    friction_force_error_N: float
     friction_force_still_N: float
     force_reduction: float
     mu_static: float | None
     mu_static_error: float | None
     mu_static_apparent: float | None
+    mu_static_apparent_error: float | None
+    mu_static_reason: str
     model: str
     converged: bool
     reason: str
@@ -155,14 +181,18 @@ class Prediction:
     speed_error_m_s: float | None = None
     velocity_error: float | None = None
     displacement_per_cycle_m: float | None = None
+    displacement_per_cycle_error_m: float | None = None
     time_to_1_mm_s: float | None = None
+    time_to_1_mm_error_s: float | None = None
     time_to_contact_radius_s: float | None = None
+    time_to_contact_radius_error_s: float | None = None
     displacement_m: float | None = None
     displacement_error_m: float | None = None
     cycles_to_rest: float | None = None
     force_threshold_N: float | None = None
     force_threshold_error_N: float | None = None
     safety_factor: float | None = None
+    safety_factor_error: float | None = None
     regime: str | None = None
     natural_frequency: float | None = None
     pressure: str = "hertz"
@@ -174,10 +204,14 @@ class Prediction:
     torque_N_m: float | None = None
     torque_error_N_m: float | None = None
     drag_power_W: float | None = None
+    drag_power_error_W: float | None = None
     vibration_power_W: float | None = None
     vibration_power_error_W: float | None = None
+    vibration_power_reason: str | None = None
     dissipated_power_W: float | None = None
+    dissipated_power_error_W: float | None = None
     energy_per_cycle_J: float | None = None
+    energy_per_cycle_error_J: float | None = None
     load_N: float | None = None
     sought: str | None = None
     sought_error: float | None = None
@@ -186,6 +220,26 @@ class Prediction:
     friction_force_spread_N: float | None = None
     speed_spread_m_s: float | None = None
     sought_spread: float | None = None
+    mu_static_spread: float | None = None
+    mu_static_low: float | None = None
+    mu_static_high: float | None = None
+    mu_static_apparent_spread: float | None = None
+    mu_static_apparent_low: float | None = None
+    mu_static_apparent_high: float | None = None
+    force_threshold_spread_N: float | None = None
+    force_threshold_low_N: float | None = None
+    force_threshold_high_N: float | None = None
+    safety_factor_spread: float | None = None
+    safety_factor_low: float | None = None
+    safety_factor_high: float | None = None
+    probability_stays: float | None = None
+    probability_moves: float | None = None
+    probability_runs_away: float | None = None
+    probability_error: float | None = None
+
+    def __str__(self) -> str:
+        """The lines that `microslip predict` prints."""
+        return prediction_text(self)
 
     @property
     def sought_value(self) -> float | None:

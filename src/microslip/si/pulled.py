@@ -8,12 +8,6 @@ from dataclasses import replace
 from microslip.adaptive.checks import LARGEST_FORCE, SMALLEST_TOLERANCE
 from microslip.adaptive.point import Result, solve
 from microslip.adaptive.shakedown import shakedown
-from microslip.adaptive.under_force import (
-    is_even,
-    oscillates,
-    oscillates_forward,
-    without_forward_motion,
-)
 from microslip.foundation.arguments import LARGEST, LARGEST_BODY, SMALLEST_STIFFNESS
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Drive
@@ -30,12 +24,15 @@ from microslip.si.dimensionless import (
 from microslip.si.reduction import friction_of
 from microslip.si.regimes import natural_frequency, regime
 from microslip.si.several import Carriers
+from microslip.si.static_limit import equals_static_limit
 
 SLOWEST = 1e-3
 """Velocity, in the unit of the scene, below which the accepted error is no longer relative."""
 MARGIN = 0.8
 """Of the accepted error that a second answer is asked for with: its velocity may be less."""
 MILLIMETRE = 1e-3
+RUNS_AWAY = "runs away"
+"""The outcome, and the beginning of the solver's reason for it."""
 
 
 def answer_of(
@@ -122,9 +119,11 @@ def about_drive(
     }
     if motion.speed is not None and motion.frequency is not None:
         fields["displacement_per_cycle_m"] = motion.speed / motion.frequency
+        fields["displacement_per_cycle_error_m"] = 0.0
     if drive.force is not None:
         if share is not None:
             fields["safety_factor"] = still * share / drive.force
+            fields["safety_factor_error"] = still * error / drive.force
         fields |= _walk(contact, motion, pulling["force"], answer)
         if fields["outcome"] == "stays" and set(pulling) == {"force"} and carriers.text is None:
             fields |= _way_to_rest(contact, motion, pulling["force"])
@@ -139,20 +138,11 @@ def about_drive(
 
 def _threshold(motion, carried, pulling, limit):
     """Force over mu F_z from which on a constant force moves the contact, and its error; None
-    where it is not known.
-
-    It is the friction at vanishing speed, where the oscillation exerts no forward force, be it that
-    of contacts which cancel.  Where it does, a contact without mass goes along, and all of friction
-    holds one that does nothing else; what else it does has no limit here.
-    """
-    if limit is None:
-        return 0.0, 0.0  # a steady spin turns all of friction aside
-    contact, carriers = carried
-    problem = carriers.problem(motion, contact)
-    if not oscillates_forward(problem) or is_even(problem):
+    where it is not known."""
+    share = equals_static_limit(carried[0], motion, carried[1], pulling.get("mass"))
+    if share is True:
         return limit.mu_macro, limit.mu_macro_error
-    still = not pulling.get("mass") and not oscillates(without_forward_motion(problem))
-    return (1.0, 0.0) if still else (None, None)
+    return (None, None) if share is None else (share, 0.0)
 
 
 def _walk(contact, motion, force, answer):
@@ -161,12 +151,15 @@ def _walk(contact, motion, force, answer):
     velocity, error = answer.velocity, answer.velocity_error
     speed = velocity * unit
     fields = {"velocity_error": error, "speed_error_m_s": error * unit if unit else 0.0}
-    fields["outcome"] = _outcome(force, velocity, error)
+    fields["outcome"] = _outcome(force, answer)
     if motion.frequency is not None:
         fields["displacement_per_cycle_m"] = speed / motion.frequency
+        fields["displacement_per_cycle_error_m"] = fields["speed_error_m_s"] / motion.frequency
     if fields["outcome"] == "moves":
-        fields["time_to_1_mm_s"] = MILLIMETRE / speed
-        fields["time_to_contact_radius_s"] = contact.contact_radius / speed
+        share = error / (velocity - error)  # largest relative error of what is over the velocity
+        for name, way in (("1_mm", MILLIMETRE), ("contact_radius", contact.contact_radius)):
+            fields[f"time_to_{name}_s"] = way / speed
+            fields[f"time_to_{name}_error_s"] = way / speed * share
     return fields
 
 
@@ -191,9 +184,10 @@ def _way_to_rest(contact, motion, force):
     }
 
 
-def _outcome(force, velocity, error):
-    if force >= 1.0:
-        return "runs away"
+def _outcome(force, answer):
+    velocity, error = answer.velocity, answer.velocity_error
+    if force >= 1.0 or answer.reason.startswith(RUNS_AWAY):
+        return RUNS_AWAY
     if not math.isfinite(velocity):
         return None
     if velocity == error == 0.0:

@@ -142,7 +142,7 @@ def _prediction(scene, given):
 
 def _question(scene, **given):
     """What is asked; raises what predict would raise before it solves anything."""
-    plain, _ = without_spreads(given)
+    plain, _ = without_spreads(scene, given)
     every = dict.fromkeys(signature(predict).parameters) | {"power": False}
     strange = [name for name in plain if name not in every]
     if strange:

@@ -8,13 +8,17 @@ Guide to the Expression of Uncertainty in Measurement, 5.1).
 from __future__ import annotations
 
 import functools
+import inspect
 import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from microslip.foundation.errors import InputError
+from microslip.si.motions import unit_of_amplitude
+from microslip.si.outcomes import UncertainInput, with_outcomes
 from microslip.si.quantities import read
+from microslip.si.question import asked as question_of
 from microslip.si.reduction import NotAttainedError
 
 UNITS = {
@@ -28,8 +32,18 @@ UNITS = {
     "young": "Pa",
     "nu": "",
     "force": "N",
+    "amplitude": "m",
+    "forward_amplitude": "m",
+    "rotation_amplitude": "rad",
+    "load_amplitude": "N",
+    "frequency": "Hz",
+    "rotation": "rad/s",
+    "drive_stiffness": "N/m",
+    "mass": "kg",
+    "damping": "N*s/m",
 }
-"""Arguments that may have a spread, and their SI units."""
+"""Arguments that may have a standard uncertainty, and their SI units; the amplitude of some scenes
+has another one."""
 FIELDS = {
     "mu_macro": "mu_macro_spread",
     "mu_apparent": "mu_apparent_spread",
@@ -37,7 +51,7 @@ FIELDS = {
     "speed_m_s": "speed_spread_m_s",
     "sought_value": "sought_spread",
 }
-"""Attributes of a Prediction that it is carried through to, and the fields where that is kept."""
+"""Attributes of a Prediction with an uncertainty, and the fields that hold it."""
 _SPREAD = re.compile(r"(.*?)\s*(?:\+-|\+/-|±)\s*(.*)", re.S)
 
 
@@ -46,23 +60,35 @@ def with_spreads(predict: Callable) -> Callable:
 
     @functools.wraps(predict)
     def asked(scene, **arguments):
-        plain, spread = without_spreads(arguments)
+        plain, spread = without_spreads(scene, arguments)
         found = predict(scene, **plain)
         if not spread:
             return found
+        ends = {
+            name: tuple(_predicted(predict, scene, plain, name, end) for end in pair)
+            for name, pair in spread.items()
+        }
         squares = {name: 0.0 for name in FIELDS if getattr(found, name) is not None}
-        for name, ends in spread.items():
-            low, high = (_predicted(predict, scene, plain, name, end) for end in ends)
+        for low, high in ends.values():
             for field in squares:
                 squares[field] += _half_of_difference(low, high, field) ** 2
         texts = {name: " ".join(str(arguments[name]).split()) for name in spread}
         spreads = {FIELDS[field]: math.sqrt(value) for field, value in squares.items()}
+        inputs = [
+            UncertainInput(name, 0.5 * (low + high), 0.5 * (high - low))
+            for name, (low, high) in spread.items()
+        ]
+        every = dict.fromkeys(inspect.signature(predict).parameters) | {"power": False} | plain
+        del every["scene"]
+        spreads |= with_outcomes(
+            found, inputs, lambda changes: question_of(scene, every | dict(changes)), ends
+        )
         return replace(found, **spreads, understood=found.understood | texts)
 
     return asked
 
 
-def without_spreads(arguments: Mapping[str, object]) -> tuple[dict, dict]:
+def without_spreads(scene: object, arguments: Mapping[str, object]) -> tuple[dict, dict]:
     """Arguments of predict without the spreads in them, and the ends of those that have one.
 
     Raises InputError for a spread that is none.
@@ -70,8 +96,11 @@ def without_spreads(arguments: Mapping[str, object]) -> tuple[dict, dict]:
     plain, ends = dict(arguments), {}
     for name, unit in UNITS.items():
         parts = _parts(arguments.get(name))
-        if parts is not None:
-            plain[name], ends[name] = parts[0], _ends(name, arguments[name], parts, unit)
+        if parts is None:
+            continue
+        if name == "amplitude" and isinstance(scene, str):
+            unit = unit_of_amplitude(scene) or unit
+        plain[name], ends[name] = parts[0], _ends(name, arguments[name], parts, unit)
     return plain, ends
 
 

@@ -69,7 +69,8 @@ def report(periods: dict) -> Iterator[str]:
     """
     for name, records in periods.items():
         bad = [record for record in records if not record["result"]["converged"]]
-        yield f"explorer: {name}: {len(records)} periods, {len(bad) or 'none'} not converged"
+        failed = f"{len(bad)} not converged" if bad else "all converged"
+        yield f"explorer: {name}: {len(records)} periods, {failed}"
         for record in bad:
             where = ", ".join(
                 f"{dim} {record['request'][dim]}" for dim in ("amplitude", "velocity")

@@ -10,7 +10,7 @@ import pytest
 from stubs.in_process import run
 
 import microslip
-from microslip.app.printed_error import error_text
+from microslip.foundation.number_text import error_text, interval_text, number_text
 
 LARGEST_PRINTED = 1.7e308
 """Two digits of a larger error may be more than any float."""
@@ -72,7 +72,43 @@ def test_a_prediction_claims_no_less_than_its_errors():
     for name, error in (
         ("mu_macro", found.mu_macro_error),
         ("mu_apparent", found.mu_apparent_error),
+        ("friction force", found.friction_force_error_N),
+        ("static friction", found.mu_static_apparent_error),
+        ("force threshold", found.force_threshold_error_N),
         ("power", found.vibration_power_error_W),
+        ("", found.drag_power_error_W),
+        ("energy", found.energy_per_cycle_error_J),
     ):
-        said = re.search(rf"^{name} +\S+ \+- ([\d.e+-]+)", text, re.MULTILINE)
-        assert error <= float(said[1]) <= 1.1 * error
+        said = re.search(rf"^{name} +\S+ \+- ([\d.e+-]+) ?([mu]?)", text, re.MULTILINE)
+        unit = {"": 1.0, "m": 1e-3, "u": 1e-6}[said[2]]
+        assert (
+            error <= unit * float(said[1]) * (1.0 + 1e-12) and unit * float(said[1]) <= 1.1 * error
+        )
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [
+        (0.22633, 0.00072, "0.22633 +- 0.00072"),
+        (91.39337, 0.13034, "91.39 +- 0.14"),
+        (1234.0, 150.0, "1230 +- 150"),
+        (1e-4, 8.3e-6, "0.0001000 +- 0.0000083"),
+        (3e-7, 1e-9, "(3.000 +- 0.010)e-07"),
+        (0.6, 4.4e-17, "0.6"),
+        (1.0 / 3.0, 0.0, "0.3333"),
+        (0.0, 4.4e-17, "0"),
+        (-2e-6, 1e-5, "0 +- 1.2e-05"),
+        (4.0, 99.9, "0 +- 110"),
+        (math.nan, 1.0, "nan"),
+        (2.0, math.inf, "2 +- inf"),
+    ],
+)
+def test_a_number_has_the_digits_that_its_error_allows(value, error, text):
+    """A number that is 0 within its error is 0, within an error that covers both."""
+    assert number_text(value, error) == text
+
+
+def test_ends_of_an_interval_have_two_digits_of_its_width():
+    assert interval_text(41.234, 133.3, "N") == "41 to 133 N"
+    assert interval_text(0.0, 0.2149) == "0.00 to 0.21"
+    assert interval_text(3.0, 3.0) == "3 to 3"

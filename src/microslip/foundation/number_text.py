@@ -1,0 +1,127 @@
+"""Numbers and their error estimates as text: as many digits as the error allows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from decimal import ROUND_CEILING, Context, Decimal
+
+ERROR_DIGITS = 2
+"""Significant digits of an error.  Rounded up to one digit, it could appear twice as large."""
+EXACT_DIGITS = 4
+"""Significant digits of a number without an error."""
+EXACT = 1e-9
+"""Relative error below which a number is printed without it: no printed digit can be wrong."""
+ROUNDING = 1e-12
+"""Error below which a zero is printed without it: it is the rounding error of numbers near 1."""
+FIXED = -4, 7
+"""Decimal exponents between which numbers are printed without an exponent."""
+_ROUNDED_UP = Context(prec=ERROR_DIGITS, rounding=ROUND_CEILING)
+_WIDE = Context(prec=800)
+"""Decimal digits that suffice for any two floats."""
+SEPARATOR = " +- "
+
+
+def error_text(error: float) -> str:
+    """An error with two significant digits, rounded up; infinity, NaN and 0 as they are.
+
+    The decimals rounded are the shortest that mean this float: 0.01 stays 0.01, although the float
+    of that name lies a little above it.
+    """
+    error = float(error)
+    if math.isfinite(error):
+        error = float(_rounded_up(error))
+    return f"{error:.{ERROR_DIGITS}g}"
+
+
+def number_text(
+    value: float, error: float = 0.0, unit: str = "", *, digits: int = EXACT_DIGITS
+) -> str:
+    """A number with its error estimate, and its unit.
+
+    Parameters
+    ----------
+    value, error : float
+        The number and its error estimate, both in the unit.
+    unit : str
+        Unit to print behind them.
+    digits : int
+        Significant digits of a number whose error is 0, or below a billionth of it.
+
+    Returns
+    -------
+    str
+        "0.2263 +- 0.0072 N": the error with two significant digits, rounded up, and the number
+        to the last decimal of the error.  A number that is 0 within its error is printed as 0, and
+        the error then covers both.
+    """
+    value, error = float(value), float(error)
+    text = _text(value, error, digits)
+    return f"{text} {unit}".rstrip()
+
+
+def _text(value, error, digits):
+    if not math.isfinite(value):
+        return f"{value:g}"
+    if not math.isfinite(error):
+        return f"{_plain(value, digits)}{SEPARATOR}{error:g}"
+    if error <= EXACT * abs(value) or abs(value) <= error <= ROUNDING:
+        return _plain(value if error <= EXACT * abs(value) else 0.0, digits)
+    if abs(value) <= error:
+        return f"0{SEPARATOR}{_short(_rounded_up(abs(value) + error))}"
+    rounded = _rounded_up(error)
+    exponent = rounded.adjusted() + 1 - ERROR_DIGITS
+    number = Decimal(repr(value)).quantize(Decimal((0, (1,), exponent)), context=_WIDE)
+    low, high = FIXED
+    if low <= number.adjusted() < high:
+        return f"{number:f}{SEPARATOR}{rounded.quantize(number, context=_WIDE):f}"
+    power = number.adjusted()
+    parts = [part.scaleb(-power, context=_WIDE) for part in (number, rounded)]
+    parts[1] = parts[1].quantize(parts[0], context=_WIDE)
+    return f"({parts[0]:f}{SEPARATOR}{parts[1]:f})e{power:+03d}"
+
+
+def _plain(value, digits):
+    """A number with some significant digits and no exponent unless it is very large or small."""
+    if value == 0.0:
+        return "0"
+    return _short(Context(prec=digits).create_decimal(Decimal(repr(value))).normalize())
+
+
+def _short(number):
+    """A decimal as it is, with an exponent where it is very large or small."""
+    low, high = FIXED
+    return f"{number:f}" if low <= number.adjusted() < high else f"{float(number):g}"
+
+
+def _rounded_up(error):
+    return _ROUNDED_UP.create_decimal(Decimal(repr(error)))
+
+
+def interval_text(low: float, high: float, unit: str = "") -> str:
+    """Both ends of an interval, to two significant digits of its width."""
+    width = float(high) - float(low)
+    if not (math.isfinite(width) and width > 0.0):
+        ends = [_text(float(end), 0.0, EXACT_DIGITS) for end in (low, high)]
+    else:
+        exponent = Decimal(repr(width)).adjusted() + 1 - ERROR_DIGITS
+        place = Decimal((0, (1,), exponent))
+        ends = [
+            f"{abs(end) if end == 0 else end:f}"
+            for end in (Decimal(repr(float(e))).quantize(place, context=_WIDE) for e in (low, high))
+        ]
+    return f"{ends[0]} to {ends[1]} {unit}".strip()
+
+
+def aligned(columns: Mapping[str, tuple[Sequence[float], Sequence[float] | None]]) -> list[str]:
+    """Lines of a table of numbers and their errors, aligned to the right.
+
+    columns: values and their errors, None for exact values, by the heading of their column.
+    """
+    texts = []
+    for heading, (values, errors) in columns.items():
+        errors = [0.0] * len(values) if errors is None else errors
+        cells = [number_text(*pair) for pair in zip(values, errors, strict=True)]
+        width = max(map(len, (heading, *cells)))
+        texts.append([f"{cell:>{width}}" for cell in (heading, *cells)])
+    return ["  ".join(row) for row in zip(*texts, strict=True)]

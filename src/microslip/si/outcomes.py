@@ -1,0 +1,236 @@
+"""Uncertainty of the static limit and probability of each outcome under a force.
+
+The uncertain inputs are independent and normally distributed.  A low-discrepancy sequence draws
+them; the same request always gets the same draws.  Forces and amplitudes of a draw follow from
+those along each input alone, whose logarithms add up: this is exact for power laws, such as those
+of Hertz.  Friction at vanishing speed is a function of the amplitude, solved at a few of them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from microslip.foundation.errors import InputError
+from microslip.si.dimensionless import full_friction, groups, parts
+from microslip.si.motions import COMBINED
+from microslip.si.prediction import Prediction
+from microslip.si.question import Question
+from microslip.si.static_curve import static_limits
+from microslip.si.static_limit import equals_static_limit, largest_force
+
+DRAWS = 2**16
+"""Number of draws: their error of a probability is below 1e-3."""
+DEVIATIONS = np.linspace(-4.0, 4.0, 17)
+"""Standard deviations from the central value at which the closed forms of a contact are tabulated;
+1 in 16000 draws lies beyond."""
+SMALLEST_SHARE = 1e-2
+"""Least value of a positive quantity that is tabulated, over its central value."""
+SAME_SHARE = 9
+"""Decimal of a share of the amplitude below which a change is rounding."""
+INTERVAL = 0.025, 0.975
+"""Quantiles of an interval with 95 % probability."""
+
+
+@dataclass(frozen=True)
+class UncertainInput:
+    """An argument of predict with its standard uncertainty, in SI units."""
+
+    name: str
+    value: float
+    deviation: float
+
+
+@dataclass(frozen=True)
+class _State:
+    """Closed forms of one set of inputs: forces in N, the amplitude as a group, and what else the
+    static limit depends on."""
+
+    still: float
+    largest: float
+    amplitude: float
+    mu: float
+    poisson: float
+    force: float | None
+    shape: tuple
+
+
+def with_outcomes(
+    found: Prediction,
+    inputs: list[UncertainInput],
+    question_at: Callable[[Mapping[str, float]], Question],
+    ends: Mapping[str, tuple[Prediction | None, Prediction | None]],
+) -> dict[str, float]:
+    """Fields of a Prediction for the uncertainty of its static limit and the outcome.
+
+    Parameters
+    ----------
+    found : Prediction
+        At the central values.
+    inputs : list of UncertainInput
+        The uncertain arguments.
+    question_at : callable
+        question_at(changes) -> Question with some arguments changed.
+    ends : mapping
+        Predictions one standard deviation below and above, by the names of the inputs.
+    """
+    question = question_at({})
+    if question.sought is not None:
+        return {}
+    share = equals_static_limit(
+        question.contact, question.motion, question.carriers, question.drive.mass
+    )
+    draws = _draws(len(inputs))
+    table = _Table(_state(question), inputs, question_at, draws)
+    if table.centre.amplitude is None:
+        static = None
+    else:
+        static = _static_of(found, question, table, ends, draws)
+    fields = {}
+    if static is not None:
+        value, error = static
+        fields |= _distribution("mu_static", value)
+        fields |= _distribution("mu_static_apparent", table.mu * value)
+    if share is True:
+        value, error = static
+    elif share is not None:
+        value, error = np.full(DRAWS, share), np.zeros(DRAWS)
+    if share is not None:
+        fields |= _distribution("force_threshold", table.still * value, "_N")
+    if question.drive.force is None:
+        return fields
+    away = table.force >= table.largest
+    fields["probability_runs_away"] = float(np.mean(away))
+    if share is None:
+        return fields
+    fields |= _distribution("safety_factor", table.still * value / table.force)
+    stays = {
+        sign: ~away & (table.force < table.still * (value + sign * error)) for sign in (0, -1, 1)
+    }
+    probability = {sign: float(np.mean(one)) for sign, one in stays.items()}
+    fields["probability_stays"] = probability[0]
+    fields["probability_moves"] = max(0.0, 1.0 - probability[0] - fields["probability_runs_away"])
+    halves = [float(np.mean(stays[0][first::2])) for first in (0, 1)]
+    fields["probability_error"] = max(
+        *(abs(probability[sign] - probability[0]) for sign in (-1, 1)), abs(halves[0] - halves[1])
+    )
+    return fields
+
+
+def _distribution(name, draws, unit=""):
+    """Standard deviation and interval of a quantity."""
+    low, high = np.quantile(draws, INTERVAL)
+    return {
+        f"{name}_spread{unit}": float(np.std(draws)),
+        f"{name}_low{unit}": float(low),
+        f"{name}_high{unit}": float(high),
+    }
+
+
+def _draws(count):
+    """Independent standard normal numbers, shape (DRAWS, count): a Kronecker sequence whose
+    irrational numbers are powers of the root of x^(count + 1) = x + 1."""
+    from scipy.special import ndtri
+
+    root = 2.0
+    for _ in range(60):  # a contraction by at least 2 in every step
+        root = (1.0 + root) ** (1.0 / (count + 1.0))
+    steps = root ** -np.arange(1.0, count + 1.0)
+    return ndtri(np.mod(0.5 + np.arange(1.0, DRAWS + 1.0)[:, None] * steps, 1.0))
+
+
+def _state(question):
+    contact, motion, carriers = question.contact, question.motion, question.carriers
+    _, amplitude = groups(motion, contact)
+    still = full_friction(motion, contact) * carriers.count
+    largest = still * largest_force(contact, motion, carriers, question.drive.mass)
+    shape = (contact.pressure,)
+    if amplitude and motion.scene in COMBINED:
+        shape += tuple(
+            round(one / amplitude, SAME_SHARE) for one in parts(motion, contact).values()
+        )
+    force = question.drive.force
+    return _State(still, largest, amplitude, contact.mu, contact.poisson, force, shape)
+
+
+class _Table:
+    """Closed forms at all draws, from those along each input alone: mu, forces in N, the logarithm
+    of the amplitude, Poisson's ratio."""
+
+    def __init__(self, centre, inputs, question_at, draws):
+        self.centre = centre
+        self.one_shape = True
+        logarithms = {name: math.log(getattr(centre, name)) for name in ("still", "mu")}
+        logarithms["largest"] = _log(centre.largest)
+        logarithms["amplitude"] = _log(centre.amplitude or 0.0)
+        self.poisson = np.full(DRAWS, centre.poisson)
+        self.force = None if centre.force is None else np.full(DRAWS, centre.force)
+        broken = np.zeros(DRAWS, dtype=bool)
+        for column, one in zip(draws.T, inputs, strict=True):
+            drawn = one.value + column * one.deviation
+            signed = drawn * math.copysign(1.0, one.value)
+            broken |= (signed <= 0.0) & (one.name in ("mu", "load"))
+            places, states = _along(one, question_at)
+            self.one_shape &= all(state.shape == centre.shape for state in states)
+            where = np.log(np.maximum(signed, SMALLEST_SHARE * abs(one.value)))
+            for name in logarithms:
+                values = [_log(getattr(state, name) or 0.0) for state in states]
+                change = np.array(values) - _log(getattr(centre, name) or 0.0)
+                logarithms[name] = logarithms[name] + np.interp(where, places, change)
+            change = np.array([state.poisson - centre.poisson for state in states])
+            self.poisson += np.interp(where, places, change)
+            if one.name == "force":
+                self.force = np.maximum(drawn, 0.0)
+        self.mu, self.still, self.largest = (
+            np.where(broken, 0.0, np.exp(logarithms[name]) * np.ones(DRAWS))
+            for name in ("mu", "still", "largest")
+        )
+        self.amplitude = logarithms["amplitude"] * np.ones(DRAWS)
+
+
+SMALLEST_LOGARITHM = -700.0
+"""Logarithm of the smallest number near 1e-304; that of 0 is replaced by it."""
+
+
+def _log(value):
+    return math.log(value) if value > 0.0 else SMALLEST_LOGARITHM
+
+
+def _along(one, question_at):
+    """Logarithms of the size of an input, ascending, and the states there; values that predict
+    refuses are left out."""
+    sign = math.copysign(1.0, one.value)
+    sizes = np.sort(sign * (one.value + DEVIATIONS * one.deviation))
+    places, states = [], []
+    for size in sizes[sizes >= SMALLEST_SHARE * abs(one.value)]:
+        try:
+            states.append(_state(question_at({one.name: sign * float(size)})))
+        except InputError:
+            continue
+        places.append(math.log(size))
+    return np.array(places), states
+
+
+def _static_of(found, question, table, ends, draws):
+    """mu_static of all draws and its error."""
+    if not math.isfinite(found.mu_static):
+        return np.full(DRAWS, np.nan), np.full(DRAWS, np.inf)
+    if not table.centre.amplitude:
+        return np.full(DRAWS, found.mu_static), np.full(DRAWS, found.mu_static_error)
+    if table.one_shape:
+        centre = (
+            table.centre.amplitude,
+            table.centre.poisson,
+            found.mu_static,
+            found.mu_static_error,
+        )
+        forces = None if table.force is None else (table.still, table.force)
+        return static_limits(question, centre, table.amplitude, table.poisson, forces)
+    value = np.full(DRAWS, found.mu_static)
+    for column, (low, high) in zip(draws.T, ends.values(), strict=True):
+        changes = [0.0 if one is None else one.mu_static - found.mu_static for one in (low, high)]
+        value += np.where(column < 0.0, -column * changes[0], column * changes[1])
+    return np.clip(value, 0.0, 1.0), np.full(DRAWS, found.mu_static_error)

@@ -1,0 +1,107 @@
+"""The static limit at many amplitudes, interpolated between a few at which it is solved."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+
+from microslip.adaptive.point import solve
+from microslip.foundation.arguments import LARGEST
+from microslip.si.dimensionless import solver_scene
+from microslip.si.question import Question
+from microslip.si.static_limit import TOLERANCE, tolerance_of
+
+AMPLITUDES = 9
+"""Number of amplitudes at which the static limit is solved: quantiles of the drawn ones, from three
+standard deviations below to three above.  tests/si/test_outcomes.py checks it by Monte Carlo."""
+REFINEMENTS = 3
+"""Number of further amplitudes, each in the middle of the draws whose threshold is closest to the
+force."""
+CLOSEST = 64
+"""One in so many draws is close to the force."""
+SAME_AMPLITUDE, SAME_POISSON = 1e-9, 1e-9
+"""Range of the logarithm of the amplitude and standard deviation of Poisson's ratio below which a
+change is rounding."""
+
+
+def static_limits(
+    question: Question,
+    centre: tuple[float, float, float, float],
+    amplitudes: np.ndarray,
+    poisson: np.ndarray,
+    forces: tuple[np.ndarray, np.ndarray] | None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """mu_static of many draws, and its error estimate: to first order of Poisson's ratio.
+
+    Parameters
+    ----------
+    question : question.Question
+        The request at the central values.
+    centre : tuple of float
+        Amplitude and Poisson's ratio there, mu_static and its error.
+    amplitudes, poisson : np.ndarray, shape (draws,)
+        Logarithm of the amplitude as a group, and Poisson's ratio.
+    forces : tuple of np.ndarray or None
+        Friction without vibration and the prescribed force, N, for the choice of amplitudes.
+    """
+    from scipy.interpolate import PchipInterpolator
+    from scipy.special import ndtr
+
+    limit = _limits_of(question)
+    amplitude, ratio, *solved = centre
+    known = {math.log(amplitude): tuple(solved)}
+    where = np.minimum(amplitudes, math.log(LARGEST["amplitude"]))
+
+    def solve_at(place):
+        answer = limit(math.exp(place), ratio)
+        if answer is not None:
+            known[place] = answer
+
+    def interpolated():
+        places = np.array(sorted(known))
+        if places.size == 1:
+            return tuple(np.full(where.shape, part) for part in known[places[0]])
+        within = np.clip(where, places[0], places[-1])
+        values, errors = np.array([known[place] for place in places]).T
+        return PchipInterpolator(places, values)(within), np.interp(within, places, errors)
+
+    if np.ptp(where) > SAME_AMPLITUDE:
+        for place in np.quantile(where, ndtr(np.linspace(-3.0, 3.0, AMPLITUDES))):
+            solve_at(float(place))
+    for _ in range(REFINEMENTS if len(known) > 1 and forces is not None else 0):
+        value, _ = interpolated()
+        count = where.size // CLOSEST
+        closest = np.argpartition(np.abs(forces[0] * value - forces[1]), count)[:count]
+        solve_at(float(np.median(where[closest])))
+    value, error = interpolated()
+    change = _slope(limit, amplitude, ratio, float(np.std(poisson))) * (poisson - ratio)
+    return np.clip(value + change, 0.0, 1.0), error
+
+
+def _slope(limit: Callable, amplitude: float, ratio: float, deviation: float) -> float:
+    """Derivative of mu_static by Poisson's ratio."""
+    if deviation < SAME_POISSON:
+        return 0.0
+    ends = [min(max(ratio + sign * deviation, 0.0), 0.5) for sign in (-1, 1)]
+    low, high = (limit(amplitude, end) for end in ends)
+    if low is None or high is None:
+        return 0.0
+    return (high[0] - low[0]) / (ends[1] - ends[0])
+
+
+def _limits_of(question):
+    """limit(amplitude, poisson) -> (mu_static, error), or None where the solver has no answer."""
+    scene = solver_scene(question.motion, question.contact)
+    settings = {"pressure": question.contact.pressure} | question.carriers.settings
+    settings["tolerance"] = tolerance_of(question.motion, TOLERANCE)
+
+    @cache
+    def limit(amplitude, poisson):
+        answer = solve(scene, 0.0, amplitude, poisson=poisson, **settings)
+        finite = math.isfinite(answer.mu_macro) and math.isfinite(answer.mu_macro_error)
+        return (answer.mu_macro, answer.mu_macro_error) if finite else None
+
+    return limit

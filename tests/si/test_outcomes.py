@@ -1,0 +1,145 @@
+"""Uncertain inputs and the static limit: against a Monte Carlo of closed forms."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+import microslip
+from microslip.app import cli
+from microslip.theory import paper
+
+JOINT = {"young": "210 GPa", "nu": 0.0, "radius": "200 mm", "load": "1 kN", "frequency": "50 Hz"}
+SHAKEN = {"amplitude": "0.25 um", "force": "90 N"}
+SPIN = {"young": "210 GPa", "nu": 0.0, "radius": "5 mm", "frequency": "50 Hz"}
+
+
+def monte_carlo(static, mu, load, amplitude, force, radius=0.2, count=20_000):
+    """Shares of draws that stay, move and run away, and their thresholds, in closed form.
+
+    A rigid counterbody and nu = 0: a^3 = 3 F R / (4 E), u_lim = mu d E / G* with G* = 2 G = E.
+    """
+    draw = np.random.default_rng(7).standard_normal((4, count))
+    mu, load, amplitude, force = (
+        value + deviation * one
+        for (value, deviation), one in zip((mu, load, amplitude, force), draw, strict=True)
+    )
+    mu, load = np.maximum(mu, 1e-9), np.maximum(load, 1e-9)
+    a = (0.75 * load * radius / 210e9) ** (1.0 / 3.0)
+    u_lim = mu * a**2 / radius
+    threshold = mu * load * static(np.abs(amplitude) / u_lim, a / u_lim)
+    stays, away = force < threshold, force >= mu * load
+    return np.mean(stays), np.mean(~stays & ~away), np.mean(away), threshold
+
+
+def transverse(size, _):
+    """The static limit of a transverse vibration, interpolated in its closed form."""
+    known = np.linspace(0.0, 1.0, 401)
+    return np.interp(size, known, [float(paper.static_limit_transverse(one)) for one in known])
+
+
+def bore(angle, scale):
+    """The static limit of a bore oscillation, whose angle is over that of u_lim."""
+    known = np.geomspace(1e-3, 1e3, 601)
+    values = [float(paper.static_limit_bore(one)) for one in known]
+    return np.interp(angle * scale, known, values)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("given", "drawn"),
+    [
+        ({"mu": "0.15 +- 0.05"}, {"mu": (0.15, 0.05)}),
+        ({"force": "90 N +- 5 %"}, {"force": (90.0, 4.5)}),
+        ({"amplitude": "0.25 um +- 0.05 um"}, {"amplitude": (0.25e-6, 0.05e-6)}),
+        (
+            {"mu": "0.15 +- 0.01", "load": "1 kN +- 5 %", "force": "80 N +- 10 N"},
+            {"mu": (0.15, 0.01), "load": (1e3, 50.0), "force": (80.0, 10.0)},
+        ),
+    ],
+    ids=lambda one: "-".join(one),
+)
+def test_outcomes_and_intervals_are_those_of_a_monte_carlo(given, drawn):
+    """20 000 draws have errors below 0.004 of a probability."""
+    found = microslip.predict("transverse", **JOINT | {"mu": 0.15} | SHAKEN | given)
+    exact = {"mu": (0.15, 0.0), "load": (1e3, 0.0), "amplitude": (0.25e-6, 0.0), "force": (90.0, 0)}
+    *shares, threshold = monte_carlo(transverse, **exact | drawn)
+    several = (found.probability_stays, found.probability_moves, found.probability_runs_away)
+    assert several == pytest.approx(shares, abs=0.012 + found.probability_error)
+    assert sum(several) == pytest.approx(1.0)
+    low, high = np.quantile(threshold, (0.025, 0.975))
+    assert found.force_threshold_low_N == pytest.approx(low, abs=2.0)
+    assert found.force_threshold_high_N == pytest.approx(high, abs=2.0)
+    assert found.force_threshold_spread_N == pytest.approx(threshold.std(), rel=0.04, abs=0.3)
+
+
+def test_one_uncertain_input_decides_by_its_own_distribution():
+    """All of friction is mu F: with mu = 0.10 +- 0.02 and 120 N the contact runs away where mu is
+    below 0.12, that is one deviation above the centre, with the probability 0.8413."""
+    given = JOINT | {"mu": "0.1 +- 0.02", "amplitude": "0.5 um", "force": "120 N"}
+    found = microslip.predict("transverse", **given)
+    assert found.probability_runs_away == pytest.approx(0.8413, abs=1e-3)
+
+
+def test_equal_inputs_give_equal_bits():
+    given = JOINT | {"mu": 0.15} | SHAKEN | {"force": "90 N +- 5 %"}
+    one, other = (microslip.predict("transverse", **given).to_dict() for _ in range(2))
+    assert one == other
+
+
+def test_an_uncertain_load_moves_the_static_friction_of_a_spin():
+    """The static limit of a bore is known in closed form: its interval is that of the load's."""
+    given = SPIN | {"mu": 0.3, "load": "10 N +- 10 %", "amplitude": "0.5 deg", "speed": "1 mm/s"}
+    found = microslip.predict("bore", **given)
+    ends = [
+        microslip.predict("bore", **given | {"load": 10.0 + sign * 1.959964}).mu_static
+        for sign in (-1.0, 1.0)
+    ]
+    assert [found.mu_static_low, found.mu_static_high] == pytest.approx(sorted(ends), rel=2e-3)
+    assert found.probability_stays is None
+
+
+@pytest.mark.parametrize(
+    ("scene", "given"),
+    [
+        ("transverse", {"amplitude": "1 um +- 10 %"}),
+        ("transverse", {"amplitude": "1 um", "frequency": "20 kHz +- 10 %"}),
+    ],
+)
+def test_amplitude_and_frequency_may_be_uncertain(scene, given):
+    """The spread is half the difference of the answers at both ends."""
+    steel = {"material": "steel", "radius": "5 mm", "load": "10 N", "mu": 0.3, "speed": "10 mm/s"}
+    asked = steel | {"frequency": "20 kHz", "tolerance": 0.01} | given
+    found = microslip.predict(scene, **asked)
+    name = next(name for name, text in given.items() if "+-" in text)
+    value = {"amplitude": 1e-6, "frequency": 20e3}[name]
+    ends = [microslip.predict(scene, **asked | {name: f * value}) for f in (0.9, 1.1)]
+    difference = 0.5 * abs(ends[1].mu_apparent - ends[0].mu_apparent)
+    assert found.mu_apparent_spread == pytest.approx(difference)
+    assert difference > 0.0
+
+
+def words(**given):
+    return [word for name, text in given.items() for word in (f"--{name}", str(text))]
+
+
+@pytest.mark.long
+def test_the_verdict_is_printed_with_its_probability(capsys):
+    given = JOINT | {"mu": "0.15+-0.05"} | SHAKEN | {"force": "80 N"}
+    assert cli.main(["predict", "transverse", *words(**given)]) == 0
+    text = capsys.readouterr().out
+    found = microslip.predict("transverse", **given)
+    assert found.outcome == "stays" and 0.5 < found.probability_stays < 0.7
+    share = re.search(r"^probability +([\d.]+) \+- [\d.]+ % that it stays", text, re.MULTILINE)
+    assert float(share[1]) == pytest.approx(100.0 * found.probability_stays, abs=0.1)
+    assert "with the central values it stays" in text
+    titles = re.findall(r"^(.{17}) .*\n {18}95 % interval ", text, re.MULTILINE)
+    assert [title.strip() for title in titles] == ["force threshold", "safety factor"]
+
+
+def test_without_uncertain_inputs_there_is_no_probability():
+    found = microslip.predict("transverse", **JOINT | {"mu": 0.15} | SHAKEN)
+    assert found.probability_stays is None and found.force_threshold_spread_N is None
+    assert math.isfinite(found.safety_factor_error)
+    assert "probability" not in str(found)
