@@ -83,7 +83,7 @@ def test_the_same_contact_in_other_words(changed, same, monkeypatch):
             seen.append((velocity, amplitude, settings["poisson"], settings["tolerance"]))
             return RIGID
 
-        monkeypatch.setattr("microslip.si.predict.solve", solve)
+        monkeypatch.setattr("microslip.si.static_limit.solve", solve)
         monkeypatch.setattr("microslip.si.reduction.solve", solve)
         found = predict("transverse", **BALL | words)
         return [*seen[0], found.contact_radius_m, found.u_lim_m]

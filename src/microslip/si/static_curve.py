@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 
@@ -19,7 +20,7 @@ AMPLITUDES = 9
 standard deviations below to three above.  tests/si/test_outcomes.py checks it by Monte Carlo."""
 REFINEMENTS = 3
 """Number of further amplitudes, each in the middle of the draws whose threshold is closest to the
-force."""
+force; and of those by which the amplitude is bisected above which the limit is 0."""
 CLOSEST = 64
 """One in so many draws is close to the force."""
 SAME_AMPLITUDE, SAME_POISSON = 1e-9, 1e-9
@@ -71,6 +72,13 @@ def static_limits(
     if np.ptp(where) > SAME_AMPLITUDE:
         for place in np.quantile(where, ndtr(np.linspace(-3.0, 3.0, AMPLITUDES))):
             solve_at(float(place))
+    for _ in range(REFINEMENTS):
+        pairs = pairwise(sorted(known.items()))
+        ends = [
+            (a, b) for (a, one), (b, other) in pairs if one[0] > one[1] and other[0] <= other[1]
+        ]
+        if ends:
+            solve_at(0.5 * sum(ends[-1]))
     for _ in range(REFINEMENTS if len(known) > 1 and forces is not None else 0):
         value, _ = interpolated()
         count = where.size // CLOSEST
@@ -79,6 +87,11 @@ def static_limits(
     value, error = interpolated()
     change = _slope(limit, amplitude, ratio, float(np.std(poisson))) * (poisson - ratio)
     return np.clip(value + change, 0.0, 1.0), error
+
+
+def _above_zero(limit):
+    value, error = limit
+    return value > error
 
 
 def _slope(limit: Callable, amplitude: float, ratio: float, deviation: float) -> float:
