@@ -1,0 +1,124 @@
+"""A prediction in words: print() and the command line show the same, each number with its error."""
+
+import math
+import re
+from dataclasses import replace
+
+import pytest
+
+import microslip
+from microslip.app import cli, predict_command
+from microslip.si import pulled, static_limit
+
+BALL = {"material": "steel", "radius": "5 mm", "load": "10 N", "mu": "0.3", "frequency": "20 kHz"}
+SLOW = {"amplitude": "0.1 um", "speed": "1 mm/s", "tolerance": "0.01"}
+
+
+def words(**given):
+    return [word for name, text in given.items() for word in (f"--{name}", text)]
+
+
+def said(capsys, scene, code=0, **given):
+    assert cli.main(["predict", scene, *words(**given)]) == code
+    return capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_print_shows_what_the_command_line_shows(capsys):
+    for more in ({"speed": "1 mm/s"}, {"force": "1 N"}):
+        given = BALL | {"amplitude": "0.1 um", "tolerance": "0.01"} | more
+        found = microslip.predict("transverse", **given)
+        assert said(capsys, "transverse", **given) == f"{found}\n"
+
+
+@pytest.mark.slow
+def test_every_computed_number_has_its_error(capsys):
+    text = said(capsys, "transverse", **BALL | SLOW)
+    number = r"\d[\d.]* \+- \d[\d.]*"
+    for title in ("mu_macro", "mu_apparent", "friction force", "static friction"):
+        assert re.search(rf"^{title} +{number}( N)?[: ]", text, re.MULTILINE), title
+    assert re.search(rf"^force threshold +{number} N: no smaller", text, re.MULTILINE)
+    text = said(capsys, "transverse", **BALL | {"amplitude": "0.1 um", "force": "1 N"})
+    assert re.search(rf"^safety factor +{number}: ", text, re.MULTILINE)
+
+
+def test_lengths_of_one_answer_have_one_unit(capsys):
+    text = said(capsys, "transverse", **BALL | SLOW)
+    answer = text.split("\n\n")[1]
+    lengths = re.findall(
+        r"^(?:contact radius|indentation|u_lim|amplitude) +\S+ (\S+?),?$",
+        re.sub(r" dimensionless.*", "", answer),
+        re.MULTILINE,
+    )
+    assert lengths == ["um"] * 4
+
+
+def test_an_exact_number_has_no_error_and_a_zero_none_of_rounding(capsys):
+    """A steady spin has a closed form."""
+    given = BALL | {"speed": "1 mm/s", "rotation": "10 rad/s"}
+    del given["frequency"]
+    text = said(capsys, "continuous-bore", **given)
+    assert "e-17" not in text and re.search(r"^mu_macro +0\.\d+: ratio", text, re.MULTILINE)
+
+
+def test_longitudinal_says_why_the_threshold_is_not_the_static_friction(capsys):
+    text = said(capsys, "longitudinal", **BALL | {"amplitude": "1 um", "speed": "1 mm/s"})
+    assert re.search(r"^static friction +0 \+- ", text, re.MULTILINE)
+    assert re.search(r"^force threshold +3 N: ", text, re.MULTILINE)
+    assert "it is not the force threshold, because the vibration is along the pull" in text
+    text = said(capsys, "transverse", **BALL | SLOW)
+    assert "not the force threshold" not in text
+
+
+def failed(*given, **settings):
+    found = microslip.solve(*given, **settings)
+    lost = {"mu_macro_error": 0.26, "converged": False, "reason": "lost on the way"}
+    return replace(found, **lost)
+
+
+def test_the_exit_code_follows_the_requested_quantity(monkeypatch, capsys):
+    """The static limit beside friction at a speed is not what was requested."""
+    monkeypatch.setattr(static_limit, "solve", failed)
+    text = said(capsys, "transverse", code=0, **BALL | SLOW)
+    assert "NOT CONVERGED: static friction: lost on the way" in text
+    assert "NOT CONVERGED: mu_macro" not in text
+    found = microslip.predict("transverse", **BALL | SLOW)
+    assert found.converged and found.mu_static_reason == "lost on the way"
+
+
+def test_a_line_names_the_quantity_that_is_not_converged(monkeypatch, capsys):
+    def lost(*given, **settings):
+        found = microslip.solve(*given, **settings)
+        unknown = {"velocity": math.nan, "velocity_error": math.inf, "converged": False}
+        return replace(found, **unknown, reason="lost on the way")
+
+    monkeypatch.setattr(pulled, "solve", lost)
+    text = said(capsys, "transverse", code=1, **BALL | {"amplitude": "0.1 um", "force": "1 N"})
+    assert "NOT CONVERGED: speed: lost on the way" in text
+
+
+def test_the_help_groups_all_options(capsys):
+    with pytest.raises(SystemExit):
+        cli.main(["predict", "--help"])
+    text = capsys.readouterr().out
+    titles = re.findall(r"^(\w+):$", text, re.MULTILINE)
+    assert titles[-5:] == ["bodies", "load", "motion", "drive", "output"]
+    for name in predict_command.OPTIONS:
+        assert f"  --{name} " in text, name
+
+
+def test_both_reference_loads_are_named_where_they_meet(capsys):
+    """In the help of predict and of point, and beside the groups of a body on a spring."""
+    for command in (["predict", "--help"], ["point", "normal", "--help"]):
+        with pytest.raises(SystemExit):
+            cli.main(command)
+        text = " ".join(capsys.readouterr().out.split())
+        assert "without oscillation" in text and "mean" in text
+
+
+@pytest.mark.long
+def test_an_answer_names_both_reference_loads(capsys):
+    given = BALL | {"load-amplitude": "3 N", "speed": "10 mm/s", "tolerance": "0.1"}
+    given |= {"drive-stiffness": "10 N/um"}
+    text = said(capsys, "normal", **given)
+    assert "over mu times the load without oscillation (the reference load)" in text
