@@ -143,3 +143,29 @@ def test_without_uncertain_inputs_there_is_no_probability():
     assert found.probability_stays is None and found.force_threshold_spread_N is None
     assert math.isfinite(found.safety_factor_error)
     assert "probability" not in str(found)
+
+
+def test_a_contact_that_may_run_away_has_no_spread_of_its_speed():
+    """Of 3 N +- 0.2 N a force of 2.9 N is all that friction holds, one deviation below."""
+    given = {"young": "210 GPa", "nu": 0.0, "radius": "5 mm", "load": "10 N", "force": "2.9 N"}
+    given |= {"mu": "0.3 +- 0.02", "amplitude": 0.0, "frequency": "20 kHz"}
+    found = microslip.predict("transverse", **given)
+    assert math.isinf(found.speed_spread_m_s) and "nan" not in str(found)
+    assert found.probability_stays == pytest.approx(0.6915, abs=1e-3)  # 0.5 deviations above
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_steady_spin_gives_way_to_any_force_that_is_drawn():
+    given = {"young": "210 GPa", "nu": 0.0, "radius": "5 mm", "load": "10 N", "mu": 0.3}
+    found = microslip.predict("continuous-bore", **given, rotation=10.0, force="1 N +- 0.9 N")
+    assert (found.probability_stays, found.safety_factor_high) == (0.0, 0.0)
+    assert found.probability_runs_away == pytest.approx(0.0131, abs=1e-3)  # 2 / 0.9 deviations
+
+
+@pytest.mark.slow
+def test_the_threshold_beside_a_reduction_has_an_interval():
+    given = {"young": "210 GPa", "nu": 0.0, "radius": "5 mm", "load": "10 N", "mu": 0.3}
+    given |= {"speed": "10 mm/s +- 5 %", "reduction": "30 %", "frequency": "20 kHz"}
+    found = microslip.predict("transverse", **given, tolerance=0.02)
+    assert found.force_threshold_low_N <= found.force_threshold_N <= found.force_threshold_high_N
+    assert "95 % interval" in str(found)

@@ -33,6 +33,8 @@ SAME_SHARE = 9
 """Decimal of a share of the amplitude below which a change is rounding."""
 INTERVAL = 0.025, 0.975
 """Quantiles of an interval with 95 % probability."""
+DEVIATIONS_OF_INTERVAL = 1.959964
+"""Standard deviations from the centre of a normal distribution to the ends of such an interval."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +81,7 @@ def with_outcomes(
     """
     question = question_at({})
     if question.sought is not None:
-        return {}
+        return _normal_intervals(found, ends.values())
     share = equals_static_limit(
         question.contact, question.motion, question.carriers, question.drive.mass
     )
@@ -117,6 +119,27 @@ def with_outcomes(
     fields["probability_error"] = max(
         *(abs(probability[sign] - probability[0]) for sign in (-1, 1)), abs(halves[0] - halves[1])
     )
+    return fields
+
+
+def _normal_intervals(found, ends):
+    """Fields of the uncertainty where a draw would be a search for an amplitude, a speed or a load:
+    to first order, from half the difference of the predictions at the ends of each input."""
+    fields = {}
+    for name, unit in (("mu_static", ""), ("mu_static_apparent", ""), ("force_threshold", "_N")):
+        value = getattr(found, name + unit)
+        if value is None:
+            continue
+        halves = [
+            math.inf
+            if low is None or high is None
+            else 0.5 * (getattr(high, name + unit) - getattr(low, name + unit))
+            for low, high in ends
+        ]
+        deviation = math.hypot(*halves)
+        fields[f"{name}_spread{unit}"] = deviation
+        fields[f"{name}_low{unit}"] = max(0.0, value - DEVIATIONS_OF_INTERVAL * deviation)
+        fields[f"{name}_high{unit}"] = value + DEVIATIONS_OF_INTERVAL * deviation
     return fields
 
 
@@ -183,7 +206,7 @@ class _Table:
             change = np.array([state.poisson - centre.poisson for state in states])
             self.poisson += np.interp(where, places, change)
             if one.name == "force":
-                self.force = np.maximum(drawn, 0.0)
+                self.force = np.maximum(drawn, SMALLEST_SHARE * one.value)
         self.mu, self.still, self.largest = (
             np.where(broken, 0.0, np.exp(logarithms[name]) * np.ones(DRAWS))
             for name in ("mu", "still", "largest")

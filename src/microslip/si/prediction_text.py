@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 
-from microslip.foundation.number_text import interval_text, number_text
+from microslip.foundation.number_text import number_text
 from microslip.si.motions import COMBINED, unit_of_amplitude
 from microslip.si.printed_lines import (
     ALONG_THE_PULL,
+    NO_SPREAD_OF_SPEED,
     REFERENCE_LOADS,
     TIMES,
     force_unit,
     in_unit,
+    interval_lines,
     length_unit,
     line,
     not_converged,
@@ -144,7 +146,7 @@ class _Text:
             return []
         value = number_text(found.mu_static_apparent, found.mu_static_apparent_error)
         lines = [line("static friction", f"{value}: coefficient of friction at vanishing speed")]
-        lines += _interval(found.mu_static_apparent_low, found.mu_static_apparent_high)
+        lines += interval_lines(found.mu_static_apparent_low, found.mu_static_apparent_high)
         threshold = found.force_threshold_N
         if threshold is not None and not math.isclose(
             threshold, found.friction_force_still_N * found.mu_static, abs_tol=0.0
@@ -164,7 +166,7 @@ class _Text:
         text = in_unit(value, error, self.force)
         lines = [line("force threshold", f"{text}: no smaller constant force moves the contact")]
         ends = (found.force_threshold_low_N, found.force_threshold_high_N)
-        return lines + _interval(*ends, unit=self.force)
+        return lines + interval_lines(*ends, unit=self.force)
 
     def walk(self):
         """Lines of the motion under a force."""
@@ -173,7 +175,7 @@ class _Text:
         if factor is not None and (factor > found.safety_factor_error or found.safety_factor_high):
             text = number_text(factor, found.safety_factor_error)
             lines.append(line("safety factor", f"{text}: threshold over force"))
-            lines += _interval(found.safety_factor_low, found.safety_factor_high)
+            lines += interval_lines(found.safety_factor_low, found.safety_factor_high)
         return lines + self.outcome()
 
     def outcome(self):
@@ -249,6 +251,8 @@ class _Text:
         if found.mu_apparent_spread is None:
             return []
         if found.force_N is not None:
+            if math.isinf(found.speed_spread_m_s):
+                return [line("spread", NO_SPREAD_OF_SPEED)]
             shares = [f"{self.in_two_digits(found.speed_spread_m_s, self.speed)} of the speed"]
         else:
             shares = [
@@ -288,12 +292,3 @@ class _Text:
             unit = prefixed(found.torque_N_m, "N m")
             lines.insert(0, line("torque", in_unit(found.torque_N_m, found.torque_error_N_m, unit)))
         return lines
-
-
-def _interval(low, high, unit=("", 1.0)):
-    """The line of an interval that follows from the uncertain inputs, if there is one."""
-    if low is None:
-        return []
-    name, size = unit
-    text = interval_text(low / size, high / size, name)
-    return [line("", f"95 % interval {text}, from the uncertain inputs")]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from microslip.foundation.number_text import number_text
+from microslip.foundation.number_text import interval_text, number_text
 from microslip.si.motions import unit_of_amplitude
 
 WIDTH = 18
@@ -36,6 +36,9 @@ ALONG_THE_PULL = (
     "moves along with the vibration, and all of friction holds it"
 )
 """Explanation of a static friction below the force threshold."""
+
+NO_SPREAD_OF_SPEED = "none of the speed: the contact may run away"
+"""Text where a speed within the uncertainties is infinite."""
 
 
 def line(title: str, text: str) -> str:
@@ -111,3 +114,14 @@ def runs_away(found: object) -> str:
     unit = force_unit(found.friction_force_still_N)
     still = in_unit(found.friction_force_still_N, 0.0, unit)
     return f"it runs away: friction holds no more than {still}, mu times the load"
+
+
+def interval_lines(
+    low: float | None, high: float | None, unit: tuple[str, float] = ("", 1.0)
+) -> list[str]:
+    """The line of an interval that follows from the uncertain inputs, if there is one."""
+    if low is None:
+        return []
+    name, size = unit
+    text = interval_text(low / size, high / size, name)
+    return [line("", f"95 % interval {text}, from the uncertain inputs")]

@@ -129,10 +129,12 @@ def _ends(name, given, parts, unit):
 
 
 def _half_of_difference(low, high, field):
-    """Of a field of both; infinite where one of them has nothing with the wanted reduction."""
+    """Half the difference of a field of both; infinite where one of them has no value, because
+    nothing has the wanted reduction, or the contact runs away."""
     if low is None or high is None:
         return math.inf
-    return 0.5 * (getattr(high, field) - getattr(low, field))
+    half = 0.5 * (getattr(high, field) - getattr(low, field))
+    return math.inf if math.isnan(half) else half
 
 
 def _predicted(predict, scene, plain, name, end):
