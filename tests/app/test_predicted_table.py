@@ -103,7 +103,7 @@ def test_each_line_may_look_for_something_else(folder, capsys):
     assert cli.main([*COMMAND, "--speed", "10 mm/s", "--output", "found.nc"]) == 0
     heading, first, second, third, *_ = capsys.readouterr().out.splitlines()
     assert heading.split()[-8:] == ["amplitude", "m", "+-", "m", "load", "N", "+-", "N"]
-    assert [len(row.split()) for row in (first, second, third)] == [7, 7, 5]
+    assert [len(row.split()) for row in (first, second, third)] == [8, 8, 6]
     kept = xr.load_dataset(folder / "found.nc")
     assert kept.sought.values.tolist() == ["amplitude", "load", ""]
     assert "sought" in kept.sought_error.attrs["units"]

@@ -138,7 +138,7 @@ def predicted(monkeypatch):
         def answer_of(contact, motion, pulling, tolerance, carriers):
             return solve(motion.scene, *groups(motion, contact), poisson=contact.poisson)
 
-        monkeypatch.setattr(module, "solve", solve)
+        monkeypatch.setattr("microslip.si.static_limit.solve", solve)
         monkeypatch.setattr(module, "answer_of", answer_of)
         return microslip.predict
 
