@@ -7,7 +7,7 @@ from itertools import count
 from snakemake.io import get_flag_value
 from snakemake.logging import logger as snakemake_log
 
-from microslip.app import dry_run, job_log, plan
+from microslip.app import dry_run, figure_targets, job_log, plan
 from microslip.app.bucket import Bucket
 from microslip.app.plan import Plan
 from microslip.app.progress import Watch
@@ -274,3 +274,14 @@ wildcard_constraints:
     early="|".join(EARLY),
     batch="[0-9a-f]+",
     figure="|".join(FIGURES),
+
+
+def files_of_figure(name):
+    """Input function of the target that makes one figure."""
+
+    def files(wildcards):
+        if name not in FIGURES:
+            sys.exit(f"Error in {ORIGIN}: {figure_targets.why_no_figure(PLAN, name)}")
+        return in_results(f"figures/{name}.{form}" for form in ("png", "pdf"))
+
+    return files

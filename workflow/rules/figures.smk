@@ -1,19 +1,5 @@
 # Figures, from the datasets alone.
 
-from microslip.app import figure_targets
-
-
-def files_of_figure(name):
-    """Input function of the target that makes one figure."""
-
-    def files(wildcards):
-        if name not in FIGURES:
-            sys.exit(f"Error in {ORIGIN}: {figure_targets.why_no_figure(PLAN, name)}")
-        return in_results(f"figures/{name}.{form}" for form in ("png", "pdf"))
-
-    return files
-
-
 # snakemake fig2, or the name of any other figure.
 for target, figure in figure_targets.targets_of(PLAN).items():
 
