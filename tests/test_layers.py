@@ -80,8 +80,3 @@ def test_nothing_else_in_the_physics_knows_where_files_are():
     named = ("foundation", "named_files")
     users = {path for path in MODULES if any(name[:2] == named for name in imported(path)[0])}
     assert {p for p in users if p.parts[0] in PHYSICS} == {Path("pressures", "from_file.py")}
-
-
-def test_a_module_can_be_held_in_mind():
-    long = {str(path) for path in MODULES if len((PACKAGE / path).read_text().splitlines()) > 300}
-    assert not long
