@@ -169,3 +169,39 @@ def test_the_threshold_beside_a_reduction_has_an_interval():
     found = microslip.predict("transverse", **given, tolerance=0.02)
     assert found.force_threshold_low_N <= found.force_threshold_N <= found.force_threshold_high_N
     assert "95 % interval" in str(found)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("deviation", [0.38, 0.395, 0.40, 0.42, 0.5])
+def test_an_amplitude_that_may_be_almost_zero_has_an_exact_interval(deviation):
+    """The threshold falls with the amplitude, whose quantiles are 1.96 deviations from its centre.
+
+    A negative amplitude counts as 0, the closest physical value, where all of friction holds.
+    """
+    given = {"young": "210 GPa", "nu": 0.0, "counterbody": "210 GPa, 0", "radius": "20 mm"}
+    given |= {"load": "200 N", "mu": 0.2, "force": "20 N", "frequency": "60 Hz"}
+    found = microslip.predict("transverse", **given, amplitude=f"0.8 um +- {deviation} um")
+    a = (0.75 * 200.0 * 0.02 / 105e9) ** (1.0 / 3.0)
+    u_lim = 0.2 * a**2 / 0.02
+    least = max(0.0, 0.8e-6 - 1.959964 * deviation * 1e-6) / u_lim
+    exact = 40.0 * float(paper.static_limit_transverse(least))
+    assert found.force_threshold_high_N == pytest.approx(exact, abs=5e-3)
+    assert found.safety_factor_high == pytest.approx(exact / 20.0, abs=2.5e-4)
+    draws = np.maximum(0.8 + deviation * np.random.default_rng(3).standard_normal(200_000), 0.0)
+    threshold = 40.0 * transverse(draws * 1e-6 / u_lim, None)
+    assert found.force_threshold_spread_N == pytest.approx(threshold.std(), rel=0.02)
+    assert found.probability_stays == pytest.approx(np.mean(threshold > 20.0), abs=5e-3)
+
+
+def test_a_force_that_may_vanish_has_an_unbounded_safety_factor():
+    """The force is 0.5 N +- 0.49 N: 15 % of its draws are negative and count as 0.
+
+    Its upper quantile, 0.5 N + 1.959964 * 0.49 N, is the lower end of the safety factor.
+    """
+    given = {"young": "210 GPa", "nu": 0.0, "radius": "5 mm", "load": "10 N", "mu": 0.3}
+    found = microslip.predict(
+        "transverse", **given, amplitude=0.0, frequency="50 Hz", force="0.5 N +- 0.49 N"
+    )
+    low, high = found.safety_factor_low, found.safety_factor_high
+    assert low == pytest.approx(3.0 / (0.5 + 1.959964 * 0.49), rel=1e-3)
+    assert high == math.inf and "to inf" in str(found)

@@ -4,6 +4,9 @@ The uncertain inputs are independent and normally distributed.  A low-discrepanc
 them; the same request always gets the same draws.  Forces and amplitudes of a draw follow from
 those along each input alone, whose logarithms add up: this is exact for power laws, such as those
 of Hertz.  Friction at vanishing speed is a function of the amplitude, solved at a few of them.
+
+A draw beyond the physical range is replaced by the closest physical value: a negative amplitude,
+load, force or coefficient of friction by 0.
 """
 
 from __future__ import annotations
@@ -28,7 +31,11 @@ DEVIATIONS = np.linspace(-4.0, 4.0, 17)
 """Standard deviations from the central value at which the closed forms of a contact are tabulated;
 1 in 16000 draws lies beyond."""
 SMALLEST_SHARE = 1e-2
-"""Least value of a positive quantity that is tabulated, over its central value."""
+"""Least value of a positive quantity that is tabulated, over its central value; where 0 is not a
+physical value, smaller draws are replaced by it."""
+TOWARDS_ZERO = 2.0
+"""Largest ratio of neighbouring tabulated values between that and the central value: an
+interpolation of logarithms is exact for power laws, and others vary little over a factor of 2."""
 SAME_SHARE = 9
 """Decimal of a share of the amplitude below which a change is rounding."""
 INTERVAL = 0.025, 0.975
@@ -108,7 +115,7 @@ def with_outcomes(
     fields["probability_runs_away"] = float(np.mean(away))
     if share is None:
         return fields
-    fields |= _distribution("safety_factor", table.still * value / table.force)
+    fields |= _distribution("safety_factor", _ratio(table.still * value, table.force))
     stays = {
         sign: ~away & (table.force < table.still * (value + sign * error)) for sign in (0, -1, 1)
     }
@@ -143,11 +150,17 @@ def _normal_intervals(found, ends):
     return fields
 
 
+def _ratio(threshold, force):
+    """Threshold over force: infinite without a force, and 0 where the threshold is 0, too."""
+    without = np.where(threshold > 0.0, math.inf, 0.0)
+    return np.divide(threshold, force, out=without, where=force > 0.0)
+
+
 def _distribution(name, draws, unit=""):
-    """Standard deviation and interval of a quantity."""
-    low, high = np.quantile(draws, INTERVAL)
+    """Standard deviation and interval of a quantity, some draws of which may be infinite."""
+    low, high = np.quantile(draws, INTERVAL, method="nearest")
     return {
-        f"{name}_spread{unit}": float(np.std(draws)),
+        f"{name}_spread{unit}": math.inf if np.isinf(draws).any() else float(np.std(draws)),
         f"{name}_low{unit}": float(low),
         f"{name}_high{unit}": float(high),
     }
@@ -191,11 +204,12 @@ class _Table:
         logarithms["amplitude"] = _log(centre.amplitude or 0.0)
         self.poisson = np.full(DRAWS, centre.poisson)
         self.force = None if centre.force is None else np.full(DRAWS, centre.force)
-        broken = np.zeros(DRAWS, dtype=bool)
+        broken, at_rest = np.zeros((2, DRAWS), dtype=bool)
         for column, one in zip(draws.T, inputs, strict=True):
             drawn = one.value + column * one.deviation
             signed = drawn * math.copysign(1.0, one.value)
             broken |= (signed <= 0.0) & (one.name in ("mu", "load"))
+            at_rest |= (signed <= 0.0) & (one.name == "amplitude")
             places, states = _along(one, question_at)
             self.one_shape &= all(state.shape == centre.shape for state in states)
             where = np.log(np.maximum(signed, SMALLEST_SHARE * abs(one.value)))
@@ -206,12 +220,12 @@ class _Table:
             change = np.array([state.poisson - centre.poisson for state in states])
             self.poisson += np.interp(where, places, change)
             if one.name == "force":
-                self.force = np.maximum(drawn, SMALLEST_SHARE * one.value)
+                self.force = np.maximum(drawn, 0.0)
         self.mu, self.still, self.largest = (
             np.where(broken, 0.0, np.exp(logarithms[name]) * np.ones(DRAWS))
             for name in ("mu", "still", "largest")
         )
-        self.amplitude = logarithms["amplitude"] * np.ones(DRAWS)
+        self.amplitude = np.where(at_rest, 0.0, np.exp(logarithms["amplitude"] * np.ones(DRAWS)))
 
 
 SMALLEST_LOGARITHM = -700.0
@@ -227,8 +241,13 @@ def _along(one, question_at):
     refuses are left out."""
     sign = math.copysign(1.0, one.value)
     sizes = np.sort(sign * (one.value + DEVIATIONS * one.deviation))
+    least = SMALLEST_SHARE * abs(one.value)
+    within = sizes[sizes >= least]
+    if within.size < sizes.size:
+        count = math.ceil(math.log(within[0] / least) / math.log(TOWARDS_ZERO)) + 1
+        within = np.concatenate([np.geomspace(least, within[0], count + 1)[:-1], within])
     places, states = [], []
-    for size in sizes[sizes >= SMALLEST_SHARE * abs(one.value)]:
+    for size in within:
         try:
             states.append(_state(question_at({one.name: sign * float(size)})))
         except InputError:

@@ -15,17 +15,18 @@ from microslip.si.dimensionless import solver_scene
 from microslip.si.question import Question
 from microslip.si.static_limit import TOLERANCE, tolerance_of
 
-AMPLITUDES = 9
-"""Number of amplitudes at which the static limit is solved: quantiles of the drawn ones, from three
-standard deviations below to three above.  tests/si/test_outcomes.py checks it by Monte Carlo."""
+DEVIATIONS = -3.0, -1.96, -1.3, -0.65, 0.0, 0.65, 1.3, 1.96, 3.0
+"""Amplitudes at which the static limit is solved, as quantiles of the drawn amplitudes: standard
+deviations of a normal distribution.  1.96 deviations are the ends of a 95 % interval.
+tests/si/test_outcomes.py checks the result by Monte Carlo."""
 REFINEMENTS = 3
 """Number of further amplitudes, each in the middle of the draws whose threshold is closest to the
 force; and of those by which the amplitude is bisected above which the limit is 0."""
 CLOSEST = 64
 """One in so many draws is close to the force."""
 SAME_AMPLITUDE, SAME_POISSON = 1e-9, 1e-9
-"""Range of the logarithm of the amplitude and standard deviation of Poisson's ratio below which a
-change is rounding."""
+"""Range of the amplitude over its central value, and standard deviation of Poisson's ratio, below
+which a change is rounding."""
 
 
 def static_limits(
@@ -44,7 +45,7 @@ def static_limits(
     centre : tuple of float
         Amplitude and Poisson's ratio there, mu_static and its error.
     amplitudes, poisson : np.ndarray, shape (draws,)
-        Logarithm of the amplitude as a group, and Poisson's ratio.
+        Amplitude as a group, and Poisson's ratio.
     forces : tuple of np.ndarray or None
         Friction without vibration and the prescribed force, N, for the choice of amplitudes.
     """
@@ -53,11 +54,17 @@ def static_limits(
 
     limit = _limits_of(question)
     amplitude, ratio, *solved = centre
-    known = {math.log(amplitude): tuple(solved)}
-    where = np.minimum(amplitudes, math.log(LARGEST["amplitude"]))
+    # The interpolation variable A / (A + centre) is proportional to small amplitudes A, and its
+    # distance from 1 to 1 / A at large ones: the static limit varies smoothly with it at both ends.
+    known = {0.5: tuple(solved)}
+    where = np.minimum(amplitudes, LARGEST["amplitude"])
+    where = where / (where + amplitude)
 
     def solve_at(place):
-        answer = limit(math.exp(place), ratio)
+        if place <= 0.0:
+            known[0.0] = 1.0, 0.0  # friction without vibration
+            return
+        answer = limit(amplitude * place / (1.0 - place), ratio)
         if answer is not None:
             known[place] = answer
 
@@ -70,7 +77,7 @@ def static_limits(
         return PchipInterpolator(places, values)(within), np.interp(within, places, errors)
 
     if np.ptp(where) > SAME_AMPLITUDE:
-        for place in np.quantile(where, ndtr(np.linspace(-3.0, 3.0, AMPLITUDES))):
+        for place in np.quantile(where, ndtr(DEVIATIONS)):
             solve_at(float(place))
     for _ in range(REFINEMENTS):
         pairs = pairwise(sorted(known.items()))
