@@ -1,12 +1,15 @@
 """Points under a force, or pulled through a spring: limits, thresholds, models side by side."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
 import microslip
+from microslip.adaptive import pulled as adaptive_pulled
+from microslip.adaptive.certified import nothing
 from microslip.foundation.arguments import SMALLEST_STIFFNESS
 from microslip.foundation.errors import InputError
 from microslip.models.path import EULER
@@ -108,6 +111,39 @@ def moving_at(problem, drive, cells=24, steps=64, method=None):
     )
     assert found.converged
     return found
+
+
+def test_a_force_next_to_the_limit_is_told_from_it_by_a_finer_limit():
+    """At Poisson's ratio 0 the limit has a closed form, and it falls by less than a thousandth to
+    0.3 at so small an amplitude: a force of 0.9975 is below it, though not by the tolerance."""
+    limit = microslip.solve("transverse", 0.0, 1e-3).mu_macro
+    assert limit > 0.9995
+    found = microslip.solve("transverse", amplitude=1e-3, force=0.9975, poisson=0.3, tolerance=1e-2)
+    assert (found.velocity, found.velocity_error, found.converged) == (0.0, 0.0, True)
+
+
+def test_a_limit_that_leaves_no_force_to_march_at_gives_no_velocity():
+    """The force is within the error of the limit, 1 for no oscillation to speak of, and no larger
+    force is marched: the answer is unknown, not a number."""
+    limit = microslip.solve("transverse", 0.0, 1e-3, poisson=0.3)
+    assert abs(limit.mu_macro - 0.9998) < limit.mu_macro_error
+    found = microslip.solve("transverse", amplitude=1e-3, force=0.9998, poisson=0.3, tolerance=1e-2)
+    assert math.isnan(found.velocity) and found.velocity_error == math.inf
+    assert not found.converged and "force threshold" in found.reason
+
+
+def test_a_velocity_with_an_unsolved_step_and_a_larger_error_is_no_number(monkeypatch):
+    def unsolved(asked, drive, accuracy):
+        finest = Resolution(cells=8, angles=1, steps=4)
+        unknown = nothing(finest)
+        return replace(
+            unknown, mu=5.4, errors={"solver": 1e9}, reason="a step was left unsolved"
+        ), ()
+
+    monkeypatch.setattr(adaptive_pulled, "_certified", unsolved)
+    found = microslip.solve("transverse", amplitude=1.0, force=0.8)
+    assert math.isnan(found.velocity) and found.velocity_error == math.inf
+    assert (found.converged, found.reason) == (False, "a step was left unsolved")
 
 
 def test_a_heavy_contact_that_oscillates_along_the_force_moves_from_its_static_limit_on():

@@ -157,6 +157,24 @@ def test_a_force_below_the_threshold_moves_nothing(share):
     assert found.time_to_1_mm_s is None and found.converged
 
 
+def test_a_force_just_below_the_threshold_is_held_before_any_drift_is_computed(monkeypatch):
+    """The independent threshold is the friction at vanishing speed; the force is below it by twice
+    the error of that.  The solver is not called for a drift: that would take minutes."""
+    asked = SIDEWAYS | {"amplitude": stroke(1e-3), "nu": 0.3}
+    held = microslip.predict("transverse", speed=0.0, **asked)
+    force = held.friction_force_N - 2.0 * held.friction_force_error_N
+    assert force > 0.99 * STILL
+
+    def no_drift(*given, **settings):
+        raise AssertionError("a drift was computed")
+
+    monkeypatch.setattr(pulled, "solve", no_drift)
+    found = microslip.predict("transverse", force=force, **asked)
+    assert (found.outcome, found.speed_m_s, found.speed_error_m_s) == ("stays", 0.0, 0.0)
+    assert found.converged and found.mu_macro == pytest.approx(force / STILL, rel=1e-12)
+    assert force < found.force_threshold_N - found.force_threshold_error_N
+
+
 @pytest.mark.parametrize("force", [3.0, 50.0, 1e12])
 def test_all_of_friction_and_more_runs_away(force):
     found = microslip.predict("transverse", amplitude=stroke(0.5), force=force, **SIDEWAYS)
@@ -179,13 +197,13 @@ def test_at_the_threshold_the_error_leaves_open_whether_it_moves():
 
 def test_a_force_that_the_solver_gives_up_on_says_why(monkeypatch, capsys):
     def given_up(*given, **settings):
-        found = microslip.solve(*given, **settings)
+        found = microslip.solve(*given, **settings | {"force": 0.1})
         lost = {"velocity": math.nan, "velocity_error": math.inf, "converged": False}
         return replace(found, **lost, reason="lost on the way")
 
     monkeypatch.setattr(pulled, "solve", given_up)
     words = ["--radius", "5 mm", "--load", "10 N", "--mu", "0.3", "--material", "steel"]
-    words += ["--frequency", "20 kHz", "--amplitude", "0.1 um", "--force", "1 N"]
+    words += ["--frequency", "20 kHz", "--amplitude", "0.1 um", "--force", "2.9 N"]
     said_first = said(capsys, *words, code=1)
     assert "NOT CONVERGED: speed: lost on the way" in said_first and "outcome" not in said_first
     found = json.loads(said(capsys, *words, "--json", code=1))
@@ -279,6 +297,8 @@ def test_a_body_beyond_what_the_solver_takes_swings_as_it_did():
     """Scaled as one, so that k / m, the square of its own frequency, stays."""
     asked = pulled.within_range({"stiffness": 4e9, "mass": 1e9, "damping": 3.0})
     assert max(asked.values()) == LARGEST_BODY
+    for size in (3.3e25, 7e29, 1.1e30):  # whose division rounds up
+        assert pulled.within_range({"stiffness": size})["stiffness"] == LARGEST_BODY
     assert asked["stiffness"] / asked["mass"] == pytest.approx(4.0)
     as_given = {"stiffness": 4.0, "mass": 0.5}
     assert pulled.within_range(as_given) == as_given

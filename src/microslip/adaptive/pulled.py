@@ -15,6 +15,7 @@ from microslip.adaptive.resolutions import plan, with_mass
 from microslip.adaptive.result import Result
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
+    CLOSEST_FORCE,
     is_even,
     oscillates,
     refuse_nearly_full,
@@ -51,6 +52,9 @@ SCALE_SHARE = 0.9
 """Of the velocity so found that the tolerance is taken over."""
 ROUGH_TOLERANCE = 3e-2
 """Of a static limit that is far from the force."""
+STATIC_TOLERANCE = 1e-3
+"""Largest accepted error of a static limit that a force is close to; the SI side asks for the same,
+so that both agree on what is below the threshold."""
 GAP_MARGIN = 2.0
 """Errors of the static limit above it at which the contact moves for certain."""
 
@@ -122,26 +126,59 @@ def _under_force(asked, drive):
     least = -math.inf
     if is_even(problem):
         static = _static(asked, force)
-        if force <= static.mu_macro - static.mu_macro_error:
+        if _is_close(force, static) and (asked.tolerance or 0.0) > STATIC_TOLERANCE:
+            exact = _at_rest(asked, STATIC_TOLERANCE)
+            if _is_below(force, exact) or _surely_moving(static) >= CLOSEST_FORCE:
+                static = exact
+        if _is_below(force, static):
             return replace(
                 _known(asked, drive, 0.0, 0.0),
                 model=static.model,
                 cells=static.cells,
                 angles=static.angles,
             )
-        if force <= static.mu_macro + static.mu_macro_error:
-            least = static.mu_macro + GAP_MARGIN * static.mu_macro_error
+        if _is_close(force, static):
+            least = _surely_moving(static)
+            if not least < CLOSEST_FORCE:
+                error = static.mu_macro_error
+                return _given_up(
+                    asked,
+                    drive,
+                    f"the error of the force threshold, {error:.1e}, does not tell whether the "
+                    "contact moves, and a larger force is too close to full friction",
+                )
     return _moving(asked, drive, max(force, least))
+
+
+def _is_below(force, static):
+    """Whether a force is below the static limit by its error or more."""
+    return force <= static.mu_macro - static.mu_macro_error
+
+
+def _is_close(force, static):
+    """Whether the error of the static limit leaves open on which side of it a force is."""
+    low, high = (static.mu_macro + sign * static.mu_macro_error for sign in (-1, 1))
+    return low < force <= high
+
+
+def _surely_moving(static):
+    """A force at which the contact moves, by the error estimate of the static limit."""
+    return static.mu_macro + GAP_MARGIN * static.mu_macro_error
 
 
 def _static(asked, force):
     """The Result of the static limit, no more exactly than the force needs to be told from it."""
-    at_rest = replace(asked, problem=replace(asked.problem, velocity=0.0))
     if asked.tolerance is not None and asked.tolerance < ROUGH_TOLERANCE:
-        rough = solve_each(replace(at_rest, tolerance=ROUGH_TOLERANCE))
+        rough = _at_rest(asked, ROUGH_TOLERANCE)
         if abs(force - rough.mu_macro) > rough.mu_macro_error:
             return rough
-    return solve_each(at_rest)
+    return _at_rest(asked, asked.tolerance)
+
+
+def _at_rest(asked, tolerance):
+    """The Result of the static limit, to a tolerance."""
+    problem = replace(asked.problem, velocity=0.0)
+    return solve_each(replace(asked, problem=problem, tolerance=tolerance))
 
 
 def _known(asked, drive, velocity, error, reason=""):
@@ -186,7 +223,9 @@ def _moving(asked, drive, marched):
     velocity, error = float(certified.mu), float(certified.error)
     if not asked.problem.motion.drives:
         velocity = max(velocity, 0.0)  # what lies below is rounding and error
-    if marched > drive.force:
+    if not certified.converged and not error < abs(velocity):  # not even its order of magnitude
+        velocity, error = math.nan, math.inf
+    elif marched > drive.force:
         velocity, error = 0.5 * velocity, 0.5 * velocity + error
         certified = replace(certified, errors=certified.errors | {"model": 0.5 * certified.mu})
     largest = None if asked.tolerance is None else asked.tolerance * max(1.0, abs(velocity))

@@ -9,7 +9,7 @@ from microslip.si.dimensionless import full_friction
 from microslip.si.drives import checked_drive_groups
 from microslip.si.energy import energy_fields, vibration_fields
 from microslip.si.prediction import Prediction
-from microslip.si.pulled import about_drive, answer_of, with_speed
+from microslip.si.pulled import about_drive, answer_at_rest, answer_of, with_speed
 from microslip.si.question import Question, asked, checked_groups
 from microslip.si.reduction import with_reduction
 from microslip.si.static_limit import static_limit
@@ -162,10 +162,12 @@ def _answered(question):
             contact = question.under(found.contact.load)
     velocity, _ = checked_groups(contact, motion, given)
     pulling = checked_drive_groups(carriers.share_of(drive), motion, contact, given)
-    answer = answer_of(contact, motion, pulling, question.tolerance, carriers)
     limit = static_limit(
         contact, motion, carriers, question.tolerance, under_force=given["force"] is not None
     )
+    answer = answer_at_rest((contact, carriers), motion, pulling, limit)
+    if answer is None:
+        answer = answer_of(contact, motion, pulling, question.tolerance, carriers)
     pulled |= about_drive((contact, carriers), motion, (drive, pulling), answer, limit)
     if velocity is None:
         velocity, motion = answer.velocity, with_speed(motion, contact, answer)

@@ -24,7 +24,7 @@ from microslip.si.dimensionless import (
 from microslip.si.reduction import friction_of
 from microslip.si.regimes import natural_frequency, regime
 from microslip.si.several import Carriers
-from microslip.si.static_limit import equals_static_limit
+from microslip.si.static_limit import equals_static_limit, largest_force
 
 SLOWEST = 1e-3
 """Velocity, in the unit of the scene, below which the accepted error is no longer relative."""
@@ -74,12 +74,44 @@ def answer_of(
     return found(max(MARGIN * accepted, SMALLEST_TOLERANCE))
 
 
+def answer_at_rest(
+    carried: tuple[TwoBodies, Carriers],
+    motion: RealMotion,
+    pulling: dict[str, float],
+    limit: Result | None,
+) -> Result | None:
+    """The Result of a force below the threshold by more than the error of the threshold: such a
+    contact comes to rest, and no drift is computed.  None for any other force.
+
+    Parameters
+    ----------
+    carried : tuple
+        The contact, and how many like it there are.
+    pulling : dict of float
+        Groups of the drive, from dimensionless.drive_groups.
+    limit : Result or None
+        Friction at a vanishing speed, None for a steady motion.
+    """
+    force, mass = pulling.get("force"), pulling.get("mass")
+    if force is None or limit is None or not limit.converged:
+        return None
+    if equals_static_limit(carried[0], motion, carried[1], mass) is not True:
+        return None
+    if not force <= limit.mu_macro - limit.mu_macro_error:
+        return None
+    if force >= largest_force(carried[0], motion, carried[1], mass):
+        return None
+    without_error = {"mu_macro_error": 0.0, "velocity_error": 0.0}
+    without_error |= dict.fromkeys((name for name in vars(limit) if name.startswith("error_")), 0.0)
+    return replace(limit, velocity=0.0, mu_macro=force, **pulling, **without_error)
+
+
 def within_range(pulling: dict[str, float]) -> dict[str, float]:
     """The groups that the solver takes: beyond them a force is one that nothing holds, and a body
     hardly moves, whose parts are scaled as one so that it swings as it did."""
     body = {name: value for name, value in pulling.items() if name != "force"}
     scale = max(1.0, max(body.values(), default=0.0) / LARGEST_BODY)
-    asked = {name: value / scale for name, value in body.items()}
+    asked = {name: min(value / scale, LARGEST_BODY) for name, value in body.items()}
     if "stiffness" in asked:  # a softer spring pulls with the force of the softest
         asked["stiffness"] = max(asked["stiffness"], SMALLEST_STIFFNESS)
     if "force" in pulling:
