@@ -9,6 +9,7 @@ import pytest
 import microslip
 from microslip.app import cli
 from microslip.foundation.arguments import LARGEST_BODY
+from microslip.foundation.errors import InputError
 from microslip.motions.drive import Drive
 from microslip.si import pulled
 from microslip.si.bodies import TwoBodies
@@ -302,6 +303,22 @@ def test_a_body_beyond_what_the_solver_takes_swings_as_it_did():
     assert asked["stiffness"] / asked["mass"] == pytest.approx(4.0)
     as_given = {"stiffness": 4.0, "mass": 0.5}
     assert pulled.within_range(as_given) == as_given
+
+
+@pytest.mark.parametrize(
+    ("argument", "option"), [("stiffness", "drive_stiffness"), ("velocity", "speed")]
+)
+def test_a_refusal_of_the_solver_names_the_argument_of_predict(monkeypatch, argument, option):
+    def refuse(*given, **settings):
+        raise InputError(argument, 2e6, "allowed is at most 1e+06")
+
+    monkeypatch.setattr(pulled, "solve", refuse)
+    drive = {"speed": "10 mm/s", "drive_stiffness": "10 N/um"}
+    with pytest.raises(InputError) as caught:
+        microslip.predict("transverse", amplitude=stroke(1.0), **SIDEWAYS | drive)
+    error = caught.value
+    assert (error.argument, error.value) == (option, drive[option])
+    assert error.allowed == "dimensionless 2e+06: allowed is at most 1e+06"
 
 
 def test_between_stiff_and_soft_it_may_resonate():

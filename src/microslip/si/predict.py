@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+from microslip.foundation.errors import InputError, shown
 from microslip.si.dimensionless import full_friction
 from microslip.si.drives import checked_drive_groups
 from microslip.si.energy import energy_fields, vibration_fields
@@ -25,6 +26,14 @@ UNKNOWN_WITHOUT = {
     ),
 }
 """Fields of a Prediction that are not known without what is looked for."""
+ARGUMENTS = {
+    "velocity": "speed",
+    "force": "force",
+    "stiffness": "drive_stiffness",
+    "mass": "mass",
+    "damping": "damping",
+}
+"""Arguments of predict, by those of microslip.solve that follow from them."""
 
 
 @with_spreads
@@ -167,7 +176,10 @@ def _answered(question):
     )
     answer = answer_at_rest((contact, carriers), motion, pulling, limit)
     if answer is None:
-        answer = answer_of(contact, motion, pulling, question.tolerance, carriers)
+        try:
+            answer = answer_of(contact, motion, pulling, question.tolerance, carriers)
+        except InputError as error:
+            raise _in_si(error, given) from None
     pulled |= about_drive((contact, carriers), motion, (drive, pulling), answer, limit)
     if velocity is None:
         velocity, motion = answer.velocity, with_speed(motion, contact, answer)
@@ -182,6 +194,15 @@ def _answered(question):
     pulled["load_N"] = contact.load * carriers.count
     found = _prediction(contact, (motion, still, doubts), velocity, (answer, limit), question.about)
     return replace(found, **pulled)
+
+
+def _in_si(error, given):
+    """An InputError about an argument of the solver, with the argument of predict and its value."""
+    name = ARGUMENTS.get(error.argument)
+    if name is None or given[name] is None:
+        return error
+    group = f"{error.value:.6g}" if isinstance(error.value, float) else shown(error.value)
+    return InputError(name, given[name], f"dimensionless {group}: {error.allowed}")
 
 
 @dataclass(frozen=True)
