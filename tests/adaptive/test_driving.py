@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 
 import microslip
 from microslip.foundation.errors import InputError
+from microslip.foundation.number_text import number_text
 from microslip.models.contact import FORWARD, forward_slip
 from microslip.models.path import make_path, phases_between
 from microslip.motions.by_name import motion_named
@@ -192,6 +193,28 @@ def test_a_contact_that_sticks_drives_nothing():
     assert line.stall_force == line.no_load_velocity == 0.0
     assert line.velocity.size == line.efficiency.size == 0
     assert line.reason.startswith("drives nothing: friction holds")
+
+
+@pytest.mark.slow
+def test_the_holding_forces_have_errors_and_the_digits_that_these_allow():
+    """The forces against which friction holds are those at vanishing speed either way, which
+    microslip.solve gives at a finer tolerance; the figure of eight at 180 degrees is the mirror
+    image."""
+    line = microslip.drive(EIGHT, 0.5, tolerance=1e-2)
+    mirrored = "elliptic:forward_cycles=2,phase=180"
+    for name, scene, sign in (("low", mirrored, -1.0), ("high", EIGHT, 1.0)):
+        finer = microslip.solve(scene, 0.0, 0.5, tolerance=2e-3)
+        force = getattr(line, f"holding_force_{name}")
+        error = getattr(line, f"holding_force_{name}_error")
+        assert 0.0 < error <= 1e-2
+        assert abs(force - sign * finer.mu_macro) <= error + finer.mu_macro_error
+        assert number_text(force, error) in line.reason
+
+
+def test_a_motion_that_drives_has_no_holding_forces():
+    line = microslip.drive(EIGHT, 1.0, model="rigid", points=2, tolerance=1e-2)
+    assert line.stall_force != 0.0
+    assert line.holding_force_low is line.holding_force_high is None
 
 
 @pytest.mark.parametrize(

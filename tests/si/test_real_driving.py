@@ -42,6 +42,19 @@ def test_the_line_is_that_of_the_groups(scene, share):
 
 
 @pytest.mark.slow
+def test_holding_forces_are_in_newtons():
+    """mu F_z, 3 N, times those of the groups; the text has them with their errors."""
+    real = microslip.predict_driving(EIGHT, **BALL, amplitude=0.5 * U_LIM, frequency=20e3)
+    line = microslip.drive(EIGHT, 0.5, tolerance=1e-2)
+    for name in ("low", "high"):
+        force = getattr(real, f"holding_force_{name}_N")
+        error = getattr(real, f"holding_force_{name}_error_N")
+        assert force == pytest.approx(3.0 * getattr(line, f"holding_force_{name}"), rel=1e-6)
+        assert error == pytest.approx(3.0 * getattr(line, f"holding_force_{name}_error"), rel=1e-3)
+        assert number_text(force, error, "N") in str(real)
+
+
+@pytest.mark.slow
 def test_twice_as_fast_takes_twice_the_power():
     """Friction does not know how fast it goes."""
     slow, fast = (

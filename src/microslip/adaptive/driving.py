@@ -47,11 +47,14 @@ from microslip.adaptive.no_load import NoLoad, no_load
 from microslip.adaptive.refinement import certify
 from microslip.foundation.arguments import count
 from microslip.foundation.errors import InputError
+from microslip.foundation.number_text import number_text
 from microslip.motions.mirror_image import mirror_image
 from microslip.motions.motion import LOOP
 from microslip.solver.problem import Problem
 
 POINTS, MOST_POINTS = 9, 1000
+DRIVES_NOTHING = "drives nothing: friction holds a body at rest against forces from {} to {}"
+"""The reason of a motion that drives nothing, with the lowest and the highest of these forces."""
 
 
 def drive(
@@ -229,16 +232,22 @@ def _line(contact, points):
         return _moving(behind, points)
     reason = ahead.reason or back.reason
     converged = not reason
+    holding = {
+        "holding_force_low": -back.value + 0.0,
+        "holding_force_low_error": back.error,
+        "holding_force_high": ahead.value,
+        "holding_force_high_error": ahead.error,
+    }
     if converged:
-        reason = (
-            f"drives nothing: friction holds a body at rest against forces from {-back.value:.3g} "
-            f"to {ahead.value:.3g}"
-        )
+        ends = number_text(-back.value, back.error), number_text(ahead.value, ahead.error)
+        reason = DRIVES_NOTHING.format(*ends)
     stall_error = max(ahead.error - ahead.value, back.error - back.value, 0.0)
     uncertain = [c for c, k in ((contact, ahead), (behind, back)) if k.value < k.error]
     spread = max((no_load(one.friction, one.first).error for one in uncertain), default=0.0)
     found = NoLoad(0.0, spread, "")
-    return _record(contact, Known(0.0, stall_error, ""), found, np.zeros(0), (converged, reason))
+    known = Known(0.0, stall_error, "")
+    line = _record(contact, known, found, np.zeros(0), (converged, reason))
+    return replace(line, **holding)
 
 
 def _moving(contact, points):

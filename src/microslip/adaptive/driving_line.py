@@ -25,6 +25,11 @@ class DrivingLine:
         Load that stops the motion, 0 where it drives nothing; below 0 where it drives backward.
     no_load_velocity, no_load_velocity_error : float
         Velocity without a load, with the same sign.
+    holding_force_low, holding_force_low_error : float or None
+        Lowest of the forces against which friction holds a body at rest, below 0: a pull backward;
+        None where the motion drives.
+    holding_force_high, holding_force_high_error : float or None
+        Highest of these forces.
     velocity, force, force_error : np.ndarray, shape (points,)
         From 0 to the no-load velocity in equal parts, and the force that is pulled with there.  No
         points where nothing is driven.
@@ -53,6 +58,10 @@ class DrivingLine:
     stall_force_error: float
     no_load_velocity: float
     no_load_velocity_error: float
+    holding_force_low: float | None = None
+    holding_force_low_error: float | None = None
+    holding_force_high: float | None = None
+    holding_force_high_error: float | None = None
     velocity: np.ndarray
     force: np.ndarray
     force_error: np.ndarray

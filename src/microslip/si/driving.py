@@ -8,12 +8,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from microslip.adaptive.checks import checked_driving
-from microslip.adaptive.driving import POINTS, drive
+from microslip.adaptive.driving import DRIVES_NOTHING, POINTS, drive
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.si.dimensionless import RealMotion
 from microslip.si.driving_text import driving_text
 from microslip.si.inputs import read_body, read_contact, read_counterbody
+from microslip.si.printed_lines import force_unit, in_unit
 from microslip.si.quantities import read
 from microslip.si.validity import broken_assumptions, unchecked
 
@@ -44,6 +45,11 @@ class RealDrivingLine:
         Load that stops the motion, N.
     no_load_speed_m_s, no_load_speed_error_m_s : float
         Speed without a load, m/s.
+    holding_force_low_N, holding_force_low_error_N : float or None
+        Lowest of the forces against which friction holds a body at rest, N, below 0: a pull
+        backward; None where the motion drives.
+    holding_force_high_N, holding_force_high_error_N : float or None
+        Highest of these forces, N.
     speed_m_s, force_N, force_error_N : np.ndarray, shape (points,)
         From 0 to the no-load speed, m/s, and the force that is pulled with there, N.
     power_out_W, power_out_error_W : np.ndarray, shape (points,)
@@ -69,6 +75,10 @@ class RealDrivingLine:
     stall_force_error_N: float
     no_load_speed_m_s: float
     no_load_speed_error_m_s: float
+    holding_force_low_N: float | None
+    holding_force_low_error_N: float | None
+    holding_force_high_N: float | None
+    holding_force_high_error_N: float | None
     speed_m_s: np.ndarray
     force_N: np.ndarray
     force_error_N: np.ndarray
@@ -168,6 +178,7 @@ def predict_driving(
     watts = newtons * speed
     fastest = speed * float(np.max(np.abs(line.velocity), initial=0.0))
     real = RealMotion(scene, fastest, size.si, rate.si)
+    holding, reason = _holding_forces(line, newtons)
     return RealDrivingLine(
         understood=understood | said,
         scene=scene,
@@ -180,6 +191,7 @@ def predict_driving(
         stall_force_error_N=newtons * line.stall_force_error,
         no_load_speed_m_s=speed * line.no_load_velocity,
         no_load_speed_error_m_s=speed * line.no_load_velocity_error,
+        **holding,
         speed_m_s=speed * line.velocity,
         force_N=newtons * line.force,
         force_error_N=newtons * line.force_error,
@@ -190,7 +202,22 @@ def predict_driving(
         efficiency=line.efficiency,
         efficiency_error=line.efficiency_error,
         converged=line.converged,
-        reason=line.reason,
+        reason=reason,
         warnings=tuple(broken_assumptions(contact, real)),
         not_checked=tuple(unchecked(contact)),
+    )
+
+
+def _holding_forces(line, newtons):
+    """Fields of the holding forces, and the reason of a line; newtons: the unit of its forces."""
+    fields = {}
+    for name in ("low", "low_error", "high", "high_error"):
+        value = getattr(line, f"holding_force_{name}")
+        fields[f"holding_force_{name}_N"] = None if value is None else newtons * value
+    low, low_error, high, high_error = fields.values()
+    if low is None or not line.converged:
+        return fields, line.reason
+    unit = force_unit(max(abs(low), abs(high)))
+    return fields, DRIVES_NOTHING.format(
+        in_unit(low, low_error, unit), in_unit(high, high_error, unit)
     )
