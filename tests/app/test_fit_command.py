@@ -57,7 +57,8 @@ def test_a_table_gives_both_numbers_a_figure_and_a_dataset(folder, capsys):
     assert cli.main(words) == 0
     text = capsys.readouterr().out
     assert (
-        "\nmu                0.3, from 0.29" in text and "\nu_lim             200 nm, from" in text
+        "\nmu                0.3000, from 0.29" in text
+        and "\nu_lim             200.0 nm, from" in text
     )
 
 

@@ -113,6 +113,12 @@ GOOD = {
     "shakedown": {"scene": "transverse", "amplitude": 0.5, "force": 0.1},
     "solve_stored": {"scene": "transverse", "velocity": 0.5, "amplitude": 0.5},
     "open_map": {"name": "transverse"},
+    "to_xarray": {},
+    "predict_table": {"scene": "transverse"},
+    "fit": {
+        **{"scene": "transverse", "speed": "1 mm/s", "frequency": "20 kHz", "load": "10 N"},
+        "measured": {"amplitude": [1e-7, 2e-7, 3e-7], "mu": [0.2, 0.15, 0.1]},
+    },
     "Material": {"young": "210 GPa", "poisson": 0.3},
 }
 

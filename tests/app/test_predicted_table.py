@@ -44,6 +44,29 @@ def test_each_line_is_the_prediction_of_its_contact(folder, capsys):
     assert float(lines[2].split()[1]) == pytest.approx(alone.mu_apparent, rel=1e-3)
 
 
+@pytest.mark.slow
+def test_progress_is_for_terminals_alone(folder, capsys):
+    assert cli.main(COMMAND) == 0
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("load [mm]\n5\n", "--table = 'contacts.csv': load = '5 mm': in line 2: the unit is"),
+        ("amplitude,load [N]\n,5\n", "amplitude: in line 2: transverse needs it"),
+        ('load\n"1,5 N"\n', "'1,5 N' has a decimal comma, in load; allowed: a decimal point"),
+        ('load\n"1,5 N"\n', "or --decimal ','"),
+    ],
+)
+def test_a_bad_cell_is_named_by_its_column(text, said, folder, capsys):
+    (folder / "contacts.csv").write_text(text)
+    extra = ["--speed", "1 mm/s"]
+    extra += [] if "amplitude" in text else ["--amplitude", "0.1 um"]
+    assert cli.main([*COMMAND, *extra]) == 2
+    assert said in capsys.readouterr().err
+
+
 @pytest.mark.long
 def test_a_line_that_nothing_answers_does_not_take_the_others_with_it(folder, capsys):
     """At 4 m/s no load has two fifths of its friction taken away by this vibration."""

@@ -238,7 +238,11 @@ OPTIONS = [
     ("point sideways --velocity 1", "SCENE", "'sideways'", "zigzag"),
     ("point continuous_bore --velocity 1", "'continuous_bore'", "continuous-bore"),
     ("point --velocity 1 transverse", "--velocity", "SCENE before other options"),
-    ("point transverse --amplitude 1", "--velocity = None", "or a force in its place"),
+    (
+        "point transverse --amplitude 1",
+        "--velocity: needed;",
+        "or a force in its place",
+    ),
     ("point transverse --velocity 1", "required: --amplitude"),
     ("point bore", "required: --amplitude"),
     (f"{STEADY} --amplitude 1", "unknown option --amplitude", "allowed: --help, --velocity"),
@@ -252,6 +256,20 @@ OPTIONS = [
     (f"{TRANSVERSE} --json=yes", "--json", "'yes'"),
     (f"{TRANSVERSE} bore", "unrecognized arguments: bore"),
     (f"{TRANSVERSE} 0.5", "unrecognized arguments: 0.5"),
+    (f"{PREDICTED} mm", "unrecognized arguments: mm", "allowed: options, each with one value"),
+    (f"{PREDICTED} --nu 0.3 --radius-across '1 um'", "--radius-across = '1 um'", "of ratio"),
+    (
+        "predict elliptic:forward_cycles=2,phase=0 --driving --forward-amplitude '0.4 um'",
+        "--forward-amplitude = '0.4 um'",
+        "the numbers of the motion are its shares of the amplitude",
+    ),
+    (
+        "drive elliptic:forward_cycles=2 --path forward_cycles=2,phase=0 --amplitude 1",
+        "--path = 'forward_cycles=2,phase=0'",
+        "allowed is none: SCENE has numbers of its own",
+    ),
+    ("fit transverse a-file --map m.csv", "--map = 'm.csv'", "a path that ends in .nc"),
+    ("fit transverse a-file --map nosuch.nc", "--map: nosuch.nc is not there"),
 ]
 
 # Of these the folder is as tests/config/test_bad_input.py makes it.
@@ -259,9 +277,9 @@ RESULTS = [
     (f"{TRANSVERSE} --results", "--results", "expected one argument"),
     (f"{TRANSVERSE} --results ''", "--results: ''", "the name of a folder"),
     (f"{TRANSVERSE} --results ' '", "--results: ' '", "the name of a folder"),
-    (f"{TRANSVERSE} --results a-file", "--results", "a-file", "Not a directory", "another folder"),
-    (f"{TRANSVERSE} --results a-file/deep", "--results", "a-file/deep", "Not a directory"),
-    (f"{TRANSVERSE} --results lost-link", "--results", "lost-link", "another folder"),
+    (f"{TRANSVERSE} --results a-file", "--results", "a-file is not a folder", "a new name"),
+    (f"{TRANSVERSE} --results a-file/deep", "--results", "a-file is not a folder"),
+    (f"{TRANSVERSE} --results lost-link", "--results", "lost-link is not a folder", "a new name"),
     (f"{TRANSVERSE} --results /proc/none", "--results", "/proc/none", "another folder"),
     (f"{TRANSVERSE} --results {'x' * 300}", "--results", "xxx", "File name too long"),
     (f"{TRANSVERSE} --results kept --method admm", "--method = 'admm'", "shipped with --results"),

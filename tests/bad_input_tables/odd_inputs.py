@@ -5,6 +5,7 @@ line of a refusal.
 """
 
 import datetime
+import math
 from decimal import Decimal
 from fractions import Fraction
 from math import pi
@@ -130,6 +131,10 @@ PREDICTIONS = [
     ({"load": "1e300 N"}, "--radius = '5 mm': by Hertz's theory"),
     ({"load": "1e-300 N"}, "--amplitude = '1 um'"),
     ({"load": "10 kg"}, "--load = '10 kg': the unit is kilogram"),
+    (
+        {"pressure": "power:exponent=1"},
+        "--radius = '5 mm': allowed is none beside a pressure, which needs --contact-radius",
+    ),
     ({"radius": "0 m"}, "--radius = '0 m': allowed is a finite value above 0 m"),
     ({"radius": "1e-12 m"}, "--radius = '1e-12 m': by Hertz's theory"),
     ({"radius": "196.85 mil"}, "the mil of workshops is thou"),
@@ -185,8 +190,8 @@ PREDICTIONS = [
         {"drive_stiffness": "1 N/um", "amplitude": None, "reduction": "50 %"},
         "--reduction = '50 %': allowed where a speed alone pulls",
     ),
-    ({"mass": "20 g"}, "--mass = '20 g': allowed beside a force or a drive_stiffness"),
-    ({"damping": "1 N*s/m"}, "--damping = '1 N*s/m': allowed beside a drive_stiffness"),
+    ({"mass": "20 g"}, "--mass = '20 g': allowed beside a force or --drive-stiffness"),
+    ({"damping": "1 N*s/m"}, "--damping = '1 N*s/m': allowed beside --drive-stiffness"),
     (
         {"drive_stiffness": "0 N/um"},
         "--drive-stiffness = '0 N/um': allowed is a finite value above",
@@ -247,6 +252,10 @@ NO_NUMBERS = [None, [0.5], {"a": 1}, "0.5", b"0.5", True, np.True_, 0.5j, Decima
 NO_NUMBERS += [Fraction(1, 2), np.array([0.5]), np.array(0.5), HIDDEN, SPAN, float, pd.NA]
 NO_NUMBERS += [datetime.datetime(2020, 1, 1), pd.Timestamp("2020-01-01"), HUGE]
 NAMES = [None, 1, ["a"], b"a", HUGE, np.array(["a"]), SPAN, pd.Series(["hertz", "a"])]
+
+ROW = {"speed": [1e-3], "amplitude": [1e-6], "frequency": [2e4], "load": [10.0], "mu": [0.1]}
+"""One measurement, in SI units."""
+ONE_ROW = dict.fromkeys(("speed", "frequency", "load"))
 
 CALLS = [("solve", {"velocity": value}, "velocity = ") for value in NO_NUMBERS]
 CALLS += [("solve", {"poisson": value}, "poisson = ") for value in NO_NUMBERS]
@@ -320,6 +329,23 @@ CALLS += [
         ("open_map", {"name": name}, "name = ")
         for name in (None, 5, b"transverse", ["transverse"], "Transverse", " transverse", "")
     ),
+    ("open_map", {"name": "transvers"}, "name = 'transvers': did you mean transverse? allowed"),
+    ("open_map", {"results": __file__}, "is not a folder; allowed: the name of a folder"),
+    ("solve_stored", {"results": 5}, "results = 5: is not allowed"),
+    ("to_xarray", {"record": 5}, "record = 5: allowed is one of Result,"),
+    (
+        "predict_table",
+        {"cases": {"load": ["1 N"], "mu": [0.1, 0.2]}},
+        "cases = ['load', 'mu']: columns of 1 and 2 values; allowed are columns of one length",
+    ),
+    ("fit", {**ONE_ROW, "measured": ROW}, "'load', 'mu']: 1 row; two numbers take at least 3"),
+    ("fit", {"map": "transverse.nc"}, "map = 'transverse.nc': allowed is the dataset"),
+    (
+        "fit",
+        {**ONE_ROW, "measured": ROW | {"mu": [math.nan]}},
+        "mu = nan: empty in row 1",
+    ),
+    ("fit", {"confidence": 95}, "confidence = 95: allowed is a number above 0 and below 1, such"),
     ("Material", {"young": HUGE}, "young = "),
     ("Material", {"young": "210 gpa"}, "capitals count"),
     ("Material", {"poisson": "300 %"}, "poisson = '300 %'"),

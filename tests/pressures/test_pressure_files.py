@@ -423,6 +423,8 @@ def test_what_netcdf_must_not_hold_is_told_in_one_line(tmp_path):
         {"pressure": (dims, one)}, forward=axis, lateral=("lateral", axis, {"units": "mm"})
     )
     assert "not a netCDF file" in refusal(text(tmp_path / "q.nc", b"\x89HDF\r\n\x1a\n no netCDF"))
+    name = text(tmp_path / "junk.nc", b"\x89\xff\xb5 no netCDF")
+    assert "not a netCDF file" in refusal(name)
 
 
 # Names and places

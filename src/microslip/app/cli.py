@@ -203,7 +203,8 @@ def main(arguments: list[str] | None = None) -> int:
             result = _answer(options, lambda resolution: _show(bar, resolution))
     except InputError as error:
         problem = error.renamed(*_as_given(options, error.argument))
-        terminal.complain(f"{named}: {problem}")
+        missing = f"{problem.argument}: needed; {problem.allowed}"
+        terminal.complain(f"{named}: {missing if problem.value is None else problem}")
         return 2
     except CacheError as error:
         terminal.complain(f"{named}: --results: {error}")

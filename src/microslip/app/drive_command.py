@@ -74,6 +74,8 @@ def run(options: argparse.Namespace) -> int:
     path = given.pop("path", None)
     scene = options.scene if path is None else f"{options.scene}:{path}"
     try:
+        if path is not None and ":" in options.scene:
+            raise InputError("scene", None, "allowed is none: SCENE has numbers of its own")
         for name in given.keys() & {*REALS, "points"}:
             given[name] = spec.read(name, given[name], whole=name == "points")
         line = drive(scene, given.pop("amplitude"), **given)

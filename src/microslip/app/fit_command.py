@@ -6,7 +6,7 @@ import argparse
 import json
 from pathlib import Path
 
-from microslip.app.option_parser import Said
+from microslip.app.option_parser import Said, format_as_options
 from microslip.app.terminal import complain
 from microslip.foundation.errors import shown
 from microslip.si.motions import UNIT_OF_AMPLITUDE
@@ -79,14 +79,20 @@ def run(options: argparse.Namespace) -> int:
         return 2
     print(json.dumps(plain(found.to_dict())) if options.json else _as_text(found))
     for text in found.left_out:
-        complain(f"microslip fit: {text}; left out")
+        complain(f"microslip fit: {format_as_options(text)}; left out")
     return 0 if len(found.told) == 2 and not found.left_out else 1
 
 
 def _opened(path):
     from microslip.datasets.query.open_map import open_map
+    from microslip.foundation.errors import CacheError, InputError
 
-    return open_map(Path(path)) if path.endswith(".nc") else open_map(path)
+    try:
+        return open_map(Path(path)) if path.endswith(".nc") else open_map(path)
+    except InputError as error:
+        raise error.renamed("map") from None
+    except CacheError as error:
+        raise CacheError(f"--map: {error}") from None
 
 
 def _refuse_endings(options):
@@ -119,7 +125,7 @@ def _complaint(error, typed, options):
     option, value = words.get(error.argument, (typed.get(error.argument), error.value))
     option = option or f"--{error.argument.replace('_', '-')}"
     given = "" if value is None else f" = {shown(value)}"
-    return " ".join(f"{option}{given}: {error.allowed}".split())
+    return " ".join(f"{option}{given}: {format_as_options(error.allowed)}".split())
 
 
 def _as_text(found):
@@ -163,10 +169,15 @@ def _interval(value, low, high, unit):
 def _scaled(value, unit):
     """A value in the unit that suits it."""
     if not unit or not value:
-        return f"{value:.4g} {unit}".strip()
+        return f"{_digits(value, 4)} {unit}".strip()
     factor, prefix = next((one for one in PREFIXES if abs(value) >= one[0]), PREFIXES[-1])
-    return f"{value / factor:.4g} {prefix}{unit}"
+    return f"{_digits(value / factor, 4)} {prefix}{unit}"
 
 
 def _per_cent(share):
-    return f"{100.0 * share:.2g} %"
+    return f"{_digits(100.0 * share, 2)} %"
+
+
+def _digits(value, count):
+    """A number with so many significant digits, zeros at its end included."""
+    return f"{value:#.{count}g}".rstrip(".") if value else "0"

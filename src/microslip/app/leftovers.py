@@ -132,7 +132,7 @@ def main(arguments: list[str]) -> int:
     """Entry point of `microslip gc`; returns the exit code: 0, or 2 for bad input."""
     options = _parser().parse_args(arguments)
     try:
-        configurations = [load.load(path) for path in options.configfile or [DEFAULT]]
+        configurations = [_loaded(path) for path in options.configfile or [DEFAULT]]
         folder = _folder(configurations)
         sealed_files.refuse_unusable([folder], [])
         if not os.path.isdir(folder):
@@ -148,6 +148,13 @@ def main(arguments: list[str]) -> int:
         complain(f"microslip gc: {error}")
         return 2
     return 0
+
+
+def _loaded(path: str) -> Configuration:
+    try:
+        return load.load(path)
+    except ConfigError as error:
+        raise ConfigError(f"--configfile: {error}") from None
 
 
 def _folder(configurations: list[Configuration]) -> Path:

@@ -26,6 +26,8 @@ class OneLineParser(argparse.ArgumentParser):
     """Bad input gets one line on standard error and exit code 2."""
 
     def error(self, message: str) -> NoReturn:
+        if message.startswith("unrecognized arguments"):
+            message += "; allowed: options, each with one value, in quotes if it has a space"
         complain(f"{self.prog}: {message} (see {self.prog} --help)")
         raise SystemExit(2)
 
@@ -81,6 +83,11 @@ def _hint(given, known):
     synonym = [name for name in [SYNONYMS.get(given)] if name in known]
     near = synonym or difflib.get_close_matches(given, known, n=1)
     return f"did you mean {near[0]}? " if near else ""
+
+
+def format_as_options(text: str) -> str:
+    """A message about a CSV file with --decimal and --encoding in place of arguments of Python."""
+    return re.sub(r"\b(decimal|encoding) = ", r"--\1 ", text)
 
 
 class Said(argparse.Action):

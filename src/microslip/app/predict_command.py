@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 import sys
 
 from microslip.app import predicted_driving, predicted_table
-from microslip.app.option_parser import Said
+from microslip.app.option_parser import Said, format_as_options
 from microslip.app.terminal import complain
 from microslip.foundation.errors import InputError, shown
 from microslip.si.materials import MATERIALS
@@ -186,4 +187,11 @@ def _complaint(error, typed):
     option = "SCENE" if error.argument == "scene" else typed.get(error.argument, name)
     flag = error.value is True or error.value is None
     given = "" if flag else f" = {shown(error.value)}"
-    return " ".join(f"{option}{given}: {error.allowed}".split())
+    allowed = error.allowed if error.argument == "table" else _with_options(error.allowed)
+    return " ".join(f"{option}{given}: {format_as_options(allowed)}".split())
+
+
+def _with_options(text):
+    """A text with options in place of arguments of Python, such as --contact-radius."""
+    names = "|".join(name.replace("-", "_") for name in OPTIONS if "-" in name)
+    return re.sub(rf"(?:\ba )?\b({names})\b", lambda m: f"--{m[1].replace('_', '-')}", text)

@@ -5,20 +5,28 @@ from __future__ import annotations
 from microslip.foundation.errors import InputError
 from microslip.foundation.spec import read
 
-REFUSED = ("speed", "force", "rotation", "reduction", "drive_stiffness", "mass", "damping")
-REFUSED += ("radius_across", "contact_radius", "pressure", "forward_amplitude")
-REFUSED += ("rotation_amplitude", "load_amplitude", "phase")
-"""Of predict, what has no meaning where the motion itself pulls."""
+REFUSED = dict.fromkeys(
+    ("speed", "force", "reduction", "drive_stiffness", "mass", "damping"),
+    "the motion pulls by itself",
+)
+REFUSED["rotation"] = "such a motion has no rotation"
+REFUSED |= dict.fromkeys(
+    ("radius_across", "contact_radius", "pressure"), "it is computed for spheres, given by a radius"
+)
+REFUSED |= dict.fromkeys(
+    ("forward_amplitude", "rotation_amplitude", "load_amplitude", "phase"),
+    "the numbers of the motion are its shares of the amplitude and its phases",
+)
+"""Options of predict that --driving refuses, and why."""
 
 
 def ask(scene: str, given: dict) -> object:
     """The si.driving.RealDrivingLine; given: options by name.  Raises InputError."""
     from microslip.si.driving import predict_driving
 
-    for name in REFUSED:
+    for name, reason in REFUSED.items():
         if name in given:
-            allowed = "allowed is none with --driving: the motion pulls by itself"
-            raise InputError(name, given[name], allowed)
+            raise InputError(name, given[name], f"allowed is none with --driving: {reason}")
     if "points" in given:
         given = given | {"points": read("points", given["points"], whole=True)}
     missing = dict.fromkeys(("radius", "load", "amplitude", "frequency"))

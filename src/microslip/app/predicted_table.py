@@ -9,6 +9,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from microslip.app.option_parser import format_as_options
 from microslip.app.terminal import complain
 from microslip.foundation.csv_text import LABELS
 from microslip.foundation.errors import CacheError, InputError
@@ -54,7 +55,8 @@ class Answered:
         pairs = zip(self.lines, self.found, strict=True)
         texts = ((line, one.error) for line, one in pairs if isinstance(one, NoPrediction))
         return [
-            f"line {line}: {text}" if isinstance(text, InputError) else text for line, text in texts
+            f"line {line}: {_problem(text)}" if isinstance(text, InputError) else text
+            for line, text in texts
         ]
 
     def to_dicts(self) -> list[dict]:
@@ -90,7 +92,7 @@ def answer(
     if options.output is not None:
         write(options.output, answered)
     for text in answered.errors:
-        complain(f"microslip predict: {text}")
+        complain(f"microslip predict: {format_as_options(text)}")
     text = json.dumps(plain(answered.to_dicts())) if options.json else as_text(answered)
     return text, all(one.converged for one in answered.found)
 
@@ -114,9 +116,19 @@ def ask(
 
     read = cases_of_file(path, [name for name in columns if name != "power"], **format)
     names = [f"line {line}" for line in read.lines]
-    found = predictions(scene, read.columns, given, names, read.errors)
-    answers = list(tqdm(found, "contacts", len(names), leave=False))
+    try:
+        found = predictions(scene, read.columns, given, names, read.errors)
+    except InputError as error:
+        if error.argument not in read.columns or error.argument in given:
+            raise
+        raise InputError("table", path, _problem(error)) from None
+    answers = list(tqdm(found, "contacts", len(names), leave=False, disable=None))
     return Answered(scene, read.columns, read.lines, answers)
+
+
+def _problem(error):
+    """An InputError about a cell: without a value where the cell is empty or has no column."""
+    return f"{error.argument}: {error.allowed}" if error.value is None else str(error)
 
 
 def refuse_output(path: str | None, table: str) -> None:

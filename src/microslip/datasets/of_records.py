@@ -43,7 +43,7 @@ def to_xarray(record: object) -> xr.Dataset:
     """
     kind = type(record).__name__
     if not is_dataclass(record) or kind not in AXES:
-        raise InputError("record", kind, f"allowed is one of {', '.join(AXES)}")
+        raise InputError("record", record, f"allowed is one of {', '.join(AXES)}, not {kind}")
     axes = AXES[kind]
     variables, about = {}, {"record": kind}
     for name in (field.name for field in fields(record)):

@@ -178,7 +178,7 @@ def with_point(where: int, name: str, cell: str, decimal: str) -> str:
     if decimal == ".":
         if re.match(r"[+−-]?\d*,\d", cell, re.ASCII):
             allowed = "allowed: a decimal point, or decimal = ','"
-            raise ValueError(f"line {where}: {cell!r} has a decimal comma; {allowed}")
+            raise ValueError(f"line {where}: {cell!r} has a decimal comma, in {name}; {allowed}")
         return cell
     if re.search(r"\d\.\d", cell):
         allowed = "allowed: no points where commas are decimal"

@@ -10,6 +10,8 @@ is what sensors give, and what makes the load the sum of values times areas what
 
 from __future__ import annotations
 
+from pathlib import PurePath
+
 from microslip.foundation import csv_text, named_files
 from microslip.foundation.errors import InputError
 from microslip.pressures import grid_csv, grid_netcdf
@@ -24,6 +26,8 @@ PACKED = {
     b"BZh": "bzip2",
     b"\xfd7zXZ": "xz",
 }
+NETCDF = (".nc", ".nc4", ".cdf")
+"""Ends of names that only netCDF files have."""
 MOST_KNOWN = 8
 
 _KNOWN: dict[str, Pressure] = {}
@@ -49,7 +53,8 @@ def pressure(name: str) -> Pressure:
         try:
             _KNOWN[file.name] = _of_content(file, content)
         except ValueError as error:
-            raise InputError("pressure", name, f"{file.path}: {error}") from None
+            problem = str(error).replace("decimal = ','", "decimal=comma after the path")
+            raise InputError("pressure", name, f"{file.path}: {problem}") from None
         if len(_KNOWN) > MOST_KNOWN:
             del _KNOWN[next(iter(_KNOWN))]
     return _KNOWN[file.name]
@@ -61,6 +66,8 @@ def _of_content(file, content):
             raise ValueError(f"packed ({kind}); allowed: CSV or netCDF as it is")
     if content.startswith(grid_netcdf.BEGINNINGS):
         return of_grid(file.name, *grid_netcdf.grid(content), file.grid)
+    if PurePath(file.path).suffix.lower() in NETCDF:
+        raise ValueError("not a netCDF file that can be read: it does not begin as one does")
     decimal = named_files.DECIMALS[file.decimal]
     try:
         csv_text.check_format(decimal, file.encoding)

@@ -158,7 +158,10 @@ def read_contact(
             allowed = "allowed is none beside a counter_radius: give the relative curvatures"
             raise InputError("radius_across", across, allowed)
         second = read("radius_across", across, "m")
-        contact, texts["radius_across"] = elliptic(contact, second.si), second.text
+        try:
+            contact, texts["radius_across"] = elliptic(contact, second.si), second.text
+        except InputError as error:
+            raise error.renamed("radius_across", across) from None
         _refuse_senseless(contact, shape["radius"], across, load)
     return contact, texts
 
@@ -169,7 +172,10 @@ def _of_size(body, other, carried, mu, shape):
     load, contacts = carried
     for name in ("radius", "counter_radius", "radius_across"):
         if shape[name] is not None:
-            raise InputError(name, shape[name], "allowed is none beside a contact_radius")
+            cause = "a contact_radius"
+            if shape["contact_radius"] is None:
+                cause = "a pressure, which needs a contact_radius in place of radii"
+            raise InputError(name, shape[name], f"allowed is none beside {cause}")
     if shape["contact_radius"] is None:
         allowed = "needed beside a pressure: half the longer side of the contact"
         raise InputError("contact_radius", None, allowed)

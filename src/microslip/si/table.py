@@ -162,7 +162,9 @@ def number_of(cases: Mapping[str, object], shared: Mapping[str, object]) -> int:
             raise InputError(name, values, "allowed is a sequence with a value for each case")
     counts = {len(values) for values in cases.values()}
     if len(counts) > 1:
-        raise InputError("cases", sorted(counts), "allowed are columns of one length")
+        lengths = " and ".join(map(str, sorted(counts)))
+        allowed = f"columns of {lengths} values; allowed are columns of one length"
+        raise InputError("cases", list(cases), allowed)
     (count,) = counts
     if not 0 < count <= MOST_CASES:
         raise InputError("cases", count, f"allowed are 1 to {MOST_CASES} cases")

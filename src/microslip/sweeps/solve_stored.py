@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import time
 import warnings
 from dataclasses import fields
@@ -22,9 +23,11 @@ from microslip.adaptive.result import Result
 from microslip.adaptive.several import body_of
 from microslip.config.axes import DRIVES
 from microslip.config.records import Sweep
+from microslip.foundation.errors import InputError
 from microslip.solver.problem import Problem
 from microslip.sweeps import batches
 from microslip.sweeps.cache import Store
+from microslip.sweeps.sealed_files import refuse_no_folder, refuse_unusable
 
 
 def solve_stored(
@@ -70,6 +73,8 @@ def solve_stored(
         If the folder cannot be used.
     """
     started = time.perf_counter()
+    if not isinstance(results, str | os.PathLike):
+        raise InputError("results", results, "is not allowed; allowed: the name of a folder")
     drive = checked_drive(velocity, force, stiffness, mass, damping)
     kind, place, amplitude, poisson = checked_point(
         scene, 0.0 if velocity is None else velocity, amplitude, poisson, pressure, backward=True
@@ -100,6 +105,8 @@ def solve_stored(
         drives=_drives(force=force, stiffness=stiffness, mass=mass, damping=damping),
     )
     (request,) = batches.PointRequests(grid)
+    refuse_no_folder(results)
+    refuse_unusable([results], [])
     try:
         record, _ = batches.answer(request, Store(results), time_limit)
     except batches.SourcesEdited as edited:

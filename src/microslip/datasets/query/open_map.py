@@ -11,6 +11,7 @@ asks both.
 
 from __future__ import annotations
 
+import difflib
 import os
 from pathlib import Path
 
@@ -70,6 +71,8 @@ def open_map(
     if not isinstance(results, str | os.PathLike):
         raise InputError("results", results, "is not allowed; allowed: the name of a folder")
     refuse_no_folder(results)
+    if os.path.exists(results) and not os.path.isdir(results):
+        raise InputError("results", results, "is not a folder; allowed: the name of a folder")
     try:
         return _found(name, results, chunks, group)
     except OSError as error:  # damage inside a file, or a name that no file can have
@@ -85,11 +88,13 @@ def _found(name, results, chunks, group):
     if path.suffix != ".nc":
         path = Path(results, f"{name}.nc")
         if str(name) not in SCENE_OF_SWEEP and not path.is_file():
+            near = difflib.get_close_matches(str(name), SCENE_OF_SWEEP, n=1)
+            hint = f"did you mean {near[0]}? " if near else ""
             raise InputError(
                 "name",
                 name,
-                f"allowed is {', '.join(SCENE_OF_SWEEP)}, another sweep of which {results} has the "
-                "dataset, or a path",
+                f"{hint}allowed is {', '.join(SCENE_OF_SWEEP)}, another sweep of which {results} "
+                "has the dataset, or a path that ends in .nc",
             )
     if not path.is_file():
         raise CacheError(f"{path} is not there: run the workflow first, or name its results folder")

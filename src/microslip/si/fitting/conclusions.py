@@ -65,7 +65,7 @@ def concluded(settled: Settled, confidence: float, texts: dict) -> Fit:
     model_error = mu * rows.weight * model.errors(points)
     if not np.isfinite(model_error).all():
         where = int(np.flatnonzero(~np.isfinite(model_error))[0]) + 1
-        raise InputError("map", None, f"knows no friction for row {where} at the best fit")
+        raise InputError("map", settled.scene, f"knows no friction for row {where} at the best fit")
     allowed = estimate.threshold(rows, best, confidence, model_error / rows.error)
     ends = np.array([estimate.interval(rows, best, which, allowed) for which in (0, 1)])
     told = [which for which in (0, 1) if np.isfinite(ends[which]).all()]

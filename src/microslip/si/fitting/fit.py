@@ -10,7 +10,7 @@ from microslip.si.fitting import estimate
 from microslip.si.fitting.conclusions import Settled, concluded
 from microslip.si.fitting.fitted import Fit
 from microslip.si.fitting.friction_models import LEAST, MOST, MapFriction, SolvedFriction
-from microslip.si.fitting.measured import Measured, read_measured
+from microslip.si.fitting.measured import Measured, named, read_measured
 from microslip.si.fitting.scales import Displacement, Modulus, Points
 from microslip.si.inputs import LARGEST_MU
 from microslip.si.motions import UNIT_OF_AMPLITUDE
@@ -94,7 +94,8 @@ def fit(
     scale, texts = _scale(scene, rows, nu, radius, counterbody)
     accepted = CONFIDENCE if confidence is None else read("confidence", confidence, "").si
     if accepted >= 1.0:
-        raise InputError("confidence", confidence, "allowed is a number above 0 and below 1")
+        allowed = "allowed is a number above 0 and below 1, such as 0.95 or '95 %'"
+        raise InputError("confidence", confidence, allowed)
     ends = scale.bounds(LEAST, MOST)
     if map is not None:
         model = MapFriction(map, scene, None if nu is None else scale.poisson)
@@ -106,15 +107,20 @@ def fit(
     rows_to_fit = _rows(rows, scale, model, ends)
     best, others = _best(rows_to_fit, scale, model)
     settled = Settled(scene, scale, model, rows_to_fit, best, others)
-    return concluded(settled, accepted, texts | rows.texts)
+    try:
+        return concluded(settled, accepted, texts | rows.texts)
+    except InputError as error:
+        if error.argument != "measured":
+            raise
+        raise error.renamed("measured", named(measured)) from None
 
 
 def _refuse_too_few(rows, given):
     least = 2 if rows.has_errors else 3
-    given = given if isinstance(given, str) else None
-    if len(rows.value) < least:
+    given, count = named(given), len(rows.value)
+    if count < least:
         more = "" if rows.has_errors else ", or two with errors of their own"
-        allowed = f"{len(rows.value)} rows; two numbers take at least {least}{more}"
+        allowed = f"{count} row{'s' if count > 1 else ''}; two numbers take at least {least}{more}"
         raise InputError("measured", given, allowed)
     if rows.distinct < 2:
         allowed = "all rows are of one condition, which tells one number; allowed: two or more"

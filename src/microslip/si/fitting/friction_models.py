@@ -69,7 +69,8 @@ class MapFriction:
     def __init__(self, dataset: object, scene: str, poisson: float):
         attributes = getattr(dataset, "attrs", {})
         if attributes.get("scene") != scene or attributes.get("pressure", "hertz") != "hertz":
-            what = attributes.get("scene") or type(dataset).__name__
+            kind = type(dataset).__name__ if hasattr(dataset, "attrs") else dataset
+            what = attributes.get("scene") or kind
             raise InputError("map", what, f"allowed is the dataset of a sweep of {scene}")
         if {"drive", "contacts"} & set(attributes):
             allowed = "allowed is that of one contact that is moved at a velocity"

@@ -169,7 +169,7 @@ def _column(name, values, unit_of_amplitude):
     if np.isnan(column).any():
         row = int(np.flatnonzero(np.isnan(column))[0]) + 1
         allowed = f"empty in row {row}; allowed: a number in every row, leave out the others"
-        raise InputError(name, None, allowed)
+        raise InputError(name, np.nan, allowed)
     least = -np.inf if name in ("friction", "mu") else 0.0
     zero = name in ("speed", "amplitude", "friction", "mu")
     bad = ~np.isfinite(column) | (column < least) | ((column == 0.0) & (not zero))
@@ -186,12 +186,13 @@ def _quantity(table, given):
     there = [name for name in ("friction", "mu") if name in table]
     if len(there) != 1:
         many = "both friction and mu" if there else "neither friction nor mu"
-        raise InputError("measured", _named(given), f"has {many}; allowed is one of them")
+        raise InputError("measured", named(given), f"has {many}; allowed is one of them")
     for name in ("friction", "mu"):
         if f"{name}_error" in table and name not in there:
-            raise InputError("measured", _named(given), f"has {name}_error without {name}")
+            raise InputError("measured", named(given), f"has {name}_error without {name}")
     return there[0]
 
 
-def _named(given):
+def named(given: object) -> str | list:
+    """What messages show of a table: its path, or the names of its columns."""
     return str(given) if isinstance(given, str | os.PathLike) else list(given)
