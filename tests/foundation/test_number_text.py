@@ -108,7 +108,24 @@ def test_a_number_has_the_digits_that_its_error_allows(value, error, text):
     assert number_text(value, error) == text
 
 
-def test_ends_of_an_interval_have_two_digits_of_its_width():
-    assert interval_text(41.234, 133.3, "N") == "41 to 133 N"
-    assert interval_text(0.0, 0.2149) == "0.00 to 0.21"
-    assert interval_text(3.0, 3.0) == "3 to 3"
+@pytest.mark.parametrize(
+    ("low", "high", "error", "text"),
+    [
+        (41.234, 133.3, 0.0, "41 to 134"),
+        (0.0, 0.2149, 0.0, "0.00 to 0.22"),
+        (154.98, 264.39, 0.0, "150 to 270"),
+        (-0.314, -0.061, 0.0, "-0.32 to -0.06"),
+        (3.0, 3.0, 0.0, "3 to 3"),
+        (0.0, 0.0, 0.0, "0 to 0"),
+        (0.3, 40.0 * (1.0 + 4e-16), 0.0, "0 to 40"),
+        (3.6e-10, 8.3e-10, 5.1e-5, "0 to 5.2e-05"),
+        (0.19187, 0.191871, 2e-4, "0.19167 to 0.19208"),
+        (0.19187, 0.19187, 0.0, "0.1918 to 0.1919"),
+        (0.52, math.inf, 0.0, "0.52 to inf"),
+        (1.0, 2.0, math.inf, "0 to inf"),
+    ],
+)
+def test_an_interval_is_rounded_outwards_to_two_digits_of_its_width(low, high, error, text):
+    """The width is that of the interval and its error: no digit is smaller than the error."""
+    assert interval_text(low, high, error=error) == text
+    assert interval_text(low, high, "N", error=error) == f"{text} N"

@@ -205,3 +205,18 @@ def test_a_force_that_may_vanish_has_an_unbounded_safety_factor():
     low, high = found.safety_factor_low, found.safety_factor_high
     assert low == pytest.approx(3.0 / (0.5 + 1.959964 * 0.49), rel=1e-3)
     assert high == math.inf and "to inf" in str(found)
+
+
+@pytest.mark.slow
+def test_a_printed_interval_encloses_its_ends_and_their_error():
+    """The static friction varies less with this load than its error estimate."""
+    given = {"material": "steel", "radius": "5 mm", "mu": 0.3, "load": "10 N +- 0.0001 %"}
+    given |= {"amplitude": "0.1 um", "frequency": "20 kHz", "speed": "10 mm/s", "tolerance": 0.01}
+    found = microslip.predict("transverse", **given)
+    width = found.mu_static_apparent_high - found.mu_static_apparent_low
+    error = found.mu_static_apparent_error
+    assert 0.0 < width < error
+    ends = re.search(r"static friction.*\n +95 % interval (\S+) to (\S+),", str(found)).groups()
+    assert float(ends[0]) <= found.mu_static_apparent_low - error
+    assert float(ends[1]) >= found.mu_static_apparent_high + error
+    assert 10.0 ** -len(ends[0].partition(".")[2]) > 0.01 * error  # two digits of the width

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from decimal import ROUND_CEILING, Context, Decimal
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 ERROR_DIGITS = 2
 """Significant digits of an error.  Rounded up to one digit, it could appear twice as large."""
@@ -19,6 +19,8 @@ FIXED = -4, 7
 _ROUNDED_UP = Context(prec=ERROR_DIGITS, rounding=ROUND_CEILING)
 _WIDE = Context(prec=800)
 """Decimal digits that suffice for any two floats."""
+_WITHOUT_ROUNDING_ERROR = Context(prec=12)
+"""Decimal digits without the rounding error of floats, as in ROUNDING."""
 SEPARATOR = " +- "
 
 
@@ -98,19 +100,40 @@ def _rounded_up(error):
     return _ROUNDED_UP.create_decimal(Decimal(repr(error)))
 
 
-def interval_text(low: float, high: float, unit: str = "") -> str:
-    """Both ends of an interval, to two significant digits of its width."""
-    width = float(high) - float(low)
-    if not (math.isfinite(width) and width > 0.0):
-        ends = [_text(float(end), 0.0, EXACT_DIGITS) for end in (low, high)]
+def interval_text(low: float, high: float, unit: str = "", *, error: float = 0.0) -> str:
+    """Both ends of an interval, rounded outwards to two significant digits of its width.
+
+    Parameters
+    ----------
+    low, high : float
+        Ends of the interval, in the unit.
+    unit : str
+        Unit to print behind them.
+    error : float
+        Error estimate of both ends, in the unit.  The interval is extended by it, but a positive
+        one not below 0.
+    """
+    low, high = float(low), float(high)
+    if not error <= EXACT * abs(high):
+        low, high = (max(low - error, 0.0) if low >= 0.0 else low - error), high + error
+    size = max((abs(end) for end in (low, high) if math.isfinite(end)), default=0.0)
+    width = high - low if math.isfinite(high - low) else size
+    digits = ERROR_DIGITS if width > EXACT * size else EXACT_DIGITS
+    place = Decimal(repr(width if width > EXACT * size else size)).adjusted() + 1 - digits
+    ends = _outwards(low, place, ROUND_FLOOR), _outwards(high, place, ROUND_CEILING)
+    if digits == EXACT_DIGITS or size and not 10.0 ** FIXED[0] <= size < 10.0 ** FIXED[1]:
+        texts = [end if isinstance(end, str) else _short(end.normalize()) for end in ends]
     else:
-        exponent = Decimal(repr(width)).adjusted() + 1 - ERROR_DIGITS
-        place = Decimal((0, (1,), exponent))
-        ends = [
-            f"{abs(end) if end == 0 else end:f}"
-            for end in (Decimal(repr(float(e))).quantize(place, context=_WIDE) for e in (low, high))
-        ]
-    return f"{ends[0]} to {ends[1]} {unit}".strip()
+        texts = [end if isinstance(end, str) else f"{end:f}" for end in ends]
+    return f"{texts[0]} to {texts[1]} {unit}".strip()
+
+
+def _outwards(end, place, rounding):
+    """The end of an interval, rounded to a power of 10; infinity and NaN as text."""
+    if not math.isfinite(end):
+        return f"{end:g}"
+    number = _WITHOUT_ROUNDING_ERROR.create_decimal(Decimal(repr(end)))
+    return number.quantize(Decimal((0, (1,), place)), rounding=rounding, context=_WIDE) + 0
 
 
 def aligned(columns: Mapping[str, tuple[Sequence[float], Sequence[float] | None]]) -> list[str]:

@@ -146,7 +146,8 @@ class _Text:
             return []
         value = number_text(found.mu_static_apparent, found.mu_static_apparent_error)
         lines = [line("static friction", f"{value}: coefficient of friction at vanishing speed")]
-        lines += interval_lines(found.mu_static_apparent_low, found.mu_static_apparent_high)
+        ends = found.mu_static_apparent_low, found.mu_static_apparent_high
+        lines += interval_lines(*ends, found.mu_static_apparent_error)
         threshold = found.force_threshold_N
         if threshold is not None and not math.isclose(
             threshold, found.friction_force_still_N * found.mu_static, abs_tol=0.0
@@ -166,7 +167,7 @@ class _Text:
         text = in_unit(value, error, self.force)
         lines = [line("force threshold", f"{text}: no smaller constant force moves the contact")]
         ends = (found.force_threshold_low_N, found.force_threshold_high_N)
-        return lines + interval_lines(*ends, unit=self.force)
+        return lines + interval_lines(*ends, error, unit=self.force)
 
     def walk(self):
         """Lines of the motion under a force."""
@@ -175,7 +176,8 @@ class _Text:
         if factor is not None and (factor > found.safety_factor_error or found.safety_factor_high):
             text = number_text(factor, found.safety_factor_error)
             lines.append(line("safety factor", f"{text}: threshold over force"))
-            lines += interval_lines(found.safety_factor_low, found.safety_factor_high)
+            ends = found.safety_factor_low, found.safety_factor_high
+            lines += interval_lines(*ends, found.safety_factor_error)
         return lines + self.outcome()
 
     def outcome(self):

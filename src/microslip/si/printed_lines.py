@@ -117,11 +117,14 @@ def runs_away(found: object) -> str:
 
 
 def interval_lines(
-    low: float | None, high: float | None, unit: tuple[str, float] = ("", 1.0)
+    low: float | None, high: float | None, error: float, unit: tuple[str, float] = ("", 1.0)
 ) -> list[str]:
-    """The line of an interval that follows from the uncertain inputs, if there is one."""
+    """The line of an interval that follows from the uncertain inputs, if there is one.
+
+    low, high, error: ends of the interval and their error estimate in SI units.
+    """
     if low is None:
         return []
     name, size = unit
-    text = interval_text(low / size, high / size, name)
+    text = interval_text(low / size, high / size, name, error=error / size)
     return [line("", f"95 % interval {text}, from the uncertain inputs")]
