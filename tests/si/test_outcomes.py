@@ -8,6 +8,7 @@ import pytest
 
 import microslip
 from microslip.app import cli
+from microslip.si.printed_lines import probability_text
 from microslip.theory import paper
 
 JOINT = {"young": "210 GPa", "nu": 0.0, "radius": "200 mm", "load": "1 kN", "frequency": "50 Hz"}
@@ -220,3 +221,47 @@ def test_a_printed_interval_encloses_its_ends_and_their_error():
     assert float(ends[0]) <= found.mu_static_apparent_low - error
     assert float(ends[1]) >= found.mu_static_apparent_high + error
     assert 10.0 ** -len(ends[0].partition(".")[2]) > 0.01 * error  # two digits of the width
+
+
+@pytest.mark.slow
+def test_an_unlikely_outcome_has_a_bound_of_its_probability():
+    """The contact stays only where the amplitude is 4 deviations below its centre."""
+    given = {"young": "210 GPa", "nu": 0.0, "counterbody": "210 GPa, 0", "radius": "20 mm"}
+    given |= {"load": "200 N", "mu": 0.2, "force": "38 N", "frequency": "60 Hz"}
+    found = microslip.predict("transverse", **given, amplitude="0.3 um +- 0.05 um")
+    a = (0.75 * 200.0 * 0.02 / 105e9) ** (1.0 / 3.0)
+    draws = 0.3 + 0.05 * np.random.default_rng(5).standard_normal(1_000_000)
+    threshold = 40.0 * transverse(draws * 1e-6 / (0.2 * a**2 / 0.02), None)
+    share = np.mean(threshold > 38.0)
+    assert 0.0 < share < 1e-4
+    assert abs(found.probability_stays - share) <= found.probability_error
+    said = "below 0.1 % that it stays, above 99.9 % that it moves, below 0.1 % that it runs away"
+    assert said in str(found)
+
+
+@pytest.mark.slow
+def test_the_speed_of_a_contact_that_may_run_away_has_no_spread():
+    """It runs away where the force is above mu times the least load: in 1 of 94 draws."""
+    given = {"young": "210 GPa", "nu": 0.0, "radius": "20 mm", "load": "20 N", "force": "1.5 N"}
+    given |= {"load_amplitude": "10 N +- 1 N", "mu": "0.2 +- 0.01", "frequency": "60 Hz"}
+    found = microslip.predict("normal", **given)
+    mu, load = np.random.default_rng(5).standard_normal((2, 400_000))
+    share = np.mean((0.2 + 0.01 * mu) * (10.0 - load) <= 1.5)
+    assert found.probability_runs_away == pytest.approx(share, abs=1e-3)
+    assert math.isinf(found.speed_spread_m_s)
+    assert "none of the speed: the contact may run away" in str(found)
+
+
+@pytest.mark.parametrize(
+    ("chance", "error", "text"),
+    [
+        (0.5, 0.001, "50.00 +- 0.10 %"),
+        (0.0, 0.0, "below 0.1 %"),
+        (1.0, 2e-4, "above 99.9 %"),
+        (0.004, 0.0123, "below 1.7 %"),
+        (0.995, 0.0123, "above 98.2 %"),
+    ],
+)
+def test_a_probability_is_printed_with_its_error_or_a_bound(chance, error, text):
+    """The bound includes the error: 0.4 % + 1.23 % is rounded up to 1.7 %."""
+    assert probability_text(chance, error) == text

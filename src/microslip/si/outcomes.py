@@ -113,6 +113,7 @@ def with_outcomes(
         return fields
     away = table.force >= table.largest
     fields["probability_runs_away"] = float(np.mean(away))
+    fields["probability_error"] = _error_of_draws(away)
     if share is None:
         return fields
     fields |= _distribution("safety_factor", _ratio(table.still * value, table.force))
@@ -122,11 +123,19 @@ def with_outcomes(
     probability = {sign: float(np.mean(one)) for sign, one in stays.items()}
     fields["probability_stays"] = probability[0]
     fields["probability_moves"] = max(0.0, 1.0 - probability[0] - fields["probability_runs_away"])
-    halves = [float(np.mean(stays[0][first::2])) for first in (0, 1)]
     fields["probability_error"] = max(
-        *(abs(probability[sign] - probability[0]) for sign in (-1, 1)), abs(halves[0] - halves[1])
+        *(abs(probability[sign] - probability[0]) for sign in (-1, 1)),
+        _error_of_draws(away),
+        _error_of_draws(stays[0]),
     )
     return fields
+
+
+def _error_of_draws(outcome):
+    """Error estimate of a probability: the difference of the shares in both halves of the draws,
+    and at least log(DRAWS) / DRAWS, the order of the discrepancy of the sequence."""
+    halves = [float(np.mean(outcome[first::2])) for first in (0, 1)]
+    return max(abs(halves[0] - halves[1]), math.log(DRAWS) / DRAWS)
 
 
 def _normal_intervals(found, ends):

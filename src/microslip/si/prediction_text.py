@@ -8,8 +8,10 @@ from microslip.foundation.number_text import number_text
 from microslip.si.motions import COMBINED, unit_of_amplitude
 from microslip.si.printed_lines import (
     ALONG_THE_PULL,
+    EXCLUDED,
     NO_SPREAD_OF_SPEED,
     REFERENCE_LOADS,
+    STAYS_WITHIN_SPREADS,
     TIMES,
     force_unit,
     in_unit,
@@ -19,6 +21,7 @@ from microslip.si.printed_lines import (
     not_converged,
     prefixed,
     pressure_text,
+    probability_text,
     runs_away,
     unit_for,
 )
@@ -198,8 +201,7 @@ class _Text:
         """The line of the probabilities of each outcome."""
         found, error = self.found, self.found.probability_error or 0.0
         shares = [
-            f"{number_text(100.0 * chance, 100.0 * error if chance not in (0, 1) else 0.0, '%')} "
-            f"that it {words}"
+            f"{probability_text(chance, error)} that it {words}"
             for chance, words in (
                 (found.probability_stays, "stays"),
                 (found.probability_moves, "moves"),
@@ -255,6 +257,8 @@ class _Text:
         if found.force_N is not None:
             if math.isinf(found.speed_spread_m_s):
                 return [line("spread", NO_SPREAD_OF_SPEED)]
+            if found.speed_spread_m_s == 0.0 and (found.probability_moves or 0.0) > EXCLUDED:
+                return [line("spread", STAYS_WITHIN_SPREADS)]
             shares = [f"{self.in_two_digits(found.speed_spread_m_s, self.speed)} of the speed"]
         else:
             shares = [

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from decimal import Decimal
 
-from microslip.foundation.number_text import interval_text, number_text
+from microslip.foundation.number_text import error_text, interval_text, number_text
 from microslip.si.motions import unit_of_amplitude
 
 WIDTH = 18
@@ -39,6 +40,10 @@ ALONG_THE_PULL = (
 
 NO_SPREAD_OF_SPEED = "none of the speed: the contact may run away"
 """Text where a speed within the uncertainties is infinite."""
+STAYS_WITHIN_SPREADS = "none of the speed: the contact may move"
+"""Text where the contact stays one standard deviation around the inputs, but may move further."""
+EXCLUDED = 1e-3
+"""Probability below which an outcome is as good as excluded."""
 
 
 def line(title: str, text: str) -> str:
@@ -62,6 +67,18 @@ def force_unit(newtons: float) -> tuple[str, float]:
     low, high = NEWTONS
     within = low <= abs(newtons) < high or not math.isfinite(newtons)
     return ("N", 1.0) if within else prefixed(newtons, "N")
+
+
+def probability_text(chance: float, error: float) -> str:
+    """A probability in percent with its error; a bound where it is close to 0 or 1.
+
+    It is close if its distance is below EXCLUDED or its error; the bound includes the error.
+    """
+    distance = min(chance, 1.0 - chance)
+    if distance >= max(EXCLUDED, error):
+        return number_text(100.0 * chance, 100.0 * error, "%")
+    bound = error_text(100.0 * min(1.0, max(EXCLUDED, distance + error)))
+    return f"below {bound} %" if chance < 0.5 else f"above {100 - Decimal(bound)} %"
 
 
 def in_unit(value: float, error: float, unit: tuple[str, float]) -> str:

@@ -17,6 +17,7 @@ from dataclasses import replace
 from microslip.foundation.errors import InputError
 from microslip.si.motions import unit_of_amplitude
 from microslip.si.outcomes import UncertainInput, with_outcomes
+from microslip.si.printed_lines import EXCLUDED
 from microslip.si.quantities import read
 from microslip.si.question import asked as question_of
 from microslip.si.reduction import NotAttainedError
@@ -83,6 +84,8 @@ def with_spreads(predict: Callable) -> Callable:
         spreads |= with_outcomes(
             found, inputs, lambda changes: question_of(scene, every | dict(changes)), ends
         )
+        if (spreads.get("probability_runs_away") or 0.0) > EXCLUDED:
+            spreads["speed_spread_m_s"] = math.inf
         return replace(found, **spreads, understood=found.understood | texts)
 
     return asked
