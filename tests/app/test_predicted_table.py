@@ -2,13 +2,14 @@
 
 import json
 import math
+from types import SimpleNamespace
 
 import pandas as pd
 import pytest
 import xarray as xr
 
 import microslip
-from microslip.app import cli
+from microslip.app import cli, predicted_table
 
 SHARED = {"material": "steel", "radius": "5 mm", "mu": "0.3", "frequency": "20 kHz"}
 WORDS = [word for name, text in SHARED.items() for word in (f"--{name}", text)]
@@ -116,6 +117,42 @@ def test_a_line_that_cannot_be_leaves_the_others_their_answers_and_labels(folder
     assert [line.split() for line in rest[:2]] == [
         ["3", "second", "no", "prediction"],
         ["4", "third", "no", "prediction"],
+    ]
+
+
+@pytest.mark.slow
+def test_under_a_force_each_line_has_its_outcome_threshold_and_probabilities(folder, capsys):
+    """Without vibration the threshold is mu times the load: 0.15 * 800 N = 120 N.
+
+    mu is 0.15 +- 0.05.  Forces of 90 N and 150 N are 0.75 standard deviations below and above the
+    threshold: the contact runs away with the probabilities 0.2266 and 0.7734.
+    """
+    text = "load [N],amplitude [um],force [N],mu\n800,0,90,0.15 +- 0.05\n800,0,150,0.15 +- 0.05\n"
+    (folder / "contacts.csv").write_text(text + "800,0,90,0.15\n")
+    words = ["--young", "210 GPa", "--nu", "0", "--radius", "200 mm", "--frequency", "50 Hz"]
+    cli.main(["predict", "transverse", *words, "--table", "contacts.csv"])
+    heading, *rows = capsys.readouterr().out.splitlines()
+    ends = [13 * column for column in range(1, len(heading) // 13 + 1)]
+    cells = [[row[end - 13 : end].strip() for end in ends] for row in (heading, *rows[:3])]
+    stays, away, exact = (dict(zip(cells[0][-7:], row[-7:], strict=True)) for row in cells[1:])
+    assert [one["outcome"] for one in (stays, away, exact)] == ["stays", "runs away", "stays"]
+    assert [one["threshold N"] for one in (stays, away, exact)] == ["120"] * 3
+    assert float(stays["stays %"]) == pytest.approx(77.34, abs=0.05)
+    assert float(stays["runs away %"]) == pytest.approx(22.66, abs=0.05)
+    assert float(away["runs away %"]) == pytest.approx(77.34, abs=0.05)
+    assert stays["moves %"] == away["moves %"] == "< 0.1" and 0.0 < float(stays["+- %"]) < 0.05
+    assert exact["stays %"] == exact["+- %"] == ""
+    speed = cells[0].index("speed m/s")
+    assert cells[1][speed] == "0" and cells[2][1 : speed + 2] == [""] * (speed + 1)
+
+
+def test_a_common_power_of_ten_is_in_both_columns():
+    """A speed of 28.2 um/s is printed in m/s."""
+    one = SimpleNamespace(outcome="moves", sought=None, speed_m_s=2.82e-5, speed_error_m_s=1.6e-7)
+    quantity = predicted_table._Quantity("speed_m_s", "speed_error_m_s")
+    assert predicted_table._cells(one, quantity, ("speed m/s", "+- m/s", "")) == [
+        "2.820e-05",
+        "1.6e-07",
     ]
 
 

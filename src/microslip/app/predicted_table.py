@@ -13,14 +13,22 @@ from microslip.app.option_parser import format_as_options
 from microslip.app.terminal import complain
 from microslip.foundation.csv_text import LABELS
 from microslip.foundation.errors import CacheError, InputError
-from microslip.foundation.number_text import SEPARATOR, number_text
+from microslip.foundation.number_text import SEPARATOR, error_text, number_text
 from microslip.si.prediction import NoPrediction, Prediction
-from microslip.si.printed_lines import not_converged, runs_away, unit_of_sought
+from microslip.si.printed_lines import not_converged, probability_text, runs_away, unit_of_sought
 
 FORMAT = ("decimal", "encoding")
 """Options that say how the file is written."""
 ENDINGS = (".csv", ".nc")
 WIDTH = 13
+STEADY = "mu_apparent", "friction_force_N", "speed_m_s"
+"""Quantities of a periodic motion, which a contact that runs away does not have."""
+PROBABILITIES = {
+    "stays %": "probability_stays",
+    "moves %": "probability_moves",
+    "runs away %": "probability_runs_away",
+}
+"""Headings of the probabilities of each outcome, and their fields."""
 
 
 @dataclass(frozen=True)
@@ -166,9 +174,10 @@ def write(path: str, answered: Answered) -> None:
 
 def as_text(answered: Answered) -> str:
     """A row for each case, and what is said against it below the table."""
-    columns = _columns([one for one in answered.found if isinstance(one, Prediction)])
+    predicted = [one for one in answered.found if isinstance(one, Prediction)]
+    columns, verdict = _columns(predicted), _verdict_headings(predicted)
     labels = answered.labels
-    headings = [heading for titles in columns.values() for heading in titles if heading]
+    headings = [heading for titles in columns.values() for heading in titles if heading] + verdict
     rows = ["".join(f"{title:>{WIDTH}}" for title in ("line", *labels, *headings))]
     remarks = []
     for row, (line, one) in enumerate(zip(answered.lines, answered.found, strict=True)):
@@ -177,6 +186,7 @@ def as_text(answered: Answered) -> str:
             rows.append(f"{line:>{WIDTH}}{texts}  no prediction")
             continue
         cells = [cell for about, titles in columns.items() for cell in _cells(one, about, titles)]
+        cells += _verdict_cells(one)[: len(verdict)]
         rows.append(f"{line:>{WIDTH}}{texts}{''.join(f'{cell:>{WIDTH}}' for cell in cells)}")
         if one.outcome == "runs away":
             remarks.append(f"line {line}: {runs_away(one)}")
@@ -209,6 +219,9 @@ def _columns(found):
         _Quantity("friction_force_N", "friction_force_error_N"): ("force N", "+- N", ""),
         _Quantity("speed_m_s", "speed_error_m_s"): ("speed m/s", "+- m/s" if forced else "", ""),
     }
+    if forced:
+        threshold = _Quantity("force_threshold_N", "force_threshold_error_N")
+        columns[threshold] = "threshold N", "+- N", ""
     for one in found:  # an empty cell may be what is looked for, another one in each line
         if one.sought is not None:
             unit = unit_of_sought(one)
@@ -222,10 +235,35 @@ def _columns(found):
 def _cells(one, quantity, headings):
     """Texts of the columns of one quantity: to the digits that its error allows."""
     value = getattr(one, quantity.value)
-    if value is None or quantity.sought not in (None, one.sought):
+    accelerates = one.outcome == "runs away" and quantity.value in STEADY
+    if value is None or accelerates or quantity.sought not in (None, one.sought):
         return ["" for heading in headings if heading]
     error = getattr(one, quantity.error) or 0.0
     number, _, shown = number_text(value, error).partition(SEPARATOR)
+    if number.startswith("("):  # a common power of 10, as in "(2.820 +- 0.016)e-05"
+        shown, _, power = shown.partition(")")
+        number, shown = f"{number[1:]}{power}", f"{float(shown + power):g}"
     spread = getattr(one, quantity.spread) if quantity.spread else None
     texts = number, shown or "0", "" if spread is None else number_text(spread, digits=2)
     return [text for text, heading in zip(texts, headings, strict=True) if heading]
+
+
+def _verdict_headings(found):
+    """Headings of the outcome under a force and of its probabilities, which follow it."""
+    if all(one.force_N is None for one in found):
+        return []
+    uncertain = any(one.probability_error is not None for one in found)
+    return ["outcome", *PROBABILITIES, "+- %"] if uncertain else ["outcome"]
+
+
+def _verdict_cells(one):
+    """Outcome, the probability of each outcome, and the error of these probabilities."""
+    error = one.probability_error
+    chances = [getattr(one, field) for field in PROBABILITIES.values()]
+    texts = ["" if chance is None else _percent(chance, error) for chance in chances]
+    return [one.outcome or "", *texts, "" if error is None else error_text(100.0 * error)]
+
+
+def _percent(chance, error):
+    text = probability_text(chance, error).removesuffix(" %").partition(SEPARATOR)[0]
+    return text.replace("below", "<").replace("above", ">")
