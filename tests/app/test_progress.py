@@ -1,6 +1,8 @@
 """The line of progress of a whole run."""
 
+import io
 import re
+import sys
 import time
 
 import pytest
@@ -56,3 +58,22 @@ def test_a_run_without_points_or_without_a_disk_shows_nothing(total, tmp_path, c
     time.sleep(0.01)
     shown.stop()
     assert capsys.readouterr().err == ""
+
+
+class Terminal(io.StringIO):
+    """Standard error of a terminal."""
+
+    def isatty(self):
+        return True
+
+
+@pytest.mark.parametrize(("stream", "shown"), [(Terminal, True), (io.StringIO, False)])
+def test_the_elapsed_time_is_shown_on_a_terminal_alone_and_removed(monkeypatch, stream, shown):
+    monkeypatch.setattr(progress, "FIRST_LINE", 0.02)
+    monkeypatch.setattr(progress, "BETWEEN_LINES", 0.02)
+    monkeypatch.setattr(sys, "stderr", stream())
+    with progress.Elapsed("microslip predict"):
+        time.sleep(0.1)
+    text = sys.stderr.getvalue()
+    assert ("microslip predict: 0 s" in text) is shown
+    assert text.split("\r")[-1] == "" and (not shown or text.split("\r")[-2].isspace())

@@ -88,12 +88,12 @@ def test_the_exit_code_follows_the_requested_quantity(monkeypatch, capsys):
 
 def test_a_line_names_the_quantity_that_is_not_converged(monkeypatch, capsys):
     def lost(*given, **settings):
-        found = microslip.solve(*given, **settings)
+        found = microslip.solve(*given, **settings | {"force": 0.1})
         unknown = {"velocity": math.nan, "velocity_error": math.inf, "converged": False}
         return replace(found, **unknown, reason="lost on the way")
 
     monkeypatch.setattr(pulled, "solve", lost)
-    text = said(capsys, "transverse", code=1, **BALL | {"amplitude": "0.1 um", "force": "1 N"})
+    text = said(capsys, "transverse", code=1, **BALL | {"amplitude": "0.1 um", "force": "2.5 N"})
     assert "NOT CONVERGED: speed: lost on the way" in text
 
 

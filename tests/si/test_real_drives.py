@@ -3,6 +3,7 @@
 import json
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
@@ -209,6 +210,21 @@ def test_a_force_that_the_solver_gives_up_on_says_why(monkeypatch, capsys):
     assert "NOT CONVERGED: speed: lost on the way" in said_first and "outcome" not in said_first
     found = json.loads(said(capsys, *words, "--json", code=1))
     assert (found["outcome"], found["speed_m_s"]) == (None, None)
+
+
+def test_an_unknown_displacement_of_a_contact_that_stays_has_its_reason(monkeypatch):
+    asked = SIDEWAYS | {"amplitude": stroke(0.5), "force": 1.0}
+    heavy = microslip.predict("transverse", **asked, mass="1 mg")
+    assert (heavy.outcome, heavy.displacement_m) == ("stays", None)
+    assert "displacement      not known: computed for one contact without mass only" in str(heavy)
+
+    def endless(*given, **settings):
+        return SimpleNamespace(converged=False, reason="lost on the way")
+
+    monkeypatch.setattr(pulled, "shakedown", endless)
+    light = microslip.predict("transverse", **asked)
+    assert (light.outcome, light.displacement_reason) == ("stays", "lost on the way")
+    assert "displacement      not known: lost on the way" in str(light)
 
 
 def test_a_contact_without_mass_goes_along_with_what_shakes_it_along_the_force():

@@ -170,15 +170,17 @@ def run(options: argparse.Namespace) -> int:
 def _found(options, given):
     """The answer to the options that were given, a dict; raises InputError."""
     from microslip import predict
+    from microslip.app.progress import Elapsed
 
     for name in ("output", "decimal", "encoding"):
         if getattr(options, name) is not None:
             raise InputError(name, getattr(options, name), "allowed with --table alone")
-    if options.driving:
-        return predicted_driving.ask(options.scene, given)
-    if "points" in given:
-        raise InputError("points", given["points"], "allowed with --driving alone")
-    return predict(options.scene, **{"mu": None} | given, power=options.power)
+    with Elapsed("microslip predict"):
+        if options.driving:
+            return predicted_driving.ask(options.scene, given)
+        if "points" in given:
+            raise InputError("points", given["points"], "allowed with --driving alone")
+        return predict(options.scene, **{"mu": None} | given, power=options.power)
 
 
 def _complaint(error, typed):

@@ -7,10 +7,14 @@ what has been done, by whichever process and on whichever machine that sees the 
 import atexit
 import sys
 import threading
+import time
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from tqdm import tqdm
+
+FIRST_LINE, BETWEEN_LINES = 2.0, 1.0
+"""Seconds until the elapsed time is shown, and until it is shown again: most answers need none."""
 
 
 def counted(items: Iterable, path: str | Path) -> Iterator:
@@ -71,3 +75,39 @@ class Watch:
             while not self.stopped.wait(pause):
                 bar.update(self.done() - bar.n)
             bar.update(self.done() - bar.n)
+
+
+class Elapsed:
+    """The elapsed time in a line of the terminal on standard error, while a calculation lasts.
+
+    A context manager.  It shows nothing where standard error is no terminal.
+    """
+
+    def __init__(self, title: str):
+        """title: name of the calculation, before the time."""
+        self.title, self.stopped, self.thread = title, threading.Event(), None
+
+    def __enter__(self):
+        if sys.stderr.isatty():
+            self.thread = threading.Thread(target=self._show, args=[time.monotonic()], daemon=True)
+            self.thread.start()
+        return self
+
+    def __exit__(self, *exception):
+        if self.thread is not None:
+            self.stopped.set()
+            self.thread.join()
+
+    def _show(self, started):
+        text, pause = "", FIRST_LINE
+        try:
+            while not self.stopped.wait(pause):
+                text = f"{self.title}: {time.monotonic() - started:.0f} s"
+                sys.stderr.write(f"\r{text}")
+                sys.stderr.flush()
+                pause = BETWEEN_LINES
+            if text:  # the answer takes the place of the line
+                sys.stderr.write(f"\r{' ' * len(text)}\r")
+                sys.stderr.flush()
+        except OSError:  # the terminal was closed
+            pass

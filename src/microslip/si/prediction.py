@@ -87,6 +87,8 @@ class Prediction:
         How far a contact that stays under a force goes forward before it stands, with its error,
         and after how many periods nine tenths of what the vibration adds are gone.  None for what
         moves, has a mass or is not round.
+    displacement_reason : str
+        Why displacement_m is not known for a contact that stays; else empty.
     force_threshold_N, force_threshold_error_N : float or None
         Constant force from which on the contact moves, N; None where it is not known.
     force_threshold_spread_N, force_threshold_low_N, force_threshold_high_N : float or None
@@ -189,6 +191,7 @@ class Prediction:
     displacement_m: float | None = None
     displacement_error_m: float | None = None
     cycles_to_rest: float | None = None
+    displacement_reason: str = ""
     force_threshold_N: float | None = None
     force_threshold_error_N: float | None = None
     safety_factor: float | None = None

@@ -239,6 +239,8 @@ class _Text:
             cycles = f"about {found.cycles_to_rest:.2g} cycles"
             most = f"nine tenths of what the vibration adds within {cycles}"
             lines.append(line("displacement", f"{way} forward, then no further: {most}"))
+        elif found.displacement_reason:
+            lines.append(line("displacement", f"not known: {found.displacement_reason}"))
         return lines
 
     def accelerates(self):

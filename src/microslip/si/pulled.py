@@ -157,8 +157,8 @@ def about_drive(
             fields["safety_factor"] = still * share / drive.force
             fields["safety_factor_error"] = still * error / drive.force
         fields |= _walk(contact, motion, pulling["force"], answer)
-        if fields["outcome"] == "stays" and set(pulling) == {"force"} and carriers.text is None:
-            fields |= _way_to_rest(contact, motion, pulling["force"])
+        if fields["outcome"] == "stays":
+            fields |= _way_to_rest((contact, carriers), motion, pulling)
     body = {name: value for name, value in pulling.items() if name != "force"}
     if body:
         working = Drive(**body)
@@ -195,19 +195,23 @@ def _walk(contact, motion, force, answer):
     return fields
 
 
-def _way_to_rest(contact, motion, force):
-    """How far a contact without mass goes that a force does not keep moving; nothing where it is
-    not round, since that would take minutes."""
+def _way_to_rest(carried, motion, pulling):
+    """Fields of the displacement of a contact that comes to rest, or of the reason why it is not
+    known.  A contact that is not round would take minutes."""
+    contact, carriers = carried
+    if set(pulling) != {"force"} or carriers.text is not None:
+        return {"displacement_reason": "computed for one contact without mass only"}
     if not pressure_named(contact.pressure).is_round:
-        return {}
+        return {"displacement_reason": "computed for a round contact only"}
+    force = pulling["force"]
     _, size = groups(motion, contact)
     settings = {"pressure": contact.pressure, "poisson": contact.poisson}
     try:
         found = shakedown(solver_scene(motion, contact), size, force, **settings)
-    except InputError:  # a motion that drives: no force is known to be held
-        return {}
+    except InputError as error:  # a motion that exerts a forward force by itself
+        return {"displacement_reason": error.allowed}
     if not found.converged:
-        return {}
+        return {"displacement_reason": found.reason}
     unit = contact.u_lim
     return {
         "displacement_m": found.displacement * unit,
