@@ -252,6 +252,14 @@ def test_the_speed_of_a_contact_that_may_run_away_has_no_spread():
     assert "none of the speed: the contact may run away" in str(found)
 
 
+def test_draws_above_the_largest_physical_value_count_as_that_value():
+    """Poisson's ratio is at most 0.5: its upper quantile, 0.59, counts as 0.5."""
+    given = SPIN | {"mu": 0.3, "load": "10 N", "amplitude": "0.5 deg", "speed": "1 mm/s"}
+    found = microslip.predict("bore", **given | {"nu": "0.3 +- 0.15"})
+    ends = [microslip.predict("bore", **given | {"nu": nu}).mu_static for nu in (0.006, 0.5)]
+    assert [found.mu_static_low, found.mu_static_high] == pytest.approx(ends, rel=5e-3)
+
+
 @pytest.mark.parametrize(
     ("chance", "error", "text"),
     [

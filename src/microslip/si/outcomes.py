@@ -6,7 +6,7 @@ those along each input alone, whose logarithms add up: this is exact for power l
 of Hertz.  Friction at vanishing speed is a function of the amplitude, solved at a few of them.
 
 A draw beyond the physical range is replaced by the closest physical value: a negative amplitude,
-load, force or coefficient of friction by 0.
+load, force or coefficient of friction by 0, a Poisson's ratio above 0.5 by 0.5.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -33,6 +34,8 @@ DEVIATIONS = np.linspace(-4.0, 4.0, 17)
 SMALLEST_SHARE = 1e-2
 """Least value of a positive quantity that is tabulated, over its central value; where 0 is not a
 physical value, smaller draws are replaced by it."""
+BISECTIONS = 12
+"""Bisections of the end of the values that predict accepts: to 2**-12 of half a deviation."""
 TOWARDS_ZERO = 2.0
 """Largest ratio of neighbouring tabulated values between that and the central value: an
 interpolation of logarithms is exact for power laws, and others vary little over a factor of 2."""
@@ -246,8 +249,10 @@ def _log(value):
 
 
 def _along(one, question_at):
-    """Logarithms of the size of an input, ascending, and the states there; values that predict
-    refuses are left out."""
+    """Logarithms of the size of an input, ascending, and the states there.
+
+    Where predict refuses a value, the last one is at the end of the values that it accepts.
+    """
     sign = math.copysign(1.0, one.value)
     sizes = np.sort(sign * (one.value + DEVIATIONS * one.deviation))
     least = SMALLEST_SHARE * abs(one.value)
@@ -255,14 +260,27 @@ def _along(one, question_at):
     if within.size < sizes.size:
         count = math.ceil(math.log(within[0] / least) / math.log(TOWARDS_ZERO)) + 1
         within = np.concatenate([np.geomspace(least, within[0], count + 1)[:-1], within])
-    places, states = [], []
-    for size in within:
+
+    def state_at(size):
         try:
-            states.append(_state(question_at({one.name: sign * float(size)})))
+            return _state(question_at({one.name: sign * float(size)}))
         except InputError:
-            continue
-        places.append(math.log(size))
-    return np.array(places), states
+            return None
+
+    def last_accepted(size, refused):
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (size + refused)
+            size, refused = (size, middle) if state_at(middle) is None else (middle, refused)
+        return size
+
+    states = {float(size): state_at(size) for size in within}
+    for (size, state), (after, following) in pairwise(list(states.items())):
+        if (state is None) != (following is None):
+            pair = (after, size) if state is None else (size, after)
+            end = last_accepted(*pair)
+            states[end] = state_at(end)
+    accepted = sorted(size for size, state in states.items() if state is not None)
+    return np.log(accepted), [states[size] for size in accepted]
 
 
 def _static_of(found, question, table, ends, draws):
