@@ -122,3 +122,44 @@ def test_an_answer_names_both_reference_loads(capsys):
     given |= {"drive-stiffness": "10 N/um"}
     text = said(capsys, "normal", **given)
     assert "over mu times the load without oscillation (the reference load)" in text
+
+
+def test_the_power_of_a_steady_spin_is_named_after_the_spin(capsys):
+    given = BALL | {"speed": "1 mm/s", "rotation": "10 rad/s"}
+    del given["frequency"]
+    assert cli.main(["predict", "continuous-bore", *words(**given), "--power"]) == 0
+    assert re.search(r"^power +\S+ mW for the spin$", capsys.readouterr().out, re.MULTILINE)
+
+
+@pytest.mark.slow
+def test_a_vibration_that_adds_no_displacement_has_no_number_of_cycles(capsys):
+    """Along the force a contact without mass moves along with the vibration."""
+    given = BALL | {"amplitude": "0.1 um", "force": "1 N", "tolerance": "0.05"}
+    text = said(capsys, "longitudinal", **given)
+    assert "forward, then no further: the vibration adds nothing\n" in text
+
+
+@pytest.mark.slow
+def test_static_friction_that_is_no_threshold_is_explained_where_the_threshold_is_unknown(capsys):
+    given = BALL | {"amplitude": "0.1 um", "forward-amplitude": "0.1 um", "speed": "1 mm/s"}
+    text = said(capsys, "elliptic", **given, tolerance="0.05")
+    assert "static friction" in text and "force threshold  " not in text
+    assert "it is not the force threshold, because part of the vibration is along the pull" in text
+
+
+@pytest.mark.slow
+def test_a_contact_much_larger_than_the_other_lengths_has_a_unit_of_its_own(capsys):
+    """Hertz: (3 F R / (4 E*))^(1/3) with F = 10 N, R = 5 km and 1/E* = (1 - 0.3^2) / 210 GPa."""
+    given = BALL | {"radius": "5 km", "amplitude": "0.1 um", "speed": "1 mm/s", "tolerance": "0.05"}
+    text = said(capsys, "transverse", **given)
+    size = (0.75 * 10.0 * 5e3 * (1.0 - 0.3**2) / 210e9) ** (1.0 / 3.0)
+    assert f"contact radius    {1e3 * size:.3f} mm\n" in text
+    assert re.search(r"^u_lim +\S+ nm$", text, re.MULTILINE)
+
+
+@pytest.mark.slow
+def test_a_threshold_of_rounding_errors_is_as_exact_as_the_static_friction(capsys):
+    """At 5 deg, dimensionless 31, all of the contact slides."""
+    given = BALL | {"amplitude": "5 deg", "speed": "1 mm/s", "tolerance": "0.01"}
+    text = said(capsys, "bore", **given)
+    assert "static friction   0: " in text and "force threshold   0 N: " in text

@@ -10,7 +10,7 @@ from microslip.app.option_parser import Said, format_as_options
 from microslip.app.terminal import complain
 from microslip.foundation.errors import shown
 from microslip.si.motions import UNIT_OF_AMPLITUDE
-from microslip.si.printed_lines import line
+from microslip.si.printed_lines import force_unit, in_unit, line
 
 OPTIONS = {
     "speed": ("V", "forward speed of all rows, such as '1 mm/s', if it is no column"),
@@ -159,7 +159,8 @@ def _as_text(found):
 
 def _of_what(found):
     name = "the friction force" if found.quantity == "friction" else "the coefficient of friction"
-    return f"{name}; mean load {_scaled(found.load_N, 'N')}"
+    load = in_unit(found.load_N, 0.0, force_unit(found.load_N))
+    return f"{name}; mean load {load}"
 
 
 def _interval(value, low, high, unit):

@@ -54,8 +54,9 @@ def number_text(
     -------
     str
         "0.2263 +- 0.0072 N": the error with two significant digits, rounded up, and the number
-        to the last decimal of the error.  A number that is 0 within its error is printed as 0, and
-        the error then covers both.
+        to the last decimal of the error.  A number whose error is too small to be printed has all
+        of its digits, zeros at the end included; one without an error has no such zeros.  A number
+        that is 0 within its error is printed as 0, and the error then covers both.
     """
     value, error = float(value), float(error)
     text = _text(value, error, digits)
@@ -68,7 +69,7 @@ def _text(value, error, digits):
     if not math.isfinite(error):
         return f"{_plain(value, digits)}{SEPARATOR}{error:g}"
     if error <= EXACT * abs(value) or abs(value) <= error <= ROUNDING:
-        return _plain(value if error <= EXACT * abs(value) else 0.0, digits)
+        return _plain(value if error <= EXACT * abs(value) else 0.0, digits, zeros=error > 0.0)
     if abs(value) <= error:
         return f"0{SEPARATOR}{_short(_rounded_up(abs(value) + error))}"
     rounded = _rounded_up(error)
@@ -83,11 +84,18 @@ def _text(value, error, digits):
     return f"({parts[0]:f}{SEPARATOR}{parts[1]:f})e{power:+03d}"
 
 
-def _plain(value, digits):
-    """A number with some significant digits and no exponent unless it is very large or small."""
+def _plain(value, digits, zeros=False):
+    """A number with some significant digits and no exponent unless it is very large or small.
+
+    zeros: whether it keeps zeros at its end.
+    """
     if value == 0.0:
         return "0"
-    return _short(Context(prec=digits).create_decimal(Decimal(repr(value))).normalize())
+    number = Context(prec=digits).create_decimal(Decimal(repr(value)))
+    if zeros:
+        place = Decimal((0, (1,), number.adjusted() + 1 - digits))
+        return _short(number.quantize(place, context=_WIDE))
+    return _short(number.normalize())
 
 
 def _short(number):

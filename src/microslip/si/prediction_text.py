@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 
-from microslip.foundation.number_text import number_text
-from microslip.si.motions import COMBINED, unit_of_amplitude
+from microslip.foundation.number_text import ROUNDING, number_text
+from microslip.si.motions import COMBINED, is_along_the_pull, unit_of_amplitude
 from microslip.si.printed_lines import (
     ALONG_THE_PULL,
     EXCLUDED,
+    LENGTHS,
     NO_SPREAD_OF_SPEED,
     REFERENCE_LOADS,
     STAYS_WITHIN_SPREADS,
     TIMES,
+    UNKNOWN_THRESHOLD,
     force_unit,
     in_unit,
     interval_lines,
@@ -33,6 +35,8 @@ UNDERSTOOD += ("force", "drive_stiffness", "mass", "damping")
 UNDERSTOOD += ("amplitude", "forward_amplitude", "rotation_amplitude", "load_amplitude", "phase")
 UNDERSTOOD += ("frequency", "rotation", "reduction")
 """Arguments in the order in which they are shown."""
+LARGEST_NUMBER = 1e4
+"""Largest contact radius in the unit of the other lengths, four digits before the point."""
 ADDED = {"bore": "spin", "continuous-bore": "spin", "transverse-bore": "vibration and spin"}
 """The added motion in words, where it is more than vibration."""
 
@@ -69,7 +73,10 @@ class _Text:
 
     def contact(self):
         found = self.found
-        lines = [line("contact radius", in_unit(found.contact_radius_m, 0.0, self.length))]
+        unit = self.length
+        if found.contact_radius_m >= LARGEST_NUMBER * unit[1]:
+            unit = unit_for(found.contact_radius_m, LENGTHS)
+        lines = [line("contact radius", in_unit(found.contact_radius_m, 0.0, unit))]
         if not math.isnan(found.indentation_m):
             lines.append(line("indentation", in_unit(found.indentation_m, 0.0, self.length)))
         lines.append(line("u_lim", in_unit(found.u_lim_m, 0.0, self.length)))
@@ -152,6 +159,8 @@ class _Text:
         ends = found.mu_static_apparent_low, found.mu_static_apparent_high
         lines += interval_lines(*ends, found.mu_static_apparent_error)
         threshold = found.force_threshold_N
+        if threshold is None and is_along_the_pull(found.scene):
+            lines.append(line("", UNKNOWN_THRESHOLD))
         if threshold is not None and not math.isclose(
             threshold, found.friction_force_still_N * found.mu_static, abs_tol=0.0
         ):
@@ -165,7 +174,8 @@ class _Text:
         if value is None:
             return []
         if value <= error and not found.force_threshold_high_N:
-            limit = in_unit(value, error, self.force)
+            exact = error <= ROUNDING * found.load_N  # as for static friction, times the load
+            limit = in_unit(*((0.0, 0.0) if exact else (value, error)), self.force)
             return [line("force threshold", f"{limit}: any constant force moves the contact")]
         text = in_unit(value, error, self.force)
         lines = [line("force threshold", f"{text}: no smaller constant force moves the contact")]
@@ -236,8 +246,10 @@ class _Text:
         found, lines = self.found, ["it stays: the force is below the threshold"]
         if found.displacement_m is not None:
             way = in_unit(found.displacement_m, found.displacement_error_m, self.length)
-            cycles = f"about {found.cycles_to_rest:.2g} cycles"
-            most = f"nine tenths of what the vibration adds within {cycles}"
+            most = "the vibration adds nothing"
+            if found.cycles_to_rest:
+                cycles = f"about {found.cycles_to_rest:.2g} cycles"
+                most = f"nine tenths of what the vibration adds within {cycles}"
             lines.append(line("displacement", f"{way} forward, then no further: {most}"))
         elif found.displacement_reason:
             lines.append(line("displacement", f"not known: {found.displacement_reason}"))
@@ -292,7 +304,7 @@ class _Text:
             )
         )
         lines = [
-            line("power", f"{vibration} for the vibration"),
+            line("power", f"{vibration} for the {ADDED.get(found.scene, 'vibration')}"),
             line("", f"{drag} for the drag"),
             line("energy", f"{heat} a cycle turn into heat"),
         ]

@@ -37,6 +37,11 @@ ALONG_THE_PULL = (
     "moves along with the vibration, and all of friction holds it"
 )
 """Explanation of a static friction below the force threshold."""
+UNKNOWN_THRESHOLD = (
+    "it is not the force threshold, because part of the vibration is along the pull; whether a "
+    "constant force moves the contact is computed for a given force"
+)
+"""Explanation of a static friction without a force threshold."""
 
 NO_SPREAD_OF_SPEED = "none of the speed: the contact may run away"
 """Text where a speed within the uncertainties is infinite."""
