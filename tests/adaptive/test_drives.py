@@ -36,6 +36,20 @@ def apart(one, other):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("body", [{"stiffness": 6e-4}, {"stiffness": 1.0, "mass": 0.3}])
+def test_a_fast_contact_on_a_spring_has_the_friction_of_the_energy_bound(body):
+    """At a large Poisson's ratio and a loose tolerance: rings at Poisson's ratio 0, for which the
+    bound is the same, march to a value within it."""
+    place = ("transverse", 9.24, 0.871)
+    found = microslip.solve(*place, **body, poisson=0.3, tolerance=1e-2, time_limit=1.0)
+    assert found.converged and found.model == "closed-form"
+    assert found.mu_macro + found.mu_macro_error == pytest.approx(1.0, abs=1e-9)
+    assert found.mu_macro_error < 0.5 / (9.24 / 0.871) ** 2
+    marched = microslip.solve(*place, **body, model="radial", tolerance=1e-3)
+    assert marched.converged and apart(found, marched) <= 1.0
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("body", ENDLESS)
 @pytest.mark.parametrize("place", PLACES)
 def test_what_does_not_give_way_has_the_friction_of_the_velocity(place, body):

@@ -9,10 +9,11 @@ from functools import partial
 from microslip.adaptive.asked import Asked, refuse_free, verdict
 from microslip.adaptive.certified import given_up
 from microslip.adaptive.chains import Runs
+from microslip.adaptive.closed_forms import ROUNDING
 from microslip.adaptive.moved import CLOSED_FORM
 from microslip.adaptive.refinement import certify, run_tolerance
 from microslip.adaptive.resolutions import plan, with_mass
-from microslip.adaptive.result import Result
+from microslip.adaptive.result import Result, of_closed_form
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
     CLOSEST_FORCE,
@@ -29,6 +30,7 @@ from microslip.foundation.errors import InputError
 from microslip.models.registry import MODELS
 from microslip.motions.by_name import read_otherwise
 from microslip.motions.drive import Drive
+from microslip.pressures.by_name import HERTZ
 from microslip.solver.body_run import simulate_each
 from microslip.solver.budget import Spent
 from microslip.solver.method_names import SHIPPED
@@ -36,6 +38,7 @@ from microslip.solver.problem import Problem, Resolution
 from microslip.solver.pulled_run import Accuracy, simulate_pulled
 from microslip.solver.run import Settings
 from microslip.solver.stick_edge import found_focus
+from microslip.theory.exact import LARGEST_DROPS
 
 STEADY_ERROR = 1e-9
 """Of the velocity of a steady motion, over 1 and the velocity."""
@@ -96,6 +99,10 @@ def solve_pulled(asked: Asked, drive: Drive) -> Result:
     if not problem.motion.periodic or problem.velocity == 0.0 or not oscillates(problem):
         # what is steady stretches the spring to one length, whatever it is
         return replace(solve_each(asked), **body)
+    bracket = _bracket(asked)
+    if bracket is not None:
+        point = asked.point | {"model": CLOSED_FORM}
+        return replace(of_closed_form(point, bracket, asked.seconds), **body)
     certified, axes = _certified(asked, drive, Accuracy(asked.accuracy))
     return Result(
         **asked.point,
@@ -105,6 +112,26 @@ def solve_pulled(asked: Asked, drive: Drive) -> Result:
         mu_macro_error=certified.error,
         **verdict(asked, certified, axes, asked.tolerance),
     )
+
+
+def _bracket(asked):
+    """(mu, torque, error) by the energy bound of theory/bounds.py, or None where its error is above
+    the tolerance.
+
+    The bound of a transverse or bore motion holds for any body on a spring: the work of the spring
+    in a period is the mean force times the way, a mass adds nothing, and a dashpot takes some away.
+    """
+    motion = asked.problem.motion
+    imposed = asked.cells is not None or asked.steps is not None
+    if not asked.chosen or imposed or asked.tolerance is None or asked.problem.parts:
+        return None
+    if motion.name not in ("transverse", "bore") or (
+        motion.rotates and motion.pressure is not HERTZ
+    ):
+        return None
+    drop = LARGEST_DROPS[motion.name](asked.problem.velocity, asked.problem.amplitude)
+    error = 0.5 * drop + ROUNDING
+    return (1.0 - 0.5 * drop, None, error) if error <= asked.tolerance else None
 
 
 def _under_force(asked, drive):
