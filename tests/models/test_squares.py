@@ -1,17 +1,18 @@
 """Squares: the compiled convolution against direct sums, the step solver against a plain one."""
 
+import numba
 import numpy as np
 import pytest
 from reference_march import solved_stage
 from scipy.integrate import dblquad
 
+from microslip.contacts.coulomb import coulomb_residual, project
+from microslip.contacts.descent import MOST_ITERATIONS
+from microslip.contacts.step import Fields, Step, solve_step
 from microslip.models.contact import forward_slip
-from microslip.models.coulomb import coulomb_residual, project
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
-from microslip.models.squares import march as square_march
 from microslip.models.squares.contact import CartesianContact
 from microslip.models.squares.convolution import convolve, influence, square_convolution, workspace
-from microslip.models.squares.march import solve_step
 from microslip.motions.bore import MOTION as BORE
 from microslip.motions.transverse import MOTION as TRANSVERSE
 
@@ -103,12 +104,19 @@ def plain_step(contact, nu, b):
     return solved_stage(matrix, b, contact.bound, np.zeros_like(b))
 
 
-def solved(contact, b, start, tolerance, solver=solve_step):
+@numba.njit
+def solve_here(system, step, fields):
+    return solve_step(system, None, step, fields)
+
+
+def solved(contact, b, start, tolerance, patience=None):
     """(tractions, slip, residual, iterations) of one step."""
-    q, slip = start.copy(), np.empty_like(start)
-    first = 1.0 / contact.scale
-    iterations, residual, _ = solver(contact.squares(), b, q, slip, first, tolerance)
-    return q, slip, residual, iterations
+    system, scratch = contact.system(), tuple(np.empty_like(b) for _ in range(3))
+    if patience is not None:
+        system = system._replace(solver=system.solver._replace(patience=patience))
+    fields = Fields(start.copy(), np.empty_like(b), np.empty_like(b), scratch)
+    iterations, residual, _ = solve_here(system, Step(b, contact.bound, tolerance), fields)
+    return fields.q, fields.slip, residual, iterations
 
 
 @pytest.mark.parametrize("nu", NUS)
@@ -148,12 +156,11 @@ def test_steps_are_solved_down_to_rounding(size, nu, rng):
     assert total == pytest.approx(residual, abs=1e-14)
 
 
-def test_short_steps_converge_where_the_long_ones_have_failed(monkeypatch, rng):
+def test_short_steps_converge_where_the_long_ones_have_failed(rng):
     contact = CartesianContact(6, 0.4)
     b = rng.normal(size=(2, 6, 6))
     expected, _, _, few = solved(contact, b, np.zeros_like(b), 1e-11)
-    monkeypatch.setattr(square_march, "PATIENCE", -1)
-    q, _, residual, many = solved(contact, b, np.zeros_like(b), 1e-11, solve_step.py_func)
+    q, _, residual, many = solved(contact, b, np.zeros_like(b), 1e-11, patience=-1)
     assert residual <= 1e-11 and many > few
     assert q == pytest.approx(expected, abs=1e-9)
 
@@ -162,7 +169,7 @@ def test_the_worst_that_can_be_asked_ends(rng):
     contact = CartesianContact(4)
     b = rng.normal(size=(2, 4, 4))
     _, _, residual, iterations = solved(contact, b, np.zeros_like(b), 0.0)
-    assert iterations <= square_march.MAX_ITERATIONS and residual < 1e-14
+    assert iterations <= MOST_ITERATIONS and residual < 1e-14
 
 
 # Marches
@@ -182,7 +189,7 @@ def test_cells_without_load_carry_nothing(nu):
     outside = contact.bound == 0.0
     assert outside.sum() > 4
     march = contact.march(path_of(BORE, 8, nu=nu), forward_slip(contact), 1e-8)
-    assert np.all(march.stages[..., outside] == 0.0)
+    assert np.all(march.fields[..., outside] == 0.0)
     assert np.all(march.state[:, outside] == 0.0)
     size = np.hypot(*march.state)
     assert np.all(size <= contact.bound * (1 + 4e-16))
@@ -208,18 +215,6 @@ def test_the_same_march_twice_is_the_same_to_the_bit():
     contact, path = CartesianContact(8, 0.3), path_of(BORE, 8, nu=0.3)
     one, other = (contact.march(path, forward_slip(contact), 1e-6) for _ in range(2))
     assert np.array_equal(one.state, other.state) and np.array_equal(one.forces, other.forces)
-
-
-def test_marches_too_long_to_remember_do_without(monkeypatch):
-    contact, path = CartesianContact(6), path_of(BORE, 8)
-    kept = contact.march(path, forward_slip(contact), 1e-9)
-    assert kept.stages.shape == (8, 2, 2, 6, 6)
-    monkeypatch.setattr("microslip.models.squares.contact.MAX_REMEMBERED", 100)
-    march = contact.march(path, forward_slip(contact), 1e-9)
-    assert march.stages is None
-    assert np.array_equal(march.forces, kept.forces)
-    after = contact.march(path, forward_slip(contact), 1e-9, previous=march)
-    assert np.array_equal(after.forces, kept.forces)
 
 
 @pytest.mark.parametrize("nu", NUS)

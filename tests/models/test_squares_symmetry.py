@@ -136,7 +136,7 @@ def test_a_march_is_that_of_all_squares(kind, motion, pressure):
     assert other.forces == pytest.approx(one.forces, abs=1e-10)
     assert np.all(other.forces[:, TORQUE if KINDS[kind][1] == TURN else LATERAL] == 0.0)
     assert whole(kind, other.state) == pytest.approx(one.state, abs=1e-10)
-    assert whole(kind, other.stages) == pytest.approx(one.stages, abs=1e-10)
+    assert whole(kind, other.fields) == pytest.approx(one.fields, abs=1e-10)
     assert other.solves == one.solves and other.residual <= other.solves * TOLERANCE
     again = contacts[1].march(path, forward_slip(contacts[1]), TOLERANCE)
     assert np.array_equal(again.state, other.state) and np.array_equal(again.forces, other.forces)

@@ -8,10 +8,8 @@ import pytest
 from microslip.models.contact import energy_norm, forward_slip
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.registry import MODELS
-from microslip.models.rings.contact import RadialContact
 from microslip.motions.bore import MOTION as BORE
 from microslip.motions.transverse import MOTION as TRANSVERSE
-from microslip.solver.newton import Corrector
 from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.problem import Problem, Resolution, build_contact
@@ -61,19 +59,6 @@ def path_of(name, velocity, amplitude, integrator=SDIRK2, whole=False):
         return scene.displacement(t, velocity, amplitude, nu)
 
     return make_path(displacement, phase, integrator)
-
-
-@pytest.fixture
-def marches(monkeypatch):
-    """Every march of rings from here on: (with derivative?, contact.March)."""
-    seen, plain = [], RadialContact.march
-
-    def march(contact, path, state, tolerance, sensitivity=False, previous=None):
-        seen.append((sensitivity, plain(contact, path, state, tolerance, sensitivity, previous)))
-        return seen[-1][1]
-
-    monkeypatch.setattr(RadialContact, "march", march)
-    return seen
 
 
 def plain_march(contact, path, state, change, most=20_000):
@@ -182,7 +167,7 @@ def test_slow_motions_of_small_amplitude_are_not_taken_for_periodic_too_early(ve
 @pytest.mark.parametrize(
     ("velocity", "amplitude", "rings", "steps"),
     [
-        # undamped corrections cycle, or throw the state far away
+        # undamped Newton corrections cycle, or throw the state far away
         (1.34e-6, 0.867, 35, 78),
         (1.45e-6, 0.903, 17, 78),
         (5.67e-6, 0.412, 52, 26),
@@ -210,56 +195,37 @@ def radial_run(velocity, amplitude, rings, steps, tolerance=1e-6, guess=None):
     return simulate(problem, "radial", Resolution(rings, 1, steps), tolerance, guess)
 
 
-def test_run_in_other_steps_spares_derivatives_and_marches(marches):
+def test_run_in_other_steps_spares_marches():
     known = radial_run(0.01, 0.5, 8, 12)
-    assert any(derivative for derivative, _ in marches)
     alone = radial_run(0.01, 0.5, 8, 16)
-    marches.clear()
     led = radial_run(0.01, 0.5, 8, 16, guess=known)
-    assert led.converged and not any(derivative for derivative, _ in marches)
-    assert led.periods < alone.periods
+    assert led.converged and led.periods < alone.periods
     assert led.mu == pytest.approx(alone.mu, abs=2e-6)
     assert led.static_force == pytest.approx(alone.static_force, abs=1e-6)
-    marches.clear()
     other = radial_run(0.01, 0.5, 6, 16, guess=known)  # of no use on other rings
     assert other.mu == radial_run(0.01, 0.5, 6, 16).mu
 
 
-def test_a_wild_guess_costs_effort_only(marches):
+def test_a_wild_guess_costs_effort_only():
     known = radial_run(0.01, 0.5, 8, 16)
-    wild = replace(known, state=-known.state, inverse=-30.0 * known.inverse)
-    led = radial_run(0.01, 0.5, 8, 16, guess=wild)
-    assert led.converged and led.periods > known.periods
+    led = radial_run(0.01, 0.5, 8, 16, guess=replace(known, state=-known.state))
+    assert led.converged and led.periods >= known.periods
     assert led.mu == pytest.approx(known.mu, abs=2e-6)
 
 
-@pytest.mark.parametrize("steps", [16, 48, 200])
-def test_all_effort_is_counted(marches, steps):
+@pytest.mark.parametrize("steps", [16, 48])
+def test_all_effort_is_counted(steps):
+    """Two stages a step, two tractions a ring, two marches a period."""
     run = radial_run(0.01, 0.5, 8, steps)
-    searched = [march for _, march in marches if march.stages.shape[0] > 3]  # not the static limit
-    assert run.periods == 0.5 * len(searched)  # half a period each
-    assert run.iterations == sum(march.iterations for march in searched)
-    assert run.solves == sum(march.solves for march in searched)
+    assert run.solves == 2 * run.periods * 2 * steps
     assert run.work == 16 * run.solves
+    assert run.effort == 16 * run.iterations >= run.work
 
 
 def test_equal_runs_give_equal_bits():
     one, other = (radial_run(0.01, 0.5, 8, 48) for _ in range(2))
     assert one.mu == other.mu and one.distance == other.distance
-    assert np.array_equal(one.state, other.state) and np.array_equal(one.inverse, other.inverse)
-
-
-def test_broyden_update_maps_the_change_it_has_seen():
-    contact = contact_of("radial", 0.1, 1.0)
-    path, start = path_of("radial", 0.1, 1.0), forward_slip(contact)
-    cycle = PeriodMap(contact, path)
-    first = cycle(start, 1e-10, sensitivity=True)
-    corrector = Corrector(cycle, start)
-    corrector.learn(first, None)
-    second = cycle(corrector(first), 1e-10)
-    corrector.learn(second, first)
-    moved = corrector.inverse @ (first.change - second.change).ravel()
-    assert moved == pytest.approx((second.state - first.state).ravel(), abs=1e-12)
+    assert np.array_equal(one.state, other.state)
 
 
 def test_vibration_much_slower_than_the_sliding_leaves_the_friction_as_it_is():

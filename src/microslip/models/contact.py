@@ -31,10 +31,9 @@ class March:
         Sum over the stages of what the step solver left (force over mu F_z).
     iterations, solves : int
         Step-solver iterations and stages.
-    sensitivity : np.ndarray or None, shape (state.size, state.size)
-        Derivative of the end state with respect to the start, or None if it was not asked for.
-    stages : np.ndarray or None
-        What the model wants to find again when it marches the same path from a start near by.
+    fields : np.ndarray or None, shape (1 + steps stages, *state.shape)
+        Unknown of the step solver at the start and after every stage: the initial guess of a march
+        of the same path from a start near by.
     """
 
     state: np.ndarray
@@ -42,8 +41,7 @@ class March:
     residual: float
     iterations: int
     solves: int
-    sensitivity: np.ndarray | None = None
-    stages: np.ndarray | None = None
+    fields: np.ndarray | None = None
 
 
 class StepFailure(SolverError):
@@ -54,8 +52,8 @@ class StepFailure(SolverError):
 class Contact(Protocol):
     """A discretised contact under given pressure.
 
-    A contact whose normal load may change also has at_indentation, bounds, bounds_along and
-    at_phases; one of rings may tell its edges, for rings to be gathered at one of them: see
+    A contact whose normal load may change also has at_indentation, bounds and bounds_along;
+    one of rings may tell its edges, for rings to be gathered at one of them: see
     RadialContact.
 
     Attributes
@@ -66,8 +64,8 @@ class Contact(Protocol):
         Displacement of a point under unit traction on itself, broadcast likewise.
     forward_position, lateral_position : np.ndarray
         Where the points are (units a), same shape.
-    has_sensitivity : bool
-        Whether `march(..., sensitivity=True)` is to be had cheaply.
+    compiled : bool
+        Whether compiled code searches for the periodic state: then it has a `system`.
     stiffness : float
         Force over mu F_z per uniform displacement u_lim without slip, at least.
     sticks : bool
@@ -82,7 +80,7 @@ class Contact(Protocol):
     compliance: np.ndarray
     forward_position: np.ndarray
     lateral_position: np.ndarray
-    has_sensitivity: bool
+    compiled: bool
     stiffness: float
     sticks: bool
 
@@ -97,7 +95,6 @@ class Contact(Protocol):
         path: Path,
         state: np.ndarray,
         tolerance: float,
-        sensitivity: bool = False,
         previous: March | None = None,
     ) -> March:
         """March along a path from a state; every stage is solved to `tolerance` (a force).

@@ -16,7 +16,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
@@ -92,25 +91,6 @@ def turning_point_grading(creep: float, stroke: float) -> float:
     return STRONGEST_GRADING * slow * short
 
 
-class LoadingPath(NamedTuple):
-    """What a compiled march follows: what is imposed on the contact, and the integrator.
-
-    Attributes
-    ----------
-    positions, stages, carry, end
-        See `Path`.
-    bounds : np.ndarray
-        Friction bound at the start and at every stage, shape (1 + steps * stages, ...), or of one
-        row where it does not change.
-    """
-
-    positions: np.ndarray
-    stages: np.ndarray
-    carry: np.ndarray
-    end: float
-    bounds: np.ndarray
-
-
 @dataclass(frozen=True, eq=False)
 class Path:
     """A stretch of rigid motion cut into steps.
@@ -143,9 +123,9 @@ class Path:
     def steps(self) -> int:
         return len(self.phase) - 1
 
-    def under(self, bounds: np.ndarray) -> LoadingPath:
-        """The LoadingPath under friction bounds, see there."""
-        return LoadingPath(self.positions, self.stages, self.carry, self.end, bounds)
+    def motion(self) -> np.ndarray:
+        """Displacement at the start and at every stage, (1 + steps stages, contacts, 3)."""
+        return np.concatenate([self.positions[:1], self.stages.reshape(-1, 3)])[:, None]
 
     def mean(self, values: np.ndarray) -> np.ndarray:
         """Time average of values at the phases (first axis), by the trapezoidal rule."""
@@ -165,19 +145,9 @@ class BodyPath(Path):
 
     each: tuple[Path, ...] = ()
 
-    def bounds(self, contacts: Sequence) -> np.ndarray:
-        """Friction bounds of contacts side by side, as LoadingPath has them."""
-        if self.each[0].depth is None:
-            return np.concatenate([one.bound for one in contacts], axis=-1)[None]
-        along = [one.bounds_along(path) for one, path in zip(contacts, self.each, strict=True)]
-        return np.concatenate(along, axis=-1)
-
-    def besides(self) -> np.ndarray:
-        """What each contact does besides, at the start and at every stage, shape (contacts,
-        1 + steps stages, 3)."""
-        return np.stack(
-            [np.concatenate([one.positions[:1], one.stages.reshape(-1, 3)]) for one in self.each]
-        )
+    def motion(self) -> np.ndarray:
+        """Displacement of every contact at the start and at every stage, as Path.motion."""
+        return super().motion() + np.concatenate([one.motion() for one in self.each], axis=1)
 
 
 def make_path(

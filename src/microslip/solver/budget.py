@@ -92,6 +92,17 @@ class _Metered:
     def pulled_march(self, *path, **settings):
         return self._taken(self._contact.pulled_march(*path, **settings))
 
-    def _taken(self, found):
-        self._budget.take(found.solves, found.iterations, found.state.size)
-        return found
+    def affordable(self, work: float) -> float:
+        """Marches of so much work until the budget has to be looked at."""
+        budget = self._budget
+        if budget.time_limit < math.inf:
+            return 1
+        return max((budget.most_work - budget.work) // work + 1, 1)
+
+    def take(self, solves: int, iterations: int, unknowns: int) -> None:
+        """Count marches that compiled code has done."""
+        self._budget.take(solves, iterations, unknowns)
+
+    def _taken(self, march):
+        self._budget.take(march.solves, march.iterations, march.state.size)
+        return march

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from microslip.contacts.coulomb import project
 from microslip.models.contact import Contact, March, StepFailure, energy_norm
-from microslip.models.coulomb import project
 from microslip.models.path import Path
 
 MOST_MARCHES = 200
@@ -29,8 +29,6 @@ class Goal(NamedTuple):
         Of the state and of a step, forces over mu F_z.
     most_marches : int
         Marches to try.
-    inverse : np.ndarray or None, shape (start.size, start.size)
-        Of a search from a start near by, if there was one: the inverse of 1 - F' (see newton.py).
     near : bool
         Whether the start is near the state, so that only well solved steps tell what is left.
     """
@@ -38,7 +36,6 @@ class Goal(NamedTuple):
     tolerance: float
     step_tolerance: float
     most_marches: int = MOST_MARCHES
-    inverse: np.ndarray | None = None
     near: bool = False
 
 
@@ -64,8 +61,6 @@ class PeriodicState:
         Of the step solver, over all of them.
     converged : bool
         Whether the distance is within the tolerance.
-    inverse : np.ndarray or None, shape (start.size, start.size)
-        What turned residuals into corrections, if anything did.
     body : np.ndarray or None, shape (steps + 1, 2)
         Of a contact that is pulled, over the last (half) period, see pull.PulledMarch.
     """
@@ -79,7 +74,6 @@ class PeriodicState:
     iterations: int
     solves: int
     converged: bool
-    inverse: np.ndarray | None = None
     body: np.ndarray | None = None
 
 
@@ -163,15 +157,15 @@ class PeriodMap:
         self.contact, self.path, self.creep_rate, self.mirror = contact, path, creep_rate, mirror
         self.marches = self.iterations = self.solves = 0
         self._march = None
-        self._share = np.diff(path.phase) / (path.phase[-1] - path.phase[0])  # of each step
+        self.share = np.diff(path.phase) / (path.phase[-1] - path.phase[0])  # of each step
 
-    def __call__(self, state, step_tolerance, sensitivity=False):
+    def __call__(self, state, step_tolerance):
         """March once from `state`; steps are solved to `step_tolerance`.
 
         Raises StepFailure where the tractions blow up.
         """
         self._march = march = self.contact.march(
-            self.path, state, step_tolerance, sensitivity=sensitivity, previous=self._march
+            self.path, state, step_tolerance, previous=self._march
         )
         self.marches += 1
         self.iterations += march.iterations
@@ -181,6 +175,18 @@ class PeriodMap:
         if not np.isfinite(change).all():
             raise StepFailure("diverged: tractions are not finite")
         return MarchInterval(state, image, change, self.size(change), march)
+
+    def parts(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Tractions of a state, and x and x' of a driven body, 0 without one."""
+        return state, np.zeros(2)
+
+    def state(self, tractions: np.ndarray, place: np.ndarray) -> np.ndarray:
+        """The state of tractions, and of x and x' of a driven body."""
+        return tractions
+
+    def inertia(self) -> None:
+        """No body is driven."""
+        return None
 
     @property
     def metric(self) -> np.ndarray:
@@ -204,7 +210,7 @@ class PeriodMap:
         distance = max(self.size(proposal - interval.state), interval.residual)
         if self.creep_rate is not None:
             force = interval.march.forces[:, 0]
-            mean = 0.5 * float(self._share @ force[1:] + self._share @ force[:-1])
+            mean = 0.5 * float(self.share @ force[1:] + self.share @ force[:-1])
             distance = max(distance, self.creep_rate.force_error(interval.residual, mean))
         return distance
 
@@ -213,7 +219,6 @@ class PeriodMap:
         interval: MarchInterval,
         distance: float,
         converged: bool,
-        inverse: np.ndarray | None = None,
     ) -> PeriodicState:
         """The PeriodicState that an interval amounts to."""
         return PeriodicState(
@@ -226,5 +231,4 @@ class PeriodMap:
             iterations=self.iterations,
             solves=self.solves,
             converged=bool(converged),
-            inverse=inverse,
         )

@@ -1,16 +1,20 @@
 """The periodic state: a fixed point of "march one (half) period", found without waiting for it.
 
 The plain march forgets its start only after about 1/(2 pi v~) periods.  Here the map of the
-tractions over one period is solved for its fixed point: by Newton's method where the model gives
-the derivative of its march, else by Anderson acceleration.
+tractions over one period is solved for its fixed point by Anderson acceleration, in compiled code
+(states/search.py) where the contact has a system.
 """
 
 from __future__ import annotations
 
+import signal
+
 import numpy as np
 
-from microslip.solver import anderson, newton
+from microslip.models.contact import StepFailure
+from microslip.solver import anderson
 from microslip.solver.period_map import Goal, PeriodicState, PeriodMap
+from microslip.states import search
 
 
 def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
@@ -21,7 +25,7 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
     period_map : period_map.PeriodMap
         The map over a (half) period.
     start : np.ndarray
-        Tractions, of the shape of the contact's states.
+        State of the map.
     goal : period_map.Goal
         What to reach.
 
@@ -29,6 +33,55 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
     -------
     period_map.PeriodicState
         Never raises for want of convergence: see `converged` there.
+
+    Raises
+    ------
+    StepFailure
+        Where the tractions blow up.
     """
-    find = newton.search if period_map.contact.has_sensitivity else anderson.search
-    return find(period_map, start, goal)
+    if not period_map.contact.compiled:
+        return anderson.search(period_map, start, goal)
+    contact, path, rate = period_map.contact, period_map.path, period_map.creep_rate
+    target = search.Goal(
+        float(goal.tolerance),
+        float(goal.step_tolerance),
+        bool(period_map.mirror),
+        bool(goal.near),
+        period_map.share,
+        *(map(float, (rate.static_force, rate.full, rate.gain)) if rate else (0.0, 0.0, np.inf)),
+    )
+    tractions, place = period_map.parts(start)
+    stages = path.stages.shape[1]
+    memory = search.memory_of(tractions, place, stages, path.steps, target)
+    system, loading, inertia = contact.system(), contact.loading(path), period_map.inertia()
+    done, most = False, goal.most_marches - period_map.marches
+    while not done and memory.counts[0] < most:
+        marches, iterations = memory.counts[:2]
+        affordable = contact.affordable(path.steps * stages * tractions.size)
+        some = int(min(most - marches, affordable))
+        done, broken = search.search(system, loading, inertia, target, memory, some)
+        if broken:
+            signal.raise_signal(signal.SIGINT)
+        marched = int(memory.counts[0] - marches)
+        contact.take(
+            marched * path.steps * stages, int(memory.counts[1] - iterations), tractions.size
+        )
+    period_map.marches += int(memory.counts[0])
+    period_map.iterations += int(memory.counts[1])
+    period_map.solves = period_map.marches * path.steps * stages
+    state, forces, body, numbers = memory.best
+    distance, residual, solver_residual, converged = map(float, numbers)
+    if np.isnan(distance):
+        raise StepFailure("diverged: tractions are not finite")
+    return PeriodicState(
+        forces=forces,
+        start=period_map.state(state, body[0]),
+        residual=residual,
+        distance=distance,
+        solver_residual=solver_residual,
+        marches=period_map.marches,
+        iterations=period_map.iterations,
+        solves=period_map.solves,
+        converged=bool(converged),
+        body=body,
+    )

@@ -16,11 +16,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from microslip.contacts.coulomb import project
 from microslip.models.contact import FORWARD, StepFailure, energy_norm, forces
-from microslip.models.coulomb import project
 from microslip.models.path import Path
-from microslip.models.pull import Body, PullsContact
+from microslip.models.pull import Body
+from microslip.models.system_contact import SystemContact
 from microslip.solver.period_map import CreepRate, MarchInterval, PeriodicState, PeriodMap
+from microslip.states.search import Inertia
 
 CAUTION = 0.3
 """Share of the contact's stiffness that a softer spring counts as having: more would overshoot."""
@@ -31,7 +33,7 @@ class PulledMap(PeriodMap):
 
     Parameters
     ----------
-    contact : pull.PullsContact
+    contact : SystemContact
         What is marched.
     path : path.Path
         From which the body may stay behind or run ahead.
@@ -45,7 +47,7 @@ class PulledMap(PeriodMap):
 
     def __init__(
         self,
-        contact: PullsContact,
+        contact: SystemContact,
         path: Path,
         body: Body,
         creep_rate: CreepRate | None = None,
@@ -69,12 +71,12 @@ class PulledMap(PeriodMap):
         if body.mass > 0.0:
             self._haste[1] = max(1.0, body.mass / (self._mass * slow))
 
-    def __call__(self, state, step_tolerance, sensitivity=False):
+    def __call__(self, state, step_tolerance):
         """March once from `state`; steps are solved to `step_tolerance`.
 
         Raises StepFailure where the tractions blow up.
         """
-        tractions, start = self._parts(state)
+        tractions, start = self.parts(state)
         self._march = march = self.contact.pulled_march(
             self.path, tractions, step_tolerance, self.body, start, previous=self._march
         )
@@ -101,9 +103,18 @@ class PulledMap(PeriodMap):
         """The state of tractions and of (x, x'), one row."""
         return np.append(tractions.ravel(), moved) if self.body.remembers else tractions.ravel()
 
-    def _parts(self, state):
+    def parts(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Tractions of a state, and x and x' if they belong to it, else 0."""
         moved = state[self._points :] if self.body.remembers else np.zeros(2)
         return state[: self._points].reshape(self._shape), moved
+
+    def inertia(self) -> Inertia:
+        """The same for compiled code."""
+        return Inertia(
+            self.body.along(self.path, np.zeros(2)),
+            *map(float, (*self._haste, self._held, self._mass)),
+            np.ascontiguousarray(self._spread),
+        )
 
     @property
     def metric(self) -> np.ndarray:
@@ -115,7 +126,7 @@ class PulledMap(PeriodMap):
 
         A soft spring changes its force by less than the contact would for the same displacement.
         """
-        tractions, moved = self._parts(change)
+        tractions, moved = self.parts(change)
         held = self._held * moved[0] ** 2 + self._mass * moved[1] ** 2
         if not self.body.remembers and self.body.stiffness > 0.0:
             force = forces(self.contact, tractions)[FORWARD]
@@ -128,7 +139,7 @@ class PulledMap(PeriodMap):
         distance = max(self.size(proposal - interval.state), interval.residual)
         if self.creep_rate is None:
             return distance
-        march, tractions = interval.march, self._parts(interval.state)[0]
+        march, tractions = interval.march, self.parts(interval.state)[0]
         gained = float(abs(march.body[-1, 0] - march.body[0, 0])) * self.contact.stiffness
         gained += energy_norm(self.contact, self.image(march.state) - tractions)
         force = self.path.mean(march.forces[:, FORWARD])
@@ -136,7 +147,7 @@ class PulledMap(PeriodMap):
 
     def admissible(self, state: np.ndarray) -> np.ndarray:
         """The state, its tractions projected on the friction bound."""
-        tractions, moved = self._parts(state)
+        tractions, moved = self.parts(state)
         return self.state(project(tractions, self.contact.bound), moved)
 
     def result(
@@ -144,7 +155,6 @@ class PulledMap(PeriodMap):
         interval: MarchInterval,
         distance: float,
         converged: bool,
-        inverse: np.ndarray | None = None,
     ) -> PeriodicState:
-        found = super().result(interval, distance, converged, inverse)
+        found = super().result(interval, distance, converged)
         return replace(found, body=interval.march.body)

@@ -12,13 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from microslip.contacts.coulomb import project
 from microslip.models.contact import FORWARD, StepFailure, forces, forward_slip
-from microslip.models.coulomb import project
 from microslip.models.pull import Body
 from microslip.motions.drive import Drive
-from microslip.solver import anderson
 from microslip.solver.body_run import simulate_each
 from microslip.solver.period_map import MOST_MARCHES, CreepRate, Goal
+from microslip.solver.periodic import find_periodic_state
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.pulled_map import PulledMap
 from microslip.solver.run import Run, Settings, failed_run, unsolved
@@ -137,7 +137,7 @@ class _Pulled:
             period_map = self._map(static_force, rate)
             if not self._fits(start, period_map):
                 continue
-            done.append(anderson.search(period_map, start, goal))
+            done.append(find_periodic_state(period_map, start, goal))
             if done[-1].converged:
                 break
         return self._summary(done, static_force, step_tolerance)

@@ -72,8 +72,8 @@ class Run:
         Whether the state repeats itself and every step was solved.
     reason : str
         Why it is not converged, else empty.
-    state, inverse : np.ndarray or None
-        For other runs of the point: the periodic tractions, and period_map.PeriodicState.inverse.
+    state : np.ndarray or None
+        For other runs of the point: the periodic tractions.
     static_force : float
         Mean forward force of the static limit, also for other runs; NaN where it is not known.
     velocity : float
@@ -97,7 +97,6 @@ class Run:
     converged: bool
     reason: str
     state: np.ndarray | None = None
-    inverse: np.ndarray | None = None
     static_force: float = np.nan
     velocity: float = np.nan
     power: float = np.nan

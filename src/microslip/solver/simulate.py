@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from microslip.contacts.coulomb import project
 from microslip.models.contact import FORWARD, Contact, StepFailure, forces, forward_slip
-from microslip.models.coulomb import project
 from microslip.models.path import Path
 from microslip.motions.motion import Motion
 from microslip.solver.period_map import MOST_MARCHES, CreepRate, Goal, PeriodMap
@@ -33,10 +33,6 @@ From there an accelerated search finds its way down; below, points would only dr
 
 MARCHES_FROM_COARSER = 50
 """Of a search from tractions on other points; one that takes longer does better from the start."""
-COARSENING, COARSEST_STEPS = 8, 12
-COARSE_TOLERANCE = 1e-5
-"""Where marches give derivatives, a search in this many times fewer steps comes first, as long as
-no fewer are left than these, and no tighter than this."""
 
 
 def simulate(
@@ -141,18 +137,15 @@ class _Search:
         limit = 0.0 if problem.motion.straight or not contact.sticks else np.nan
         gain = contact.stiffness * problem.creep * interval
         self.creep_rate = CreepRate(limit, problem.mean_load, gain)
-        self.path = self._path(steps)
+        self.path = problem.path(contact, steps, method.integrator)
         self.done = []
-
-    def _path(self, steps):
-        return self.problem.path(self.contact, steps, self.method.integrator)
 
     def run(self, guess=None):
         """The Run; guess: see simulate."""
         found, start = None, self._start_from(guess)
         if start is not None:
             self.creep_rate = replace(self.creep_rate, static_force=guess.static_force)
-            found = self._find(self.path, start, guess.inverse, near=start is not guess.state)
+            found = self._find(start, near=start is not guess.state)
         if found is None or not found.converged:
             found = self._search_afresh()
         return self._summary(found)
@@ -170,9 +163,9 @@ class _Search:
     def _search_afresh(self):
         slipping = forward_slip(self.contact)
         if not self.method.prepared:
-            return self._find(self.path, slipping, None)
+            return self._find(slipping)
         for start in (self._start_near_the_limit(slipping), slipping):
-            found = self._find_in_stages(start)
+            found = self._find(start)
             if found.converged:
                 break
         return found
@@ -190,28 +183,12 @@ class _Search:
         start = limit.residual + limit.oscillating + excess * slipping
         return project(start, contact.bound)
 
-    def _find_in_stages(self, start):
-        """From coarse steps to the steps asked for, each on the result of the last."""
-        counts = [self.steps]
-        while self.contact.has_sensitivity and counts[0] >= 2 * COARSEST_STEPS:
-            counts.insert(0, max(counts[0] // COARSENING, COARSEST_STEPS))
-        inverse = None
-        for count in counts[:-1]:
-            found = self._find(
-                self._path(count), start, inverse, max(self.tolerance, COARSE_TOLERANCE)
-            )
-            if found.converged:
-                start, inverse = found.start, found.inverse
-        return self._find(self.path, start, inverse)
-
-    def _find(self, path, start, inverse, tolerance=None, near=False):
-        looser = (tolerance or self.tolerance) / self.tolerance
+    def _find(self, start, near=False):
         period_map = PeriodMap(
-            self.contact, path, self.creep_rate, self.problem.motion.half_period_mirror
+            self.contact, self.path, self.creep_rate, self.problem.motion.half_period_mirror
         )
-        tolerances = looser * self.tolerance, looser * self.step_tolerance
         most = MARCHES_FROM_COARSER if near else MOST_MARCHES
-        goal = Goal(*tolerances, most, inverse, near)
+        goal = Goal(self.tolerance, self.step_tolerance, most, near)
         self.done.append(self.method.search(period_map, start, goal))
         return self.done[-1]
 
@@ -236,7 +213,6 @@ class _Search:
             converged=not reason,
             reason=reason,
             state=found.start,
-            inverse=found.inverse,
             static_force=self.creep_rate.static_force,
             power=oscillation_power(self.problem, self.path, found.forces),
         )

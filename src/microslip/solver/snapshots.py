@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from microslip.contacts.coulomb import project
 from microslip.models.contact import Contact
 from microslip.models.path import Path
 
@@ -53,7 +54,9 @@ def frames(contact: Contact, path: Path, state: np.ndarray, tolerance: float) ->
     """
     if path.depth is not None:  # bounds belong to the path as a whole
         march = contact.march(path, state, tolerance)
-        return Frames(contact.at_phases(march, state), march.forces, march.residual, march.solves)
+        stages = np.moveaxis(march.fields[:: path.stages.shape[1]], 1, 0)
+        tractions = np.moveaxis(project(stages, bounds_at_phases(contact, path)), 1, 0)
+        return Frames(tractions, march.forces, march.residual, march.solves)
     tractions, forces, residual, solves = [state], [], 0.0, 0
     for k in range(path.steps):
         step = replace(

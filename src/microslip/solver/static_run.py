@@ -9,8 +9,8 @@ import numpy as np
 
 from microslip.models.contact import FORWARD, StepFailure, forces
 from microslip.models.rings.mesh import Focus
-from microslip.solver import anderson
 from microslip.solver.period_map import Goal, PeriodMap
+from microslip.solver.periodic import find_periodic_state
 from microslip.solver.power import oscillation_power
 from microslip.solver.problem import STRONGEST_FOCUS, Problem, Resolution
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run, unsolved
@@ -23,6 +23,9 @@ FELT = 4.0
 """How much more than the distance from the periodic state of the oscillation alone the limit may
 feel: three times were seen.  Where points slip, every step puts them on the bound, so that no
 shift is left to them however far the state is from periodic."""
+LOOP_STEP_SHARE = 1e-3
+"""Tolerance of a step over that of the periodic state: the shift of a point depends on the root of
+its distance from the bound."""
 MARCHES, MOST_ROUNDS = 120, 3
 """Of a search for it, and how often it starts again: rounding may stall an accelerated one."""
 ENOUGH = 4.0
@@ -189,10 +192,10 @@ def _on_these_points(contact, problem, resolution, tolerance, settings):
     distance = tolerance / FELT
     shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
     period_map = PeriodMap(contact, path, mirror=mirror)
-    start, inner = np.zeros((2, *shape)), STEP_SHARE * distance
-    for _ in range(MOST_ROUNDS):  # not Newton's method: what never slips keeps what it began with
+    start, inner = np.zeros((2, *shape)), LOOP_STEP_SHARE * distance
+    for _ in range(MOST_ROUNDS):
         goal = Goal(distance, inner, period_map.marches + MARCHES)
-        found = anderson.search(period_map, start, goal)
+        found = find_periodic_state(period_map, start, goal)
         start = found.start
         if found.converged:
             break

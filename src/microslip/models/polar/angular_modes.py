@@ -14,7 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from microslip.contacts.operators import operator
 from microslip.foundation.compiled import kernel
+from microslip.models.polar.folding import fold, unfold
 from microslip.models.polar.symmetry import waves
 from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import Focus, make_rings
@@ -105,6 +107,31 @@ def apply_sectors(sectors: Sectors, x: np.ndarray, out: np.ndarray) -> None:
         else:
             _add_pairs(members[s], blocks[s], modes, images)
         _transform(to_points[s], images, result[s])
+
+
+class Folded(NamedTuple):
+    """An operator on fields, (2, M, N) or (2, 2 M, N) on a whole disc, by its sectors.
+
+    Attributes
+    ----------
+    sectors : Sectors
+        On folded tractions.
+    folded, image : np.ndarray, shape (4, M/2, N) or (8, M/2, N)
+        Scratch.
+    """
+
+    sectors: Sectors
+    folded: np.ndarray
+    image: np.ndarray
+
+
+@operator(Folded)
+@kernel
+def apply_folded(folded: Folded, field: np.ndarray, image: np.ndarray) -> None:
+    """image = operator field."""
+    fold(field, folded.folded)
+    apply_sectors(folded.sectors, folded.folded, folded.image)
+    unfold(folded.image, image)
 
 
 @kernel
@@ -208,8 +235,9 @@ def influence_sectors(
         for k, block in enumerate(blocks):
             packed[s, k, : len(block), : len(block)] = block.T
     none = np.zeros((0, 0, 0))
-    operator = Sectors(none, to_modes, to_points, members, packed)
-    return operator, np.ascontiguousarray(np.diag(near[0]))
+    return Sectors(none, to_modes, to_points, members, packed), np.ascontiguousarray(
+        np.diag(near[0])
+    )
 
 
 def shifted_inverse(operator: Sectors, shift: np.ndarray) -> Sectors:

@@ -20,36 +20,29 @@ from functools import lru_cache
 
 import numpy as np
 
+from microslip.contacts.splitting import Resolvent, best_penalty
+from microslip.contacts.system import System
 from microslip.models import contact
-from microslip.models.interrupts import unbroken
 from microslip.models.path import Path
-from microslip.models.polar import march as polar_march
 from microslip.models.polar.angular_modes import (
-    apply_sectors,
+    Folded,
+    apply_folded,
     influence_sectors,
     quickest,
     scaled,
     shifted_inverse,
 )
-from microslip.models.polar.folding import fold, unfold
-from microslip.models.pull import Body, PulledMarch
 from microslip.models.rings.contact import RadialContact
 from microslip.models.rings.mesh import Focus, make_rings
+from microslip.models.system_contact import SystemContact
 from microslip.pressures.by_name import HERTZ
 from microslip.pressures.pressure import Pressure
-
-PENALTY = 1.0
-"""Augmentation over the self-influence of a ring; iterations double at half and at twice it."""
-ROTATING_RINGS = 12
-"""Rings of a rotating contact at which that is best.  Narrow rings give way less than the whole
-contact does, and the best augmentation lies between the two: it grows with the root of their
-number."""
 
 FEWEST_PROLONGED = 16
 """Rings below which tractions of a coarser contact are no better a start than the static limit."""
 
 
-class PolarContact:
+class PolarContact(SystemContact):
     """Rings times points on the disc (see models.contact.Contact); states: (2, angles, cells).
 
     Parameters
@@ -73,9 +66,6 @@ class PolarContact:
         Where the half disc cannot be filled.
     """
 
-    has_sensitivity = False
-    sticks = True
-    radius = 1.0
     loaded = None
     """Rings that know the bounds while the normal load changes, a RadialContact."""
 
@@ -103,7 +93,7 @@ class PolarContact:
         self.weight = self.rings.area / self.angles
         key = (cells, angles, rotates, poisson, focus, pressure)
         self.influence, self.inverse, self.compliance = _prepared(*key, whole=whole)
-        self.penalty = _penalty(cells, rotates) * self.compliance
+        self.penalty = best_penalty(self.compliance, cells)
         self._made_of = cells, focus, pressure
 
     def at_indentation(self, deepest: float, start: float) -> PolarContact:
@@ -129,19 +119,10 @@ class PolarContact:
         """Bounds at the start and at every stage of a path, (1 + steps stages, cells)."""
         return self.loaded.bounds_along(path)
 
-    def at_phases(self, march: contact.March, start: np.ndarray) -> np.ndarray:
-        """Tractions at every phase of a march from `start`, (steps + 1, 2, angles, cells)."""
-        return start + np.concatenate(
-            [np.zeros((1, *start.shape)), np.cumsum(march.stages[0].sum(axis=1), axis=0)]
-        )
-
     def displacement(self, state: np.ndarray) -> np.ndarray:
         """A q; shapes (2, angles, cells)."""
-        folded = np.empty((self._parts, self._half // 2, state.shape[2]))
-        image, out = np.empty_like(folded), np.empty(state.shape)
-        fold(np.ascontiguousarray(state), folded)
-        apply_sectors(self.influence, folded, image)
-        unfold(image, out)
+        out = np.empty(state.shape)
+        apply_folded(self.system().compliance, np.ascontiguousarray(state), out)
         return out
 
     def prolonged(self, state: np.ndarray) -> np.ndarray | None:
@@ -164,102 +145,27 @@ class PolarContact:
         share = _interpolated(wanted, given, share, axis=1)
         return _interpolated(self.rings.radius, rings.radius, share, axis=2) * self.bound
 
-    def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """theta -> pi - theta, lateral traction negated."""
-        image = state[:, ::-1, :] * contact.MIRROR
-        return np.roll(image, self._half, axis=1) if self.whole else image
-
-    @property
-    def _parts(self):
-        """Of folded tractions."""
-        return 8 if self.whole else 4
-
-    def _without_what_cancels(self, forces):
-        """Set to zero what symmetry forbids, and the half disc that is not resolved cancels."""
-        if not self.whole:
-            forces[:, contact.LATERAL if self.rotates else contact.TORQUE] = 0.0
-
-    @property
-    def _points(self):
-        """The contact for compiled code."""
-        return polar_march.Points(
-            self.influence,
-            self.inverse,
-            self.penalty,
-            self.weight,
-            (self.forward_position, self.lateral_position),
-            self._parts,
-        )
-
-    def march(
-        self,
-        path: Path,
-        state: np.ndarray,
-        tolerance: float,
-        sensitivity: bool = False,
-        previous: contact.March | None = None,
-    ) -> contact.March:
-        """March along `path`; see models.contact.Contact."""
-        forces = np.zeros((path.steps + 1, 3))
-        if previous is None:
-            stages = np.empty((2, *path.stages.shape[:2], *state.shape))
-        else:
-            stages = previous.stages.copy()
-        state, residual, iterations = unbroken(
-            polar_march.march,
-            self._points,
-            path.under(self.bound[None] if path.depth is None else self.bounds_along(path)),
-            np.ascontiguousarray(state),
-            tolerance,
-            polar_march.Stages(stages[0], stages[1], previous is not None),
-            forces,
-        )
-        self._without_what_cancels(forces)
-        solves = path.stages.shape[0] * path.stages.shape[1]
-        return contact.March(state, forces, residual, iterations, solves, stages=stages)
-
-    def pulled_march(
-        self,
-        path: Path,
-        state: np.ndarray,
-        tolerance: float,
-        body: Body,
-        start: np.ndarray,
-        previous: PulledMarch | None = None,
-    ) -> PulledMarch:
-        """March from which a body may stay behind or run ahead; see models.pull.PullsContact."""
-        bounds = self.bound[None] if path.depth is None else self.bounds_along(path)
-        besides = np.empty((1 + path.stages.shape[0] * path.stages.shape[1], 3, 0))
-        return self._pulled_along(
-            path, (bounds, besides), state, tolerance, (body, start), previous
-        )
-
-    def _pulled_along(self, path, imposed, state, tolerance, pulled, previous):
-        """The PulledMarch along a path; imposed: friction bounds, and what each ring does besides,
-        see pulled_march.py; pulled: a pull.Body and where it is."""
-        from microslip.models.polar.pulled_march import (  # only now: it takes a while to load
-            PulledStages,
-            pulled_march,
-        )
-
-        (bounds, besides), (body, start), shape = imposed, pulled, path.stages.shape[:2]
-        if previous is None:
-            stages = np.empty((2, *shape, *state.shape)), np.zeros(shape)
-        else:
-            stages = tuple(part.copy() for part in previous.stages)
-        forces, moved = np.zeros((path.steps + 1, 3)), np.empty((path.steps + 1, 2))
-        state, residual, iterations = unbroken(
-            pulled_march,
-            self._points,
-            (path.under(bounds), besides),
-            body.along(path, start),
-            np.ascontiguousarray(state),
-            PulledStages(stages[0][0], stages[0][1], stages[1], previous is not None),
-            (float(tolerance), forces, moved),
-        )
-        self._without_what_cancels(forces)
-        return PulledMarch(
-            state, forces, residual, iterations, shape[0] * shape[1], stages=stages, body=moved
+    def system(self) -> System:
+        """The System of the points."""
+        rows, n = self.forward_position.shape
+        mirror = np.arange(rows * n).reshape(rows, n)[::-1]
+        folded = np.empty((8 if self.whole else 4, self._half // 2, n))
+        scratch = folded, np.empty_like(folded)
+        resultants = np.ones(3)
+        if not self.whole:  # what the half disc that is not resolved cancels
+            resultants[contact.LATERAL if self.rotates else contact.TORQUE] = 0.0
+        return System(
+            compliance=Folded(self.influence, *scratch),
+            solver=Resolvent(
+                Folded(self.inverse, *scratch), self.penalty, float(rows * self.weight.sum())
+            ),
+            scale=self.compliance,
+            weight=self.weight,
+            positions=(self.forward_position, self.lateral_position),
+            first=np.array([0, n]),
+            mirror=np.roll(mirror, self._half if self.whole else 0, axis=0).ravel(),
+            resultants=resultants,
+            stiffness=float(self.stiffness),
         )
 
 
@@ -268,15 +174,10 @@ def _interpolated(wanted, given, values, axis):
     return np.apply_along_axis(lambda line: np.interp(wanted, given, line), axis, values)
 
 
-def _penalty(cells, rotates):
-    """Augmentation over the self-influence of a ring."""
-    return PENALTY * (cells / ROTATING_RINGS) ** 0.5 if rotates else PENALTY
-
-
 @lru_cache(maxsize=32)
 def _prepared(cells, angles, rotates, poisson, focus, pressure, *, whole):
     """The operator, (A + penalty)^-1, and the self-influence of each ring."""
     key = (cells, angles, rotates, poisson, focus, pressure)
     operator, compliance = influence_sectors(*key, whole=whole)
-    inverse = shifted_inverse(operator, _penalty(cells, rotates) * compliance)
+    inverse = shifted_inverse(operator, best_penalty(compliance, cells))
     return quickest(operator), quickest(inverse), compliance

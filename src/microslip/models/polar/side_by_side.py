@@ -15,10 +15,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from microslip.contacts.system import System
 from microslip.models.path import BodyPath
 from microslip.models.polar.angular_modes import Sectors, quickest, scaled
 from microslip.models.polar.contact import PolarContact
-from microslip.models.pull import Body, PulledMarch
+from microslip.models.system_contact import bounds_of_each
 
 
 class PolarSideBySide(PolarContact):
@@ -51,33 +52,21 @@ class PolarSideBySide(PolarContact):
         self.influence = _apart([scaled(one.influence, by) for one, _, by in scaled_by])
         self.inverse = _apart([scaled(one.inverse, 1.0 / by) for one, _, by in scaled_by])
         self.stiffness = sum(one.stiffness * share / extent for one, share, extent in scaled_by)
-        self._contacts, self._imposed = contacts, (None, None)
+        self._contacts = contacts
 
     def bounds(self, depths: np.ndarray) -> np.ndarray:
         """As RingsSideBySide.bounds."""
         each = zip(self._contacts, depths, strict=True)
         return np.concatenate([one.bounds(own) for one, own in each], axis=1)
 
-    def pulled_march(
-        self,
-        path: BodyPath,
-        state: np.ndarray,
-        tolerance: float,
-        body: Body,
-        start: np.ndarray,
-        previous: PulledMarch | None = None,
-    ) -> PulledMarch:
-        """March of the body along a BodyPath; see models.pull.PullsContact."""
-        if self._imposed[0] is not path:
-            self._imposed = path, (path.bounds(self._contacts), self._besides_of(path))
-        imposed = self._imposed[1]
-        return self._pulled_along(path, imposed, state, tolerance, (body, start), previous)
+    def field_bounds(self, path: BodyPath) -> np.ndarray:
+        """Friction bounds along a path, see SystemContact.field_bounds."""
+        return bounds_of_each(self._contacts, path)
 
-    def _besides_of(self, path: BodyPath):
-        """What the rings of each contact do besides, (1 + steps stages, 3, cells)."""
+    def system(self) -> System:
+        """The System of the points of all contacts."""
         cells = [len(one.bound) for one in self._contacts]
-        besides = np.repeat(path.besides(), cells, axis=0)
-        return np.ascontiguousarray(np.moveaxis(besides, 0, -1))
+        return super().system()._replace(first=np.concatenate([[0], np.cumsum(cells)]))
 
 
 def _apart(operators: Sequence[Sectors]) -> Sectors:

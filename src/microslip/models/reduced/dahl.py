@@ -19,7 +19,7 @@ from microslip.models.path import Path
 class DahlContact:
     """A single bristle (see models.contact.Contact); states have shape (2, 1, 1)."""
 
-    has_sensitivity = True
+    compiled = False
     sticks = False  # no point of it ever sticks: nothing is left of it in the static limit
     angles = 1
 
@@ -42,7 +42,6 @@ class DahlContact:
         path: Path,
         state: np.ndarray,
         tolerance: float,
-        sensitivity: bool = False,
         previous: contact.March | None = None,
     ) -> contact.March:
         """Solve along `path`, straight from phase to phase (translations only)."""
@@ -61,7 +60,4 @@ class DahlContact:
             residual=0.0,
             iterations=0,
             solves=path.steps,
-            sensitivity=np.exp(-self.stiffness * lengths.sum()) * np.eye(2)
-            if sensitivity
-            else None,
         )

@@ -21,7 +21,7 @@ GRADING = 0.98
 class RigidContact:
     """Points on rings x half-circle angles (one point for translation); see models.contact."""
 
-    has_sensitivity = False
+    compiled = False
     sticks = False
     grading = GRADING
 
@@ -52,7 +52,6 @@ class RigidContact:
         path: Path,
         state: np.ndarray,
         tolerance: float,
-        sensitivity: bool = False,
         previous: contact.March | None = None,
     ) -> contact.March:
         """Forces of full slip along the velocity at each phase of the path."""

@@ -1,30 +1,24 @@
-"""Rings: exact for translation at nu = 0, where the traction vector depends on the radius alone.
-
-The compiled work is done in tangent.py (the linear part of a step), newton_step.py (one step) and
-march.py (a march, and its derivative, which makes the periodic state a Newton problem).
-"""
+"""Rings: exact for translation at nu = 0, where the traction vector depends on the radius alone."""
 
 from __future__ import annotations
 
 from functools import lru_cache
 
 import numpy as np
-import scipy
 
-from microslip.models import contact
-from microslip.models.interrupts import unbroken
+from microslip.contacts.operators import matrix_operator
+from microslip.contacts.splitting import Resolvent, best_penalty
+from microslip.contacts.system import System
 from microslip.models.path import Path
-from microslip.models.pull import Body, PulledMarch
-from microslip.models.rings import march as ring_march
 from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import Focus, make_rings
-from microslip.models.rings.tangent import RingSystem, cholesky
+from microslip.models.system_contact import SystemContact
 from microslip.models.varying_load import Growth, load_on_rings
 from microslip.pressures.by_name import HERTZ
 from microslip.pressures.pressure import Pressure
 
 
-class RadialContact:
+class RadialContact(SystemContact):
     """Contact of rings (see models.contact.Contact); states have shape (2, 1, cells).
 
     `resolved` builds the half-space's; the elastic slider is the one-ring contact of unit
@@ -47,10 +41,7 @@ class RadialContact:
         Radii between the rings of the reference contact, None where there are none.
     """
 
-    has_sensitivity = True
-    sticks = True
     angles = 1
-    radius = 1.0
     edges = None
 
     def __init__(
@@ -68,12 +59,32 @@ class RadialContact:
         self.compliance = np.diag(self.influence)
         self.forward_position = self.lateral_position = np.zeros((1, len(bound)))
         weighted = weight[:, None] * self.influence
-        self._stiffness = 0.5 * (weighted + weighted.T)
-        self._factor = cholesky(self._stiffness)
-        self._system = RingSystem(self._stiffness, self._factor, self.weight)
+        self._weighted = 0.5 * (weighted + weighted.T)
         if stiffness is None:  # the force that moves all points by one
-            stiffness = weight @ np.linalg.solve(self._stiffness, weight)
+            stiffness = weight @ np.linalg.solve(self._weighted, weight)
         self.stiffness = float(stiffness)
+        self.rings_of_a_contact = len(bound)
+        self._system = None
+
+    def system(self) -> System:
+        """The System of the rings."""
+        if self._system is None:
+            n = len(self.bound)
+            penalty = best_penalty(self.compliance, self.rings_of_a_contact)
+            weight = np.ascontiguousarray(self.weight, dtype=float)
+            inverse = np.linalg.inv(self._weighted + np.diag(weight * penalty)) * weight
+            self._system = System(
+                compliance=matrix_operator(self._weighted / weight[:, None]),
+                solver=Resolvent(matrix_operator(inverse), penalty, float(weight.sum())),
+                scale=np.ascontiguousarray(self.compliance),
+                weight=weight,
+                positions=(self.forward_position, self.lateral_position),
+                first=np.array([0, n]),
+                mirror=np.arange(n),
+                resultants=np.array([1.0, 1.0, 0.0]),
+                stiffness=self.stiffness,
+            )
+        return self._system
 
     @staticmethod
     def resolved(
@@ -110,9 +121,7 @@ class RadialContact:
         Were it to join where the edge of the contact reaches it, all of it would be held too early
         by its inner part, an error of first order.
         """
-        upper = np.triu(self._factor)
-        np.fill_diagonal(upper, 1.0 / np.diag(upper))
-        part = scipy.linalg.solve_triangular(upper, self.weight, trans="T")
+        part = np.linalg.solve(np.linalg.cholesky(self._weighted), self.weight)
         # w^T B^-1 w of the first k rings
         return np.concatenate([[0.0], np.cumsum(part**2) * self.radius / self.stiffness])
 
@@ -145,97 +154,9 @@ class RadialContact:
         edge[:, -1] = seen[1:]
         return self.bounds(path.depth, np.append(seen[:1], edge))
 
-    def at_phases(self, march: contact.March, start: np.ndarray) -> np.ndarray:
-        """Tractions at every phase of a march from `start`, (steps + 1, 2, 1, cells)."""
-        stages = march.solves // (len(march.forces) - 1)
-        return march.stages[::stages, :, None]
-
     def displacement(self, state: np.ndarray) -> np.ndarray:
         """A q; shapes (2, 1, cells)."""
         return state @ self.influence.T
-
-    def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """Lateral traction negated."""
-        return state * contact.MIRROR
-
-    def march(
-        self,
-        path: Path,
-        state: np.ndarray,
-        tolerance: float,
-        sensitivity: bool = False,
-        previous: contact.March | None = None,
-    ) -> contact.March:
-        """March along `path` (translations only); see models.contact.Contact.
-
-        The stages of the result, and of `previous`, are the tractions at the start and after
-        every stage, (1 + steps stages, 2, cells).
-        """
-        stages = path.stages.shape[0] * path.stages.shape[1]
-        known = None if previous is None else previous.stages
-        if known is None or known.shape != (1 + stages, 2, len(self.bound)):
-            known = np.empty((0, 2, 0))
-        end, tractions, forces, residual, iterations, derivative = unbroken(
-            ring_march.march,
-            self._system,
-            path.under(self.bound[None] if path.depth is None else self.bounds_along(path)),
-            np.ascontiguousarray(state[:, 0]),
-            known,
-            tolerance,
-            sensitivity,
-        )
-        return contact.March(
-            state=end[:, None],
-            forces=forces,
-            residual=residual,
-            iterations=iterations,
-            solves=stages,
-            sensitivity=derivative if sensitivity else None,
-            stages=tractions,
-        )
-
-    def pulled_march(
-        self,
-        path: Path,
-        state: np.ndarray,
-        tolerance: float,
-        body: Body,
-        start: np.ndarray,
-        previous: PulledMarch | None = None,
-    ) -> PulledMarch:
-        """March from which a body may stay behind or run ahead; see models.pull.PullsContact."""
-        bounds = self.bound[None] if path.depth is None else self.bounds_along(path)
-        imposed = path.under(bounds), np.empty((0, 2, 0))
-        return self._pulled_along(path, imposed, state, tolerance, (body, start), previous)
-
-    def _pulled_along(self, path, imposed, state, tolerance, pulled, previous):
-        """The PulledMarch along a path that is imposed, see pulled_march.py; pulled: a pull.Body
-        and where it is."""
-        from microslip.models.rings.pulled_march import pulled_march  # only now: it takes a while
-
-        body, start = pulled
-        stages = path.stages.shape[0] * path.stages.shape[1]
-        known = None if previous is None else previous.stages
-        if known is None or known[0].shape != (1 + stages, 2, len(self.bound)):
-            known = np.empty((0, 2, 0)), np.empty(0)
-        end, tractions, places, moved, forces, residual, iterations = unbroken(
-            pulled_march,
-            self._system,
-            imposed,
-            body.along(path, start),
-            np.ascontiguousarray(state[:, 0]),
-            known,
-            (float(tolerance), self.stiffness),
-        )
-        return PulledMarch(
-            state=end[:, None],
-            forces=forces,
-            residual=residual,
-            iterations=iterations,
-            solves=stages,
-            stages=(tractions, places),
-            body=moved,
-        )
 
 
 @lru_cache(maxsize=32)

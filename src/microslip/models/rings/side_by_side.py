@@ -14,11 +14,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import scipy
 
+from microslip.contacts.system import System
 from microslip.models.path import BodyPath
-from microslip.models.pull import Body, PulledMarch
 from microslip.models.rings.contact import RadialContact
+from microslip.models.system_contact import bounds_of_each
 
 
 class RingsSideBySide(RadialContact):
@@ -32,20 +32,23 @@ class RingsSideBySide(RadialContact):
         Of the load of the body, sum 1; u_lim of each over that of the body.
     """
 
-    has_sensitivity = False
-
     def __init__(
         self, contacts: Sequence[RadialContact], shares: Sequence[float], extents: Sequence[float]
     ):
         scaled = list(zip(contacts, shares, extents, strict=True))
         super().__init__(
-            scipy.linalg.block_diag(*(one.influence * extent for one, _, extent in scaled)),
+            _block_diagonal([one.influence * extent for one, _, extent in scaled]),
             np.concatenate([one.bound for one in contacts]),
             np.concatenate([one.weight * share for one, share, _ in scaled]),
             sum(one.stiffness * share / extent for one, share, extent in scaled),
         )
+        self.rings_of_a_contact = len(contacts[0].bound)
         self._contacts = contacts
-        self._imposed = None, None
+
+    def system(self) -> System:
+        """The System of the rings of all contacts."""
+        cells = [len(one.bound) for one in self._contacts]
+        return super().system()._replace(first=np.concatenate([[0], np.cumsum(cells)]))
 
     def bounds(self, depths: np.ndarray) -> np.ndarray:
         """Bounds of all rings, (k, cells of all), where each contact is at its depths, one a
@@ -53,24 +56,15 @@ class RingsSideBySide(RadialContact):
         each = zip(self._contacts, depths, strict=True)
         return np.concatenate([one.bounds(own) for one, own in each], axis=1)
 
-    def pulled_march(
-        self,
-        path: BodyPath,
-        state: np.ndarray,
-        tolerance: float,
-        body: Body,
-        start: np.ndarray,
-        previous: PulledMarch | None = None,
-    ) -> PulledMarch:
-        """March of the body along a BodyPath; see models.pull.PullsContact."""
-        if self._imposed[0] is not path:
-            bounds = path.bounds(self._contacts)
-            self._imposed = path, (path.under(bounds), self._ahead_of(path))
-        imposed = self._imposed[1]
-        return self._pulled_along(path, imposed, state, tolerance, (body, start), previous)
+    def field_bounds(self, path: BodyPath) -> np.ndarray:
+        """Friction bounds along a path, see SystemContact.field_bounds."""
+        return bounds_of_each(self._contacts, path)
 
-    def _ahead_of(self, path: BodyPath):
-        """What each contact does besides, weighted, (1 + steps stages, 2, cells)."""
-        cells = [len(one.bound) for one in self._contacts]
-        ahead = np.repeat(path.besides()[:, :, :2], cells, axis=0)
-        return np.ascontiguousarray(np.moveaxis(ahead, 0, -1)) * self.weight
+
+def _block_diagonal(blocks):
+    """The matrix with these blocks."""
+    sizes = np.cumsum([0, *(len(block) for block in blocks)])
+    out = np.zeros((sizes[-1], sizes[-1]))
+    for block, start, end in zip(blocks, sizes, sizes[1:], strict=False):
+        out[start:end, start:end] = block
+    return out

@@ -7,28 +7,28 @@ displacement, the pressure and the influence of tractions share.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
+from microslip.contacts.descent import PATIENCE, Descent
+from microslip.contacts.system import System
 from microslip.models import contact
-from microslip.models.interrupts import unbroken
-from microslip.models.path import Path
-from microslip.models.pull import Body, PulledMarch
 from microslip.models.squares import half
-from microslip.models.squares import march as square_march
-from microslip.models.squares.convolution import convolve, square_convolution, workspace
+from microslip.models.squares.convolution import (
+    Convolved,
+    apply_convolution,
+    square_convolution,
+    workspace,
+)
+from microslip.models.system_contact import SystemContact
 from microslip.pressures.by_name import HERTZ
 from microslip.pressures.pressure import Pressure
 
-MAX_REMEMBERED = 4_000_000
-"""Numbers that a march keeps as first guesses for the next one; longer marches keep none."""
 ROUNDED = 1e-10
 """Difference of two loads, over the largest, below which they are one number: those of a sphere on
 192 squares across differ from their images by less than a twentieth of it."""
 
 
-class CartesianContact:
+class CartesianContact(SystemContact):
     """Squares over the circumscribed square of the contact (see models.contact.Contact).
 
     States: (2, cells, cells), axis 1 along the forward axis, axis 2 along the lateral one, or half
@@ -59,8 +59,6 @@ class CartesianContact:
         For fewer than 2 cells.
     """
 
-    has_sensitivity = False
-    sticks = True
     angles = 1
 
     def __init__(
@@ -89,93 +87,33 @@ class CartesianContact:
         )
         self.compliance = np.full(self.bound.shape, self.scale)
 
-    def squares(self) -> square_march.Squares:
-        """The march.Squares of this contact, for one thread at a time."""
-        room = workspace(self.operator)
-        scales = self.scale, self.largest
-        return square_march.Squares(self.operator, room, *scales, self.bound, self.area)
+    def system(self) -> System:
+        """The System of the squares."""
+        rows, columns = self.bound.shape
+        points = np.arange(rows * columns)
+        mirror = points if self.images == 4 else points.reshape(rows, columns)[:, ::-1].ravel()
+        resultants = np.ones(3)
+        if self.images > 1:  # what the images of the squares cancel
+            resultants[self._cancelled] = 0.0
+        return System(
+            compliance=Convolved(self.operator, *workspace(self.operator)),
+            solver=Descent(
+                self.largest, PATIENCE, np.array([1.0 / self.scale]), np.empty((3, columns))
+            ),
+            scale=self.compliance[0],
+            weight=self.weight[0],
+            positions=(self.forward_position, self.lateral_position),
+            first=np.array([0, columns]),
+            mirror=mirror,
+            resultants=resultants,
+            stiffness=float(self.stiffness),
+        )
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
         """A q; shapes of a state."""
         out = np.empty(state.shape)
-        convolve(self.operator, workspace(self.operator), np.ascontiguousarray(state), out)
+        apply_convolution(self.system().compliance, np.ascontiguousarray(state), out)
         return out
-
-    def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """Lateral axis reversed, lateral traction negated."""
-        return (state if self.images == 4 else state[:, :, ::-1]) * contact.MIRROR
-
-    def _without_what_cancels(self, forces):
-        """Set to zero what symmetry forbids, and the images of the squares cancel."""
-        if self.images > 1:
-            forces[:, self._cancelled] = 0.0
-
-    def march(
-        self,
-        path: Path,
-        state: np.ndarray,
-        tolerance: float,
-        sensitivity: bool = False,
-        previous: contact.March | None = None,
-    ) -> contact.March:
-        """March along `path`; see models.contact.Contact."""
-        steps, n_stages, _ = path.stages.shape
-        guided = previous is not None and previous.stages is not None
-        remembers = steps * n_stages * state.size <= MAX_REMEMBERED
-        tractions = np.zeros((steps if remembers else 1, n_stages, *state.shape))
-        state, forces, residual, iterations = unbroken(
-            square_march.march,
-            self.squares(),
-            (self.forward_position, self.lateral_position),
-            path.under(self.bound[None]),
-            np.ascontiguousarray(state),
-            tolerance,
-            square_march.Guide(previous.stages if guided else tractions, guided, tractions),
-        )
-        self._without_what_cancels(forces)
-        stages = tractions if remembers else None
-        return contact.March(state, forces, residual, iterations, steps * n_stages, stages=stages)
-
-    def pulled_march(
-        self,
-        path: Path,
-        state: np.ndarray,
-        tolerance: float,
-        body: Body,
-        start: np.ndarray,
-        previous: PulledMarch | None = None,
-    ) -> PulledMarch:
-        """March from which a body may stay behind or run ahead; see models.pull.PullsContact."""
-        moved = np.concatenate([path.positions[:1], path.stages.reshape(-1, 3)])
-        standing = np.ones(1), np.ones(1), moved[None]
-        march = self.pulled_along(path, standing, state[None], tolerance, (body, start))
-        return replace(march, state=march.state[0])
-
-    def pulled_along(
-        self, path: Path, standing: tuple, state: np.ndarray, tolerance: float, pulled: tuple
-    ) -> PulledMarch:
-        """The PulledMarch of several contacts like this one, states along the first axis;
-        standing: shares, extents and displacements, see pulled_march.py; pulled: a pull.Body and
-        where it is."""
-        from microslip.models.squares.pulled_march import (  # only now: as for rings
-            Carried,
-            pulled_march,
-        )
-
-        (shares, extents, moved), (body, start) = standing, pulled
-        positions = self.forward_position, self.lateral_position
-        state, at, forces, residual, iterations = unbroken(
-            pulled_march,
-            self.squares(),
-            (positions, Carried(shares, extents), moved),
-            path.under(self.bound[None]),
-            body.along(path, start),
-            np.ascontiguousarray(state),
-            (float(tolerance), float((self.stiffness * shares / extents).sum())),
-        )
-        self._without_what_cancels(forces)
-        solves = path.stages.shape[0] * path.stages.shape[1]
-        return PulledMarch(state, forces, residual, iterations, solves, body=at)
 
 
 def _images(loads, symmetry, poisson):

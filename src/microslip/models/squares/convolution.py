@@ -17,8 +17,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from microslip.contacts.operators import operator
+from microslip.contacts.system import copy
 from microslip.foundation.compiled import kernel
-from microslip.models.point_fields import copy
 from microslip.models.squares import half, quarter
 from microslip.models.squares.transform import backward, forward
 from microslip.theory.hertz import G_STAR
@@ -95,7 +96,7 @@ def square_convolution(
     largest = np.abs(kernel).max() + np.abs(cross).max()
     # each factor of the inverse transform brings its size along: divide once, here
     kernel, cross = (kernel / padded**2).real, cross / padded**2
-    operator = Convolution(
+    convolution = Convolution(
         radices,
         np.stack([np.cos(turns), np.sin(turns)]),
         quarter.folded_filter(kernel, opposite) if images == 4 else np.ascontiguousarray(kernel),
@@ -106,7 +107,7 @@ def square_convolution(
         quarter.folding(order, opposite),
         halving,
     )
-    return operator, float(coefficients[0][0, 0]), float(largest)
+    return convolution, float(coefficients[0][0, 0]), float(largest)
 
 
 def influence(
@@ -185,6 +186,57 @@ def convolve(operator: Convolution, scratch: tuple, q: np.ndarray, out: np.ndarr
     _turn_back(operator, columns, second, first)
     backward(first[0], first[1], columns, radices, roots)
     _gather(operator, first, out)
+
+
+class Convolved(NamedTuple):
+    """The operator on fields of squares: a Convolution with its scratch."""
+
+    convolution: Convolution
+    first: np.ndarray
+    second: np.ndarray
+
+
+@operator(Convolved)
+@kernel
+def apply_convolution(convolved: Convolved, field: np.ndarray, image: np.ndarray) -> None:
+    """image = A field."""
+    convolve(convolved.convolution, (convolved.first, convolved.second), field, image)
+
+
+class ConvolvedApart(NamedTuple):
+    """The operator on squares of several contacts side by side, of equal shape.
+
+    Attributes
+    ----------
+    convolved : Convolved
+        Of each.
+    extents : np.ndarray, shape (contacts,)
+        u_lim of each over that of the body.
+    given, result : np.ndarray, field of one contact
+        Scratch.
+    """
+
+    convolved: Convolved
+    extents: np.ndarray
+    given: np.ndarray
+    result: np.ndarray
+
+
+@operator(ConvolvedApart)
+@kernel
+def apply_apart(apart: ConvolvedApart, field: np.ndarray, image: np.ndarray) -> None:
+    """image = A field, contact by contact."""
+    given, result, columns = apart.given, apart.result, apart.given.shape[2]
+    for one in range(len(apart.extents)):
+        for c in range(2):
+            for j in range(given.shape[1]):
+                for i in range(columns):
+                    given[c, j, i] = field[c, j, one * columns + i]
+        apply_convolution(apart.convolved, given, result)
+        for c in range(2):
+            for j in range(given.shape[1]):
+                for i in range(columns):
+                    image[c, j, one * columns + i] = apart.extents[one] * result[c, j, i]
 
 
 @kernel

@@ -1,33 +1,35 @@
-"""Squares of several contacts on one body: each is solved by itself, in its own units, at the place
-of the body that balances the sum of their forces; see pulled_march.py."""
+"""Squares of several contacts on one body, side by side along the lateral axis.
+
+They are far apart and share the forward displacement of the body alone.  Units are those of the
+body, see rings/side_by_side.py.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
+from microslip.contacts.descent import PATIENCE, Descent
+from microslip.contacts.system import System
 from microslip.models.path import BodyPath
-from microslip.models.pull import Body, PulledMarch
 from microslip.models.squares.contact import CartesianContact
+from microslip.models.squares.convolution import ConvolvedApart, apply_apart
+from microslip.models.system_contact import SystemContact, bounds_of_each
 
 
-class SquaresSideBySide:
-    """The contacts of one body; states are those of each, one beside the other along axis 2.
+class SquaresSideBySide(SystemContact):
+    """The contacts of one body; states have those of each side by side along axis 2.
 
     Parameters
     ----------
     contacts : sequence of CartesianContact
-        Alike, in their own units.
+        Equal, each in its own units.
     shares, extents : sequence of float
-        Of the load of the body, sum 1; u_lim of each over that of the body.
+        Fraction of the load of the body, sum 1; u_lim of each over that of the body.
     """
 
-    has_sensitivity = False
-    sticks = True
     angles = 1
-    radius = 1.0
 
     def __init__(
         self,
@@ -35,46 +37,49 @@ class SquaresSideBySide:
         shares: Sequence[float],
         extents: Sequence[float],
     ):
-        self._one, self._count = contacts[0], len(contacts)
-        self._shares, self._extents = np.array(shares), np.array(extents)
+        self._one, self._contacts = contacts[0], contacts
+        shares, self._extents = np.array(shares, dtype=float), np.array(extents, dtype=float)
         one, columns = self._one, self._one.bound.shape[1]
         self.bound, self.forward_position, self.lateral_position = (
-            np.tile(field, self._count)
+            np.tile(field, len(contacts))
             for field in (one.bound, one.forward_position, one.lateral_position)
         )
-        self.weight = np.tile(one.weight, self._count) * np.repeat(self._shares, columns)
-        self.compliance = np.tile(one.compliance, self._count) * np.repeat(self._extents, columns)
-        self.stiffness = float((one.stiffness * self._shares / self._extents).sum())
+        self.weight = np.tile(one.weight, len(contacts)) * np.repeat(shares, columns)
+        self.compliance = np.tile(one.compliance, len(contacts))
+        self.compliance = self.compliance * np.repeat(self._extents, columns)
+        self.stiffness = float((one.stiffness * shares / self._extents).sum())
+
+    def system(self) -> System:
+        """The System of the squares of all contacts."""
+        alone, (rows, columns) = self._one.system(), self.bound.shape
+        each, count = columns // len(self._contacts), len(self._contacts)
+        points, mirror = np.arange(rows * columns).reshape(rows, columns), alone.mirror
+        mirror = mirror.reshape(rows, each) % each  # columns: a square keeps its row
+        columns_of = [mirror + one * each for one in range(count)]
+        mirror = np.take_along_axis(points, np.concatenate(columns_of, axis=1), axis=1)
+        field = np.empty((2, rows, each))
+        return alone._replace(
+            compliance=ConvolvedApart(alone.compliance, self._extents, field, np.empty_like(field)),
+            solver=Descent(
+                float(alone.solver.largest * self._extents.max()),
+                PATIENCE,
+                np.array([1.0 / self.compliance[0].max()]),
+                np.empty((3, columns)),
+            ),
+            scale=self.compliance[0],
+            weight=self.weight[0],
+            positions=(self.forward_position, self.lateral_position),
+            first=each * np.arange(count + 1),
+            mirror=mirror.ravel(),
+            stiffness=self.stiffness,
+        )
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
         """A q in the units of the body, as the state."""
-        each = zip(self._extents, self._each(state), strict=True)
-        return self._together([by * self._one.displacement(own) for by, own in each])
+        out = np.empty(state.shape)
+        apply_apart(self.system().compliance, np.ascontiguousarray(state), out)
+        return out
 
-    def mirrored(self, state: np.ndarray) -> np.ndarray:
-        """Every contact in its own mirror image."""
-        return self._together([self._one.mirrored(own) for own in self._each(state)])
-
-    def pulled_march(
-        self,
-        path: BodyPath,
-        state: np.ndarray,
-        tolerance: float,
-        body: Body,
-        start: np.ndarray,
-        previous: PulledMarch | None = None,
-    ) -> PulledMarch:
-        """March of the body along a BodyPath; see models.pull.PullsContact."""
-        base = np.concatenate([path.positions[:1], path.stages.reshape(-1, 3)])
-        moved = (base + path.besides()) / self._extents[:, None, None]
-        standing = self._shares, self._extents, moved
-        march = self._one.pulled_along(path, standing, self._each(state), tolerance, (body, start))
-        return replace(march, state=self._together(march.state))
-
-    def _each(self, state):
-        """States of the contacts, the first axis."""
-        return np.stack(np.split(state, self._count, axis=-1))
-
-    def _together(self, states):
-        """The state of all from those of the contacts."""
-        return np.concatenate(list(states), axis=-1)
+    def field_bounds(self, path: BodyPath) -> np.ndarray:
+        """Friction bounds along a path, see SystemContact.field_bounds."""
+        return bounds_of_each(self._contacts, path)

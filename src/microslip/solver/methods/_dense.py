@@ -16,9 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from microslip.contacts.coulomb import coulomb_residual, shrink
 from microslip.foundation.compiled import kernel
 from microslip.models.contact import Contact, March, StepFailure, forces
-from microslip.models.coulomb import coulomb_residual, shrink
 from microslip.models.path import Path
 
 FAR_FROM_SOLVED = 1e-2
@@ -53,7 +53,7 @@ def nothing(matrix: np.ndarray, scale: np.ndarray) -> float:
 class DenseContact:
     """A contact (see models.contact.Contact) whose steps are solved by `solve`."""
 
-    has_sensitivity = False
+    compiled = False
 
     def __init__(
         self, contact: Contact, solve: Callable, prepare: Callable = nothing, **parameters: float
@@ -78,7 +78,6 @@ class DenseContact:
         path: Path,
         state: np.ndarray,
         tolerance: float,
-        sensitivity: bool = False,
         previous: March | None = None,
     ) -> March:
         """March along `path`; raises StepFailure at the first step that stays unsolved."""

@@ -16,10 +16,7 @@ SLOWEST = 1.0 - 1e-6
 
 
 def accelerated(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
-    """Anderson acceleration, whether or not marches give a derivative.
-
-    Newton's method has nothing to invert where the map keeps what rings in it for ever.
-    """
+    """Anderson acceleration of marches that Python calls one by one."""
     return anderson.search(period_map, start, goal)
 
 

@@ -23,7 +23,7 @@ import math
 
 import numpy as np
 
-from microslip.models.coulomb import project
+from microslip.contacts.coulomb import project
 from microslip.models.path import EULER, Path
 from microslip.models.squares.convolution import square_convolution
 from microslip.solver.method import Method

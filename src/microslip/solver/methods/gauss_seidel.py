@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from microslip.contacts.coulomb import shrink
 from microslip.foundation.compiled import kernel
-from microslip.models.coulomb import shrink
 from microslip.solver.method import Method
 from microslip.solver.methods._dense import dense, judge
 

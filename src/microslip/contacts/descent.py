@@ -1,0 +1,184 @@
+"""Spectral projected gradient for a Coulomb step, for contacts without a cheap resolvent (squares).
+
+Steps have Barzilai and Borwein's lengths without a line search: the comparison of energies that a
+line search needs drowns in rounding long before the tractions do.  Where the residual does not fall
+for a while, steps short enough to lower the energy take over until it does.
+
+With a driven body a secant finds the displacement d at which its forces balance: the forward force
+does not fall with d, and rises by the stiffness of the contact at most.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from microslip.contacts.coulomb import shrink
+from microslip.contacts.interrupts import BETWEEN_LOOKS, interrupted
+from microslip.contacts.operators import multiply
+from microslip.contacts.step import Balance, Fields, Step, step_solver
+from microslip.contacts.system import System, copy, forward_force, move_forward, project
+from microslip.foundation.compiled import kernel
+
+MOST_ITERATIONS = 5000
+PATIENCE = 60
+"""Calibrated by benchmarks/splitting.py."""
+SHORT_STEP_BELOW = 0.3
+"""Ratio of the two Barzilai-Borwein lengths below which the shorter one is taken (Zhou, Gao and Dai
+2006: 0.1 to 0.5)."""
+MOST_DISPLACEMENTS = 60
+FLATTEST = 1e-3
+"""Least slope of the balance that a secant may have, over its largest."""
+INNER = 0.3
+"""Share of the tolerance that a step at a trial displacement may leave."""
+
+
+class Descent(NamedTuple):
+    """The solver of a contact without a resolvent.
+
+    Attributes
+    ----------
+    largest : float
+        Upper bound on the eigenvalues of A.
+    patience : int
+        Iterations granted to the Barzilai-Borwein steps for halving the residual.
+    length : np.ndarray, shape (1,)
+        Length of the last gradient step, with which the next step begins; changed.
+    sums : np.ndarray, shape (3, columns)
+        Scratch: sums column by column, which the compiler turns into vector instructions.
+    """
+
+    largest: float
+    patience: int
+    length: np.ndarray
+    sums: np.ndarray
+
+
+@kernel
+def _respond(system, fields, response):
+    """No response is known; the slope is at most the stiffness."""
+    return system.stiffness
+
+
+@step_solver(Descent, _respond)
+@kernel
+def descend(
+    system: System, balance: Balance | None, step: Step, fields: Fields
+) -> tuple[int, float, float]:
+    """Solve a Coulomb step from fields.y on; see step.solve_step."""
+    copy(fields.q, fields.y)
+    project(fields.q, step.bound)
+    displacement = 0.0
+    if balance is None:
+        count, residual = _descend(system, step, fields)
+    else:
+        count, residual, displacement = _balanced(system, balance, step, fields)
+    copy(fields.y, fields.q)
+    return count, residual, displacement
+
+
+@kernel
+def _balanced(system, balance, step, fields):
+    """Iterations, residual and displacement of a driven step."""
+    steepest = balance.stiffness + balance.slope
+    b, place, slope = step.imposed.copy(), 0.0, steepest
+    inner = Step(b, step.bound, INNER * step.tolerance)
+    low, high, before, last_gap = -np.inf, np.inf, np.nan, np.nan
+    iterations, left = 0, np.inf
+    for _ in range(MOST_DISPLACEMENTS):
+        copy(b, step.imposed)
+        move_forward(place, b)
+        count, residual = _descend(system, inner, fields)
+        if count < 0:
+            return -1, residual, place
+        iterations += count
+        gap = balance.load - balance.stiffness * place - forward_force(system, fields.q)
+        left = residual + abs(gap)
+        if left <= step.tolerance:
+            break
+        if gap > 0.0:
+            low = max(low, place)
+        else:
+            high = min(high, place)
+        if place != before and not np.isnan(before):
+            slope = (last_gap - gap) / (place - before)
+            slope = min(max(slope, FLATTEST * steepest), steepest)
+        before, last_gap = place, gap
+        place += gap / slope
+        if not low < place < high:
+            place = 0.5 * (low + high)
+    return iterations, left, place
+
+
+@kernel
+def _descend(system, step, fields):
+    """Iterations (-1: interrupted) and residual of a step at a displacement."""
+    q, solver = fields.q, system.solver
+    trial, elastic = fields.scratch[0], fields.scratch[1]
+    copy(trial, q)
+    between = int(BETWEEN_LOOKS / (100.0 * q.size)) + 1
+    best, best_at, residual = np.inf, 0, np.inf
+    for iteration in range(MOST_ITERATIONS):
+        multiply(system.compliance, trial, elastic)
+        dd, ds, ss = _replace(system, step, fields, trial, elastic)
+        if iteration == 0:
+            length = solver.length[0]  # of the last step
+        elif iteration - best_at > solver.patience or not ds > 0.0:
+            length = 1.0 / solver.largest
+        elif ds * ds < SHORT_STEP_BELOW * dd * ss:
+            length = ds / ss
+        else:
+            length = dd / ds
+        solver.length[0] = length
+        residual = _projected_step(system, step, fields, length, trial)
+        if residual <= step.tolerance:
+            return iteration, residual
+        if residual < 0.5 * best:
+            best, best_at = residual, iteration
+        if iteration % between == between - 1 and interrupted():
+            return -1, residual
+    return MOST_ITERATIONS, residual
+
+
+@kernel
+def _projected_step(system, step, fields, length, trial):
+    """trial = P(q + length slip); returns the residual as coulomb.coulomb_residual."""
+    q, slip, sums = fields.q, fields.slip, system.solver.sums[0]
+    scale, bound, weight = system.scale, step.bound, system.weight
+    last = len(bound) - 1
+    sums[:] = 0.0
+    for i in range(q.shape[1]):
+        row = min(i, last)
+        for j in range(q.shape[2]):
+            forward = q[0, i, j] + length * slip[0, i, j]
+            lateral = q[1, i, j] + length * slip[1, i, j]
+            f = shrink(forward, lateral, bound[row, j])
+            trial[0, i, j], trial[1, i, j] = f * forward, f * lateral
+            forward = q[0, i, j] + slip[0, i, j] / scale[j]
+            lateral = q[1, i, j] + slip[1, i, j] / scale[j]
+            f = shrink(forward, lateral, bound[row, j])
+            forward, lateral = f * forward - q[0, i, j], f * lateral - q[1, i, j]
+            sums[j] += weight[j] * np.sqrt(forward * forward + lateral * lateral)
+    return sums.sum()
+
+
+@kernel
+def _replace(system, step, fields, trial, elastic):
+    """q = trial, slip = b - A q; returns <dq, dq>, -<dq, ds> and <ds, ds> of the change, weighted
+    with the areas."""
+    q, slip, sums, b, bound = fields.q, fields.slip, system.solver.sums, step.imposed, step.bound
+    weight, last = system.weight, len(bound) - 1
+    sums[:] = 0.0
+    for c in range(2):
+        for i in range(q.shape[1]):
+            row = min(i, last)
+            for j in range(q.shape[2]):
+                dq = trial[c, i, j] - q[c, i, j]
+                now = b[c, i, j] - elastic[c, i, j]
+                ds = slip[c, i, j] - now if bound[row, j] > 0.0 else 0.0
+                sums[0, j] += weight[j] * dq * dq
+                sums[1, j] += weight[j] * dq * ds
+                sums[2, j] += weight[j] * ds * ds
+                q[c, i, j], slip[c, i, j] = trial[c, i, j], now
+    return sums[0].sum(), sums[1].sum(), sums[2].sum()

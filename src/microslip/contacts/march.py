@@ -1,0 +1,185 @@
+"""The march in time: the stages of the integrator along a path, for every contact and drive.
+
+With z = A q - w (w: rigid displacement), stage i of a step asks for tractions and slip with
+
+    A q_i + r_i = b_i,     b_i = z + w(t + c_i h) - Sum_{j<i} (a_ij / gamma) r_j,
+
+one Coulomb step (step.py).  The last stage is the end of the step: z <- b - r - w.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from microslip.contacts.coulomb import extended
+from microslip.contacts.drive import Drive, stage_balance, starting_place
+from microslip.contacts.interrupts import BETWEEN_LOOKS, interrupted
+from microslip.contacts.operators import multiply
+from microslip.contacts.step import Balance, Fields, Step, response_to_drive, solve_step
+from microslip.contacts.system import (
+    System,
+    add,
+    add_displacement,
+    copy,
+    move_forward,
+    sum_forces,
+)
+from microslip.foundation.compiled import kernel
+
+
+class Loading(NamedTuple):
+    """What is imposed on the contacts of a body along a path, and the integrator.
+
+    Attributes
+    ----------
+    motion : np.ndarray, shape (1 + steps stages, contacts, 3)
+        Forward, lateral and angular displacement at the start and at every stage.
+    bound : np.ndarray, shape (1 + steps stages or 1, rows or 1, columns)
+        Friction bound at the start and at every stage; one where the normal load is constant.
+    carry : np.ndarray, shape (stages, stages)
+        Slips that a stage carries from earlier ones, a_ij / gamma.
+    end : float
+        Where in the step the last stage lies; below 1 the rest is extrapolated.
+    """
+
+    motion: np.ndarray
+    bound: np.ndarray
+    carry: np.ndarray
+    end: float
+
+
+class Trace(NamedTuple):
+    """What a march leaves.
+
+    Attributes
+    ----------
+    state : np.ndarray, field
+        Tractions at the end.
+    fields : np.ndarray, shape (1 + steps stages, *field)
+        Unknown of the step solver at the start and after every stage; its projection on the bound
+        is the traction.
+    forces : np.ndarray, shape (1 + steps, 3)
+        Forward force, lateral force, torque at the start and after every step.
+    body : np.ndarray, shape (1 + steps, 2)
+        x and x' of the body, 0 without one.
+    residual : float
+        Sum over the stages, a force over mu F_z.
+    iterations : int
+        Of the step solver.
+    broken : bool
+        Whether it was interrupted, which makes the rest worthless.
+    """
+
+    state: np.ndarray
+    fields: np.ndarray
+    forces: np.ndarray
+    body: np.ndarray
+    residual: float
+    iterations: int
+    broken: bool
+
+
+@kernel
+def march(
+    system: System,
+    loading: Loading,
+    drive: Drive | None,
+    state: np.ndarray,
+    guess: np.ndarray,
+    tolerance: float,
+) -> Trace:
+    """March along a path.
+
+    Parameters
+    ----------
+    system : System
+        The contact.
+    loading : Loading
+        The path.
+    drive : drive.Drive or None
+        The body, which is driven along the path; None: it follows the path.
+    state : np.ndarray, field
+        Tractions at the start.
+    guess : np.ndarray
+        Trace.fields of a march from a start near by, or of shape (0, ...).
+    tolerance : float
+        Of every stage, a force over mu F_z.
+
+    Returns
+    -------
+    Trace
+    """
+    carry, stages, shape = loading.carry, len(loading.carry), state.shape
+    steps = (len(loading.motion) - 1) // stages
+    y, q, at_end = state.copy(), state.copy(), state.copy()
+    scratch = (np.empty_like(state), np.empty_like(state), np.empty_like(state))
+    slips, b, z = np.empty((stages,) + shape), np.empty_like(state), np.empty_like(state)
+    history = np.empty((1 + steps * stages,) + shape)
+    forces, body = np.zeros((steps + 1, 3)), np.zeros((steps + 1, 2))
+    advances, gains = np.zeros(stages), np.zeros(stages)
+    multiply(system.compliance, state, z)
+    add_displacement(system, -1.0, loading.motion[0], z)
+    sum_forces(system, state, forces[0])
+    copy(history[0], y)
+    response, slope = np.empty_like(state), 0.0
+    if drive is not None:
+        slope = response_to_drive(system, Fields(y, q, slips[0], scratch), response)
+        body[0, 0], body[0, 1] = starting_place(drive, forces[0, 0]), drive.start[1]
+        move_forward(-body[0, 0], z)
+    total, spent, iterations = 0.0, 0.0, 0
+    for k in range(steps):
+        past_place, past_rate = body[k, 0], body[k, 1]
+        for s in range(stages):
+            at = 1 + k * stages + s
+            copy(b, z)
+            add_displacement(system, 1.0, loading.motion[at], b)
+            for j in range(s):
+                add(b, -carry[s, j], slips[j])
+            if len(guess) > 0:
+                if at == 1:
+                    copy(y, guess[1])
+                else:  # the change from stage to stage is that of the other march
+                    add(y, 1.0, guess[at])
+                    add(y, -1.0, guess[at - 1])
+            elif k > 1:
+                for c in range(2):
+                    for j in range(shape[1]):
+                        for i in range(shape[2]):
+                            last, earlier = at - stages, at - 2 * stages
+                            y[c, j, i] = 2.0 * history[last, c, j, i] - history[earlier, c, j, i]
+            step = Step(b, loading.bound[min(at, len(loading.bound) - 1)], tolerance)
+            fields = Fields(y, q, slips[s], scratch)
+            if drive is None:
+                count, residual, _ = solve_step(system, None, step, fields)
+            else:
+                past_place, past_rate = body[k, 0], body[k, 1]
+                for j in range(s):
+                    past_place += carry[s, j] * advances[j]
+                    past_rate += carry[s, j] * gains[j]
+                move_forward(past_place, b)
+                stiffness, load = stage_balance(drive, k, past_place, past_rate)
+                balance = Balance(stiffness, load, response, slope)
+                count, residual, advances[s] = solve_step(system, balance, step, fields)
+                gains[s] = advances[s] / drive.lengths[k] - past_rate
+            spent += count * 8.0 * q.size * shape[2]
+            if count < 0 or (spent > BETWEEN_LOOKS and interrupted()):
+                return Trace(at_end, history, forces, body, total, iterations, True)
+            spent = 0.0 if spent > BETWEEN_LOOKS else spent
+            copy(history[at], y)
+            iterations += count
+            total += residual
+        add(b, -1.0, slips[stages - 1])
+        add_displacement(system, -1.0, loading.motion[(k + 1) * stages], b)
+        if drive is not None:
+            move_forward(-past_place, b)
+            body[k + 1, 0] = past_place + advances[stages - 1]
+            body[k + 1, 1] = advances[stages - 1] / drive.lengths[k]
+        for c in range(2):
+            for j in range(shape[1]):
+                for i in range(shape[2]):
+                    z[c, j, i] = extended(z[c, j, i], b[c, j, i], loading.end)
+                    at_end[c, j, i] = extended(at_end[c, j, i], q[c, j, i], loading.end)
+        sum_forces(system, at_end, forces[k + 1])
+    return Trace(at_end, history, forces, body, total, iterations, False)

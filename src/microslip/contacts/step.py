@@ -1,0 +1,126 @@
+"""One Coulomb step: what it asks for, and the solver that the contact has for it.
+
+A step asks for tractions q, |q| <= g, whose slip b - A q is along q and occurs only where |q| = g.
+A driven body (drive.py) adds one unknown, its displacement d, which adds d to b, and one equation,
+stiffness d + forward force = load.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numba.extending import overload
+
+from microslip.foundation.compiled import OPTIONS
+
+
+class Step(NamedTuple):
+    """A Coulomb step to be solved.
+
+    Attributes
+    ----------
+    imposed : np.ndarray, field
+        Displacement b, at d = 0.
+    bound : np.ndarray, shape (1 or rows, columns)
+        Friction bound g.
+    tolerance : float
+        Force over mu F_z.
+    """
+
+    imposed: np.ndarray
+    bound: np.ndarray
+    tolerance: float
+
+
+class Balance(NamedTuple):
+    """The equation of a driven body in one stage.
+
+    Attributes
+    ----------
+    stiffness, load : float
+        stiffness d + forward force = load.
+    response : np.ndarray, field
+        Tractions that the resolvent gives for d = 1.
+    slope : float
+        Their forward force; without a resolvent the stiffness of the contact.
+    """
+
+    stiffness: float
+    load: float
+    response: np.ndarray
+    slope: float
+
+
+class Fields(NamedTuple):
+    """What the solver of a step changes.
+
+    Attributes
+    ----------
+    y : np.ndarray, field
+        The unknown of the solver: initial guess, and solution.
+    q : np.ndarray, field
+        Tractions, within the bound.
+    slip : np.ndarray, field
+        Slip.
+    scratch : tuple of np.ndarray, field
+        Three.
+    """
+
+    y: np.ndarray
+    q: np.ndarray
+    slip: np.ndarray
+    scratch: tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+SOLVER = 1
+"""Place of the solver in a system.System."""
+
+_SOLVERS = {}
+"""Class of a solver -> its kernels (solve, respond)."""
+
+
+def step_solver(of: type, respond: Callable) -> Callable:
+    """Decorator of the kernel that solves steps with a solver of a NamedTuple, see `solve_step`;
+    respond: the kernel behind `response_to_drive`."""
+
+    def register(function):
+        _SOLVERS[of] = function, respond
+        return function
+
+    return register
+
+
+def solve_step(
+    system: NamedTuple, balance: Balance | None, step: Step, fields: Fields
+) -> tuple[int, float, float]:
+    """Solve a Coulomb step in compiled code, by the solver of the system.
+
+    Returns
+    -------
+    iterations : int
+        -1 after an interrupt.
+    residual : float
+        Force over mu F_z.
+    displacement : float
+        d, 0 without a body.
+    """
+    raise NotImplementedError("solve_step is for compiled code")
+
+
+def response_to_drive(system: NamedTuple, fields: Fields, response: np.ndarray) -> float:
+    """Fill `response` and return the slope of a Balance, in compiled code."""
+    raise NotImplementedError("response_to_drive is for compiled code")
+
+
+@overload(solve_step, jit_options=OPTIONS | {"cache": False})
+def _solve_step(system, balance, step, fields):
+    solve, _ = _SOLVERS[system.types[SOLVER].instance_class]
+    return lambda system, balance, step, fields: solve(system, balance, step, fields)
+
+
+@overload(response_to_drive, jit_options=OPTIONS | {"cache": False})
+def _response_to_drive(system, fields, response):
+    _, respond = _SOLVERS[system.types[SOLVER].instance_class]
+    return lambda system, fields, response: respond(system, fields, response)

@@ -1,0 +1,1 @@
+"""States that a contact settles into: periodic, steady, static."""

@@ -1,0 +1,79 @@
+"""Anderson acceleration of a fixed-point map, compiled (Walker and Ni 2011)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from microslip.foundation.compiled import kernel
+
+DEPTH = 12
+"""Differences kept; fewest marches over bores and loops (of 5, 8, 12)."""
+DEPENDENT = 1e-8
+"""A difference whose part orthogonal to newer ones is below this share of it is left out: the
+square root of the rounding error."""
+
+
+@kernel
+def remember(pairs: np.ndarray, count: int, image: np.ndarray, change: np.ndarray) -> int:
+    """Add a pair to pairs, (2, DEPTH + 1, n), dropping the oldest; returns how many there are."""
+    most, n = pairs.shape[1], pairs.shape[2]
+    if count == most:
+        for p in range(2):
+            for a in range(most - 1):
+                for i in range(n):
+                    pairs[p, a, i] = pairs[p, a + 1, i]
+        count = most - 1
+    for i in range(n):
+        pairs[0, count, i], pairs[1, count, i] = image[i], change[i]
+    return count + 1
+
+
+@kernel
+def accelerated(pairs: np.ndarray, count: int, scale: np.ndarray, out: np.ndarray) -> None:
+    """Fill out, (n,), with the combination of images whose change is the least.
+
+    pairs: images and changes, the newest last; scale: root of the metric of changes, (n,).
+    Least squares by modified Gram-Schmidt, from the newest difference on.
+    """
+    images, changes = pairs[0], pairs[1]
+    last, n = count - 1, len(out)
+    basis, triangle = np.empty((count, n)), np.zeros((count, count))
+    projection, source, left = np.zeros(count), np.zeros(count, np.int64), np.empty(n)
+    for i in range(n):
+        out[i] = images[last, i]
+        left[i] = changes[last, i] * scale[i]
+    size = 0
+    for j in range(last - 1, -1, -1):
+        column, whole = basis[size], 0.0
+        for i in range(n):
+            column[i] = (changes[j + 1, i] - changes[j, i]) * scale[i]
+            whole += column[i] ** 2
+        for k in range(size):
+            share = 0.0
+            for i in range(n):
+                share += basis[k, i] * column[i]
+            triangle[k, size] = share
+            for i in range(n):
+                column[i] -= share * basis[k, i]
+        rest = 0.0
+        for i in range(n):
+            rest += column[i] ** 2
+        if not rest > DEPENDENT**2 * whole:
+            continue
+        length, share = np.sqrt(rest), 0.0
+        for i in range(n):
+            column[i] /= length
+            share += column[i] * left[i]
+        for i in range(n):
+            left[i] -= share * column[i]
+        triangle[size, size], projection[size], source[size] = length, share, j
+        size += 1
+    for k in range(size - 1, -1, -1):
+        factor = projection[k]
+        for p in range(k + 1, size):
+            factor -= triangle[k, p] * projection[p]
+        projection[k] = factor / triangle[k, k]
+    for k in range(size):
+        j, factor = source[k], projection[k]
+        for i in range(n):
+            out[i] -= factor * (images[j + 1, i] - images[j, i])

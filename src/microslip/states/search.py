@@ -1,0 +1,288 @@
+"""The search for the periodic state, compiled: the fixed point of "march one (half) period".
+
+The map is accelerated by Anderson's method; the verdict is that of the plain map.  Its residual,
+the distance to the next state, and the error that the residual stands for at the drift rate of the
+motion (`Goal`): close to the static limit a state changes so little in a period that a small
+residual proves nothing.
+
+The state of a driven body has two numbers more, x and x' (contacts/drive.py).  A heavy body hardly
+notices in one period that its forces do not balance, nor does a soft spring that the contact lags
+behind.  So the map extrapolates the change of x and x' by the factors of `Inertia`; its fixed
+point is the same.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from microslip.contacts.drive import Drive
+from microslip.contacts.march import Loading, march
+from microslip.contacts.system import System, copy, force_norm, forward_force, mirrored, project
+from microslip.foundation.compiled import kernel
+from microslip.states.anderson import DEPTH, accelerated, remember
+
+FORCING = 1e-3
+"""Tolerance of the steps of a march over the last change of the state, which is about to change
+anyway."""
+LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
+"""Largest tolerance of a step, from a start that is far and from one that is near."""
+FORGETFUL = 0.2
+"""Contraction of the plain map since the start below which it needs no acceleration."""
+
+
+class Goal(NamedTuple):
+    """What a search is to reach.
+
+    Attributes
+    ----------
+    tolerance, step_tolerance : float
+        Of the state and of a step, forces over mu F_z.
+    mirror : bool
+        Whether the second half of the period is the mirror image of the path.
+    near : bool
+        Whether the start is near the periodic state.
+    share : np.ndarray, shape (steps,)
+        Duration of each step over that of the path.
+    static_force : float
+        Mean forward force of the static limit; NaN: unknown.
+    full : float
+        Largest mean forward force, that of full slip.
+    gain : float
+        Force that a contact without slip gains along the path; infinite: the drift is not slow.
+    """
+
+    tolerance: float
+    step_tolerance: float
+    mirror: bool
+    near: bool
+    share: np.ndarray
+    static_force: float
+    full: float
+    gain: float
+
+
+class Inertia(NamedTuple):
+    """How the change of a driven body in a period is extrapolated and measured.
+
+    Attributes
+    ----------
+    drive : drive.Drive
+        Its start is not used.
+    place, rate : float
+        Factors of the changes of x and x'.
+    held, mass : float
+        Weights of their squares in the norm of a state, a stiffness and a mass.
+    spread : np.ndarray, shape (rows, columns)
+        Tractions of a unit forward force, in the shape of the bound.
+    """
+
+    drive: Drive
+    place: float
+    rate: float
+    held: float
+    mass: float
+    spread: np.ndarray
+
+
+class Memory(NamedTuple):
+    """What a search carries from one call to the next, all of it changed by the search.
+
+    Attributes
+    ----------
+    state : np.ndarray, field
+        Tractions to march from.
+    place : np.ndarray, shape (2,)
+        x and x' to march from.
+    guess : np.ndarray
+        march.Trace.fields of the last march.
+    pairs : np.ndarray, shape (2, DEPTH + 1, state.size + 2)
+        See anderson.remember.
+    counts : np.ndarray of int, shape (4,)
+        Marches, iterations, pairs, and whether the plain map still contracts fast (0 or 1).
+    numbers : np.ndarray, shape (2,)
+        Tolerance of the next march's steps, residual of the last one.
+    best : tuple of np.ndarray
+        State, forces and body of the best march so far, and its numbers: distance, residual,
+        solver residual, whether it converged.
+    """
+
+    state: np.ndarray
+    place: np.ndarray
+    guess: np.ndarray
+    pairs: np.ndarray
+    counts: np.ndarray
+    numbers: np.ndarray
+    best: tuple
+
+
+def memory_of(state: np.ndarray, place: np.ndarray, stages: int, steps: int, goal: Goal) -> Memory:
+    """The Memory of a search that begins at tractions (a field) and at x and x'."""
+    state = np.array(state, dtype=float, order="C")
+    loosest = LOOSEST_NEAR if goal.near else LOOSEST
+    # what the steps of a march leave unsolved may not undo what the drift gains in it
+    inner = max(goal.step_tolerance, min(loosest, goal.gain / (stages * steps)))
+    return Memory(
+        state,
+        np.array(place, dtype=float),
+        np.empty((1 + stages * steps, *state.shape)),
+        np.empty((2, DEPTH + 1, state.size + 2)),
+        np.array([0, 0, 0, 1]),
+        np.array([inner, np.inf]),
+        (
+            state.copy(),
+            np.zeros((steps + 1, 3)),
+            np.zeros((steps + 1, 2)),
+            np.array([np.inf, np.inf, np.inf, 0.0]),
+        ),
+    )
+
+
+@kernel
+def state_norm(
+    system: System,
+    inertia: Inertia | None,
+    change: np.ndarray,
+    moved: np.ndarray,
+    scratch: np.ndarray,
+) -> float:
+    """Bound on the force that a change of a state carries; moved: change of x and x'."""
+    norm = force_norm(system, change, scratch)
+    if inertia is None:
+        return norm
+    drive = inertia.drive
+    if drive.mass > 0.0 or drive.damping > 0.0:
+        held = inertia.held * moved[0] ** 2 + inertia.mass * moved[1] ** 2
+    elif drive.stiffness > 0.0:
+        held = inertia.held * (forward_force(system, change) / drive.stiffness) ** 2
+    else:
+        held = 0.0
+    return np.sqrt(norm**2 + system.stiffness * held)
+
+
+@kernel
+def search(
+    system: System,
+    loading: Loading,
+    inertia: Inertia | None,
+    goal: Goal,
+    memory: Memory,
+    most: int,
+) -> tuple[bool, bool]:
+    """Go on with a search for at most so many marches.
+
+    Returns
+    -------
+    done : bool
+        Whether the state converged, or is not finite: memory.best holds the outcome.
+    broken : bool
+        Whether it was interrupted: call again.
+    """
+    state, place, guess, pairs, counts, numbers, best = memory
+    n, steps, bound = state.size, len(goal.share), loading.bound[0]
+    image, change, scratch = np.empty_like(state), np.empty_like(state), np.empty_like(state)
+    new_image, new_change, scale = np.zeros(n + 2), np.zeros(n + 2), np.empty(n + 2)
+    proposal, moved = np.empty(n + 2), np.zeros(2)
+    at = 0
+    for _ in range(2 * state.shape[1]):
+        for i in range(state.shape[2]):
+            scale[at] = np.sqrt(system.weight[i] * system.scale[i])
+            at += 1
+    scale[n] = scale[n + 1] = 0.0
+    if inertia is not None:
+        scale[n], scale[n + 1] = np.sqrt(inertia.held), np.sqrt(inertia.mass)
+    nothing = np.empty((0,) + state.shape)
+    for _ in range(most):
+        inner = numbers[0]
+        start = guess if counts[0] > 0 else nothing
+        if inertia is None:
+            trace = march(system, loading, None, state, start, inner)
+        else:
+            d = inertia.drive
+            drive = Drive(d.stiffness, d.damping, d.mass, d.load, d.lengths, place)
+            trace = march(system, loading, drive, state, start, inner)
+        if trace.broken:
+            return False, True
+        counts[0] += 1
+        counts[1] += trace.iterations
+        fields, known = trace.fields.ravel(), guess.ravel()
+        for i in range(known.size):
+            known[i] = fields[i]
+        if goal.mirror:
+            mirrored(system, trace.state, image)
+        else:
+            copy(image, trace.state)
+        gained, last = 0.0, len(trace.body) - 1
+        if inertia is not None:
+            d = inertia.drive
+            advance = trace.body[last, 0] - trace.body[0, 0]
+            for i in range(n):
+                change.ravel()[i] = image.ravel()[i] - state.ravel()[i]
+            gained = abs(advance) * system.stiffness + force_norm(system, change, scratch)
+            moved[0] = inertia.place * advance
+            moved[1] = inertia.rate * (trace.body[last, 1] - trace.body[0, 1])
+            if not (d.mass > 0.0 or d.damping > 0.0):
+                moved[0], moved[1] = 0.0, 0.0
+                if inertia.place > 1.0:
+                    # by the motion of the body, for the force is known to the steps' tolerance
+                    force = trace.forces[0, 0] - inertia.place * d.stiffness * advance
+                    force -= trace.forces[last, 0]
+                    for j in range(image.shape[1]):
+                        for i in range(image.shape[2]):
+                            image[0, j, i] += force * inertia.spread[j, i]
+        image_row, state_row, change_row = image.ravel(), state.ravel(), change.ravel()
+        for i in range(n):
+            change_row[i] = image_row[i] - state_row[i]
+            new_image[i], new_change[i] = image_row[i], change_row[i]
+        for i in range(2):
+            new_image[n + i], new_change[n + i] = place[i] + moved[i], moved[i]
+        residual = state_norm(system, inertia, change, moved, scratch)
+        if not np.isfinite(residual):
+            best[3][0] = np.nan
+            return True, False
+        solved = inner <= goal.step_tolerance
+        numbers[0] = max(goal.step_tolerance, min(FORCING * residual, inner))
+        if not residual <= FORGETFUL * numbers[1]:
+            counts[3] = 0
+        numbers[1] = residual
+        counts[2] = remember(pairs, counts[2], new_image, new_change)
+        if counts[3]:
+            for i in range(n + 2):
+                proposal[i] = new_image[i]
+        else:
+            accelerated(pairs, counts[2], scale, proposal)
+        for i in range(n):
+            image_row[i] = proposal[i]
+        if loading.end == 1.0:
+            project(image, bound)
+        for i in range(n):
+            change_row[i] = image_row[i] - state_row[i]
+        for i in range(2):
+            moved[i] = proposal[n + i] - place[i]
+        mean = 0.0
+        for k in range(steps):
+            mean += 0.5 * goal.share[k] * (trace.forces[k, 0] + trace.forces[k + 1, 0])
+        distance = max(state_norm(system, inertia, change, moved, scratch), residual)
+        if goal.gain < np.inf:
+            excess = abs(mean - goal.static_force)
+            if np.isnan(excess):  # a state below the limit has lost what it takes long to gain
+                excess = max(abs(mean), abs(goal.full - mean))
+            gained = residual if inertia is None else gained
+            distance = max(distance, excess * gained / goal.gain)
+        converged = solved and distance <= goal.tolerance
+        if converged or distance < best[3][0]:
+            copy(best[0], state)
+            for k in range(steps + 1):
+                for i in range(3):
+                    best[1][k, i] = trace.forces[k, i]
+                for i in range(2):
+                    best[2][k, i] = trace.body[k, i]
+            best[3][0], best[3][1] = distance, residual
+            best[3][2], best[3][3] = trace.residual, 1.0 if converged else 0.0
+        copy(state, image)
+        for i in range(2):
+            place[i] = proposal[n + i]
+        if converged:
+            return True, False
+    return False, False
