@@ -14,7 +14,7 @@ from microslip.solver.periodic import find_periodic_state
 from microslip.solver.power import oscillation_power
 from microslip.solver.problem import STRONGEST_FOCUS, Problem, Resolution
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run, unsolved
-from microslip.solver.simulate import STEP_SHARE, mean_forces, periods_of, stages_of
+from microslip.solver.simulate import MARCH_SHARE, STEP_SHARE, mean_forces, periods_of, stages_of
 from microslip.solver.snapshots import bounds_at_phases, frames
 from microslip.solver.static_limit import at_turning_points, static_state
 from microslip.solver.static_loop import largest_shift
@@ -23,7 +23,7 @@ FELT = 4.0
 """How much more than the distance from the periodic state of the oscillation alone the limit may
 feel: three times were seen.  Where points slip, every step puts them on the bound, so that no
 shift is left to them however far the state is from periodic."""
-LOOP_STEP_SHARE = 1e-3
+LOOP_STEP_SHARE = 1e-4
 """Tolerance of a step over that of the periodic state: the shift of a point depends on the root of
 its distance from the bound."""
 MARCHES, MOST_ROUNDS = 120, 3
@@ -192,7 +192,8 @@ def _on_these_points(contact, problem, resolution, tolerance, settings):
     distance = tolerance / FELT
     shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
     period_map = PeriodMap(contact, path, mirror=mirror)
-    start, inner = np.zeros((2, *shape)), LOOP_STEP_SHARE * distance
+    start = np.zeros((2, *shape))
+    inner = min(LOOP_STEP_SHARE, MARCH_SHARE / path.steps) * distance
     for _ in range(MOST_ROUNDS):
         goal = Goal(distance, inner, period_map.marches + MARCHES)
         found = find_periodic_state(period_map, start, goal)

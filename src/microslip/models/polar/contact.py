@@ -20,7 +20,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from microslip.contacts.splitting import Resolvent, best_penalty
+from microslip.contacts.splitting import best_penalty, resolvent
 from microslip.contacts.system import System
 from microslip.models import contact
 from microslip.models.path import Path
@@ -156,9 +156,7 @@ class PolarContact(SystemContact):
             resultants[contact.LATERAL if self.rotates else contact.TORQUE] = 0.0
         return System(
             compliance=Folded(self.influence, *scratch),
-            solver=Resolvent(
-                Folded(self.inverse, *scratch), self.penalty, float(rows * self.weight.sum())
-            ),
+            solver=resolvent(Folded(self.inverse, *scratch), self.penalty, self.weight, rows),
             scale=self.compliance,
             weight=self.weight,
             positions=(self.forward_position, self.lateral_position),

@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from microslip.contacts.operators import matrix_operator
-from microslip.contacts.splitting import Resolvent, best_penalty
+from microslip.contacts.splitting import best_penalty, resolvent
 from microslip.contacts.system import System
 from microslip.models.path import Path
 from microslip.models.rings.influence import ring_influence
@@ -75,7 +75,7 @@ class RadialContact(SystemContact):
             inverse = np.linalg.inv(self._weighted + np.diag(weight * penalty)) * weight
             self._system = System(
                 compliance=matrix_operator(self._weighted / weight[:, None]),
-                solver=Resolvent(matrix_operator(inverse), penalty, float(weight.sum())),
+                solver=resolvent(matrix_operator(inverse), penalty, weight, 1),
                 scale=np.ascontiguousarray(self.compliance),
                 weight=weight,
                 positions=(self.forward_position, self.lateral_position),
