@@ -51,7 +51,7 @@ def of_kernels(package):
 
 def test_there_are_kernels_to_speak_of():
     assert len(KERNELS) > 10
-    some = {"models/coulomb.py", "models/rings/march.py", "models/squares/convolution.py"}
+    some = {"contacts/coulomb.py", "contacts/march.py", "models/squares/convolution.py"}
     assert some <= set(KERNELS)
 
 

@@ -1,14 +1,11 @@
 """Ctrl-C in the middle of a march: compiled code that runs for minutes looks out for it.
 
 Python hands on a signal between two of its own instructions, and there is none in a compiled march.
-So the march asks the interpreter itself from time to time, ends early where somebody has pressed
-Ctrl-C, and the signal is raised again where Python can handle it.
+So the march asks the interpreter itself from time to time and ends early after a Ctrl-C; the caller
+raises the signal again where Python can handle it.
 """
 
 from __future__ import annotations
-
-import signal
-from collections.abc import Callable
 
 from numba import types
 
@@ -30,16 +27,3 @@ def interrupted() -> bool:
     found = _happened()
     _let_go(held)
     return found != 0
-
-
-def unbroken(march: Callable, *arguments: object) -> list:
-    """What a compiled march returns, whose last value is whether it was interrupted.
-
-    Then Python is told of the signal, which as a rule is a KeyboardInterrupt; where the program has
-    other plans with it, the march is done again from its start.
-    """
-    while True:
-        *found, broken = march(*arguments)
-        if not broken:
-            return found
-        signal.raise_signal(signal.SIGINT)

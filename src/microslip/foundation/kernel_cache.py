@@ -20,10 +20,6 @@ from platformdirs import user_cache_path
 
 from microslip.foundation import source_digest
 
-numba.config.SLP_VECTORIZE = 1
-"""Neighbouring scalar operations become vector instructions (off in Numba unless told): the
-products in contacts/operators.py take a third of the time."""
-
 FOLDER_NAME = "compiled-"
 """What the names of these folders begin with."""
 

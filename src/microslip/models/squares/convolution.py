@@ -203,42 +203,6 @@ def apply_convolution(convolved: Convolved, field: np.ndarray, image: np.ndarray
     convolve(convolved.convolution, (convolved.first, convolved.second), field, image)
 
 
-class ConvolvedApart(NamedTuple):
-    """The operator on squares of several contacts side by side, of equal shape.
-
-    Attributes
-    ----------
-    convolved : Convolved
-        Of each.
-    extents : np.ndarray, shape (contacts,)
-        u_lim of each over that of the body.
-    given, result : np.ndarray, field of one contact
-        Scratch.
-    """
-
-    convolved: Convolved
-    extents: np.ndarray
-    given: np.ndarray
-    result: np.ndarray
-
-
-@operator(ConvolvedApart)
-@kernel
-def apply_apart(apart: ConvolvedApart, field: np.ndarray, image: np.ndarray) -> None:
-    """image = A field, contact by contact."""
-    given, result, columns = apart.given, apart.result, apart.given.shape[2]
-    for one in range(len(apart.extents)):
-        for c in range(2):
-            for j in range(given.shape[1]):
-                for i in range(columns):
-                    given[c, j, i] = field[c, j, one * columns + i]
-        apply_convolution(apart.convolved, given, result)
-        for c in range(2):
-            for j in range(given.shape[1]):
-                for i in range(columns):
-                    image[c, j, one * columns + i] = apart.extents[one] * result[c, j, i]
-
-
 @kernel
 def _spread(operator, q, first):
     """Tractions to the rows where the transform wants them, and zeros to the others."""

@@ -7,15 +7,54 @@ body, see rings/side_by_side.py.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from microslip.contacts.descent import PATIENCE, Descent
+from microslip.contacts.operators import operator
 from microslip.contacts.system import System
+from microslip.foundation.compiled import kernel
 from microslip.models.path import BodyPath
 from microslip.models.squares.contact import CartesianContact
-from microslip.models.squares.convolution import ConvolvedApart, apply_apart
+from microslip.models.squares.convolution import Convolved, apply_convolution
 from microslip.models.system_contact import SystemContact, bounds_of_each
+
+
+class ConvolvedApart(NamedTuple):
+    """The operator on squares of several contacts side by side, of equal shape.
+
+    Attributes
+    ----------
+    convolved : Convolved
+        Of each.
+    extents : np.ndarray, shape (contacts,)
+        u_lim of each over that of the body.
+    given, result : np.ndarray, field of one contact
+        Scratch.
+    """
+
+    convolved: Convolved
+    extents: np.ndarray
+    given: np.ndarray
+    result: np.ndarray
+
+
+@operator(ConvolvedApart)
+@kernel
+def apply_apart(apart: ConvolvedApart, field: np.ndarray, image: np.ndarray) -> None:
+    """image = A field, contact by contact."""
+    given, result, columns = apart.given, apart.result, apart.given.shape[2]
+    for one in range(len(apart.extents)):
+        for c in range(2):
+            for j in range(given.shape[1]):
+                for i in range(columns):
+                    given[c, j, i] = field[c, j, one * columns + i]
+        apply_convolution(apart.convolved, given, result)
+        for c in range(2):
+            for j in range(given.shape[1]):
+                for i in range(columns):
+                    image[c, j, one * columns + i] = apart.extents[one] * result[c, j, i]
 
 
 class SquaresSideBySide(SystemContact):

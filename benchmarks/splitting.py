@@ -1,0 +1,65 @@
+"""Iterations of the step solvers of microslip.contacts at other values of their constants.
+
+    PYTHONPATH=src python benchmarks/splitting.py
+
+One line a constant, value and contact: iterations of a step in the mean over the search for the
+periodic state, on few and on many rings, in bores, and on squares.
+"""
+
+import numpy as np
+
+from microslip.contacts import splitting
+from microslip.models.rings import contact as rings
+from microslip.models.squares import contact as squares
+from microslip.motions.by_name import motion_named
+from microslip.solver.problem import Problem, Resolution
+from microslip.solver.simulate import simulate
+
+POINTS = ((0.1, 1.0), (0.01, 0.3), (1.0, 3.0))
+"""Velocities and amplitudes."""
+CONTACTS = {
+    "12 rings": ("transverse", "radial", Resolution(12, 1, 32)),
+    "48 rings": ("transverse", "radial", Resolution(48, 1, 32)),
+    "192 rings": ("transverse", "radial", Resolution(192, 1, 32)),
+    "bore, 12 rings": ("bore", "polar", Resolution(12, 8, 16)),
+    "16 squares": ("transverse", "cartesian", Resolution(16, 1, 16)),
+}
+
+
+def iterations(motion, model, resolution):
+    """Mean iterations of a step over the points."""
+    runs = [
+        simulate(Problem(motion_named(motion), *point, 0.0), model, resolution, 1e-5)
+        for point in POINTS
+    ]
+    return np.mean([run.iterations / run.solves for run in runs])
+
+
+def table(name, values, set_value, contacts):
+    """Print the iterations at each value of a constant; compiled code is compiled again."""
+    print(f"{name:20s}" + "".join(f"{contact:>16s}" for contact in contacts))
+    for value in values:
+        set_value(value)
+        for cached in (rings._resolved,):
+            cached.cache_clear()
+        counts = [iterations(*CONTACTS[contact]) for contact in contacts]
+        print(f"{value:<20g}" + "".join(f"{count:16.1f}" for count in counts))
+
+
+def main():
+    contacts = [name for name in CONTACTS if "squares" not in name]
+
+    def balanced(value):
+        splitting.BALANCED_RINGS = value
+
+    table("BALANCED_RINGS", (3, 6, 12, 24, 48), balanced, contacts[:3])
+    balanced(12)
+
+    def patience(value):
+        squares.PATIENCE = value
+
+    table("PATIENCE", (15, 30, 60, 120), patience, ["16 squares"])
+
+
+if __name__ == "__main__":
+    main()
