@@ -64,27 +64,29 @@ class RadialContact(SystemContact):
             stiffness = weight @ np.linalg.solve(self._weighted, weight)
         self.stiffness = float(stiffness)
         self.rings_of_a_contact = len(bound)
-        self._system = None
+        self._operators = None
 
     def system(self) -> System:
-        """The System of the rings."""
-        if self._system is None:
-            n = len(self.bound)
-            penalty = best_penalty(self.compliance, self.rings_of_a_contact)
+        """The System of the rings, with scratch of its own."""
+        if self._operators is None:
             weight = np.ascontiguousarray(self.weight, dtype=float)
+            penalty = best_penalty(self.compliance, self.rings_of_a_contact)
             inverse = np.linalg.inv(self._weighted + np.diag(weight * penalty)) * weight
-            self._system = System(
-                compliance=matrix_operator(self._weighted / weight[:, None]),
-                solver=resolvent(matrix_operator(inverse), penalty, weight, 1),
-                scale=np.ascontiguousarray(self.compliance),
-                weight=weight,
-                positions=(self.forward_position, self.lateral_position),
-                first=np.array([0, n]),
-                mirror=np.arange(n),
-                resultants=np.array([1.0, 1.0, 0.0]),
-                stiffness=self.stiffness,
-            )
-        return self._system
+            compliance = self._weighted / weight[:, None]
+            operators = matrix_operator(compliance), matrix_operator(inverse)
+            self._operators = (*operators, penalty, weight)
+        compliance, inverse, penalty, weight = self._operators
+        return System(
+            compliance=compliance,
+            solver=resolvent(inverse, penalty, weight, 1),
+            scale=np.ascontiguousarray(self.compliance),
+            weight=weight,
+            positions=(self.forward_position, self.lateral_position),
+            first=np.array([0, len(weight)]),
+            mirror=np.arange(len(weight)),
+            resultants=np.array([1.0, 1.0, 0.0]),
+            stiffness=self.stiffness,
+        )
 
     @staticmethod
     def resolved(
