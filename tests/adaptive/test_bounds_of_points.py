@@ -9,7 +9,7 @@ import pytest
 
 import microslip
 from microslip.adaptive import asked
-from microslip.models import interrupts
+from microslip.models import system_contact
 from microslip.models.contact import forward_slip
 from microslip.models.registry import MODELS
 from microslip.motions.by_name import motion_named
@@ -128,10 +128,20 @@ def test_ctrl_c_ends_a_march_that_would_take_minutes(name):
 
 def test_a_march_is_done_again_where_the_program_goes_on_after_ctrl_c(monkeypatch):
     """A handler of its own that does not raise: the answer is what it would have been."""
-    heard, answers = [], [(0.0, True), (1.5, False)]
+    motion = Problem(motion_named("transverse"), 0.1, 0.5, 0.0)
+    contact = build_contact(motion, "radial", Resolution(4, 1, 4))
+    path, state = motion.path(contact, 4), forward_slip(contact)
+    expected, march, calls, heard = contact.march(path, state, 1e-8), system_contact.march, [], []
+
+    def broken_once(*arguments):
+        calls.append(arguments)
+        return march(*arguments)._replace(broken=len(calls) == 1)
+
+    monkeypatch.setattr(system_contact, "march", broken_once)
     before = signal.signal(signal.SIGINT, lambda *_: heard.append(True))
     try:
-        assert interrupts.unbroken(lambda given: answers.pop(0), "anything") == [1.5]
+        found = contact.march(path, state, 1e-8)
     finally:
         signal.signal(signal.SIGINT, before)
-    assert heard == [True]
+    assert np.array_equal(found.forces, expected.forces)
+    assert len(calls) == 2 and heard == [True]

@@ -111,17 +111,6 @@ def test_these_points_need_it(monkeypatch):
     assert answer.retried == 0
 
 
-def test_a_singular_matrix_in_the_search_is_a_run_without_a_number(monkeypatch):
-    def fail(*_):
-        raise np.linalg.LinAlgError("Singular matrix")
-
-    monkeypatch.setattr(np.linalg, "inv", fail)
-    answer = microslip.solve("transverse", 0.1, 0.5)
-    assert not answer.converged
-    assert np.isnan(answer.mu_macro)
-    assert "Singular matrix" in answer.reason
-
-
 @pytest.mark.parametrize("error", [TypeError, ZeroDivisionError, np.linalg.LinAlgError])
 def test_an_error_of_the_code_in_a_run_is_raised(monkeypatch, error):
     def fail(*_):

@@ -9,6 +9,7 @@ import microslip
 from microslip.adaptive.chains import FITTED_SHARES, Axis
 from microslip.adaptive.refinement import certify
 from microslip.adaptive.resolutions import TOGETHER_FROM, TOGETHER_RESOLVED, plan
+from microslip.contacts import splitting
 from microslip.models.contact import forward_slip, full_slip
 from microslip.models.polar import contact as polar
 from microslip.motions.by_name import motion_named
@@ -164,12 +165,13 @@ def test_a_run_from_a_coarser_one_ends_where_it_would_by_itself():
     assert led.mu == pytest.approx(alone.mu, abs=2e-6)
 
 
-def test_augmentation_grows_with_the_root_of_the_rings(monkeypatch):
+@pytest.mark.parametrize("factor", [1 / 16, 16])
+def test_the_penalty_takes_fewer_iterations_than_others(monkeypatch, factor):
     def iterations(rings):
         polar._prepared.cache_clear()
-        monkeypatch.setattr(polar, "ROTATING_RINGS", rings)
+        monkeypatch.setattr(splitting, "BALANCED_RINGS", rings)
         return simulate(BORE, "polar", Resolution(48, 4, 12), 1e-5).iterations
 
-    shipped, alike = iterations(polar.ROTATING_RINGS), iterations(48)
+    shipped, other = iterations(splitting.BALANCED_RINGS), iterations(12 * factor)
     polar._prepared.cache_clear()
-    assert shipped < 0.8 * alike
+    assert shipped < 0.95 * other

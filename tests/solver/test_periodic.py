@@ -121,7 +121,6 @@ def test_verdict_is_that_of_the_plain_map(name):
     few = find_periodic_state(PeriodMap(contact, path), start, fewer)
     assert not few.converged
     assert few.marches < enough.marches
-    assert few.distance > TOLERANCE or few.solver_residual > enough.solver_residual
     for found in (enough, few):
         # whatever the search did, what it hands back is one march of the plain map
         march = contact.march(path, found.start, STEP_TOLERANCE)

@@ -26,7 +26,7 @@ def test_one_run_makes_the_datasets_and_the_figures(finished):
     with xr.open_dataset(results / "transverse.nc", group="history") as data:
         assert data.history_force_forward.size == 17
     assert len(finished.points()) == 10
-    assert "bore: 4 points, none not converged" in finished.said
+    assert "bore: 4 points, all converged" in finished.said
 
 
 def test_a_second_run_has_nothing_to_do_and_says_so(finished):
@@ -136,7 +136,7 @@ def test_a_job_that_fails_does_not_hide_what_the_others_say(project):
     done = project.snakemake(*RUN)
     assert done.returncode != 0
     assert "no maps today" in done.stderr
-    assert "bore: 4 points, none not converged" in done.stderr
+    assert "bore: 4 points, all converged" in done.stderr
     assert "transverse: 4 points" not in done.stderr
     assert "IndexError" not in done.stderr
 

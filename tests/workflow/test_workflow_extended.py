@@ -58,7 +58,7 @@ def test_one_command_makes_the_datasets_and_a_figure_of_each_group(finished):
     with xr.open_dataset(results / "cone.nc") as data:
         assert data.pressure == "power:exponent=1"
         assert data.converged.all()
-    assert "cone: 6 points, none not converged" in finished.said
+    assert "cone: 6 points, all converged" in finished.said
     assert len(finished.points()) == 12
 
 

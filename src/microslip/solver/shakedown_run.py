@@ -174,8 +174,8 @@ class _Walk:
         """How much of the way may be left: the series of distances that are gone while the number
         of intervals doubles, if it went on as it did last; infinite if that does not end."""
         before, last = self._last_two()
-        if last == 0.0:
-            return 0.0
+        if last <= self.residual / self.contact.stiffness:  # as far as steps are solved, it stands
+            return last
         ratio = last / before if before > 0.0 else np.inf
         return last * ratio / (1.0 - ratio) if ratio < SLOWEST_RATIO else np.inf
 
