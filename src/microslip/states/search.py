@@ -28,6 +28,9 @@ FORCING = 1e-3
 anyway."""
 LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
 """Largest tolerance of a step, from a start that is far and from one that is near."""
+NOISE = 1e-2
+"""Largest share of the force gained by the drift that the steps of a march may leave unsolved: what
+a state has lost it regains at the rate of the drift alone."""
 FORGETFUL = 0.2
 """Contraction of the plain map since the start below which it needs no acceleration."""
 
@@ -121,8 +124,7 @@ def memory_of(state: np.ndarray, place: np.ndarray, stages: int, steps: int, goa
     """The Memory of a search that begins at tractions (a field) and at x and x'."""
     state = np.array(state, dtype=float, order="C")
     loosest = LOOSEST_NEAR if goal.near else LOOSEST
-    # what the steps of a march leave unsolved may not undo what the drift gains in it
-    inner = max(goal.step_tolerance, min(loosest, goal.gain / (stages * steps)))
+    inner = max(goal.step_tolerance, min(loosest, NOISE * goal.gain / (stages * steps)))
     return Memory(
         state,
         np.array(place, dtype=float),
