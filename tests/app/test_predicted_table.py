@@ -55,7 +55,7 @@ def test_progress_is_for_terminals_alone(folder, capsys):
     ("text", "said"),
     [
         ("load [mm]\n5\n", "--table = 'contacts.csv': load = '5 mm': in line 2: the unit is"),
-        ("amplitude,load [N]\n,5\n", "amplitude: in line 2: transverse needs it"),
+        ("amplitude,load [N]\n,5\n", "'contacts.csv': amplitude: in line 2: transverse needs it"),
         ('load\n"1,5 N"\n', "'1,5 N' has a decimal comma, in load; allowed: a decimal point"),
         ('load\n"1,5 N"\n', "or --decimal ','"),
     ],
