@@ -136,7 +136,7 @@ def test_under_a_force_each_line_has_its_outcome_threshold_and_probabilities(fol
     cells = [[row[end - 13 : end].strip() for end in ends] for row in (heading, *rows[:3])]
     stays, away, exact = (dict(zip(cells[0][-7:], row[-7:], strict=True)) for row in cells[1:])
     assert [one["outcome"] for one in (stays, away, exact)] == ["stays", "runs away", "stays"]
-    assert [one["threshold N"] for one in (stays, away, exact)] == ["120"] * 3
+    assert [one["threshold N"] for one in (stays, away, exact)] == ["120.0"] * 3
     assert float(stays["stays %"]) == pytest.approx(77.34, abs=0.05)
     assert float(stays["runs away %"]) == pytest.approx(22.66, abs=0.05)
     assert float(away["runs away %"]) == pytest.approx(77.34, abs=0.05)

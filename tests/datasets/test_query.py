@@ -529,7 +529,7 @@ def test_where_nothing_can_be_written_the_solver_still_answers(results, monkeypa
 
 
 def test_what_cannot_be_opened_is_one_line(results, tmp_path):
-    with pytest.raises(ValueError, match="name = 'tranverse': allowed is transverse, bore"):
+    with pytest.raises(ValueError, match="name = 'tranverse': did you mean transverse"):
         open_map("tranverse", results)
     with pytest.raises(CacheError, match="bore.nc is not there"):
         open_map("bore", results)

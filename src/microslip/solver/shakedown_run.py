@@ -190,6 +190,8 @@ class _Walk:
         marched = np.cumsum([begun, *self.gone])
         added = marched[-1] + (0.5 * left if np.isfinite(left) else 0.0)
         most = int(np.searchsorted(np.maximum.accumulate(marched), MOST_SHARE * added))
+        if added <= self.residual / self.contact.stiffness:  # no more than steps leave unsolved
+            most = 0
         periods = self.interval / (2.0 * np.pi)
         solves = self.solves + self.map.solves
         iterations = self.iterations + self.map.iterations
