@@ -72,8 +72,10 @@ def test_a_folder_that_cannot_keep_results_is_refused_before_work(
     assert str(tmp_path / name) in message and part in message and "another folder" in message
     assert cli.main([*POINT, "--results", str(tmp_path / name)]) == 2
     out, line = capfd.readouterr()
-    assert out == "" and line.startswith("microslip point continuous-bore: --results: ")
-    assert line.count("\n") == 1 and (message in line or "is not a folder; allowed" in line)
+    if name in ("file", "file/new", "link"):  # the command looks at the folder itself
+        place = tmp_path / name.removesuffix("/new")
+        message = f"{place} is not a folder; allowed: a folder, or a new name"
+    assert out == "" and line == f"microslip point continuous-bore: --results: {message}\n"
     files = [p.name for p in tmp_path.rglob("*") if p.is_file()]
     assert sorted(files) == ["file", "points"]
 
