@@ -64,14 +64,7 @@ class SystemContact(ABC):
     ) -> March:
         """March along a path; see models.contact.Contact."""
         trace = self._trace(path, None, state, tolerance, previous)
-        return March(
-            state=trace.state,
-            forces=trace.forces,
-            residual=trace.residual,
-            iterations=trace.iterations,
-            solves=len(trace.fields) - 1,
-            fields=trace.fields,
-        )
+        return March(**_record(trace))
 
     def pulled_march(
         self,
@@ -84,15 +77,7 @@ class SystemContact(ABC):
     ) -> PulledMarch:
         """March of a driven body that is at `start` (x, x') at first; see models.pull."""
         trace = self._trace(path, body.along(path, start), state, tolerance, previous)
-        return PulledMarch(
-            state=trace.state,
-            forces=trace.forces,
-            residual=trace.residual,
-            iterations=trace.iterations,
-            solves=len(trace.fields) - 1,
-            fields=trace.fields,
-            body=trace.body,
-        )
+        return PulledMarch(**_record(trace), body=trace.body)
 
     def _trace(
         self,
@@ -112,6 +97,12 @@ class SystemContact(ABC):
             if not trace.broken:
                 return trace
             signal.raise_signal(signal.SIGINT)
+
+
+def _record(trace: Trace) -> dict:
+    """Arguments of a March."""
+    names = ("state", "forces", "residual", "iterations", "fields")
+    return {name: getattr(trace, name) for name in names} | {"solves": len(trace.fields) - 1}
 
 
 def bounds_of_each(contacts: Sequence[SystemContact], path: BodyPath) -> np.ndarray:
