@@ -78,6 +78,22 @@ def test_the_softest_spring_is_a_force(place):
     assert fast.velocity - slow.velocity < 0.05 * velocity
 
 
+@pytest.mark.slow
+def test_a_fast_contact_on_the_softest_spring_is_solved():
+    """Its friction hardly rises with the velocity, so that small forces move it far.
+
+    The force in the middle of the spring's oscillation has the velocity of the far end.
+    """
+    velocity, amplitude, tolerance = 3.0, 0.2, 2e-4
+    soft = microslip.solve(
+        "transverse", velocity, amplitude, stiffness=1e-5, tolerance=tolerance, most_work=1e9
+    )
+    assert soft.converged
+    ends = soft.mu_macro - tolerance, soft.mu_macro + tolerance
+    slow, fast = (microslip.solve("transverse", amplitude=amplitude, force=force) for force in ends)
+    assert slow.velocity - slow.velocity_error < velocity < fast.velocity + fast.velocity_error
+
+
 LIMITS = {
     "transverse": ("transverse", 0.5, "hertz", lambda: paper.static_limit_transverse(0.5)),
     "bore": ("bore", 1.0, "hertz", lambda: paper.static_limit_bore(1.0)),

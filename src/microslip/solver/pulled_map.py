@@ -7,7 +7,8 @@ later these two are what they were.
 In one period a heavy body hardly notices that the forces on it do not balance, nor does a soft
 spring that the contact stays behind.  So the map moves the body on as if it were no heavier, and
 its spring no softer, than the contact is: by so many times what it moved.  What repeats itself is
-the same.
+the same.  A contact that slides as a whole gives way far more than one that sticks: the stiffness
+that counts there is the rise of its mean force with the displacement.
 """
 
 from __future__ import annotations
@@ -43,6 +44,8 @@ class PulledMap(PeriodMap):
         Given where the motion may be slow and its velocity is known.
     mirror : bool
         Whether the second half of the period is the mirror image of the path.
+    slope : float
+        Largest rise of the mean forward force for a body that gains a unit of x in the interval.
     """
 
     def __init__(
@@ -52,6 +55,7 @@ class PulledMap(PeriodMap):
         body: Body,
         creep_rate: CreepRate | None = None,
         mirror: bool = True,
+        slope: float = np.inf,
     ):
         super().__init__(contact, path, creep_rate, mirror)
         self.body = body
@@ -67,7 +71,8 @@ class PulledMap(PeriodMap):
         self._haste = np.ones(2)
         slow = max(1.0, body.damping / (stiffness * interval))
         if body.stiffness > 0.0:
-            self._haste[0] = max(1.0, CAUTION * stiffness / body.stiffness * slow)
+            steepest = min(CAUTION * stiffness, slope)
+            self._haste[0] = max(1.0, steepest / body.stiffness * slow)
         if body.mass > 0.0:
             self._haste[1] = max(1.0, body.mass / (self._mass * slow))
 

@@ -133,8 +133,8 @@ class _Pulled:
         rate = self.contact.stiffness * self.problem.creep
         step_tolerance = tolerance * step_share(rate, self.resolution.steps, False)
         goal, done = Goal(tolerance, step_tolerance, MARCHES), []
-        for start, static_force in self._starts(tolerance, guess):
-            period_map = self._map(static_force, rate)
+        for start, static_force, mu in self._starts(tolerance, guess):
+            period_map = self._map(static_force, rate, mu)
             if not self._fits(start, period_map):
                 continue
             done.append(find_periodic_state(period_map, start, goal))
@@ -142,31 +142,35 @@ class _Pulled:
                 break
         return self._summary(done, static_force, step_tolerance)
 
-    def _map(self, static_force, rate):
-        creep_rate = None
+    def _map(self, static_force, rate, mu):
+        creep_rate, slope, full = None, np.inf, self.problem.mean_load
         if self.drive.force is None:
-            creep_rate = CreepRate(static_force, self.problem.mean_load, rate * self.interval)
+            creep_rate = CreepRate(static_force, full, rate * self.interval)
+            # 1 - mu falls at most as 1 / velocity^2, the law of large velocities
+            slope = 2.0 * (1.0 - mu) * full / (self.problem.creep * self.interval)
         mirror = self.problem.motion.half_period_mirror
-        return PulledMap(self.contact, self.path, self.body, creep_rate, mirror)
+        return PulledMap(self.contact, self.path, self.body, creep_rate, mirror, slope)
 
     def _fits(self, start, period_map):
         return start.shape == period_map.state(forward_slip(self.contact), np.zeros(2)).shape
 
     def _starts(self, tolerance, guess):
-        """States to begin with, each with the force of the static limit, the nearest one first."""
+        """States to begin with, the nearest one first, each with the force of the static limit and
+        the friction near by."""
         if guess is not None and guess.converged:
-            yield guess.state, guess.static_force
+            yield guess.state, guess.static_force, guess.mu
         if self.resolution.steps >= PREPARED_FROM:
             coarser = self._coarser(tolerance)
             if coarser.converged:
-                yield coarser.state, coarser.static_force
+                yield coarser.state, coarser.static_force, coarser.mu
         moved = self._moved(tolerance)
         self.before.append(moved)
         slipping = forward_slip(self.contact)
         if moved.state is not None:
-            yield self._state(moved.state, moved.mu * self.problem.mean_load), moved.static_force
+            state = self._state(moved.state, moved.mu * self.problem.mean_load)
+            yield state, moved.static_force, moved.mu
         full = float(forces(self.contact, slipping)[FORWARD])
-        yield self._state(slipping, full), moved.static_force
+        yield self._state(slipping, full), moved.static_force, moved.mu
 
     def _coarser(self, tolerance):
         """The Run with fewer steps."""
