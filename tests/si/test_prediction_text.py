@@ -163,3 +163,12 @@ def test_a_threshold_of_rounding_errors_is_as_exact_as_the_static_friction(capsy
     given = BALL | {"amplitude": "5 deg", "speed": "1 mm/s", "tolerance": "0.01"}
     text = said(capsys, "bore", **given)
     assert "static friction   0: " in text and "force threshold   0 N: " in text
+
+
+def test_a_static_friction_below_rounding_is_zero(capsys):
+    """At 0.0412 rad, dimensionless 14.6: 6e-13 is left, less than numbers near 1 are rounded by."""
+    given = BALL | {"amplitude": "0.0412 rad", "speed": "1 mm/s", "tolerance": "0.01"}
+    text = said(capsys, "bore", **given)
+    assert re.search(r"^static friction +0 \+- \S+e-1[23]: ", text, re.MULTILINE)
+    zero = r"^force threshold +0 \+- \S+ N: any constant force moves the contact"
+    assert re.search(zero, text, re.MULTILINE)

@@ -56,7 +56,8 @@ def number_text(
         "0.2263 +- 0.0072 N": the error with two significant digits, rounded up, and the number
         to the last decimal of the error.  A number whose error is too small to be printed has all
         of its digits, zeros at the end included; one without an error has no such zeros.  A number
-        that is 0 within its error is printed as 0, and the error then covers both.
+        that is 0 within its error, or below the rounding error of numbers near 1, is printed as 0,
+        and the error then covers both.
     """
     value, error = float(value), float(error)
     text = _text(value, error, digits)
@@ -68,9 +69,11 @@ def _text(value, error, digits):
         return f"{value:g}"
     if not math.isfinite(error):
         return f"{_plain(value, digits)}{SEPARATOR}{error:g}"
-    if error <= EXACT * abs(value) or abs(value) <= error <= ROUNDING:
-        return _plain(value if error <= EXACT * abs(value) else 0.0, digits, zeros=error > 0.0)
-    if abs(value) <= error:
+    if error <= EXACT * abs(value):
+        return _plain(value, digits, zeros=error > 0.0)
+    if abs(value) <= error <= ROUNDING:
+        return "0"
+    if abs(value) <= max(error, ROUNDING):
         return f"0{SEPARATOR}{_short(_rounded_up(abs(value) + error))}"
     rounded = _rounded_up(error)
     exponent = rounded.adjusted() + 1 - ERROR_DIGITS

@@ -173,9 +173,10 @@ class _Text:
         value, error = found.force_threshold_N, found.force_threshold_error_N
         if value is None:
             return []
-        if value <= error and not found.force_threshold_high_N:
-            exact = error <= ROUNDING * found.load_N  # as for static friction, times the load
-            limit = in_unit(*((0.0, 0.0) if exact else (value, error)), self.force)
+        rounding = ROUNDING * found.load_N  # as for static friction, times the load
+        if value <= max(error, rounding) and not found.force_threshold_high_N:
+            exact = value <= error <= rounding
+            limit = in_unit(0.0, 0.0 if exact else value + error, self.force)
             return [line("force threshold", f"{limit}: any constant force moves the contact")]
         text = in_unit(value, error, self.force)
         lines = [line("force threshold", f"{text}: no smaller constant force moves the contact")]
