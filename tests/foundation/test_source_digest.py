@@ -1,5 +1,6 @@
 """Digests of sources: which files a result depends on follows from imports, as they were loaded."""
 
+import ast
 import json
 import os
 import shutil
@@ -12,7 +13,6 @@ import pytest
 import microslip
 from microslip.foundation import source_digest
 from microslip.foundation.source_digest import Sources
-from microslip.foundation.syntax_digest import digest_of_source
 from microslip.sweeps import batches, keys
 
 PACKAGE = Path(microslip.__file__).parent
@@ -36,6 +36,17 @@ class Thing:
 '''
 
 
+@pytest.fixture
+def digest_of(tmp_path):
+    """Digest of a package of one module with this text."""
+
+    def digest_of(text):
+        (tmp_path / "module.py").write_text(text)
+        return Sources(tmp_path).digest(["module.py"])
+
+    return digest_of
+
+
 @pytest.mark.parametrize(
     ("old", "new"),
     [
@@ -48,9 +59,11 @@ class Thing:
         ("(x, *, factor=2.0):", "(x: float, *, factor: float = 2.0) -> float:"),
     ],
 )
-def test_layout_comments_docstrings_and_hints_of_functions_do_not_change_the_digest(old, new):
+def test_layout_comments_docstrings_and_hints_of_functions_do_not_change_the_digest(
+    old, new, digest_of
+):
     assert old in MODULE
-    assert digest_of_source(MODULE.replace(old, new)) == digest_of_source(MODULE)
+    assert digest_of(MODULE.replace(old, new)) == digest_of(MODULE)
 
 
 @pytest.mark.parametrize(
@@ -67,9 +80,9 @@ def test_layout_comments_docstrings_and_hints_of_functions_do_not_change_the_dig
         ("import numpy as np", "import scipy as np"),
     ],
 )
-def test_code_changes_the_digest(old, new):
+def test_code_changes_the_digest(old, new, digest_of):
     assert old in MODULE
-    assert digest_of_source(MODULE.replace(old, new)) != digest_of_source(MODULE)
+    assert digest_of(MODULE.replace(old, new)) != digest_of(MODULE)
 
 
 FILES = {
@@ -291,6 +304,44 @@ def test_other_results_stay_when_what_only_some_depend_on_is_edited():
     }
     assert not any(name.startswith("report/") for name in of_map)
     assert "motions/transverse.py" not in of_map
+
+
+# What was parsed is kept beside the compiled modules
+
+
+def test_a_second_process_parses_only_what_was_edited(package, monkeypatch):
+    before = Sources(package).digest(SOLVER)
+    (package / "law.py").write_text("from toy import parts\nA = 2")
+    parsed = []
+    monkeypatch.setattr(
+        "ast.parse", lambda content, parse=ast.parse: parsed.append(content) or parse(content)
+    )
+    after = Sources(package).digest(SOLVER)
+    assert after != before and parsed == [b"from toy import parts\nA = 2"]
+    assert Sources(package).digest(SOLVER) == after and len(parsed) == 1
+
+
+@pytest.mark.parametrize("damage", [lambda b: b[:-9], lambda b: b"", lambda b: b"\xff" + b])
+def test_a_damaged_file_counts_as_empty_and_is_replaced(damage, package):
+    first = Sources(package).digest(SOLVER)
+    (kept,) = (package / "__pycache__").glob("sources.*.json")
+    whole = kept.read_bytes()
+    kept.write_bytes(damage(whole))
+    assert Sources(package).digest(SOLVER) == first
+    assert kept.read_bytes() == whole
+
+
+def test_other_code_that_reads_sources_parses_them_again(package, monkeypatch):
+    first = Sources(package).digest(SOLVER)
+    monkeypatch.setattr(source_digest, "_parse", lambda content: source_digest.Parsed("", [], []))
+    assert Sources(package).digest(SOLVER) == first
+    monkeypatch.setattr(source_digest, "_READER", "other code")
+    assert Sources(package).digest(SOLVER) != first
+
+
+def test_where_nothing_can_be_written_nothing_is_kept(package):
+    (package / "__pycache__").write_text("in the way")
+    assert Sources(package).digest(SOLVER) == Sources(package).digest(SOLVER)
 
 
 # A process whose sources are edited while it runs

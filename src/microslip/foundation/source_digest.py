@@ -1,27 +1,30 @@
-"""Which source files a result depends on, as they were when this process loaded them.
+"""Digests of the modules that a result depends on, as they were when this process loaded them.
 
-What counts for a result follows from imports: the file that answers it, all that this one imports,
-and so on.  The digest of these files is part of the name of every result, dataset and figure, so
-none can be older than the code that stands for it.  Comments, docstrings, layout and hints of
-functions do not count.
+A result depends on the module that answers its request and on all modules that this one imports.
+The digest of these modules is part of the name of every result, dataset and figure, so no result is
+older than the code that it is named by.  Comments, docstrings, layout and the hints of functions do
+not count.
 
-The sources are read once, when the package is imported.  So a digest is that of the code that is
-running, however the files are edited meanwhile; `edited` says whether they were.
+All modules are read once, when the package is imported, so a digest belongs to the code that is
+running.  `Sources.edited` lists modules that have changed on disk since then.
 
-Imports nothing but the standard library, since the package and the workflow read it first of all.
+Imports only the standard library, since the package and the workflow import it first.
 """
 
 from __future__ import annotations
 
+import ast
+import contextlib
 import hashlib
+import importlib.util
 import json
 import os
 import sys
-from collections.abc import Iterable
-from functools import cache
+import uuid
+from collections.abc import Iterable, Iterator
+from functools import cache, cached_property
 from pathlib import Path
-
-from microslip.foundation import parsed_sources
+from typing import NamedTuple
 
 PACKAGE = Path(__file__).parents[1]
 
@@ -38,19 +41,29 @@ ANSWERED_BY = {
     "patches": ("adaptive/stick_area",),
     "drive": ("adaptive/driving",),
 }
-"""Kinds of requests (see sweeps.batches) and the modules that `answers` asks for them."""
+"""Kinds of requests (see sweeps.batches) and the modules that answer them."""
 
 ASKS = {"sweeps/__init__.py", "sweeps/evaluate.py"}
-"""They import what answers a request where that is asked; only what they always import counts."""
+"""They import the modules that answer requests inside functions; only their other imports count."""
 
 NAMED_IN_REQUESTS = {"solver/methods": "method", "motions": "scene", "pressures": "pressure"}
-"""Folders of files that requests name, and the key that names them."""
+"""Folders of modules that requests name, and the key of the request."""
 
-NAMES_ONLY = {
-    f"foundation/{name}.py"
-    for name in ("kernel_cache", "parsed_sources", "source_digest", "syntax_digest")
-}
-"""They say what results are called and where code is kept, and change no number in results."""
+NAMES_ONLY = {f"foundation/{name}.py" for name in ("kernel_cache", "source_digest")}
+"""Modules that name results and folders; the values of results do not depend on them."""
+
+HINTS = {"annotation": ast.arg, "returns": ast.FunctionDef | ast.AsyncFunctionDef}
+"""Fields of the syntax tree that hold the hints of functions, and the nodes that have them.
+
+Hints of the fields of classes count, since dataclasses and schemas are made of them."""
+
+
+class Parsed(NamedTuple):
+    """Digest of a module's syntax tree, and names of what it imports: at the top, and anywhere."""
+
+    digest: str
+    top: list[str]
+    anywhere: list[str]
 
 
 class Sources:
@@ -61,178 +74,231 @@ class Sources:
     package : Path
         Folder of the package.
     contents : dict of str to bytes
-        Sources by their paths inside the package.  What Python cannot import is left out: hidden
-        files, those of editors, copies with other names.
+        Sources by their paths inside the package.  Files that Python cannot import are left out:
+        hidden files, those of editors, copies with other names.
     """
 
     def __init__(self, package: str | Path = PACKAGE):
         self.package = Path(package)
-        self.contents, self._stamps, self._imports, self._digests = {}, {}, {}, {}
-        self._parsed = parsed_sources.Answers(self.package / "__pycache__")
-        for name, path in _importable(self.package):
+        self.contents: dict[str, bytes] = {}
+        self._stamps: dict[str, tuple[int, ...]] = {}
+        for name, path in _modules(self.package):
             self._stamps[name] = _stamp(path)
-            self.contents[name] = path.read_bytes()
+            self.contents[name] = _read(path)
 
     def closure(self, names: Iterable[str], deep: bool = True) -> set[str]:
-        """Paths of the modules that these lead to by their imports, themselves included.
+        """Paths of modules and of all modules that they import, directly or not.
 
-        names: paths inside the package.  deep: whether imports inside functions of the named
-        modules count, too; those of the modules that they lead to always do.
+        names: paths inside the package.  deep: whether imports inside functions of these modules
+        count; those of the modules that they import always do.
         """
-        found = set(names) - NAMES_ONLY
+        closure = set(names) - NAMES_ONLY
         waiting = [target for name in names for target in self._targets(name, deep)]
         while waiting:
             name = waiting.pop()
-            if name not in found:
-                found.add(name)
+            if name not in closure:
+                closure.add(name)
                 waiting += self._targets(name, True)
-        return found
+        self._keep_parsed()
+        return closure
 
     def digest(self, names: Iterable[str]) -> str:
-        """SHA-256 of modules and their names, in hexadecimal, by what they say to Python.
+        """SHA-256 of the names and syntax trees of modules, in hexadecimal.
 
         names: paths inside the package, or in one of the folders that requests name.
         """
-        content = [(name, self._digest(name)) for name in sorted(names)]
-        self._parsed.keep()
-        return hashlib.sha256(json.dumps(content).encode()).hexdigest()
+        content = [(name, self._parsed(name).digest) for name in sorted(names)]
+        self._keep_parsed()
+        return _sha256(json.dumps(content).encode())
 
     def raw_digest(self, names: Iterable[str]) -> str:
-        """SHA-256 of modules as they are written, in hexadecimal; quick."""
-        found = hashlib.sha256()
-        for name in sorted(names):
-            found.update(f"{name} {len(self._content(name))} ".encode() + self._content(name))
-        return found.hexdigest()
+        """SHA-256 of the names and bytes of modules, in hexadecimal."""
+        content = [(name, _sha256(self._content(name))) for name in sorted(names)]
+        return _sha256(json.dumps(content).encode())
 
-    def of_request(self, kind: str, named: Iterable) -> set[str]:
-        """Modules that a request depends on; named: (folder, name of a file in it) pairs."""
+    def of_request(self, kind: str, named: Iterable[tuple[str, str]]) -> set[str]:
+        """Modules that a request depends on; named: (folder, name of a module in it) pairs."""
         roots = {f"{module}.py" for module in ANSWERED_BY[kind]} & self.contents.keys()
-        roots |= {f"{folder}/{file}.py" for folder, file in named if self._has(folder, file)}
-        asks = self.closure(ASKS & self.contents.keys(), deep=False)
-        return self.closure(roots) | asks
+        paths = [f"{folder}/{module}.py" for folder, module in named]
+        roots |= {path for path in paths if path in self.contents or _in_a_users_folder(path)}
+        return self.closure(roots) | self.closure(ASKS & self.contents.keys(), deep=False)
 
     def edited(self, names: Iterable[str]) -> list[str]:
-        """Those of the modules whose code on disk is no longer what was read."""
+        """Modules whose code on disk is no longer the one that was read."""
         return [name for name in sorted(names) if self._is_edited(name)]
 
-    def _is_edited(self, name):
+    def _is_edited(self, name: str) -> bool:
         path = self.package / name
         try:
-            if name in self._stamps and _stamp(path) == self._stamps[name]:
+            if _stamp(path) == self._stamps.get(name):
                 return False
-            now = path.read_bytes()
+            now = _read(path)
         except OSError:
             return name in self.contents
         then = self.contents.get(name, now)
-        return now != then and _digest_of(now) != _digest_of(then)
+        return now != then and _parse(now).digest != _parse(then).digest
 
-    def _has(self, folder, file):
-        return f"{folder}/{file}.py" in self.contents or _of_ones_own(folder, file) is not None
-
-    def _content(self, name):
+    def _content(self, name: str) -> bytes:
         if name not in self.contents:
-            folder, _, file = name.rpartition("/")
-            path = _of_ones_own(folder, file.removesuffix(".py"))
+            path = _in_a_users_folder(name)
             self.contents[name] = path.read_bytes() if path else b""
         return self.contents[name]
 
-    def _digest(self, name):
-        if name not in self._digests:
-            content = self._content(name)
-            self._digests[name] = self._parsed.of("code", content, lambda: _digest_of(content))
-        return self._digests[name]
+    def _targets(self, name: str, deep: bool) -> Iterator[str]:
+        """Paths of the modules that one imports, and of the packages that contain them."""
+        place = [self.package.name, *name.split("/")[:-1]]
+        parsed = self._parsed(name)
+        for module in parsed.anywhere if deep else parsed.top:
+            with contextlib.suppress(ImportError):  # relative, and above the package
+                top, *parts = importlib.util.resolve_name(module, ".".join(place)).split(".")
+                paths = ["/".join(parts[:end]) for end in range(1, len(parts) + 1)]
+                files = [file for path in paths for file in (f"{path}.py", f"{path}/__init__.py")]
+                if top == self.package.name:
+                    yield from (f for f in files if f in self.contents and f not in NAMES_ONLY)
 
-    def _targets(self, name, deep):
-        """Paths of the modules that one imports."""
-        if (name, deep) not in self._imports:
-            self._imports[name, deep] = list(self._imported(name, deep))
-        return self._imports[name, deep]
+    # Parsing takes a second, so what it gives is kept beside the code that Python itself compiles.
 
-    def _imported(self, name, deep):
-        parts, content = name.removesuffix(".py").split("/"), self._content(name)
-        place = [self.package.name, *parts[:-1]]
-        question = f"imports of {'.'.join(place)}{' deep' if deep else ''}"
-        found = self._parsed.of(question, content, lambda: [*_imports_of(content, place, deep)])
-        for dotted in found:
-            path = "/".join(dotted)
-            for target in (f"{path}.py", f"{path}/__init__.py"):
-                if target in self.contents and target not in NAMES_ONLY:
-                    yield target
+    def _parsed(self, name: str) -> Parsed:
+        content = self._content(name)
+        key = _sha256(content)
+        if key not in self._kept:
+            self._kept[key] = _parse(content)
+            self._is_kept = False
+        return Parsed(*self._kept[key])
+
+    @cached_property
+    def _kept(self) -> dict[str, Parsed]:
+        self._is_kept = True
+        try:
+            by, kept = json.loads(self._file.read_bytes())
+        except (OSError, ValueError):
+            return {}
+        return kept if by == _READER else {}
+
+    def _keep_parsed(self) -> None:
+        """Write what was parsed; where that is refused, the next process parses again."""
+        if "_kept" not in self.__dict__ or self._is_kept:
+            return
+        self._is_kept = True
+        now = {_sha256(content) for content in self.contents.values()}
+        kept = {key: parsed for key, parsed in self._kept.items() if key in now}
+        beside = self._file.with_name(f"{self._file.name}.{uuid.uuid4().hex}")
+        try:
+            self._file.parent.mkdir(exist_ok=True)
+            beside.write_text(json.dumps([_READER, kept], separators=(",", ":")))
+            os.replace(beside, self._file)
+        except OSError:
+            with contextlib.suppress(OSError):
+                beside.unlink()
+
+    @property
+    def _file(self) -> Path:
+        return self.package / "__pycache__" / f"sources.{sys.implementation.cache_tag}.json"
 
 
-def _stamp(path):
-    about = path.stat()
+def _modules(folder: str | Path, prefix: str = "") -> Iterator[tuple[str, str]]:
+    """Path inside the package and path of each module in a folder and those below it."""
+    for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
+        stem, _, ending = entry.name.partition(".")
+        if not stem.isidentifier() or stem == "__pycache__":
+            continue
+        if ending == "py" and entry.is_file():
+            yield prefix + entry.name, entry.path
+        elif not ending and entry.is_dir():
+            yield from _modules(entry.path, f"{prefix}{entry.name}/")
+
+
+def _read(path: str | Path) -> bytes:
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def _stamp(path: str | Path) -> tuple[int, ...]:
+    about = os.stat(path)
     return about.st_mtime_ns, about.st_size, about.st_ino
 
 
-def _importable(package):
-    """(path inside the package, Path) of the modules in a folder and those below it."""
-    for folder, folders, files in os.walk(package):
-        folders[:] = sorted(n for n in folders if n.isidentifier() and n != "__pycache__")
-        for file in sorted(files):
-            path = Path(folder, file)
-            if file.endswith(".py") and file[:-3].isidentifier() and path.is_file():
-                yield path.relative_to(package).as_posix(), path
-
-
-def _of_ones_own(folder, file):
-    """Path of a motion, a pressure or a method in a folder of the user's own; None if not there."""
+def _in_a_users_folder(name: str) -> Path | None:
+    """Path of a motion or a pressure in a folder of the user's own; None if it is not there."""
+    folder, _, file = name.rpartition("/")
     package = sys.modules.get(f"{PACKAGE.name}.{folder.replace('/', '.')}")
-    places = (Path(place, f"{file}.py") for place in getattr(package, "__path__", ()))
+    places = (Path(place, file) for place in getattr(package, "__path__", ()))
     return next((place for place in places if place.is_file()), None)
 
 
-def _imports_of(content, place, deep):
-    """Names of modules, as lists of parts inside the package, that a source may import.
+def _sha256(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
 
-    content: bytes; place: parts of the package that the module lies in, from the top one on.
-    """
-    import ast
 
-    package = place[0]
+_READER = _sha256(Path(__file__).read_bytes())
+"""Digest of this file, whose code reads imports and digests off the syntax trees."""
+
+
+def _parse(content: bytes) -> Parsed:
     try:
-        statements = [ast.parse(content)]
-    except (SyntaxError, ValueError):  # a broken file, which no result can depend on
-        return
-    while statements:
-        node = statements.pop()
+        tree = ast.parse(content)
+    except (SyntaxError, ValueError):  # a broken file counts by its bytes and imports nothing
+        return Parsed(_sha256(content), [], [])
+    out: list[str] = []
+    _dump(tree, out)
+    digest = _sha256("".join(out).encode())
+    return Parsed(digest, _imported(tree.body), _imported(ast.walk(tree)))
+
+
+def _imported(nodes: Iterable[ast.AST]) -> list[str]:
+    """Names of the modules that these statements may import, with leading dots where relative."""
+    names = set()
+    for node in nodes:
         if isinstance(node, ast.Import):
-            named = [alias.name.split(".") for alias in node.names]
+            names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
-            above = place[: len(place) - node.level + 1] if node.level else []
-            module = above + (node.module.split(".") if node.module else [])
-            named = [module, *([*module, alias.name] for alias in node.names)]
-        else:
-            named = []
-            if deep or not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-                statements += [n for n in ast.iter_child_nodes(node) if _may_import(n)]
-        for parts in named:
-            if parts[0] == package:
-                # what lies above a module is imported with it
-                yield from (parts[1:end] for end in range(2, len(parts) + 1))
+            module = "." * node.level + (node.module or "")
+            dot = "" if module.endswith(".") else "."
+            names |= {module, *(f"{module}{dot}{alias.name}" for alias in node.names)}
+    return sorted(names)
 
 
-def _may_import(node):
-    import ast
+def _dump(node: object, out: list[str]) -> None:
+    """Append the text of a syntax tree without what changes no result, and without line numbers.
 
-    return isinstance(node, ast.stmt | ast.ExceptHandler | ast.match_case)
+    Empty fields are skipped, where ast.dump differs between versions of Python, so that all of them
+    share a folder of results.
+    """
+    if isinstance(node, ast.AST):
+        out.append(f"{type(node).__name__}(")
+        for field, value in ast.iter_fields(node):
+            if isinstance(value, list):
+                value = [item for item in value if not _is_text(item)]
+            if field in HINTS and isinstance(node, HINTS[field]):
+                continue
+            if value is not None and value != []:
+                out.append(f"{field}=")
+                _dump(value, out)
+        out.append(")")
+    elif isinstance(node, list):
+        out.append("[")
+        for item in node:
+            _dump(item, out)
+        out.append("]")
+    else:
+        out.append(f"{node!r},")
 
 
-def _digest_of(content):
-    from microslip.foundation.syntax_digest import digest_of_source
+def _is_text(node: object) -> bool:
+    """Whether a statement is a docstring, also one below a constant or a field."""
+    return (
+        isinstance(node, ast.Expr)
+        and isinstance(node.value, ast.Constant)
+        and isinstance(node.value.value, str)
+    )
 
-    try:
-        return digest_of_source(content.decode("utf-8"))
-    except (SyntaxError, ValueError):  # a broken file: by its bytes
-        return hashlib.sha256(content).hexdigest()
 
-
-# Of the package that is running
+# The package that is running
 
 LOADED = Sources()
 
 
-def files_of_request(request: dict) -> set[str]:
+def files_of_request(request: dict) -> frozenset[str]:
     """Modules that the result of a request depends on; request: see sweeps.batches."""
     return _files_of_request(request["kind"], *_named(request))
 
@@ -249,42 +315,43 @@ def of_modules(*names: str) -> str:
 
 @cache
 def of_solver() -> str:
-    """Digest of what solves a point, whatever its motion and pressure."""
+    """Digest of the modules that solve a point, without those of a motion or a pressure."""
     return LOADED.digest(LOADED.of_request("point", ()))
 
 
 @cache
 def of_kernels() -> str:
-    """Digest of the modules with compiled functions, and of all that these import: quick."""
-    with_kernels = {
-        n for n, content in LOADED.contents.items() if b"microslip.foundation.compiled" in content
-    }
-    return LOADED.raw_digest(LOADED.closure(with_kernels))
+    """Digest of the modules with compiled functions and of all that they import.
+
+    Layout counts here, since Numba finds the code of a function by its line.
+    """
+    compiled = {n for n, c in LOADED.contents.items() if b"microslip.foundation.compiled" in c}
+    return LOADED.raw_digest(LOADED.closure(compiled))
 
 
-def _named(request):
-    """(folder, file) of what a request names; without a motion all of them count."""
-    named = {folder: request.get(key) or "" for folder, key in NAMED_IN_REQUESTS.items()}
-    files = {folder: text.partition(":")[0].replace("-", "_") for folder, text in named.items()}
+def _named(request: dict) -> tuple[tuple[str, str], ...]:
+    """(folder, name) of the modules that a request names; without a motion all motions count."""
+    texts = {folder: request.get(key) or "" for folder, key in NAMED_IN_REQUESTS.items()}
+    files = {folder: text.partition(":")[0].replace("-", "_") for folder, text in texts.items()}
     if files["pressures"] == "file":
         files["pressures"] = "from_file"
-    every = () if files["motions"] else _files_in(["motions"])
-    of_all = [("motions", Path(file).stem) for file in sorted(every)]
-    return (*(item for item in files.items() if item[1]), *of_all)
+    motions = () if files["motions"] else sorted(_files_in(["motions"]))
+    named = [(folder, file) for folder, file in files.items() if file]
+    return (*named, *(("motions", Path(file).stem) for file in motions))
 
 
 @cache
-def _files_of_request(kind, *named):
+def _files_of_request(kind: str, *named: tuple[str, str]) -> frozenset[str]:
     return frozenset(LOADED.of_request(kind, named))
 
 
 @cache
-def _of_request(kind, *named):
+def _of_request(kind: str, *named: tuple[str, str]) -> str:
     return LOADED.digest(_files_of_request(kind, *named))
 
 
-def _files_in(names):
-    """The modules that names stand for: a file, or all in a folder."""
+def _files_in(names: Iterable[str]) -> set[str]:
+    """Modules by their paths, or all modules in folders."""
     return {
         file
         for file in LOADED.contents
