@@ -124,6 +124,7 @@ def cube(tmp_path):
     by_name.MOTIONS.clear()
     by_name.MOTIONS.update(known)
     motions.__path__[:] = path
+    del sys.modules["microslip.motions.sine_cubed"]
 
 
 def test_a_motion_is_one_file(cube, capsys):
@@ -186,6 +187,26 @@ def test_a_broken_file_is_an_error_of_its_motion_alone(broken, capsys, file):
     (line,) = capsys.readouterr().err.splitlines()
     assert str(broken / file) in line and cause in line
     assert main(["point", "longitudinal", *arguments]) == 0
+
+
+def test_a_name_of_two_files_is_an_error_of_its_motion_alone(tmp_path, monkeypatch):
+    """Python keeps the first module of a name, whichever folder the second file is in."""
+    for registry in ("MOTIONS", "FAMILIES", "BROKEN"):
+        monkeypatch.setattr(by_name, registry, dict(getattr(by_name, registry)))
+    monkeypatch.setattr(motions, "__path__", list(motions.__path__))
+    places = [tmp_path / folder / "sine_cubed.py" for folder in ("one", "two")]
+    for place in places:
+        place.parent.mkdir()
+        place.write_text(CUBE)
+        by_name.find(place.parent)
+    del sys.modules["microslip.motions.sine_cubed"]
+    with pytest.raises(microslip.InputError) as caught:
+        microslip.solve("sine-cubed", 0.1, 0.5)
+    assert caught.value.argument == "scene"
+    assert caught.value.allowed == (
+        f"{places[1]}: {places[0]} has the same name; allowed is another name"
+    )
+    assert microslip.solve("longitudinal", 0.1, 0.5).converged
 
 
 @pytest.mark.long

@@ -1,5 +1,7 @@
 """Pressures: their records against integrals, their closed forms against marches and each other."""
 
+import sys
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -383,6 +385,7 @@ def blunt(tmp_path):
     FAMILIES.clear()
     FAMILIES.update(known)
     pressures.__path__[:] = path
+    del sys.modules["microslip.pressures.blunt"]
 
 
 def test_a_pressure_is_one_file(blunt):

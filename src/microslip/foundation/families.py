@@ -24,7 +24,8 @@ def modules_in(
 ) -> Iterator[tuple[str, ModuleType]]:
     """Name and module of each file in a folder, which is one of the package's from now on.
 
-    A file that cannot be imported is left out, so that it ends only the commands that name it.
+    A file that cannot be imported is left out, so that it ends only the commands that name it.  So
+    is one whose name a file in another folder has: which of them was meant is not known.
 
     Parameters
     ----------
@@ -33,21 +34,25 @@ def modules_in(
     package : module
         The package whose modules the files become.
     broken : dict of str to str
-        Receives the path and the error of each file that cannot be imported, by its name.
+        Receives the path and the error of each file that is left out, by its name.
     """
     if str(folder) not in package.__path__:
         package.__path__.append(str(folder))
     for file in iter_modules([str(folder)]):
-        if not file.name.isidentifier():  # a copy or a checkpoint of a module
+        if file.ispkg or not file.name.isidentifier():  # a copy or a checkpoint of a module
             continue
         path = Path(os.path.abspath(folder), f"{file.name}.py")
         try:
             module = import_module(f"{package.__name__}.{file.name}")
         except (Exception, SystemExit) as error:  # the code of a user may raise anything
             broken[file.name] = f"{path} cannot be imported: {described(error, path)}"
-        else:
-            broken.pop(file.name, None)
-            yield file.name, module
+            continue
+        if not os.path.samefile(os.path.dirname(module.__file__), folder):
+            taken = f"{path}: {module.__file__} has the same name; allowed is another name"
+            broken[file.name] = taken
+            continue
+        broken.pop(file.name, None)
+        yield file.name, module
 
 
 def described(error: BaseException, path: str | os.PathLike) -> str:

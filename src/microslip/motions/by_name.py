@@ -46,6 +46,8 @@ def find(folder: str) -> None:
             MOTIONS[name] = module.MOTION
         elif hasattr(module, "DEFAULTS"):
             FAMILIES[name] = module
+    for file in BROKEN:
+        MOTIONS.pop(file.replace("_", "-"), None)
 
 
 for _folder in list(motions.__path__):

@@ -44,6 +44,8 @@ def find(folder: str) -> None:
             FAMILIES[file.replace("_", "-")] = module
         elif hasattr(module, "SOURCE"):
             SOURCES[module.SOURCE] = module
+    for file in BROKEN:
+        PRESSURES.pop(file, None)
 
 
 for _folder in list(pressures.__path__):
