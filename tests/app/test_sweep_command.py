@@ -10,11 +10,12 @@ import time
 from pathlib import Path
 
 import pytest
-from bad_input_tables.bad_configurations import FILES, GOOD
+from bad_input_tables.bad_configurations import FILES, GOOD, changed
 from stubs import in_process
 
 import microslip
 from microslip.app import sweep_command, sweep_process
+from microslip.config import load
 
 ROOT = Path(__file__).parents[2]
 SOURCE = str(Path(microslip.__file__).parent.parent)
@@ -74,9 +75,19 @@ REFUSED = [
     ("fig2_transverse", "TARGET = 'fig2_transverse'", "did you mean fig2_transverse_map?"),
     ("-n --config poisson", "--config = 'poisson'", "KEY=VALUE"),
     ("-n --config 1=2", "--config = '1=2'", "KEY=VALUE"),
-    ("-n --configfile none.yaml", "--configfile: none.yaml: cannot be read: No such file"),
-    ("-n --configfile .", "--configfile: .: cannot be read: Is a directory"),
-    ("-n --configfile good.yaml tabs.yaml", "--configfile: tabs.yaml: not valid YAML:"),
+    ("-n --configfile none.yaml", "none.yaml: cannot be read: No such file"),
+    ("-n --configfile .", ".: cannot be read: Is a directory"),
+    ("-n --configfile good.yaml tabs.yaml", "tabs.yaml: not valid YAML:"),
+    (
+        "-n --configfile good.yaml --config points_per_job=0",
+        "good.yaml, --config: points_per_job: 0 is not allowed; allowed: a whole number >= 1",
+    ),
+    ("-n --configfile good.yaml --config result=here", "--config: result: unknown key; did you"),
+    (
+        "-n --configfile good.yaml --config results=good.yaml",
+        "good.yaml, --config: results: good.yaml is not a folder; allowed: a folder, or a new",
+    ),
+    ("-c1 --configfile good.yaml --config sweeps={bore:3}", "--config: sweeps.bore"),
 ]
 SHOWN = ["empty", "not UTF-8", "UTF-16", "binary", "tabs", "a key twice", "nothing to merge"]
 
@@ -134,6 +145,21 @@ def test_a_file_that_is_no_configuration_is_one_line(case, here):
     done = in_process.run("sweep", "-n", "--configfile", "given.yaml")
     refused(done, ["given.yaml: ", *parts])
     assert [path.name for path in here.iterdir()] == ["given.yaml"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("key", ["sweeps.transverse.velocities", "sweeps.bores", "claims.cells"])
+def test_a_bad_key_is_one_line_in_a_file_and_in_the_default(key, here):
+    """The line is that of the reader alone, see tests/config/test_bad_input.py."""
+    (here / "config").mkdir()
+    for file, arguments in (
+        ("given.yaml", ["--configfile", "given.yaml"]),
+        ("config/config.yaml", []),
+    ):
+        (here / file).write_text(changed({key: "[-1]"}))
+        with pytest.raises(load.ConfigError) as caught:
+            load.load(file)
+        refused(in_process.run("sweep", *arguments), [f"microslip sweep: {caught.value}\n"])
 
 
 @pytest.mark.slow

@@ -1,8 +1,8 @@
 """Snakemake as `microslip sweep` starts it: what can be seen to be wrong is one line, before it.
 
-Snakemake reads the files given with --configfile before the workflow has a say, and prints all of
-its options where one is unknown.  So its own parser, which knows profiles and abbreviations, is
-asked first.
+Snakemake reads the files given with --configfile before the workflow has a say, prints all of its
+options where one is unknown, and ends with the exit code 1 whatever is wrong.  So its own parser,
+which knows profiles and abbreviations, is asked first, and the configuration is read here, too.
 """
 
 from __future__ import annotations
@@ -15,12 +15,14 @@ import shutil
 import sys
 import tempfile
 from contextlib import redirect_stderr
+from pathlib import Path
 
-from microslip.app.sweep_command import RULES, TARGETS
+from microslip.app.sweep_command import RULES, TARGETS, snakefile
 from microslip.app.terminal import complain
 from microslip.config import load, schema
-from microslip.foundation.errors import InputError
+from microslip.foundation.errors import CacheError, InputError
 from microslip.report.figures import drawing
+from microslip.sweeps import sealed_files
 
 KEY_AND_VALUE = re.compile(r"[A-Za-z_][\w-]*\w=")
 
@@ -34,7 +36,7 @@ def main(arguments: list[str]) -> int:
             complain(f"microslip sweep: {error}")
             return 2
         except load.ConfigError as error:
-            complain(f"microslip sweep: --configfile: {error}")
+            complain(f"microslip sweep: {error}")
             return 2
         _spare_cache()
         from snakemake.cli import main as snakemake
@@ -87,8 +89,31 @@ def _check(arguments):
         raise InputError(
             "--configfile", "twice", "Snakemake would forget the first; allowed is --configfile A B"
         )
-    for file in options.configfile or ():
-        load.read_yaml(os.path.relpath(file))
+    _check_configuration(options)
+
+
+def _check_configuration(options):
+    """Raise ConfigError for the configuration that the Snakefile would read and refuse."""
+    from snakemake.cli import parse_config
+    from snakemake.utils import update_config
+
+    files = [os.path.relpath(file) for file in options.configfile or ()]
+    if not files:
+        places = (Path(options.directory or "."), snakefile().parent)
+        defaults = [os.path.relpath(place / "config" / "config.yaml") for place in places]
+        files = [next(filter(os.path.lexists, defaults), defaults[-1])]
+    mapping = {}
+    for file in files:
+        update_config(mapping, load.read_yaml(file))
+    update_config(mapping, parse_config(options.config))
+    source = ", ".join([*files, *(["--config"] if options.config else [])])
+    folders = [os.path.dirname(os.path.abspath(file)) for file in files]
+    configuration = load.from_mapping(mapping, source=source, folders=folders)
+    results = Path(options.directory or ".", configuration.results)
+    try:
+        sealed_files.refuse_unusable([results], [])
+    except CacheError as error:
+        raise load.ConfigError(f"{source}: results: {error}") from None
 
 
 def _may_be_made(target):
