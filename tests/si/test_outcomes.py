@@ -98,7 +98,8 @@ def test_an_uncertain_load_moves_the_static_friction_of_a_spin():
         for sign in (-1.0, 1.0)
     ]
     assert [found.mu_static_low, found.mu_static_high] == pytest.approx(sorted(ends), rel=2e-3)
-    assert found.probability_stays is None
+    assert found.probability_stays is None and found.interval_method == "quantiles"
+    assert "to first order" not in str(found)
 
 
 @pytest.mark.parametrize(
@@ -166,10 +167,40 @@ def test_a_steady_spin_gives_way_to_any_force_that_is_drawn():
 @pytest.mark.slow
 def test_the_threshold_beside_a_reduction_has_an_interval():
     given = {"young": "210 GPa", "nu": 0.0, "radius": "5 mm", "load": "10 N", "mu": 0.3}
-    given |= {"speed": "10 mm/s +- 5 %", "reduction": "30 %", "frequency": "20 kHz"}
+    given |= {"speed": "0.3 mm/s +- 5 %", "reduction": "30 %", "frequency": "20 kHz"}
     found = microslip.predict("transverse", **given, tolerance=0.02)
-    assert found.force_threshold_low_N <= found.force_threshold_N <= found.force_threshold_high_N
-    assert "95 % interval" in str(found)
+    ends = found.force_threshold_low_N, found.force_threshold_high_N
+    deviation = found.force_threshold_spread_N
+    assert deviation > 0.0 and found.interval_method == "first order"
+    assert ends == pytest.approx(
+        [found.force_threshold_N + sign * 1.959964 * deviation for sign in (-1, 1)]
+    )
+    (line, again) = [line for line in str(found).splitlines() if "95 % interval" in line]
+    for text in (line, again):
+        assert text.endswith(
+            ", from the uncertain inputs to first order: static friction is taken to be linear in "
+            "each of them"
+        )
+
+
+@pytest.mark.long
+def test_an_uncertain_ratio_of_amplitudes_has_an_interval_to_first_order():
+    """Half the difference of static friction at both ends is its deviation; quantiles are those of
+    a normal distribution, for which 1.96 deviations are on either side."""
+    given = {"young": "210 GPa", "nu": 0.0, "radius": "5 mm", "load": "10 N", "mu": 0.3}
+    given |= {"frequency": "20 kHz", "speed": "10 mm/s", "tolerance": 0.05}
+    given |= {"rotation_amplitude": "0.05 deg", "phase": "90 deg"}
+    found = microslip.predict("transverse-bore", **given | {"amplitude": "0.1 um +- 5 %"})
+    low, high = (
+        microslip.predict("transverse-bore", **given | {"amplitude": size}).mu_static
+        for size in (0.095e-6, 0.105e-6)
+    )
+    assert found.interval_method == "first order"
+    assert found.mu_static_spread == pytest.approx(0.5 * abs(high - low), rel=0.02)
+    ends = [found.mu_static + 1.96 * (high - found.mu_static)]
+    ends.append(found.mu_static + 1.96 * (low - found.mu_static))
+    assert [found.mu_static_low, found.mu_static_high] == pytest.approx(sorted(ends), rel=1e-3)
+    assert "to first order: static friction is taken to be linear in each of them" in str(found)
 
 
 @pytest.mark.slow

@@ -22,6 +22,7 @@ from microslip.foundation.errors import InputError
 from microslip.si.dimensionless import full_friction, groups, parts
 from microslip.si.motions import COMBINED
 from microslip.si.prediction import Prediction
+from microslip.si.printed_lines import FIRST_ORDER, QUANTILES
 from microslip.si.question import Question
 from microslip.si.static_curve import static_limits
 from microslip.si.static_limit import equals_static_limit, largest_force
@@ -104,6 +105,8 @@ def with_outcomes(
     fields = {}
     if static is not None:
         value, error = static
+        solved = table.one_shape or not table.centre.amplitude
+        fields["interval_method"] = QUANTILES if solved else FIRST_ORDER
         fields |= _distribution("mu_static", value)
         fields |= _distribution("mu_static_apparent", table.mu * value)
     if share is True:
@@ -144,7 +147,7 @@ def _error_of_draws(outcome):
 def _normal_intervals(found, ends):
     """Fields of the uncertainty where a draw would be a search for an amplitude, a speed or a load:
     to first order, from half the difference of the predictions at the ends of each input."""
-    fields = {}
+    fields = {"interval_method": FIRST_ORDER}
     for name, unit in (("mu_static", ""), ("mu_static_apparent", ""), ("force_threshold", "_N")):
         value = getattr(found, name + unit)
         if value is None:

@@ -97,6 +97,10 @@ class Prediction:
         That threshold over the force; None without a force.
     safety_factor_spread, safety_factor_low, safety_factor_high : float or None
         Standard uncertainty and 95 % interval of the safety factor.
+    interval_method : str or None
+        How the interval of mu_static was computed: "quantiles" of draws of the inputs, or "first
+        order", with a static friction that is linear in each input: with a reduction, and where the
+        ratio of several amplitudes is uncertain.  None where there is no interval.
     probability_stays, probability_moves, probability_runs_away : float or None
         Probability of each outcome under a force, for independent inputs with normal distributions;
         None where every input is exact or the threshold is not known.
@@ -235,6 +239,7 @@ class Prediction:
     safety_factor_spread: float | None = None
     safety_factor_low: float | None = None
     safety_factor_high: float | None = None
+    interval_method: str | None = None
     probability_stays: float | None = None
     probability_moves: float | None = None
     probability_runs_away: float | None = None

@@ -157,15 +157,26 @@ class _Text:
         value = number_text(found.mu_static_apparent, found.mu_static_apparent_error)
         lines = [line("static friction", f"{value}: coefficient of friction at vanishing speed")]
         ends = found.mu_static_apparent_low, found.mu_static_apparent_high
-        lines += interval_lines(*ends, found.mu_static_apparent_error)
+        lines += interval_lines(ends, found.mu_static_apparent_error, found.interval_method)
         threshold = found.force_threshold_N
         if threshold is None and is_along_the_pull(found.scene):
             lines.append(line("", UNKNOWN_THRESHOLD))
-        if threshold is not None and not math.isclose(
-            threshold, found.friction_force_still_N * found.mu_static, abs_tol=0.0
-        ):
+        if threshold is not None and not self.moves_at_static_friction():
             lines.append(line("", ALONG_THE_PULL))
         return lines
+
+    def moves_at_static_friction(self):
+        """Whether the force threshold is the static friction."""
+        found = self.found
+        still = found.friction_force_still_N
+        return found.mu_static is not None and math.isclose(
+            found.force_threshold_N, still * found.mu_static, abs_tol=0.0
+        )
+
+    def interval_of_threshold(self, ends, error, unit):
+        """The line of the interval of the threshold, or of the safety factor."""
+        method = self.found.interval_method if self.moves_at_static_friction() else None
+        return interval_lines(ends, error, method, unit)
 
     def threshold(self):
         """Lines of the force that moves the contact, if it is known."""
@@ -181,7 +192,7 @@ class _Text:
         text = in_unit(value, error, self.force)
         lines = [line("force threshold", f"{text}: no smaller constant force moves the contact")]
         ends = (found.force_threshold_low_N, found.force_threshold_high_N)
-        return lines + interval_lines(*ends, error, unit=self.force)
+        return lines + self.interval_of_threshold(ends, error, self.force)
 
     def walk(self):
         """Lines of the motion under a force."""
@@ -191,7 +202,7 @@ class _Text:
             text = number_text(factor, found.safety_factor_error)
             lines.append(line("safety factor", f"{text}: threshold over force"))
             ends = found.safety_factor_low, found.safety_factor_high
-            lines += interval_lines(*ends, found.safety_factor_error)
+            lines += self.interval_of_threshold(ends, found.safety_factor_error, ("", 1.0))
         return lines + self.outcome()
 
     def outcome(self):

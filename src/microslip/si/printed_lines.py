@@ -43,6 +43,15 @@ UNKNOWN_THRESHOLD = (
 )
 """Explanation of a static friction without a force threshold."""
 
+QUANTILES, FIRST_ORDER = "quantiles", "first order"
+"""How an interval follows from the uncertain inputs: of draws, whose static friction is solved for,
+or of a static friction that is linear in each input."""
+FROM_INPUTS = "from the uncertain inputs"
+FROM_LINEAR_MODEL = (
+    f"{FROM_INPUTS} to first order: static friction is taken to be linear in each of them"
+)
+"""Origin of an interval by quantiles, and to first order."""
+
 NO_SPREAD_OF_SPEED = "none of the speed: the contact may run away"
 """Text where a speed within the uncertainties is infinite."""
 STAYS_WITHIN_SPREADS = "none of the speed: the contact may move"
@@ -139,14 +148,19 @@ def runs_away(found: object) -> str:
 
 
 def interval_lines(
-    low: float | None, high: float | None, error: float, unit: tuple[str, float] = ("", 1.0)
+    ends: tuple[float | None, float | None],
+    error: float,
+    method: str | None,
+    unit: tuple[str, float] = ("", 1.0),
 ) -> list[str]:
     """The line of an interval that follows from the uncertain inputs, if there is one.
 
-    low, high, error: ends of the interval and their error estimate in SI units.
+    ends, error: ends of the interval and their error estimate in SI units; method: see Prediction.
     """
+    low, high = ends
     if low is None:
         return []
     name, size = unit
     text = interval_text(low / size, high / size, name, error=error / size)
-    return [line("", f"95 % interval {text}, from the uncertain inputs")]
+    origin = FROM_LINEAR_MODEL if method == FIRST_ORDER else FROM_INPUTS
+    return [line("", f"95 % interval {text}, {origin}")]

@@ -30,7 +30,7 @@ UNITS += (("_N", "N"), ("_m", "m"), ("_s", "s"))
 """Ends of names of fields, and the units that they stand for; the first that fits counts."""
 OTHER_UNITS = {"drive_stiffness_N_m": "N m-1", "time_to_1_mm_s": "s"}
 TEXTS = ("warnings", "not_checked")
-NAMES = ("outcome", "regime", "sought", "contacts")
+NAMES = ("outcome", "regime", "sought", "contacts", "interval_method")
 """Texts that no case may have; what no case has besides is a number."""
 
 
