@@ -4,12 +4,18 @@ Takes care of Ctrl-C before anything else is imported, so that as little as can 
 Python's own way, a traceback.
 """
 
+import gc
 import signal
 import sys
+
+OBJECTS = 200_000
+"""New objects between two collections of garbage, more than imports make, all of which stay; with
+Python's own number of 700 collections take a tenth of the time of `microslip point`."""
 
 
 def main() -> int:
     """Run this process as the command; returns the exit code, see microslip.app.cli.main."""
+    gc.set_threshold(OBJECTS)
     stoppable = sys.argv[1:2] != ["sweep"]  # whose signals are for Snakemake
     asked = signal.getsignal(signal.SIGINT)
     if asked != signal.SIG_IGN:

@@ -215,6 +215,32 @@ def test_help_and_bad_options_do_not_load_the_solver():
     assert done.returncode == 0
 
 
+HEAVY = {"xarray", "pandas", "pint", "matplotlib", "dask", "jsonschema", "netCDF4", "tqdm"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("words", "model", "others"),
+    [
+        (["transverse", "--velocity", "0.1", "--amplitude", "1"], "radial", {"scipy.linalg"}),
+        (["transverse", "--velocity", "0", "--amplitude", "0"], "closed-form", {"numba"}),
+        (["continuous-bore", "--velocity", "0.1"], "closed-form", {"numba"}),
+        (["transverse", "--velocity", "1e4", "--amplitude", "1"], "closed-form", {"numba"}),
+    ],
+)
+def test_a_point_loads_only_what_answers_it(words, model, others):
+    """Libraries that take long to import."""
+    code = (
+        "import json, sys, microslip.app.cli as cli\n"
+        f"cli.main(['point', *{words}, '--json'])\n"
+        "print(json.dumps(list(sys.modules)))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    answer, modules = map(json.loads, done.stdout.splitlines())
+    assert answer["model"] == model
+    assert not (HEAVY | others) & set(modules)
+
+
 def test_a_negative_number_with_an_exponent_is_a_number(capsys):
     """argparse by itself takes it for an option."""
     assert cli.main(["point", "transverse", "--velocity", "-1e-3", "--amplitude", "1"]) == 2

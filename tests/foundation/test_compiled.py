@@ -145,3 +145,22 @@ def test_the_home_is_used_where_the_package_cannot_be_written(copy, tmp_path):
     done = run(FOLDER, copy, XDG_CACHE_HOME=str(tmp_path / "caches"))
     assert Path(done.stdout.strip()).is_relative_to(tmp_path / "caches" / "microslip")
     assert done.stderr == ""
+
+
+BESIDE_LINEAR_ALGEBRA = """
+import sys
+from microslip.contacts.coulomb import shrink
+assert shrink(4.0, 0.0, 1.0) == 0.25
+print("scipy.linalg" in sys.modules)
+import numba, numpy as np
+print(numba.njit(lambda a: a @ a)(np.full((2, 2), 3.0))[0, 0])
+print(numba.njit(lambda a: np.linalg.det(a))(np.diag([2.0, 3.0])))
+import scipy.linalg.cython_blas
+print(scipy.linalg.cython_blas.__name__, scipy.linalg.inv(np.diag([2.0, 4.0]))[1, 1])
+"""
+
+
+@pytest.mark.slow
+def test_kernels_load_no_linear_algebra_and_leave_it_to_others():
+    said = run(BESIDE_LINEAR_ALGEBRA, PACKAGE).stdout.split()
+    assert said == ["False", "18.0", "6.0", "scipy.linalg.cython_blas", "0.25"]

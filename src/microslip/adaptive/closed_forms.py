@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from microslip.adaptive.asked import Asked
+from microslip.adaptive.result import Result, of_closed_form
 from microslip.motions.motion import Motion
 from microslip.pressures.by_name import HERTZ
+from microslip.solver.method_names import SHIPPED
 from microslip.solver.problem import Problem
 from microslip.theory import hertz, paper
 from microslip.theory.exact import LARGEST_DROPS, STATIC_LIMITS
 
+CLOSED_FORM = "closed-form"
+"""Name of the model in results that are not marched."""
 QUADRATURE = 1e-7
 """Error of Eqs 17 and 18 for another pressure, which may have kinks."""
 WHOLE_ROUNDING = 1e-9
@@ -17,9 +22,29 @@ indenter's pressure."""
 ROUNDING = 1e-12
 
 
+def known_exactly(asked: Asked) -> Result | None:
+    """The Result where nothing has to be computed, else None."""
+    exact = no_vibration(asked.problem.motion, asked.problem.amplitude)
+    if exact is None and asked.chosen and asked.method == SHIPPED:
+        exact = unless_imposed(asked.problem, asked.tolerance, asked.cells, asked.steps)
+    if exact is None:
+        return None
+    used = CLOSED_FORM if asked.chosen else asked.model
+    return of_closed_form(asked.point | {"model": used}, exact, asked.seconds)
+
+
 def no_vibration(motion: Motion, amplitude: float | None) -> tuple | None:
     """(mu, torque, error) where nothing oscillates, whatever the model, else None."""
     return (1.0, None, ROUNDING) if motion.periodic and amplitude == 0.0 else None
+
+
+def unless_imposed(
+    problem: Problem, tolerance: float | None, cells: int | None, steps: int | None
+) -> tuple | None:
+    """The `closed_form`; None where a resolution is imposed and the motion is marched."""
+    if problem.velocity > 0.0 and not (cells is None and steps is None):
+        return None
+    return closed_form(problem, tolerance or 0.0)
 
 
 def closed_form(problem: Problem, tolerance: float) -> tuple | None:

@@ -11,11 +11,11 @@ from typing import NamedTuple
 from microslip.adaptive.asked import TOLERANCE, Asked, refuse_free, verdict
 from microslip.adaptive.chains import Axis
 from microslip.adaptive.choice import choose_model
-from microslip.adaptive.closed_forms import closed_form, no_vibration
+from microslip.adaptive.closed_forms import no_vibration, unless_imposed
 from microslip.adaptive.continuation import run_safely
 from microslip.adaptive.refinement import certify, run_tolerance
 from microslip.adaptive.resolutions import plan
-from microslip.adaptive.result import Result, of_closed_form
+from microslip.adaptive.result import Result
 from microslip.motions.by_name import read_otherwise
 from microslip.motions.motion import Motion
 from microslip.solver.budget import Spent
@@ -25,19 +25,6 @@ from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
 from microslip.solver.stick_edge import found_focus
-
-CLOSED_FORM = "closed-form"
-
-
-def known_exactly(asked: Asked) -> Result | None:
-    """The Result where nothing has to be computed, else None."""
-    exact = no_vibration(asked.problem.motion, asked.problem.amplitude)
-    if exact is None and asked.chosen and asked.method == SHIPPED:
-        exact = _exact(asked.problem, asked.tolerance, asked.cells, asked.steps)
-    if exact is None:
-        return None
-    used = CLOSED_FORM if asked.chosen else asked.model
-    return of_closed_form(asked.point | {"model": used}, exact, asked.seconds)
 
 
 class Marched(NamedTuple):
@@ -108,10 +95,7 @@ def _nothing_to_run(spent):
 
 
 def solve_moved(asked: Asked) -> Result:
-    """The certified friction, a result.Result; see microslip.solve."""
-    exact = known_exactly(asked)
-    if exact is not None:
-        return exact
+    """The certified friction, a result.Result, of a point that has no closed form."""
     motion, (run, coarsest, axes, readings) = asked.problem.motion, marched(asked)
     certified = certify(run, coarsest, axes, asked.accuracy, readings)
     steady = not motion.periodic
@@ -142,15 +126,8 @@ def refuse_choice(
     problem = Problem(motion, *place)
     exact = no_vibration(motion, problem.amplitude)
     if exact is None and model == "auto":
-        exact = _exact(problem, None, cells, steps)
+        exact = unless_imposed(problem, None, cells, steps)
     if exact is None:
         static = problem.velocity == 0.0
         name = choose_model(motion, problem.poisson, model, static=static)
         refuse_free(plan(problem, name, TOLERANCE, cells, steps)[1])
-
-
-def _exact(problem, asked, cells, steps):
-    """As `closed_form`, but that an imposed resolution is to be run, if anything is marched."""
-    if problem.velocity > 0.0 and not (cells is None and steps is None):
-        return None
-    return closed_form(problem, asked or 0.0)

@@ -9,8 +9,7 @@ from functools import partial
 from microslip.adaptive.asked import Asked, refuse_free, verdict
 from microslip.adaptive.certified import given_up
 from microslip.adaptive.chains import Runs
-from microslip.adaptive.closed_forms import ROUNDING
-from microslip.adaptive.moved import CLOSED_FORM
+from microslip.adaptive.closed_forms import CLOSED_FORM, ROUNDING
 from microslip.adaptive.refinement import certify, run_tolerance
 from microslip.adaptive.resolutions import plan, with_mass
 from microslip.adaptive.result import Result, of_closed_form

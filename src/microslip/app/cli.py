@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import sys
+from importlib import import_module
 
 from microslip import __version__
-from microslip.app import (
-    drive_command,
-    fit_command,
-    option_parser,
-    predict_command,
-    sweep_command,
-    terminal,
-)
+from microslip.app import option_parser, terminal
 from microslip.foundation import spec
-from microslip.foundation.errors import InputError
+from microslip.foundation.errors import CacheError, InputError
 
+COMMANDS = {
+    "predict": "friction of a real contact, in SI units",
+    "fit": "coefficient of friction and u_lim from measured friction",
+    "drive": "a motion that drives: stall force, no-load velocity, efficiency",
+}
+"""Commands with a module of their own in this package, and what they answer."""
 BORE = "Bore means spin: rotation about the contact normal."
 
 
@@ -49,10 +50,15 @@ def build_parser(asked: str | None = None) -> option_parser.OneLineParser:
         _add_motions(point)
     else:
         point.add_argument("scene", metavar="SCENE")
-    predict_command.add_parser(commands)
-    fit_command.add_parser(commands)
-    drive_command.add_parser(commands)
+    for name, summary in COMMANDS.items():
+        command = commands.add_parser(name, help=summary, allow_abbrev=False)
+        if name == asked:
+            _module_of(name).fill(command)
     return parser
+
+
+def _module_of(command):
+    return import_module(f"microslip.app.{command}_command")
 
 
 def _add_motions(parser):
@@ -180,6 +186,8 @@ def main(arguments: list[str] | None = None) -> int:
 
         return leftovers.main(arguments[1:])
     if arguments[:1] == ["sweep"]:  # not for argparse: what follows is Snakemake's
+        from microslip.app import sweep_command
+
         return sweep_command.main(arguments[1:])
     if arguments[:1] == ["point"]:
         problem = _problem_of_motion(arguments[1:2])
@@ -188,19 +196,13 @@ def main(arguments: list[str] | None = None) -> int:
             return 2
         arguments = _with_path(arguments)
     options = build_parser(next(iter(arguments), None)).parse_args(option_parser.joined(arguments))
-    if options.command == "predict":
-        return predict_command.run(options)
-    if options.command == "fit":
-        return fit_command.run(options)
-    if options.command == "drive":
-        return drive_command.run(options)
-    from microslip.sweeps.evaluate import plain  # only now: --help and bad options need no solver
-    from microslip.sweeps.sealed_files import CacheError
-
+    if options.command in COMMANDS:
+        return _module_of(options.command).run(options)
     named = f"microslip point {options.scene}"
     try:
         with _bar() as bar:
-            result = _answer(options, lambda resolution: _show(bar, resolution))
+            progress = None if bar is None else lambda resolution: _show(bar, resolution)
+            result = _answer(options, progress)
     except InputError as error:
         problem = error.renamed(*_as_given(options, error.argument))
         missing = f"{problem.argument}: needed; {problem.allowed}"
@@ -213,6 +215,8 @@ def main(arguments: list[str] | None = None) -> int:
         terminal.complain(f"{named}: {error}")
         return 2
     if options.json:
+        from microslip.sweeps.evaluate import plain
+
         print(json.dumps({"amplitude": None} | plain(result.to_dict())))
     else:
         from microslip.app.point_text import as_text  # only now: it knows the models
@@ -270,7 +274,7 @@ def _answer(options, progress):
         allowed = "allowed is shipped with --results, which keeps points of sweeps"
         raise InputError("method", options.method, allowed)
     numbers.setdefault("velocity", None)
-    from microslip import solve, solve_stored
+    import microslip  # only now: --help and bad options need no solver
 
     path = getattr(options, "path", None)
     settings = {"pressure": options.pressure, "model": options.model, **numbers}
@@ -278,15 +282,17 @@ def _answer(options, progress):
     if options.contacts is not None:
         settings["contacts"] = options.contacts
     if options.results is None:
-        return solve(**settings, method=options.method, progress=progress)
-    return solve_stored(**settings, results=options.results)
+        return microslip.solve(**settings, method=options.method, progress=progress)
+    return microslip.solve_stored(**settings, results=options.results)
 
 
 def _bar():
-    """A line on standard error that counts the runs; silent where nobody looks."""
+    """A line on standard error that counts the runs; None unless that is a terminal."""
+    if not sys.stderr.isatty():
+        return contextlib.nullcontext()
     from tqdm import tqdm
 
-    return tqdm(unit=" runs", leave=False, disable=None, delay=0.1)
+    return tqdm(unit=" runs", leave=False, delay=0.1)
 
 
 def _show(bar, resolution):

@@ -33,17 +33,14 @@ REFERENCE_LOADS = (
 """Sentence beside the answer where the normal load oscillates."""
 
 
-def add_parser(commands: argparse._SubParsersAction) -> None:
-    """Add the parser of `drive` to those of the other commands."""
-    parser = commands.add_parser(
-        "drive",
-        allow_abbrev=False,
-        help="a motion that drives: stall force, no-load velocity, efficiency",
-        description="Some motions drive the contact forward by themselves: a loop that is not its "
+def fill(parser: argparse.ArgumentParser) -> None:
+    """Add the description and the arguments of `drive` to its parser."""
+    parser.description = (
+        "Some motions drive the contact forward by themselves: a loop that is not its "
         "own image after half a period, or a load that is higher on the way back.  The line from "
         "the stall force, the load that stops it, to the no-load velocity; forces over mu times "
         "the mean normal load, powers over that, u_lim and omega.  A heavy body moves at the "
-        "velocity; below 0 the motion drives backward.",
+        "velocity; below 0 the motion drives backward."
     )
     parser.add_argument(
         "scene", metavar="SCENE", help="elliptic or normal, with --path or a colon and its numbers"

@@ -32,19 +32,18 @@ FILES = ("map", "figure", "output")
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "u"), (1e-9, "n"))
 
 
-def add_parser(commands: argparse._SubParsersAction) -> None:
-    """Add the parser of `fit` to those of the other commands."""
-    parser = commands.add_parser(
-        "fit",
-        allow_abbrev=False,
-        help="coefficient of friction and u_lim from measured friction",
-        description="The coefficient of friction without vibration, and the displacement u_lim "
+def fill(parser: argparse.ArgumentParser) -> None:
+    """Add the description and the arguments of `fit` to its parser."""
+    parser.description = (
+        "The coefficient of friction without vibration, and the displacement u_lim "
         "that lets the whole contact slide, or the shear modulus, from friction that was measured "
         "under vibration.  A row of the CSV file is a measurement; its heading names columns with "
         "their units: some of speed [mm/s], amplitude [um], frequency [kHz], load [N]; friction "
-        "[N] or mu; friction_error [N] or mu_error.",
-        epilog="Exit codes: 0 both numbers are told, 1 mu alone is, or lines that cannot be read "
-        "were left out, 2 bad input, or rows that tell neither.",
+        "[N] or mu; friction_error [N] or mu_error."
+    )
+    parser.epilog = (
+        "Exit codes: 0 both numbers are told, 1 mu alone is, or lines that cannot be read "
+        "were left out, 2 bad input, or rows that tell neither."
     )
     scenes = ", ".join(UNIT_OF_AMPLITUDE)
     parser.add_argument("scene", metavar="SCENE", help=f"the motion: {scenes}")

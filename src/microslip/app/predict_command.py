@@ -92,17 +92,14 @@ ABOUT_GROUPS = {
 OTHER_NAMES = {"nu": ("--poisson",)}
 
 
-def add_parser(commands: argparse._SubParsersAction) -> None:
-    """Add the parser of `predict` to those of the other commands."""
-    parser = commands.add_parser(
-        "predict",
-        allow_abbrev=False,
-        help="friction of a real contact, in SI units",
-        description="How much friction falls in a contact given in SI units, and how far to trust "
+def fill(parser: argparse.ArgumentParser) -> None:
+    """Add the description and the arguments of `predict` to its parser."""
+    parser.description = (
+        "How much friction falls in a contact given in SI units, and how far to trust "
         "that.  All quantities take units.  The answer has two kinds of numbers: mu_macro is a "
         "ratio, the friction with vibration over that without; mu_apparent is the coefficient of "
         "friction that is felt.  A number with a standard uncertainty, such as '0.15 +- 0.05' or "
-        "'10 N +- 5 %', gives intervals and the probability of each outcome.",
+        "'10 N +- 5 %', gives intervals and the probability of each outcome."
     )
     scenes = "; ".join(f"{name}: it {what}" for name, what in MOTIONS.items())
     parser.add_argument(

@@ -20,7 +20,6 @@ import importlib.util
 import json
 import os
 import sys
-import uuid
 from collections.abc import Iterable, Iterator
 from functools import cache, cached_property
 from pathlib import Path
@@ -182,7 +181,7 @@ class Sources:
         self._is_kept = True
         now = {_sha256(content) for content in self.contents.values()}
         kept = {key: parsed for key, parsed in self._kept.items() if key in now}
-        beside = self._file.with_name(f"{self._file.name}.{uuid.uuid4().hex}")
+        beside = self._file.with_name(f"{self._file.name}.{os.urandom(8).hex()}")
         try:
             self._file.parent.mkdir(exist_ok=True)
             beside.write_text(json.dumps([_READER, kept], separators=(",", ":")))

@@ -18,25 +18,14 @@ exact then, too.
 and no refinement brings it back.
 
 Every model that marches keeps the contract of `models.contact.Contact`.  A new one is a file
-beside these and a row in `MODELS`.
+beside these and a row in `MODELS`.  A model is imported when its first contact is built, since
+compiled code takes a while to load and closed forms do without it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-
-from microslip.models.polar.contact import PolarContact
-from microslip.models.polar.side_by_side import PolarSideBySide
-from microslip.models.reduced.dahl import DahlContact
-from microslip.models.reduced.mdr import mdr_contact
-from microslip.models.reduced.rigid import RigidContact
-from microslip.models.reduced.slider import slider_contact
-from microslip.models.rings.contact import RadialContact
-from microslip.models.rings.side_by_side import RingsSideBySide
-from microslip.models.squares import half
-from microslip.models.squares.contact import CartesianContact
-from microslip.models.squares.side_by_side import SquaresSideBySide
 
 
 @dataclass(frozen=True)
@@ -122,70 +111,106 @@ def _refuse_rigid(motion, poisson):
     return _refuse_angles(motion, poisson) if motion.rotates else ""
 
 
-def _symmetry(motion):
-    """Of tractions on squares, as far as the pressure has it, too."""
-    if not motion.half_disc:
-        return ""
-    return half.MIRROR if motion.rotates else half.TURN
-
-
 _NO_ROTATION = _any_of(_refuse_rotation, _refuse_pulsation)
+
+
+def _rigid(motion, poisson, cells, angles, focus):
+    from microslip.models.reduced.rigid import RigidContact
+
+    return RigidContact(cells, angles, motion.rotates, motion.pressure)
+
+
+def _slider(motion, poisson, cells, angles, focus):
+    from microslip.models.reduced.slider import slider_contact
+
+    return slider_contact()
+
+
+def _dahl(motion, poisson, cells, angles, focus):
+    from microslip.models.reduced.dahl import DahlContact
+
+    return DahlContact(motion.pressure.stiffness)
+
+
+def _mdr(motion, poisson, cells, angles, focus):
+    from microslip.models.reduced.mdr import mdr_contact
+
+    return mdr_contact(cells, focus, motion.pressure)
+
+
+def _radial(motion, poisson, cells, angles, focus):
+    from microslip.models.rings.contact import RadialContact
+
+    return RadialContact.resolved(cells, focus, motion.pressure)
+
+
+def _rings_side_by_side(contacts, shares, extents):
+    from microslip.models.rings.side_by_side import RingsSideBySide
+
+    return RingsSideBySide(contacts, shares, extents)
+
+
+def _polar(motion, poisson, cells, angles, focus):
+    from microslip.models.polar.contact import PolarContact
+
+    whole = not motion.half_disc
+    return PolarContact(cells, angles, motion.rotates, poisson, focus, motion.pressure, whole=whole)
+
+
+def _polar_side_by_side(contacts, shares, extents):
+    from microslip.models.polar.side_by_side import PolarSideBySide
+
+    return PolarSideBySide(contacts, shares, extents)
+
+
+def _cartesian(motion, poisson, cells, angles, focus):
+    from microslip.models.squares import half
+    from microslip.models.squares.contact import CartesianContact
+
+    symmetry = ""  # of the tractions, as far as the pressure has it, too
+    if motion.half_disc:
+        symmetry = half.MIRROR if motion.rotates else half.TURN
+    return CartesianContact(cells, poisson, motion.pressure, symmetry)
+
+
+def _squares_side_by_side(contacts, shares, extents):
+    from microslip.models.squares.side_by_side import SquaresSideBySide
+
+    return SquaresSideBySide(contacts, shares, extents)
+
 
 MODELS = {
     "rigid": Model(
-        lambda motion, poisson, cells, angles, focus: RigidContact(
-            cells, angles, motion.rotates, motion.pressure
-        ),
+        _rigid,
         _any_of(_refuse_pulsation, _refuse_rigid),
         exact=lambda motion: not motion.periodic,
         axes=lambda motion: ("cells", "angles") if motion.rotates else (),
     ),
     "slider": Model(
-        lambda motion, poisson, cells, angles, focus: slider_contact(),
+        _slider,
         _NO_ROTATION,
         exact=_never,
         axes=lambda motion: (),
-        side_by_side=RingsSideBySide,
+        side_by_side=_rings_side_by_side,
     ),
-    "dahl": Model(
-        lambda motion, poisson, cells, angles, focus: DahlContact(motion.pressure.stiffness),
-        _NO_ROTATION,
-        exact=_never,
-        axes=lambda motion: (),
-    ),
+    "dahl": Model(_dahl, _NO_ROTATION, exact=_never, axes=lambda motion: ()),
     "mdr": Model(
-        lambda motion, poisson, cells, angles, focus: mdr_contact(cells, focus, motion.pressure),
+        _mdr,
         _any_of(_refuse_other_loads, _refuse_springs),
         exact=_never,
-        side_by_side=RingsSideBySide,
+        side_by_side=_rings_side_by_side,
     ),
     "radial": Model(
-        lambda motion, poisson, cells, angles, focus: RadialContact.resolved(
-            cells, focus, motion.pressure
-        ),
+        _radial,
         _any_of(_refuse_other_loads, _refuse_rings),
-        side_by_side=RingsSideBySide,
+        side_by_side=_rings_side_by_side,
     ),
     "polar": Model(
-        lambda motion, poisson, cells, angles, focus: PolarContact(
-            cells,
-            angles,
-            motion.rotates,
-            poisson,
-            focus,
-            motion.pressure,
-            whole=not motion.half_disc,
-        ),
+        _polar,
         _any_of(_refuse_other_loads, _refuse_angles),
         axes=lambda motion: ("cells", "angles"),
-        side_by_side=PolarSideBySide,
+        side_by_side=_polar_side_by_side,
     ),
-    "cartesian": Model(
-        lambda motion, poisson, cells, angles, focus: CartesianContact(
-            cells, poisson, motion.pressure, _symmetry(motion)
-        ),
-        _refuse_pulsation,
-        side_by_side=SquaresSideBySide,
-    ),
+    "cartesian": Model(_cartesian, _refuse_pulsation, side_by_side=_squares_side_by_side),
 }
 """Models by name."""

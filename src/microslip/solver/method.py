@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 
 from microslip.models.contact import Contact
 from microslip.models.path import SDIRK2, Integrator
-from microslip.solver.periodic import find_periodic_state
 
 
 @dataclass(frozen=True)
@@ -31,8 +30,8 @@ class Method:
         Of a contact and `parameters`: a contact that solves its steps in another way.
     parameters : mapping of str to float
         Numbers that `dress` takes, with their defaults.
-    search : callable
-        As periodic.find_periodic_state.
+    search : callable or None
+        Replaces periodic.find_periodic_state.
     prepared : bool
         Whether to start near the static limit and with coarse steps, else once from full slip.
     extrapolated : bool
@@ -53,7 +52,7 @@ class Method:
     integrator: Integrator = SDIRK2
     dress: Callable | None = None
     parameters: Mapping[str, float] = field(default_factory=dict)
-    search: Callable = find_periodic_state
+    search: Callable | None = None
     prepared: bool = True
     extrapolated: bool = False
     run: Callable | None = None

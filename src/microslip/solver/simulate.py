@@ -11,6 +11,7 @@ from microslip.models.contact import FORWARD, Contact, StepFailure, forces, forw
 from microslip.models.path import Path
 from microslip.motions.motion import Motion
 from microslip.solver.period_map import MOST_MARCHES, CreepRate, Goal, PeriodMap
+from microslip.solver.periodic import find_periodic_state
 from microslip.solver.power import oscillation_power
 from microslip.solver.problem import Problem, Resolution
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run, unsolved
@@ -189,7 +190,8 @@ class _Search:
         )
         most = MARCHES_FROM_COARSER if near else MOST_MARCHES
         goal = Goal(self.tolerance, self.step_tolerance, most, near)
-        self.done.append(self.method.search(period_map, start, goal))
+        search = self.method.search or find_periodic_state
+        self.done.append(search(period_map, start, goal))
         return self.done[-1]
 
     def _summary(self, found):

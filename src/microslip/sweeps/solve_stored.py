@@ -17,7 +17,6 @@ from microslip.adaptive.checks import (
     refuse_bounds,
 )
 from microslip.adaptive.choice import choose_model
-from microslip.adaptive.moved import refuse_choice
 from microslip.adaptive.pulled import refuse_drive
 from microslip.adaptive.result import Result
 from microslip.adaptive.several import body_of
@@ -87,6 +86,8 @@ def solve_stored(
     if drive is not None:
         refuse_drive(problem, drive, chosen)
     if tolerance is None:
+        from microslip.adaptive.moved import refuse_choice  # only now: it loads compiled code
+
         moving = place if force is None else 1.0  # under a force it is the velocity that is asked
         refuse_choice(kind, model, (moving, amplitude, poisson), cells, steps)
     grid = Sweep(
