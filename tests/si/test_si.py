@@ -347,20 +347,20 @@ def test_a_missing_property_is_said_with_its_body():
 
 
 @pytest.mark.parametrize(
-    ("name", "shear_modulus"),
+    ("name", "shear_modulus", "rounding"),
     [
-        ("brass", 37.3e9),  # Kaye and Laby, 2.2.2
-        ("copper", 48.3e9),
-        ("gold", 27.0e9),
-        ("alumina", 169e9),  # R. G. Munro, 1997
-        ("diamond", 535e9),  # H. J. McSkimin and P. Andreatch, J. Appl. Phys. 43, 1972
-        ("bearing-steel", 79.6e9),
-        ("CoCrMo", 88e9),
+        ("brass", 37.3e9, 0.012),  # Kaye and Laby, 2.2.2
+        ("copper", 48.3e9, 0.012),
+        ("gold", 27.0e9, 0.012),  # WebElements
+        ("alumina", 169e9, 0.012),  # R. G. Munro, 1997
+        ("diamond", 535e9, 0.012),  # H. J. McSkimin and P. Andreatch, J. Appl. Phys. 43, 1972
+        ("bearing-steel", 79.6e9, 0.012),
+        ("CoCrMo", 87e9, 0.03),  # MakeItFrom.com: E to two digits
     ],
 )
-def test_two_elastic_constants_of_a_material_give_the_published_third(name, shear_modulus):
+def test_two_elastic_constants_give_the_published_third(name, shear_modulus, rounding):
     assert microslip.predict("transverse", **MILD | _of(name)).u_lim_m > 0.0
-    assert MATERIALS[name].shear_modulus == pytest.approx(shear_modulus, rel=0.012)
+    assert MATERIALS[name].shear_modulus == pytest.approx(shear_modulus, rel=rounding)
 
 
 def _of(name):

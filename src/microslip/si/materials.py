@@ -70,51 +70,55 @@ MATERIALS = {
     "stainless-steel": Material(200e9, 0.3, 7900.0, source="EN 1993-1-4, 2.1.3; EN 10088-1"),
     "aluminium": Material(70e9, 0.3, 2700.0, source="EN 1999-1-1, 3.2.5"),
     "cast-iron": Material(110e9, 0.26, 7200.0, source="EN 1561, Annex A: EN-GJL-250, middle of E"),
-    "titanium": Material(113.8e9, 0.342, 4430.0, source="ASM Handbook, Vol. 2: Ti-6Al-4V"),
+    "titanium": Material(
+        *(113.8e9, 0.342, 4430.0),
+        source="ASM, asm.matweb.com, MTP643: Ti-6Al-4V ELI, annealed",
+    ),
     "concrete": Material(33e9, 0.2, 2400.0, source="EN 1992-1-1, Table 3.1: C30/37; EN 1991-1-1"),
     "glass": Material(70e9, 0.2, 2500.0, 6e9, source="EN 572-1, Table 1: soda lime; Knoop"),
     "bearing-steel": Material(
         *(207e9, 0.3, 7810.0, 7.4e9),
-        source="ISO/TR 10657 (E, nu of bearing steel); 100Cr6 through-hardened to 700 HV",
+        source="W. D. Callister and D. G. Rethwisch, Fundamentals of Materials Science and "
+        "Engineering, 3rd ed., Table B.2: E of steels; data sheets of AISI 52100 (100Cr6): nu, "
+        "density, 60 HRC (700 HV) at least when hardened",
     ),
     "brass": Material(
         *(101e9, 0.35, 8530.0),
-        source="N. E. Dowling, Mechanical Behavior of Materials, Table 5.2: 70Cu-30Zn; ASM "
-        "Handbook, Vol. 2: density of C26000",
+        source="N. E. Dowling, Mechanical Behavior of Materials, Table 5.2: 70Cu-30Zn; Olin "
+        "Brass, data sheet of C26000: density",
     ),
     "copper": Material(
         *(130e9, 0.343, 8960.0),
         source="N. E. Dowling, Mechanical Behavior of Materials, Table 5.2; CRC Handbook: density",
     ),
-    "gold": Material(
-        *(78e9, 0.44, 19300.0),
-        source="Kaye and Laby, Tables of Physical and Chemical Constants, 2.2.2; CRC Handbook: "
-        "density",
-    ),
+    "gold": Material(*(78e9, 0.44, 19300.0), source="WebElements, gold: physical properties"),
     "PTFE": Material(
         *(0.5e9, 0.46, 2170.0),
-        source="DuPont, Teflon PTFE Properties Handbook: unfilled, 23 degC",
+        source="W. D. Callister and D. G. Rethwisch, Fundamentals of Materials Science and "
+        "Engineering, 3rd ed., Tables B.1, B.2: 0.40 to 0.55 GPa; Kintek, properties of PTFE: nu",
     ),
     "PEEK": Material(
         *(4.0e9, 0.4, 1300.0),
-        source="Victrex, Materials Properties Guide: PEEK 450G, unfilled, 23 degC",
+        source="MakeItFrom.com: unfilled; Scientific Reports 14, 2024, s41598-024-79536-3, "
+        "Table 1: nu",
     ),
     "CoCrMo": Material(
-        *(230e9, 0.3, 8300.0),
-        source="J. Jagatia and Z. M. Jin, Proc. IMechE H 215, 2001: Co-28Cr-6Mo (ISO 5832-12)",
+        *(220e9, 0.29, 8400.0),
+        source="MakeItFrom.com: low-carbon Co-28Cr-6Mo (ASTM F1537 alloy 1, ISO 5832-12)",
     ),
     "alumina": Material(
         *(416e9, 0.231, 3984.0, 16.2e9),
-        source="R. G. Munro, J. Am. Ceram. Soc. 80, 1919, 1997: sintered, 99.5 %; 15 GPa Vickers",
+        source="R. G. Munro, J. Am. Ceram. Soc. 80, 1919, 1997 (NIST SRD 150): sintered, 99.5 %; "
+        "15 GPa Vickers",
     ),
     "zirconia": Material(
         *(210e9, 0.3, 6050.0, 12.7e9),
-        source="C. Piconi and G. Maccauro, Biomaterials 20, 1999: Y-TZP, 1200 HV",
+        source="Open Biomaterials Journal 5, TOBIOMTJ-5-1, Table 1: Y-TZP, 1200 HV; nu assumed",
     ),
     "diamond": Material(
-        *(1143e9, 0.0691, 3515.0, 68.6e9),
+        *(1143e9, 0.0691, 3515.0, 86e9),
         source="C. A. Klein and G. F. Cardinale, Diamond Relat. Mater. 2, 1993: polycrystalline; "
-        "CRC Handbook: density, Knoop 7000",
+        "PubMed Central, PMC7227005, Table 1: 79.7 GPa Vickers; density of its lattice",
     ),
     "rigid": RIGID,
 }
