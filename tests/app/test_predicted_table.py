@@ -104,7 +104,7 @@ def test_a_line_that_cannot_be_leaves_the_others_their_answers_and_labels(folder
     first, *others = json.loads(out)
     assert (first["line"], first["label"], first["error"]) == (2, "first", None)
     assert first["amplitude_si"] == pytest.approx(3e-7) and first["mu_apparent"] > 0.0
-    said = ["amplitude = '-0.1 um'", "speed = None: needed", "line 5: 3 cells; allowed: 4"]
+    said = ["amplitude = '-0.1 um'", "speed: needed", "line 5: 3 cells; allowed: 4"]
     assert [part in one["error"] for part, one in zip(said, others, strict=True)] == [True] * 3
     lines = [line for line in complaints.splitlines() if line.startswith("microslip predict: ")]
     assert [line.split(": ")[1] for line in lines] == ["line 3", "line 4", "line 5"]
@@ -118,6 +118,33 @@ def test_a_line_that_cannot_be_leaves_the_others_their_answers_and_labels(folder
         ["3", "second", "no", "prediction"],
         ["4", "third", "no", "prediction"],
     ]
+
+
+@pytest.mark.slow
+def test_a_line_that_cannot_be_names_columns_and_options(folder, capsys):
+    """A column by its heading, what has none by its option: not by the argument of Python."""
+    table = "load,speed,drive_stiffness [N/mm],amplitude\n10 N,1 mm/s,{},{}\n10 N,1 mm/s,,1 um\n"
+    command = [word for word in COMMAND if word not in ("--radius", SHARED["radius"])]
+    given = ["--contact-radius", "1 mm", "--tolerance", "0.05"]
+    cases = [
+        ("-5", "1 um", given, "drive_stiffness = '-5 N/mm': allowed is a finite value above 0 N/m"),
+        ("", "", given, "amplitude: transverse needs it"),
+    ]
+    command = [word for word in command if word not in ("--tolerance", "0.01")]
+    for stiffness, amplitude, words, error in cases:
+        (folder / "contacts.csv").write_text(table.format(stiffness, amplitude))
+        assert cli.main([*command, *words, "--json", "--output", "found.csv"]) == 1
+        said = capsys.readouterr()
+        assert said.err == f"microslip predict: line 2: {error}\n"
+        assert json.loads(said.out)[0]["error"] == error
+        assert pd.read_csv(folder / "found.csv").error[0] == error
+    (folder / "contacts.csv").write_text("load,speed,radius\n10 N,1 mm/s,\n10 N,1 mm/s,5 mm\n")
+    assert cli.main([*command, "--amplitude", "1 um", "--tolerance", "0.05"]) == 1
+    assert "line 2: radius: needed, or --contact-radius in its place" in capsys.readouterr().err
+    text = "load,speed,contact_radius\n10 N,1 mm/s,\n10 N,1 mm/s,1 mm\n"
+    (folder / "contacts.csv").write_text(text)
+    assert cli.main([*command, "--amplitude", "1 um", "--tolerance", "0.05"]) == 1
+    assert "line 2: --radius: needed, or a contact_radius in its place" in capsys.readouterr().err
 
 
 @pytest.mark.slow

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import difflib
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NoReturn
 
 from microslip.app.terminal import complain
@@ -85,9 +85,22 @@ def _hint(given, known):
     return f"did you mean {near[0]}? " if near else ""
 
 
-def format_as_options(text: str) -> str:
-    """A message about a CSV file with --decimal and --encoding in place of arguments of Python."""
-    return re.sub(r"\b(decimal|encoding) = ", r"--\1 ", text)
+def option(argument: str) -> str:
+    """The option of an argument of Python, such as --contact-radius."""
+    return f"--{argument.replace('_', '-')}"
+
+
+def format_as_options(text: str, arguments: Iterable[str] = ()) -> str:
+    """A message with options in place of arguments of Python.
+
+    These are --decimal and --encoding of a CSV file, and the options of those of the arguments
+    whose names have several words: others may be words of the text.
+    """
+    text = re.sub(r"\b(decimal|encoding) = ", r"--\1 ", text)
+    names = "|".join(name for name in arguments if "_" in name)
+    if not names:
+        return text
+    return re.sub(rf"(?:\ba )?\b({names})\b", lambda match: option(match[1]), text)
 
 
 class Said(argparse.Action):

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import argparse
 import json
-import re
 import sys
 
 from microslip.app import predicted_driving, predicted_table
-from microslip.app.option_parser import Said, format_as_options
+from microslip.app.option_parser import Said, format_as_options, option
 from microslip.app.terminal import complain
 from microslip.foundation.errors import InputError, shown
 from microslip.si.materials import MATERIALS
@@ -182,15 +181,9 @@ def _found(options, given):
 
 def _complaint(error, typed):
     """The option, its value as it was given, and what is allowed, in one line."""
-    name = f"--{error.argument.replace('_', '-')}"
-    option = "SCENE" if error.argument == "scene" else typed.get(error.argument, name)
+    name = "SCENE" if error.argument == "scene" else option(error.argument)
     flag = error.value is True or error.value is None
     given = "" if flag else f" = {shown(error.value)}"
-    allowed = error.allowed if error.argument == "table" else _with_options(error.allowed)
-    return " ".join(f"{option}{given}: {format_as_options(allowed)}".split())
-
-
-def _with_options(text):
-    """A text with options in place of arguments of Python, such as --contact-radius."""
-    names = "|".join(name.replace("-", "_") for name in OPTIONS if "-" in name)
-    return re.sub(rf"(?:\ba )?\b({names})\b", lambda m: f"--{m[1].replace('_', '-')}", text)
+    names = [] if error.argument == "table" else [name.replace("-", "_") for name in OPTIONS]
+    allowed = format_as_options(error.allowed, names)
+    return " ".join(f"{typed.get(error.argument, name)}{given}: {allowed}".split())

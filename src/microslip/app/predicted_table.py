@@ -7,12 +7,13 @@ import json
 import os
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from inspect import signature
 from pathlib import Path
 
-from microslip.app.option_parser import format_as_options
+from microslip.app.option_parser import format_as_options, option
 from microslip.app.terminal import complain
 from microslip.foundation.csv_text import LABELS
-from microslip.foundation.errors import CacheError, InputError
+from microslip.foundation.errors import CacheError, InputError, shown
 from microslip.foundation.number_text import SEPARATOR, error_text, number_text
 from microslip.si.prediction import NoPrediction, Prediction
 from microslip.si.printed_lines import not_converged, probability_text, runs_away, unit_of_sought
@@ -63,7 +64,7 @@ class Answered:
         pairs = zip(self.lines, self.found, strict=True)
         texts = ((line, one.error) for line, one in pairs if isinstance(one, NoPrediction))
         return [
-            f"line {line}: {_problem(text)}" if isinstance(text, InputError) else text
+            f"line {line}: {_problem(text, self.cases)}" if isinstance(text, InputError) else text
             for line, text in texts
         ]
 
@@ -73,7 +74,7 @@ class Answered:
         for row, (line, one) in enumerate(zip(self.lines, self.found, strict=True)):
             labels = {name: texts[row] for name, texts in self.labels.items()}
             if isinstance(one, NoPrediction):
-                dicts.append({"line": line} | labels | {"error": str(one.error)})
+                dicts.append({"line": line} | labels | {"error": _problem(one.error, self.cases)})
             else:
                 dicts.append({"line": line} | labels | {"error": None} | one.to_dict())
         return dicts
@@ -129,14 +130,25 @@ def ask(
     except InputError as error:
         if error.argument not in read.columns or error.argument in given:
             raise
-        raise InputError("table", path, _problem(error)) from None
+        raise InputError("table", path, _problem(error, read.columns)) from None
     answers = list(tqdm(found, "contacts", len(names), leave=False, disable=None))
     return Answered(scene, read.columns, read.lines, answers)
 
 
-def _problem(error):
-    """An InputError about a cell: without a value where the cell is empty or has no column."""
-    return f"{error.argument}: {error.allowed}" if error.value is None else str(error)
+def _problem(error, columns):
+    """What is wrong with a line, with the names of columns and options in place of arguments.
+
+    error: InputError, without a value where the cell is empty or has no column; or a text.
+    """
+    from microslip.si.predict import predict  # only now: it takes a while
+
+    if not isinstance(error, InputError):
+        return format_as_options(error)
+    others = [name for name in signature(predict).parameters if name not in columns]
+    name = error.argument if error.argument in columns else option(error.argument)
+    given = "" if error.value is None else f" = {shown(error.value)}"
+    allowed = format_as_options(error.allowed, others)
+    return " ".join(f"{name}{given}: {allowed}".split())
 
 
 def refuse_output(path: str | None, table: str) -> None:
@@ -160,6 +172,8 @@ def write(path: str, answered: Answered) -> None:
     from microslip.sweeps.sealed_files import writing_beside
 
     dataset = as_dataset(answered.scene, answered.cases, answered.found)
+    problems = [one["error"] or "" for one in answered.to_dicts()]
+    dataset["error"] = dataset["error"].copy(data=problems)
     lines = "case", answered.lines, {"long_name": "line of the file"}
     dataset = dataset.assign_coords(line=lines)
     try:
