@@ -10,11 +10,11 @@
 # figures, captions and what made them.
 #
 # Two studies compare methods: snakemake accuracy, snakemake stability; a third one judges what the
-# paper says: snakemake claims. A fourth one shows what motions drive: snakemake driving.
+# paper says: snakemake claims. A fourth one shows what motions drive: snakemake propulsion.
 #
-#   methods, points --> pieces --> solve_batch --+--> results/batches/{accuracy,stability,claims,driving}*/
+#   methods, points --> pieces --> solve_batch --+--> results/batches/{accuracy,stability,claims,propulsion}*/
 #                                                +--> results/{points,trials,probes,scaling,...}
-#   pieces of a study --> collect_study --> results/{accuracy_cost,stability,claims,driving}.nc
+#   pieces of a study --> collect_study --> results/{accuracy_cost,stability,claims,propulsion}.nc
 #   datasets --> draw_figure
 #
 # Sweeps of other motions and pressures, those under `extended`, come the same way: snakemake extended
@@ -121,10 +121,10 @@ rule stability:
         figures_of(["stability"]),
 
 
-rule driving:
+rule propulsion:
     input:
-        datasets_of(["driving"]),
-        figures_of(["driving"]),
+        datasets_of(["propulsion"]),
+        figures_of(["propulsion"]),
 
 
 rule claims:

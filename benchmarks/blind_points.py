@@ -42,7 +42,7 @@ class Stratum:
         What they have in common.
     weight : float
         Their share of all points, over the sum of the weights of all strata.
-    scenes, pressures : tuple of str
+    motions, pressures : tuple of str
         Drawn with equal chances.
     poisson : tuple of float
         The same.
@@ -56,7 +56,7 @@ class Stratum:
 
     name: str
     weight: float
-    scenes: tuple[str, ...]
+    motions: tuple[str, ...]
     pressures: tuple[str, ...] = ("hertz",)
     poisson: tuple[float, ...] = (0.0,)
     velocity: tuple[float, float] | None = (-4.0, 2.0)
@@ -128,7 +128,7 @@ def point(seed: int, k: int) -> dict:
 
     return {
         "stratum": stratum.name,
-        "scene": str(draw.choice(stratum.scenes)),
+        "motion": str(draw.choice(stratum.motions)),
         "pressure": str(draw.choice(stratum.pressures)),
         "poisson": float(draw.choice(stratum.poisson)),
         "velocity": within(stratum.velocity) if stratum.velocity else 0.0,

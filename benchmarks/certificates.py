@@ -79,7 +79,7 @@ def examine(seed: int, k: int, known: dict | None = None) -> dict:
     if known is None:
         known = tighter(given, LONGEST)
     if known["by"] != "finer" and not decides(known):
-        motion = motion_named(point["scene"], point["pressure"])
+        motion = motion_named(point["motion"], point["pressure"])
         problem = Problem(motion, point["velocity"], point["amplitude"], point["poisson"])
         mu, uncertainty = finer.reference(problem, point["tolerance"], result)
         known = {"reference": mu, "uncertainty": uncertainty, "by": "finer"}
@@ -178,7 +178,7 @@ def _row(stratum, tolerance, lines):
 
 def _named(line):
     return (
-        f"{line['scene']} under {line['pressure']}, velocity {line['velocity']:g}, amplitude"
+        f"{line['motion']} under {line['pressure']}, velocity {line['velocity']:g}, amplitude"
         f" {line['amplitude']:g}, nu {line['poisson']:g} at {line['tolerance']:g}"
     )
 

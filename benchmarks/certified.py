@@ -45,7 +45,7 @@ UNIFORM = (25, 49, 97, 193)
 
 def random_points(dataset, number, seed):
     """(velocity, amplitude, Poisson's ratio) of random points on a map, in their order."""
-    motion = list(TRUTH).index(dataset.scene)
+    motion = list(TRUTH).index(dataset.motion)
     rng = np.random.default_rng([seed, motion])
     velocity, amplitude, poisson = (
         dataset[name].values for name in ("velocity", "amplitude", "poisson")
@@ -61,16 +61,16 @@ def random_points(dataset, number, seed):
     return [tuple(float(f"{value:.6g}") for value in place) for place in places]
 
 
-def solved(scene, points, tolerance, path):
+def solved(motion, points, tolerance, path):
     """(friction, error) at the points, shape (n, 2); those in the file are not solved again."""
     names = ("velocity", "amplitude", "poisson")
-    lines = [line for line in tables.parsed(path) if line["scene"] == scene]
+    lines = [line for line in tables.parsed(path) if line["motion"] == motion]
     known = {tuple(line[n] for n in names): line for line in lines if line["asked"] == tolerance}
     with path.open("a") as file:
-        for point in tqdm([point for point in points if point not in known], desc=scene):
+        for point in tqdm([point for point in points if point not in known], desc=motion):
             place = dict(zip(names, point, strict=True))
-            found = microslip.solve(scene, **place, tolerance=tolerance)
-            line = {"scene": scene, "asked": tolerance} | place
+            found = microslip.solve(motion, **place, tolerance=tolerance)
+            line = {"motion": motion, "asked": tolerance} | place
             line |= {"mu_macro": found.mu_macro, "mu_macro_error": found.mu_macro_error}
             known[point] = line
             file.write(json.dumps(line) + "\n")
@@ -85,7 +85,7 @@ def cost(dataset, velocity, amplitude, poisson):
     for k in chosen:
         place = float(velocity[k]), float(amplitude[k])
         settings = {"poisson": float(poisson[k]), "tolerance": dataset.tolerance}
-        microslip.solve(dataset.scene, *place, **settings)
+        microslip.solve(dataset.motion, *place, **settings)
     return (time.process_time() - begun) / len(chosen)
 
 
@@ -127,7 +127,7 @@ def named(dataset):
     """What a line is about."""
     over = dataset["poisson"]
     ratio = ", Poisson's ratio {:g} to {:g}".format(*over.values[[0, -1]]) if over.ndim else ""
-    return {"map": dataset.scene + ratio, "error": f"{dataset.error:g}"}
+    return {"map": dataset.motion + ratio, "error": f"{dataset.error:g}"}
 
 
 def of_map(dataset):
@@ -178,9 +178,9 @@ def main():
     for name in options.maps:
         maps = [microslip.open_map(f"certified_{name}", path).load() for path in options.results]
         least = min(dataset.error for dataset in maps)
-        scene = maps[0].scene
+        motion = maps[0].motion
         points = random_points(maps[0], options.points, options.seed)
-        truth = solved(scene, points, TRUTH[scene] * least, options.output)
+        truth = solved(motion, points, TRUTH[motion] * least, options.output)
         for dataset in maps:
             promises.append(judged(dataset, points, truth))
             grids.append(of_map(dataset))

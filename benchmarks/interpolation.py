@@ -59,7 +59,7 @@ def solved(dataset, velocity, amplitude, label):
     pairs = list(zip(velocity, amplitude, strict=True))
     answer = dataset.friction.at(*(xr.DataArray(x, dims="n") for x in (velocity, amplitude)))
     found = [
-        microslip.solve(dataset.scene, v, a, tolerance=TOLERANCE)
+        microslip.solve(dataset.motion, v, a, tolerance=TOLERANCE)
         for v, a in tqdm(pairs, desc=label, leave=False)
     ]
     truth, error = (
@@ -68,10 +68,10 @@ def solved(dataset, velocity, amplitude, label):
     return abs(answer.mu_macro.values - truth), answer.mu_macro_error.values + error
 
 
-def row(scene, where, miss, bound):
+def row(motion, where, miss, bound):
     """One line of the table."""
     return {
-        "map": scene,
+        "map": motion,
         "points": where,
         "number": len(miss),
         "covered, %": f"{100 * np.mean(miss <= bound):.1f}",
@@ -90,11 +90,11 @@ def main():
     tables.add_markdown(parser)
     options = parser.parse_args()
     rng, rows = np.random.default_rng(options.seed), []
-    for scene in ("transverse", "bore"):
-        dataset = microslip.open_map(scene, options.results).load()
-        rows.append(row(scene, "lines left out", *left_out(dataset)))
+    for motion in ("transverse", "bore"):
+        dataset = microslip.open_map(motion, options.results).load()
+        rows.append(row(motion, "lines left out", *left_out(dataset)))
         for where, place in places(dataset, options.points, rng).items():
-            rows.append(row(scene, where, *solved(dataset, *place, f"{scene}, {where}")))
+            rows.append(row(motion, where, *solved(dataset, *place, f"{motion}, {where}")))
     tables.publish(tables.markdown(rows), options)
 
 

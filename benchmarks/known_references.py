@@ -11,7 +11,7 @@ import csv
 
 import blind_points
 
-DRAWN = ("scene", "pressure", "poisson", "velocity", "amplitude", "tolerance")
+DRAWN = ("motion", "pressure", "poisson", "velocity", "amplitude", "tolerance")
 """Columns that say which point it is: what `blind_points.point` has drawn."""
 FOUND = ("reference", "uncertainty", "by")
 """Columns of what is known of it: mu_macro, what that may be off by, and what it was found by."""

@@ -48,17 +48,17 @@ def timed(function):
     return result, time.perf_counter() - started
 
 
-def compare(scene, amplitude, steps, repeats):
+def compare(name, amplitude, steps, repeats):
     """One row of the table: the two methods in turns, ``repeats`` times."""
     contact = CartesianContact(CELLS)
-    motion = Problem(MOTIONS[scene], VELOCITY, amplitude, 0.0)
+    motion = Problem(MOTIONS[name], VELOCITY, amplitude, 0.0)
     path, start = path_of(motion, steps), forward_slip(contact)
 
     def paper():
         return contact.march(path, start, STRESS_TOLERANCE)
 
     def certified():
-        return microslip.solve(scene, VELOCITY, amplitude, tolerance=TOLERANCE)
+        return microslip.solve(name, VELOCITY, amplitude, tolerance=TOLERANCE)
 
     contact.march(path_of(motion, 4), start, STRESS_TOLERANCE)
     certified()
@@ -70,7 +70,7 @@ def compare(scene, amplitude, steps, repeats):
         point_times.append(seconds)
     step, certified_time = median(march_times) / steps, median(point_times)
     return {
-        "scene": scene,
+        "motion": name,
         "amplitude": amplitude,
         "velocity": VELOCITY,
         "steps timed": steps,
@@ -105,7 +105,7 @@ def main():
     if args.steps < STEPS_PER_PERIOD or args.repeats < 1:
         parser.error(f"at least {STEPS_PER_PERIOD} steps (one period) and one repeat")
     one_thread.stay_on_one_core()
-    rows = [compare(scene, amplitude, args.steps, args.repeats) for scene, amplitude in POINTS]
+    rows = [compare(motion, amplitude, args.steps, args.repeats) for motion, amplitude in POINTS]
     table = markdown(rows)
     if args.steps < STEPS:
         table += (

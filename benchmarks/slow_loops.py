@@ -53,7 +53,7 @@ def drawn(seed: int, k: int) -> tuple[dict, int]:
     small = draw.random() < 0.5
     amplitude = draw.uniform(*SMALL_STICK_ZONES) if small else 10.0 ** draw.uniform(-1.0, 0.3)
     point = {
-        "scene": f"elliptic:{path}",
+        "motion": f"elliptic:{path}",
         "pressure": str(draw.choice(PRESSURES)),
         "velocity": float(f"{10.0 ** draw.uniform(*VELOCITIES):.4g}"),
         "amplitude": float(f"{amplitude:.4g}"),
@@ -114,7 +114,7 @@ def _judged(lines, tolerance):
         offs.append(off / tolerance)
         if ratios[-1] > 1.0:
             missed.append(
-                f"\nDoes not hold: {line['scene']} under {line['pressure']}, velocity"
+                f"\nDoes not hold: {line['motion']} under {line['pressure']}, velocity"
                 f" {line['velocity']:g}, amplitude {line['amplitude']:g} at {tolerance:g}: error"
                 f" {off:.1e} (+- {line['uncertainty']:.0e}), claimed {claim['error']:.1e}."
             )

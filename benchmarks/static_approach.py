@@ -2,7 +2,7 @@
 
     python benchmarks/static_approach.py [--tolerance T] [--markdown FILE]
 
-One table for each scene and amplitude: velocity, mu_macro, its certificate, the excess over the
+One table for each motion and amplitude: velocity, mu_macro, its certificate, the excess over the
 closed form of the limit (theory.static_limit_*), and the local exponent p of excess ~ velocity^p
 between this velocity and the one above it, where both excesses are large against the certificates.
 Transverse and bore, nu = 0; the smaller the tolerance, the further down the exponent can be seen.
@@ -43,17 +43,17 @@ def exponent(points, limit):
     return math.log(excess[0] / excess[1]) / math.log(points[-2].velocity / points[-1].velocity)
 
 
-def table(scene, amplitude, tolerance):
-    """Markdown lines for one scene and amplitude."""
-    limit = float(FORMS[scene][STATIC].function(amplitude))
-    lines = [f"{scene}, amplitude {amplitude:g}: closed form of the limit {limit:.6f}", ""]
+def table(motion, amplitude, tolerance):
+    """Markdown lines for one motion and amplitude."""
+    limit = float(FORMS[motion][STATIC].function(amplitude))
+    lines = [f"{motion}, amplitude {amplitude:g}: closed form of the limit {limit:.6f}", ""]
     lines += ["| velocity | mu_macro | certificate | excess | exponent |", "|---|---|---|---|---|"]
     points = []
     for velocity in VELOCITIES:
-        point = microslip.solve(scene, velocity, amplitude, tolerance=tolerance)
+        point = microslip.solve(motion, velocity, amplitude, tolerance=tolerance)
         points.append(point)
         seconds = f"{point.solve_time_s:.1f} s {point.reason}"
-        print(f"{scene} {amplitude:g} at {velocity:g}: {seconds}", file=sys.stderr, flush=True)
+        print(f"{motion} {amplitude:g} at {velocity:g}: {seconds}", file=sys.stderr, flush=True)
         if not point.converged:
             lines.append(f"| {velocity:g} | not converged: {point.reason} | | | |")
             continue
@@ -71,9 +71,9 @@ def main():
     tables.add_markdown(parser)
     options = parser.parse_args()
     lines = []
-    for scene, amplitudes in AMPLITUDES.items():
+    for motion, amplitudes in AMPLITUDES.items():
         for amplitude in amplitudes:
-            lines += [*table(scene, amplitude, options.tolerance), ""]
+            lines += [*table(motion, amplitude, options.tolerance), ""]
     tables.publish("\n".join(lines), options)
 
 

@@ -36,7 +36,7 @@ def cost(sweep):
         began = time.process_time()
         answers.append(
             microslip.solve(
-                sweep.scene,
+                sweep.motion,
                 velocity,
                 amplitude,
                 poisson=poisson,

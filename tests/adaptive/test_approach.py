@@ -24,11 +24,11 @@ SLOW = tuple(10.0 ** -np.array([3.0, 3.5, 4.0, 4.5, 5.0]))
 LIMITS = {"transverse": paper.static_limit_transverse, "bore": paper.static_limit_bore}
 
 
-def ladder(scene, model, amplitude, velocities, resolution):
+def ladder(motion, model, amplitude, velocities, resolution):
     """Mean forces at falling velocities, each search started from the state before it."""
     means, guess = [], None
     for velocity in velocities:
-        problem = Problem(MOTIONS[scene], velocity, amplitude, 0.0)
+        problem = Problem(MOTIONS[motion], velocity, amplitude, 0.0)
         run = simulate(problem, model, resolution, 1e-6, guess)
         assert run.converged, f"{velocity}: {run.reason}"
         means.append(run.mu)
@@ -37,14 +37,14 @@ def ladder(scene, model, amplitude, velocities, resolution):
 
 
 @cache
-def marched(scene, amplitude, velocities):
+def marched(motion, amplitude, velocities):
     """(mu, error) at each velocity, second order in the rings; marched once for all tests."""
     model, rings, angles, steps = {
         "transverse": ("radial", 32, 1, 64),
         "bore": ("polar", 16, 8, 32),
-    }[scene]
+    }[motion]
     coarse, fine, rough = (
-        ladder(scene, model, amplitude, velocities, Resolution(*resolution))
+        ladder(motion, model, amplitude, velocities, Resolution(*resolution))
         for resolution in [
             (rings, angles, steps),
             (2 * rings, angles, steps),
@@ -98,7 +98,7 @@ def test_bore_marches_fall_to_the_closed_form():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("scene", "model", "amplitude", "tolerance", "velocities"),
+    ("motion", "model", "amplitude", "tolerance", "velocities"),
     [
         ("transverse", "radial", 0.25, 1e-4, (1e-2, 1e-3, 1e-4, 1e-5)),
         ("transverse", "radial", 0.5, 1e-4, (1e-2, 1e-3, 1e-4, 1e-5)),
@@ -107,14 +107,14 @@ def test_bore_marches_fall_to_the_closed_form():
     ],
 )
 def test_certified_points_fall_towards_the_closed_form(
-    scene, model, amplitude, tolerance, velocities
+    motion, model, amplitude, tolerance, velocities
 ):
     """A decade takes the excess down by 10^0.5 to 10^0.85, where errors let it be seen."""
     results = [
-        microslip.solve(scene, v, amplitude, model=model, tolerance=tolerance) for v in velocities
+        microslip.solve(motion, v, amplitude, model=model, tolerance=tolerance) for v in velocities
     ]
     assert all(result.converged and result.model == model for result in results)
-    excess = np.array([result.mu_macro for result in results]) - float(LIMITS[scene](amplitude))
+    excess = np.array([result.mu_macro for result in results]) - float(LIMITS[motion](amplitude))
     error = np.array([result.mu_macro_error for result in results])
     assert np.all(excess > -error)
     certain = excess[1:] > 5 * error[1:]

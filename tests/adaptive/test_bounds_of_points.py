@@ -109,8 +109,8 @@ MARCHES = {
 @pytest.mark.parametrize("name", MARCHES)
 def test_ctrl_c_ends_a_march_that_would_take_minutes(name):
     """One call of a compiled function; the test would hang for its whole length without that."""
-    scene, model, resolution = MARCHES[name]
-    motion = Problem(motion_named(scene), 0.01, 0.5, 0.0)
+    label, model, resolution = MARCHES[name]
+    motion = Problem(motion_named(label), 0.01, 0.5, 0.0)
     contact = build_contact(motion, model, Resolution(4, 4, 2))
     contact.march(motion.path(contact, 2), forward_slip(contact), 1e-3)  # compiles
     contact = build_contact(motion, model, resolution)

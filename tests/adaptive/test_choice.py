@@ -29,65 +29,65 @@ WITH_CELLS = {"mdr", "radial", "polar", "cartesian"}
 
 
 @pytest.mark.parametrize(
-    ("scene", "poisson", "expected"),
+    ("motion", "poisson", "expected"),
     [
         (TRANSVERSE, 0.0, "radial"),
         (TRANSVERSE, 1e-12, "polar"),
         (TRANSVERSE, 0.5, "polar"),
-        *((scene, nu, "polar") for scene in (BORE, CONTINUOUS_BORE) for nu in (0.0, 0.3, 0.5)),
+        *((motion, nu, "polar") for motion in (BORE, CONTINUOUS_BORE) for nu in (0.0, 0.3, 0.5)),
     ],
 )
-def test_cheapest_exact_model_is_chosen(scene, poisson, expected):
-    chosen = choose_model(scene, poisson)
+def test_cheapest_exact_model_is_chosen(motion, poisson, expected):
+    chosen = choose_model(motion, poisson)
     assert chosen == expected
-    assert MODELS[chosen].exact(scene) and not MODELS[chosen].refuses(scene, poisson)
+    assert MODELS[chosen].exact(motion) and not MODELS[chosen].refuses(motion, poisson)
 
 
-@pytest.mark.parametrize("scene", MOTIONS.values(), ids=MOTIONS)
+@pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
 @pytest.mark.parametrize("poisson", [0.0, 0.3])
-def test_models_asked_for_are_taken_or_refused(scene, poisson):
-    if scene.rotates:
+def test_models_asked_for_are_taken_or_refused(motion, poisson):
+    if motion.rotates:
         applicable = TURNING
     else:
         applicable = MODELS.keys() - ({"radial"} if poisson > 0.0 else set())
     for name in MODELS:
         if name not in applicable:
-            with pytest.raises(ValueError, match=f"^model = '{name}': .*{scene.name}"):
-                choose_model(scene, poisson, name)
+            with pytest.raises(ValueError, match=f"^model = '{name}': .*{motion.name}"):
+                choose_model(motion, poisson, name)
         else:
-            assert choose_model(scene, poisson, name) == name
+            assert choose_model(motion, poisson, name) == name
 
 
 @pytest.mark.parametrize(
     "model", ["best", "", "AUTO", None, ["radial"], {}, ("auto",), 3, 0.5, b""]
 )
 def test_unknown_models_are_refused(model):
-    for scene in MOTIONS.values():
+    for motion in MOTIONS.values():
         with pytest.raises(ValueError, match="^model = .*auto.*radial"):
-            choose_model(scene, 0.0, model)
+            choose_model(motion, 0.0, model)
 
 
 # Closed forms
 
 
-@pytest.mark.parametrize("scene", [TRANSVERSE, BORE], ids=lambda scene: scene.name)
+@pytest.mark.parametrize("motion", [TRANSVERSE, BORE], ids=lambda motion: motion.name)
 @pytest.mark.parametrize("poisson", [0.0, 0.5])
-def test_no_vibration_needs_no_run(scene, poisson):
+def test_no_vibration_needs_no_run(motion, poisson):
     for velocity in (0.0, 1e-6, 1.0, 1e3):
-        result = microslip.solve(scene.name, velocity, 0.0, poisson=poisson)
+        result = microslip.solve(motion.name, velocity, 0.0, poisson=poisson)
         assert (result.model, result.mu_macro) == ("closed-form", 1.0)
         assert 0.0 < result.mu_macro_error <= 1e-9 and result.cells == 0
 
 
 @pytest.mark.parametrize(
-    ("scene", "amplitude", "poisson"),
+    ("motion", "amplitude", "poisson"),
     [("transverse", 0.3, 0.0), ("transverse", 0.8, 0.0), ("bore", 0.7, 0.0), ("bore", 2.0, 0.4)],
 )
-def test_vanishing_velocity_needs_no_run(scene, amplitude, poisson):
-    result = microslip.solve(scene, 0.0, amplitude, poisson=poisson)
+def test_vanishing_velocity_needs_no_run(motion, amplitude, poisson):
+    result = microslip.solve(motion, 0.0, amplitude, poisson=poisson)
     assert result.model == "closed-form" and result.cells == 0
-    model = "polar" if scene == "bore" else "radial"
-    problem = Problem(MOTIONS[scene], 0.0, amplitude, poisson)
+    model = "polar" if motion == "bore" else "radial"
+    problem = Problem(MOTIONS[motion], 0.0, amplitude, poisson)
     coarse, fine = (
         simulate_static(problem, model, Resolution(cells, 24, 0), 1e-8).mu for cells in (24, 48)
     )
@@ -123,21 +123,21 @@ def test_pure_rotation_needs_no_run():
     assert result.mu_torque == pytest.approx(1.0, abs=1e-2)
 
 
-def fast(scene, amplitude, tolerance):
+def fast(motion, amplitude, tolerance):
     """Velocity at which half the bracket of bounds.py is the tolerance."""
-    if scene is TRANSVERSE:
+    if motion is TRANSVERSE:
         return amplitude * math.sqrt(0.5 / tolerance - 0.5)
     return 1.0 + math.sqrt(0.1 / tolerance)
 
 
-@pytest.mark.parametrize("scene", [TRANSVERSE, BORE], ids=lambda scene: scene.name)
+@pytest.mark.parametrize("motion", [TRANSVERSE, BORE], ids=lambda motion: motion.name)
 @pytest.mark.parametrize("tolerance", [1e-1, 1e-3, 1e-6])
-def test_fast_sliding_needs_no_run_and_not_before(scene, tolerance):
+def test_fast_sliding_needs_no_run_and_not_before(motion, tolerance):
     for amplitude, poisson in ((1e-6, 0.0), (0.4, 0.3), (1e3, 0.5)):
-        velocity = fast(scene, amplitude, tolerance)
-        slower = Problem(scene, velocity * (1 - 1e-6), amplitude, poisson)
+        velocity = fast(motion, amplitude, tolerance)
+        slower = Problem(motion, velocity * (1 - 1e-6), amplitude, poisson)
         assert closed_form(slower, tolerance) is None
-        faster = Problem(scene, velocity * (1 + 1e-5), amplitude, poisson)
+        faster = Problem(motion, velocity * (1 + 1e-5), amplitude, poisson)
         mu, torque, error = closed_form(faster, tolerance)
         assert torque is None and error == pytest.approx(tolerance, rel=1e-4)
         assert error <= tolerance
@@ -146,26 +146,26 @@ def test_fast_sliding_needs_no_run_and_not_before(scene, tolerance):
 
 
 @pytest.mark.parametrize(
-    ("scene", "amplitude", "poisson"),
+    ("motion", "amplitude", "poisson"),
     [(TRANSVERSE, 0.2, 0.0), (TRANSVERSE, 4.0, 0.0), (TRANSVERSE, 1.0, 0.3), (BORE, 0.5, 0.3)],
 )
 @pytest.mark.parametrize("tolerance", [5e-2, 2e-3])
-def test_fast_sliding_is_covered(scene, amplitude, poisson, tolerance):
-    velocity = fast(scene, amplitude, tolerance)
+def test_fast_sliding_is_covered(motion, amplitude, poisson, tolerance):
+    velocity = fast(motion, amplitude, tolerance)
     for factor in (1.01, 4.0):
-        arguments = (scene.name, factor * velocity, amplitude)
+        arguments = (motion.name, factor * velocity, amplitude)
         result = microslip.solve(*arguments, poisson=poisson, tolerance=tolerance)
         assert result.model == "closed-form" and result.converged
         assert result.mu_macro_error <= tolerance
-        model = choose_model(scene, poisson)
+        model = choose_model(motion, poisson)
         run = microslip.solve(*arguments, poisson=poisson, model=model, tolerance=1e-4)
         assert run.model == model and run.converged
         apart = abs(run.mu_macro - result.mu_macro)
         assert apart <= result.mu_macro_error + run.mu_macro_error
     before = microslip.solve(
-        scene.name, 0.99 * velocity, amplitude, poisson=poisson, tolerance=tolerance
+        motion.name, 0.99 * velocity, amplitude, poisson=poisson, tolerance=tolerance
     )
-    assert before.model == choose_model(scene, poisson)
+    assert before.model == choose_model(motion, poisson)
 
 
 def test_a_model_asked_for_is_run_where_a_form_is_known():
@@ -193,13 +193,13 @@ points = st.tuples(
 
 def planned(point, **imposed):
     """(coarsest, axes by name), or None if the model does not apply."""
-    scene, velocity, amplitude, poisson, tolerance, model = point
+    motion, velocity, amplitude, poisson, tolerance, model = point
     try:
-        name = choose_model(scene, poisson, model)
+        name = choose_model(motion, poisson, model)
     except ValueError:
         return None
-    amplitude = amplitude if scene.periodic else None
-    problem = Problem(scene, velocity, amplitude, poisson)
+    amplitude = amplitude if motion.periodic else None
+    problem = Problem(motion, velocity, amplitude, poisson)
     coarsest, axes = plan(problem, name, tolerance, **imposed)
     assert len({axis.name for axis in axes}) == len(axes)
     return coarsest, {axis.name: axis for axis in axes}
@@ -228,16 +228,16 @@ def test_every_plan_can_be_run(point):
 @pytest.mark.slow
 @settings(max_examples=200, deadline=None, derandomize=True)
 @given(points)
-def test_axes_are_those_that_the_scene_and_the_model_have(point):
+def test_axes_are_those_that_the_motion_and_the_model_have(point):
     found = planned(point)
     if found is None:
         return
-    scene, velocity, _, poisson, _, model = point
-    name = choose_model(scene, poisson, model)
-    expected = {"steps"} if scene.periodic and velocity > 0.0 else set()
-    if name in WITH_CELLS or (name == "rigid" and scene.rotates):
+    motion, velocity, _, poisson, _, model = point
+    name = choose_model(motion, poisson, model)
+    expected = {"steps"} if motion.periodic and velocity > 0.0 else set()
+    if name in WITH_CELLS or (name == "rigid" and motion.rotates):
         expected.add("cells")
-    if name == "polar" or (name == "rigid" and scene.rotates):
+    if name == "polar" or (name == "rigid" and motion.rotates):
         expected.add("angles")
     assert found[1].keys() == expected
 

@@ -44,9 +44,9 @@ def answer(found):
 @pytest.mark.parametrize("contacts", ONCE)
 def test_contacts_that_do_the_same_are_one(contacts, name):
     """When a period begins does not count; from the same start on, steps are the very same."""
-    scene, given = ALONE[name]
-    alone, error = answer(microslip.solve(scene, **given))
-    together, other = answer(microslip.solve(scene, contacts=contacts, **given))
+    motion, given = ALONE[name]
+    alone, error = answer(microslip.solve(motion, **given))
+    together, other = answer(microslip.solve(motion, contacts=contacts, **given))
     assert abs(alone - together) <= (ONCE[contacts] or error + other)
     assert alone > 0.05  # and so it moves
 
@@ -54,18 +54,18 @@ def test_contacts_that_do_the_same_are_one(contacts, name):
 @pytest.mark.slow
 @pytest.mark.parametrize("endless", [{"stiffness": 1e6}, {"stiffness": 0.1, "mass": 1e6}])
 @pytest.mark.parametrize(
-    "scene, contacts, given",
+    "motion, contacts, given",
     [
         pytest.param("bore", "load=2;load=1,phase=90", {}, marks=pytest.mark.long),
         ("elliptic", "load=2;amplitude=0.5,phase=90", {"poisson": 0.3, "tolerance": 1e-2}),
         ("normal:lateral=1,phase=40", "phase=0;amplitude=0.5,phase=90", {"tolerance": 1e-2}),
     ],
 )
-def test_what_does_not_give_way_has_the_friction_of_the_velocity(scene, contacts, given, endless):
+def test_what_does_not_give_way_has_the_friction_of_the_velocity(motion, contacts, given, endless):
     """That is the mean over contacts each of which is alone, weighted with their loads."""
     place = {"velocity": 0.2, "amplitude": 0.8, "contacts": contacts} | given
-    moved = microslip.solve(scene, **place)
-    pulled = microslip.solve(scene, **place, **endless)
+    moved = microslip.solve(motion, **place)
+    pulled = microslip.solve(motion, **place, **endless)
     assert moved.converged and pulled.converged
     assert abs(moved.mu_macro - pulled.mu_macro) <= moved.mu_macro_error + pulled.mu_macro_error
 
@@ -74,13 +74,13 @@ def test_what_does_not_give_way_has_the_friction_of_the_velocity(scene, contacts
 def test_contacts_whose_loads_differ_in_time_are_weighted_with_them():
     """At a velocity far above that of the oscillation friction is all there can be, and else that
     of each under its own mean load."""
-    scene, each = "normal:indentation=1,lateral=1", []
+    motion, each = "normal:indentation=1,lateral=1", []
     for amplitude in (0.8, 0.4):
-        found = microslip.solve(scene, 0.3, amplitude, tolerance=1e-2)
+        found = microslip.solve(motion, 0.3, amplitude, tolerance=1e-2)
         # the load goes with the power 3/2 of the indentation
         phase = (np.arange(4000) + 0.5) * 2.0 * np.pi / 4000
         each.append((found.mu_macro, np.mean((1.0 + amplitude * np.sin(phase)) ** 1.5)))
-    both = microslip.solve(scene, 0.3, 0.8, contacts="phase=0;amplitude=0.5", tolerance=1e-2)
+    both = microslip.solve(motion, 0.3, 0.8, contacts="phase=0;amplitude=0.5", tolerance=1e-2)
     expected = sum(mu * load for mu, load in each) / sum(load for _, load in each)
     assert abs(each[0][0] - each[1][0]) > 0.1
     assert both.mu_macro == pytest.approx(expected, abs=1e-4)
@@ -169,9 +169,9 @@ def test_angles_and_squares_agree_on_contacts_that_turn():
 def test_loads_in_antiphase_let_a_body_walk_that_two_in_phase_hold():
     """While one is pressed less the other is pressed more: on both the load never falls, so that a
     force slides off neither, and what is pressed drags it along."""
-    scene, given = "normal:lateral=1", {"amplitude": 0.6, "force": 0.6, "tolerance": 1e-2}
-    against = microslip.solve(scene, contacts=AGAINST, **given)
+    motion, given = "normal:lateral=1", {"amplitude": 0.6, "force": 0.6, "tolerance": 1e-2}
+    against = microslip.solve(motion, contacts=AGAINST, **given)
     assert against.converged and against.velocity > 10.0 * against.velocity_error
     for contacts in ("phase=0", "phase=0;phase=0"):
-        together = microslip.solve(scene, contacts=contacts, **given)
+        together = microslip.solve(motion, contacts=contacts, **given)
         assert "runs away" in together.reason and not together.converged

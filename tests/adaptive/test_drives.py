@@ -68,11 +68,11 @@ def test_the_softest_spring_is_a_force(place):
     The velocity rises with the force, so that the errors of the force are those of the velocity at
     both of its ends.
     """
-    scene, velocity, amplitude = PLACES[place]
-    soft = microslip.solve(scene, velocity, amplitude, stiffness=1e-5)
+    motion, velocity, amplitude = PLACES[place]
+    soft = microslip.solve(motion, velocity, amplitude, stiffness=1e-5)
     assert soft.converged
     ends = soft.mu_macro - soft.mu_macro_error, soft.mu_macro + soft.mu_macro_error
-    slow, fast = (microslip.solve(scene, amplitude=amplitude, force=force) for force in ends)
+    slow, fast = (microslip.solve(motion, amplitude=amplitude, force=force) for force in ends)
     assert slow.converged and fast.converged
     assert slow.velocity - slow.velocity_error <= velocity <= fast.velocity + fast.velocity_error
     assert fast.velocity - slow.velocity < 0.05 * velocity
@@ -111,13 +111,13 @@ LIMITS = {
 @pytest.mark.slow
 @pytest.mark.parametrize("name", LIMITS)
 def test_the_threshold_is_the_static_limit(name):
-    scene, amplitude, pressure, limit = LIMITS[name]
+    motion, amplitude, pressure, limit = LIMITS[name]
     limit = float(limit())
-    below = microslip.solve(scene, amplitude=amplitude, force=limit - 1e-5, pressure=pressure)
+    below = microslip.solve(motion, amplitude=amplitude, force=limit - 1e-5, pressure=pressure)
     assert (below.velocity, below.velocity_error, below.converged) == (0.0, 0.0, True)
     assert below.mu_macro == limit - 1e-5
     above = microslip.solve(
-        scene, amplitude=amplitude, force=limit + 0.08, pressure=pressure, tolerance=3e-4
+        motion, amplitude=amplitude, force=limit + 0.08, pressure=pressure, tolerance=3e-4
     )
     assert above.converged
     assert above.velocity > 2.0 * above.velocity_error
@@ -347,10 +347,10 @@ CLOSE = [
 ]
 
 
-@pytest.mark.parametrize(("scene", "force", "body"), CLOSE)
-def test_a_force_next_to_full_friction_is_refused_before_anything_runs(scene, force, body):
+@pytest.mark.parametrize(("motion", "force", "body"), CLOSE)
+def test_a_force_next_to_full_friction_is_refused_before_anything_runs(motion, force, body):
     with pytest.raises(InputError, match=f"force = {force!r}: allowed is a force below 0.9999 "):
-        microslip.solve(scene, amplitude=1.0, force=force, progress=fail, **body)
+        microslip.solve(motion, amplitude=1.0, force=force, progress=fail, **body)
 
 
 def fail(resolution):

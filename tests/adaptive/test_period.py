@@ -22,19 +22,19 @@ POINTS = [
 
 @pytest.fixture(scope="module", params=POINTS, ids=str)
 def given(request):
-    scene, velocity, amplitude, poisson = request.param
-    return request.param, microslip.period(scene, velocity, amplitude, poisson=poisson)
+    motion, velocity, amplitude, poisson = request.param
+    return request.param, microslip.period(motion, velocity, amplitude, poisson=poisson)
 
 
 @pytest.mark.slow
 def test_the_mean_force_is_the_certified_one(given):
-    (scene, velocity, amplitude, poisson), found = given
-    answer = microslip.solve(scene, velocity, amplitude, poisson=poisson)
+    (motion, velocity, amplitude, poisson), found = given
+    answer = microslip.solve(motion, velocity, amplitude, poisson=poisson)
     assert found.converged
     mean = np.trapezoid(found.force_forward, found.phase) / (2 * np.pi)
     assert mean == pytest.approx(answer.mu_macro, abs=2e-3)
     # of a load that changes, mu_macro sees the rings join and leave the contact within steps
-    assert mean == pytest.approx(found.mu_macro, abs=1e-3 if scene.startswith("normal") else 1e-5)
+    assert mean == pytest.approx(found.mu_macro, abs=1e-3 if motion.startswith("normal") else 1e-5)
 
 
 def test_a_period_ends_where_it_began(given):
@@ -66,7 +66,7 @@ def test_tractions_keep_to_the_bound_and_oppose_no_more_than_slip(given):
 
 
 def test_the_work_of_the_forces_is_dissipated(given):
-    (scene, *_), found = given
+    (motion, *_), found = given
 
     def work(force, way):
         return np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(way))
@@ -77,14 +77,14 @@ def test_the_work_of_the_forces_is_dissipated(given):
     bound = np.broadcast_to(found.bound, size.shape)
     between = 0.5 * (bound[1:] + bound[:-1])  # it may change in a step
     lost = np.sum(found.area * between * size[1:])
-    assert spent == pytest.approx(lost, rel=0.03), scene
+    assert spent == pytest.approx(lost, rel=0.03), motion
 
 
 def test_areas_fill_the_disc_and_carry_the_load(given):
-    (scene, _, amplitude, _), found = given
+    (motion, _, amplitude, _), found = given
     load = np.ones(1)
-    if scene.startswith("normal"):
-        cycles = 2.0 if "normal_cycles=2" in scene else 1.0
+    if motion.startswith("normal"):
+        cycles = 2.0 if "normal_cycles=2" in motion else 1.0
         load = 1.0 + amplitude * np.sin(cycles * found.phase)
     largest = load.max() ** (2.0 / 3.0)  # a goes like the cube root of the load
     assert found.area.sum() == pytest.approx(np.pi * largest, rel=1e-3)
@@ -109,7 +109,7 @@ def test_the_contact_never_slides_fully_near_the_static_limit():
 @pytest.mark.parametrize(
     ("arguments", "name"),
     [
-        (("continuous-bore", 0.5, None), "scene = 'continuous-bore'"),
+        (("continuous-bore", 0.5, None), "motion = 'continuous-bore'"),
         (("bore", 0.0, 1.0), "velocity = 0.0"),
         (("bore", 0.1, 0.0), "amplitude = 0.0"),
     ],

@@ -17,10 +17,10 @@ from microslip.theory import paper
 # Certificates
 
 
-def reference(scene, velocity, amplitude, nu):
+def reference(motion, velocity, amplitude, nu):
     """(friction, allowance): a finer resolution than solve's base, refined once more along each
     axis by itself, each periodic state ten times closer and searched for from scratch."""
-    kind = MOTIONS[scene]
+    kind = MOTIONS[motion]
     model = "polar" if kind.rotates or nu > 0 else "radial"
     cells, angles, steps = (24, 1, 128) if model == "radial" else (16, 8, 32)
 
@@ -60,11 +60,11 @@ POINTS = [
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("scene", "velocity", "amplitude", "nu"), POINTS)
-def test_certificate_covers_a_much_finer_reference(scene, velocity, amplitude, nu):
-    result = microslip.solve(scene, velocity, amplitude, poisson=nu)
+@pytest.mark.parametrize(("motion", "velocity", "amplitude", "nu"), POINTS)
+def test_certificate_covers_a_much_finer_reference(motion, velocity, amplitude, nu):
+    result = microslip.solve(motion, velocity, amplitude, poisson=nu)
     assert result.converged and result.mu_macro_error <= 1e-3
-    expected, allowance = reference(scene, velocity, amplitude, nu)
+    expected, allowance = reference(motion, velocity, amplitude, nu)
     assert allowance < 6e-4
     assert abs(result.mu_macro - expected) <= result.mu_macro_error + allowance
     sources = ("space", "time", "periodicity", "solver", "model")
@@ -95,10 +95,10 @@ def test_tighter_tolerances_come_closer(velocity, amplitude):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("scene", "nu"), [("transverse", 0.3), ("bore", 0.0)])
-def test_squares_confirm_the_automatic_model(scene, nu):
-    automatic = microslip.solve(scene, 0.4, 1.5, poisson=nu)
-    squares = microslip.solve(scene, 0.4, 1.5, poisson=nu, model="cartesian", tolerance=4e-3)
+@pytest.mark.parametrize(("motion", "nu"), [("transverse", 0.3), ("bore", 0.0)])
+def test_squares_confirm_the_automatic_model(motion, nu):
+    automatic = microslip.solve(motion, 0.4, 1.5, poisson=nu)
+    squares = microslip.solve(motion, 0.4, 1.5, poisson=nu, model="cartesian", tolerance=4e-3)
     assert automatic.converged and squares.converged
     apart = abs(automatic.mu_macro - squares.mu_macro)
     assert apart <= automatic.mu_macro_error + squares.mu_macro_error
@@ -109,7 +109,7 @@ def test_squares_confirm_the_automatic_model(scene, nu):
 
 @pytest.mark.parametrize("velocity", [0.0, 1e-3, 1.0])
 @pytest.mark.parametrize(
-    ("scene", "model", "nu"),
+    ("motion", "model", "nu"),
     [
         ("transverse", "auto", 0.0),
         ("transverse", "auto", 0.3),
@@ -118,15 +118,15 @@ def test_squares_confirm_the_automatic_model(scene, nu):
         ("bore", "cartesian", 0.2),
     ],
 )
-def test_without_vibration_friction_is_exactly_one(scene, model, nu, velocity):
-    result = microslip.solve(scene, velocity, 0.0, poisson=nu, model=model)
+def test_without_vibration_friction_is_exactly_one(motion, model, nu, velocity):
+    result = microslip.solve(motion, velocity, 0.0, poisson=nu, model=model)
     assert result.mu_macro == 1.0 and result.converged
     assert result.mu_macro_error <= 1e-9
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("scene", "amplitude", "limit"),
+    ("motion", "amplitude", "limit"),
     [
         ("transverse", 0.3, paper.static_limit_transverse),
         ("transverse", 0.9, paper.static_limit_transverse),
@@ -134,10 +134,10 @@ def test_without_vibration_friction_is_exactly_one(scene, model, nu, velocity):
         ("bore", 1.0, paper.static_limit_bore),
     ],
 )
-def test_slow_sliding_approaches_the_static_limit(scene, amplitude, limit):
-    exact = microslip.solve(scene, 0.0, amplitude)
+def test_slow_sliding_approaches_the_static_limit(motion, amplitude, limit):
+    exact = microslip.solve(motion, 0.0, amplitude)
     assert exact.converged and exact.mu_macro == pytest.approx(limit(amplitude), abs=1e-9)
-    slow = [microslip.solve(scene, v, amplitude, tolerance=2e-3) for v in (1e-2, 1e-3, 1e-6)]
+    slow = [microslip.solve(motion, v, amplitude, tolerance=2e-3) for v in (1e-2, 1e-3, 1e-6)]
     assert all(result.converged for result in slow)
     assert slow[0].mu_macro > slow[1].mu_macro > slow[2].mu_macro
     assert slow[1].mu_macro > exact.mu_macro
@@ -180,12 +180,15 @@ def test_large_amplitudes_tend_to_the_rigid_contact():
 @pytest.mark.slow
 @pytest.mark.parametrize("nu", [0.0, 0.3])
 @pytest.mark.parametrize(
-    ("scene", "amplitude"), [("transverse", 0.4), ("transverse", 2.0), ("bore", 0.5), ("bore", 3.0)]
+    ("motion", "amplitude"),
+    [("transverse", 0.4), ("transverse", 2.0), ("bore", 0.5), ("bore", 3.0)],
 )
-def test_friction_rises_with_velocity(scene, amplitude, nu):
+def test_friction_rises_with_velocity(motion, amplitude, nu):
     """Claim 9, and the whole curve between the static limit and full friction."""
     velocities = np.geomspace(1e-3, 10, 9)
-    results = [microslip.solve(scene, v, amplitude, poisson=nu, tolerance=1e-2) for v in velocities]
+    results = [
+        microslip.solve(motion, v, amplitude, poisson=nu, tolerance=1e-2) for v in velocities
+    ]
     means = np.array([result.mu_macro for result in results])
     assert all(result.converged for result in results)
     assert np.all(np.diff(means) > 0)
@@ -194,10 +197,10 @@ def test_friction_rises_with_velocity(scene, amplitude, nu):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("nu", [0.0, 0.5])
-@pytest.mark.parametrize(("scene", "velocity"), [("transverse", 0.05), ("bore", 0.05)])
-def test_friction_falls_with_amplitude(scene, velocity, nu):
+@pytest.mark.parametrize(("motion", "velocity"), [("transverse", 0.05), ("bore", 0.05)])
+def test_friction_falls_with_amplitude(motion, velocity, nu):
     results = [
-        microslip.solve(scene, velocity, a, poisson=nu, tolerance=1e-2)
+        microslip.solve(motion, velocity, a, poisson=nu, tolerance=1e-2)
         for a in (0.0, 0.1, 0.5, 1.0, 2.0, 4.0)
     ]
     assert np.all(np.diff([result.mu_macro for result in results]) < 0)
@@ -211,9 +214,9 @@ def test_friction_falls_with_amplitude(scene, velocity, nu):
     st.floats(0.05, 5.0),
     st.sampled_from([0.0, 0.3, 0.5]),
 )
-def test_friction_lies_between_none_and_full(scene, velocity, amplitude, nu):
-    amplitude = amplitude if MOTIONS[scene].periodic else None
-    result = microslip.solve(scene, velocity, amplitude, poisson=nu, tolerance=5e-3)
+def test_friction_lies_between_none_and_full(motion, velocity, amplitude, nu):
+    amplitude = amplitude if MOTIONS[motion].periodic else None
+    result = microslip.solve(motion, velocity, amplitude, poisson=nu, tolerance=5e-3)
     assert result.converged and result.reason == ""
     assert 0.0 <= result.mu_macro <= 1.0
     assert result.mu_torque is None or 0.0 <= result.mu_torque <= 1.0
@@ -222,23 +225,23 @@ def test_friction_lies_between_none_and_full(scene, velocity, amplitude, nu):
 # Inputs
 
 
-GOOD = {"scene": "transverse", "velocity": 0.5, "amplitude": 0.5}
+GOOD = {"motion": "transverse", "velocity": 0.5, "amplitude": 0.5}
 BAD = [
-    ("scene", {"scene": "sideways"}),
-    ("scene", {"scene": None}),
-    ("scene", {"scene": ["bore"]}),
+    ("motion", {"motion": "sideways"}),
+    ("motion", {"motion": None}),
+    ("motion", {"motion": ["bore"]}),
     *(("velocity", {"velocity": value}) for value in (-1e-9, math.nan, math.inf, "1", None, True)),
     *(("amplitude", {"amplitude": value}) for value in (-0.1, math.nan, math.inf, "1", False)),
     ("amplitude", {"amplitude": None}),
-    ("amplitude", {"scene": "bore", "amplitude": None}),
-    ("amplitude", {"scene": "continuous-bore", "amplitude": 1.0}),
+    ("amplitude", {"motion": "bore", "amplitude": None}),
+    ("amplitude", {"motion": "continuous-bore", "amplitude": 1.0}),
     *(("poisson", {"poisson": value}) for value in (-0.01, 0.51, math.nan, "0.3", None)),
     ("model", {"model": "best"}),
     ("model", {"model": None}),
     ("model", {"model": "radial", "poisson": 0.1}),
-    ("model", {"model": "radial", "scene": "bore"}),
-    ("model", {"model": "slider", "scene": "bore"}),
-    ("model", {"model": "slider", "scene": "continuous-bore", "amplitude": None}),
+    ("model", {"model": "radial", "motion": "bore"}),
+    ("model", {"model": "slider", "motion": "bore"}),
+    ("model", {"model": "slider", "motion": "continuous-bore", "amplitude": None}),
     *(("tolerance", {"tolerance": value}) for value in (0.0, -1e-3, 1e-9, 1.0, math.nan, "1e-3")),
     *(("cells", {"cells": value}) for value in (0, 2, 7, -8, 8.0, "8", True)),
     *(("steps", {"steps": value}) for value in (0, 4, 9, -8, 16.0, "16", True)),
@@ -265,20 +268,20 @@ def test_numbers_of_numpy_are_numbers():
 
 
 @pytest.mark.parametrize(
-    ("scene", "model", "nu", "cells", "steps"),
+    ("motion", "model", "nu", "cells", "steps"),
     [
         ("transverse", "radial", 0.0, 12, 40),
         ("transverse", "polar", 0.3, 8, 24),
         ("bore", "cartesian", 0.0, 10, 16),
     ],
 )
-def test_imposed_resolution_is_what_runs(scene, model, nu, cells, steps):
+def test_imposed_resolution_is_what_runs(motion, model, nu, cells, steps):
     result = microslip.solve(
-        scene, 0.3, 1.2, poisson=nu, model=model, cells=cells, steps=steps, tolerance=1e-2
+        motion, 0.3, 1.2, poisson=nu, model=model, cells=cells, steps=steps, tolerance=1e-2
     )
     assert result.periodic and (result.cells, result.steps_per_period) == (cells, steps)
     if model != "polar":  # whose angles are still chosen, and corrected for
-        problem, share = Problem(MOTIONS[scene], 0.3, 1.2, nu), 1e-5
+        problem, share = Problem(MOTIONS[motion], 0.3, 1.2, nu), 1e-5
 
         def mean(c, s):
             return simulate(problem, model, Resolution(c, 1, s), share).mu
@@ -310,11 +313,11 @@ def without_time(fields):
 
 @pytest.mark.parametrize("velocity", [0.0, 0.7])
 def test_fields_of_the_contract(velocity):
-    for scene in ("transverse", "bore"):
-        fields = microslip.solve(scene, velocity, 0.8, tolerance=1e-2).to_dict()
+    for motion in ("transverse", "bore"):
+        fields = microslip.solve(motion, velocity, 0.8, tolerance=1e-2).to_dict()
         assert fields.keys() >= CONTRACT | {"amplitude"}
         assert "mu_torque" not in fields
-        assert (fields["scene"], fields["velocity"]) == (scene, velocity)
+        assert (fields["motion"], fields["velocity"]) == (motion, velocity)
         assert (fields["amplitude"], fields["poisson"]) == (0.8, 0.0)
     fields = microslip.solve("continuous-bore", velocity, tolerance=1e-2).to_dict()
     assert fields.keys() >= CONTRACT | {"mu_torque", "mu_torque_error"}
@@ -332,7 +335,7 @@ def test_model_that_answered_is_named():
 
 
 @pytest.mark.parametrize(
-    ("scene", "amplitude", "nu"),
+    ("motion", "amplitude", "nu"),
     [
         ("transverse", 0.6, 0.0),
         ("transverse", 0.6, 0.3),
@@ -340,9 +343,9 @@ def test_model_that_answered_is_named():
         ("continuous-bore", None, 0.0),
     ],
 )
-def test_equal_inputs_give_equal_bits(scene, amplitude, nu):
+def test_equal_inputs_give_equal_bits(motion, amplitude, nu):
     def answer():
-        result = microslip.solve(scene, 0.2, amplitude, poisson=nu, tolerance=5e-3)
+        result = microslip.solve(motion, 0.2, amplitude, poisson=nu, tolerance=5e-3)
         return without_time(result.to_dict())
 
     first = answer()
@@ -375,22 +378,22 @@ def test_warm_up_leaves_a_working_solver():
 
 
 @pytest.mark.parametrize(
-    ("scene", "given"),
+    ("motion", "given"),
     [
         ("transverse", {"cells": 16, "steps": 8}),
         ("bore", {"cells": 4}),
         ("transverse", {"steps": 8}),
     ],
 )
-def test_converged_means_within_the_tolerance_at_an_imposed_resolution_too(scene, given):
-    result = microslip.solve(scene, 0.1, 1.0, **given)
+def test_converged_means_within_the_tolerance_at_an_imposed_resolution_too(motion, given):
+    result = microslip.solve(motion, 0.1, 1.0, **given)
     assert result.mu_macro_error > result.tolerance == 1e-3
     assert not result.converged
     error = f"{result.mu_macro_error:.1e}"
     assert result.reason == (
         f"at the imposed resolution the error is {error}, above the tolerance of 0.001"
     )
-    loose = microslip.solve(scene, 0.1, 1.0, tolerance=0.1, **given)
+    loose = microslip.solve(motion, 0.1, 1.0, tolerance=0.1, **given)
     assert loose.converged == (loose.mu_macro_error <= 0.1)
     assert result.periodic
 
@@ -405,8 +408,8 @@ def test_converged_means_within_the_tolerance_at_an_imposed_resolution_too(scene
     st.sampled_from([None, 8, 64]),
     st.sampled_from([0.1, 1e-2]),
 )
-def test_no_answer_is_converged_beyond_its_tolerance(scene, v, amplitude, cells, steps, tolerance):
-    result = microslip.solve(scene, v, amplitude, cells=cells, steps=steps, tolerance=tolerance)
+def test_no_answer_is_converged_beyond_its_tolerance(motion, v, amplitude, cells, steps, tolerance):
+    result = microslip.solve(motion, v, amplitude, cells=cells, steps=steps, tolerance=tolerance)
     assert not result.converged or result.mu_macro_error <= tolerance
     assert result.converged == (result.reason == "")
 
@@ -422,7 +425,7 @@ def test_no_tolerance_is_asked_for_by_name():
 
 
 @pytest.mark.parametrize(
-    ("scene", "amplitude", "given", "missing"),
+    ("motion", "amplitude", "given", "missing"),
     [
         ("transverse", 1.0, {}, "cells and steps"),
         ("transverse", 1.0, {"cells": 16}, "steps"),
@@ -431,9 +434,9 @@ def test_no_tolerance_is_asked_for_by_name():
         ("transverse", 1.0, {"model": "dahl"}, "steps"),
     ],
 )
-def test_without_a_tolerance_the_resolution_has_to_be_imposed(scene, amplitude, given, missing):
+def test_without_a_tolerance_the_resolution_has_to_be_imposed(motion, amplitude, given, missing):
     with pytest.raises(ValueError, match="tolerance = None: allowed is a number") as caught:
-        microslip.solve(scene, 0.3, amplitude, tolerance=None, **given)
+        microslip.solve(motion, 0.3, amplitude, tolerance=None, **given)
     assert f"where {missing} are imposed" in str(caught.value)
 
 
@@ -449,8 +452,8 @@ def test_closed_forms_and_models_without_cells_need_no_more():
 
 def test_periods_are_full_ones_whatever_a_lap_is():
     """Counted by hand: a lap of a motion whose second half mirrors the first is half a period."""
-    for scene, steps, lap in (("transverse", 16, 0.5), ("elliptic:forward=0.5,phase=30", 32, 1.0)):
-        problem = Problem(motion_named(scene), 0.3, 1.0, 0.0)
+    for motion, steps, lap in (("transverse", 16, 0.5), ("elliptic:forward=0.5,phase=30", 32, 1.0)):
+        problem = Problem(motion_named(motion), 0.3, 1.0, 0.0)
         run = simulate(problem, "radial", Resolution(8, 1, 16), 1e-5)
         assert run.periods == run.solves / (2 * steps) * lap  # two stages a step
     half = microslip.solve("transverse", 0.3, 1.0)

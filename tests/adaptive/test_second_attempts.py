@@ -76,24 +76,24 @@ LONG = HARD[1:3]
 
 
 @cache
-def answered(scene, poisson, velocity, amplitude, tolerance):
+def answered(motion, poisson, velocity, amplitude, tolerance):
     """What ships says of such a point, once."""
-    return microslip.solve(scene, velocity, amplitude, poisson=poisson, tolerance=tolerance)
+    return microslip.solve(motion, velocity, amplitude, poisson=poisson, tolerance=tolerance)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("scene", "poisson", "velocity", "amplitude", "tolerance"),
+    ("motion", "poisson", "velocity", "amplitude", "tolerance"),
     [pytest.param(*point, marks=pytest.mark.long if point in LONG else ()) for point in HARD],
 )
 def test_slowest_motions_get_their_answer_in_a_second_attempt(
-    scene, poisson, velocity, amplitude, tolerance
+    motion, poisson, velocity, amplitude, tolerance
 ):
     """So slow a motion feels next to nothing but the static limit, which is computed otherwise."""
     settings = {"poisson": poisson, "tolerance": tolerance}
-    answer = answered(scene, poisson, velocity, amplitude, tolerance)
+    answer = answered(motion, poisson, velocity, amplitude, tolerance)
     assert answer.converged
-    limit = microslip.solve(scene, 0.0, amplitude, **settings)
+    limit = microslip.solve(motion, 0.0, amplitude, **settings)
     apart = abs(answer.mu_macro - limit.mu_macro)
     assert apart <= answer.mu_macro_error + limit.mu_macro_error + velocity ** (2 / 3)
 
@@ -101,11 +101,11 @@ def test_slowest_motions_get_their_answer_in_a_second_attempt(
 @pytest.mark.long
 def test_these_points_need_it(monkeypatch):
     """Without the second attempt they are not converged; with it they say that there was one."""
-    scene, poisson, velocity, amplitude, tolerance = HARD[2]
+    motion, poisson, velocity, amplitude, tolerance = HARD[2]
     settings = {"poisson": poisson, "tolerance": tolerance}
     assert answered(*HARD[2]).retried > 0
     monkeypatch.setattr(moved, "run_safely", lambda run_at, v, guess: run_at(v, guess))
-    answer = microslip.solve(scene, velocity, amplitude, **settings)
+    answer = microslip.solve(motion, velocity, amplitude, **settings)
     assert not answer.converged
     assert "no periodic state" in answer.reason
     assert answer.retried == 0

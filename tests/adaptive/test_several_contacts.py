@@ -62,30 +62,30 @@ MOVED = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", MOVED)
-def test_at_a_velocity_each_contact_is_alone(scene):
+@pytest.mark.parametrize("motion", MOVED)
+def test_at_a_velocity_each_contact_is_alone(motion):
     """Spheres in SI units, each with its own u_lim: their forces add up, whatever their phases."""
     loads = (1.0, 4.0)
-    each = [microslip.predict(scene, load=f"{load} N", **REAL, **MOVED[scene]) for load in loads]
-    mean = microslip.predict(scene, load=f"{np.mean(loads)} N", **REAL, **MOVED[scene])
+    each = [microslip.predict(motion, load=f"{load} N", **REAL, **MOVED[motion]) for load in loads]
+    mean = microslip.predict(motion, load=f"{np.mean(loads)} N", **REAL, **MOVED[motion])
     contacts = f"load={loads[0]};load={loads[1]},phase=60"
-    place = scene, mean.velocity, mean.amplitude
+    place = motion, mean.velocity, mean.amplitude
     found = microslip.solve(*place, contacts=contacts)
     force = sum(one.friction_force_N for one in each) / sum(loads) / 0.3
     assert found.converged
     # so that it counts which is which
     assert abs(each[0].mu_macro - each[1].mu_macro) > 0.03
     assert abs(found.mu_macro - force) <= found.mu_macro_error + 1e-3
-    still = microslip.solve(scene, 0.0, mean.amplitude, contacts=contacts)
+    still = microslip.solve(motion, 0.0, mean.amplitude, contacts=contacts)
     static = sum(one.mu_static * load for one, load in zip(each, loads, strict=True)) / sum(loads)
     assert abs(still.mu_macro - static) <= still.mu_macro_error + 1e-3
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["transverse", "longitudinal", "elliptic"])
+@pytest.mark.parametrize("motion", ["transverse", "longitudinal", "elliptic"])
 @pytest.mark.parametrize("endless", [{"stiffness": 1e6}, {"stiffness": 0.1, "mass": 1e6}])
-def test_what_does_not_give_way_has_the_friction_of_the_velocity(scene, endless):
-    place, contacts = (scene, 0.1, 0.8), "load=2;load=1,phase=90;amplitude=0.5,phase=180"
+def test_what_does_not_give_way_has_the_friction_of_the_velocity(motion, endless):
+    place, contacts = (motion, 0.1, 0.8), "load=2;load=1,phase=90;amplitude=0.5,phase=180"
     moved = microslip.solve(*place, contacts=contacts)
     pulled = microslip.solve(*place, contacts=contacts, **endless)
     assert moved.converged and pulled.converged
@@ -166,12 +166,12 @@ def test_the_threshold_of_a_body_is_the_mean_of_its_contacts():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["transverse", "longitudinal"])
-def test_below_the_threshold_a_body_comes_to_rest(scene):
+@pytest.mark.parametrize("motion", ["transverse", "longitudinal"])
+def test_below_the_threshold_a_body_comes_to_rest(motion):
     """Marched on its own: the way of a period dies away, and above the threshold it does not."""
-    contacts, limit = (UNEQUAL, unequal_limit(0.4)) if scene == "transverse" else (AGAINST, None)
+    contacts, limit = (UNEQUAL, unequal_limit(0.4)) if motion == "transverse" else (AGAINST, None)
     limit = limit or (1.0 - 0.4) ** 1.5
-    problem = BodyProblem(motion_named(scene), 0.1, 0.4, 0.0, contacts=contacts_of(contacts))
+    problem = BodyProblem(motion_named(motion), 0.1, 0.4, 0.0, contacts=contacts_of(contacts))
     contact, ways = problem.contact("radial", Resolution(24, 1, 24)), {}
     path = problem.path(contact, 24)
     for share in (0.8, 1.2):
@@ -213,9 +213,9 @@ REFUSED = {
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_does_not_go_with_several_contacts_is_refused(name):
-    scene, given, contacts, expected = REFUSED[name]
+    motion, given, contacts, expected = REFUSED[name]
     with pytest.raises(InputError) as refused:
-        microslip.solve(scene, contacts=contacts, **given)
+        microslip.solve(motion, contacts=contacts, **given)
     assert (refused.value.argument, refused.value.value) == ("contacts", contacts)
     assert expected in refused.value.allowed
 

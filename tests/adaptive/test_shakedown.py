@@ -53,11 +53,11 @@ POINTS += [
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("scene", "amplitude", "share"), POINTS)
-def test_claims_hold_against_finer_runs(scene, amplitude, share):
-    limit = microslip.solve(scene, 0.0, amplitude).mu_macro
-    coarse = microslip.shakedown(scene, amplitude, share * limit, tolerance=2e-2)
-    fine = microslip.shakedown(scene, amplitude, share * limit, tolerance=4e-3)
+@pytest.mark.parametrize(("motion", "amplitude", "share"), POINTS)
+def test_claims_hold_against_finer_runs(motion, amplitude, share):
+    limit = microslip.solve(motion, 0.0, amplitude).mu_macro
+    coarse = microslip.shakedown(motion, amplitude, share * limit, tolerance=2e-2)
+    fine = microslip.shakedown(motion, amplitude, share * limit, tolerance=4e-3)
     assert coarse.converged and fine.converged
     assert abs(coarse.displacement - fine.displacement) <= coarse.displacement_error
     assert coarse.threshold == pytest.approx(limit, abs=1e-2)
@@ -119,10 +119,10 @@ def test_equal_questions_get_equal_bits():
 @pytest.mark.parametrize(
     ("changed", "said"),
     [
-        ({"scene": "continuous-bore", "amplitude": None}, "scene = 'continuous-bore': "),
+        ({"motion": "continuous-bore", "amplitude": None}, "motion = 'continuous-bore': "),
         (
-            {"scene": "transverse-bore"},
-            "scene = 'transverse-bore': allowed is a motion that exerts",
+            {"motion": "transverse-bore"},
+            "motion = 'transverse-bore': allowed is a motion that exerts",
         ),
         ({"force": -0.1}, "force = -0.1: "),
         ({"force": math.nan}, "force = nan: "),
@@ -134,7 +134,7 @@ def test_equal_questions_get_equal_bits():
     ],
 )
 def test_bad_input_gets_one_line(changed, said):
-    given = {"scene": "transverse", "amplitude": 0.5, "force": 0.3} | changed
+    given = {"motion": "transverse", "amplitude": 0.5, "force": 0.3} | changed
     with pytest.raises(InputError) as refused:
         microslip.shakedown(**given)
     assert str(refused.value).startswith(said) and "\n" not in str(refused.value)

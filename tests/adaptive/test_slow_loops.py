@@ -10,7 +10,7 @@ from microslip.solver.period_map import CreepRate
 from microslip.solver.problem import Problem
 
 SHARP = "punch:flat=0.95"
-# scene, pressure, velocity, amplitude, and rings and steps that leave much less than is claimed
+# motion, pressure, velocity, amplitude, and rings and steps that leave much less than is claimed
 OFF = [
     (
         "forward=0.97,phase=90,forward_cycles=2",
@@ -61,14 +61,14 @@ def test_claims_hold_where_few_rings_and_steps_agree_by_chance(
 
 def test_a_slow_loop_that_lost_what_it_takes_long_to_gain_is_not_periodic():
     """Its force was 0.015 in place of 0.114, and a wide tolerance took what was left for little."""
-    scene = "elliptic:forward=0.73,phase=90,forward_cycles=3,lateral_cycles=2"
+    motion = "elliptic:forward=0.73,phase=90,forward_cycles=3,lateral_cycles=2"
     point = {
         "velocity": 0.00013964177566075554,
         "amplitude": 0.7675388662707612,
         "pressure": "punch:flat=0.8",
     }
-    many = microslip.solve(scene, **point, tolerance=None, cells=24, steps=288)
-    given = microslip.solve(scene, **point, tolerance=0.1)
+    many = microslip.solve(motion, **point, tolerance=None, cells=24, steps=288)
+    given = microslip.solve(motion, **point, tolerance=0.1)
     assert abs(given.mu_macro - many.mu_macro) <= given.mu_macro_error < 0.1
 
 
@@ -81,9 +81,9 @@ def test_a_creep_rate_without_a_known_limit_takes_the_largest_excess():
         assert unknown.force_error(1e-3, force) == pytest.approx(largest)
 
 
-@pytest.mark.parametrize(("scene", "doubled"), [("elliptic", True), ("transverse", False)])
-def test_steps_of_a_loop_are_doubled(scene, doubled):
-    problem = Problem(motion_named(scene), 0.01, 0.6, 0.0)
+@pytest.mark.parametrize(("motion", "doubled"), [("elliptic", True), ("transverse", False)])
+def test_steps_of_a_loop_are_doubled(motion, doubled):
+    problem = Problem(motion_named(motion), 0.01, 0.6, 0.0)
     steps = next(axis for axis in plan(problem, "radial", 1e-2)[1] if axis.name == "steps")
     ratios = np.divide(steps.levels[1:], steps.levels[:-1])
     assert np.all(ratios == 2.0) == doubled

@@ -100,7 +100,7 @@ def test_scattered_errors_are_covered_nearly_always():
 
 
 @pytest.mark.parametrize(
-    ("scene", "tolerance", "imposed"),
+    ("motion", "tolerance", "imposed"),
     [
         ("bore", 2.0 * TOGETHER_FROM, {}),
         ("bore", 1e-4, {"cells": 16}),
@@ -108,8 +108,8 @@ def test_scattered_errors_are_covered_nearly_always():
         ("transverse", 1e-4, {}),
     ],
 )
-def test_axes_are_apart_elsewhere(scene, tolerance, imposed):
-    problem = Problem(motion_named(scene, "hertz"), 0.3, 1.0, 0.3)
+def test_axes_are_apart_elsewhere(motion, tolerance, imposed):
+    problem = Problem(motion_named(motion, "hertz"), 0.3, 1.0, 0.3)
     axes = plan(problem, "polar", tolerance, **imposed, together=True)[1]
     assert [axis.name for axis in axes] == ["cells", "angles", "steps"]
 

@@ -23,7 +23,7 @@ SOURCE = str(Path(microslip.__file__).parent.parent)
 POINT = ["point", "continuous-bore", "--velocity", "2"]
 REQUEST = {
     "kind": "point",
-    "scene": "continuous-bore",
+    "motion": "continuous-bore",
     "velocity": "2",
     "amplitude": None,
     "poisson": "0",
@@ -157,7 +157,7 @@ def test_a_damaged_point_is_computed_again_and_said(tmp_path, capsys, caplog):
 
 def data():
     values = {"mu_macro": ("velocity", np.linspace(0.0, 1.0, 2000))}
-    return xr.Dataset(values, attrs={"scene": "bore"})
+    return xr.Dataset(values, attrs={"motion": "bore"})
 
 
 @pytest.fixture
@@ -261,7 +261,7 @@ def test_a_disk_that_fills_up_under_a_dataset_leaves_the_old_one(sealed):
         ("fig2_transverse_map", {"transverse": data()}, ["is of 'bore'", "allowed: 'transverse'"]),
         (
             "fig4_continuous_bore",
-            {"continuous_bore": data().assign_attrs(scene="spin")},
+            {"continuous_bore": data().assign_attrs(motion="spin")},
             ["dataset 'continuous_bore' is of 'spin'", "allowed: 'continuous-bore'"],
         ),
         ("stability_atlas", {"stability": data()}, ["dataset 'stability' has no variable"]),

@@ -39,7 +39,7 @@ def refused(*arguments):
 
 
 @pytest.mark.parametrize(
-    ("scene", "arguments"),
+    ("motion", "arguments"),
     [
         ("transverse", {"velocity": 0.5, "amplitude": 0.5}),
         ("bore", {"velocity": 0.5, "amplitude": 1.0, "poisson": 0.3, "tolerance": 5e-3}),
@@ -49,18 +49,18 @@ def refused(*arguments):
         ("bore", {"velocity": 2, "amplitude": 1, "cells": 6, "steps": 8, "tolerance": 0.1}),
     ],
 )
-def test_json_is_the_answer_of_solve_and_nothing_else(scene, arguments):
+def test_json_is_the_answer_of_solve_and_nothing_else(motion, arguments):
     options = [word for name, value in arguments.items() for word in (f"--{name}", value)]
-    done = run("point", scene, *options, "--json")
+    done = run("point", motion, *options, "--json")
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.count("\n") == 1
     fields = json.loads(done.stdout)
     assert fields.keys() >= CONTRACT | {"amplitude"}
-    steady = scene == "continuous-bore"
+    steady = motion == "continuous-bore"
     assert (fields["amplitude"] is None) == ("mu_torque" in fields) == steady
     assert fields["converged"] is True
     velocity, amplitude = arguments.pop("velocity"), arguments.pop("amplitude", None)
-    expected = microslip.solve(scene, velocity, amplitude, **arguments).to_dict()
+    expected = microslip.solve(motion, velocity, amplitude, **arguments).to_dict()
     expected = {"amplitude": None} | expected
     for answer in (fields, expected):  # equal to the last bit, the time apart
         answer.pop("solve_time_s")
@@ -94,12 +94,12 @@ def test_text_says_what_was_found():
 
 @pytest.mark.slow
 def test_drive_says_what_the_function_does():
-    words = ("drive", "elliptic", "--path", "forward_cycles=2,phase=0", "--amplitude", "1")
+    words = ("propulsion", "elliptic:forward_cycles=2,phase=0", "--amplitude", "1")
     words += ("--points", "3", "--tolerance", "1e-2")
     done = run(*words, "--json")
     assert (done.returncode, done.stderr) == (0, "")
-    scene = "elliptic:forward_cycles=2,phase=0"
-    line = microslip.drive(scene, 1.0, points=3, tolerance=1e-2)
+    motion = "elliptic:forward_cycles=2,phase=0"
+    line = microslip.propulsion(motion, 1.0, points=3, tolerance=1e-2)
     fields, expected = json.loads(done.stdout), line.to_dict()
     for answer in (fields, expected):
         answer.pop("solve_time_s")
@@ -115,7 +115,7 @@ def test_drive_says_what_the_function_does():
 
 @pytest.mark.slow
 def test_a_contact_may_be_pushed_back_where_it_drives():
-    words = ("point", "elliptic", "--path", "forward_cycles=2,phase=0", "--velocity", "-0.5")
+    words = ("point", "elliptic:forward_cycles=2,phase=0", "--velocity", "-0.5")
     fields = json.loads(run(*words, "--amplitude", "1", "--json").stdout)
     assert fields["velocity"] == -0.5 and fields["converged"] and fields["mu_macro"] < -0.2
 
@@ -153,8 +153,8 @@ def test_tolerance_out_of_reach_is_exit_code_1():
         ("--steps", (*TRANSVERSE, "--steps", "2")),
         ("--step", (*TRANSVERSE, "--step", "8")),
         ("--colour", (*TRANSVERSE, "--colour", "red")),
-        ("SCENE", ("point", "sideways", "--velocity", "1")),
-        ("SCENE", ("point",)),
+        ("MOTION", ("point", "sideways", "--velocity", "1")),
+        ("MOTION", ("point",)),
         ("COMMAND", ()),
         ("COMMAND", ("solve",)),
         ("extra", (*TRANSVERSE, "extra")),
@@ -164,7 +164,7 @@ def test_bad_input_is_one_line_that_names_the_option(option, arguments):
     assert option in refused(*arguments)
 
 
-def test_model_that_does_not_apply_says_to_which_scene():
+def test_model_that_does_not_apply_says_to_which_motion():
     line = refused("point", "bore", "--velocity", "1", "--amplitude", "1", "--model", "radial")
     assert "bore" in line and "rotation" in line
 
@@ -174,9 +174,21 @@ def test_model_that_does_not_apply_says_to_which_scene():
     [
         (
             (),
-            ["point", "friction", "vibrated", "dimensionless", "sweep", "predict", "drive", SPIN],
+            [
+                "point",
+                "friction",
+                "vibrated",
+                "dimensionless",
+                "sweep",
+                "predict",
+                "propulsion",
+                SPIN,
+            ],
         ),
-        (("drive",), ["stall force", "no-load velocity", "--points", "--path", "heavy body"]),
+        (
+            ("propulsion",),
+            ["stall force", "no-load velocity", "--points", "after a colon", "heavy body"],
+        ),
         (("point",), [*MOTIONS, *FAMILIES, "mu F_z", "ratio", "mu_apparent", SPIN]),
         (("sweep",), [*sweep_command.TARGETS, "--cores", "--report", SPIN]),
         (
@@ -249,8 +261,8 @@ def test_a_negative_number_with_an_exponent_is_a_number(capsys):
 
 def test_a_negative_number_that_was_joined_to_its_option_counts_once(capsys):
     """Behind its = it begins with a sign, as options do."""
-    words = ["--path", "forward_cycles=2,phase=0", "--velocity", "-0.5", "--amplitude", "-1"]
-    assert cli.main(["point", "elliptic", *words]) == 2
+    words = ["elliptic:forward_cycles=2,phase=0", "--velocity", "-0.5", "--amplitude", "-1"]
+    assert cli.main(["point", *words]) == 2
     line = capsys.readouterr().err
     assert "--amplitude = '-1'" in line and "twice" not in line
 
@@ -262,7 +274,7 @@ def test_a_flag_may_be_repeated(capsys):
     assert json.loads(capsys.readouterr().out)["velocity"] == 2.0
 
 
-def test_a_steady_scene_has_no_amplitude(capsys):
+def test_a_steady_motion_has_no_amplitude(capsys):
     assert cli.main(["point", "continuous-bore", "--velocity", "2", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["amplitude"] is None
 

@@ -62,7 +62,7 @@ def test_jobs_share_the_cores_and_none_is_shorter_than_its_batch(tmp_path):
 
 
 def test_what_is_not_known_is_said(tmp_path):
-    unknown = ("accuracy", [{"kind": "trial", "scene": "bore", "velocity": "1"}] * 3)
+    unknown = ("accuracy", [{"kind": "trial", "motion": "bore", "velocity": "1"}] * 3)
     lines = dry_run.summary([unknown], tmp_path, 2, compiles=True, rounds=True)
     assert lines[0] == "To solve: 3 other runs."
     assert lines[1] == "There is no time yet for some other runs: 3 of accuracy."

@@ -63,10 +63,10 @@ def nothing_runs(monkeypatch):
 
 @pytest.mark.parametrize(("changed", "part"), PREDICTIONS, ids=short)
 def test_a_contact_is_refused_in_one_line(changed, part, nothing_runs, capsys):
-    given = {"scene": "transverse"} | BALL | changed
-    scene = given.pop("scene")
+    given = {"motion": "transverse"} | BALL | changed
+    motion = given.pop("motion")
     words = [(f"--{name.replace('_', '-')}", text) for name, text in given.items() if text]
-    assert cli.main(["predict", scene, *(word for pair in words for word in pair)]) == 2
+    assert cli.main(["predict", motion, *(word for pair in words for word in pair)]) == 2
     out, line = capsys.readouterr()
     assert out == "" and line.endswith("\n")
     one_line(line[:-1], part)
@@ -79,7 +79,7 @@ def test_the_same_contact_in_other_words(changed, same, monkeypatch):
     def asked(words):
         seen = []
 
-        def solve(scene, velocity, amplitude, **settings):
+        def solve(motion, velocity, amplitude, **settings):
             seen.append((velocity, amplitude, settings["poisson"], settings["tolerance"]))
             return RIGID
 
@@ -94,29 +94,29 @@ def test_the_same_contact_in_other_words(changed, same, monkeypatch):
 RIGID = microslip.solve("transverse", 0.5, 0.5, model="rigid", tolerance=0.1)
 
 
-@pytest.mark.parametrize("scene", ["transverse", "longitudinal"])
-def test_all_static_friction_is_taken_by_the_stroke_that_lets_the_contact_slide(scene):
+@pytest.mark.parametrize("motion", ["transverse", "longitudinal"])
+def test_all_static_friction_is_taken_by_the_stroke_that_lets_the_contact_slide(motion):
     """At vanishing speed nothing resists from u_lim on, and something does below it."""
     words = {name: text for name, text in BALL.items() if name != "amplitude"}
-    found = predict(scene, **words | {"speed": "0 m/s", "counterbody": "steel"}, reduction="100 %")
+    found = predict(motion, **words | {"speed": "0 m/s", "counterbody": "steel"}, reduction="100 %")
     assert found.amplitude_si == pytest.approx(found.u_lim_m, rel=1e-6)
 
 
 # Python
 
 GOOD = {
-    "solve": {"scene": "transverse", "velocity": 0.5, "amplitude": 0.5},
-    "history": {"scene": "transverse", "velocity": 0.5, "amplitude": 0.5, "cells": 4, "steps": 8},
-    "period": {"scene": "transverse", "velocity": 0.5, "amplitude": 0.5, "cells": 4, "steps": 8},
-    "traction_field": {"scene": "continuous-bore", "velocity": 0.5},
-    "drive": {"scene": "normal:forward=1,phase=90", "amplitude": 0.5},
-    "shakedown": {"scene": "transverse", "amplitude": 0.5, "force": 0.1},
-    "solve_stored": {"scene": "transverse", "velocity": 0.5, "amplitude": 0.5},
+    "solve": {"motion": "transverse", "velocity": 0.5, "amplitude": 0.5},
+    "history": {"motion": "transverse", "velocity": 0.5, "amplitude": 0.5, "cells": 4, "steps": 8},
+    "period": {"motion": "transverse", "velocity": 0.5, "amplitude": 0.5, "cells": 4, "steps": 8},
+    "traction_field": {"motion": "continuous-bore", "velocity": 0.5},
+    "propulsion": {"motion": "normal:forward=1,phase=90", "amplitude": 0.5},
+    "shakedown": {"motion": "transverse", "amplitude": 0.5, "force": 0.1},
+    "solve_stored": {"motion": "transverse", "velocity": 0.5, "amplitude": 0.5},
     "open_map": {"name": "transverse"},
     "to_xarray": {},
-    "predict_table": {"scene": "transverse"},
+    "predict_table": {"motion": "transverse"},
     "fit": {
-        **{"scene": "transverse", "speed": "1 mm/s", "frequency": "20 kHz", "load": "10 N"},
+        **{"motion": "transverse", "speed": "1 mm/s", "frequency": "20 kHz", "load": "10 N"},
         "measured": {"amplitude": [1e-7, 2e-7, 3e-7], "mu": [0.2, 0.15, 0.1]},
     },
     "Material": {"young": "210 GPa", "poisson": 0.3},
@@ -154,7 +154,7 @@ def friction():
     return xr.Dataset(
         {"mu_macro": (axes, mu), "mu_macro_error": (axes, 0.0 * mu + 1e-3)},
         {"velocity": velocity, "amplitude": amplitude, "poisson": 0.0},
-        {"scene": "transverse", "tolerance": 1e-2},
+        {"motion": "transverse", "tolerance": 1e-2},
     ).friction
 
 

@@ -206,7 +206,11 @@ def test_each_line_may_look_for_something_else(folder, capsys):
         ("20,0.1,1 cm/s", ["--output", "found.txt"], "a name that ends in .csv or .nc"),
         ("20,0.1,1 cm/s", ["--output", "contacts.csv"], "another file than the table"),
         ("20,0.1,1 cm/s", ["--output", "nowhere/found.csv"], "a folder that can be written to"),
-        ("20,0.1,1 cm/s", ["--driving"], "--table = 'contacts.csv': allowed without --driving"),
+        (
+            "20,0.1,1 cm/s",
+            ["--propulsion"],
+            "--table = 'contacts.csv': allowed without --propulsion",
+        ),
     ],
 )
 def test_a_bad_table_is_one_line_before_anything_is_solved(folder, capsys, changed, words, said):

@@ -8,7 +8,7 @@ BORE = "point bore --velocity 0.5 --amplitude 0.5"
 STEADY = "point continuous-bore --velocity 0.5"
 SHAKEN = "point transverse --amplitude 0.5"
 SPUN = "point bore --velocity 0.5"
-DRIVEN = "drive elliptic --path forward_cycles=2,phase=0"
+DRIVEN = "propulsion elliptic:forward_cycles=2,phase=0"
 PREDICTED = (
     "predict transverse --young '210 GPa' --radius '5 mm' --load '10 N' --mu 0.3 "
     "--speed '1 mm/s' --amplitude '1 um' --frequency '20 kHz'"
@@ -41,7 +41,7 @@ NUMBERS = [
     (f"{SPUN} --amplitude 1e300", "--amplitude = '1e300'", "at most 1e+06"),
     (f"{SPUN} --amplitude 30deg", "--amplitude = '30deg'", "allowed is a number"),
     (f"{TRANSVERSE} --contacts mass=1", "--contacts = 'mass=1'", "allowed: load, phase, amplitude"),
-    (f"{SHAKEN} --force -0.1", "--force = '-0.1'", "at least 0: transverse drives nothing"),
+    (f"{SHAKEN} --force -0.1", "--force = '-0.1'", "at least 0: transverse propels nothing"),
     (f"{SHAKEN} --force nan", "--force = 'nan'", "a finite number"),
     (f"{SHAKEN} --force 5N", "--force = '5N'", "allowed is a number"),
     (f"{TRANSVERSE} --force 0.1", "--force = '0.1'", "a force or a velocity, not both"),
@@ -54,8 +54,12 @@ NUMBERS = [
         "--contacts = 'phase=1;'",
         "contact 2: in it ''",
     ),
-    ("point elliptic:forward --velocity 1 --amplitude 1", "--path = 'forward'", "in it 'forward'"),
-    ("point transverse:x=1 --velocity 1 --amplitude 1", "SCENE = 'transverse:x=1'", "one of"),
+    (
+        "point elliptic:forward --velocity 1 --amplitude 1",
+        "MOTION = 'elliptic:forward'",
+        "in it 'forward'",
+    ),
+    ("point transverse:x=1 --velocity 1 --amplitude 1", "MOTION = 'transverse:x=1'", "one of"),
     (
         "point continuous-bore --velocity 1 --contacts phase=1",
         "--contacts = 'phase=1'",
@@ -127,9 +131,9 @@ GRAMMAR = [
     (f"{TRANSVERSE} --cells {ARABIC_THREE}2", f"'{ARABIC_THREE}2'", "a whole number"),
     (f"{TRANSVERSE} --cells {'9' * 5000}", "--cells = '999", "a whole number"),
     (f"{TRANSVERSE} --steps {MINUS}8", f"--steps = '{MINUS}8'", "at least 8"),
-    ("point elliptic --velocity 1 --amplitude 1 --path phase=1_0", "--path", "elliptic:key=0.5"),
-    ("point elliptic --velocity 1 --amplitude 1 --path forward=2", "--path = 'forward=2'", "0..1"),
-    ("point elliptic --velocity 1 --amplitude 1 --path phas=2", "--path = 'phas=2'", "phas;"),
+    ("point elliptic:phase=1_0 --velocity 1 --amplitude 1", "MOTION", "elliptic:key=0.5"),
+    ("point elliptic:forward=2 --velocity 1 --amplitude 1", "'elliptic:forward=2'", "0..1"),
+    ("point elliptic:phas=2 --velocity 1 --amplitude 1", "'elliptic:phas=2'", "phas;"),
     (f"{TRANSVERSE} --pressure power:exponent=1_0", "'power:exponent=1_0'", "power:key=0.5"),
 ]
 
@@ -154,8 +158,8 @@ OUT_OF_RANGE = [
     (f"{TRANSVERSE} --contacts phase=1e-400", "--contacts", "'phase=1e-400'", NEARER_0),
     (f"{TRANSVERSE} --pressure power:exponent=1e400", "'exponent=1e400'", BEYOND, "power:key=0.5"),
     (f"{TRANSVERSE} --method admm:penalty=1e-400", "'penalty=1e-400'", NEARER_0, "admm:key=0.5"),
-    ("point elliptic --velocity 1 --amplitude 1 --path phase=1e-400", "--path", NEARER_0),
-    ("drive elliptic --path forward_cycles=2,phase=1e-400 --amplitude 1", "--path", NEARER_0),
+    ("point elliptic:phase=1e-400 --velocity 1 --amplitude 1", "MOTION", NEARER_0),
+    ("propulsion elliptic:forward_cycles=2,phase=1e-400 --amplitude 1", "MOTION", NEARER_0),
     (f"{DRIVEN} --amplitude 1e-400", "--amplitude = '1e-400'", NEARER_0),
     (f"{DRIVEN} --amplitude 1 --time-limit 1e400", "--time-limit = '1e400'", BEYOND),
     (f"{PREDICTED} --tolerance 1e-400", "--tolerance = '1e-400'", "below the range"),
@@ -174,7 +178,6 @@ TWICE = [
     (f"{TRANSVERSE} --poisson 0.1 --nu=0.2", "--nu is given twice, as --poisson the first time;"),
     ("point elliptic:phase=0 --velocity 1 --amplitude 1 --velocity 2", "--velocity is given twice"),
     (f"{DRIVEN} --amplitude 1 --amplitude 1", "--amplitude is given twice; allowed: once"),
-    (f"{DRIVEN} --amplitude 1 --path phase=1", "--path is given twice; allowed: once"),
     (f"{DRIVEN} --amplitude 1 --nu 0 --poisson 0", "--poisson is given twice, as --nu the first"),
     (f"{PREDICTED} --speed '-1 mm/s'", "--speed is given twice; allowed: once"),
     (f"{PREDICTED} --nu 0.3 --poisson 0.2", "--poisson is given twice, as --nu the first time;"),
@@ -214,14 +217,14 @@ OPTIONS = [
     ("solve", "COMMAND = 'solve'", "point, sweep, gc, predict, fit, drive"),
     ("pont", "COMMAND = 'pont'", "did you mean point?"),
     ("--json", "--json", "COMMAND before other options"),
-    ("point --poisson 0.3", "--poisson", "SCENE before other options"),
+    ("point --poisson 0.3", "--poisson", "MOTION before other options"),
     ("--verion", "--verion", "did you mean --version?"),
     ("--velocity 1 point transverse", "--velocity", "COMMAND before other options"),
-    ("point", "SCENE is missing", "transverse, longitudinal, zigzag, bore, continuous-bore,"),
-    ("point bores --velocity 1", "SCENE = 'bores'", "did you mean bore?"),
+    ("point", "MOTION is missing", "transverse, longitudinal, zigzag, bore, continuous-bore,"),
+    ("point bores --velocity 1", "MOTION = 'bores'", "did you mean bore?"),
     ("point transverse --speed 1 --amplitude 1", "option --speed;", "did you mean --velocity?"),
     ("point transverse -speed=1 --amplitude 1", "option -speed;", "did you mean --velocity?"),
-    ("drive", "required: SCENE, --amplitude"),
+    ("propulsion", "required: MOTION, --amplitude"),
     (DRIVEN, "required: --amplitude"),
     (f"{DRIVEN} --velocity 1 --amplitude 1", "unknown option --velocity;", "allowed: --help"),
     (f"{DRIVEN} --amplitude much", "--amplitude = 'much'", "allowed is a number"),
@@ -231,13 +234,13 @@ OPTIONS = [
     (f"{DRIVEN} --amplitude 1 --tolerance 0", "--tolerance = '0'", "at least 1e-06"),
     (f"{DRIVEN} --amplitude 1 --nu 0.6", "--nu = '0.6'", "at most 0.5"),
     (f"{DRIVEN} --amplitude 1 --nu 0.3 --model radial", "--model = 'radial'", "elliptic"),
-    ("drive transverse --amplitude 1", "SCENE = 'transverse'", "a motion that drives, such as"),
-    ("drive elliptic --path phase=0 --amplitude 1", "--path = 'phase=0'", "a motion that drives"),
-    ("drive eliptic --amplitude 1", "SCENE = 'eliptic'", "allowed is one of transverse"),
+    ("propulsion transverse --amplitude 1", "MOTION = 'transverse'", "a self-propelled motion"),
+    ("propulsion elliptic:phase=0 --amplitude 1", "MOTION = 'elliptic:phase=0'", "self-propelled"),
+    ("propulsion eliptic --amplitude 1", "MOTION = 'eliptic'", "allowed is one of transverse"),
     ("predict transverse --velocity 1", "option --velocity;", "did you mean --speed?"),
-    ("point sideways --velocity 1", "SCENE", "'sideways'", "zigzag"),
+    ("point sideways --velocity 1", "MOTION", "'sideways'", "zigzag"),
     ("point continuous_bore --velocity 1", "'continuous_bore'", "continuous-bore"),
-    ("point --velocity 1 transverse", "--velocity", "SCENE before other options"),
+    ("point --velocity 1 transverse", "--velocity", "MOTION before other options"),
     (
         "point transverse --amplitude 1",
         "--velocity: needed;",
@@ -259,14 +262,9 @@ OPTIONS = [
     (f"{PREDICTED} mm", "unrecognized arguments: mm", "allowed: options, each with one value"),
     (f"{PREDICTED} --nu 0.3 --radius-across '1 um'", "--radius-across = '1 um'", "of ratio"),
     (
-        "predict elliptic:forward_cycles=2,phase=0 --driving --forward-amplitude '0.4 um'",
+        "predict elliptic:forward_cycles=2,phase=0 --propulsion --forward-amplitude '0.4 um'",
         "--forward-amplitude = '0.4 um'",
         "the numbers of the motion are its shares of the amplitude",
-    ),
-    (
-        "drive elliptic:forward_cycles=2 --path forward_cycles=2,phase=0 --amplitude 1",
-        "--path = 'forward_cycles=2,phase=0'",
-        "allowed is none: SCENE has numbers of its own",
     ),
     ("fit transverse a-file --map m.csv", "--map = 'm.csv'", "a path that ends in .nc"),
     ("fit transverse a-file --map nosuch.nc", "--map: nosuch.nc is not there"),

@@ -144,8 +144,8 @@ STUDIES = [
     ("accuracy.levels", "7", "7 is not allowed", "<= 6"),
     ("accuracy.repeats", "0", "0 is not allowed", ">= 1"),
     ("accuracy.points", "{}", "{} is not allowed", "names"),
-    (f"{POINT}.scene", None, "missing; required: scene, velocity"),
-    (f"{POINT}.scene", "bores", '"bores" is not allowed; did you mean bore?', "zigzag"),
+    (f"{POINT}.motion", None, "missing; required: motion, velocity"),
+    (f"{POINT}.motion", "bores", '"bores" is not allowed; did you mean bore?', "zigzag"),
     (f"{POINT}.velocity", "0", "0 is not allowed", "> 0"),
     (f"{POINT}.amplitude", None, "missing; required for bore"),
     (f"{POINT}.amplitude", "0", "0 is not allowed", "> 0"),
@@ -174,17 +174,17 @@ EXTENDED = [
     ("extended", "[circle]", '["circle"] is not allowed', "a mapping of names"),
     ("extended", "{Circle: {}}", '"Circle" is not allowed', "small letters, digits and _"),
     ("extended", "{1: {}}", "1 is not allowed", "small letters, digits and _"),
-    (f"{E}.scenes", "bore", "unknown key; did you mean scene?", "group, title"),
-    (f"{E}.scene", None, "missing; required: scene, group, velocity"),
-    (f"{E}.scene", "5", "5 is not allowed", "text"),
-    (f"{E}.scene", "eliptic", "'eliptic'", "did you mean elliptic?", "transverse, longitudinal"),
-    (f"{E}.scene", "'elliptic:phas=0'", "unknown number phas", "forward, lateral, phase"),
-    (f"{E}.scene", "'elliptic:forward=2'", "forward = 2", "allowed is a share in 0..1"),
+    (f"{E}.motions", "bore", "unknown key; did you mean motion?", "group, title"),
+    (f"{E}.motion", None, "missing; required: motion, group, velocity"),
+    (f"{E}.motion", "5", "5 is not allowed", "text"),
+    (f"{E}.motion", "eliptic", "'eliptic'", "did you mean elliptic?", "transverse, longitudinal"),
+    (f"{E}.motion", "'elliptic:phas=0'", "unknown number phas", "forward, lateral, phase"),
+    (f"{E}.motion", "'elliptic:forward=2'", "forward = 2", "allowed is a share in 0..1"),
     (f"{E}.pressure", "hertzian", "'hertzian'", "allowed is ", "hertz"),
     (f"{E}.pressure", "0", "0 is not allowed", "text"),
     (f"{E}.group", "My figure", '"My figure" is not allowed', "small letters, digits and _"),
     (f"{E}.title", "''", '"" is not allowed', "text on one line"),
-    (f"{E}.velocity", None, "missing; required: scene, group, velocity"),
+    (f"{E}.velocity", None, "missing; required: motion, group, velocity"),
     (f"{E}.velocity[1]", "-1", "-1 is not allowed", ">= 0"),
     (f"{E}.amplitude", None, "missing; required for elliptic"),
     (f"{E}.amplitude", "[1, 1]", "1 occurs twice", "different values"),
@@ -196,7 +196,7 @@ EXTENDED = [
 STUDIED = """
 accuracy:
   methods: [shipped, admm]
-  points: {a: {scene: bore, velocity: 1, amplitude: 1}}
+  points: {a: {motion: bore, velocity: 1, amplitude: 1}}
   map: {tolerance: [0.01, 0.001]}
 stability:
   methods: [shipped, admm]
@@ -206,8 +206,8 @@ claims:
 """
 MOVED = """
 extended:
-  circle: {scene: elliptic, group: loops, velocity: [0.1, 1], amplitude: [0.5, 1]}
-  line: {scene: "elliptic:phase=0", group: loops, velocity: [0.1, 1], amplitude: [0.5, 1]}
+  circle: {motion: elliptic, group: loops, velocity: [0.1, 1], amplitude: [0.5, 1]}
+  line: {motion: "elliptic:phase=0", group: loops, velocity: [0.1, 1], amplitude: [0.5, 1]}
 """
 
 
@@ -239,10 +239,10 @@ RATIOS = str([0.04 * i for i in range(11)])
 TOGETHER = [
     ({f"{T}.model": "radial", f"{T}.poisson": "[0, 0.2]"}, f"{T}.poisson", "0.2", "allowed: 0"),
     ({f"{B}.velocity.linear": SPACED % 2}, f"{B}.velocity", '{"log": {', "linear or log"),
-    ({f"{POINT}.scene": "continuous-bore"}, f"{POINT}.amplitude", "1", "has no amplitude"),
+    ({f"{POINT}.motion": "continuous-bore"}, f"{POINT}.amplitude", "1", "has no amplitude"),
     ({f"{E}.model": "radial", f"{E}.poisson": "0.3"}, f"{E}.model", "'radial'", "nu > 0"),
-    ({f"{E}.scene": "bore", f"{E}.model": "slider"}, f"{E}.model", "'slider'", "bore"),
-    ({f"{E}.scene": "continuous-bore"}, f"{E}.amplitude", "[0.5, 1.0]", "has no amplitude"),
+    ({f"{E}.motion": "bore", f"{E}.model": "slider"}, f"{E}.model", "'slider'", "bore"),
+    ({f"{E}.motion": "continuous-bore"}, f"{E}.amplitude", "[0.5, 1.0]", "has no amplitude"),
     (
         {"extended.line.amplitude": "[1]"},
         "extended.line.group",

@@ -66,39 +66,39 @@ KEYS = [
     ("points_per_job: 010", ("010", "base 8", "line 5")),
     ("points_per_job: 10.0", None),
     (
-        "accuracy: {points: {1: {scene: bore, velocity: 1, amplitude: 1}, "
-        "1.0: {scene: bore, velocity: 2, amplitude: 1}}}",
+        "accuracy: {points: {1: {motion: bore, velocity: 1, amplitude: 1}, "
+        "1.0: {motion: bore, velocity: 2, amplitude: 1}}}",
         ("the key 1.0 occurs twice", "line 5"),
     ),
     (
-        "accuracy: {points: {~: {scene: bore, velocity: 1, amplitude: 1}}}",
+        "accuracy: {points: {~: {motion: bore, velocity: 1, amplitude: 1}}}",
         ("accuracy.points: null is not allowed", "can be written or a number"),
     ),
     (f"extended: {{{'x' * 250}: {{}}}}", ("extended", "up to 100 small letters")),
     (
-        f"extended: {{x: {{scene: zigzag, velocity: [1], amplitude: [1], group: {'g' * 250}}}}}",
+        f"extended: {{x: {{motion: zigzag, velocity: [1], amplitude: [1], group: {'g' * 250}}}}}",
         ("extended.x.group", "up to 100 small letters"),
     ),
     (
-        'extended: {x: {scene: zigzag, velocity: [1], amplitude: [1], group: g, pressure: "file:a'
+        'extended: {x: {motion: zigzag, velocity: [1], amplitude: [1], group: g, pressure: "file:a'
         '\\nb.csv"}}',
         ("extended.x.pressure", "No such file"),
     ),
     (
-        "extended: {x: {scene: zigzag, velocity: [1], amplitude: [1], group: g, "
+        "extended: {x: {motion: zigzag, velocity: [1], amplitude: [1], group: g, "
         "pressure: 'file:~/x.csv'}}",
         ("extended.x.pressure", "~/x.csv", "looked for"),
     ),
     (
-        "extended: {x: {scene: 'elliptic:phase=30 deg', velocity: [1], amplitude: [1], group: g}}",
-        ("extended.x.scene", "elliptic:key=0.5"),
+        "extended: {x: {motion: 'elliptic:phase=30 deg', velocity: [1], amplitude: [1], group: g}}",
+        ("extended.x.motion", "elliptic:key=0.5"),
     ),
     (
-        "extended: {x: {scene: 'elliptic:forward=0,5', velocity: [1], amplitude: [1], group: g}}",
-        ("extended.x.scene", "elliptic:key=0.5"),
+        "extended: {x: {motion: 'elliptic:forward=0,5', velocity: [1], amplitude: [1], group: g}}",
+        ("extended.x.motion", "elliptic:key=0.5"),
     ),
     (
-        "extended: {x: {scene: zigzag, velocity: [1], amplitude: [1], group: g, "
+        "extended: {x: {motion: zigzag, velocity: [1], amplitude: [1], group: g, "
         "pressure: 'File:x.csv'}}",
         ("extended.x.pressure", "did you mean file?"),
     ),
@@ -213,7 +213,7 @@ def whole(**attributes):
             "converged": (DIMS, np.ones(mu.shape, bool)),
         },
         {"velocity": VELOCITY, "amplitude": AMPLITUDE, "poisson": 0.0},
-        {"scene": "transverse", "tolerance": 1e-3} | attributes,
+        {"motion": "transverse", "tolerance": 1e-3} | attributes,
     )
 
 

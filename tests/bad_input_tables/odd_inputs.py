@@ -209,22 +209,22 @@ PREDICTIONS = [
         "--mass = '1e308 kg': over that of the contact, it is beyond the range",
     ),
     (
-        {"scene": "longitudinal", "speed": "0 m/s", "drive_stiffness": "1 N/um"},
+        {"motion": "longitudinal", "speed": "0 m/s", "drive_stiffness": "1 N/um"},
         "--speed = '0 m/s': allowed is a speed above 0 where a spring pulls",
     ),
     (
         {
-            **{"scene": "continuous-bore", "amplitude": None, "frequency": None},
+            **{"motion": "continuous-bore", "amplitude": None, "frequency": None},
             **{"rotation": "1 Hz", "drive_stiffness": "1 N/um"},
         },
         "--drive-stiffness = '1 N/um': allowed is none for continuous-bore, which is steady",
     ),
     (
-        {"scene": "Transverse"},
-        "SCENE = 'Transverse': did you mean transverse? allowed is one of transverse",
+        {"motion": "Transverse"},
+        "MOTION = 'Transverse': did you mean transverse? allowed is one of transverse",
     ),
-    ({"scene": "transverse "}, "SCENE = 'transverse '"),
-    ({"scene": "normal:forward=0.5"}, "SCENE = 'normal:forward=0.5'"),
+    ({"motion": "transverse "}, "MOTION = 'transverse '"),
+    ({"motion": "normal:forward=0.5"}, "MOTION = 'normal:forward=0.5'"),
 ]
 
 # The same contact in other words: what is changed, and what it is equal to.
@@ -262,7 +262,7 @@ CALLS += [("solve", {"poisson": value}, "poisson = ") for value in NO_NUMBERS]
 CALLS += [("solve", {"cells": value}, "cells = ") for value in NO_NUMBERS[1:]]
 CALLS += [
     ("solve", {name: value}, f"{name} = ")
-    for name in ("scene", "model", "method", "pressure")
+    for name in ("motion", "model", "method", "pressure")
     for value in NAMES
 ]
 CALLS += [
@@ -270,16 +270,20 @@ CALLS += [
     ("solve", {"most_work": SPAN}, "most_work = "),
     ("solve", {"time_limit": SPAN}, "time_limit = "),
     ("solve", {"tolerance": list(range(10**5))}, "allowed is a number"),
-    ("solve", {"scene": "eliptic:forward=0.5"}, "scene = 'eliptic:forward=0.5': did you mean"),
-    ("solve", {"scene": "elliptic:forward=0.5;phase=90"}, "elliptic:key=0.5"),
-    ("solve", {"scene": "elliptic:"}, "elliptic:key=0.5"),
-    ("solve", {"scene": "elliptic:forward"}, "elliptic:key=0.5"),
-    ("solve", {"scene": "elliptic:phase=90\N{DEGREE SIGN}"}, "elliptic:key=0.5"),
-    ("solve", {"scene": "elliptic:forward=50%"}, "elliptic:key=0.5"),
-    ("solve", {"scene": "elliptic:lateral=0,forward=0"}, "scene = 'elliptic:lateral=0,forward=0'"),
-    ("solve", {"scene": "tr\N{CYRILLIC SMALL LETTER A}nsverse"}, "did you mean transverse?"),
-    ("solve", {"scene": " transverse"}, "did you mean transverse?"),
-    ("solve", {"scene": "transverse:amplitude=1"}, "unknown number amplitude"),
+    ("solve", {"motion": "eliptic:forward=0.5"}, "motion = 'eliptic:forward=0.5': did you mean"),
+    ("solve", {"motion": "elliptic:forward=0.5;phase=90"}, "elliptic:key=0.5"),
+    ("solve", {"motion": "elliptic:"}, "elliptic:key=0.5"),
+    ("solve", {"motion": "elliptic:forward"}, "elliptic:key=0.5"),
+    ("solve", {"motion": "elliptic:phase=90\N{DEGREE SIGN}"}, "elliptic:key=0.5"),
+    ("solve", {"motion": "elliptic:forward=50%"}, "elliptic:key=0.5"),
+    (
+        "solve",
+        {"motion": "elliptic:lateral=0,forward=0"},
+        "motion = 'elliptic:lateral=0,forward=0'",
+    ),
+    ("solve", {"motion": "tr\N{CYRILLIC SMALL LETTER A}nsverse"}, "did you mean transverse?"),
+    ("solve", {"motion": " transverse"}, "did you mean transverse?"),
+    ("solve", {"motion": "transverse:amplitude=1"}, "unknown number amplitude"),
     ("solve", {"pressure": "powr:exponent=2"}, "pressure = 'powr:exponent=2': did you mean power?"),
     ("solve", {"pressure": "power:exponent=1e300"}, "pressure = 'power:exponent=1e300'"),
     ("solve", {"pressure": "file:"}, "as in file:measured.csv"),
@@ -291,7 +295,11 @@ CALLS += [
     ("history", {"travel": True}, "travel = True: allowed is a number"),
     ("history", {"travel": np.array([5.0])}, "travel = array([5.]): allowed is a number"),
     ("history", {"travel": 1e300}, "travel = 1e+300: allowed is"),
-    ("history", {"scene": "continuous-bore", "amplitude": None, "velocity": 1e-320}, "velocity = "),
+    (
+        "history",
+        {"motion": "continuous-bore", "amplitude": None, "velocity": 1e-320},
+        "velocity = ",
+    ),
     ("history", {"periods": None}, "periods = None: allowed is a whole number"),
     ("history", {"periods": 10**9}, "periods = 1000000000: allowed is"),
     ("history", {"periods": SPAN}, "periods = "),
@@ -301,9 +309,9 @@ CALLS += [
     ("history", {"cells": 1}, "cells = 1: allowed is a whole number of at least 2"),
     *(
         (function, {"pressure": pd.Series(["hertz", "punch"])}, "pressure = ")
-        for function in ("history", "period", "drive", "shakedown")
+        for function in ("history", "period", "propulsion", "shakedown")
     ),
-    ("drive", {"progress": 5}, "progress = 5: allowed is a function"),
+    ("propulsion", {"progress": 5}, "progress = 5: allowed is a function"),
     ("shakedown", {"progress": 5}, "progress = 5: allowed is a function"),
     ("history", {"cells": 10**7}, "cells = 10000000: allowed is"),
     ("history", {"start": ["full-slip"]}, "start = ['full-slip']: allowed is one of"),
@@ -312,14 +320,14 @@ CALLS += [
     ("period", {"angles": 10**12}, "angles = 1000000000000: allowed is"),
     ("period", {"steps": HUGE}, "steps = "),
     ("period", {"cells": 1000, "angles": 1000, "steps": 1000}, "cells x angles x steps"),
-    ("period", {"scene": "continuous-bore", "amplitude": None}, "one that oscillates"),
+    ("period", {"motion": "continuous-bore", "amplitude": None}, "one that oscillates"),
     ("traction_field", {"cells": 0}, "cells = 0: allowed is a whole number of at least 2"),
     ("traction_field", {"cells": "8"}, "cells = '8': allowed is a whole number"),
     ("traction_field", {"cells": 8.0}, "cells = 8.0: allowed is a whole number"),
     ("traction_field", {"cells": True}, "cells = True: allowed is a whole number"),
     ("traction_field", {"cells": 10**12}, "cells = 1000000000000: allowed is"),
     ("traction_field", {"velocity": 0}, "velocity = 0.0"),
-    ("traction_field", {"scene": "transverse", "amplitude": 1.0}, "scene = 'transverse'"),
+    ("traction_field", {"motion": "transverse", "amplitude": 1.0}, "motion = 'transverse'"),
     *(
         (function, {"results": folder}, "is not allowed; allowed: the name of a folder")
         for function in ("solve_stored", "open_map")

@@ -63,9 +63,9 @@ def test_a_bad_command_line_is_one_line(arguments, parts, nothing_runs, there, c
 
 def test_every_option_is_given_a_bad_value():
     """A new option needs bad input of its own."""
-    scene = cli.build_parser("point")._subparsers._group_actions[0].choices["point"]
-    scene = scene._subparsers._group_actions[0].choices["transverse"]
-    options = {name for name in scene._option_string_actions if name.startswith("--")}
+    motion = cli.build_parser("point")._subparsers._group_actions[0].choices["point"]
+    motion = motion._subparsers._group_actions[0].choices["transverse"]
+    options = {name for name in motion._option_string_actions if name.startswith("--")}
     given = {word for first, *_ in COMMAND_LINES for word in re.findall(r"--[a-z-]+", first)}
     assert options - given == {"--help"}
 

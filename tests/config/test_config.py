@@ -33,7 +33,7 @@ def test_defaults_are_filled_in(tmp_path):
     assert (sweep.poisson, sweep.poisson_is_axis) == ((0.0,), False)
     assert (sweep.model, sweep.tolerance, sweep.cells, sweep.steps) == ("auto", 1e-3, None, None)
     assert found.histories["transients"]["velocity"] == 0.8
-    assert found.sweeps["continuous_bore"].scene == "continuous-bore"
+    assert found.sweeps["continuous_bore"].motion == "continuous-bore"
 
 
 def test_a_byte_order_mark_and_line_ends_of_windows_do_no_harm(tmp_path):
@@ -54,7 +54,7 @@ sweeps:
     velocity: [2]
   continuous_bore: {velocity: [1]}
 extended:
-  again: {<<: *faster, velocity: [3], scene: bore, group: loops}
+  again: {<<: *faster, velocity: [3], motion: bore, group: loops}
 """
 
 
@@ -121,7 +121,7 @@ def test_the_studies_need_not_be_given():
 
 
 def test_points_of_a_study_have_numbers_and_titles():
-    text = "{there: {scene: zigzag, velocity: 1, amplitude: 2}, steady: {scene: continuous-bore, "
+    text = "{there: {motion: zigzag, velocity: 1, amplitude: 2}, steady: {motion: continuous-bore, "
     points = yaml.safe_load(text + "velocity: 3, poisson: 0.5, title: at rest}}")
     given = {
         "sweeps": {"bore": {"velocity": [1], "amplitude": [1]}},
@@ -149,13 +149,13 @@ def test_points_of_a_study_have_numbers_and_titles():
 def test_titles_may_hold_what_is_markup_elsewhere(title):
     """They are drawn as they stand, see test_plot_groups."""
     sweep = {
-        "scene": "longitudinal",
+        "motion": "longitudinal",
         "group": "g",
         "velocity": [1],
         "amplitude": [1],
         "title": title,
     }
-    point = {"scene": "bore", "velocity": 1, "amplitude": 1}
+    point = {"motion": "bore", "velocity": 1, "amplitude": 1}
     given = {
         "sweeps": {"bore": {"velocity": [1], "amplitude": [1]}},
         "extended": {"a": sweep},
@@ -171,13 +171,13 @@ def test_titles_may_hold_what_is_markup_elsewhere(title):
 )
 def test_titles_that_cannot_be_drawn_or_written_are_refused_before_anything_is_computed(title):
     sweep = {
-        "scene": "longitudinal",
+        "motion": "longitudinal",
         "group": "g",
         "velocity": [1],
         "amplitude": [1],
         "title": title,
     }
-    point = {"scene": "bore", "velocity": 1, "amplitude": 1}
+    point = {"motion": "bore", "velocity": 1, "amplitude": 1}
     for more, where in (
         ({"extended": {"a": sweep}}, "extended.a.title"),
         ({"accuracy": {"points": {"p": point | {"title": title}}}}, "accuracy.points.p.title"),
@@ -226,7 +226,7 @@ def test_models_are_refused_here_exactly_where_the_solver_refuses_them():
     from microslip.motions.by_name import motion_named
 
     assert schemas.schema()["$defs"]["model"]["enum"] == ["auto", *MODELS]
-    for sweep, scene in config.SCENE_OF_SWEEP.items():
+    for sweep, motion in config.MOTION_OF_SWEEP.items():
         for model, poisson in itertools.product(MODELS, (0.0, 0.3)):
             given = {"velocity": [1], "model": model, "poisson": poisson}
             if sweep != "continuous_bore":
@@ -236,7 +236,7 @@ def test_models_are_refused_here_exactly_where_the_solver_refuses_them():
                 refused = False
             except ConfigError:
                 refused = True
-            assert refused == bool(MODELS[model].refuses(motion_named(scene), poisson))
+            assert refused == bool(MODELS[model].refuses(motion_named(motion), poisson))
 
 
 def test_settings_of_a_sweep_are_plain_json(tmp_path):
@@ -253,7 +253,7 @@ def test_the_static_limit_goes_with_all_that_the_solver_takes_it_with(model, poi
     loaded = config.from_mapping(
         {
             "sweeps": {"transverse": axes, "bore": axes},
-            "extended": {"line": {**axes, "scene": "longitudinal", "group": "g"}},
+            "extended": {"line": {**axes, "motion": "longitudinal", "group": "g"}},
         }
     )
     assert [grid.velocity[0] for grid in loaded.grids.values()] == [0, 0, 0]

@@ -12,8 +12,8 @@ from microslip.sweeps.cache import Store
 from microslip.sweeps.evaluate import plain
 
 PAPER = {"transverse": {"velocity": [1], "amplitude": [1]}}
-WEIGHTS = {"scene": "transverse", "amplitude": [0.5, 1], "force": [0.2, 0.6, 1.0]}
-SPRINGS = {"scene": "transverse", "amplitude": [1], "velocity": [0.1, 0.5], "stiffness": [0.1, 10]}
+WEIGHTS = {"motion": "transverse", "amplitude": [0.5, 1], "force": [0.2, 0.6, 1.0]}
+SPRINGS = {"motion": "transverse", "amplitude": [1], "velocity": [0.1, 0.5], "stiffness": [0.1, 10]}
 
 
 def configured(**drives):
@@ -40,13 +40,13 @@ def test_a_force_stands_in_the_place_of_the_velocity():
 def test_what_is_moved_is_asked_for_as_before():
     """Names of results are hashes of requests: no drive leaves no trace in one."""
     (request,) = batches.PointRequests(load.from_mapping({"sweeps": PAPER}).sweeps["transverse"])
-    names = {"kind", "scene", "model", "tolerance", "cells", "steps"}
+    names = {"kind", "motion", "model", "tolerance", "cells", "steps"}
     assert set(request) == names | {"poisson", "amplitude", "velocity"}
     assert "drives" not in load.from_mapping({"sweeps": PAPER}).of_sweep("transverse")["sweep"]
 
 
 BAD = [
-    ({"scene": "transverse", "amplitude": [1], "velocity": [1]}, "required: force or stiffness"),
+    ({"motion": "transverse", "amplitude": [1], "velocity": [1]}, "required: force or stiffness"),
     (WEIGHTS | {"velocity": [1]}, "force: 0.2: allowed is a force or a velocity, not both"),
     (WEIGHTS | {"stiffness": 1}, "stiffness: 1.0: allowed is none beside a force"),
     (SPRINGS | {"stiffness": [0, 1]}, "stiffness: 0.0: allowed is a number above 0"),
@@ -55,9 +55,12 @@ BAD = [
     (SPRINGS | {"mass": "heavy"}, "mass: "),
     (SPRINGS | {"model": "rigid"}, "model: 'rigid': does not know a stiffness"),
     (SPRINGS | {"group": "g"}, "group"),
-    ({"scene": "transverse", "amplitude": [1], "stiffness": 1}, "velocity: None: allowed is"),
-    (SPRINGS | {"scene": "longitudinal", "velocity": [0, 1]}, "velocity: 0.0: allowed is a number"),
-    ({"scene": "transverse", "force": [0.1]}, "amplitude: missing"),
+    ({"motion": "transverse", "amplitude": [1], "stiffness": 1}, "velocity: None: allowed is"),
+    (
+        SPRINGS | {"motion": "longitudinal", "velocity": [0, 1]},
+        "velocity: 0.0: allowed is a number",
+    ),
+    ({"motion": "transverse", "force": [0.1]}, "amplitude: missing"),
 ]
 
 
@@ -71,7 +74,7 @@ def test_what_does_not_go_together_is_refused_in_a_line(given, said):
 
 
 def test_a_name_is_taken_once():
-    extended = {"line": {"scene": "longitudinal", "group": "g", "velocity": [1], "amplitude": [1]}}
+    extended = {"line": {"motion": "longitudinal", "group": "g", "velocity": [1], "amplitude": [1]}}
     given = {"sweeps": PAPER, "extended": extended, "drives": {"line": SPRINGS}}
     with pytest.raises(load.ConfigError, match="drives.line: another result has this name"):
         load.from_mapping(given)
@@ -136,7 +139,7 @@ def test_a_point_that_is_pulled_is_stored_and_found_again(tmp_path):
 
 
 PAIR = {
-    "scene": "longitudinal",
+    "motion": "longitudinal",
     "amplitude": [0.3],
     "force": [0.2],
     "contacts": "load=2,phase=-180;load=2",
@@ -162,6 +165,6 @@ def test_several_contacts_are_part_of_every_request_and_of_the_dataset(tmp_path)
     assert len(list(tmp_path.glob("points/*/*/*.json"))) == 1  # found, not computed again
     with pytest.raises(load.ConfigError, match="pair.contacts: 'phase=': contact 1: in it"):
         configured(pair=PAIR | {"contacts": "phase="})
-    unequal = {"scene": "normal", "contacts": "load=2;load=1"}
+    unequal = {"motion": "normal", "contacts": "load=2;load=1"}
     with pytest.raises(load.ConfigError, match="allowed are equal loads for normal"):
         configured(pair=PAIR | unequal)

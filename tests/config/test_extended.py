@@ -22,7 +22,7 @@ from microslip.theory import masing, paper
 from microslip.theory.catalogue import FORMS
 
 PAPER = {"bore": {"velocity": [1], "amplitude": [1]}}
-CIRCLE = {"scene": "elliptic", "group": "loops", "velocity": [0.1, 1], "amplitude": [0, 1]}
+CIRCLE = {"motion": "elliptic", "group": "loops", "velocity": [0.1, 1], "amplitude": [0, 1]}
 
 
 def configured(**sweeps):
@@ -59,7 +59,7 @@ def test_groups_keep_the_order_of_their_sweeps():
 
 
 def test_a_steady_motion_has_no_amplitude():
-    steady = {"scene": "continuous-bore", "group": "steady", "velocity": [0.1, 1]}
+    steady = {"motion": "continuous-bore", "group": "steady", "velocity": [0.1, 1]}
     (sweep,) = configured(spin=steady).extended.values()
     assert (sweep.amplitude, sweep.drawn_over) == (None, "velocity")
 
@@ -87,9 +87,9 @@ def test_a_figure_has_room_for_so_many():
 
 def test_jobs_do_not_ask_the_solver(monkeypatch):
     monkeypatch.setattr(extended, "_ask_solver", None)
-    given = {"sweeps": PAPER, "extended": {"circle": CIRCLE | {"scene": "no such"}}}
+    given = {"sweeps": PAPER, "extended": {"circle": CIRCLE | {"motion": "no such"}}}
     found = load.from_mapping(given, ask_solver=False)
-    assert found.extended["circle"].scene == "no such"
+    assert found.extended["circle"].motion == "no such"
 
 
 ALONE = """
@@ -97,7 +97,7 @@ import sys
 from microslip.config import load
 from microslip.sweeps import batches
 given = {"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}, "extended": {"ellipse": {
-    "scene": "elliptic:phase=30", "group": "g", "velocity": [1], "amplitude": [1]}}}
+    "motion": "elliptic:phase=30", "group": "g", "velocity": [1], "amplitude": [1]}}}
 found = load.from_mapping(given, ask_solver=False)
 list(batches.PointRequests(found.sweeps["bore"]))
 print("numpy" in sys.modules)
@@ -110,7 +110,7 @@ def test_jobs_of_other_sweeps_do_not_import_the_solver():
 
 
 def test_a_static_limit_is_allowed_where_the_solver_knows_it():
-    line = CIRCLE | {"scene": "elliptic:phase=0", "velocity": [0, 0.1]}
+    line = CIRCLE | {"motion": "elliptic:phase=0", "velocity": [0, 0.1]}
     assert configured(line=line).extended["line"].velocity == (0.0, 0.1)
 
 
@@ -125,14 +125,14 @@ def test_a_plain_point_is_asked_for_as_ever():
     plain = load.from_mapping({"sweeps": {"bore": {"velocity": [1], "amplitude": [1]}}})
     (expected,) = sweep.PointRequests(plain.sweeps["bore"])
     assert "pressure" not in expected
-    (found,) = requests_of(scene="bore", velocity=[1], amplitude=[1])
+    (found,) = requests_of(motion="bore", velocity=[1], amplitude=[1])
     assert found == expected
 
 
 def test_equal_motions_are_asked_for_alike():
-    assert requests_of(scene="elliptic:phase=90,forward=1") == requests_of()
+    assert requests_of(motion="elliptic:phase=90,forward=1") == requests_of()
     one, other = (f"elliptic:{n}" for n in ("forward=0.5,phase=30", "phase=30.0,forward=0.50"))
-    assert requests_of(scene=one) == requests_of(scene=other) != requests_of()
+    assert requests_of(motion=one) == requests_of(motion=other) != requests_of()
 
 
 def test_a_pressure_is_part_of_the_request_and_is_handed_to_the_solver(monkeypatch, tmp_path):
@@ -169,7 +169,7 @@ EVEN = "forward,lateral,pressure\n0,0,1\n0,1,1\n1,0,1\n1,1,1\n"
 def with_pressure(folder, pressure):
     """A configuration in a file of a folder, with one sweep under that pressure."""
     path = folder / "mine.yaml"
-    sweep = CIRCLE | {"scene": "transverse", "pressure": pressure}
+    sweep = CIRCLE | {"motion": "transverse", "pressure": pressure}
     path.write_text(json.dumps({"sweeps": PAPER, "extended": {"pad": sweep}}))
     return path
 
@@ -262,13 +262,18 @@ def built(folder, name="circle", **changes):
 
 def test_a_dataset_says_what_it_is_of(monkeypatch, tmp_path):
     Solver(monkeypatch)
-    data = built(tmp_path, scene="elliptic:phase=90.0", title="a circle")
+    data = built(tmp_path, motion="elliptic:phase=90.0", title="a circle")
     assert data.mu_macro.dims == ("amplitude", "velocity")
-    said = {key: data.attrs[key] for key in ("scene", "pressure", "title", "group")}
-    assert said == {"scene": "elliptic", "pressure": "hertz", "title": "a circle", "group": "loops"}
-    scene = motion_named("elliptic")
-    assert data.velocity.formula == scene.velocity_label
-    assert data.amplitude.long_name == f"amplitude, {scene.amplitude_label}"
+    said = {key: data.attrs[key] for key in ("motion", "pressure", "title", "group")}
+    assert said == {
+        "motion": "elliptic",
+        "pressure": "hertz",
+        "title": "a circle",
+        "group": "loops",
+    }
+    motion = motion_named("elliptic")
+    assert data.velocity.formula == motion.velocity_label
+    assert data.amplitude.long_name == f"amplitude, {motion.amplitude_label}"
     assert not [name for name in data if "static" in name]
     assert list(sweep_dataset.report(data, "circle")) == ["circle: 4 points, all converged"]
     for variable in data.variables.values():
@@ -277,7 +282,7 @@ def test_a_dataset_says_what_it_is_of(monkeypatch, tmp_path):
 
 def test_limits_stand_beside_the_points_of_motions_that_have_some(monkeypatch, tmp_path):
     Solver(monkeypatch)
-    data = built(tmp_path, "along", scene="longitudinal", amplitude=[0, 0.5, 1])
+    data = built(tmp_path, "along", motion="longitudinal", amplitude=[0, 0.5, 1])
     a = data.amplitude.values
     assert data.mu_static.values == pytest.approx(paper.static_limit_longitudinal(a))
     assert float(data.mu_closed_form.sel(velocity=0.1, amplitude=0.5)) == pytest.approx(
@@ -326,7 +331,7 @@ def test_beyond_the_map_nothing_is_known_and_the_solver_may_be_asked(friction):
 
 def test_static_friction_is_interpolated_along_the_amplitude(monkeypatch, tmp_path):
     Solver(monkeypatch)
-    line = {"scene": "elliptic:phase=0", "velocity": [0, 0.1], "amplitude": [0, 0.5, 1, 1.5]}
+    line = {"motion": "elliptic:phase=0", "velocity": [0, 0.1], "amplitude": [0, 0.5, 1, 1.5]}
     built(tmp_path, **line)
     friction = microslip.open_map("circle", tmp_path).friction
     assert float(friction.at(0, 0.7).mu_macro) == 0
@@ -336,7 +341,7 @@ def test_static_friction_is_interpolated_along_the_amplitude(monkeypatch, tmp_pa
 @pytest.mark.slow
 def test_a_dataset_under_another_pressure_has_none_of_hertzs_limits(monkeypatch, tmp_path):
     Solver(monkeypatch)
-    built(tmp_path, scene="transverse", pressure=POWER)
+    built(tmp_path, motion="transverse", pressure=POWER)
     friction = microslip.open_map("circle", tmp_path).friction
     with pytest.raises(ValueError, match="no limit of pressure power:exponent=1 is known"):
         friction.at(0.01, 1)

@@ -152,7 +152,7 @@ def test_a_grid_of_a_plain_map_leaves_out_velocity_0():
     plain = xr.Dataset(
         {"mu_macro": (dims, mu), "mu_macro_error": (dims, np.full((3, 4), 1e-3))},
         {"velocity": velocity, "amplitude": amplitude, "poisson": 0.0},
-        {"scene": "transverse", "tolerance": 1e-2},
+        {"motion": "transverse", "tolerance": 1e-2},
     )
     grid = plain.friction.on_grid(3, 3)
     assert grid.velocity.values == pytest.approx([0.01, 0.1, 1.0])
@@ -179,7 +179,7 @@ def test_a_map_without_all_its_points_is_refused(dataset):
 def test_of_other_motions_the_map_answers_and_nothing_beyond():
     """Along the motion friction is known in closed form, with a kink where nothing sticks."""
     axes = {"velocity": [0.01, 1], "amplitude": [0.1, 0.9], "group": "lines"}
-    axes |= {"scene": "longitudinal", "adaptive": {"error": 0.03}}
+    axes |= {"motion": "longitudinal", "adaptive": {"error": 0.03}}
     paper_too = {"bore": {"velocity": [1], "amplitude": [1]}}
     given = load.from_mapping({"sweeps": paper_too, "extended": {"along": axes}})
     (map_,) = given.certified.values()

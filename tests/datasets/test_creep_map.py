@@ -126,7 +126,7 @@ BAD = [
     ({"poisson": [0, 0.3]}, "one Poisson's ratio"),
     ({"poisson": 0.3}, "transverse under hertz at Poisson's ratio 0.3, whose threshold"),
     ({"pressure": "punch"}, "transverse under punch"),
-    ({"scene": "longitudinal"}, "longitudinal under hertz"),
+    ({"motion": "longitudinal"}, "longitudinal under hertz"),
     ({"model": "mdr"}, "not allowed with model mdr, whose threshold is another one"),
     ({"amplitude": [0, 0.1], "force": [0.1, 0.5]}, "nothing moves; allowed: a force above"),
     ({"contacts": "phase=0;phase=180"}, "not allowed with force, contacts"),

@@ -17,7 +17,7 @@ def peaked(error=0.0):
     """A friction with a peak, made up: 1 - 4 (amplitude - 1)^2 / 9, whatever the velocity."""
     amplitude, velocity = np.linspace(0.0, 2.5, 26), np.array([0.1, 0.3, 1.0, 3.0])
     mu = np.repeat(1.0 - (2.0 * (amplitude[:, None] - 1.0) / 3.0) ** 2, 4, axis=1)
-    return map_of(mu, velocity, amplitude, error, scene="longitudinal")
+    return map_of(mu, velocity, amplitude, error, motion="longitudinal")
 
 
 @pytest.mark.slow
@@ -101,7 +101,7 @@ def test_a_steady_motion_has_a_velocity_to_look_for():
             "converged": ("velocity", np.ones(41, bool)),
         },
         {"velocity": velocity, "poisson": 0.0},
-        {"scene": "continuous-bore"},
+        {"motion": "continuous-bore"},
     )
     answer = dataset.friction.solve_for(3.0 * np.pi / 8.0 * (0.5 - 0.125 / 4.0))
     assert outcome(answer) == ["found"]

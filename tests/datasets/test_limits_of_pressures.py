@@ -14,16 +14,16 @@ from microslip.theory.catalogue import FORMS
 AMPLITUDE = np.array([0.0, 0.2, 0.6, 0.9, 1.0, 1.5])
 
 
-def value(scene, name, row, *at):
-    return theory_limits.formulas(scene, name)[row].function(*(np.array(x) for x in at))
+def value(motion, name, row, *at):
+    return theory_limits.formulas(motion, name)[row].function(*(np.array(x) for x in at))
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["transverse", "bore"])
-def test_under_the_power_2_they_are_the_papers(scene):
+@pytest.mark.parametrize("motion", ["transverse", "bore"])
+def test_under_the_power_2_they_are_the_papers(motion):
     for row in ("mu_static_stick_zone", "mu_static"):
-        sphere = FORMS[scene][row].function(AMPLITUDE)
-        assert value(scene, "power", row, AMPLITUDE) == pytest.approx(sphere, abs=1e-8)
+        sphere = FORMS[motion][row].function(AMPLITUDE)
+        assert value(motion, "power", row, AMPLITUDE) == pytest.approx(sphere, abs=1e-8)
 
 
 @pytest.mark.parametrize("name", ["power:exponent=1", "punch", "power:exponent=8"])
@@ -85,7 +85,7 @@ def test_datasets_of_other_pressures_have_them():
         "sweeps": {"continuous_bore": {"velocity": [0.5]}},
         "extended": {
             "cone": {
-                "scene": "transverse",
+                "motion": "transverse",
                 "pressure": "power:exponent=1",
                 "group": "profiles",
                 "velocity": [0.1, 1.0],

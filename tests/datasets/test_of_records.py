@@ -11,7 +11,7 @@ from microslip.foundation.errors import InputError
 def test_a_point_and_a_history(tmp_path):
     point = microslip.solve("transverse", 0.3, 0.5, tolerance=1e-2)
     data = microslip.to_xarray(point)
-    assert float(data.mu_macro) == point.mu_macro and data.attrs["scene"] == "transverse"
+    assert float(data.mu_macro) == point.mu_macro and data.attrs["motion"] == "transverse"
     assert data.sizes == {} and "force" not in data
     history = microslip.history("transverse", 0.3, 0.5, cells=8, steps=32, periods=1)
     data = microslip.to_xarray(history)

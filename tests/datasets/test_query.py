@@ -363,7 +363,7 @@ def test_bad_points_are_refused_by_name(friction, arguments, message):
 
 
 def test_another_dataset_has_no_friction():
-    with pytest.raises(ValueError, match="no scene"):
+    with pytest.raises(ValueError, match="no motion"):
         xr.Dataset().friction  # noqa: B018
 
 
@@ -378,7 +378,7 @@ def test_what_is_known_without_a_map(friction):
     assert SOURCES[int(static.source)] == "static limit"
 
 
-@pytest.mark.parametrize("scene", ["transverse", "bore"])
+@pytest.mark.parametrize("motion", ["transverse", "bore"])
 @pytest.mark.parametrize(
     ("velocity", "amplitude", "side"),
     [
@@ -388,8 +388,8 @@ def test_what_is_known_without_a_map(friction):
         (10.0, 1.5, "fast sliding"),
     ],
 )
-def test_the_error_does_not_jump_at_the_edge_of_a_map(scene, velocity, amplitude, side):
-    data = made_up(amplitude=AMPLITUDE[1:], error=1e-3, scene=scene)
+def test_the_error_does_not_jump_at_the_edge_of_a_map(motion, velocity, amplitude, side):
+    data = made_up(amplitude=AMPLITUDE[1:], error=1e-3, motion=motion)
     edge = data.friction.at(velocity, amplitude)
     for step in (1e-6, 1e-3):
         out = {"large amplitude": 1 + step, "no vibration": 1 - step}.get(side, 1.0)
@@ -410,13 +410,13 @@ def test_a_wide_error_outside_the_map_names_the_remedy():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("scene", ["transverse", "bore"])
-def test_brackets_hold_what_the_solver_says(tmp_path, scene):
+@pytest.mark.parametrize("motion", ["transverse", "bore"])
+def test_brackets_hold_what_the_solver_says(tmp_path, motion):
     # The map itself is made by the solver, so small that most points lie beyond it.
     amplitude = np.linspace(0.5, 2.0, 4)
     velocity = np.geomspace(0.05, 2.0, 5)
-    rows = [[microslip.solve(scene, v, a, tolerance=5e-3) for v in velocity] for a in amplitude]
-    dataset = made_up(velocity, amplitude, scene=scene)
+    rows = [[microslip.solve(motion, v, a, tolerance=5e-3) for v in velocity] for a in amplitude]
+    dataset = made_up(velocity, amplitude, motion=motion)
     for name in ("mu_macro", "mu_macro_error"):
         dataset[name].values[:] = [[getattr(r, name) for r in row] for row in rows]
     places = {
@@ -429,7 +429,7 @@ def test_brackets_hold_what_the_solver_says(tmp_path, scene):
     for source, points in places.items():
         for v, a in points:
             answer = dataset.friction.at(v, a)
-            truth = microslip.solve(scene, v, a, tolerance=5e-3)
+            truth = microslip.solve(motion, v, a, tolerance=5e-3)
             off = abs(float(answer.mu_macro) - truth.mu_macro)
             assert off <= float(answer.mu_macro_error) + truth.mu_macro_error, (v, a)
             if not (v > 2.0 and a > 2.0):
@@ -466,7 +466,7 @@ def test_the_steady_bore_is_a_closed_form_beyond_its_axis():
             "converged": ("velocity", np.ones(9, bool)),
         },
         {"velocity": velocity, "poisson": 0.0},
-        {"scene": "continuous-bore"},
+        {"motion": "continuous-bore"},
     )
     for v, source in ((0.0, "closed form"), (0.5, "map"), (40.0, "closed form")):
         answer = dataset.friction.at(v)
@@ -544,7 +544,7 @@ def test_a_dataset_that_declares_more_than_it_holds_is_refused_unread(tmp_path):
     for group in ("/", "history"):
         path = tmp_path / f"{len(group)}.nc"
         with netCDF4.Dataset(path, "w") as file:
-            file.scene = "transverse"
+            file.motion = "transverse"
             place = file if group == "/" else file.createGroup(group)
             place.createDimension("velocity", 10**12)
             place.createVariable("velocity", "f8", ("velocity",), chunksizes=(1024,))

@@ -132,7 +132,7 @@ def test_a_point_that_the_solver_failed_at_is_a_gap(tmp_path, monkeypatch, solve
     assert (data.cells == 0).all()
 
 
-def test_limits_of_the_transverse_scene(tmp_path, solver):
+def test_limits_of_the_transverse_motion(tmp_path, solver):
     data = built("transverse", tmp_path)
     v, a = data.velocity.values, data.amplitude.values
     assert data.mu_large_amplitude.dims == ("amplitude", "velocity")
@@ -147,7 +147,7 @@ def test_limits_of_the_transverse_scene(tmp_path, solver):
 
 
 @pytest.mark.slow
-def test_limits_of_the_bore_scenes(tmp_path, solver):
+def test_limits_of_the_bore_motions(tmp_path, solver):
     data = built("bore", tmp_path)
     v, a = data.velocity.values, data.amplitude.values
     assert data.mu_large_amplitude.values == pytest.approx(paper.large_amplitude_bore(v))
@@ -313,7 +313,7 @@ def test_every_part_of_a_file_is_a_table_of_its_own(name, tmp_path, solver):
     for group in groups:
         with xr.open_dataset(path, group=group) as part:
             assert len(part.to_dataframe()) == max(v.size for v in part.values())
-            assert part.scene == data.scene
+            assert part.motion == data.motion
 
 
 def test_groups_are_opened_by_name(tmp_path, solver):
@@ -351,7 +351,7 @@ def test_files_of_parts_of_an_axis_are_one_dataset(tmp_path, solver):
         assert both.mu_static.dims == ("amplitude",)
         assert both.converged.dtype == bool
         assert float(both.mu_macro.sel(velocity=100, amplitude=2)) == pytest.approx(100 / 103)
-        assert both.scene == "bore"
+        assert both.motion == "bore"
 
 
 @pytest.mark.slow
@@ -390,8 +390,8 @@ def test_texts_come_back_whole_and_long_ones_are_cut(tmp_path, monkeypatch, solv
     said = ["no \u03bd " + "\u03b1" * 300, "short", ""]
     answer = solver.solve
 
-    def solve(scene, velocity, *rest, **more):
-        found = answer(scene, velocity, *rest, **more).to_dict()
+    def solve(motion, velocity, *rest, **more):
+        found = answer(motion, velocity, *rest, **more).to_dict()
         found["reason"] = said[[0.1, 1.0, 10.0].index(velocity)]
         return SimpleNamespace(to_dict=lambda: found)
 

@@ -47,7 +47,7 @@ PAGES = sorted(
 LONG_PAGES = (
     "docs/explanation/beyond.md",
     "docs/explanation/drives.md",
-    "docs/explanation/driving.md",
+    "docs/explanation/propulsion.md",
     "docs/how-to/contacts.md",
     "docs/how-to/extend.md",
     "docs/how-to/fit.md",

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
-from stubs import certified_stub, claims_stub, driving_stub, studies_stub
+from stubs import certified_stub, claims_stub, propulsion_stub, studies_stub
 from stubs.sweep_stub import Solver
 
 import microslip
@@ -44,8 +44,8 @@ RECORDS = {
     "Forces from a start": microslip.History,
     "A period of the periodic state": microslip.Period,
     "The way to rest": microslip.Shakedown,
-    "The line of a motion that drives": microslip.DrivingLine,
-    "A motion that drives, in units": microslip.RealDrivingLine,
+    "The line of a self-propelled motion": microslip.PropulsionLine,
+    "A self-propelled motion, in units": microslip.RealPropulsionLine,
 }
 
 
@@ -120,10 +120,10 @@ def test_every_variable_of_the_claims_is_in_their_table_and_no_other():
     assert set(section("The claims")) == set(map(str, data.variables))
 
 
-def test_every_variable_of_driving_is_in_its_table_and_no_other():
-    answer, _ = studies_stub.answered(driving_stub.driving_result)
-    data = registry.build("driving", driving_stub.configured(), answer)
-    assert set(section("The study of driving")) == set(map(str, data.variables))
+def test_every_variable_of_propulsion_is_in_its_table_and_no_other():
+    answer, _ = studies_stub.answered(propulsion_stub.propulsion_result)
+    data = registry.build("propulsion", propulsion_stub.configured(), answer)
+    assert set(section("The study of propulsion")) == set(map(str, data.variables))
 
 
 def test_work_effort_and_periods_mean_one_thing_each():

@@ -45,8 +45,8 @@ def test_references_are_within_what_is_proved(sample):
     for point, known in sample:
         assert abs(known["reference"]) <= 1.0 + known["uncertainty"], point
         assert known["by"] in ("tighter", "finer")
-        if point["pressure"] == "hertz" and point["scene"] in PROVED:
-            drop = PROVED[point["scene"]](point["velocity"], point["amplitude"])
+        if point["pressure"] == "hertz" and point["motion"] in PROVED:
+            drop = PROVED[point["motion"]](point["velocity"], point["amplitude"])
             assert 1.0 - known["reference"] <= drop + known["uncertainty"], point
             judged += drop < 1.0
     assert judged > len(sample) / 10
@@ -69,7 +69,7 @@ def test_claims_hold_against_them(sample):
     cheap = [
         (point, known)
         for point, known in sample
-        if (point["scene"], point["pressure"]) == ("transverse", "hertz")
+        if (point["motion"], point["pressure"]) == ("transverse", "hertz")
         and (point["poisson"], point["tolerance"]) == (0.0, 1e-2)
     ]
     tried = cheap[:: len(cheap) // LEAST]

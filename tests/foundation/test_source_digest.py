@@ -213,17 +213,17 @@ def python(program, path, **settings):
 
 
 REQUESTS = [
-    {"kind": "point", "scene": "zigzag", "poisson": "0.3", "model": "auto", "tolerance": "0.1"},
-    {"kind": "point", "scene": "bore", "poisson": "0", "model": "auto", "tolerance": "0.1"},
-    {"kind": "point", "scene": "transverse", "poisson": "0", "model": "auto", "tolerance": "0.1"}
+    {"kind": "point", "motion": "zigzag", "poisson": "0.3", "model": "auto", "tolerance": "0.1"},
+    {"kind": "point", "motion": "bore", "poisson": "0", "model": "auto", "tolerance": "0.1"},
+    {"kind": "point", "motion": "transverse", "poisson": "0", "model": "auto", "tolerance": "0.1"}
     | {"pressure": "power:exponent=1"},
-    {"kind": "history", "scene": "transverse", "periods": 1, "cells": 4, "steps": 16},
-    {"kind": "field", "scene": "continuous-bore", "cells": 4},
-    {"kind": "period", "scene": "bore", "poisson": "0", "cells": 4, "angles": 4, "steps": 8},
-    {"kind": "patches", "scene": "bore", "poisson": "0", "cells": 4, "angles": 4, "steps": 8},
-    {"kind": "probe", "scene": "transverse", "poisson": "0", "model": "auto", "tolerance": "0.1"}
+    {"kind": "history", "motion": "transverse", "periods": 1, "cells": 4, "steps": 16},
+    {"kind": "field", "motion": "continuous-bore", "cells": 4},
+    {"kind": "period", "motion": "bore", "poisson": "0", "cells": 4, "angles": 4, "steps": 8},
+    {"kind": "patches", "motion": "bore", "poisson": "0", "cells": 4, "angles": 4, "steps": 8},
+    {"kind": "probe", "motion": "transverse", "poisson": "0", "model": "auto", "tolerance": "0.1"}
     | {"method": "admm"},
-    {"kind": "run", "scene": "transverse", "poisson": "0", "model": "radial", "tolerance": "0.01"}
+    {"kind": "run", "motion": "transverse", "poisson": "0", "model": "radial", "tolerance": "0.01"}
     | {"method": "euler", "cells": 8, "angles": 1, "steps": 16},
 ]
 LOADED_BY = """
@@ -272,7 +272,7 @@ def test_all_that_answering_a_request_loads_counts_for_it():
 
 
 def test_what_reads_a_file_counts_for_its_pressure():
-    named = {"kind": "point", "scene": "bore", "pressure": "file:sha256=0123456789abcdef"}
+    named = {"kind": "point", "motion": "bore", "pressure": "file:sha256=0123456789abcdef"}
     files = source_digest.files_of_request(named)
     assert {"pressures/from_file.py", "pressures/measured.py", "pressures/grid_csv.py"} <= files
 
@@ -285,7 +285,7 @@ def test_every_kind_of_request_has_its_digest():
 
 @pytest.mark.parametrize("name", ["sweeps/evaluate.py", "datasets/pressure_limits.py"])
 def test_modules_that_were_in_no_digest_are_in_one(name):
-    of_point = source_digest.files_of_request({"kind": "point", "scene": "bore"})
+    of_point = source_digest.files_of_request({"kind": "point", "motion": "bore"})
     of_dataset = source_digest.LOADED.closure(
         ["datasets/sweep_dataset.py", "datasets/point_variables.py", "datasets/theory_limits.py"]
     )
@@ -293,7 +293,7 @@ def test_modules_that_were_in_no_digest_are_in_one(name):
 
 
 def test_other_results_stay_when_what_only_some_depend_on_is_edited():
-    of_map = source_digest.files_of_request({"kind": "point", "scene": "bore"})
+    of_map = source_digest.files_of_request({"kind": "point", "motion": "bore"})
     assert not of_map & {
         "adaptive/history.py",
         "adaptive/period.py",
@@ -415,7 +415,7 @@ def test_a_long_session_keeps_nothing_of_code_that_was_edited_under_it(tmp_path)
 
 
 def test_a_batch_that_was_planned_with_other_sources_is_refused(tmp_path, monkeypatch):
-    request = {"kind": "point", "scene": "bore", "velocity": "1", "amplitude": "1"}
+    request = {"kind": "point", "motion": "bore", "velocity": "1", "amplitude": "1"}
     name = batches.name_of_batch([request])
     monkeypatch.setattr(source_digest, "of_request", lambda request: "of other sources")
     with pytest.raises(batches.SourcesEdited, match="run again"):

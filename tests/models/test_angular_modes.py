@@ -30,7 +30,7 @@ CASES = [
     (17, 12, True, 0.0, 0.9),
     (17, 12, False, 0.0, 0.9),
 ]
-"""Rings, angles, whether the scene rotates, Poisson's ratio, focus."""
+"""Rings, angles, whether the motion rotates, Poisson's ratio, focus."""
 cases = pytest.mark.parametrize(("cells", "angles", "rotates", "nu", "focus"), CASES)
 
 
@@ -61,7 +61,7 @@ def ring_modes(cells, angles, nu, focus):
 def plain_displacement(state, cells, angles, rotates, nu, focus):
     """u = Sum_m e^{i m theta} (near_m q_m + cross_m conj(q_{2-m})), the sums written out.
 
-    Modes are those that 2 M points tell apart; the shortest of a rotating scene couples to none,
+    Modes are those that 2 M points tell apart; the shortest of a rotating motion couples to none,
     since its points hold no cosine of it.
     """
     near, cross = ring_modes(cells, angles, nu, focus)

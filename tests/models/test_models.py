@@ -214,9 +214,9 @@ def test_rigid_rotation_is_eq_29(velocity):
 # One another
 
 
-def half_period(scene, velocity, amplitude, nu, steps, integrator=SDIRK2):
+def half_period(motion, velocity, amplitude, nu, steps, integrator=SDIRK2):
     def displacement(phase):
-        return scene.displacement(phase, velocity, amplitude, nu)
+        return motion.displacement(phase, velocity, amplitude, nu)
 
     return make_path(displacement, half_period_phases(steps, 0.4), integrator)
 
@@ -234,13 +234,14 @@ def test_radial_is_polar_in_translation_without_coupling(integrator):
 
 @pytest.mark.parametrize("nu", [0.0, 0.3])
 @pytest.mark.parametrize(
-    ("scene", "velocity", "amplitude"), [(TRANSVERSE, 0.2, 1.2), (BORE, 0.2, 1.0), (BORE, 0.5, 2.0)]
+    ("motion", "velocity", "amplitude"),
+    [(TRANSVERSE, 0.2, 1.2), (BORE, 0.2, 1.0), (BORE, 0.5, 2.0)],
 )
-def test_cartesian_converges_to_polar(scene, velocity, amplitude, nu):
+def test_cartesian_converges_to_polar(motion, velocity, amplitude, nu):
     """At equal steps, so that only the discretisation in space differs."""
 
     def mean(model, *resolution):
-        problem = Problem(scene, velocity, amplitude, nu)
+        problem = Problem(motion, velocity, amplitude, nu)
         run = simulate(problem, model, Resolution(*resolution), 1e-4)
         assert run.converged
         return run.mu
@@ -480,11 +481,11 @@ def smooth(name):
 @pytest.mark.parametrize("name", SMOOTH)
 def test_order_of_the_integrators_on_a_smooth_stretch(name):
     """Everything slips; states compared in the energy norm."""
-    contact, scene, velocity, amplitude = smooth(name)
+    contact, motion, velocity, amplitude = smooth(name)
     tolerance = 1e-8 if name == "cartesian" else 1e-10
 
     def state(steps, integrator):
-        path = half_period(scene, velocity, amplitude, 0.3, steps, integrator)
+        path = half_period(motion, velocity, amplitude, 0.3, steps, integrator)
         return contact.march(path, forward_slip(contact), tolerance).state
 
     reference = state(384, SDIRK2)
@@ -496,10 +497,10 @@ def test_order_of_the_integrators_on_a_smooth_stretch(name):
 
 @pytest.mark.parametrize("name", ["radial", "polar"])
 def test_order_of_the_integrators_in_the_periodic_mean(name):
-    contact, scene, velocity, amplitude = smooth(name)
+    contact, motion, velocity, amplitude = smooth(name)
 
     def mean(steps, integrator):
-        path = half_period(scene, velocity, amplitude, 0.3, steps, integrator)
+        path = half_period(motion, velocity, amplitude, 0.3, steps, integrator)
         start, goal = forward_slip(contact), Goal(1e-7, 1e-9)
         found = find_periodic_state(PeriodMap(contact, path), start, goal)
         assert found.converged

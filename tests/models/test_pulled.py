@@ -23,11 +23,11 @@ BODIES = {
 VELOCITY, AMPLITUDE, START = 0.3, 0.8, np.array([-0.2, 0.1])
 
 
-def moved(scene, poisson, contact):
+def moved(motion, poisson, contact):
     """Displacement of the path, and of the points."""
 
     def displacement(phase):
-        return scene.displacement(phase, VELOCITY, AMPLITUDE, poisson)
+        return motion.displacement(phase, VELOCITY, AMPLITUDE, poisson)
 
     def of_points(phase):
         forward, lateral, angle = displacement(phase)
@@ -50,8 +50,8 @@ def plain(contact):
 @pytest.mark.parametrize("name", CONTACTS)
 def test_a_pulled_march_is_the_plain_one(name, body, integrator):
     build, motion, poisson = CONTACTS[name]
-    contact, scene, phases = build(), motion_named(motion), half_period_phases(5)
-    displacement, of_points = moved(scene, poisson, contact)
+    contact, label, phases = build(), motion_named(motion), half_period_phases(5)
+    displacement, of_points = moved(label, poisson, contact)
     start, numbers = 0.5 * forward_slip(contact), BODIES[body]
     stages = len(integrator.times)
     expected, places = pulled_march(
@@ -75,8 +75,8 @@ def start_again(contact, path, body, march):
 @pytest.mark.parametrize("name", CONTACTS)
 def test_a_march_with_a_guess_is_the_same(name):
     build, motion, poisson = CONTACTS[name]
-    contact, scene = build(), motion_named(motion)
-    path = make_path(moved(scene, poisson, contact)[0], half_period_phases(8))
+    contact, label = build(), motion_named(motion)
+    path = make_path(moved(label, poisson, contact)[0], half_period_phases(8))
     body = Body(*BODIES["a spring and a mass"])
     first = start_again(contact, path, body, None)
     again = start_again(contact, path, body, first)
@@ -89,8 +89,8 @@ def test_a_march_with_a_guess_is_the_same(name):
 def test_what_does_not_give_way_moves_as_it_is_told(name, large):
     """x is at most the force over the stiffness, or over the mass times half the time squared."""
     build, motion, poisson = CONTACTS[name]
-    contact, scene = build(), motion_named(motion)
-    path = make_path(moved(scene, poisson, contact)[0], half_period_phases(8))
+    contact, label = build(), motion_named(motion)
+    path = make_path(moved(label, poisson, contact)[0], half_period_phases(8))
     start, heavy = 0.5 * forward_slip(contact), 1e7
     numbers = {"stiffness": 0.0, "damping": 0.0, "mass": 0.0, "load": 0.0} | {large: heavy}
     found = contact.pulled_march(path, start, 1e-11, Body(**numbers), np.zeros(2))
@@ -103,8 +103,8 @@ def test_what_does_not_give_way_moves_as_it_is_told(name, large):
 @pytest.mark.parametrize("name", CONTACTS)
 def test_the_force_on_a_contact_without_mass_is_the_one_that_pulls(name):
     build, motion, poisson = CONTACTS[name]
-    contact, scene = build(), motion_named(motion)
-    path = make_path(moved(scene, poisson, contact)[0], half_period_phases(8))
+    contact, label = build(), motion_named(motion)
+    path = make_path(moved(label, poisson, contact)[0], half_period_phases(8))
     start = 0.5 * forward_slip(contact)
     found = contact.pulled_march(path, start, 1e-11, Body(0.0, 0.0, 0.0, 0.6), START)
     assert found.forces[1:, 0] == pytest.approx(0.6, abs=1e-10)
@@ -117,8 +117,8 @@ def test_the_work_of_the_drive_is_stored_or_dissipated(name):
     """A backward Euler step balances work exactly: the tractions at its end do the work, and each
     point dissipates its bound times its slip."""
     build, motion, poisson = CONTACTS[name]
-    contact, scene = build(), motion_named(motion)
-    displacement, of_points = moved(scene, poisson, contact)
+    contact, label = build(), motion_named(motion)
+    displacement, of_points = moved(label, poisson, contact)
     phases = half_period_phases(1)
     path = make_path(displacement, phases, EULER)
     start, force = 0.5 * forward_slip(contact), 0.7

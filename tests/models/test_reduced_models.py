@@ -111,9 +111,9 @@ def test_long_strokes_make_all_models_rigid(model):
 
 @pytest.mark.parametrize("model", ["dahl", "mdr"])
 def test_what_has_no_extension_cannot_turn(model):
-    for scene, amplitude in (("bore", 1.0), ("continuous-bore", None)):
+    for motion, amplitude in (("bore", 1.0), ("continuous-bore", None)):
         with pytest.raises(ValueError, match="model"):
-            microslip.solve(scene, 0.5, amplitude, model=model)
+            microslip.solve(motion, 0.5, amplitude, model=model)
 
 
 def test_full_slip_carries_the_whole_friction():

@@ -18,14 +18,14 @@ CONTACTS = small_contacts.CONTACTS | {
 VELOCITY, AMPLITUDE = 0.3, 0.8
 
 
-def plain_parts(contact, scene, poisson):
+def plain_parts(contact, motion, poisson):
     """Matrix of a contact, and the displacement of its points, as the reference takes them."""
     shape = forward_slip(contact).shape
     units = np.eye(int(np.prod(shape))).reshape(-1, *shape)
     matrix = np.stack([contact.displacement(unit).ravel() for unit in units], axis=1)
 
     def displacement(phase):
-        forward, lateral, angle = scene.displacement(phase, VELOCITY, AMPLITUDE, poisson)
+        forward, lateral, angle = motion.displacement(phase, VELOCITY, AMPLITUDE, poisson)
         turn = np.stack([contact.lateral_position, -contact.forward_position])
         return np.array([forward, lateral])[:, None, None] + angle * turn
 
@@ -36,13 +36,13 @@ def plain_parts(contact, scene, poisson):
 @pytest.mark.parametrize("name", CONTACTS)
 def test_a_march_is_the_plain_one(name, integrator):
     build, motion, poisson = CONTACTS[name]
-    contact, scene, phases = build(), motion_named(motion), half_period_phases(6)
+    contact, label, phases = build(), motion_named(motion), half_period_phases(6)
     start = 0.5 * forward_slip(contact)
-    matrix, displacement = plain_parts(contact, scene, poisson)
+    matrix, displacement = plain_parts(contact, label, poisson)
     stages = len(integrator.times)
     expected = march(matrix, contact.bound, displacement, phases, start, stages)
     path = make_path(
-        lambda phase: scene.displacement(phase, VELOCITY, AMPLITUDE, poisson), phases, integrator
+        lambda phase: label.displacement(phase, VELOCITY, AMPLITUDE, poisson), phases, integrator
     )
     found = contact.march(path, start, 1e-13)
     assert found.state == pytest.approx(expected[-1], abs=1e-9)
@@ -53,11 +53,11 @@ def test_a_march_is_the_plain_one(name, integrator):
 
 @pytest.mark.slow
 def test_the_periodic_state_is_the_one_that_the_plain_march_ends_in():
-    contact, scene = RadialContact.resolved(5, 0.7), motion_named("transverse")
-    matrix, displacement = plain_parts(contact, scene, 0.0)
+    contact, motion = RadialContact.resolved(5, 0.7), motion_named("transverse")
+    matrix, displacement = plain_parts(contact, motion, 0.0)
     phases, start = half_period_phases(8), forward_slip(contact)
     expected = periodic(matrix, contact.bound, displacement, phases, start, contact.mirrored)
-    path = make_path(lambda phase: scene.displacement(phase, VELOCITY, AMPLITUDE, 0.0), phases)
+    path = make_path(lambda phase: motion.displacement(phase, VELOCITY, AMPLITUDE, 0.0), phases)
     found = find_periodic_state(PeriodMap(contact, path), start, Goal(1e-10, 1e-13))
     assert found.converged
     assert found.start == pytest.approx(expected[0], abs=1e-9)

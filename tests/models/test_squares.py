@@ -24,11 +24,11 @@ def rng():
     return np.random.default_rng(20201109)
 
 
-def path_of(scene, steps, velocity=0.1, amplitude=1.0, nu=0.0, integrator=SDIRK2):
+def path_of(motion, steps, velocity=0.1, amplitude=1.0, nu=0.0, integrator=SDIRK2):
     """Half a period."""
 
     def displacement(phase):
-        return scene.displacement(phase, velocity, amplitude, nu)
+        return motion.displacement(phase, velocity, amplitude, nu)
 
     return make_path(displacement, half_period_phases(steps), integrator)
 
@@ -196,10 +196,10 @@ def test_cells_without_load_carry_nothing(nu):
 
 
 @pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
-@pytest.mark.parametrize("scene", [TRANSVERSE, BORE], ids=lambda scene: scene.name)
-def test_first_guesses_change_the_effort_but_not_the_march(scene, integrator, rng):
+@pytest.mark.parametrize("motion", [TRANSVERSE, BORE], ids=lambda motion: motion.name)
+def test_first_guesses_change_the_effort_but_not_the_march(motion, integrator, rng):
     contact, tolerance = CartesianContact(8), 1e-11
-    path = path_of(scene, 12, integrator=integrator)
+    path = path_of(motion, 12, integrator=integrator)
     first = contact.march(path, forward_slip(contact), 1e-3)
     near = project(forward_slip(contact) + 1e-3 * rng.normal(size=(2, 8, 8)), contact.bound)
     plain = contact.march(path, near, tolerance)

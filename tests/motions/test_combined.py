@@ -11,7 +11,7 @@ from microslip.solver.static_run import simulate_static
 from microslip.theory import hertz
 
 
-def test_without_a_rotation_it_is_the_transverse_scene():
+def test_without_a_rotation_it_is_the_transverse_motion():
     one = microslip.solve("transverse", 0.1, 0.6)
     other = microslip.solve("transverse-bore:angle=0", 0.1, 0.6)
     assert other.model == "radial"
@@ -60,9 +60,11 @@ def test_the_motion_is_its_own_mirror_image_half_a_period_later():
 @pytest.mark.long
 def test_the_static_limit_is_approached_by_marches():
     """All on the same few squares and steps, whose errors are the same in limit and marches."""
-    scene, squares = motion_named("transverse-bore"), Resolution(16, 1, 48)
-    limit = simulate_static(Problem(scene, 0.0, 0.5, 0.0), "cartesian", squares, 1e-5)
-    runs = [simulate(Problem(scene, v, 0.5, 0.0), "cartesian", squares, 1e-5) for v in (4e-3, 5e-4)]
+    motion, squares = motion_named("transverse-bore"), Resolution(16, 1, 48)
+    limit = simulate_static(Problem(motion, 0.0, 0.5, 0.0), "cartesian", squares, 1e-5)
+    runs = [
+        simulate(Problem(motion, v, 0.5, 0.0), "cartesian", squares, 1e-5) for v in (4e-3, 5e-4)
+    ]
     above = [run.mu for run in runs]
     # differences shrink like v^(2/3): an eighth of the velocity leaves a quarter of them
     guess = above[1] - (above[0] - above[1]) / 3.0

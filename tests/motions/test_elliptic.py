@@ -20,7 +20,7 @@ def mean_of_rigid(velocity, forward, lateral, lead):
     return np.mean(ahead / np.hypot(ahead, lateral * np.cos(t)))
 
 
-def test_without_a_forward_part_it_is_the_transverse_scene():
+def test_without_a_forward_part_it_is_the_transverse_motion():
     one = microslip.solve("elliptic:forward=0", 0.1, 0.7)
     other = microslip.solve("transverse", 0.1, 0.7)
     assert one.mu_macro == other.mu_macro
@@ -36,7 +36,7 @@ def test_without_a_lateral_part_it_is_the_longitudinal_one(phase):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "scene",
+    "motion",
     [
         pytest.param(CIRCLE, marks=pytest.mark.long),
         pytest.param("elliptic:phase=0", marks=pytest.mark.long),
@@ -44,9 +44,9 @@ def test_without_a_lateral_part_it_is_the_longitudinal_one(phase):
         "elliptic:forward_cycles=2",
     ],
 )
-def test_rings_and_squares_agree(scene):
-    rings = microslip.solve(scene, 0.1, 0.5)
-    squares = microslip.solve(scene, 0.1, 0.5, model="cartesian", cells=24, steps=96)
+def test_rings_and_squares_agree(motion):
+    rings = microslip.solve(motion, 0.1, 0.5)
+    squares = microslip.solve(motion, 0.1, 0.5, model="cartesian", cells=24, steps=96)
     assert rings.converged
     assert abs(rings.mu_macro - squares.mu_macro) <= rings.mu_macro_error + squares.mu_macro_error
 
@@ -65,11 +65,11 @@ def test_certificates_hold_against_finer_runs(velocity, amplitude):
 
 @pytest.mark.parametrize(("forward", "phase"), [(1.0, 90), (0.5, 45), (1.0, 0)])
 def test_a_large_ellipse_is_that_of_a_rigid_block(forward, phase):
-    scene = f"elliptic:forward={forward},phase={phase}"
+    motion = f"elliptic:forward={forward},phase={phase}"
     exact = mean_of_rigid(0.3, forward, 1.0, np.deg2rad(phase))
-    answer = microslip.solve(scene, 0.3 * 200, 200.0)
+    answer = microslip.solve(motion, 0.3 * 200, 200.0)
     assert answer.mu_macro == pytest.approx(exact, abs=0.01)
-    rigid = microslip.solve(scene, 0.3 * 200, 200.0, model="rigid")
+    rigid = microslip.solve(motion, 0.3 * 200, 200.0, model="rigid")
     assert rigid.mu_macro == pytest.approx(exact, abs=1e-3)
 
 
@@ -83,36 +83,38 @@ def test_a_path_and_its_mirror_image_have_the_same_friction():
 def test_names_are_canonical():
     assert motion_named("elliptic:phase=90,forward=1").name == "elliptic"
     assert motion_named("elliptic:phase=30.0,forward=0.50").name == "elliptic:forward=0.5,phase=30"
-    assert microslip.solve("elliptic:phase=30.0", 0.5, 0.5).scene == "elliptic:phase=30"
+    assert microslip.solve("elliptic:phase=30.0", 0.5, 0.5).motion == "elliptic:phase=30"
 
 
 @pytest.mark.parametrize(
-    ("scene", "message"),
+    ("motion", "message"),
     [
-        ("eliptic", "scene = 'eliptic': did you mean elliptic"),
+        ("eliptic", "motion = 'eliptic': did you mean elliptic"),
         ("elliptic:width=2", "unknown number width; allowed: forward, lateral, phase"),
         ("elliptic:forward=2", "forward = 2: allowed is a share"),
         ("elliptic:forward=0,lateral=0", "allowed is forward or lateral above 0"),
         ("elliptic:forward_cycles=1.5", "forward_cycles = 1.5: allowed is a whole number"),
         ("elliptic:phase", "allowed are numbers as in elliptic:key=0.5"),
         ("transverse:phase=3", "unknown number phase; allowed: none"),
-        (None, "scene = None"),
+        (None, "motion = None"),
     ],
 )
-def test_what_names_no_motion_is_refused(scene, message):
+def test_what_names_no_motion_is_refused(motion, message):
     with pytest.raises(ValueError, match=message):
-        microslip.solve(scene, 0.1, 1.0)
+        microslip.solve(motion, 0.1, 1.0)
 
 
-def test_the_command_line_takes_a_path(capsys):
+def test_the_command_line_takes_the_numbers_of_a_motion(capsys):
     place = ["--velocity", "0.5", "--amplitude", "0.5"]
-    words = ["point", "elliptic", "--path", "forward=0.5,phase=30", *place]
+    words = ["point", "elliptic:forward=0.5,phase=30", *place]
     assert cli.main([*words, "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
-    assert found["scene"] == "elliptic:forward=0.5,phase=30"
-    words[3] = "width=3"
+    assert found["motion"] == "elliptic:forward=0.5,phase=30"
+    words[1] = "elliptic:width=3"
     assert cli.main(words) == 2
-    assert capsys.readouterr().err.startswith("microslip point elliptic: --path = 'width=3': ")
+    assert capsys.readouterr().err.startswith(
+        "microslip point elliptic: MOTION = 'elliptic:width=3': "
+    )
 
 
 def test_every_point_of_a_circle_slips_as_far_as_the_sphere():
@@ -123,9 +125,9 @@ def test_every_point_of_a_circle_slips_as_far_as_the_sphere():
 
 def test_a_figure_of_eight_may_drive_the_contact_forward():
     """Mean forces below zero are told, and agree with a plain march."""
-    scene, place = "elliptic:forward_cycles=2,phase=45", (0.02, 1.0)
-    answer = microslip.solve(scene, *place)
-    plain = microslip.history(scene, *place, cells=24, steps=256, periods=40)
+    motion, place = "elliptic:forward_cycles=2,phase=45", (0.02, 1.0)
+    answer = microslip.solve(motion, *place)
+    plain = microslip.history(motion, *place, cells=24, steps=256, periods=40)
     last = plain.phase >= plain.phase[-1] - 2 * np.pi - 1e-9
     mean = np.trapezoid(plain.force_forward[last], plain.phase[last]) / (2 * np.pi)
     assert answer.converged
@@ -134,9 +136,9 @@ def test_a_figure_of_eight_may_drive_the_contact_forward():
     assert min(answer.mu_macro, opposite.mu_macro) < -0.02
 
 
-@pytest.mark.parametrize("scene", ["elliptic", "elliptic:forward_cycles=2,phase=20"])
-def test_friction_never_falls_with_velocity(scene):
-    found = [microslip.solve(scene, v, 0.8) for v in (0.01, 0.05, 0.2, 0.5, 1.0, 3.0)]
+@pytest.mark.parametrize("motion", ["elliptic", "elliptic:forward_cycles=2,phase=20"])
+def test_friction_never_falls_with_velocity(motion):
+    found = [microslip.solve(motion, v, 0.8) for v in (0.01, 0.05, 0.2, 0.5, 1.0, 3.0)]
     for slow, fast in zip(found, found[1:], strict=False):
         assert fast.mu_macro >= slow.mu_macro - slow.mu_macro_error - fast.mu_macro_error
 

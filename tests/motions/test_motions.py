@@ -1,4 +1,4 @@
-"""Scenes: what their displacement promises, and the zigzag against closed forms."""
+"""Motions: what their displacement promises, and the zigzag against closed forms."""
 
 import json
 import os
@@ -21,31 +21,31 @@ from microslip.solver.problem import Problem, Resolution
 from microslip.solver.static_run import simulate_static
 from microslip.theory import paper
 
-PERIODIC = [scene for scene in MOTIONS.values() if scene.periodic]
-MIRRORED = [scene for scene in PERIODIC if scene.half_period_mirror]
+PERIODIC = [motion for motion in MOTIONS.values() if motion.periodic]
+MIRRORED = [motion for motion in PERIODIC if motion.half_period_mirror]
 PHASE = np.linspace(-3.0, 3.0, 101)
 
 
-@pytest.mark.parametrize("scene", MIRRORED, ids=lambda scene: scene.name)
-def test_half_a_period_later_a_motion_is_its_own_mirror_image(scene):
+@pytest.mark.parametrize("name", MIRRORED, ids=lambda name: name.name)
+def test_half_a_period_later_a_motion_is_its_own_mirror_image(name):
     """... moved on forward: the search for the periodic state stands on it."""
-    motion = Problem(scene, 0.3, 0.7, 0.2)
+    motion = Problem(name, 0.3, 0.7, 0.2)
     now, later = motion.displacement(PHASE), motion.displacement(PHASE + np.pi)
     moved = np.pi * motion.creep
     for one, other, sign, way in zip(now, later, (1, -1, -1), (moved, 0.0, 0.0), strict=True):
         assert other == pytest.approx(sign * one + way, abs=1e-12)
 
 
-@pytest.mark.parametrize("scene", PERIODIC, ids=lambda scene: scene.name)
-def test_a_creep_slower_than_the_rounding_of_the_oscillation_is_told_exactly(scene):
-    creep = scene.creep(1.0, 0.7, 0.2)
-    assert scene.creep(1e-99, 0.7, 0.2) == pytest.approx(1e-99 * creep, rel=1e-12, abs=0.0)
+@pytest.mark.parametrize("motion", PERIODIC, ids=lambda motion: motion.name)
+def test_a_creep_slower_than_the_rounding_of_the_oscillation_is_told_exactly(motion):
+    creep = motion.creep(1.0, 0.7, 0.2)
+    assert motion.creep(1e-99, 0.7, 0.2) == pytest.approx(1e-99 * creep, rel=1e-12, abs=0.0)
 
 
-@pytest.mark.parametrize("scene", PERIODIC, ids=lambda scene: scene.name)
-def test_the_oscillation_turns_at_both_ends_of_half_a_period(scene):
+@pytest.mark.parametrize("motion", PERIODIC, ids=lambda motion: motion.name)
+def test_the_oscillation_turns_at_both_ends_of_half_a_period(motion):
     ends = np.array([-0.5, 0.5]) * np.pi
-    both = (scene.displacement(at, 0.0, 0.7, 0.0) for at in (PHASE, ends))
+    both = (motion.displacement(at, 0.0, 0.7, 0.0) for at in (PHASE, ends))
     for part, end in zip(*both, strict=True):
         assert np.abs(part).max() <= abs(end[1]) + 1e-12
 
@@ -77,8 +77,8 @@ def test_the_static_limit_knows_the_turning_points_alone():
     """So it is that of the sine, for which it is known in closed form."""
     resolution = Resolution(64, 1, 0)
     one, other = (
-        simulate_static(Problem(scene, 0.0, 0.5, 0.0), "radial", resolution, 1e-8).mu
-        for scene in (ZIGZAG, TRANSVERSE)
+        simulate_static(Problem(motion, 0.0, 0.5, 0.0), "radial", resolution, 1e-8).mu
+        for motion in (ZIGZAG, TRANSVERSE)
     )
     assert one == pytest.approx(other, abs=1e-9)
     assert one == pytest.approx(paper.static_limit_transverse(0.5), abs=1e-3)
@@ -133,7 +133,7 @@ def test_a_motion_is_one_file(cube, capsys):
     arguments = ["point", cube, "--velocity", "0.1", "--amplitude", "0.5", "--json"]
     assert main(arguments) == 0
     answer = json.loads(capsys.readouterr().out)
-    assert answer["scene"] == cube
+    assert answer["motion"] == cube
     assert answer["model"] == "radial"
     assert 0.0 < answer["mu_macro_error"] <= answer["tolerance"]
     squares = microslip.solve(cube, 0.1, 0.5, model="cartesian", tolerance=3e-3)
@@ -180,7 +180,7 @@ def test_a_broken_file_is_an_error_of_its_motion_alone(broken, capsys, file):
     name, cause = file.removesuffix(".py").replace("_", "-"), BROKEN[file][1]
     with pytest.raises(microslip.InputError) as caught:
         microslip.solve(name, 0.1, 0.5)
-    assert caught.value.argument == "scene"
+    assert caught.value.argument == "motion"
     assert str(broken / file) in str(caught.value) and cause in str(caught.value)
     arguments = ["--velocity", "0.1", "--amplitude", "0.5", "--json"]
     assert main(["point", name, *arguments]) == 2

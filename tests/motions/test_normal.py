@@ -41,18 +41,18 @@ ASIDE = [
 ]
 
 
-def marched_springs(scene, velocity, amplitude, count, periods=8):
+def marched_springs(motion, velocity, amplitude, count, periods=8):
     """Springs with friction one by one, each stretched and let go in small steps of time.
 
     What a spring at x can hold is the overlap with the flat, d - x^2; mean force over mean load.
     """
-    scene = motion_named(scene)
-    widest = np.sqrt(scene.deepest(amplitude, HERTZ))
+    motion = motion_named(motion)
+    widest = np.sqrt(motion.deepest(amplitude, HERTZ))
     edges = widest * np.sqrt(np.linspace(0.0, 1.0, count + 1))
     x, width = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
     phase = np.linspace(-np.pi / 2, 1.5 * np.pi, 10 * count + 1)
-    ahead, _, _ = scene.displacement(phase, velocity, amplitude, 0.0)
-    overlap = np.maximum(scene.depth(phase, amplitude, HERTZ)[:, None] - x**2, 0.0)
+    ahead, _, _ = motion.displacement(phase, velocity, amplitude, 0.0)
+    overlap = np.maximum(motion.depth(phase, amplitude, HERTZ)[:, None] - x**2, 0.0)
     stretch, force = overlap[0], np.empty(len(phase))
     for _ in range(periods):
         force[0] = stretch @ width
@@ -62,15 +62,15 @@ def marched_springs(scene, velocity, amplitude, count, periods=8):
     return np.trapezoid(force, phase) / np.trapezoid(overlap @ width, phase)
 
 
-def run(scene, velocity, amplitude, model="radial", cells=32, steps=128):
-    problem = Problem(motion_named(scene), velocity, amplitude, 0.0)
+def run(motion, velocity, amplitude, model="radial", cells=32, steps=128):
+    problem = Problem(motion_named(motion), velocity, amplitude, 0.0)
     return simulate(problem, model, Resolution(cells, 1, steps), 1e-7)
 
 
 @pytest.mark.parametrize("place", ALONE, ids=str)
 def test_the_closed_form_is_that_of_springs_marched_one_by_one(place):
-    scene, velocity, amplitude = place
-    exact = motion_named(scene).closed_form_of(velocity, amplitude, HERTZ)
+    motion, velocity, amplitude = place
+    exact = motion_named(motion).closed_form_of(velocity, amplitude, HERTZ)
     coarse, fine = (marched_springs(*place, count, periods=2) for count in (100, 200))
     assert abs(fine - exact) < 1e-3
     assert 2.0 * fine - coarse == pytest.approx(exact, abs=1e-4)  # they err in first order
@@ -79,11 +79,12 @@ def test_the_closed_form_is_that_of_springs_marched_one_by_one(place):
 @pytest.mark.parametrize("model", ["mdr", "radial"])
 @pytest.mark.parametrize("place", ALONE, ids=str)
 def test_springs_and_rings_agree_with_the_closed_form(place, model):
-    scene, velocity, amplitude = place
+    motion, velocity, amplitude = place
     answer = microslip.solve(*place, model=model)
     assert answer.converged
     assert (
-        abs(answer.mu_macro - motion_named(scene).closed_form_of(velocity, amplitude, HERTZ)) < 1e-3
+        abs(answer.mu_macro - motion_named(motion).closed_form_of(velocity, amplitude, HERTZ))
+        < 1e-3
     )
 
 
@@ -108,10 +109,10 @@ def test_certificates_hold_against_finer_runs(place):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("scene", ["normal", "normal:forward=0.5", "normal:lateral=1"])
-def test_errors_fall_with_rings_and_steps(scene):
-    best = run(scene, 0.1, 0.7, cells=96, steps=512).mu
-    errors = [abs(run(scene, 0.1, 0.7, cells=n, steps=4 * n).mu - best) for n in (8, 32)]
+@pytest.mark.parametrize("motion", ["normal", "normal:forward=0.5", "normal:lateral=1"])
+def test_errors_fall_with_rings_and_steps(motion):
+    best = run(motion, 0.1, 0.7, cells=96, steps=512).mu
+    errors = [abs(run(motion, 0.1, 0.7, cells=n, steps=4 * n).mu - best) for n in (8, 32)]
     assert errors[1] < 0.3 * errors[0] or errors[0] < 2e-4
 
 
@@ -154,8 +155,8 @@ def test_a_contact_that_grows_keeps_load_and_stiffness(build):
 
 def test_contact_that_is_lost_forgets():
     """After a moment without contact it does not matter how a march began."""
-    scene = motion_named("normal:lateral=0.7,phase=40")
-    motion = Problem(scene, 0.2, 1.3, 0.0)
+    name = motion_named("normal:lateral=0.7,phase=40")
+    motion = Problem(name, 0.2, 1.3, 0.0)
     contact = build_contact(motion, "radial", Resolution(16, 1, 32))
     path = make_path(motion.displacement, np.linspace(0.0, 2 * np.pi, 129), depth=motion.depth)
     bound = contact.bounds(motion.depth(np.zeros(1)))[0]
@@ -163,7 +164,7 @@ def test_contact_that_is_lost_forgets():
     one, other = (contact.march(path, start, 1e-10) for start in starts)
     assert energy_norm(contact, one.state - other.state) < 1e-8
     assert not np.allclose(one.forces[1], other.forces[1])
-    away = scene.depth(path.phase, 1.3, HERTZ) == 0.0
+    away = name.depth(path.phase, 1.3, HERTZ) == 0.0
     assert away.any()
     assert not one.forces[away].any()
 
@@ -174,9 +175,9 @@ def tractions_of(march, bounds):
 
 
 @pytest.mark.parametrize("velocity", [0.001, 0.5])
-@pytest.mark.parametrize("scene", ["normal:lateral=1", "normal:indentation=1,forward=0.6,phase=45"])
-def test_every_stage_keeps_within_the_bound_of_its_time(scene, velocity):
-    motion = Problem(motion_named(scene), velocity, 0.9, 0.0)
+@pytest.mark.parametrize("name", ["normal:lateral=1", "normal:indentation=1,forward=0.6,phase=45"])
+def test_every_stage_keeps_within_the_bound_of_its_time(name, velocity):
+    motion = Problem(motion_named(name), velocity, 0.9, 0.0)
     contact = build_contact(motion, "radial", Resolution(12, 1, 24))
     path = motion.path(contact, 24)
     march = contact.march(path, np.zeros((2, 1, 12)), 1e-9)
@@ -188,8 +189,8 @@ def test_every_stage_keeps_within_the_bound_of_its_time(scene, velocity):
 @pytest.mark.parametrize("place", [*ALONG, *ASIDE], ids=str)
 def test_work_is_dissipated(place):
     """The motion's work is what is stored, what friction takes and what Euler steps lose."""
-    scene, velocity, amplitude = place
-    motion = Problem(motion_named(scene), velocity, amplitude, 0.0)
+    name, velocity, amplitude = place
+    motion = Problem(motion_named(name), velocity, amplitude, 0.0)
     resolution = Resolution(16, 1, 256)
     contact, found = build_contact(motion, "radial", resolution), run(*place, "radial", 16, 256)
     phase = motion.path(contact, 256).phase
@@ -213,27 +214,27 @@ def test_work_is_dissipated(place):
 
 def test_slow_sliding_tends_to_the_least_load():
     """The whole contact waits for the moment at which it is pressed the least."""
-    for scene, power in (("normal", 1.0), ("normal:indentation=1", 1.5)):
-        mean = motion_named(scene).mean_load(0.6, HERTZ)
+    for motion, power in (("normal", 1.0), ("normal:indentation=1", 1.5)):
+        mean = motion_named(motion).mean_load(0.6, HERTZ)
         exact = 0.4**power / mean
-        assert microslip.solve(scene, 0.0, 0.6).mu_macro == pytest.approx(exact, abs=1e-12)
-        rings = microslip.solve(scene, 0.0, 0.6, model="radial")
+        assert microslip.solve(motion, 0.0, 0.6).mu_macro == pytest.approx(exact, abs=1e-12)
+        rings = microslip.solve(motion, 0.0, 0.6, model="radial")
         assert abs(rings.mu_macro - exact) <= rings.mu_macro_error
-        errors = [run(scene, v, 0.6).mu - exact for v in (1e-2, 1e-3)]
+        errors = [run(motion, v, 0.6).mu - exact for v in (1e-2, 1e-3)]
         assert 0.0 < errors[1] < 0.15 * errors[0] < 0.02
 
 
-@pytest.mark.parametrize("scene", ["normal", "normal:indentation=1"])
-def test_a_contact_that_lifts_off_has_no_static_friction(scene):
-    assert microslip.solve(scene, 0.0, 1.0).mu_macro == 0.0
-    assert microslip.solve(scene, 0.0, 1.8).mu_macro == 0.0
-    assert microslip.solve(scene, 1e-4, 1.5, model="radial").mu_macro < 1e-3
+@pytest.mark.parametrize("motion", ["normal", "normal:indentation=1"])
+def test_a_contact_that_lifts_off_has_no_static_friction(motion):
+    assert microslip.solve(motion, 0.0, 1.0).mu_macro == 0.0
+    assert microslip.solve(motion, 0.0, 1.8).mu_macro == 0.0
+    assert microslip.solve(motion, 1e-4, 1.5, model="radial").mu_macro < 1e-3
 
 
-@pytest.mark.parametrize("scene", ["normal", "normal:indentation=1", "normal:lateral=1"])
-def test_fast_sliding_feels_the_mean_load(scene):
+@pytest.mark.parametrize("motion", ["normal", "normal:indentation=1", "normal:lateral=1"])
+def test_fast_sliding_feels_the_mean_load(motion):
     for amplitude in (0.5, 1.5):
-        answer = microslip.solve(scene, 50.0, amplitude, model="radial")
+        answer = microslip.solve(motion, 50.0, amplitude, model="radial")
         assert answer.mu_macro == pytest.approx(1.0, abs=2e-3)
 
 
@@ -262,10 +263,10 @@ def test_a_small_normal_part_leaves_the_motion_in_the_plane():
 
 def test_half_a_period_suffices_where_it_is_mirrored():
     """Twice as fast a load over a lateral oscillation; with phases a whole period later, too."""
-    scene = motion_named("normal:lateral=1,normal_cycles=2")
-    assert scene.half_period_mirror
+    name = motion_named("normal:lateral=1,normal_cycles=2")
+    assert name.half_period_mirror
     assert not motion_named("normal:lateral=1").half_period_mirror
-    motion = Problem(scene, 0.1, 0.8, 0.0)
+    motion = Problem(name, 0.1, 0.8, 0.0)
     contact = build_contact(motion, "radial", Resolution(16, 1, 64))
     phase = np.linspace(-0.25, 1.75, 513) * np.pi
     path = make_path(motion.displacement, phase, depth=motion.depth)
@@ -273,13 +274,13 @@ def test_half_a_period_suffices_where_it_is_mirrored():
     for _ in range(12):
         march = contact.march(path, state, 1e-9)
         state = march.state
-    half = run(scene.name, 0.1, 0.8, cells=16, steps=256)
+    half = run(name.name, 0.1, 0.8, cells=16, steps=256)
     assert path.mean(march.forces[:, 0]) == pytest.approx(half.mu, abs=1e-3)
 
 
 def test_friction_rises_with_velocity_and_falls_with_amplitude():
-    for scene in ("normal", "normal:indentation=1"):
-        whole = motion_named(scene).closed_form_of
+    for motion in ("normal", "normal:indentation=1"):
+        whole = motion_named(motion).closed_form_of
         table = np.array(
             [[whole(v, a, HERTZ) for v in (1e-3, 0.03, 0.1, 0.4)] for a in (0.2, 0.7, 1.3)]
         )
@@ -289,13 +290,13 @@ def test_friction_rises_with_velocity_and_falls_with_amplitude():
 
 def test_in_step_with_the_load_an_oscillation_drives_the_contact():
     """Pressed harder on its way forward than back: friction resists less, or drives."""
-    scene = "normal:forward=1,phase={}"
-    ahead, back = (microslip.solve(scene.format(p), 0.02, 0.8).mu_macro for p in (180, 0))
+    motion = "normal:forward=1,phase={}"
+    ahead, back = (microslip.solve(motion.format(p), 0.02, 0.8).mu_macro for p in (180, 0))
     assert ahead < -0.3 and back > 0.5
 
 
 @pytest.mark.parametrize(
-    ("scene", "message"),
+    ("motion", "message"),
     [
         ("normal:load=0", "allowed is load or indentation above 0"),
         ("normal:load=0.5,indentation=1", "allowed is no load beside an indentation"),
@@ -305,9 +306,9 @@ def test_in_step_with_the_load_an_oscillation_drives_the_contact():
         ("normal:depth=1", "unknown number depth"),
     ],
 )
-def test_what_is_no_motion_is_refused(scene, message):
+def test_what_is_no_motion_is_refused(motion, message):
     with pytest.raises(ValueError, match=message):
-        microslip.solve(scene, 0.1, 0.5)
+        microslip.solve(motion, 0.1, 0.5)
 
 
 @pytest.mark.parametrize("model", sorted(MODELS.keys() - {"mdr", "radial", "polar"}))
@@ -341,8 +342,8 @@ def test_the_command_line_knows_it(capsys):
     words = ["point", "normal", "--velocity", "0.1", "--amplitude", "0.5", "--json"]
     assert cli.main(words) == 0
     assert json.loads(capsys.readouterr().out)["model"] == "closed-form"
-    assert cli.main([*words, "--path", "lateral=1,phase=90"]) == 0
-    assert json.loads(capsys.readouterr().out)["scene"] == "normal:lateral=1,phase=90"
+    assert cli.main(["point", "normal:lateral=1,phase=90", *words[2:]]) == 0
+    assert json.loads(capsys.readouterr().out)["motion"] == "normal:lateral=1,phase=90"
 
 
 def test_a_history_follows_the_load():
@@ -361,17 +362,17 @@ def test_a_history_follows_the_load():
     ["power:exponent=1", "power:exponent=8", pytest.param("punch", marks=pytest.mark.long)],
 )
 @pytest.mark.parametrize(
-    ("scene", "velocity", "amplitude"),
+    ("motion", "velocity", "amplitude"),
     [("normal", 0.1, 0.5), ("normal:indentation=1", 0.03, 1.4)],
 )
 def test_closed_form_springs_and_rings_agree_for_other_indenters(
-    pressure, scene, velocity, amplitude
+    pressure, motion, velocity, amplitude
 ):
-    exact = microslip.solve(scene, velocity, amplitude, pressure=pressure)
+    exact = microslip.solve(motion, velocity, amplitude, pressure=pressure)
     assert exact.model == "closed-form"
     for model in ("mdr", "radial"):
         settings = {"pressure": pressure, "model": model, "tolerance": 5e-3}
-        found = microslip.solve(scene, velocity, amplitude, **settings)
+        found = microslip.solve(motion, velocity, amplitude, **settings)
         assert found.converged
         assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error
 
@@ -391,9 +392,9 @@ def test_static_friction_of_power_laws(exponent):
 
 
 def test_the_power_2_is_a_sphere_under_a_load_that_changes():
-    for scene in ("normal", "normal:indentation=1"):
+    for motion in ("normal", "normal:indentation=1"):
         one, other = (
-            microslip.solve(scene, 0.1, 1.2, pressure=name).mu_macro for name in ("hertz", "power")
+            microslip.solve(motion, 0.1, 1.2, pressure=name).mu_macro for name in ("hertz", "power")
         )
         assert other == pytest.approx(one, abs=1e-10)
 

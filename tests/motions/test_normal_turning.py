@@ -15,8 +15,8 @@ from microslip.theory import hertz, paper
 TURNING = "normal:angle=1"
 
 
-def run(scene, velocity, amplitude, model="polar", poisson=0.0, resolution=(24, 8, 96)):
-    problem = Problem(motion_named(scene), velocity, amplitude, poisson)
+def run(motion, velocity, amplitude, model="polar", poisson=0.0, resolution=(24, 8, 96)):
+    problem = Problem(motion_named(motion), velocity, amplitude, poisson)
     return simulate(problem, model, Resolution(*resolution), 1e-6)
 
 
@@ -27,20 +27,20 @@ def within(found, other, slack=0.0):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["normal", "normal:lateral=1", "normal:forward=1,phase=60"])
-def test_modes_find_what_rings_find(scene):
+@pytest.mark.parametrize("motion", ["normal", "normal:lateral=1", "normal:forward=1,phase=60"])
+def test_modes_find_what_rings_find(motion):
     """At the same resolution to the tolerance of the steps, for at nu = 0 they are the same."""
     for amplitude in (0.6, 1.3):
-        rings, modes = (run(scene, 0.1, amplitude, model) for model in ("radial", "polar"))
+        rings, modes = (run(motion, 0.1, amplitude, model) for model in ("radial", "polar"))
         assert rings.converged and modes.converged
         assert modes.mu == pytest.approx(rings.mu, abs=2e-6)
 
 
 @pytest.mark.long
 def test_the_static_limit_is_that_of_rings_too():
-    scene = "normal:lateral=1"
-    rings = microslip.solve(scene, 0.0, 0.4, model="radial", tolerance=1e-3)
-    within(microslip.solve(scene, 0.0, 0.4, model="polar", tolerance=2e-2), rings)
+    motion = "normal:lateral=1"
+    rings = microslip.solve(motion, 0.0, 0.4, model="radial", tolerance=1e-3)
+    within(microslip.solve(motion, 0.0, 0.4, model="polar", tolerance=2e-2), rings)
 
 
 @pytest.mark.long
@@ -80,17 +80,17 @@ def test_which_way_it_turns_does_not_matter():
 
 @pytest.mark.long
 def test_half_a_period_suffices_where_it_is_mirrored():
-    scene = motion_named("normal:angle=1,normal_cycles=2")
-    assert scene.half_period_mirror and scene.half_disc
+    name = motion_named("normal:angle=1,normal_cycles=2")
+    assert name.half_period_mirror and name.half_disc
     assert not motion_named(TURNING).half_period_mirror
-    motion = Problem(scene, 0.1, 0.8, 0.2)
+    motion = Problem(name, 0.1, 0.8, 0.2)
     contact = build_contact(motion, "polar", Resolution(12, 8, 64))
     path = make_path(motion.displacement, np.linspace(-0.25, 1.75, 257) * np.pi, depth=motion.depth)
     state = np.zeros((2, 8, 12))
     for _ in range(12):
         march = contact.march(path, state, 1e-8)
         state = march.state
-    half = run(scene.name, 0.1, 0.8, poisson=0.2, resolution=(12, 8, 128))
+    half = run(name.name, 0.1, 0.8, poisson=0.2, resolution=(12, 8, 128))
     assert path.mean(march.forces[:, 0]) == pytest.approx(half.mu, abs=2e-3)
 
 
@@ -119,7 +119,7 @@ def test_slow_marches_end_in_the_limit():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("scene", "finer"),
+    ("motion", "finer"),
     [
         ("normal", 1e-3),
         *(
@@ -128,9 +128,9 @@ def test_slow_marches_end_in_the_limit():
         ),
     ],
 )
-def test_certificates_hold_against_finer_runs(scene, finer):
+def test_certificates_hold_against_finer_runs(motion, finer):
     loose, tight = (
-        microslip.solve(scene, 0.08, 0.7, poisson=0.4, tolerance=t) for t in (1e-2, finer)
+        microslip.solve(motion, 0.08, 0.7, poisson=0.4, tolerance=t) for t in (1e-2, finer)
     )
     assert loose.model == "polar"
     within(loose, tight)

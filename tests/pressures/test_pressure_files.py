@@ -77,14 +77,14 @@ def test_a_uniform_square_is_one_pressure_at_any_resolution(reading):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["transverse", pytest.param("bore", marks=pytest.mark.long)])
-def test_friction_of_a_uniform_square_does_not_depend_on_its_grid(tmp_path, scene):
+@pytest.mark.parametrize("motion", ["transverse", pytest.param("bore", marks=pytest.mark.long)])
+def test_friction_of_a_uniform_square_does_not_depend_on_its_grid(tmp_path, motion):
     found = []
     for count in (2, 41):
         axis = np.linspace(-1.0, 1.0, count)
         axis *= 1.0 - 1.0 / count  # centres of the cells of one square
         name = csv(tmp_path / f"{count}.csv", axis, axis, np.ones((count, count)))
-        found.append(microslip.solve(scene, 0.5, 0.5, pressure=name, tolerance=1e-2))
+        found.append(microslip.solve(motion, 0.5, 0.5, pressure=name, tolerance=1e-2))
     one, other = found
     assert one.converged and other.converged
     # a thousandth of the tolerance that periodic states are found to
@@ -233,9 +233,9 @@ def test_units_and_formats_do_not_matter(tmp_path):
 def test_a_pressure_that_is_not_symmetric_is_marched_over_the_whole_period(tmp_path):
     values = HERTZIAN * (1.0 + 0.5 * AXIS)
     name = csv(tmp_path / "p.csv", values=values)
-    scene = motion_named("bore", name)
-    assert not scene.half_period_mirror
-    assert scene.turns(0.1, 1.0) == pytest.approx((-np.pi / 2, np.pi / 2, 1.5 * np.pi))
+    motion = motion_named("bore", name)
+    assert not motion.half_period_mirror
+    assert motion.turns(0.1, 1.0) == pytest.approx((-np.pi / 2, np.pi / 2, 1.5 * np.pi))
     found = microslip.solve("bore", 0.3, 1.0, pressure=name, tolerance=4e-2)
     mirrored = csv(tmp_path / "m.csv", values=values[:, ::-1])
     other = microslip.solve("bore", 0.3, 1.0, pressure=mirrored, tolerance=4e-2)

@@ -203,12 +203,12 @@ def test_integrals_over_the_record_are_the_closed_forms_of_a_sphere(name):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["power:exponent=1", "power:exponent=8", "punch"])
 @pytest.mark.parametrize(
-    ("scene", "amplitude", "model"),
+    ("motion", "amplitude", "model"),
     [("transverse", 0.5, "radial"), ("longitudinal", 0.5, "radial"), ("bore", 1.0, "polar")],
 )
-def test_static_limits_agree_with_those_point_by_point(name, scene, amplitude, model):
-    exact = microslip.solve(scene, 0.0, amplitude, pressure=name)
-    found = microslip.solve(scene, 0.0, amplitude, pressure=name, model=model, tolerance=5e-3)
+def test_static_limits_agree_with_those_point_by_point(name, motion, amplitude, model):
+    exact = microslip.solve(motion, 0.0, amplitude, pressure=name)
+    found = microslip.solve(motion, 0.0, amplitude, pressure=name, model=model, tolerance=5e-3)
     assert exact.model == "closed-form"
     assert abs(found.mu_macro - exact.mu_macro) <= found.mu_macro_error + exact.mu_macro_error
 
@@ -242,13 +242,13 @@ def test_the_steady_bore_is_eqs_17_and_18(name):
     "name", ["power:exponent=1", pytest.param("punch", marks=pytest.mark.long), "ring"]
 )
 @pytest.mark.parametrize(
-    ("scene", "velocity", "amplitude"),
+    ("motion", "velocity", "amplitude"),
     [("transverse", 0.1, 0.6), pytest.param("bore", 0.3, 1.0, marks=pytest.mark.long)],
 )
-def test_rings_and_squares_agree(name, scene, velocity, amplitude):
+def test_rings_and_squares_agree(name, motion, velocity, amplitude):
     settings = {"pressure": name, "tolerance": 4e-3}
-    rings = microslip.solve(scene, velocity, amplitude, **settings)
-    squares = microslip.solve(scene, velocity, amplitude, model="cartesian", **settings)
+    rings = microslip.solve(motion, velocity, amplitude, **settings)
+    squares = microslip.solve(motion, velocity, amplitude, model="cartesian", **settings)
     assert rings.converged
     assert squares.converged
     assert abs(rings.mu_macro - squares.mu_macro) <= rings.mu_macro_error + squares.mu_macro_error
@@ -256,21 +256,21 @@ def test_rings_and_squares_agree(name, scene, velocity, amplitude):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("scene", "velocity", "amplitude", "poisson"),
+    ("motion", "velocity", "amplitude", "poisson"),
     [("transverse", 0.1, 0.5, 0.0), ("transverse", 0.1, 0.5, 0.4), ("bore", 0.3, 1.0, 0.0)],
 )
-def test_an_ellipse_of_ratio_1_is_a_sphere(scene, velocity, amplitude, poisson):
+def test_an_ellipse_of_ratio_1_is_a_sphere(motion, velocity, amplitude, poisson):
     settings = {"poisson": poisson, "tolerance": 3e-3}
-    one = microslip.solve(scene, velocity, amplitude, **settings)
-    other = microslip.solve(scene, velocity, amplitude, pressure="ellipse:ratio=1", **settings)
+    one = microslip.solve(motion, velocity, amplitude, **settings)
+    other = microslip.solve(motion, velocity, amplitude, pressure="ellipse:ratio=1", **settings)
     assert other.model == "cartesian"
     assert abs(one.mu_macro - other.mu_macro) <= one.mu_macro_error + other.mu_macro_error
 
 
 def test_the_power_2_is_a_sphere_in_motion():
-    for scene, model in (("transverse", "radial"), ("bore", "polar")):
+    for motion, model in (("transverse", "radial"), ("bore", "polar")):
         one, other = (
-            microslip.solve(scene, 0.2, 0.7, pressure=name, tolerance=5e-3)
+            microslip.solve(motion, 0.2, 0.7, pressure=name, tolerance=5e-3)
             for name in ("hertz", "power")
         )
         assert one.model == other.model == model
@@ -282,10 +282,10 @@ def test_translation_at_poissons_ratio_0_cannot_tell_how_an_ellipse_lies():
     """Directions of traction and places of points meet nowhere but in nu and in rotation."""
     settings = {"tolerance": 5e-3}
 
-    def both(scene, velocity, amplitude, poisson):
+    def both(motion, velocity, amplitude, poisson):
         return (
             microslip.solve(
-                scene,
+                motion,
                 velocity,
                 amplitude,
                 poisson=poisson,

@@ -28,7 +28,7 @@ def caption(figure, **settings):
 
 @pytest.mark.parametrize("title", TITLES)
 def test_a_caption_shows_a_title_as_it_stands(title):
-    sweep = {"title": title, "group": "g", "scene": "bore", "pressure": "hertz", "tolerance": 1}
+    sweep = {"title": title, "group": "g", "motion": "bore", "pressure": "hertz", "tolerance": 1}
     shown = caption("extended_g", histories=None, extended={"a": SimpleNamespace(**sweep)})
     assert "system-message" not in shown
     assert title.replace("<", "&lt;").replace(">", "&gt;") in shown

@@ -63,8 +63,8 @@ def test_every_run_has_its_name_and_the_line_that_repeats_it(page, data):
 
 
 def test_numbers_are_those_of_the_dataset(page, data):
-    for scene in ("transverse", "bore"):
-        for value in data[f"{scene}_paper"].values:
+    for motion in ("transverse", "bore"):
+        for value in data[f"{motion}_paper"].values:
             assert f"{value:.4f}" in page
     assert f"{float(data['bore_gap_zone']):.4f}" in page
     assert "53.3 % more than the limit" in page
@@ -75,7 +75,7 @@ def test_the_line_for_a_point_asks_for_that_point(request_):
     program, *words = shlex.split(command(request_))
     assert program == "microslip"
     options = cli.build_parser("point").parse_args(words)
-    assert options.scene == request_["scene"]
+    assert options.motion == request_["motion"]
     amplitude = getattr(options, "amplitude", None)
     given = {n: number(float(getattr(options, n))) for n in ("velocity", "poisson", "tolerance")}
     given["amplitude"] = None if amplitude is None else number(float(amplitude))

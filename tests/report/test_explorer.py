@@ -122,12 +122,12 @@ def test_a_finer_map_has_periods_for_some_points_of_both_axes():
 def test_of_several_certified_maps_the_most_exact_one_answers():
     exact, rough = ({"adaptive": {"error": error}} for error in (1e-3, 5e-3))
     axes = {"velocity": [0.1, 1], "amplitude": [0, 1]}
-    extended = axes | {"scene": "transverse", "group": "motions"}
+    extended = axes | {"motion": "transverse", "group": "motions"}
     given = {
         "sweeps": {"transverse": axes | rough},
         "extended": {
             "again": extended | exact,
-            "along": extended | exact | {"scene": "longitudinal"},
+            "along": extended | exact | {"motion": "longitudinal"},
             "cone": extended | exact | {"pressure": "power:exponent=1"},
         },
     }

@@ -47,11 +47,11 @@ def made(map_, friction, failed=None):
 
 @pytest.fixture(scope="module", params=["transverse", "bore"])
 def given(request):
-    """A map of a motion with limits, and its scene."""
+    """A map of a motion with limits, and its motion."""
     friction, widest = {"transverse": (sideways, 3), "bore": (boring, 5)}[request.param]
     axes = {"velocity": [0.001, 10], "amplitude": [0, widest], "adaptive": {"error": 1e-2}}
     map_ = certified_stub.configured(request.param, **axes)
-    return SimpleNamespace(scene=request.param, dataset=made(map_, friction), widest=widest)
+    return SimpleNamespace(motion=request.param, dataset=made(map_, friction), widest=widest)
 
 
 def asked(dataset, velocity, amplitude, poisson=None):
@@ -93,10 +93,10 @@ def test_answers_beyond_the_map_are_those_of_friction_at(given):
     }
 
 
-@pytest.mark.parametrize("scene", ["transverse", "bore"])
-def test_slow_contacts_of_any_poissons_ratio_are_answered_as_by_friction_at(scene):
+@pytest.mark.parametrize("motion", ["transverse", "bore"])
+def test_slow_contacts_of_any_poissons_ratio_are_answered_as_by_friction_at(motion):
     axes = {"velocity": [0.01, 1], "amplitude": [0.1, 0.9], "poisson": [0, 0.5]}
-    map_ = certified_stub.configured(scene, **axes, adaptive={"error": 0.1})
+    map_ = certified_stub.configured(motion, **axes, adaptive={"error": 0.1})
     dataset = made(map_, lambda v, a, nu: (0.1 + v) / (0.1 + v + a * (1 - 0.1 * nu)))
     velocity = np.array([0.0, 0.0, 1e-4, 0.003, 0.0099, 5.0])
     said, truth = asked(dataset, velocity, np.array([0.5, 2.0, 0.5, 0.8, 0.3, 0.5]), 0.4)
@@ -121,8 +121,8 @@ def test_limits_are_those_of_the_theory(call, truth):
 
 def test_answers_below_the_smallest_amplitude_are_those_of_friction_at(given):
     axes = {"velocity": [0.01, 1], "amplitude": [0.5, 2], "adaptive": {"error": 3e-2}}
-    friction = sideways if given.scene == "transverse" else boring
-    dataset = made(certified_stub.configured(given.scene, **axes), friction)
+    friction = sideways if given.motion == "transverse" else boring
+    dataset = made(certified_stub.configured(given.motion, **axes), friction)
     velocity = 10 ** np.random.default_rng(9).uniform(-2, 1, 50)
     said, truth = asked(dataset, velocity, np.linspace(0, 0.7, 50))
     compare(said, truth)
@@ -155,7 +155,7 @@ def test_both_refuse_the_same_with_the_same_words(given):
 
 def test_other_motions_are_refused_beyond_their_maps_as_by_friction_at():
     axes = {"velocity": [0.01, 1], "amplitude": [0.1, 0.9], "group": "lines"}
-    axes |= {"scene": "longitudinal", "adaptive": {"error": 0.05}}
+    axes |= {"motion": "longitudinal", "adaptive": {"error": 0.05}}
     paper_too = {"bore": {"velocity": [1], "amplitude": [1]}}
     map_ = load.from_mapping({"sweeps": paper_too, "extended": {"along": axes}}).certified
     dataset = made(*map_.values(), lambda v, a: float(masing.longitudinal(v, a)))
@@ -169,11 +169,11 @@ def test_other_motions_are_refused_beyond_their_maps_as_by_friction_at():
         assert one["refused"] == str(error.value)
 
 
-@pytest.mark.parametrize("scene", ["transverse", "bore"])
-def test_maps_over_poissons_ratio_answer_as_friction_at(scene):
-    friction, widest = {"transverse": (sideways, 3), "bore": (boring, 5)}[scene]
+@pytest.mark.parametrize("motion", ["transverse", "bore"])
+def test_maps_over_poissons_ratio_answer_as_friction_at(motion):
+    friction, widest = {"transverse": (sideways, 3), "bore": (boring, 5)}[motion]
     axes = {"velocity": [0.001, 10], "amplitude": [0, widest], "poisson": [0, 0.5]}
-    map_ = certified_stub.configured(scene, **axes, adaptive={"error": 3e-2})
+    map_ = certified_stub.configured(motion, **axes, adaptive={"error": 3e-2})
 
     def changed(velocity, amplitude, poisson):
         return friction(velocity, amplitude / (1 - 0.3 * poisson))
@@ -203,7 +203,7 @@ def test_cells_of_three_directions_give_back_a_polynomial_of_their_degrees():
         x, y, z = (np.linspace(*cell[k : k + 2], n) for k, n in ((0, 5), (2, 5), (4, 3)))
         values += truth(*np.meshgrid(x, y, z, indexing="ij")).ravel().tolist()
     packed = {
-        "scene": "bore",
+        "motion": "bore",
         "pressure": "hertz",
         "velocity": [slow, fast],
         "amplitude": [low, high],

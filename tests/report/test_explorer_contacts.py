@@ -28,9 +28,9 @@ COUNT = 100
 RELATIVE = 1e-12
 
 
-def texts(scene, **given):
+def texts(motion, **given):
     """What the form holds, with something else typed in some fields: (text, unit) or a choice."""
-    found = dict(si_form.CHOSEN) | {"scene": scene}
+    found = dict(si_form.CHOSEN) | {"motion": motion}
     for name, field in si_form.FIELDS.items():
         found |= {name: field.example, f"{name}_unit": field.units[0]}
     for name, value in given.items():
@@ -46,7 +46,7 @@ def asked_of_predict(typed):
         return f"{typed[name]} {typed[f'{name}_unit']}".strip()
 
     found = {name: quantity(name) for name in ("radius", "load", "mu", "speed", "frequency")}
-    found["amplitude"] = quantity(si_form.AMPLITUDE_OF[typed["scene"]])
+    found["amplitude"] = quantity(si_form.AMPLITUDE_OF[typed["motion"]])
     if typed["material"] == si_form.OF_NUMBERS:
         found |= {"young": quantity("young"), "nu": quantity("nu")}
     else:
@@ -57,7 +57,7 @@ def asked_of_predict(typed):
     return found | {"counterbody": other}
 
 
-def drawn(rng, scene, spread, *, at_ratio_0=False):
+def drawn(rng, motion, spread, *, at_ratio_0=False):
     """A random question, around those whose amplitude is that of full slip; spread: decades."""
     decades = rng.uniform(-spread, spread, 5)
     given = {
@@ -77,7 +77,7 @@ def drawn(rng, scene, spread, *, at_ratio_0=False):
     while True:
         given["material"], given["counterbody"] = rng.choice(names, 2).tolist()
         if (given["material"], given["counterbody"]) != ("rigid", "rigid"):
-            return texts(scene, **given)
+            return texts(motion, **given)
 
 
 def page(maps, questions):
@@ -104,14 +104,14 @@ def made_up(request):
     return record(request, {"mu_macro": rises(*place), "mu_macro_error": 1e-4, "converged": True})
 
 
-@pytest.fixture(scope="module", params=si_form.SCENES)
+@pytest.fixture(scope="module", params=si_form.MOTIONS)
 def coarse(request):
     """A certified map of a made-up friction, for Poisson's ratio 0."""
     axes = {"velocity": [0.001, 100], "amplitude": [0, 10], "adaptive": {"error": 5e-2}}
     return made(certified_stub.configured(request.param, **axes), made_up)
 
 
-@pytest.fixture(scope="module", params=si_form.SCENES)
+@pytest.fixture(scope="module", params=si_form.MOTIONS)
 def over_ratios(request):
     """The same for every Poisson's ratio."""
     axes = {"velocity": [1e-5, 1e2], "amplitude": [0, 10], "poisson": [0, 0.5]}
@@ -124,7 +124,7 @@ def predicted(monkeypatch):
     module = importlib.import_module("microslip.si.predict")
 
     def by(dataset):
-        def solve(scene, velocity, amplitude, *, poisson, **_):
+        def solve(name, velocity, amplitude, *, poisson, **_):
             try:
                 found = Friction(dataset).at(velocity, amplitude, poisson=poisson)
             except ValueError as error:
@@ -136,7 +136,7 @@ def predicted(monkeypatch):
             return SimpleNamespace(**found, **rest)
 
         def answer_of(contact, motion, pulling, tolerance, carriers):
-            return solve(motion.scene, *groups(motion, contact), poisson=contact.poisson)
+            return solve(motion.name, *groups(motion, contact), poisson=contact.poisson)
 
         monkeypatch.setattr("microslip.si.static_limit.solve", solve)
         monkeypatch.setattr(module, "answer_of", answer_of)
@@ -176,13 +176,13 @@ def compare(said, truth):
 @pytest.mark.parametrize("at_ratio_0", [True, False])
 def test_the_page_answers_as_predict_does_on_the_same_map(coarse, predicted, at_ratio_0):
     rng = np.random.default_rng(21)
-    scene, predict = coarse.attrs["scene"], predicted(coarse)
+    motion, predict = coarse.attrs["motion"], predicted(coarse)
     spread = 1.0 if at_ratio_0 else 3.0
-    questions = [drawn(rng, scene, spread, at_ratio_0=at_ratio_0) for _ in range(COUNT)]
+    questions = [drawn(rng, motion, spread, at_ratio_0=at_ratio_0) for _ in range(COUNT)]
     warned, answered, refused = set(), 0, 0
     for typed, said in zip(questions, page([coarse], questions), strict=True):
         try:
-            truth = predict(scene, **asked_of_predict(typed))
+            truth = predict(motion, **asked_of_predict(typed))
         except InputError as error:
             # one body is too small for the contact, or the amplitude too large
             assert error.argument in ("radius", "amplitude") and "refused" in said
@@ -198,12 +198,12 @@ def test_the_page_answers_as_predict_does_on_the_same_map(coarse, predicted, at_
 @pytest.mark.long
 def test_the_page_answers_for_all_materials_as_predict_does_on_the_same_map(over_ratios, predicted):
     rng = np.random.default_rng(24)
-    scene, predict = over_ratios.attrs["scene"], predicted(over_ratios)
-    questions = [drawn(rng, scene, 1.0) for _ in range(COUNT)]
+    motion, predict = over_ratios.attrs["motion"], predicted(over_ratios)
+    questions = [drawn(rng, motion, 1.0) for _ in range(COUNT)]
     answered = 0
     for typed, said in zip(questions, page([over_ratios], questions), strict=True):
         try:
-            truth = predict(scene, **asked_of_predict(typed))
+            truth = predict(motion, **asked_of_predict(typed))
         except InputError as error:
             assert error.argument in ("radius", "amplitude") and "refused" in said
             continue
@@ -234,7 +234,7 @@ def test_the_page_agrees_with_the_solver_within_both_errors():
 
 
 def test_at_another_poissons_ratio_the_page_refuses_and_tells_the_nearest(coarse):
-    (said,) = page([coarse], [texts(coarse.attrs["scene"])])
+    (said,) = page([coarse], [texts(coarse.attrs["motion"])])
     assert said["friction"] is None
     assert (
         said["refused"] == "poisson = 0.3: allowed is 0, the dataset's only one; "
@@ -246,7 +246,7 @@ def test_at_another_poissons_ratio_the_page_refuses_and_tells_the_nearest(coarse
 
 
 def test_a_motion_without_a_map_still_has_its_contact(coarse):
-    other = {"transverse": "bore", "bore": "transverse"}[coarse.attrs["scene"]]
+    other = {"transverse": "bore", "bore": "transverse"}[coarse.attrs["motion"]]
     (said,) = page([coarse], [texts(other)])
     assert said["refused"] == f"this page holds no certified map of {other}"
     assert said["contact_radius"] > 0
@@ -269,9 +269,9 @@ NO_NUMBERS = {
 }
 
 
-@pytest.mark.parametrize("scene", ["transverse"])
-def test_what_is_no_number_is_refused_in_one_line(scene):
-    questions = [texts(scene, radius=text) for text in NO_NUMBERS]
+@pytest.mark.parametrize("motion", ["transverse"])
+def test_what_is_no_number_is_refused_in_one_line(motion):
+    questions = [texts(motion, radius=text) for text in NO_NUMBERS]
     for said, (text, problem) in zip(page([], questions), NO_NUMBERS.items(), strict=True):
         assert said["refused"].startswith("radius of the sphere = "), text
         assert problem in said["refused"], text

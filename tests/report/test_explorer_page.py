@@ -21,19 +21,19 @@ RATIOS = [0, 0.3, 0.5]
 def configured():
     """Sweeps of every shape: maps with and without periods, lines, several Poisson's ratios."""
     extended = {
-        "along": MAP | {"scene": "longitudinal", "group": "motions", "title": "to and fro"},
-        "ratios": MAP | {"scene": "bore", "group": "poisson", "poisson": RATIOS},
+        "along": MAP | {"motion": "longitudinal", "group": "motions", "title": "to and fro"},
+        "ratios": MAP | {"motion": "bore", "group": "poisson", "poisson": RATIOS},
         "still": {
-            "scene": "bore",
+            "motion": "bore",
             "group": "static",
             "velocity": [0, 0.001],
             "amplitude": [0, 0.5, 1, 2],
         },
     }
     drives = {
-        "creep": {"scene": "transverse", "force": [0.2, 0.4, 0.8], "amplitude": [0.5, 1]},
+        "creep": {"motion": "transverse", "force": [0.2, 0.4, 0.8], "amplitude": [0.5, 1]},
         "body": {
-            "scene": "transverse",
+            "motion": "transverse",
             "velocity": [0.1],
             "amplitude": [1],
             "stiffness": [0.1, 1],
@@ -132,7 +132,7 @@ def test_what_is_pulled_is_lines_of_what_comes_out(made):
 
 def test_too_many_points_are_refused():
     many = {"velocity": {"log": {"start": 0.001, "stop": 10, "count": 101}}}
-    many |= {"amplitude": [0, *range(1, 201)], "scene": "longitudinal", "group": "motions"}
+    many |= {"amplitude": [0, *range(1, 201)], "motion": "longitudinal", "group": "motions"}
     given = {"sweeps": {"bore": MAP}, "extended": {"large": many}}
     configuration = load.from_mapping(given)
     assert requests.refusal(configuration) is None
@@ -234,7 +234,7 @@ def test_a_slow_contact_lies_between_the_static_limit_and_the_map_in_the_units_o
 
 def test_the_coefficient_at_vanishing_speed_needs_no_map(made):
     said = page_says(
-        made[1], ASK, picked("scene", "bore"), "[STATE.contact, element('contact-still').text]"
+        made[1], ASK, picked("motion", "bore"), "[STATE.contact, element('contact-still').text]"
     )
     contact, still = said[-1]
     assert contact["refused"].startswith("this page holds no certified map")
@@ -251,7 +251,7 @@ def test_the_address_holds_the_state_and_restores_it(made):
         "element('limits').children[0].children[0].checked = false",
         "element('limits').children[0].children[0].fire('change')",
         ASK,
-        picked("scene", "bore"),
+        picked("motion", "bore"),
         typed("load", "7.5"),
         picked("load_unit", "kgf"),
         "[linkOf(STATE), STATE.contact]",
@@ -320,7 +320,7 @@ def test_the_form_asks_for_what_counts_alone(made):
         ASK,
         hidden,
         picked("material", "by E and ν"),
-        picked("scene", "bore"),
+        picked("motion", "bore"),
         hidden,
         "[element('contact-value').text, STATE.map.name]",
     )

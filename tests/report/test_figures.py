@@ -255,15 +255,15 @@ def test_history_mean_and_phase(datasets):
 @pytest.mark.long
 @pytest.mark.usefixtures("unplaced")
 @pytest.mark.parametrize(
-    ("scene", "name", "label"),
+    ("motion", "name", "label"),
     [
         ("transverse", "fig2_transverse_map", r"limit at $\nu = 0$"),
         ("bore", "fig6_bore_map", "exact limit"),
     ],
 )
-def test_the_static_limit_is_called_exact_only_where_it_is(datasets, scene, name, label):
+def test_the_static_limit_is_called_exact_only_where_it_is(datasets, motion, name, label):
     for ratio, expected in ((0.0, "exact limit"), (0.3, label)):
-        given = {scene: datasets[scene].assign_coords(poisson=ratio)}
+        given = {motion: datasets[motion].assign_coords(poisson=ratio)}
         (line,) = artists(drawing.draw(name, given), "mu_static")
         assert line.get_label() == expected
 

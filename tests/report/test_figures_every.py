@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_pdf import PdfFile
 from matplotlib.text import Text
 from PIL import Image
-from stubs import certified_stub, drives_stub, driving_stub, fit_stub, studies_stub
+from stubs import certified_stub, drives_stub, fit_stub, propulsion_stub, studies_stub
 
 from microslip.report.figures import drawing
 from microslip.report.figures import style as look
@@ -26,20 +26,20 @@ pytestmark = pytest.mark.slow  # for drawing takes a second or two
 
 def given() -> dict[str, tuple[str, dict]]:
     """Every figure there is, by a name of its own: what it is called, and small datasets for it."""
-    scenes = {"transverse": test_figures.fake_transverse(5), "bore": test_figures.fake_bore(5)}
-    two = {name: test_figures.at_ratios(dataset, 0.0, 0.5) for name, dataset in scenes.items()}
+    motions = {"transverse": test_figures.fake_transverse(5), "bore": test_figures.fake_bore(5)}
+    two = {name: test_figures.at_ratios(dataset, 0.0, 0.5) for name, dataset in motions.items()}
     for dataset in two.values():
         dataset["velocity"].attrs["formula"] = "v0 / (omega u_lim)"
         dataset["amplitude"].attrs["formula"] = "y0 / u_lim"
-    scenes |= {"continuous_bore": test_figures.fake_continuous_bore()} | of_studies.few()
-    found = {name: (name, scenes) for name in drawing.FIGURES} | {"poisson": ("poisson", two)}
+    motions |= {"continuous_bore": test_figures.fake_continuous_bore()} | of_studies.few()
+    found = {name: (name, motions) for name in drawing.FIGURES} | {"poisson": ("poisson", two)}
     found |= {f"two {name}": (name, two) for name in ("fig2_transverse_map", "fig6_bore_map")}
-    maps = {f"creep_{scene}": drives_stub.creep(scene) for scene in ("transverse", "bore")}
+    maps = {f"creep_{motion}": drives_stub.creep(motion) for motion in ("transverse", "bore")}
     found |= {"creep_maps": ("creep_maps", maps), "drives": ("drives", drives_stub.pulled())}
     found["pairs"] = "pairs", drives_stub.pairs()
-    answer, _ = studies_stub.answered(driving_stub.driving_result)
-    driving = registry.build("driving", driving_stub.configured(), answer)
-    found["driving"] = "driving", {"driving": driving}
+    answer, _ = studies_stub.answered(propulsion_stub.propulsion_result)
+    propulsion = registry.build("propulsion", propulsion_stub.configured(), answer)
+    found["propulsion"] = "propulsion", {"propulsion": propulsion}
     found["fit"] = "fit", {"fit": fit_stub.fitted()}
     found["certified"] = "certified_bore", {"certified_bore": certified_stub.bore()}
     found["deep"] = "certified_bore", {"certified_bore": certified_stub.bore(poisson=[0.1, 0.4])}

@@ -317,11 +317,11 @@ def test_formulas_become_math(formula, expected):
 
 
 @pytest.mark.parametrize("name", [*MOTIONS, *FAMILIES])
-def test_labels_of_every_scene_can_be_set(name):
+def test_labels_of_every_motion_can_be_set(name):
     from matplotlib.mathtext import MathTextParser
 
-    scene = motion_named(name)
-    for label in (scene.velocity_label, scene.amplitude_label):
+    motion = motion_named(name)
+    for label in (motion.velocity_label, motion.amplitude_label):
         MathTextParser("path").parse(mathtext(label))
 
 

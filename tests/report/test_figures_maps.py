@@ -93,7 +93,7 @@ def mapped(velocities=9, amplitudes=7):
     return xr.Dataset(
         test_figures.fake_map(mu),
         coords={"amplitude": amplitude, "velocity": velocity, "poisson": 0.0},
-        attrs={"scene": "longitudinal"},
+        attrs={"motion": "longitudinal"},
     )
 
 

@@ -53,9 +53,9 @@ MOTIONS = (
 )
 
 
-def applies(model: str, scene: str, poisson: float) -> bool:
-    """Whether a model can run in a scene, roughly as the package has it."""
-    if scene == "transverse":
+def applies(model: str, motion: str, poisson: float) -> bool:
+    """Whether a model can run in a motion, roughly as the package has it."""
+    if motion == "transverse":
         return model != "radial" or poisson == 0
     return model in ("rigid", "polar", "cartesian")
 
@@ -70,9 +70,9 @@ def fake_trials(points: int = 11, methods: tuple[str, ...] = METHODS) -> dict:
             (f"p{point}", model, method, level, error, seconds, effort, converged, tolerance)
         )
 
-    for point, (scene, _, _, poisson, _) in enumerate(MOTIONS[:points]):
+    for point, (motion, _, _, poisson, _) in enumerate(MOTIONS[:points]):
         for model in MODELS:
-            if not applies(model, scene, poisson):
+            if not applies(model, motion, poisson):
                 continue
             if model == "rigid":
                 add(point, model, "shipped", 0, 0.2 / (point + 1), 2e-5, 0)
@@ -113,7 +113,7 @@ def fake_accuracy(points: int = 11, methods: tuple[str, ...] = METHODS) -> xr.Da
     """All of `accuracy_cost.nc`, with points, trials, scaling and maps of realistic size."""
     table = fake_trials(points, methods)
     known = [2e-6, 1e-5, 3e-5, 2e-6, 3e-5, 1e-4, 1e-4, 1e-6, 0.0, 1e-5, 1e-5]
-    scenes, velocity, amplitude, poisson, titles = zip(*MOTIONS[:points], strict=True)
+    motions, velocity, amplitude, poisson, titles = zip(*MOTIONS[:points], strict=True)
     trials = {f"trial_{n}": ("trial", table[n]) for n in ("point", "model", "method", "level")}
     trials["trial_tolerance"] = ("trial", table["tolerance"])
     trials |= {n: ("trial", table[n]) for n in ("error", "seconds", "effort", "converged")}
@@ -122,7 +122,7 @@ def fake_accuracy(points: int = 11, methods: tuple[str, ...] = METHODS) -> xr.Da
         trials[f"front_{cost}"] = ("trial", front)
     of_points = {
         "point_title": ("point", list(titles)),
-        "point_scene": ("point", list(scenes)),
+        "point_motion": ("point", list(motions)),
         "point_velocity": ("point", list(velocity)),
         "point_amplitude": ("point", list(amplitude)),
         "point_poisson": ("point", list(poisson)),
@@ -168,22 +168,22 @@ def fake_scaling() -> xr.Dataset:
 def fake_maps(velocities: int = 13, amplitudes: int = 9) -> xr.Dataset:
     """Regions of the cheapest model, with one where none is accurate enough."""
     data, coords = {}, {"map_tolerance": [1e-2, 1e-3]}
-    for scene, top in (("transverse", 3.0), ("bore", 5.0)):
+    for motion, top in (("transverse", 3.0), ("bore", 5.0)):
         velocity = np.geomspace(1e-3, 10, velocities)
-        even = np.linspace if scene == "transverse" else np.geomspace
-        amplitude = even(0.0 if scene == "transverse" else 0.1, top, amplitudes)
+        even = np.linspace if motion == "transverse" else np.geomspace
+        amplitude = even(0.0 if motion == "transverse" else 0.1, top, amplitudes)
         v, a = np.meshgrid(velocity, amplitude)
         maps = []
         for tolerance in coords["map_tolerance"]:
-            names = np.full(v.shape, "radial" if scene == "transverse" else "polar", object)
+            names = np.full(v.shape, "radial" if motion == "transverse" else "polar", object)
             names[(v > 1) & (a > 0.4 * top)] = "rigid"
             names[(v > 0.05) & (v < 1) & (a > 0.6 * top)] = "mdr" if tolerance > 5e-3 else "polar"
-            names[(v < 0.01) & (a < 0.3 * top)] = "dahl" if scene == "transverse" else "cartesian"
-            names[a == amplitude[0]] = "slider" if scene == "transverse" else "rigid"
+            names[(v < 0.01) & (a < 0.3 * top)] = "dahl" if motion == "transverse" else "cartesian"
+            names[a == amplitude[0]] = "slider" if motion == "transverse" else "rigid"
             names[(v < 0.003) & (a > 0.8 * top)] = ""
             maps.append(names.astype(str))
-        dims = ("map_tolerance", f"{scene}_amplitude", f"{scene}_velocity")
-        data[f"{scene}_cheapest"] = (dims, np.array(maps))
+        dims = ("map_tolerance", f"{motion}_amplitude", f"{motion}_velocity")
+        data[f"{motion}_cheapest"] = (dims, np.array(maps))
         coords |= {dims[1]: amplitude, dims[2]: velocity}
     return xr.Dataset(data, coords)
 
@@ -619,10 +619,10 @@ def test_the_map_colours_and_names_the_cheapest_models(datasets, figures):
     handles = zip(legend.get_texts(), legend.legend_handles, strict=True)
     colours = {text.get_text().split()[-1]: handle.get_facecolor() for text, handle in handles}
     panels = iter(figure.axes)
-    for scene in ("transverse", "bore"):
+    for motion in ("transverse", "bore"):
         for index in range(2):
             axes = next(panels)
-            names = dataset[f"{scene}_cheapest"].values[index]
+            names = dataset[f"{motion}_cheapest"].values[index]
             (mesh,) = artists(axes, "cheapest")
             drawn = mesh.cmap(mesh.norm(mesh.get_array()))
             for name in set(names.ravel()) - {""}:
@@ -669,11 +669,11 @@ def test_a_map_of_one_point_is_drawn():
     maps = maps.isel({f"{s}_{n}": [3] for s in ("transverse", "bore") for n in ("velocity",)})
     maps = maps.isel(transverse_amplitude=[2], bore_amplitude=[2])
     figure = drawing.draw("model_map", {"accuracy_cost": maps})
-    for axes, scene in zip(figure.axes, ("transverse", "bore"), strict=True):
+    for axes, motion in zip(figure.axes, ("transverse", "bore"), strict=True):
         low, high = axes.get_xlim()
-        assert low < maps[f"{scene}_velocity"] < high
+        assert low < maps[f"{motion}_velocity"] < high
         low, high = axes.get_ylim()
-        assert low < maps[f"{scene}_amplitude"] < high
+        assert low < maps[f"{motion}_amplitude"] < high
         assert len(artists(axes, "region")) == 1
 
 

@@ -13,8 +13,8 @@ RUBBER = {"young": "2 MPa", "nu": 0.49, "counterbody": "glass", "radius": "50 mm
 RUBBER |= {"frequency": "50 Hz", "amplitude": "1 mm", "speed": "10 mm/s", "load": "5 N"}
 
 
-def answer(scene, given):
-    return microslip.predict(scene, tolerance=5e-3, **given)
+def answer(motion, given):
+    return microslip.predict(motion, tolerance=5e-3, **given)
 
 
 def test_a_sonotrode_is_a_rigid_slider_but_for_its_small_elastic_stroke():

@@ -16,16 +16,16 @@ SHAKEN = BALL | {"speed": "10 mm/s", "amplitude": "0.3 um", "frequency": "20 kHz
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "scene",
+    "motion",
     ["transverse", "longitudinal", "bore", pytest.param("elliptic", marks=pytest.mark.long)],
 )
-def test_drag_and_vibration_are_what_slip_dissipates(scene):
+def test_drag_and_vibration_are_what_slip_dissipates(motion):
     """The balance: work in over a period is traction times slip, summed over the whole disc."""
     velocity, amplitude = 0.3, 1.2
-    power = vibration_power(scene, velocity, amplitude)
+    power = vibration_power(motion, velocity, amplitude)
     assert power.reason == "" and power.value > 0.0
-    found = microslip.solve(scene, velocity, amplitude)
-    period = microslip.period(scene, velocity, amplitude, cells=32, steps=256)
+    found = microslip.solve(motion, velocity, amplitude)
+    period = microslip.period(motion, velocity, amplitude, cells=32, steps=256)
     slipped = period.traction_forward * period.slip_forward
     slipped = slipped + period.traction_lateral * period.slip_lateral
     dissipated = float(np.sum(slipped[1:] @ period.area)) / (2.0 * math.pi)

@@ -99,19 +99,19 @@ def test_rows_that_share_no_condition_have_no_curve(closed):
 # The groups
 
 
-@pytest.mark.parametrize("scene", ["transverse", "bore"])
+@pytest.mark.parametrize("motion", ["transverse", "bore"])
 @pytest.mark.parametrize("alike", [False, True])
-def test_rows_are_the_points_of_predict_under_every_load(scene, alike):
+def test_rows_are_the_points_of_predict_under_every_load(motion, alike):
     load, size = np.array([5.0, 10.0, 40.0]), np.array([1e-7, 3e-7, 1e-6])
-    size = size if scene == "transverse" else size * 1e4
+    size = size if motion == "transverse" else size * 1e4
     speed, frequency = np.array([1e-3, 1e-2, 0.1]), np.array([10.0, 1e3, 2e4])
     rows = Measured(speed, size, frequency, load, load, load, "friction", {})
-    scale = Modulus(rows, scene == "bore", 0.3, alike, 5e-3)
+    scale = Modulus(rows, motion == "bore", 0.3, alike, 5e-3)
     points = scale.points(0.25, 80e9)
     body = Material(2.0 * 80e9 * 1.3, 0.3)
     for k in range(3):
         contact = TwoBodies(body, body if alike else RIGID, 5e-3, load[k], 0.25)
-        expected = groups(RealMotion(scene, speed[k], size[k], frequency[k]), contact)
+        expected = groups(RealMotion(motion, speed[k], size[k], frequency[k]), contact)
         assert (points.velocity[k], points.amplitude[k]) == pytest.approx(expected, rel=1e-12)
 
 
@@ -277,7 +277,7 @@ def test_a_table_that_cannot_be_used_is_refused(closed, change, said):
 
 
 @pytest.mark.parametrize(
-    ("scene", "more", "said"),
+    ("motion", "more", "said"),
     [
         ("bore", {}, "radius"),
         ("continuous-bore", {}, "allowed is one of transverse"),
@@ -285,13 +285,13 @@ def test_a_table_that_cannot_be_used_is_refused(closed, change, said):
         ("transverse", {"radius": "5 mm"}, "nu"),
         ("transverse", {"radius": "5 mm", "nu": 0.3, "counterbody": "glass"}, "rigid or same"),
         ("transverse", {"confidence": 1.0}, "confidence"),
-        ("transverse", {"map": SimpleNamespace(attrs={"scene": "bore"})}, "a sweep of transverse"),
+        ("transverse", {"map": SimpleNamespace(attrs={"motion": "bore"})}, "a sweep of transverse"),
     ],
 )
-def test_other_bad_input_is_refused(closed, scene, more, said):
+def test_other_bad_input_is_refused(closed, motion, more, said):
     table = conditions()
     with pytest.raises(InputError, match=said):
-        microslip.fit(scene, table | {"friction": force(table)}, **SHARED | more)
+        microslip.fit(motion, table | {"friction": force(table)}, **SHARED | more)
 
 
 def test_more_rows_than_the_solver_answers_for_need_a_map():

@@ -95,7 +95,7 @@ def test_a_prediction_repeats_what_it_was_asked_in_the_units_that_were_given():
     found = microslip.predict("transverse", **asked)
     assert found.counterbody == "E = 70 GPa, nu = 0.22"
     assert found.understood == {
-        "scene": "transverse: the sphere slides forward and oscillates sideways",
+        "motion": "transverse: the sphere slides forward and oscillates sideways",
         "body": "E = 210 GPa, nu = 0.3, hardness 7 GPa",
         "counterbody": "E = 70 GPa, nu = 0.22",
         "radius": "0.005 m",
@@ -142,18 +142,18 @@ def test_the_command_line_answers_in_json(capsys):
 
 def test_the_command_line_answers_in_words(capsys):
     """What was understood, as it was given, comes before what was found."""
-    for scene, motion, said_first in (
+    for name, motion, said_first in (
         ("transverse", {"amplitude": "1 um", "frequency": "20 kHz"}, ["20 kHz\n", "1 um\n"]),
         ("bore", {"amplitude": "0.5 deg", "frequency": "50 Hz"}, ["0.5 deg = 0.00872665 rad\n"]),
         ("continuous-bore", {"rotation": "60 rpm"}, ["60 rpm = 6.28319 rad/s\n"]),
     ):
-        assert cli.main(["predict", scene, *options(material="steel", **BALL, **motion)]) == 0
+        assert cli.main(["predict", name, *options(material="steel", **BALL, **motion)]) == 0
         said = capsys.readouterr().out
         understood, _, found = said.partition("contact radius")
         assert "54.57 um" in found
         assert "warning: " in found
         for text in (
-            f"{scene}: the sphere {MOTIONS[scene]}",
+            f"{name}: the sphere {MOTIONS[name]}",
             "rigid, as none was given",
             *said_first,
         ):
@@ -197,7 +197,7 @@ def test_an_answer_can_be_written_in_any_alphabet(monkeypatch):
     assert b"5000 \\u03bcm" in said.getvalue() and b"3600 \xb0/s = 62.8319" in said.getvalue()
 
 
-def test_the_help_of_predict_lists_the_scenes_and_explains_the_terms(capsys):
+def test_the_help_of_predict_lists_the_motions_and_explains_the_terms(capsys):
     with pytest.raises(SystemExit):
         cli.main(["predict", "--help"])
     said = " ".join(capsys.readouterr().out.split())
@@ -255,4 +255,4 @@ def test_the_command_line_names_what_is_missing(capsys):
     assert "--amplitude: transverse needs it" in refusal_of_the_command_line(
         ["transverse", *words], capsys
     )
-    assert "SCENE = 'sideways': " in refusal_of_the_command_line(["sideways", *words], capsys)
+    assert "MOTION = 'sideways': " in refusal_of_the_command_line(["sideways", *words], capsys)

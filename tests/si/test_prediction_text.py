@@ -18,8 +18,8 @@ def words(**given):
     return [word for name, text in given.items() for word in (f"--{name}", text)]
 
 
-def said(capsys, scene, code=0, **given):
-    assert cli.main(["predict", scene, *words(**given)]) == code
+def said(capsys, motion, code=0, **given):
+    assert cli.main(["predict", motion, *words(**given)]) == code
     return capsys.readouterr().out
 
 

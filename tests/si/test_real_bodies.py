@@ -61,13 +61,13 @@ MOVED = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", MOVED)
-def test_the_friction_of_a_body_at_a_speed_is_the_sum_of_its_contacts(scene):
+@pytest.mark.parametrize("motion", MOVED)
+def test_the_friction_of_a_body_at_a_speed_is_the_sum_of_its_contacts(motion):
     """Each is predicted alone under its own load, with its own contact radius and u_lim."""
-    given = BALL | MOVED[scene]
-    each = [microslip.predict(scene, load=load, **given) for load in (4.0, 16.0)]
+    given = BALL | MOVED[motion]
+    each = [microslip.predict(motion, load=load, **given) for load in (4.0, 16.0)]
     assert abs(each[0].mu_macro - each[1].mu_macro) > 0.05
-    found = microslip.predict(scene, load=20.0, contacts="load=1;load=4,phase=60", **given)
+    found = microslip.predict(motion, load=20.0, contacts="load=1;load=4,phase=60", **given)
     forces = sum(one.friction_force_N for one in each)
     errors = 20.0 * found.mu_apparent_error + sum(
         load * one.mu_apparent_error for load, one in zip((4.0, 16.0), each, strict=True)

@@ -53,7 +53,7 @@ def test_the_groups_of_a_drive_by_hand():
         RealMotion("bore", 1e-3, 0.01, 50.0),
         RealMotion("continuous-bore", 1e-3, rotation=3.0),
     ],
-    ids=lambda motion: motion.scene,
+    ids=lambda motion: motion.name,
 )
 def test_the_unit_of_a_speed_undoes_its_group(motion):
     velocity, _ = groups(motion, CONTACT)
@@ -293,18 +293,20 @@ EDGES = [
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("expected", "scene", "velocity", "amplitude", "stiffness", "mass"), EDGES)
+@pytest.mark.parametrize(
+    ("expected", "motion", "velocity", "amplitude", "stiffness", "mass"), EDGES
+)
 def test_at_the_edge_of_a_regime_friction_is_as_its_words_say(
-    expected, scene, velocity, amplitude, stiffness, mass
+    expected, motion, velocity, amplitude, stiffness, mass
 ):
     """Just within a limit of the rule, where it matters: between a velocity and a force friction
     differs by more than SAME.  Along the direction of the pull a force leaves all of friction."""
     drive = Drive(None, stiffness, mass)
-    assert regime(scene, amplitude, drive) == expected
-    found = microslip.solve(scene, velocity, amplitude, stiffness=stiffness, mass=mass)
-    limits = {"velocity": microslip.solve(scene, velocity, amplitude).mu_macro, "force": 1.0}
-    if scene != "longitudinal":
-        limits["force"] = microslip.solve(scene, velocity, amplitude, stiffness=1e-4).mu_macro
+    assert regime(motion, amplitude, drive) == expected
+    found = microslip.solve(motion, velocity, amplitude, stiffness=stiffness, mass=mass)
+    limits = {"velocity": microslip.solve(motion, velocity, amplitude).mu_macro, "force": 1.0}
+    if motion != "longitudinal":
+        limits["force"] = microslip.solve(motion, velocity, amplitude, stiffness=1e-4).mu_macro
     assert found.converged
     assert found.mu_macro == pytest.approx(limits[expected], abs=SAME)
     assert abs(limits["velocity"] - limits["force"]) > SAME

@@ -17,13 +17,13 @@ RIGID = {"amplitude": "1 mm", "speed": "20 m/s", "load": "1 N", "frequency": "2 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("sought", ["speed", "load"])
-@pytest.mark.parametrize("scene", ["transverse", pytest.param("bore", marks=pytest.mark.long)])
-def test_whichever_is_left_out_is_found_again(scene, sought):
+@pytest.mark.parametrize("motion", ["transverse", pytest.param("bore", marks=pytest.mark.long)])
+def test_whichever_is_left_out_is_found_again(motion, sought):
     # Of a bore two loads feel the same, and the larger one is looked for.
-    given = GIVEN | ({"amplitude": 0.01, "load": 200.0} if scene == "bore" else {})
-    there = microslip.predict(scene, **LATERAL, **given)
+    given = GIVEN | ({"amplitude": 0.01, "load": 200.0} if motion == "bore" else {})
+    there = microslip.predict(motion, **LATERAL, **given)
     rest = {name: value for name, value in given.items() if name != sought}
-    found = microslip.predict(scene, reduction=there.force_reduction, **LATERAL, **rest)
+    found = microslip.predict(motion, reduction=there.force_reduction, **LATERAL, **rest)
     off = abs(getattr(found, FIELDS[sought]) - given[sought])
     assert found.sought == sought
     assert off <= found.sought_error < 0.05 * given[sought]

@@ -15,7 +15,7 @@ from microslip.app import cli
 from microslip.foundation.errors import InputError
 from microslip.motions import by_name
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealMotion, groups, solver_scene
+from microslip.si.dimensionless import RealMotion, groups, solver_motion
 from microslip.si.materials import RIGID, Material
 from microslip.si.shapes import ellipse_of_radii, elliptic, of_size
 
@@ -193,7 +193,7 @@ def test_a_prediction_under_another_pressure_is_what_the_solver_says():
 
 
 @pytest.mark.parametrize(
-    ("scene", "sizes", "expected", "largest"),
+    ("label", "sizes", "expected", "largest"),
     [
         ("elliptic", (2.0, 1.0, None, None), {"lateral": 1.0, "forward": 0.5}, 2.0),
         ("elliptic", (0.0, 3.0, None, None), {"lateral": 0.0, "forward": 1.0}, 3.0),
@@ -202,14 +202,14 @@ def test_a_prediction_under_another_pressure_is_what_the_solver_says():
         ("normal", (None, 0.5, None, 2.5), {"forward": 1.0, "load": 0.5}, 0.5),
     ],
 )
-def test_amplitudes_are_shares_of_the_largest(scene, sizes, expected, largest):
+def test_amplitudes_are_shares_of_the_largest(label, sizes, expected, largest):
     along = [None if size is None else size * BALL.u_lim for size in sizes[:2]]
     parts = {"forward_amplitude": along[1], "rotation_amplitude": sizes[2]}
     parts |= {"load_amplitude": sizes[3], "phase": 0.5 * math.pi}
-    motion = RealMotion(scene, 1e-3, along[0], 1e3, **parts)
-    name, _, text = solver_scene(motion, BALL).partition(":")
+    motion = RealMotion(label, 1e-3, along[0], 1e3, **parts)
+    name, _, text = solver_motion(motion, BALL).partition(":")
     found = {k: float(v) for k, v in (part.split("=") for part in text.split(","))}
-    assert name == scene and found.pop("phase") == pytest.approx(90.0)
+    assert name == label and found.pop("phase") == pytest.approx(90.0)
     assert found == pytest.approx(expected)
     velocity, amplitude = groups(motion, BALL)
     assert amplitude == pytest.approx(largest)
@@ -219,11 +219,11 @@ def test_amplitudes_are_shares_of_the_largest(scene, sizes, expected, largest):
 @pytest.mark.slow
 def test_a_motion_in_several_ways_of_which_one_is_nothing_is_the_other():
     plain = microslip.predict("transverse", **SPHERE)
-    for scene, other in (
+    for motion, other in (
         ("elliptic", {"forward_amplitude": 0.0}),
         ("transverse-bore", {"rotation_amplitude": "0 deg"}),
     ):
-        found = microslip.predict(scene, **SPHERE | other)
+        found = microslip.predict(motion, **SPHERE | other)
         error = plain.mu_macro_error + found.mu_macro_error
         assert found.mu_macro == pytest.approx(plain.mu_macro, abs=error)
         assert found.velocity == plain.velocity and found.amplitude == plain.amplitude
@@ -254,7 +254,7 @@ def test_the_command_line_takes_them_and_says_so(capsys):
 
 
 @pytest.mark.parametrize(
-    ("scene", "change", "named", "said"),
+    ("motion", "change", "named", "said"),
     [
         ("transverse", {"radius": None}, "radius", "or a contact_radius"),
         ("transverse", {"contact_radius": "1 mm"}, "radius", "none beside a contact_radius"),
@@ -287,10 +287,10 @@ def test_the_command_line_takes_them_and_says_so(capsys):
         ),
     ],
 )
-def test_what_does_not_fit_together_is_refused(scene, change, named, said):
+def test_what_does_not_fit_together_is_refused(motion, change, named, said):
     asked = {k: v for k, v in (SPHERE | change).items() if v is not None}
     with pytest.raises(InputError) as caught:
-        microslip.predict(scene, **asked)
+        microslip.predict(motion, **asked)
     assert caught.value.argument == named and said in caught.value.allowed
 
 
@@ -339,7 +339,7 @@ def test_a_motion_of_ones_own_is_answered_in_units_as_without(own, capsys):
     assert (found.velocity, found.amplitude) == pytest.approx(
         (1e-2 / (2.0 * math.pi * 2e4 * found.u_lim_m), 3e-7 / found.u_lim_m), rel=1e-12
     )
-    assert found.understood["scene"] == "sine-cubed: the sphere is moving as it likes"
+    assert found.understood["motion"] == "sine-cubed: the sphere is moving as it likes"
     point = ["--velocity", repr(found.velocity), "--amplitude", repr(found.amplitude)]
     point += ["--poisson", repr(found.poisson)]
     assert cli.main(["point", "sine-cubed", *point, "--json"]) == 0
@@ -352,7 +352,7 @@ def test_a_motion_of_ones_own_is_answered_in_units_as_without(own, capsys):
 @pytest.mark.slow
 def test_the_amplitude_of_a_rotation_of_ones_own_is_an_angle(own, capsys):
     spin = SPHERE | {"amplitude": "0.2 deg", "tolerance": 1e-2}
-    found, bore = (microslip.predict(scene, **spin) for scene in ("own-bore", "bore"))
+    found, bore = (microslip.predict(motion, **spin) for motion in ("own-bore", "bore"))
     assert (found.velocity, found.amplitude) == (bore.velocity, bore.amplitude)
     assert found.mu_macro == bore.mu_macro
     with pytest.raises(InputError, match="units of rad"):
@@ -369,17 +369,17 @@ def test_numbers_after_the_name_of_a_family_are_taken_as_by_solve():
 
 
 @pytest.mark.parametrize(
-    ("scene", "said"),
+    ("motion", "said"),
     [
         ("normal:lateral=0.5", "normal with a load_amplitude"),
         ("transverse-bore:angle=0.5", "for both see transverse-bore"),
         ("transvers", "did you mean transverse"),
     ],
 )
-def test_a_motion_without_a_meaning_in_units_is_refused(scene, said):
+def test_a_motion_without_a_meaning_in_units_is_refused(motion, said):
     with pytest.raises(InputError, match=said) as caught:
-        microslip.predict(scene, **SPHERE)
-    assert caught.value.argument == "scene"
+        microslip.predict(motion, **SPHERE)
+    assert caught.value.argument == "motion"
 
 
 # A load that parts the bodies

@@ -137,21 +137,21 @@ def test_two_balls_are_one_ball_of_half_the_radius():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("scene", "motion"),
+    ("name", "motion"),
     [
         ("transverse", {"frequency": "20 kHz"}),
         pytest.param("transverse", {"frequency": "50 Hz"}, marks=pytest.mark.long),
         pytest.param("bore", {"frequency": "20 kHz"}, marks=pytest.mark.long),
     ],
 )
-def test_the_amplitude_that_halves_friction_does(scene, motion):
+def test_the_amplitude_that_halves_friction_does(name, motion):
     ball = BALL | {"material": "steel", "counterbody": "steel", "tolerance": 3e-3} | motion
-    wanted = microslip.predict(scene, reduction="50 %", **ball)
+    wanted = microslip.predict(name, reduction="50 %", **ball)
     assert wanted.force_reduction == pytest.approx(0.5, abs=2e-3)
-    there = microslip.predict(scene, amplitude=wanted.amplitude_si, **ball)
+    there = microslip.predict(name, amplitude=wanted.amplitude_si, **ball)
     assert there.mu_macro == pytest.approx(wanted.mu_macro, abs=1e-12)
     for factor, sign in ((0.9, 1), (1.1, -1)):
-        near = microslip.predict(scene, amplitude=factor * wanted.amplitude_si, **ball)
+        near = microslip.predict(name, amplitude=factor * wanted.amplitude_si, **ball)
         assert sign * (near.mu_macro - 0.5) > 0.01
 
 
@@ -468,9 +468,9 @@ def test_a_reduction_is_looked_for_at_any_speed():
         microslip.predict("bore", reduction="50 %", frequency="20 kHz", **fast)
 
 
-def test_two_rigid_bodies_and_unknown_scenes_are_refused():
+def test_two_rigid_bodies_and_unknown_motions_are_refused():
     ball = BALL | {"amplitude": "1 um", "frequency": "1 kHz"}
     with pytest.raises(ValueError, match="elastic"):
         microslip.predict("transverse", material="rigid", **ball)
-    with pytest.raises(ValueError, match="^scene = 'sideways'"):
+    with pytest.raises(ValueError, match="^motion = 'sideways'"):
         microslip.predict("sideways", material="steel", **ball)

@@ -85,8 +85,8 @@ def balance(problem, drive, model, resolution):
 @pytest.mark.parametrize("drive", DRIVES)
 @pytest.mark.parametrize("place", PLACES)
 def test_what_goes_in_is_dissipated(place, drive):
-    scene, velocity, amplitude, poisson, model, resolution = PLACES[place]
-    problem = Problem(motion_named(scene), velocity, amplitude, poisson)
+    motion, velocity, amplitude, poisson, model, resolution = PLACES[place]
+    problem = Problem(motion_named(motion), velocity, amplitude, poisson)
     vibration, pulled, slipped, damped = balance(problem, DRIVES[drive], model, resolution)
     assert slipped + damped == pytest.approx(vibration + pulled, rel=5e-4)
     # none of them could be left out

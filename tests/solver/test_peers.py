@@ -11,7 +11,7 @@ from stubs.studies_stub import configured
 
 import microslip
 from microslip.adaptive import single_run as trial
-from microslip.config.records import MODELS_OF_SCENE
+from microslip.config.records import MODELS_OF_MOTION
 from microslip.foundation import canonical
 from microslip.models.path import EULER, make_path
 from microslip.models.registry import MODELS
@@ -95,11 +95,11 @@ def test_squares_are_asked_with_the_package(within):
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.5])
-@pytest.mark.parametrize("scene", MOTIONS)
-def test_it_applies_where_it_is_asked(scene, poisson, within):
-    known = [m for m in MODELS if not trial.applies(scene, poisson, m, "aspher")]
-    assert ladders.models_for("aspher", scene, poisson) == known
-    assert bool(known) == ("slider" in MODELS_OF_SCENE[scene])  # which cannot turn either
+@pytest.mark.parametrize("motion", MOTIONS)
+def test_it_applies_where_it_is_asked(motion, poisson, within):
+    known = [m for m in MODELS if not trial.applies(motion, poisson, m, "aspher")]
+    assert ladders.models_for("aspher", motion, poisson) == known
+    assert bool(known) == ("slider" in MODELS_OF_MOTION[motion])  # which cannot turn either
 
 
 def test_rotation_is_refused(within):

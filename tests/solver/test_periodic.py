@@ -29,7 +29,7 @@ CASES = {
     "cartesian, translation": ("cartesian", TRANSVERSE, 0.0, 6, 1),
     "cartesian, rotation": ("cartesian", BORE, 0.3, 6, 1),
 }
-"""model, scene, nu, cells, angles"""
+"""model, motion, nu, cells, angles"""
 POINTS = {
     "slider": [(1.0, 2.0), (0.1, 0.5), (0.005, 0.8)],
     "radial": [(1.0, 0.5), (0.1, 1.0), (0.02, 2.0), (0.005, 0.5), (1e-3, 0.2)],
@@ -42,21 +42,21 @@ POINTS = {
 
 
 def contact_of(name, velocity, amplitude):
-    model, scene, nu, cells, angles = CASES[name]
+    model, motion, nu, cells, angles = CASES[name]
     return MODELS[model].build(
-        scene, nu, cells, angles, scene.focus(velocity, amplitude, scene.pressure)
+        motion, nu, cells, angles, motion.focus(velocity, amplitude, motion.pressure)
     )
 
 
 def path_of(name, velocity, amplitude, integrator=SDIRK2, whole=False):
     """Path over half a period, or over a whole one in the same steps."""
-    _, scene, nu, _, _ = CASES[name]
+    _, motion, nu, _, _ = CASES[name]
     phase = half_period_phases(STEPS)
     if whole:
         phase = np.concatenate([phase, phase[1:] + np.pi])
 
     def displacement(t):
-        return scene.displacement(t, velocity, amplitude, nu)
+        return motion.displacement(t, velocity, amplitude, nu)
 
     return make_path(displacement, phase, integrator)
 
@@ -78,9 +78,9 @@ def plain_march(contact, path, state, change, most=20_000):
 )
 def test_found_state_is_that_of_the_plain_march(name, velocity, amplitude):
     """... from another start: the stress-free contact."""
-    model, scene, nu, cells, angles = CASES[name]
+    model, label, nu, cells, angles = CASES[name]
     resolution = Resolution(cells, angles, STEPS)
-    motion = Problem(scene, velocity, amplitude, nu)
+    motion = Problem(label, velocity, amplitude, nu)
     run = simulate(motion, model, resolution, TOLERANCE)
     assert run.converged and run.distance <= TOLERANCE
     contact = build_contact(motion, model, resolution)
@@ -95,7 +95,7 @@ def test_found_state_is_that_of_the_plain_march(name, velocity, amplitude):
 @pytest.mark.parametrize("name", CASES)
 def test_second_half_of_the_period_mirrors_the_first(name, integrator):
     """A march over the whole period from the found state, which knows nothing of the symmetry."""
-    scene, point = CASES[name][1], POINTS[name][1]
+    motion, point = CASES[name][1], POINTS[name][1]
     contact, path = contact_of(name, *point), path_of(name, *point, integrator)
     cycle = PeriodMap(contact, path)
     found = find_periodic_state(cycle, forward_slip(contact), Goal(TOLERANCE, STEP_TOLERANCE))
@@ -105,7 +105,7 @@ def test_second_half_of_the_period_mirrors_the_first(name, integrator):
     assert energy_norm(contact, march.state - found.start) < 3 * TOLERANCE
     first, second = march.forces[: STEPS + 1], march.forces[STEPS:]
     assert second[:, 0] == pytest.approx(first[:, 0], abs=3 * TOLERANCE)
-    turning = 2 if scene.rotates else 1  # what the motion oscillates, and its sign with it
+    turning = 2 if motion.rotates else 1  # what the motion oscillates, and its sign with it
     assert second[:, turning] == pytest.approx(-first[:, turning], abs=3 * TOLERANCE)
     assert np.abs(first[:, turning]).max() > 0.1
     assert whole.mean(march.forces)[0] == pytest.approx(path.mean(found.forces)[0], abs=TOLERANCE)
@@ -132,8 +132,8 @@ def test_verdict_is_that_of_the_plain_map(name):
 
 def test_run_reports_what_was_not_reached(monkeypatch):
     monkeypatch.setattr("microslip.solver.simulate.MOST_MARCHES", 2)
-    for scene, model, angles in ((BORE, "polar", 4), (TRANSVERSE, "radial", 1)):
-        problem = Problem(scene, 0.1, 1.0, 0.0)
+    for motion, model, angles in ((BORE, "polar", 4), (TRANSVERSE, "radial", 1)):
+        problem = Problem(motion, 0.1, 1.0, 0.0)
         run = simulate(problem, model, Resolution(6, angles, 8), TOLERANCE)
         assert not run.converged
         assert "no periodic state" in run.reason and run.distance > TOLERANCE

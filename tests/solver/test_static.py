@@ -11,18 +11,18 @@ from microslip.solver.static_limit import oscillating_part, residual_part, stati
 from microslip.theory import hertz, paper
 
 
-def contact_for(scene, amplitude, model, cells, angles=1, poisson=0.0):
-    focus = scene.focus(0.0, amplitude, scene.pressure)
-    return MODELS[model].build(scene, poisson, cells, angles, focus)
+def contact_for(motion, amplitude, model, cells, angles=1, poisson=0.0):
+    focus = motion.focus(0.0, amplitude, motion.pressure)
+    return MODELS[model].build(motion, poisson, cells, angles, focus)
 
 
-def oscillation(scene, amplitude, poisson=0.0):
-    return lambda phase: scene.displacement(phase, 0.0, amplitude, poisson)
+def oscillation(motion, amplitude, poisson=0.0):
+    return lambda phase: motion.displacement(phase, 0.0, amplitude, poisson)
 
 
-def numerical_limit(scene, amplitude, model, cells, angles=1, poisson=0.0):
-    contact = contact_for(scene, amplitude, model, cells, angles, poisson)
-    residual, *_ = static_state(contact, oscillation(scene, amplitude, poisson), 1e-10)
+def numerical_limit(motion, amplitude, model, cells, angles=1, poisson=0.0):
+    contact = contact_for(motion, amplitude, model, cells, angles, poisson)
+    residual, *_ = static_state(contact, oscillation(motion, amplitude, poisson), 1e-10)
     return float(np.sum(contact.weight * residual[0]))
 
 
@@ -90,13 +90,13 @@ def test_slider_limit_is_eq_7():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("scene", "amplitude", "poisson"),
+    ("motion", "amplitude", "poisson"),
     [("transverse", 0.5, 0.0), ("transverse", 0.5, 0.3), ("bore", 1.0, 0.0)],
 )
-def test_slow_marches_approach_the_limit(scene, amplitude, poisson):
-    limit = microslip.solve(scene, 0.0, amplitude, poisson=poisson, tolerance=1e-3)
+def test_slow_marches_approach_the_limit(motion, amplitude, poisson):
+    limit = microslip.solve(motion, 0.0, amplitude, poisson=poisson, tolerance=1e-3)
     velocities = [1e-3, 1e-4, 1e-5]
-    slow = [microslip.solve(scene, v, amplitude, poisson=poisson) for v in velocities]
+    slow = [microslip.solve(motion, v, amplitude, poisson=poisson) for v in velocities]
     excess = np.array([answer.mu_macro for answer in slow]) - limit.mu_macro
     assert all(answer.converged for answer in slow)
     assert np.all(np.diff(excess) < 0.0)

@@ -56,8 +56,8 @@ def test_a_loop_of_no_width_has_the_limit_of_its_line(amplitude):
 
 
 def test_on_a_line_the_whole_period_says_what_the_turning_points_say():
-    scene, resolution = motion_named("transverse"), Resolution(16, 1, 64)
-    line = simulate_static(Problem(scene, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
+    motion, resolution = motion_named("transverse"), Resolution(16, 1, 64)
+    line = simulate_static(Problem(motion, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
     loop = motion_named("elliptic:forward=0,phase=0,forward_cycles=2")  # not called a line
     assert not loop.straight
     found = simulate_static(Problem(loop, 0.0, 0.5, 0.0), "radial", resolution, 1e-5).mu
@@ -116,7 +116,7 @@ def test_other_models_find_the_same_limit():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "scene",
+    "motion",
     [
         NARROW,
         EIGHT,
@@ -125,9 +125,9 @@ def test_other_models_find_the_same_limit():
         "normal:forward=1,phase=90",
     ],
 )
-def test_slow_marches_end_there(scene):
+def test_slow_marches_end_there(motion):
     """Limit and marches are those of the same rings and steps, so that few of them tell."""
-    kind, resolution = motion_named(scene), Resolution(32, 1, 128)
+    kind, resolution = motion_named(motion), Resolution(32, 1, 128)
     limit = simulate_static(Problem(kind, 0.0, 0.5, 0.0), "radial", resolution, 1e-5)
     slow = [simulate(Problem(kind, v, 0.5, 0.0), "radial", resolution, 1e-5) for v in (8e-3, 1e-3)]
     assert limit.converged and slow[0].converged and slow[1].converged
@@ -142,8 +142,12 @@ def test_a_load_that_oscillates_leaves_its_least(amplitude):
     leave the contact, and what oscillates beside the load tends to nothing."""
     exact = microslip.solve("normal", 0.0, amplitude).mu_macro
     assert exact == pytest.approx(1.0 - amplitude, abs=1e-12)
-    for scene, model in (("normal", "radial"), ("normal", "mdr"), ("normal:lateral=0.001", "auto")):
-        within(microslip.solve(scene, 0.0, amplitude, model=model), exact, 1e-5)
+    for motion, model in (
+        ("normal", "radial"),
+        ("normal", "mdr"),
+        ("normal:lateral=0.001", "auto"),
+    ):
+        within(microslip.solve(motion, 0.0, amplitude, model=model), exact, 1e-5)
 
 
 @pytest.mark.slow

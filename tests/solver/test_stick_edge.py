@@ -30,8 +30,8 @@ from microslip.theory import hertz, indenters
 RING = "ring:inner=0.5"
 
 
-def focus_of(scene, velocity, amplitude, model, pressure="hertz"):
-    return found_focus(Problem(motion_named(scene, pressure), velocity, amplitude, 0.0), model)
+def focus_of(motion, velocity, amplitude, model, pressure="hertz"):
+    return found_focus(Problem(motion_named(motion, pressure), velocity, amplitude, 0.0), model)
 
 
 # The edges
@@ -53,9 +53,9 @@ OTHERS = [
 ]
 
 
-@pytest.mark.parametrize(("scene", "pressure", "velocity", "amplitude", "model"), OTHERS)
-def test_other_problems_know_where_their_rings_gather(scene, pressure, velocity, amplitude, model):
-    assert focus_of(scene, velocity, amplitude, model, pressure) is None
+@pytest.mark.parametrize(("motion", "pressure", "velocity", "amplitude", "model"), OTHERS)
+def test_other_problems_know_where_their_rings_gather(motion, pressure, velocity, amplitude, model):
+    assert focus_of(motion, velocity, amplitude, model, pressure) is None
 
 
 def test_a_circle_sticks_less_than_a_line_that_is_as_long():
@@ -75,9 +75,9 @@ def test_a_bore_sticks_inside_the_radius_of_its_closed_form(name, amplitude):
     )
 
 
-@pytest.mark.parametrize(("scene", "model"), [("transverse", "radial"), ("bore", "polar")])
-def test_a_contact_with_a_hole_sticks_on_a_ring_that_gets_narrower(scene, model):
-    found = [focus_of(scene, 0.0, amplitude, model, RING).radii for amplitude in (0.1, 0.3, 0.7)]
+@pytest.mark.parametrize(("motion", "model"), [("transverse", "radial"), ("bore", "polar")])
+def test_a_contact_with_a_hole_sticks_on_a_ring_that_gets_narrower(motion, model):
+    found = [focus_of(motion, 0.0, amplitude, model, RING).radii for amplitude in (0.1, 0.3, 0.7)]
     inner, outer = np.transpose(found)
     assert np.all(np.diff(inner) > 0.0) and np.all(np.diff(outer) < 0.0)
     assert 0.5 < inner[0] < 0.52 and 0.97 < outer[0] < 1.0
@@ -202,10 +202,10 @@ def test_the_limit_under_a_ring_falls_into_line_where_rings_gather_at_both_edges
     assert few.max() < 3e-4 and np.ptp(many) > 1e-3
 
 
-@pytest.mark.parametrize(("scene", "amplitude"), [("elliptic", 0.4), ("normal:lateral=1", 0.2)])
-def test_the_limit_on_a_loop_looks_for_the_edge_once(scene, amplitude):
+@pytest.mark.parametrize(("motion", "amplitude"), [("elliptic", 0.4), ("normal:lateral=1", 0.2)])
+def test_the_limit_on_a_loop_looks_for_the_edge_once(motion, amplitude):
     """As many rings that look for it again and again come to the same."""
-    problem = Problem(motion_named(scene), 0.0, amplitude, 0.0)
+    problem = Problem(motion_named(motion), 0.0, amplitude, 0.0)
     focus, resolution = found_focus(problem, "radial"), Resolution(48, 1, 192)
     by_itself, radii = gathered_on_a_loop(problem, "radial", resolution, 1e-5, Settings())
     told = simulate_static(problem, "radial", resolution, 1e-5, Settings(focus=focus))
@@ -216,10 +216,10 @@ def test_the_limit_on_a_loop_looks_for_the_edge_once(scene, amplitude):
 
 @pytest.mark.slow
 def test_limits_under_a_ring_are_those_of_squares():
-    for scene, amplitude in (("bore", 0.7), ("transverse", 0.5)):
+    for motion, amplitude in (("bore", 0.7), ("transverse", 0.5)):
         at = {"pressure": RING, "poisson": 0.3}
-        rings = microslip.solve(scene, 0.0, amplitude, tolerance=1e-3, **at)
-        squares = microslip.solve(scene, 0.0, amplitude, tolerance=1e-2, model="cartesian", **at)
+        rings = microslip.solve(motion, 0.0, amplitude, tolerance=1e-3, **at)
+        squares = microslip.solve(motion, 0.0, amplitude, tolerance=1e-2, model="cartesian", **at)
         assert rings.converged and squares.converged
         apart = abs(rings.mu_macro - squares.mu_macro)
         assert apart <= rings.mu_macro_error + squares.mu_macro_error
@@ -278,8 +278,8 @@ def test_the_work_of_a_search_counts_whether_it_was_done_before_or_not():
 
 
 @pytest.mark.slow
-def test_a_driving_line_and_a_shakedown_end_where_the_search_does():
-    line = microslip.drive("elliptic:forward_cycles=2,phase=10", 0.4444, most_work=1.0)
+def test_a_propulsion_line_and_a_shakedown_end_where_the_search_does():
+    line = microslip.propulsion("elliptic:forward_cycles=2,phase=10", 0.4444, most_work=1.0)
     assert not line.converged and "no error is known yet" in line.reason
     rest = microslip.shakedown("normal:lateral=0.5", 0.4321, 0.05, most_work=1.0)
     assert not rest.converged and "no error is known yet" in rest.reason

@@ -10,12 +10,12 @@ from microslip.sweeps.batches import key_of
 from microslip.theory.creep_threshold import threshold
 
 PAPER = {"transverse": {"velocity": [1], "amplitude": [1]}}
-CREEP = {"scene": "transverse", "force": [0.05, 0.95], "amplitude": [0, 3]}
+CREEP = {"motion": "transverse", "force": [0.05, 0.95], "amplitude": [0, 3]}
 
 
-def configured(scene, **given):
+def configured(motion, **given):
     """The certified map of a sweep with these settings."""
-    (map_,) = load.from_mapping({"sweeps": {scene: given}}).certified.values()
+    (map_,) = load.from_mapping({"sweeps": {motion: given}}).certified.values()
     return map_
 
 

@@ -26,12 +26,12 @@ LIMITS = {"transverse": paper.static_limit_transverse, "bore": paper.static_limi
 
 def friction(request):
     """Rises with velocity, from the exact limit to above Eq 6 or Eq 29."""
-    scene, velocity = request["scene"], float(request["velocity"])
-    if scene == "continuous-bore":
+    motion, velocity = request["motion"], float(request["velocity"])
+    if motion == "continuous-bore":
         return float(paper.bore_forward(velocity))
     amplitude = float(request["amplitude"])
-    limit = float(LIMITS[scene](amplitude))
-    if scene == "bore":
+    limit = float(LIMITS[motion](amplitude))
+    if motion == "bore":
         large = float(paper.large_amplitude_bore(velocity))
     else:
         large = float(paper.large_amplitude_transverse(velocity, amplitude))

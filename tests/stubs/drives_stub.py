@@ -9,12 +9,12 @@ from microslip.theory.creep import antiphase_creep
 FORCES = np.linspace(0.1, 0.9, 9)
 
 
-def creep(scene):
+def creep(motion):
     """A map of the velocity that a rigid contact has above the threshold, 0 below it."""
     amplitude = np.linspace(0.25, 3.0, 6)
     force, across = np.meshgrid(FORCES, amplitude)
-    rigid = CREEP_FORMS[scene].function(force, across)
-    held = FORMS[scene]["mu_static"].function(amplitude)
+    rigid = CREEP_FORMS[motion].function(force, across)
+    held = FORMS[motion]["mu_static"].function(amplitude)
     fine = np.linspace(0.25, 3.0, 50)
     moves = force > held[:, None]
     dims = ("amplitude", "force")
@@ -25,10 +25,10 @@ def creep(scene):
             "converged": (dims, np.ones(force.shape, np.int8)),
             "velocity_large_amplitude": (dims, rigid),
             "mu_static": ("amplitude", held),
-            "mu_static_curve": ("amplitude_curve", FORMS[scene]["mu_static"].function(fine)),
+            "mu_static_curve": ("amplitude_curve", FORMS[motion]["mu_static"].function(fine)),
         },
         {"amplitude": amplitude, "force": FORCES, "amplitude_curve": fine, "poisson": 0.0},
-        {"scene": scene, "title": scene},
+        {"motion": motion, "title": motion},
     )
 
 

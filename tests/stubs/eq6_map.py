@@ -26,5 +26,5 @@ def map_of(mu, velocity, amplitude, error=0.0, **attributes):
             "converged": (dims, np.ones(mu.shape, bool)),
         },
         {"velocity": velocity, "amplitude": amplitude, "poisson": 0.0},
-        {"scene": "transverse"} | attributes,
+        {"motion": "transverse"} | attributes,
     )

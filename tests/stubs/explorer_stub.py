@@ -56,7 +56,7 @@ def made_up(folder, configuration):
     datasets = {
         name: made_up_sweep(folder, configuration, name)
         for name, grid in configuration.grids.items()
-        if grid.scene != "bore" or grid.pressure == "hertz"
+        if grid.motion != "bore" or grid.pressure == "hertz"
     }
     periods = {}
     for name in explorer.maps_of(configuration):

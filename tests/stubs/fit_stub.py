@@ -38,4 +38,4 @@ def fitted(rows=12, errors=True):
     numbers |= {"u_lim_m": 3e-7, "u_lim_low_m": 2.8e-7, "u_lim_high_m": 3.3e-7}
     variables = {name: ("row", values) for name, values in found.items()} | numbers
     variables |= {f"curve_{name}": ("curve_point", values) for name, values in curve.items()}
-    return xr.Dataset(variables, attrs={"scene": "transverse", "quantity": "friction"})
+    return xr.Dataset(variables, attrs={"motion": "transverse", "quantity": "friction"})

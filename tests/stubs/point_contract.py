@@ -1,7 +1,7 @@
 """Fields that every answer has, whatever else it says."""
 
 CONTRACT = {
-    "scene",
+    "motion",
     "velocity",
     "poisson",
     "model",

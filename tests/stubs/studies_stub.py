@@ -10,8 +10,8 @@ SWEEPS = {"bore": {"velocity": [1], "amplitude": [1]}}
 ACCURACY = {
     "methods": ["shipped", "euler", "paper", "full-newton"],
     "points": {
-        "mid": {"scene": "transverse", "velocity": 0.1, "amplitude": 0.5, "title": "half way"},
-        "steady": {"scene": "continuous-bore", "velocity": 0.8},
+        "mid": {"motion": "transverse", "velocity": 0.1, "amplitude": 0.5, "title": "half way"},
+        "steady": {"motion": "continuous-bore", "velocity": 0.8},
     },
     "levels": 3,
     "repeats": 2,

@@ -27,9 +27,9 @@ class Solver:
         for name in ("solve", "history", "traction_field"):
             monkeypatch.setattr(f"microslip.{name}", getattr(self, name), raising=False)
 
-    def solve(self, scene, velocity, amplitude=None, **settings):
+    def solve(self, motion, velocity, amplitude=None, **settings):
         self.calls += 1
-        result = {"scene": scene, "velocity": velocity, "amplitude": amplitude, **EFFORT}
+        result = {"motion": motion, "velocity": velocity, "amplitude": amplitude, **EFFORT}
         result |= {"poisson": settings["poisson"], "tolerance": settings["tolerance"]}
         result |= {f"error_{part}": 1e-5 for part in ("space", "time", "periodicity", "solver")}
         good = self.fails is None or amplitude != self.fails
@@ -40,7 +40,7 @@ class Solver:
             result |= {"mu_torque": 1 / (1 + velocity), "mu_torque_error": 1e-5}
         return SimpleNamespace(to_dict=lambda: result | {"solve_time_s": 1.0 * self.calls})
 
-    def history(self, scene, velocity, amplitude=None, *, start="stress-free", **extent):
+    def history(self, motion, velocity, amplitude=None, *, start="stress-free", **extent):
         self.calls += 1
         phase = np.linspace(0, 1, 5)
         force = phase if start == "stress-free" else 1 - phase
@@ -52,7 +52,7 @@ class Solver:
             torque=1 - force,
         )
 
-    def traction_field(self, scene, velocity, amplitude=None, **settings):
+    def traction_field(self, motion, velocity, amplitude=None, **settings):
         self.calls += 1
         x = np.array([-0.5, 0.0, 0.5])
         return {

@@ -85,19 +85,19 @@ def test_verdicts_on_made_up_results(claims):
     }
 
 
-def point_of(request, scene, static=None):
-    """Whether a request is for a certified point of a scene; static: at the limit or not."""
-    if request["kind"] != "point" or request["scene"] != scene:
+def point_of(request, motion, static=None):
+    """Whether a request is for a certified point of a motion; static: at the limit or not."""
+    if request["kind"] != "point" or request["motion"] != motion:
         return False
     return static is None or static == (request["velocity"] == "0")
 
 
-def of_points(scene, value, static=None):
-    """Results with another friction at the points of a scene: value(velocity, amplitude)."""
+def of_points(motion, value, static=None):
+    """Results with another friction at the points of a motion: value(velocity, amplitude)."""
 
     def results(request):
         found = result(request)
-        if point_of(request, scene, static):
+        if point_of(request, motion, static):
             amplitude = float(request["amplitude"] or np.nan)
             found["mu_macro"] = float(value(float(request["velocity"]), amplitude))
         return found
@@ -187,7 +187,7 @@ def test_verdicts_follow_the_runs(case):
     assert {k: found[k] for k in untouched} == {k: base[k] for k in untouched}
 
 
-def test_all_scenes_that_fall_with_velocity_turn_the_last_statement_round():
+def test_all_motions_that_fall_with_velocity_turn_the_last_statement_round():
     def results(request):
         found = result(request)
         if request["kind"] == "point":
@@ -246,7 +246,7 @@ def test_margins_are_of_the_numbers_beside_them(claims):
     place = [claims[f"check_{n}"].values[own] for n in ("velocity", "amplitude")]
     assert against == pytest.approx(paper.large_amplitude_transverse(*place))
     requests = [
-        {"scene": "transverse", "velocity": v, "amplitude": a} for v, a in zip(*place, strict=True)
+        {"motion": "transverse", "velocity": v, "amplitude": a} for v, a in zip(*place, strict=True)
     ]
     assert value == pytest.approx([friction(request) for request in requests])
     assert margin == pytest.approx(value - against)
@@ -254,12 +254,12 @@ def test_margins_are_of_the_numbers_beside_them(claims):
 
 
 def test_what_the_papers_run_is_off_by_is_split(claims):
-    for scene in ("transverse", "bore"):
-        of = {n: claims[f"{scene}_{n}"].values for n in ("paper_shift", "limit", "slow")}
+    for motion in ("transverse", "bore"):
+        of = {n: claims[f"{motion}_{n}"].values for n in ("paper_shift", "limit", "slow")}
         # the made-up squares are off by 0.002, whatever the velocity
-        assert claims[f"{scene}_from_resolution"].values == pytest.approx(0.002)
-        assert claims[f"{scene}_squares_shift"].values == pytest.approx(0.002)
-        assert claims[f"{scene}_from_velocity"].values == pytest.approx(of["slow"] - of["limit"])
+        assert claims[f"{motion}_from_resolution"].values == pytest.approx(0.002)
+        assert claims[f"{motion}_squares_shift"].values == pytest.approx(0.002)
+        assert claims[f"{motion}_from_velocity"].values == pytest.approx(of["slow"] - of["limit"])
         assert of["paper_shift"] == pytest.approx(of["slow"] + 0.002 - of["limit"])
     assert claims["transverse_amplitude"].values.tolist() == [0.5]
     assert claims["bore_amplitude"].values.tolist() == [1, 3, 5]

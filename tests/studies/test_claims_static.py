@@ -31,26 +31,28 @@ def integral(share, stick_radius):
 
 
 @pytest.mark.parametrize(
-    ("scene", "amplitude"),
+    ("motion", "amplitude"),
     [("transverse", 0.25), ("transverse", 0.75)] + [("bore", a) for a in (0.5, 1.0, 2.0)],
 )
-def test_what_is_left_of_the_bound_adds_up_to_the_limit_on_rings(scene, amplitude):
+def test_what_is_left_of_the_bound_adds_up_to_the_limit_on_rings(motion, amplitude):
     """The shares that the figure shows against a run that knows no closed form."""
-    radius = {"transverse": theory.stick_radius_transverse, "bore": theory.bore_stick_radius}[scene]
+    radius = {"transverse": theory.stick_radius_transverse, "bore": theory.bore_stick_radius}[
+        motion
+    ]
     left = integral(
-        lambda r: float(static_limits.left_share(scene, r, amplitude)), float(radius(amplitude))
+        lambda r: float(static_limits.left_share(motion, r, amplitude)), float(radius(amplitude))
     )
-    model = "radial" if scene == "transverse" else "polar"
-    rings = microslip.solve(scene, 0.0, amplitude, model=model)
+    model = "radial" if motion == "transverse" else "polar"
+    rings = microslip.solve(motion, 0.0, amplitude, model=model)
     assert left == pytest.approx(rings.mu_macro, abs=rings.mu_macro_error)
 
 
-@pytest.mark.parametrize("scene", ["transverse", "bore"])
-def test_all_is_used_in_the_slip_ring_and_less_inside(scene):
+@pytest.mark.parametrize("motion", ["transverse", "bore"])
+def test_all_is_used_in_the_slip_ring_and_less_inside(motion):
     radius = np.linspace(0, 1, 101)
-    used = static_limits.used_share(scene, radius, 0.5)
-    left = static_limits.left_share(scene, radius, 0.5)
-    stick = {"transverse": math.sqrt(0.5), "bore": float(theory.bore_stick_radius(0.5))}[scene]
+    used = static_limits.used_share(motion, radius, 0.5)
+    left = static_limits.left_share(motion, radius, 0.5)
+    stick = {"transverse": math.sqrt(0.5), "bore": float(theory.bore_stick_radius(0.5))}[motion]
     assert used[radius > stick] == pytest.approx(1.0)
     assert left[radius > stick] == pytest.approx(0.0, abs=1e-6)
     assert (np.diff(used) >= -1e-12).all()
@@ -91,7 +93,7 @@ def test_gaps_are_the_largest_on_the_curves():
 
 
 def test_a_single_run_is_what_the_command_line_has_and_is_timed_by_nobody(tmp_path):
-    place = {"scene": "transverse", "velocity": "0.1", "amplitude": "0.5", "poisson": "0"}
+    place = {"motion": "transverse", "velocity": "0.1", "amplitude": "0.5", "poisson": "0"}
     sizes = {"cells": 8, "angles": 1, "steps": 32, "tolerance": "0.0001"}
     request = {"kind": "run", "model": "radial", "method": "euler"} | place | sizes
     record, _ = batches.answer(request, Store(tmp_path))
@@ -109,18 +111,18 @@ def test_a_period_that_is_not_found_is_a_gap(error, tmp_path, monkeypatch):
         raise error("no periodic state")
 
     monkeypatch.setattr("microslip.adaptive.stick_area.period", fails)
-    place = {"scene": "bore", "velocity": "0.1", "amplitude": "1", "poisson": "0"}
+    place = {"motion": "bore", "velocity": "0.1", "amplitude": "1", "poisson": "0"}
     request = {"kind": "patches", "cells": 8, "angles": 8, "steps": 16} | place
     record, _ = batches.answer(request, Store(tmp_path))
     assert record["result"]["converged"] is False
     assert "no periodic state" in record["result"]["reason"]
 
 
-@pytest.mark.parametrize("scene", ["bore", "transverse"])
-def test_patches_are_shares_of_a_period(scene):
+@pytest.mark.parametrize("motion", ["bore", "transverse"])
+def test_patches_are_shares_of_a_period(motion):
     sizes = {"cells": 12, "angles": 8, "steps": 32}
-    found = patches(scene, 0.01, 0.7, **sizes)
-    whole = microslip.period(scene, 0.01, 0.7, **sizes)
+    found = patches(motion, 0.01, 0.7, **sizes)
+    whole = microslip.period(motion, 0.01, 0.7, **sizes)
     assert found["area"].sum() == pytest.approx(math.pi)
     # the areas are those that the pressure and the forces belong to
     assert (found["area"] * whole.bound).sum() == pytest.approx(1.0, abs=2e-3)

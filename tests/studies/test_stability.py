@@ -269,7 +269,7 @@ def test_numbers_of_a_method_reach_it():
 
 
 @pytest.mark.parametrize(
-    ("scene", "amplitude", "choice", "why"),
+    ("motion", "amplitude", "choice", "why"),
     [
         ("transverse", 0.5, {"method": "paper", "model": "cartesian"}, "cannot be refined"),
         ("transverse", 0.5, {"method": "paper"}, "a run of the model cartesian"),
@@ -278,9 +278,9 @@ def test_numbers_of_a_method_reach_it():
         ("transverse", 0.5, {"method": "admm", "model": "cartesian"}, "too large"),
     ],
 )
-def test_methods_without_a_part_are_refused(scene, amplitude, choice, why):
+def test_methods_without_a_part_are_refused(motion, amplitude, choice, why):
     with pytest.raises(ValueError, match=f"method = '{choice['method']}': .*{why}"):
-        microslip.solve(scene, 0.2, amplitude, **choice)
+        microslip.solve(motion, 0.2, amplitude, **choice)
 
 
 def test_a_step_that_fails_in_the_static_limit_is_not_a_result():

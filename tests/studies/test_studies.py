@@ -34,11 +34,11 @@ from microslip.sweeps.cache import Store
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.3])
-@pytest.mark.parametrize("scene", MOTIONS)
-def test_models_apply_here_exactly_where_the_solver_lets_them(scene, poisson):
-    known = {m for m in MODELS if not single_run.applies(scene, poisson, m, "shipped")}
-    assert set(ladders.models_of(scene, poisson)) == known
-    assert ladders.exact_model(scene, poisson) == choose_model(MOTIONS[scene], poisson)
+@pytest.mark.parametrize("motion", MOTIONS)
+def test_models_apply_here_exactly_where_the_solver_lets_them(motion, poisson):
+    known = {m for m in MODELS if not single_run.applies(motion, poisson, m, "shipped")}
+    assert set(ladders.models_of(motion, poisson)) == known
+    assert ladders.exact_model(motion, poisson) == choose_model(MOTIONS[motion], poisson)
 
 
 def test_every_model_has_a_ladder_and_fixed_methods_run_where_they_say():
@@ -59,9 +59,9 @@ def test_ladders_climb_in_all_directions_at_once_and_tighten(model):
 
 
 def test_other_methods_climb_less_high_on_the_model_that_auto_takes():
-    for scene, model, count in (("transverse", "radial", 5), ("bore", "polar", 4)):
+    for motion, model, count in (("transverse", "radial", 5), ("bore", "polar", 4)):
         for method in ("full-newton", "admm:penalty=3"):
-            assert ladders.models_for(method, scene, 0.0) == [model]
+            assert ladders.models_for(method, motion, 0.0) == [model]
             assert len(ladders.ladder(model, method, 6)) == count
     assert ladders.models_for("shipped", "bore", 0.3) == ["rigid", "polar", "cartesian"]
     assert ladders.models_for("paper", "bore", 0.0) == ["cartesian"]
@@ -142,7 +142,7 @@ def test_another_method_adds_jobs_and_changes_none(study):
 
 
 def test_another_point_adds_requests_and_changes_none():
-    more = {"more": {"scene": "bore", "velocity": 0.2, "amplitude": 1}}
+    more = {"more": {"motion": "bore", "velocity": 0.2, "amplitude": 1}}
     longer = configured({"points": ACCURACY["points"] | more})
     asked = [
         {
@@ -184,7 +184,7 @@ def test_blocks_have_names_that_the_configuration_knows():
 def test_cases_can_be_asked():
     for axis, value, overrides in stability.cases(configured(stability={"axes": None}).stability):
         request = stability.probe(configured().stability, "shipped", axis, value, overrides)
-        assert MOTIONS[request["scene"]].periodic
+        assert MOTIONS[request["motion"]].periodic
         assert request["amplitude"] is not None
         for name in ("cells", "steps"):
             assert request[name] is None or request[name] % 2 == 0
@@ -192,8 +192,8 @@ def test_cases_can_be_asked():
             assert value in overrides.values()
         reference = stability.reference(configured().stability, overrides)
         assert (reference["cells"], reference["steps"]) == (None, None)
-        assert {k: reference[k] for k in ("scene", "velocity", "amplitude", "poisson")} == {
-            k: request[k] for k in ("scene", "velocity", "amplitude", "poisson")
+        assert {k: reference[k] for k in ("motion", "velocity", "amplitude", "poisson")} == {
+            k: request[k] for k in ("motion", "velocity", "amplitude", "poisson")
         }
 
 
@@ -309,10 +309,10 @@ class Trials(Solver):
         for name in ("applies", "run_trial", "measure_steps"):
             monkeypatch.setattr(f"microslip.adaptive.single_run.{name}", getattr(self, name))
 
-    def applies(self, scene, poisson, model, method, pressure="hertz"):
+    def applies(self, motion, poisson, model, method, pressure="hertz"):
         return "not here" if method == "march" else ""
 
-    def run_trial(self, scene, velocity, amplitude, **settings):
+    def run_trial(self, motion, velocity, amplitude, **settings):
         self.asked.append(settings)
         assert isinstance(settings["steps"], int)
         mu = velocity / (1 + velocity + (amplitude or 0)) + 1 / settings["cells"] ** 2
@@ -391,7 +391,7 @@ def test_probes_hand_on_the_method_and_the_resolution(monkeypatch):
     Trials(monkeypatch)
     seen = {}
 
-    def solve(scene, velocity, amplitude, **settings):
+    def solve(motion, velocity, amplitude, **settings):
         seen.update(settings)
         return SimpleNamespace(to_dict=lambda: {"mu_macro": math.nan, "solve_time_s": 1.0})
 
@@ -475,7 +475,7 @@ CONE = "power:exponent=1"
 
 def test_a_trial_and_patches_take_the_pressure_that_is_asked_for(monkeypatch):
     """A cone presses its middle harder than a sphere: another part of it sticks, other friction."""
-    place = {"scene": "transverse", "velocity": "0.1", "amplitude": "0.8", "poisson": "0"}
+    place = {"motion": "transverse", "velocity": "0.1", "amplitude": "0.8", "poisson": "0"}
     how = {"model": "radial", "method": "shipped", "cells": 8, "angles": 4, "steps": 16}
     trial_of = place | how | {"kind": "run", "tolerance": "1e-4"}
     sphere, cone = evaluate.computed(trial_of), evaluate.computed(trial_of | {"pressure": CONE})

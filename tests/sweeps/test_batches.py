@@ -44,7 +44,7 @@ def test_requests_are_canonical_and_run_through_the_velocity_fastest():
     assert requests_of(amplitude=[2.0, 1, 0.0]) == requests_of()
 
 
-def test_a_scene_without_amplitude_has_none():
+def test_a_motion_without_amplitude_has_none():
     (request,) = sweep.PointRequests(configured().sweeps["continuous_bore"])
     assert request["amplitude"] is None
 
@@ -106,10 +106,10 @@ def failing_at(monkeypatch, error, amplitude=2.0):
     Solver(monkeypatch)
     solve = microslip.solve
 
-    def fail(scene, velocity, place, **settings):
+    def fail(motion, velocity, place, **settings):
         if place == amplitude:
             raise error
-        return solve(scene, velocity, place, **settings)
+        return solve(motion, velocity, place, **settings)
 
     monkeypatch.setattr("microslip.solve", fail)
 

@@ -14,7 +14,7 @@ from microslip.foundation import canonical
 from microslip.sweeps import keys
 
 PACKAGE = Path(microslip.__file__).parent
-REQUEST = {"kind": "point", "scene": "bore", "velocity": "0.1", "amplitude": "1", "cells": None}
+REQUEST = {"kind": "point", "motion": "bore", "velocity": "0.1", "amplitude": "1", "cells": None}
 
 
 @pytest.mark.parametrize(
@@ -53,7 +53,7 @@ def test_what_is_no_finite_number_is_refused(value):
 
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("scene", "transverse"), ("velocity", "0.11"), ("amplitude", "0"), ("cells", 8), ("new", 1)],
+    [("motion", "transverse"), ("velocity", "0.11"), ("amplitude", "0"), ("cells", 8), ("new", 1)],
 )
 def test_everything_in_a_request_counts(name, value):
     assert keys.result_key({**REQUEST, name: value}, "d") != keys.result_key(REQUEST, "d")

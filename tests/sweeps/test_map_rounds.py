@@ -68,7 +68,7 @@ def test_several_poissons_ratios_are_a_third_direction():
 
 
 def test_other_motions_and_pressures_are_certified_likewise():
-    cone = GIVEN | {"scene": "bore", "pressure": "power:exponent=1", "group": "cones"}
+    cone = GIVEN | {"motion": "bore", "pressure": "power:exponent=1", "group": "cones"}
     given = {"sweeps": {"transverse": GIVEN | {"adaptive": None}}, "extended": {"cone": cone}}
     (map_,) = load.from_mapping(given).certified.values()
     assert map_.name == "certified_cone"
@@ -76,7 +76,7 @@ def test_other_motions_and_pressures_are_certified_likewise():
         ((0.0, 0.0), (1.0, 1.0))
     ]  # no kink of it is known
     request = map_rounds.next_round(map_, {}, 50)["requests"][0]
-    assert (request["scene"], request["pressure"]) == ("bore", "power:exponent=1")
+    assert (request["motion"], request["pressure"]) == ("bore", "power:exponent=1")
     with pytest.raises(ConfigError, match="certified_cone: another result has this name"):
         load.from_mapping(given | {"extended": {"cone": cone, "certified_cone": cone}})
 

@@ -18,7 +18,7 @@ COUNTS = {"cells": 6, "angles": 4, "steps": 12}
 
 
 def asked(point):
-    place = dict(zip(("scene", "velocity", "amplitude", "poisson"), point, strict=True))
+    place = dict(zip(("motion", "velocity", "amplitude", "poisson"), point, strict=True))
     return {"kind": "period", **place, **COUNTS}
 
 
@@ -27,8 +27,8 @@ def test_a_stored_period_is_the_computed_one_within_half_a_step(point, tmp_path)
     record, _ = batches.answer(asked(point), Store(tmp_path))
     assert batches.answer(asked(point), Store(tmp_path)) == (record, 0.0)
     found = unpacked(record["result"])
-    scene, velocity, amplitude, poisson = point[0], *map(float, point[1:])
-    truth = microslip.period(scene, velocity, amplitude, poisson=poisson, **COUNTS)
+    motion, velocity, amplitude, poisson = point[0], *map(float, point[1:])
+    truth = microslip.period(motion, velocity, amplitude, poisson=poisson, **COUNTS)
     for name in (*period_codec.HISTORIES, "forward_position", "lateral_position", "bound"):
         assert found[name] == pytest.approx(getattr(truth, name), abs=1e-7), name
     # the state repeats itself and its mirror image no better than it converged
@@ -56,7 +56,7 @@ def test_where_there_is_no_state_a_result_says_so(monkeypatch):
 
 
 def test_how_periods_are_packed_counts_for_them_and_for_nothing_else():
-    requests = [{"kind": kind, "scene": "bore"} for kind in ("period", "point")]
+    requests = [{"kind": kind, "motion": "bore"} for kind in ("period", "point")]
     of_period, of_point = map(source_digest.files_of_request, requests)
     assert "sweeps/period_codec.py" in of_period - of_point
     assert {name.split("/")[0] for name in of_period - of_point} == {"adaptive", "sweeps"}

@@ -115,10 +115,10 @@ NUMERICAL = [
 ]
 
 
-@pytest.mark.parametrize(("scene", "model", "nu", "velocity", "amplitude"), NUMERICAL)
-def test_elastic_contacts_lie_within(scene, model, nu, velocity, amplitude):
-    drop = {"transverse": largest_drop_transverse, "bore": largest_drop_bore}[scene]
-    result = microslip.solve(scene, velocity, amplitude, poisson=nu, model=model, tolerance=2e-3)
+@pytest.mark.parametrize(("motion", "model", "nu", "velocity", "amplitude"), NUMERICAL)
+def test_elastic_contacts_lie_within(motion, model, nu, velocity, amplitude):
+    drop = {"transverse": largest_drop_transverse, "bore": largest_drop_bore}[motion]
+    result = microslip.solve(motion, velocity, amplitude, poisson=nu, model=model, tolerance=2e-3)
     assert result.model == model and result.converged
     lowest = 1.0 - drop(velocity, amplitude)
     assert 0.0 < lowest <= result.mu_macro + result.mu_macro_error

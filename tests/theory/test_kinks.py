@@ -29,15 +29,15 @@ def along(velocity, amplitude):
 
 
 @pytest.mark.parametrize(
-    ("scene", "pressure", "friction"),
+    ("motion", "pressure", "friction"),
     [
         ("longitudinal", "power:exponent=1", along),
         ("normal:indentation=1", "power:exponent=1", indentation_oscillates),
     ],
 )
-def test_friction_is_full_from_the_velocity_of_the_kink_on(scene, pressure, friction):
+def test_friction_is_full_from_the_velocity_of_the_kink_on(motion, pressure, friction):
     for amplitude in AMPLITUDES:
-        at = float(kink_velocity(kinks_of(scene, pressure), np.array(amplitude)))
+        at = float(kink_velocity(kinks_of(motion, pressure), np.array(amplitude)))
         assert at == pytest.approx(amplitude)
         assert friction(at, amplitude) == pytest.approx(1.0, abs=1e-9)
         assert friction(PULLED_BACK * at, amplitude) < 1.0 - 1e-5

@@ -41,7 +41,7 @@ def key(name, value):
 CASES = {
     "a misspelt key": key("sweeps.transverse.velocities", "[1]"),
     "a misspelt sweep": key("sweeps.bores", "{}"),
-    "a misspelt motion": key("extended.circle.scene", "eliptic"),
+    "a misspelt motion": key("extended.circle.motion", "eliptic"),
     "a key twice": (given(FILES["a key twice"][0]), GIVEN, "given.yaml: not valid YAML: the key"),
     "overridden": (
         given(),

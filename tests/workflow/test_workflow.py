@@ -146,8 +146,8 @@ STALLING = """
 from dataclasses import replace
 _solve = solve
 
-def solve(scene, velocity, amplitude=None, **settings):
-    result = _solve(scene, velocity, amplitude, **settings)
+def solve(motion, velocity, amplitude=None, **settings):
+    result = _solve(motion, velocity, amplitude, **settings)
     return replace(result, mu_macro=float("nan"), converged=False, reason="stalled")
 """
 

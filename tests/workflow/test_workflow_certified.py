@@ -100,7 +100,7 @@ def test_nothing_of_a_map_is_left_over(finished):
 
 
 def test_a_sweep_of_forces_makes_a_map_of_creep(tmp_path):
-    weights = {"scene": "transverse", "force": [0.1, 0.8], "amplitude": [0.5, 1.5]}
+    weights = {"motion": "transverse", "force": [0.1, 0.8], "amplitude": [0.5, 1.5]}
     weights |= {"adaptive": {"error": 0.1}}
     given = {"sweeps": {"transverse": AXES}, "drives": {"weights": weights}}
     project = Project(tmp_path)

@@ -12,12 +12,12 @@ pytestmark = pytest.mark.slow
 # Closed forms and the rigid model: points that cost nothing.
 AXES = {"velocity": [0.1, 1], "amplitude": [0, 0.5, 1], "tolerance": 0.01}
 MOTIONS = {**AXES, "group": "motions", "model": "rigid"}
-STATIC = {**AXES, "group": "static", "scene": "longitudinal", "velocity": [0, 0.1]}
+STATIC = {**AXES, "group": "static", "motion": "longitudinal", "velocity": [0, 0.1]}
 TINY = {
     "sweeps": {"transverse": {"velocity": [1], "amplitude": [0]}},
     "extended": {
-        "circle": {**MOTIONS, "scene": "elliptic:phase=90", "title": "a circle"},
-        "line_first": {**MOTIONS, "scene": "elliptic:forward=0.5,phase=0"},
+        "circle": {**MOTIONS, "motion": "elliptic:phase=90", "title": "a circle"},
+        "line_first": {**MOTIONS, "motion": "elliptic:forward=0.5,phase=0"},
         "cone": {**STATIC, "pressure": "power:exponent=1"},
     },
     "points_per_job": 6,
@@ -53,7 +53,7 @@ def test_one_command_makes_the_datasets_and_a_figure_of_each_group(finished):
         for form in ("png", "pdf"):
             assert (results / f"figures/{name}.{form}").stat().st_size > 0
     with xr.open_dataset(results / "circle.nc") as data:
-        assert (data.scene, data.title, data.group) == ("elliptic", "a circle", "motions")
+        assert (data.motion, data.title, data.group) == ("elliptic", "a circle", "motions")
         assert data.mu_macro.dims == ("amplitude", "velocity")
     with xr.open_dataset(results / "cone.nc") as data:
         assert data.pressure == "power:exponent=1"
@@ -76,7 +76,7 @@ def planned(**changed):
 
 
 def test_another_way_to_write_a_motion_computes_nothing():
-    before, after = planned(), planned(circle={"scene": "elliptic"})
+    before, after = planned(), planned(circle={"motion": "elliptic"})
     assert after.batch_files(*after.groups) == before.batch_files(*before.groups)
     # a dataset says how its motion was written
     assert after.fingerprint_of("circle.nc") != before.fingerprint_of("circle.nc")

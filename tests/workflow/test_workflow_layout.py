@@ -37,7 +37,7 @@ def test_every_figure_has_a_caption_of_its_own(figure):
         {"sweep": "circle"},
         {"dataset": "stability"},
         {"dataset": "claims"},
-        {"dataset": "driving"},
+        {"dataset": "propulsion"},
     ],
 )
 def test_every_dataset_has_a_caption(wildcards):

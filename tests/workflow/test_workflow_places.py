@@ -71,7 +71,7 @@ def test_files_that_a_configuration_names_lie_beside_it(ordinary):
     """Wherever the run is; one that is not there is told with the places it was looked for in."""
     place, far = beside(ordinary, "pads"), ordinary.folder.parent / "far"
     far.mkdir()
-    pad = {"scene": "transverse", "pressure": "file:pad.csv", "group": "pads", "tolerance": 0.1}
+    pad = {"motion": "transverse", "pressure": "file:pad.csv", "group": "pads", "tolerance": 0.1}
     pad |= {"velocity": [20, 30], "amplitude": [0.1]}
     (far / "mine.yaml").write_text(yaml.safe_dump(CONFIGURATION | {"extended": {"pad": pad}}))
     there = ("-s", "../microslip/Snakefile", "--configfile", "../far/mine.yaml")

@@ -187,11 +187,11 @@ from pathlib import Path as _Path
 _solve = solve
 
 
-def solve(scene, velocity, amplitude=None, **settings):
+def solve(motion, velocity, amplitude=None, **settings):
     _file = _Path(__file__).parents[1] / "theory" / "paper.py"
     if "EDITED" not in _file.read_text():
         _file.write_text(_file.read_text() + "\\nEDITED = True\\n")
-    return _solve(scene, velocity, amplitude, **settings)
+    return _solve(motion, velocity, amplitude, **settings)
 """
 
 

@@ -16,7 +16,7 @@ TINY = {
     "sweeps": {"transverse": {"velocity": [1], "amplitude": [0]}},
     "accuracy": {
         "methods": ["shipped", "my-method"],
-        "points": {"fast": {"scene": "longitudinal", "velocity": 0.5, "amplitude": 1}},
+        "points": {"fast": {"motion": "longitudinal", "velocity": 0.5, "amplitude": 1}},
         "levels": 2,
         "repeats": 1,
         "map": {

@@ -19,7 +19,7 @@ rule draw_figure:
             caption="../report/figure.rst",
             category=lambda wildcards: {
                 "claims": "The paper's claims",
-                "driving": "Motions that drive",
+                "propulsion": "Self-propelled motions",
                 **dict.fromkeys(CONFIGURATION.sweeps, "The paper's figures"),
                 **dict.fromkeys(CONFIGURATION.extended, "Other motions and pressures"),
                 **dict.fromkeys(CONFIGURATION.drives, "What pulls the contact"),

@@ -3,7 +3,7 @@
 Output: netCDF-4, CF conventions, all quantities dimensionless but for seconds and bytes.
   accuracy_cost.nc  dim trial; groups points, scaling, transverse_map, bore_map, profile
   stability.nc      dims (method, case); group axes
-  driving.nc        dims (line, point)
+  propulsion.nc        dims (line, point)
   claims.nc         dim claim; groups parts, checks, runs, and those of the static limit and patches
 and an HTML page that sums it up.
 """

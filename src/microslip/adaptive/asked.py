@@ -75,7 +75,7 @@ class Asked:
         motion = self.problem.motion
         contacts = {"contacts": self.problem.written} if self.problem.parts else {}
         return contacts | {
-            "scene": motion.name,
+            "motion": motion.name,
             "pressure": motion.pressure.name,
             "velocity": self.problem.velocity,
             "amplitude": self.problem.amplitude,

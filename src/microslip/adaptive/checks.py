@@ -23,7 +23,7 @@ LARGEST_FORCE = 1e6
 
 
 def checked_point(
-    scene: str,
+    motion: str,
     velocity: float,
     amplitude: float | None,
     poisson: float,
@@ -33,10 +33,10 @@ def checked_point(
 ) -> tuple[Motion, float, float | None, float]:
     """Motion record and numbers of a point; raises InputError naming the argument at fault.
 
-    backward: whether the velocity may be below 0 where the motion drives.
+    backward: whether the velocity may be below 0 where the motion propels the contact.
     """
-    motion = motion_named(scene, pressure)
-    slowest = -LARGEST["velocity"] if backward and motion.drives else 0.0
+    motion = motion_named(motion, pressure)
+    slowest = -LARGEST["velocity"] if backward and motion.propels else 0.0
     velocity = real("velocity", velocity, slowest, LARGEST["velocity"])
     if velocity < 0.0 and not motion.pressure.mirrored:
         allowed = f"allowed is a number of at least 0 under {motion.pressure.name}"
@@ -51,16 +51,18 @@ def checked_point(
     return motion, velocity, amplitude, poisson
 
 
-def checked_driving(
-    scene: str, amplitude: float, poisson: float, pressure: str = "hertz"
+def checked_propulsion(
+    motion: str, amplitude: float, poisson: float, pressure: str = "hertz"
 ) -> tuple[Motion, float, float]:
     """Motion record and numbers of a motion that may drive; raises InputError naming the argument
     at fault."""
-    motion = motion_named(scene, pressure)
-    if not motion.drives:
-        allowed = "allowed is a motion that drives, such as elliptic:forward_cycles=2,phase=0 or "
-        raise InputError("scene", scene, f"{allowed}normal:forward=1,phase=90")
-    motion, _, amplitude, poisson = checked_point(scene, 0.0, amplitude, poisson, pressure)
+    motion = motion_named(motion, pressure)
+    if not motion.propels:
+        allowed = (
+            "allowed is a self-propelled motion, such as elliptic:forward_cycles=2,phase=0 or "
+        )
+        raise InputError("motion", motion, f"{allowed}normal:forward=1,phase=90")
+    motion, _, amplitude, poisson = checked_point(motion, 0.0, amplitude, poisson, pressure)
     if not motion.pressure.mirrored:
         raise InputError("pressure", pressure, "allowed is one that is its own mirror image")
     if amplitude == 0.0:

@@ -52,7 +52,7 @@ def choose_model(
         if refusal:
             why = f"only {name} could resolve it, and {refusal}"
             if motion.pressure is HERTZ and poisson == 0.0:
-                raise InputError("scene", motion.name, why)
+                raise InputError("motion", motion.name, why)
             given = ("poisson", poisson)
             if motion.pressure is not HERTZ:
                 given = ("pressure", motion.pressure.name)

@@ -54,7 +54,7 @@ class History:
 
 
 def history(
-    scene: str,
+    motion: str,
     velocity: float,
     amplitude: float | None = None,
     *,
@@ -71,7 +71,7 @@ def history(
 
     Parameters
     ----------
-    scene, velocity, amplitude, pressure, poisson, model
+    motion, velocity, amplitude, pressure, poisson, model
         As for `microslip.solve`; velocity above 0.
     cells : int or None
         Rings, or squares along a side, at least 2.
@@ -98,14 +98,14 @@ def history(
         Where a step stays unsolved.
     """
     motion, velocity, amplitude, poisson = checked_point(
-        scene, velocity, amplitude, poisson, pressure
+        motion, velocity, amplitude, poisson, pressure
     )
     if velocity <= 0.0:
         raise InputError("velocity", velocity, "a history needs velocity > 0")
     if not isinstance(start, str) or start not in STARTS:
         raise InputError("start", start, f"allowed is one of {', '.join(STARTS)}")
     if start == "full-rotation" and not motion.rotates:
-        raise InputError("start", start, f"the {motion.name} scene does not rotate")
+        raise InputError("start", start, f"the {motion.name} motion does not rotate")
     if cells is not None:
         count("cells", cells, 2, most=LARGEST["cells"])
     if steps is not None:
@@ -136,7 +136,7 @@ def history(
 
 
 def traction_field(
-    scene: str,
+    motion: str,
     velocity: float,
     amplitude: float | None = None,
     *,
@@ -147,8 +147,8 @@ def traction_field(
 
     Parameters
     ----------
-    scene, velocity, amplitude, poisson
-        As for `microslip.solve`; scene: "continuous-bore".
+    motion, velocity, amplitude, poisson
+        As for `microslip.solve`; motion: "continuous-bore".
     cells : int or None
         Rings.
 
@@ -167,9 +167,9 @@ def traction_field(
     microslip.models.contact.StepFailure
         Where the march does not settle, or a step stays unsolved.
     """
-    motion, velocity, _, poisson = checked_point(scene, velocity, amplitude, poisson)
+    motion, velocity, _, poisson = checked_point(motion, velocity, amplitude, poisson)
     if motion.periodic:
-        raise InputError("scene", scene, "allowed is continuous-bore")
+        raise InputError("motion", motion, "allowed is continuous-bore")
     if velocity <= 0.0:
         raise InputError("velocity", velocity, "a traction field needs velocity > 0")
     if cells is not None:

@@ -114,7 +114,7 @@ def solve_moved(asked: Asked) -> Result:
 
 def _within(motion, mu):
     """A mean force brought to where it can be: what lies beyond is rounding and error."""
-    least = -1.0 if motion.drives else 0.0
+    least = -1.0 if motion.propels else 0.0
     return min(max(mu, least), 1.0) if math.isfinite(mu) else math.nan
 
 

@@ -1,4 +1,4 @@
-"""Where friction changes its sign: the velocity of a motion that drives without a load.
+"""Where friction changes its sign: the velocity of a self-propelled motion without a load.
 
 Friction never falls with the velocity, so that every velocity at which its sign is certain bounds
 the no-load velocity.

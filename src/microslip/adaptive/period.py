@@ -91,7 +91,7 @@ class Period:
 
 
 def period(
-    scene: str,
+    motion: str,
     velocity: float,
     amplitude: float,
     *,
@@ -105,7 +105,7 @@ def period(
 
     Parameters
     ----------
-    scene, velocity, amplitude, pressure, poisson
+    motion, velocity, amplitude, pressure, poisson
         As for `microslip.solve`: a motion that oscillates, velocity and amplitude above 0, a
         pressure that depends on the radius alone.
     cells : int
@@ -128,10 +128,10 @@ def period(
         Where the march broke off.
     """
     motion, velocity, amplitude, poisson = checked_point(
-        scene, velocity, amplitude, poisson, pressure
+        motion, velocity, amplitude, poisson, pressure
     )
     if not motion.periodic:
-        raise InputError("scene", scene, "allowed is one that oscillates")
+        raise InputError("motion", motion, "allowed is one that oscillates")
     for name, value in (("velocity", velocity), ("amplitude", amplitude)):
         if value <= 0.0:
             raise InputError(name, value, f"a period needs {name} > 0")

@@ -24,7 +24,7 @@ from microslip.solver.problem import Problem
 
 
 def solve(
-    scene: str,
+    motion: str,
     velocity: float | None = None,
     amplitude: float | None = None,
     *,
@@ -48,7 +48,7 @@ def solve(
 
     Parameters
     ----------
-    scene : str
+    motion : str
         What moves: "transverse", "bore", "continuous-bore" or another, with the numbers that its
         name takes.
     velocity : float or None
@@ -106,7 +106,7 @@ def solve(
     """
     drive = checked_drive(velocity, force, stiffness, mass, damping)
     motion, velocity, amplitude, poisson = checked_point(
-        scene, 0.0 if velocity is None else velocity, amplitude, poisson, pressure, backward=True
+        motion, 0.0 if velocity is None else velocity, amplitude, poisson, pressure, backward=True
     )
     tolerance, cells, steps = checked_request(tolerance, cells, steps)
     refuse_bounds(most_work=most_work, time_limit=time_limit)
@@ -162,13 +162,13 @@ def _refuse_method(motion, model, method, how):
 
 
 KERNELS = {
-    "rings": ({"scene": "transverse"},),
+    "rings": ({"motion": "transverse"},),
     "angles": (
-        {"scene": "transverse", "poisson": 0.3},
-        {"scene": "bore"},
-        {"scene": "continuous-bore", "amplitude": None, "model": "polar"},
+        {"motion": "transverse", "poisson": 0.3},
+        {"motion": "bore"},
+        {"motion": "continuous-bore", "amplitude": None, "model": "polar"},
     ),
-    "pulled": ({"scene": "transverse", "stiffness": 1.0}, {"scene": "bore", "stiffness": 1.0}),
+    "pulled": ({"motion": "transverse", "stiffness": 1.0}, {"motion": "bore", "stiffness": 1.0}),
 }
 """Points that need what is compiled, by the name of the kernels."""
 

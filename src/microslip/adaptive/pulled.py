@@ -64,8 +64,8 @@ GAP_MARGIN = 2.0
 def refuse_drive(problem: Problem, drive: Drive, model: str) -> None:
     """Raise InputError where a model, by name, or a motion does not go with a drive."""
     motion, pulls = problem.motion, "stiffness" if drive.force is None else "force"
-    if drive.force is not None and drive.force < 0.0 and not motion.drives:
-        allowed = f"allowed is a number of at least 0: {motion.name} drives nothing by itself"
+    if drive.force is not None and drive.force < 0.0 and not motion.propels:
+        allowed = f"allowed is a number of at least 0: {motion.name} propels nothing"
         raise InputError("force", drive.force, allowed)
     if not MODELS[model].pulled:
         raise InputError("model", model, f"does not know a {pulls}, a velocity alone")
@@ -107,7 +107,7 @@ def solve_pulled(asked: Asked, drive: Drive) -> Result:
         **asked.point,
         **body,
         model=asked.model,
-        mu_macro=_between(certified.mu, -1.0 if problem.motion.drives else 0.0, 1.0),
+        mu_macro=_between(certified.mu, -1.0 if problem.motion.propels else 0.0, 1.0),
         mu_macro_error=certified.error,
         **verdict(asked, certified, axes, asked.tolerance),
     )
@@ -138,7 +138,9 @@ def _under_force(asked, drive):
     if drive.mass == 0.0 and asked.problem.motion.periodic:
         asked = replace(asked, problem=without_forward_motion(asked.problem))
     problem, force = asked.problem, drive.force
-    if force < 0.0 and not problem.motion.drives:  # a pull back is a pull forward, seen from behind
+    if (
+        force < 0.0 and not problem.motion.propels
+    ):  # a pull back is a pull forward, seen from behind
         ahead = _under_force(asked, replace(drive, force=-force))
         return replace(ahead, force=force, mu_macro=-ahead.mu_macro, velocity=-ahead.velocity)
     away = runs_away(problem, drive)
@@ -247,7 +249,7 @@ def _moving(asked, drive, marched):
     accuracy = Accuracy(asked.accuracy * max(1.0, SCALE_SHARE * near.velocity), near.slope)
     certified, axes = _certified(asked, drive_marched, accuracy)
     velocity, error = float(certified.mu), float(certified.error)
-    if not asked.problem.motion.drives:
+    if not asked.problem.motion.propels:
         velocity = max(velocity, 0.0)  # what lies below is rounding and error
     if not certified.converged and not error < abs(velocity):  # not even its order of magnitude
         velocity, error = math.nan, math.inf

@@ -14,12 +14,12 @@ class Result:
 
     Attributes
     ----------
-    scene : str
+    motion : str
         What moves, with the numbers that its name takes.
     pressure : str
         How the load is spread over the contact, likewise.
     velocity, amplitude : float
-        The dimensionless groups of the scene; amplitude: None where the motion is steady.  Under a
+        The dimensionless groups of the motion; amplitude: None where the motion is steady.  Under a
         force the mean velocity that comes out, NaN where it runs away.
     velocity_error : float or None
         Largest error that it may have then, by estimate; None where the velocity was given.
@@ -82,7 +82,7 @@ class Result:
         Seconds by the wall clock.
     """
 
-    scene: str
+    motion: str
     pressure: str
     velocity: float
     amplitude: float | None
@@ -120,7 +120,7 @@ class Result:
     solve_time_s: float
 
     def to_dict(self) -> dict:
-        """Fields as a plain dict, without those that the scene does not have."""
+        """Fields as a plain dict, without those that the motion does not have."""
         fields = asdict(self)
         return {k: v for k, v in fields.items() if v is not None or k == "tolerance"}
 

@@ -51,7 +51,7 @@ class Shakedown:
 
     Attributes
     ----------
-    scene, pressure, model : str
+    motion, pressure, model : str
         What moves, how the load is spread, and the contact model.
     amplitude, poisson, force, tolerance : float
         As asked for.
@@ -81,7 +81,7 @@ class Shakedown:
         Seconds by the wall clock.
     """
 
-    scene: str
+    motion: str
     pressure: str
     model: str
     amplitude: float
@@ -113,7 +113,7 @@ class Shakedown:
 
 
 def shakedown(
-    scene: str,
+    motion: str,
     amplitude: float,
     force: float,
     *,
@@ -129,7 +129,7 @@ def shakedown(
 
     Parameters
     ----------
-    scene : str
+    motion : str
         A motion that exerts no forward force by itself, such as "transverse" or "bore".
     amplitude, pressure, poisson, model, most_work, time_limit, progress
         As for `microslip.solve`.
@@ -149,9 +149,9 @@ def shakedown(
         For bad input, and for motions of which no force is known to be held: it names the argument.
     """
     started = time.perf_counter()
-    motion, _, amplitude, poisson = checked_point(scene, 0.0, amplitude, poisson, pressure)
+    motion, _, amplitude, poisson = checked_point(motion, 0.0, amplitude, poisson, pressure)
     if not motion.periodic:
-        raise InputError("scene", scene, "allowed is a motion that oscillates")
+        raise InputError("motion", motion, "allowed is a motion that oscillates")
     force = real("force", force, 0.0)
     if tolerance is None:
         raise InputError("tolerance", tolerance, "allowed is a number")
@@ -163,7 +163,7 @@ def shakedown(
     refuse_drive(problem, Drive(force=force), name)
     if not is_even(problem):
         allowed = "allowed is a motion that exerts no forward force by itself, such as transverse"
-        raise InputError("scene", scene, allowed)
+        raise InputError("motion", motion, allowed)
     asked = Asked(
         problem=problem,
         model=name,
@@ -179,7 +179,7 @@ def _answer(asked, force):
     """The Shakedown under a force."""
     threshold, error, away = _threshold(asked, force)
     known = {
-        "scene": asked.problem.motion.name,
+        "motion": asked.problem.motion.name,
         "pressure": asked.problem.motion.pressure.name,
         "model": asked.model,
         "amplitude": asked.problem.amplitude,

@@ -26,15 +26,17 @@ from microslip.solver.simulate import simulate
 STEP_TOLERANCE = 1e-6
 
 
-def applies(scene: str, poisson: float, model: str, method: str, pressure: str = HERTZ.name) -> str:
-    """Why a model or a method, by name, cannot be tried on a scene, as one line; "" if it can."""
-    motion = motion_named(scene, pressure)
+def applies(
+    motion: str, poisson: float, model: str, method: str, pressure: str = HERTZ.name
+) -> str:
+    """Why a model or a method, by name, cannot be tried on a motion, as one line; "" if it can."""
+    motion = motion_named(motion, pressure)
     refusal = MODELS[model].refuses(motion, poisson) or missing(method)
     return refusal or method_refusal(motion, model, method_named(method))
 
 
 def run_trial(
-    scene: str,
+    motion: str,
     velocity: float,
     amplitude: float,
     *,
@@ -51,7 +53,7 @@ def run_trial(
 
     Parameters
     ----------
-    scene, velocity, amplitude, poisson, model, method, pressure
+    motion, velocity, amplitude, poisson, model, method, pressure
         As for `microslip.solve`.
     cells : int
         Rings, or squares along a side.
@@ -76,11 +78,11 @@ def run_trial(
     ValueError
         Where `applies` says why.
     """
-    refusal = applies(scene, poisson, model, method, pressure)
+    refusal = applies(motion, poisson, model, method, pressure)
     if refusal:
         raise ValueError(f"model = {model!r}, method = {method!r}: {refusal}")
     resolution = Resolution(cells, angles, max(steps // 2, 1))
-    problem = Problem(motion_named(scene, pressure), velocity, amplitude, poisson)
+    problem = Problem(motion_named(motion, pressure), velocity, amplitude, poisson)
     settings = Settings(method_named(method))
     run = simulate(problem, model, resolution, tolerance, settings=settings)
     unknowns = run.work // run.solves if run.solves else 0
@@ -118,8 +120,8 @@ def measure_steps(model: str, cells: int, angles: int, poisson: float, steps: in
         unknowns; iterations and seconds (CPU) a step; memory, the bytes that the arrays of the
         contact take.
     """
-    scene = TRANSVERSE if model == "radial" else BORE
-    problem = Problem(scene, 0.1, 1.0, poisson)
+    motion = TRANSVERSE if model == "radial" else BORE
+    problem = Problem(motion, 0.1, 1.0, poisson)
     contact = build_contact(problem, model, Resolution(cells, angles, steps))
     path = make_path(problem.displacement, half_period_phases(steps), EULER)
     start = forward_slip(contact)

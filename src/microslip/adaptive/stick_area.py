@@ -9,7 +9,7 @@ from microslip.pressures.by_name import HERTZ
 
 
 def patches(
-    scene: str,
+    motion: str,
     velocity: float,
     amplitude: float,
     *,
@@ -23,7 +23,7 @@ def patches(
 
     Parameters
     ----------
-    scene, velocity, amplitude, pressure, poisson, cells, angles, steps
+    motion, velocity, amplitude, pressure, poisson, cells, angles, steps
         As for `microslip.period`; a motion whose second half of a period mirrors the first.
 
     Returns
@@ -46,7 +46,7 @@ def patches(
         As for `microslip.period`.
     """
     sizes = {"cells": cells, "angles": angles, "steps": steps}
-    found = period(scene, velocity, amplitude, pressure=pressure, poisson=poisson, **sizes)
+    found = period(motion, velocity, amplitude, pressure=pressure, poisson=poisson, **sizes)
     sticking = np.where(found.slips, 0.0, found.area / np.pi)
     right = found.lateral_position > 0.0
     # the first row repeats the last one: a stroke is rows 1 to half

@@ -60,7 +60,7 @@ def without_forward_motion(problem: Problem) -> Problem:
         displacement=displacement,
         turns=lambda velocity, amplitude: motion.turns(0.0, amplitude),
         straight=False,
-        drives=False,
+        propels=False,
         closed_form_of=None,
     )
     return replace(problem, motion=still)

@@ -40,7 +40,7 @@ class VibrationPower(NamedTuple):
 
 
 def vibration_power(
-    scene: str,
+    motion: str,
     velocity: float,
     amplitude: float,
     *,
@@ -52,7 +52,7 @@ def vibration_power(
 
     Parameters
     ----------
-    scene, velocity, amplitude, pressure, poisson
+    motion, velocity, amplitude, pressure, poisson
         As for `microslip.solve`: a motion that oscillates, velocity and amplitude above 0.
     tolerance : float
         Accepted error, over the mean speed of the oscillation.
@@ -68,7 +68,7 @@ def vibration_power(
         For bad input; it names the argument.
     """
     motion, velocity, amplitude, poisson = checked_point(
-        scene, velocity, amplitude, poisson, pressure
+        motion, velocity, amplitude, poisson, pressure
     )
     for name, value in (("velocity", velocity), ("amplitude", amplitude)):
         if not value:

@@ -1,4 +1,4 @@
-"""The command line: `microslip point SCENE ...` answers for one point, `sweep` for many."""
+"""The command line: `microslip point MOTION ...` answers for one point, `sweep` for many."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from microslip.foundation.errors import CacheError, InputError
 COMMANDS = {
     "predict": "friction of a real contact, in SI units",
     "fit": "coefficient of friction and u_lim from measured friction",
-    "drive": "a motion that drives: stall force, no-load velocity, efficiency",
+    "propulsion": "a self-propelled motion: stall force, no-load velocity, efficiency",
 }
 """Commands with a module of their own in this package, and what they answer."""
 BORE = "Bore means spin: rotation about the contact normal."
@@ -49,7 +49,7 @@ def build_parser(asked: str | None = None) -> option_parser.OneLineParser:
     if asked == "point":
         _add_motions(point)
     else:
-        point.add_argument("scene", metavar="SCENE")
+        point.add_argument("motion", metavar="MOTION")
     for name, summary in COMMANDS.items():
         command = commands.add_parser(name, help=summary, allow_abbrev=False)
         if name == asked:
@@ -65,7 +65,7 @@ def _add_motions(parser):
     """A parser for each motion; what they are is asked of the solver, so only where it counts."""
     from microslip.motions.by_name import FAMILIES, MOTIONS, motion_named
 
-    scenes = parser.add_subparsers(dest="scene", required=True, metavar="SCENE")
+    motions = parser.add_subparsers(dest="motion", required=True, metavar="MOTION")
     for name in (*MOTIONS, *FAMILIES):
         family = FAMILIES.get(name)
         try:
@@ -73,28 +73,29 @@ def _add_motions(parser):
         except InputError:  # in a file of the user: see _problem_of_motion
             continue
         summary = getattr(family, "SUMMARY", record.summary)
-        scene = scenes.add_parser(
+        numbers = ""
+        if family:
+            numbers = getattr(family, "HELP", f"of {', '.join(family.DEFAULTS)}")
+            numbers = f"  Numbers follow the name after a colon: {numbers}."
+        motion = motions.add_parser(
             name,
             help=summary,
             description=f"The indenter is {summary}. u_lim: the tangential displacement at which "
             "the whole contact slides; a: contact radius; phi_lk(a/2): the angle that leaves half "
-            f"of it sticking.{f'  {BORE}' if 'bore' in name else ''}",
+            f"of it sticking.{numbers}{f'  {BORE}' if 'bore' in name else ''}",
             allow_abbrev=False,
         )
-        scene.add_argument(
+        motion.add_argument(
             "--velocity",
             metavar="V",
-            help=f"{record.velocity_label}; 0: v -> 0; below 0 where the motion drives; left out "
+            help=f"{record.velocity_label}; 0: v -> 0; below 0 if self-propelled; left out "
             "under a force",
         )
         if record.periodic:
-            scene.add_argument(
+            motion.add_argument(
                 "--amplitude", required=True, metavar="A", help=record.amplitude_label
             )
-        if family:
-            path = getattr(family, "HELP", f"of {', '.join(family.DEFAULTS)}")
-            scene.add_argument("--path", metavar="NUMBERS", help=path)
-        _add_options(scene)
+        _add_options(motion)
 
 
 F_Z = "; F_z is the load without oscillation (the reference load)"
@@ -194,11 +195,12 @@ def main(arguments: list[str] | None = None) -> int:
         if problem:
             terminal.complain(f"microslip point: {problem}")
             return 2
-        arguments = _with_path(arguments)
-    options = build_parser(next(iter(arguments), None)).parse_args(option_parser.joined(arguments))
+    words, motion = _split_motion(arguments)
+    options = build_parser(next(iter(words), None)).parse_args(option_parser.joined(words))
     if options.command in COMMANDS:
         return _module_of(options.command).run(options)
-    named = f"microslip point {options.scene}"
+    named = f"microslip point {options.motion}"
+    options.motion = motion
     try:
         with _bar() as bar:
             progress = None if bar is None else lambda resolution: _show(bar, resolution)
@@ -234,27 +236,25 @@ def _problem_of_motion(words):
         try:
             motion_named(name)
         except InputError as error:
-            return error.renamed("SCENE")
+            return error.renamed("MOTION")
     return None
 
 
-def _with_path(words):
-    """Words of `point` in which the numbers of a scene follow it as --path, also where they were
-    given as elsewhere: elliptic:forward=0.5."""
+def _split_motion(words):
+    """Words of `point` with the bare name of its motion, for which there is a parser, and the
+    motion with its numbers, such as elliptic:forward=0.5; other words and "" unchanged."""
+    if words[:1] != ["point"] or len(words) < 2:
+        return words, ""
     from microslip.motions.by_name import FAMILIES
 
-    command, *rest = words
-    name, colon, numbers = rest[0].partition(":") if rest else ("", "", "")
-    if not colon or name not in FAMILIES or any(word.startswith("--path") for word in rest):
-        return words
-    return [command, name, f"--path={numbers}", *rest[1:]]
+    name = words[1].partition(":")[0]
+    return ["point", name if name in FAMILIES else words[1], *words[2:]], words[1]
 
 
 def _as_given(options, argument):
     """Name of the option for an argument of `solve`, and its value on the command line."""
-    if argument == "scene":
-        path = getattr(options, "path", None)
-        return ("SCENE", options.scene) if path is None else ("--path", path)
+    if argument == "motion":
+        return "MOTION", options.motion
     option = getattr(options, "said", {}).get(argument, f"--{argument.replace('_', '-')}")
     return option, getattr(options, argument, None)
 
@@ -276,9 +276,8 @@ def _answer(options, progress):
     numbers.setdefault("velocity", None)
     import microslip  # only now: --help and bad options need no solver
 
-    path = getattr(options, "path", None)
-    settings = {"pressure": options.pressure, "model": options.model, **numbers}
-    settings["scene"] = options.scene if path is None else f"{options.scene}:{path}"
+    settings = {"motion": options.motion, "pressure": options.pressure, "model": options.model}
+    settings |= numbers
     if options.contacts is not None:
         settings["contacts"] = options.contacts
     if options.results is None:

@@ -107,7 +107,7 @@ class _Times:
         if self.recorded[group] is not None:
             self.used.add("earlier batches in this folder")
             return self.recorded[group]
-        kind, motion = request["kind"], request.get("scene", "").partition(":")[0]
+        kind, motion = request["kind"], request.get("motion", "").partition(":")[0]
         found = TYPICAL.get((kind, motion), OTHER_MOTION if kind == "point" else None)
         if found is not None:
             self.used.add("typical values at a tolerance of 1e-3 (benchmarks/sweep_cost.py)")

@@ -45,8 +45,8 @@ def fill(parser: argparse.ArgumentParser) -> None:
         "Exit codes: 0 both numbers are told, 1 mu alone is, or lines that cannot be read "
         "were left out, 2 bad input, or rows that tell neither."
     )
-    scenes = ", ".join(UNIT_OF_AMPLITUDE)
-    parser.add_argument("scene", metavar="SCENE", help=f"the motion: {scenes}")
+    motions = ", ".join(UNIT_OF_AMPLITUDE)
+    parser.add_argument("motion", metavar="MOTION", help=f"the motion: {motions}")
     parser.add_argument("measured", metavar="CSV", help="the table")
     for name, (metavar, text) in OPTIONS.items():
         names = (f"--{name}", "--poisson") if name == "nu" else (f"--{name}",)
@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
         _refuse_endings(options)
         if options.map is not None:
             given["map"] = _opened(options.map)
-        found = fit(options.scene, options.measured, **given)
+        found = fit(options.motion, options.measured, **given)
         _write(found, options)
     except InputError as error:
         complain(f"microslip fit: {_complaint(error, typed, options)}")
@@ -120,7 +120,7 @@ def _write(found, options):
 
 def _complaint(error, typed, options):
     """The option, its value as it was given, and what is allowed, in one line."""
-    words = {"scene": ("SCENE", options.scene), "measured": ("CSV", options.measured)}
+    words = {"motion": ("MOTION", options.motion), "measured": ("CSV", options.measured)}
     option, value = words.get(error.argument, (typed.get(error.argument), error.value))
     option = option or f"--{error.argument.replace('_', '-')}"
     given = "" if value is None else f" = {shown(value)}"

@@ -45,4 +45,4 @@ def _leaves_something_out(result):
     """Whether no refinement of the model would find what the contact does."""
     if result.model not in MODELS:
         return False  # a closed form, whose error is known
-    return not MODELS[result.model].exact(motion_named(result.scene, result.pressure))
+    return not MODELS[result.model].exact(motion_named(result.motion, result.pressure))

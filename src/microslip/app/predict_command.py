@@ -6,7 +6,7 @@ import argparse
 import json
 import sys
 
-from microslip.app import predicted_driving, predicted_table
+from microslip.app import predicted_propulsion, predicted_table
 from microslip.app.option_parser import Said, format_as_options, option
 from microslip.app.terminal import complain
 from microslip.foundation.errors import InputError, shown
@@ -63,7 +63,7 @@ OPTIONS = {
         "largest accepted error of the ratio mu_macro, absolute (1e-3); under a force of the "
         "speed, relative (1e-2)",
     ),
-    "points": ("N", "with --driving: on the line, its ends included (9)"),
+    "points": ("N", "with --propulsion: on the line, its ends included (9)"),
     "decimal": ("MARK", "with --table: the decimal mark of the file, a point or a comma (.)"),
     "encoding": ("NAME", "with --table: the encoding of the file, such as cp1252 (utf-8)"),
 }
@@ -100,9 +100,11 @@ def fill(parser: argparse.ArgumentParser) -> None:
         "friction that is felt.  A number with a standard uncertainty, such as '0.15 +- 0.05' or "
         "'10 N +- 5 %', gives intervals and the probability of each outcome."
     )
-    scenes = "; ".join(f"{name}: it {what}" for name, what in MOTIONS.items())
+    motions = "; ".join(f"{name}: it {what}" for name, what in MOTIONS.items())
     parser.add_argument(
-        "scene", metavar="SCENE", help=f"what the sphere does. {scenes}; or another motion of point"
+        "motion",
+        metavar="MOTION",
+        help=f"what the sphere does. {motions}; or another motion of point",
     )
     for title, names in GROUPS.items():
         group = parser.add_argument_group(title, ABOUT_GROUPS.get(title))
@@ -117,9 +119,9 @@ def fill(parser: argparse.ArgumentParser) -> None:
             )
         if title == "drive":
             group.add_argument(
-                "--driving",
+                "--propulsion",
                 action="store_true",
-                help="ask what a motion that drives by itself pulls with, such as "
+                help="ask what a self-propelled motion pulls with, such as "
                 "elliptic:forward_cycles=2,phase=0: stall force, no-load speed, power and "
                 "efficiency",
             )
@@ -172,16 +174,16 @@ def _found(options, given):
         if getattr(options, name) is not None:
             raise InputError(name, getattr(options, name), "allowed with --table alone")
     with Elapsed("microslip predict"):
-        if options.driving:
-            return predicted_driving.ask(options.scene, given)
+        if options.propulsion:
+            return predicted_propulsion.ask(options.motion, given)
         if "points" in given:
-            raise InputError("points", given["points"], "allowed with --driving alone")
-        return predict(options.scene, **{"mu": None} | given, power=options.power)
+            raise InputError("points", given["points"], "allowed with --propulsion alone")
+        return predict(options.motion, **{"mu": None} | given, power=options.power)
 
 
 def _complaint(error, typed):
     """The option, its value as it was given, and what is allowed, in one line."""
-    name = "SCENE" if error.argument == "scene" else option(error.argument)
+    name = "MOTION" if error.argument == "motion" else option(error.argument)
     flag = error.value is True or error.value is None
     given = "" if flag else f" = {shown(error.value)}"
     names = [] if error.argument == "table" else [name.replace("-", "_") for name in OPTIONS]

@@ -38,7 +38,7 @@ class Answered:
 
     Attributes
     ----------
-    scene : str
+    motion : str
         The motion.
     cases : dict of list of str
         Columns of the file.
@@ -48,7 +48,7 @@ class Answered:
         Of each line.
     """
 
-    scene: str
+    motion: str
     cases: dict[str, list[str | None]]
     lines: list[int]
     found: list[Prediction | NoPrediction]
@@ -90,14 +90,16 @@ def answer(
     """
     from microslip.sweeps.evaluate import plain
 
-    if options.driving or "points" in given:
-        raise InputError("table", options.table, "allowed without --driving")
+    if options.propulsion or "points" in given:
+        raise InputError("table", options.table, "allowed without --propulsion")
     refuse_output(options.output, options.table)
     names = [name.replace("-", "_") for name in columns]
     shared = {name: value for name, value in given.items() if name not in FORMAT}
     format = {name: given[name] for name in FORMAT if name in given}
     names = [name for name in names if name not in ("points", *FORMAT)]
-    answered = ask(options.scene, options.table, shared | {"power": options.power}, names, **format)
+    answered = ask(
+        options.motion, options.table, shared | {"power": options.power}, names, **format
+    )
     if options.output is not None:
         write(options.output, answered)
     for text in answered.errors:
@@ -107,7 +109,7 @@ def answer(
 
 
 def ask(
-    scene: str,
+    motion: str,
     path: str,
     given: Mapping[str, object],
     columns: Collection[str],
@@ -126,13 +128,13 @@ def ask(
     read = cases_of_file(path, [name for name in columns if name != "power"], **format)
     names = [f"line {line}" for line in read.lines]
     try:
-        found = predictions(scene, read.columns, given, names, read.errors)
+        found = predictions(motion, read.columns, given, names, read.errors)
     except InputError as error:
         if error.argument not in read.columns or error.argument in given:
             raise
         raise InputError("table", path, _problem(error, read.columns)) from None
     answers = list(tqdm(found, "contacts", len(names), leave=False, disable=None))
-    return Answered(scene, read.columns, read.lines, answers)
+    return Answered(motion, read.columns, read.lines, answers)
 
 
 def _problem(error, columns):
@@ -171,7 +173,7 @@ def write(path: str, answered: Answered) -> None:
     from microslip.si.table import as_dataset
     from microslip.sweeps.sealed_files import writing_beside
 
-    dataset = as_dataset(answered.scene, answered.cases, answered.found)
+    dataset = as_dataset(answered.motion, answered.cases, answered.found)
     problems = [one["error"] or "" for one in answered.to_dicts()]
     dataset["error"] = dataset["error"].copy(data=problems)
     lines = "case", answered.lines, {"long_name": "line of the file"}

@@ -26,7 +26,7 @@ TARGETS = {
     "accuracy": "what accuracy costs, for all models and methods",
     "stability": "where methods fail",
     "claims": "what the paper says, judged",
-    "driving": "what motions that drive pull with, from stall to no load",
+    "propulsion": "what self-propelled motions pull with, from stall to no load",
     "explorer": "one page that shows what is behind every point of the maps",
     "explorer_all": "the same page with every other sweep of the configuration",
 }

@@ -6,7 +6,7 @@ Imports nothing heavy, since the workflow reads it whenever it is parsed.
 import math
 from itertools import pairwise
 
-from microslip.config.records import MODELS_OF_SCENE, SCENE_OF_SWEEP, ConfigError, Sweep
+from microslip.config.records import MODELS_OF_MOTION, MOTION_OF_SWEEP, ConfigError, Sweep
 from microslip.foundation.canonical import number
 
 # More points than this are a slip of the pen: naming them all takes the workflow a minute whenever
@@ -17,16 +17,16 @@ DRIVES = ("mass", "damping", "stiffness", "force")
 
 
 def of_paper(name: str, given: dict, where: str) -> Sweep:
-    """The Sweep of a scene of the paper; given: dict of settings, with defaults filled in.
+    """The Sweep of a motion of the paper; given: dict of settings, with defaults filled in.
 
     where: how messages begin, file and key. Raises ConfigError.
     """
-    sweep = grid_of(name, SCENE_OF_SWEEP[name], given, where)
+    sweep = grid_of(name, MOTION_OF_SWEEP[name], given, where)
     _refuse_mismatch(sweep, where)
     return sweep
 
 
-def grid_of(name: str, scene: str, given: dict, where: str, **more: object) -> Sweep:
+def grid_of(name: str, motion: str, given: dict, where: str, **more: object) -> Sweep:
     """A Sweep with its axes expanded, of settings with defaults filled in; more: its other fields.
 
     Raises ConfigError, beginning with `where`, for a bad axis or too many points.
@@ -34,7 +34,7 @@ def grid_of(name: str, scene: str, given: dict, where: str, **more: object) -> S
     poisson, amplitude, velocity = given["poisson"], given.get("amplitude"), given.get("velocity")
     sweep = Sweep(
         name=name,
-        scene=scene,
+        motion=motion,
         velocity=() if velocity is None else axis_of(velocity, f"{where}.velocity"),
         amplitude=None if amplitude is None else axis_of(amplitude, f"{where}.amplitude"),
         poisson=axis_of(poisson if isinstance(poisson, list) else [poisson], f"{where}.poisson"),
@@ -123,10 +123,10 @@ def _spaced(spacing, spec, where):
 
 def _refuse_mismatch(sweep, where):
     """Refuse settings that are fine one by one but not together."""
-    known = MODELS_OF_SCENE[sweep.scene]
+    known = MODELS_OF_MOTION[sweep.motion]
     if sweep.model not in known:
         raise ConfigError(
-            f'{where}.model: "{sweep.model}" does not apply to {sweep.scene}; '
+            f'{where}.model: "{sweep.model}" does not apply to {sweep.motion}; '
             f"allowed: {', '.join(known)}"
         )
     if sweep.model == "radial" and sweep.poisson[-1] > 0:

@@ -74,7 +74,7 @@ def sweeps(given: dict, where: str) -> dict:
             raise ConfigError(f"{where}.{name}: another result has this name; allowed: a new one")
         more = {"group": settings["group"], "title": settings["title"] or name}
         more["pressure"] = _by_content(settings["pressure"])
-        found[name] = axes.grid_of(name, settings["scene"], settings, f"{where}.{name}", **more)
+        found[name] = axes.grid_of(name, settings["motion"], settings, f"{where}.{name}", **more)
     return found
 
 
@@ -95,7 +95,7 @@ def pulled_sweeps(given: dict, where: str, others: Iterable) -> dict:
         more = {"title": settings["title"] or name, "drives": drives}
         more["contacts"] = settings["contacts"]
         more["pressure"] = _by_content(settings["pressure"])
-        found[name] = axes.grid_of(name, settings["scene"], settings, at, **more)
+        found[name] = axes.grid_of(name, settings["motion"], settings, at, **more)
     return found
 
 
@@ -149,29 +149,29 @@ def refuse_unsolvable(given: list, where: str) -> None:
 def _ask_solver(sweep, where):
     """Raise InputError, in the solver's words, for what it does not know or do; ConfigError for an
     amplitude that is missing, or too much."""
-    scene = _scene_of(sweep)
-    if scene.periodic and sweep.amplitude is None:
-        raise ConfigError(f"{where}.amplitude: missing; required for {scene.name}")
-    if sweep.amplitude is not None and not scene.periodic:
+    motion = _motion_of(sweep)
+    if motion.periodic and sweep.amplitude is None:
+        raise ConfigError(f"{where}.amplitude: missing; required for {motion.name}")
+    if sweep.amplitude is not None and not motion.periodic:
         raise ConfigError(
-            f"{where}.amplitude: {list(sweep.amplitude)} is not allowed; {scene.name} has no "
+            f"{where}.amplitude: {list(sweep.amplitude)} is not allowed; {motion.name} has no "
             "amplitude"
         )
     if sweep.model != "auto":
         from microslip.adaptive.choice import choose_model
 
-        choose_model(scene, sweep.poisson[-1], sweep.model)
+        choose_model(motion, sweep.poisson[-1], sweep.model)
     if sweep.velocity[:1] == (0,):
         from microslip.adaptive.checks import checked_point
 
         amplitude = sweep.amplitude and sweep.amplitude[0]
-        checked_point(sweep.scene, 0, amplitude, sweep.poisson[-1], sweep.pressure)
+        checked_point(sweep.motion, 0, amplitude, sweep.poisson[-1], sweep.pressure)
     if sweep.drives:
-        _ask_of_drive(sweep, scene)
+        _ask_of_drive(sweep, motion)
 
 
-def _ask_of_drive(sweep, scene):
-    """Raise InputError for what does not go together, or with the scene, at any point."""
+def _ask_of_drive(sweep, motion):
+    """Raise InputError for what does not go together, or with the motion, at any point."""
     from microslip.adaptive.checks import checked_drive
     from microslip.adaptive.choice import choose_model
     from microslip.adaptive.pulled import refuse_drive
@@ -184,25 +184,25 @@ def _ask_of_drive(sweep, scene):
         given = {name: drives[name][end] if name in drives else None for name in axes.DRIVES}
         velocity = sweep.velocity[end] if sweep.velocity else None
         drive = checked_drive(velocity, **given)
-        model = choose_model(scene, sweep.poisson[-1], sweep.model)
-        problem = Problem(scene, velocity or 0.0, amplitude, sweep.poisson[-1])
+        model = choose_model(motion, sweep.poisson[-1], sweep.model)
+        problem = Problem(motion, velocity or 0.0, amplitude, sweep.poisson[-1])
         problem = body_of(problem, sweep.contacts)
         refuse_drive(problem, drive, model)
 
 
 def solver_names(sweep: Sweep) -> tuple[str, str]:
-    """Names of a Sweep's scene and pressure as the solver writes them, however they were given.
+    """Names of a Sweep's motion and pressure as the solver writes them, however they were given.
 
     Equal ones are written alike, so that their points are found again.
     """
-    if ":" not in sweep.scene + sweep.pressure:
-        return sweep.scene, sweep.pressure  # there are no two ways to write a plain name
-    scene = _scene_of(sweep)
-    return scene.name, scene.pressure.name
+    if ":" not in sweep.motion + sweep.pressure:
+        return sweep.motion, sweep.pressure  # there are no two ways to write a plain name
+    motion = _motion_of(sweep)
+    return motion.name, motion.pressure.name
 
 
-def _scene_of(sweep):
+def _motion_of(sweep):
     """The Motion of a Sweep; raises ValueError for a motion or a pressure that there is not."""
     from microslip.motions.by_name import motion_named
 
-    return motion_named(sweep.scene, sweep.pressure)
+    return motion_named(sweep.motion, sweep.pressure)

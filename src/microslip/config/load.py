@@ -15,10 +15,10 @@ from pathlib import Path
 import yaml
 
 from microslip.config import axes as grids
-from microslip.config import certified, driving, extended, schema
+from microslip.config import certified, extended, propulsion, schema
 from microslip.config.axes import axis_of, refuse_crowd
 from microslip.config.records import (
-    SCENE_OF_SWEEP,
+    MOTION_OF_SWEEP,
     Accuracy,
     Claims,
     ConfigError,
@@ -135,7 +135,7 @@ def from_mapping(
     filled = with_files_found(mapping, source, folders, strict=ask_solver)
     sweeps = {
         name: grids.of_paper(name, filled["sweeps"][name], f"{source}: sweeps.{name}")
-        for name in SCENE_OF_SWEEP
+        for name in MOTION_OF_SWEEP
         if name in filled["sweeps"]
     }
     others = extended.sweeps(filled["extended"], f"{source}: extended")
@@ -161,7 +161,7 @@ def from_mapping(
         accuracy=_accuracy(filled["accuracy"], f"{source}: accuracy"),
         stability=_stability(filled["stability"], f"{source}: stability"),
         claims=_claims(filled["claims"], f"{source}: claims"),
-        driving=driving.study(filled["driving"], f"{source}: driving", ask_solver),
+        propulsion=propulsion.study(filled["propulsion"], f"{source}: propulsion", ask_solver),
         certified=certified.maps(sweeps, filled["sweeps"], f"{source}: sweeps")
         | certified.maps(others, filled["extended"], f"{source}: extended")
         | creeping,
@@ -213,11 +213,11 @@ def _claims(given, where):
         count = len(axes["velocity"]) * len(axes[name])
         refuse_crowd(count, f"{where}.velocity x {name}", MOST_MAP_POINTS)
     amplitude = {s: axes[f"amplitude_{s}"] for s in ("transverse", "bore")}
-    for scene, values in amplitude.items():
-        if values[0] > STATIC_AMPLITUDES[scene]:
+    for motion, values in amplitude.items():
+        if values[0] > STATIC_AMPLITUDES[motion]:
             raise ConfigError(
-                f"{where}.amplitude_{scene}: {list(values)} is not allowed; allowed: at least one "
-                f"number up to {STATIC_AMPLITUDES[scene]:g}, where there is static friction"
+                f"{where}.amplitude_{motion}: {list(values)} is not allowed; allowed: at least one "
+                f"number up to {STATIC_AMPLITUDES[motion]:g}, where there is static friction"
             )
     return Claims(
         tolerance=float(number(given["tolerance"])),
@@ -229,14 +229,16 @@ def _claims(given, where):
 
 def _study_point(name, given, where):
     where = f"{where}.{name}.amplitude"
-    steady, amplitude = given["scene"] == "continuous-bore", given["amplitude"]
+    steady, amplitude = given["motion"] == "continuous-bore", given["amplitude"]
     if steady and amplitude is not None:
-        raise ConfigError(f"{where}: {amplitude} is not allowed; {given['scene']} has no amplitude")
+        raise ConfigError(
+            f"{where}: {amplitude} is not allowed; {given['motion']} has no amplitude"
+        )
     if not steady and amplitude is None:
-        raise ConfigError(f"{where}: missing; required for {given['scene']}")
+        raise ConfigError(f"{where}: missing; required for {given['motion']}")
     return StudyPoint(
         name=str(name),
-        scene=given["scene"],
+        motion=given["motion"],
         velocity=float(number(given["velocity"])),
         amplitude=None if steady else float(number(amplitude)),
         poisson=float(number(given["poisson"])),

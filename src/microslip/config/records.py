@@ -6,8 +6,8 @@ parsed.
 
 from dataclasses import asdict, dataclass, field
 
-# Sweeps are named like their datasets, scenes as on the command line.
-SCENE_OF_SWEEP = {"transverse": "transverse", "bore": "bore", "continuous_bore": "continuous-bore"}
+# Sweeps are named like their datasets, motions as on the command line.
+MOTION_OF_SWEEP = {"transverse": "transverse", "bore": "bore", "continuous_bore": "continuous-bore"}
 
 # The single runs, for figures, that a dataset carries besides its sweep.
 HISTORIES_OF_SWEEP = {
@@ -16,13 +16,13 @@ HISTORIES_OF_SWEEP = {
     "continuous_bore": ("field", "transients"),
 }
 # Names that no other sweep may have: of datasets, and of folders of batches.
-TAKEN = (*SCENE_OF_SWEEP, "accuracy", "accuracy_cost", "stability", "claims", "driving")
-TAKEN += tuple(f"{name}_histories" for name in SCENE_OF_SWEEP)
-TAKEN += tuple(f"{name}_periods" for name in SCENE_OF_SWEEP)
-TAKEN += tuple(f"{study}_first" for study in ("accuracy", "stability", "claims", "driving"))
-TAKEN += tuple(f"certified_{name}" for name in SCENE_OF_SWEEP)
+TAKEN = (*MOTION_OF_SWEEP, "accuracy", "accuracy_cost", "stability", "claims", "propulsion")
+TAKEN += tuple(f"{name}_histories" for name in MOTION_OF_SWEEP)
+TAKEN += tuple(f"{name}_periods" for name in MOTION_OF_SWEEP)
+TAKEN += tuple(f"{study}_first" for study in ("accuracy", "stability", "claims", "propulsion"))
+TAKEN += tuple(f"certified_{name}" for name in MOTION_OF_SWEEP)
 # What models.registry refuses, which takes too long to import here; a test keeps them the same.
-MODELS_OF_SCENE = {
+MODELS_OF_MOTION = {
     "transverse": ("auto", "rigid", "slider", "dahl", "mdr", "radial", "polar", "cartesian"),
     "bore": ("auto", "rigid", "polar", "cartesian"),
     "continuous-bore": ("auto", "rigid", "polar", "cartesian"),
@@ -40,16 +40,16 @@ class Sweep:
     """A grid of points. The axes are ascending tuples of floats, all dimensionless."""
 
     name: str
-    scene: str  # with numbers as they were given; extended.solver_names writes equal ones alike
+    motion: str  # with numbers as they were given; extended.solver_names writes equal ones alike
     velocity: tuple
-    amplitude: tuple | None  # None: the scene has no amplitude
+    amplitude: tuple | None  # None: the motion has no amplitude
     poisson: tuple
     poisson_is_axis: bool  # a list was given, so the dataset gets a dimension of this name
     model: str
     tolerance: float | None  # None: the resolution is imposed, and its error only told
     cells: int | None
     steps: int | None
-    pressure: str = "hertz"  # as for scene
+    pressure: str = "hertz"  # as for motion
     group: str | None = None  # of the figure that shows it, None for the paper's
     title: str | None = None  # there
     drives: tuple = ()  # (name, values, whether they are an axis) of what pulls, as for solve()
@@ -104,7 +104,7 @@ class CertifiedMap:
     @property
     def settings(self) -> dict:
         """All that its points depend on, as a dict for JSON."""
-        kept = ("scene", "pressure", "model")
+        kept = ("motion", "pressure", "model")
         found = {name: getattr(self.sweep, name) for name in kept}
         found["poisson"] = self.poisson or self.sweep.poisson
         ranges = {"velocity": self.velocity, "amplitude": self.amplitude}
@@ -118,9 +118,9 @@ class StudyPoint:
     """A point that methods are compared at. All numbers are dimensionless."""
 
     name: str
-    scene: str
+    motion: str
     velocity: float
-    amplitude: float | None  # None: the scene has no amplitude
+    amplitude: float | None  # None: the motion has no amplitude
     poisson: float
     title: str
 
@@ -134,7 +134,7 @@ class Accuracy:
     levels: int
     repeats: int
     map_velocity: tuple
-    map_amplitude: dict  # scene -> tuple
+    map_amplitude: dict  # motion -> tuple
     map_tolerance: tuple  # from loose to tight
 
 
@@ -153,16 +153,16 @@ class Claims:
 
     tolerance: float
     velocity: tuple
-    amplitude: dict  # scene -> tuple
+    amplitude: dict  # motion -> tuple
     cells: int  # rings, and angles on half the disc, of periods seen from inside
 
 
 @dataclass(frozen=True)
-class DrivingMotion:
-    """A motion that may drive the contact. All numbers are dimensionless."""
+class SelfPropelledMotion:
+    """A motion that may propel the contact. All numbers are dimensionless."""
 
     name: str
-    scene: str
+    motion: str
     amplitude: float
     poisson: float
     panel: str  # heading of the panels that show it
@@ -170,12 +170,12 @@ class DrivingMotion:
 
 
 @dataclass(frozen=True)
-class Driving:
+class Propulsion:
     """What is asked to see what motions drive."""
 
     tolerance: float
     points: int
-    motions: dict  # name -> DrivingMotion
+    motions: dict  # name -> SelfPropelledMotion
 
 
 @dataclass(frozen=True)
@@ -183,7 +183,7 @@ class Configuration:
     """A checked configuration with its defaults filled in and its axes expanded."""
 
     results: str
-    sweeps: dict  # name -> Sweep, in the order of SCENE_OF_SWEEP
+    sweeps: dict  # name -> Sweep, in the order of MOTION_OF_SWEEP
     extended: dict  # name -> Sweep, of other motions and pressures
     drives: dict  # name -> Sweep, of contacts that are pulled
     points_per_job: dict  # name of a sweep -> int; no dataset depends on it
@@ -191,7 +191,7 @@ class Configuration:
     accuracy: Accuracy
     stability: Stability
     claims: Claims
-    driving: Driving
+    propulsion: Propulsion
     certified: dict = field(default_factory=dict)  # name -> CertifiedMap
 
     @property

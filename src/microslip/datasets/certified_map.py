@@ -91,14 +91,14 @@ def build(map_: CertifiedMap, rounds: Sequence[dict], records: Iterable[dict]) -
         coords=axes,
     )
     sweep_dataset.describe_axes(dataset, map_.sweep)
-    scene, pressure = solver_names(map_.sweep)
+    motion, pressure = solver_names(map_.sweep)
     versions = {canonical_json(record["versions"]) for record in records}
     quantity = "friction" if map_.force is None else "creep"
     about = sweep_dataset.provenance(
-        f"Certified {quantity} of a vibrated contact, scene {scene}",
+        f"Certified {quantity} of a vibrated contact, motion {motion}",
         map_.settings,
         versions,
-        scene=scene,
+        motion=motion,
         pressure=pressure,
         tolerance=map_.tolerance,
         error=map_.error,

@@ -14,7 +14,7 @@ AXES = {
     "Result": (),
     "Prediction": (),
     "History": ("phase",),
-    "DrivingLine": ("velocity",),
+    "PropulsionLine": ("velocity",),
     "Period": ("phase", "point"),
 }
 """Records that have a dataset, by the names of their classes, and their axes."""
@@ -27,13 +27,13 @@ def to_xarray(record: object) -> xr.Dataset:
 
     Parameters
     ----------
-    record : Result, Prediction, History, Period or DrivingLine
+    record : Result, Prediction, History, Period or PropulsionLine
         What solve, predict, history, period and drive return.
 
     Returns
     -------
     xarray.Dataset
-        History over `phase`, DrivingLine over `velocity`, Period over `phase` and `point`, the
+        History over `phase`, PropulsionLine over `velocity`, Period over `phase` and `point`, the
         others without a dimension.  What a record does not have is left out.
 
     Raises

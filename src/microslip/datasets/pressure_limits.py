@@ -21,32 +21,32 @@ ZONE = replace(
 )
 
 
-def formulas_under(scene: str, name: str) -> dict:
+def formulas_under(motion: str, name: str) -> dict:
     """What theory says about a motion under the pressure of this name: ClosedForms by name."""
-    pressure, of_sphere = pressure_named(name), FORMS.get(scene, {})
-    if scene == "continuous-bore" and pressure.is_round:
+    pressure, of_sphere = pressure_named(name), FORMS.get(motion, {})
+    if motion == "continuous-bore" and pressure.is_round:
         return _steady(pressure, of_sphere)
-    if scene == "longitudinal" and pressure.loading is not None:
+    if motion == "longitudinal" and pressure.loading is not None:
         return _along(pressure.loading, of_sphere)
     found = {key: form for key, form in of_sphere.items() if form.any_pressure}
     if STATIC not in of_sphere:
         return found
     exact = of_sphere[STATIC]
     if pressure.is_indenter:
-        zone, left = _of_indenter(scene, pressure)
+        zone, left = _of_indenter(motion, pressure)
         exact = replace(exact, function=_each(left))
-    elif pressure.hertzian and scene != "bore":
+    elif pressure.hertzian and motion != "bore":
         zone = paper.static_transverse  # an ellipse of the same shape carries as much
         exact = replace(exact, function=_each(exact.function))
     else:
         return found
-    zone = replace(ZONE, motion=scene, function=_each(zone))
+    zone = replace(ZONE, motion=motion, function=_each(zone))
     return found | {zone.name: zone, STATIC: exact}
 
 
-def _of_indenter(scene, pressure):
+def _of_indenter(motion, pressure):
     """Static friction of the whole stick zone, and the exact one, as functions of the amplitude."""
-    if scene == "bore":
+    if motion == "bore":
 
         def stick_radius(amplitude):
             return indenters.torsion_stick_radius(pressure, float(hertz.bore_angle(amplitude)))

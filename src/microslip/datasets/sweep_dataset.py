@@ -33,7 +33,7 @@ def write_sweep(
 ) -> None:
     """Write the dataset of a sweep to the netCDF-4 file `path`, all of it or nothing.
 
-    The root has dims (amplitude, velocity), those of them that the scene has, and poisson before
+    The root has dims (amplitude, velocity), those of them that the motion has, and poisson before
     them if that is an axis; what has other axes is in GROUPS. The same results give the same bytes.
 
     Parameters
@@ -58,10 +58,10 @@ def write_sweep(
         As for `write`.
     """
     axes = _axes(sweep)
-    scene, pressure = solver_names(sweep)
-    title = sweep.title or f"Friction of a vibrated Hertz contact, scene {scene}"
+    motion, pressure = solver_names(sweep)
+    title = sweep.title or f"Friction of a vibrated Hertz contact, motion {motion}"
     tolerance = np.nan if sweep.tolerance is None else sweep.tolerance
-    about = {"scene": scene, "pressure": pressure, "tolerance": tolerance}
+    about = {"motion": motion, "pressure": pressure, "tolerance": tolerance}
     if named_files.base_name(pressure):
         about["pressure_file"] = named_files.base_name(pressure)
     if sweep.group is not None:
@@ -89,7 +89,7 @@ GROUPS = {
     "field": "Tractions all over the contact, the data of Figure 3",
     "transients": "Forces on the way to steady motion, the data of Figure 5",
 }
-"""Groups in the file of a sweep, as far as its scene has them, and their titles."""
+"""Groups in the file of a sweep, as far as its motion has them, and their titles."""
 
 
 def _root(sweep):
@@ -106,7 +106,7 @@ def _root(sweep):
 def _parts(sweep, histories):
     """Datasets of GROUPS by name, those that have anything."""
     found = theory_limits.curves(sweep) | _single_runs(sweep, histories)
-    about = {"scene": solver_names(sweep)[0]}
+    about = {"motion": solver_names(sweep)[0]}
     return {
         name: xr.Dataset(found[name], attrs={"title": title} | about)
         for name, title in GROUPS.items()
@@ -142,12 +142,12 @@ def write(dataset: xr.Dataset, path: str | os.PathLike, groups: dict | None = No
 def report(dataset: xr.Dataset, name: str | None = None) -> Iterator[str]:
     """Lines of text: how many points there are and, one each, those that did not converge.
 
-    name: of the sweep, that of its scene unless told.
+    name: of the sweep, that of its motion unless told.
     """
     converged = dataset["converged"]
     bad = np.argwhere(~converged.values)
     failed = f"{len(bad)} not converged" if len(bad) else "all converged"
-    yield f"{name or dataset.scene}: {converged.size} points, {failed}"
+    yield f"{name or dataset.motion}: {converged.size} points, {failed}"
     for index in bad:
         point = dataset.isel(dict(zip(converged.dims, index, strict=True)))
         where = ", ".join(f"{dim} {float(point[dim]):g}" for dim in converged.dims)
@@ -166,16 +166,16 @@ def _axes(sweep):
 
 
 def describe_axes(dataset: xr.Dataset, sweep: Sweep) -> None:
-    """Name the axes; `formula` is what a coordinate is, in the words of the scene."""
-    scene = motion_named(sweep.scene)
-    axes = [(VELOCITY, scene.velocity_label)] if sweep.velocity else []
+    """Name the axes; `formula` is what a coordinate is, in the words of the motion."""
+    motion = motion_named(sweep.motion)
+    axes = [(VELOCITY, motion.velocity_label)] if sweep.velocity else []
     if sweep.amplitude is not None:
-        axes.append((AMPLITUDE, scene.amplitude_label))
+        axes.append((AMPLITUDE, motion.amplitude_label))
     for of_paper, formula in axes:
         quantity = of_paper["transverse"]  # all have the same name and words
         said = {"long_name": f"{quantity.text}, {formula}", "units": "1", "formula": formula}
-        if scene.name in of_paper:
-            said["description"] = of_paper[scene.name].description
+        if motion.name in of_paper:
+            said["description"] = of_paper[motion.name].description
         dataset[quantity.name].attrs = said
     for name, _, _ in sweep.drives:
         quantity = DRIVES[name]
@@ -192,7 +192,7 @@ def _single_runs(sweep, records):
     """Variables of the groups of single runs, a dict of dicts."""
     if not records or any(record["result"].get("crashed") for record in records):
         return {}  # see `report`
-    if sweep.scene == "transverse":
+    if sweep.motion == "transverse":
         return {"history": _force_history(records[0])}
     fields = [record for record in records if record["request"]["kind"] == "field"]
     transients = [record for record in records if record not in fields]

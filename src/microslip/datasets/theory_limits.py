@@ -13,14 +13,14 @@ from microslip.theory import catalogue
 CURVE_POINTS = 241
 
 
-def formulas(scene: str, pressure: str = "hertz") -> dict:
+def formulas(motion: str, pressure: str = "hertz") -> dict:
     """What theory says about a motion under a pressure, by the solver's names: a dict of
     catalogue.ClosedForm by name, {} if it says nothing."""
     if pressure == "hertz":
-        return catalogue.FORMS.get(scene, {})
+        return catalogue.FORMS.get(motion, {})
     from microslip.datasets.pressure_limits import formulas_under  # it takes a while to load
 
-    return formulas_under(scene, pressure)
+    return formulas_under(motion, pressure)
 
 
 def _forms(sweep):
@@ -35,8 +35,8 @@ def _forms(sweep):
 
 def _creep_forms(sweep):
     """Those of the velocity under a force, where one pulls."""
-    scene, pressure = solver_names(sweep)
-    form = catalogue.CREEP_FORMS.get(scene)
+    motion, pressure = solver_names(sweep)
+    form = catalogue.CREEP_FORMS.get(motion)
     if sweep.contacts is not None:
         return {}
     is_map = [(name, is_axis) for name, _, is_axis in sweep.drives] == [("force", True)]

@@ -38,14 +38,14 @@ ANSWERED_BY = {
     "scaling": ("adaptive/single_run",),
     "run": ("adaptive/single_run",),
     "patches": ("adaptive/stick_area",),
-    "drive": ("adaptive/driving",),
+    "propulsion": ("adaptive/propulsion",),
 }
 """Kinds of requests (see sweeps.batches) and the modules that answer them."""
 
 ASKS = {"sweeps/__init__.py", "sweeps/evaluate.py"}
 """They import the modules that answer requests inside functions; only their other imports count."""
 
-NAMED_IN_REQUESTS = {"solver/methods": "method", "motions": "scene", "pressures": "pressure"}
+NAMED_IN_REQUESTS = {"solver/methods": "method", "motions": "motion", "pressures": "pressure"}
 """Folders of modules that requests name, and the key of the request."""
 
 NAMES_ONLY = {f"foundation/{name}.py" for name in ("kernel_cache", "source_digest")}

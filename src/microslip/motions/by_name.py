@@ -85,5 +85,5 @@ def _motion_named(name):
         return MOTIONS[name]
     known = [*MOTIONS, *FAMILIES]
     if not isinstance(name, str):
-        raise InputError("scene", name, f"allowed is one of {', '.join(known)}")
-    return record_named(name, "scene", FAMILIES, known, make="motion", broken=BROKEN)
+        raise InputError("motion", name, f"allowed is one of {', '.join(known)}")
+    return record_named(name, "motion", FAMILIES, known, make="motion", broken=BROKEN)

@@ -3,7 +3,7 @@
     velocity   u = v t                              force   m u'' + f = P
     spring     m u'' + c u' + f = k (v t - u)
 
-u: forward displacement of the body beyond the oscillation of the scene; f: forward force of the
+u: forward displacement of the body beyond the oscillation of the motion; f: forward force of the
 contact; all over mu F_z, u_lim and the time 1 / omega.
 """
 

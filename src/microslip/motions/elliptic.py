@@ -41,11 +41,11 @@ def motion(
 ) -> Motion:
     """The Motion of these numbers; raises InputError for shares below 0, none at all, and cycles
     that are no whole numbers."""
-    spec.refuse_shares(name, "scene", {"forward": forward, "lateral": lateral})
+    spec.refuse_shares(name, "motion", {"forward": forward, "lateral": lateral})
     if max(forward, lateral) == 0.0:
-        raise InputError("scene", name, "allowed is forward or lateral above 0")
+        raise InputError("motion", name, "allowed is forward or lateral above 0")
     cycles = {"forward_cycles": forward_cycles, "lateral_cycles": lateral_cycles}
-    spec.refuse_counts(name, "scene", cycles, MOST_CYCLES)
+    spec.refuse_counts(name, "motion", cycles, MOST_CYCLES)
     lead = np.deg2rad(phase % 360.0)
 
     def displacement(phase, velocity, amplitude, poisson):
@@ -69,7 +69,7 @@ def motion(
         amplitude_label="A / u_lim",
         turns=lambda velocity, amplitude: HALF_PERIOD if mirrored else WHOLE_PERIOD,
         straight=simple and (forward == 0.0 or lead % np.pi == 0.0),
-        drives=forward > 0.0
+        propels=forward > 0.0
         and lateral > 0.0
         and not reverses_forward(forward=int(forward_cycles), lateral=int(lateral_cycles)),
         cycles=int(max(forward_cycles if forward else 1.0, lateral_cycles if lateral else 1.0)),

@@ -52,8 +52,8 @@ class Motion:
         where it ends, half a period later or a whole one.
     straight : bool
         The oscillation alone goes to and fro on a line, from the phase -pi/2 to pi/2.
-    drives : bool
-        The oscillation alone may drive the contact forward, so that friction may be negative;
+    propels : bool
+        The oscillation alone may propel the contact forward, so that friction may be negative;
         without it the mean force resists, see theory/bounds.py and mirror_image.reverses_forward.
     cycles : int
         Of the oscillation in a period, along the direction that has more.
@@ -85,7 +85,7 @@ class Motion:
     amplitude_label: str = ""
     turns: Callable = lambda velocity, amplitude: HALF_PERIOD
     straight: bool = True
-    drives: bool = False
+    propels: bool = False
     cycles: int = 1
     half_disc: bool = True
     pressure: Pressure = HERTZ
@@ -107,7 +107,7 @@ class Motion:
         return float(gained) / (2.0 * np.pi) * velocity
 
     def stroke(self, amplitude: float, poisson: float) -> float:
-        """Half the way that the edge of the contact oscillates, in u_lim; 0 for steady scenes."""
+        """Half the way that the edge of the contact oscillates, in u_lim; 0 for steady motions."""
         if not self.periodic:
             return 0.0
         ends = self.displacement(np.array([-0.5, 0.5]) * np.pi, 0.0, amplitude, poisson)

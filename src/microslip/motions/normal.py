@@ -123,7 +123,7 @@ def motion(
         amplitude_label="A",
         turns=turns,
         straight=alone,
-        drives=forward > 0.0 and not reverses,
+        propels=forward > 0.0 and not reverses,
         cycles=int(
             max(
                 normal_cycles,
@@ -142,11 +142,11 @@ def motion(
 
 
 def _check(name, shares, cycles):
-    spec.refuse_shares(name, "scene", shares)
+    spec.refuse_shares(name, "motion", shares)
     if shares["load"] == shares["indentation"] == 0.0:
-        raise InputError("scene", name, "allowed is load or indentation above 0")
+        raise InputError("motion", name, "allowed is load or indentation above 0")
     if shares["indentation"] > 0.0 and shares["load"] != DEFAULTS["load"]:
         raise InputError(
-            "scene", name, f"load = {shares['load']:g}: allowed is no load beside an indentation"
+            "motion", name, f"load = {shares['load']:g}: allowed is no load beside an indentation"
         )
-    spec.refuse_counts(name, "scene", cycles, MOST_CYCLES)
+    spec.refuse_counts(name, "motion", cycles, MOST_CYCLES)

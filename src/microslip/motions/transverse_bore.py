@@ -25,9 +25,9 @@ DEFAULTS = {"lateral": 1.0, "angle": 1.0, "phase": 0.0}
 
 def motion(name: str, lateral: float, angle: float, phase: float) -> Motion:
     """The Motion of these numbers; raises InputError for shares below 0, and none at all."""
-    spec.refuse_shares(name, "scene", {"lateral": lateral, "angle": angle})
+    spec.refuse_shares(name, "motion", {"lateral": lateral, "angle": angle})
     if max(lateral, angle) == 0.0:
-        raise InputError("scene", name, "allowed is lateral or angle above 0")
+        raise InputError("motion", name, "allowed is lateral or angle above 0")
     lead = np.deg2rad(phase % 360.0) if lateral > 0.0 else 0.0
 
     def displacement(phase, velocity, amplitude, poisson):

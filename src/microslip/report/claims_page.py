@@ -51,7 +51,7 @@ def page(dataset: xr.Dataset, lines: list[str]) -> str:
         _summary(data),
         *(_claim(data, i) for i in range(len(data["claim"]))),
         "<h2 id='static'>The static limit, and what hid it</h2>",
-        *(_static(data, scene) for scene in MOTIONS if f"{scene}_limit" in data),
+        *(_static(data, motion) for motion in MOTIONS if f"{motion}_limit" in data),
         "<h2 id='runs'>Runs</h2>",
         _runs(data),
         "<h2>Made by</h2>",
@@ -177,16 +177,16 @@ def _checks(data, part):
     return f"<p>{escape(str(data['part_text'][part]))}</p>{_table(head, rows)}"
 
 
-def _static(data, scene):
+def _static(data, motion):
     """A table over the amplitudes, and where the paper's formulas are off most."""
-    names = {name: FORMS[scene][form].equation for name, (form, _) in FORMULAS[scene].items()}
+    names = {name: FORMS[motion][form].equation for name, (form, _) in FORMULAS[motion].items()}
     slow, slowest = (float(data[f"claims_{n}"]) for n in ("paper_velocity", "slowest"))
     head = ["amplitude", "limit", f"at velocity {slowest:g}"]
     head += [f"{name} (less limit)" for name in names.values()]
     head += [f"of the bound inside, {names['zone']} less limit"]
     head += [f"paper's run at {slow:g} (less limit)", "of it from velocity"]
     head += ["of it from resolution", "squares alone, velocity to 0"]
-    of = {name: data[f"{scene}_{name}"] for name in (*SPLIT, *names, "lost", "amplitude")}
+    of = {name: data[f"{motion}_{name}"] for name in (*SPLIT, *names, "lost", "amplitude")}
     rows = []
     for k, limit in enumerate(of["limit"]):
         both = [f"{of[name][k]:.4f} ({of[name][k] - limit:+.4f})" for name in (*names, "paper")]
@@ -202,12 +202,12 @@ def _static(data, scene):
         ]
         rows.append([(text, "n") for text in texts])
     most = "; ".join(
-        f"{name} by {float(data[f'{scene}_gap_{key}']):.4f} at amplitude "
-        f"{float(data[f'{scene}_gap_{key}_at']):.3g}"
+        f"{name} by {float(data[f'{motion}_gap_{key}']):.4f} at amplitude "
+        f"{float(data[f'{motion}_gap_{key}_at']):.3g}"
         for key, name in names.items()
     )
-    text = f"<h3>{MOTIONS[scene]}</h3>{_table(head, rows)}<p>Most above the limit: {most}."
-    if scene == "bore":
+    text = f"<h3>{MOTIONS[motion]}</h3>{_table(head, rows)}<p>Most above the limit: {most}."
+    if motion == "bore":
         share = 100 * float(data["static_asymptote_excess"])
         text += f" At large amplitudes Eq 33 tends to {share:.1f} % more than the limit."
     return text + "</p>"
@@ -230,7 +230,7 @@ def _command(data, row):
 
 def _place(data, row):
     """Motion, velocity, amplitude, nu, model and resolution of a run, as text."""
-    words = [str(data["run_scene"][row]), f"v {data['run_velocity'][row]:g}"]
+    words = [str(data["run_motion"][row]), f"v {data['run_velocity'][row]:g}"]
     if np.isfinite(data["run_amplitude"][row]):
         words.append(f"A {data['run_amplitude'][row]:g}")
     words += [f"nu {data['run_poisson'][row]:g}", str(data["run_model"][row]), _size(data, row)]

@@ -14,11 +14,11 @@ from microslip.theory import hertz
 @dataclass(frozen=True)
 class RealMotion:
     """A motion in SI units: forward speed, m/s; amplitude (half stroke), m or rad; frequency, Hz;
-    rotation, rad/s, of a steady bore.  What a scene does not have is None, and so is a speed that a
-    force tells.  Scenes that oscillate in several ways have further half strokes: forward, m,
-    in rotation, rad, of the load, N; and a phase, rad, see `solver_scene`."""
+    rotation, rad/s, of a steady bore.  Quantities that a motion lacks are None, and so is a speed
+    that follows from a force.  Motions that oscillate in several ways have further half strokes:
+    forward, m, in rotation, rad, of the load, N; and a phase, rad, see `solver_motion`."""
 
-    scene: str
+    name: str
     speed: float | None
     amplitude: float | None = None
     frequency: float | None = None
@@ -31,12 +31,12 @@ class RealMotion:
     @property
     def steady(self) -> bool:
         """Whether nothing oscillates."""
-        return is_steady(self.scene)
+        return is_steady(self.name)
 
     @property
     def spins(self) -> bool:
         """Whether the amplitude is an angle."""
-        return unit_of_amplitude(self.scene) == "rad"
+        return unit_of_amplitude(self.name) == "rad"
 
     @property
     def swing(self) -> tuple[float, float]:
@@ -48,7 +48,7 @@ class RealMotion:
 
 
 def parts(motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
-    """Amplitudes of a scene that oscillates in several ways, in the solver's groups, by the names
+    """Amplitudes of a motion that oscillates in several ways, in the solver's groups, by the names
     of their shares."""
     unit = {"lateral": contact.u_lim, "forward": contact.u_lim, "load": contact.load}
     found = {}
@@ -62,15 +62,15 @@ def parts(motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
     return found
 
 
-def solver_scene(motion: RealMotion, contact: TwoBodies) -> str:
-    """The scene as microslip.solve takes it: of several amplitudes, their shares of the largest."""
-    if motion.scene not in COMBINED:
-        return motion.scene
+def solver_motion(motion: RealMotion, contact: TwoBodies) -> str:
+    """Text of the motion for microslip.solve; several amplitudes become shares of the largest."""
+    if motion.name not in COMBINED:
+        return motion.name
     found = parts(motion, contact)
     largest = max(found.values()) or 1.0
     shares = {name: size / largest for name, size in found.items()}
     shares["phase"] = math.degrees(motion.phase or 0.0)
-    return f"{motion.scene}:{','.join(f'{name}={value!r}' for name, value in shares.items())}"
+    return f"{motion.name}:{','.join(f'{name}={value!r}' for name, value in shares.items())}"
 
 
 def groups(motion: RealMotion, contact: TwoBodies) -> tuple[float | None, float | None]:
@@ -90,7 +90,7 @@ def _size(motion, contact):
     """The amplitude as microslip.solve takes it; None for a steady motion."""
     if motion.steady:
         return None
-    if motion.scene in COMBINED:
+    if motion.name in COMBINED:
         return max(parts(motion, contact).values())
     if not motion.spins:
         return motion.amplitude / contact.u_lim
@@ -103,11 +103,11 @@ def speed_unit(motion: RealMotion, contact: TwoBodies) -> float:
     if motion.steady:
         return motion.rotation * contact.contact_radius
     omega = 2.0 * math.pi * motion.frequency
-    if motion.scene == "bore":
+    if motion.name == "bore":
         return omega * motion.amplitude * contact.contact_radius
-    if motion.scene in MOTIONS:
+    if motion.name in MOTIONS:
         return omega * contact.u_lim
-    record, size = motion_named(motion.scene), _size(motion, contact)
+    record, size = motion_named(motion.name), _size(motion, contact)
     return omega * contact.u_lim * record.creep(1.0, size, contact.poisson)
 
 
@@ -122,7 +122,7 @@ def mean_load(motion: RealMotion, contact: TwoBodies) -> float:
     """Mean normal load, N: more than the load where its oscillation parts the bodies."""
     if motion.load_amplitude is None or motion.load_amplitude <= contact.load:
         return contact.load
-    named = motion_named(solver_scene(motion, contact), contact.pressure)
+    named = motion_named(solver_motion(motion, contact), contact.pressure)
     return contact.load * float(named.mean_load(_size(motion, contact), named.pressure))
 
 

@@ -34,7 +34,7 @@ def read_drive(
     steady = motion.steady
     for name, value in given.items():
         if value is not None and steady:
-            allowed = f"allowed is none for {motion.scene}, which is steady: nothing swings"
+            allowed = f"allowed is none for {motion.name}, which is steady: nothing swings"
             raise InputError(name, value, allowed)
     if force is not None:
         for name in ("drive_stiffness", "damping"):
@@ -46,7 +46,7 @@ def read_drive(
             if given[name] is not None:
                 allowed = f"allowed beside {others}, for a speed alone moves any body"
                 raise InputError(name, given[name], allowed)
-    if drive_stiffness is not None and motion.scene == "longitudinal" and motion.speed == 0.0:
+    if drive_stiffness is not None and motion.name == "longitudinal" and motion.speed == 0.0:
         allowed = "allowed is a speed above 0 where a spring pulls a longitudinal motion"
         raise InputError("speed", speed, allowed)
     return _read(given | {"force": force})

@@ -14,7 +14,7 @@ from microslip.si.dimensionless import (
     RealMotion,
     full_friction,
     groups,
-    solver_scene,
+    solver_motion,
     speed_unit,
 )
 
@@ -66,7 +66,7 @@ def vibration_fields(
             raise InputError(name, 0.0, "allowed is more than 0 where the power is asked for")
     point = min(velocity, LARGEST["velocity"]), size
     settings = {"poisson": contact.poisson, "pressure": contact.pressure, "tolerance": tolerance}
-    found = vibration_power(solver_scene(motion, contact), *point, **settings)
+    found = vibration_power(solver_motion(motion, contact), *point, **settings)
     still = full_friction(motion, contact)
     unit = still * contact.u_lim * 2.0 * math.pi * motion.frequency
     drag = still * answer.mu_macro * motion.speed

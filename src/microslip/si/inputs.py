@@ -256,7 +256,7 @@ def _refuse_senseless(contact, radius, counter_radius, load):
 
 
 def read_motion(
-    scene: str,
+    motion: str,
     *,
     speed: object,
     amplitude: object,
@@ -268,18 +268,18 @@ def read_motion(
     """The motion, and a dict of texts of what was understood; raises InputError.
 
     sought: what is looked for; an amplitude may be missing then.  A speed that is not given is
-    None.  others: what scenes that oscillate in several ways take besides, see motions.TAKES.
+    None.  others: what motions that oscillate in several ways take besides, see motions.TAKES.
     """
-    motions.check_scene(scene)
-    steady = motions.is_steady(scene)
+    motions.check_motion(motion)
+    steady = motions.is_steady(motion)
     given = {"amplitude": amplitude, "frequency": frequency, "rotation": rotation, **others}
-    needed = ("rotation",) if steady else (*COMBINED.get(scene, ("amplitude",)), "frequency")
+    needed = ("rotation",) if steady else (*COMBINED.get(motion, ("amplitude",)), "frequency")
     for name, value in given.items():
-        if name not in (*needed, *TAKES.get(scene, ())) and value is not None:
-            raise InputError(name, value, f"{scene} has none")
+        if name not in (*needed, *TAKES.get(motion, ())) and value is not None:
+            raise InputError(name, value, f"{motion} has none")
     for name in needed:
         if given[name] is None and name != sought:
-            raise InputError(name, None, f"{scene} needs it")
+            raise InputError(name, None, f"{motion} needs it")
     found = {}
     if speed is not None:
         found["speed"] = read("speed", speed, "m/s", low_open=False)
@@ -288,14 +288,14 @@ def read_motion(
     else:
         for name, (_, unit) in PARTS.items():
             if given.get(name) is not None:
-                wanted = motions.unit_of_amplitude(scene) or unit
+                wanted = motions.unit_of_amplitude(motion) or unit
                 found[name] = read(name, given[name], wanted, low_open=name == "load_amplitude")
         if given.get("phase") is not None:
             found["phase"] = read("phase", given["phase"], "rad", low=-LARGEST_PHASE)
         found["frequency"] = read("frequency", frequency, "Hz")
-    motion = RealMotion(scene, **{"speed": None} | {name: one.si for name, one in found.items()})
-    texts = {"scene": f"{scene}: the sphere {motions.description(scene)}"}
+    real = RealMotion(motion, **{"speed": None} | {name: one.si for name, one in found.items()})
+    texts = {"motion": f"{motion}: the sphere {motions.description(motion)}"}
     sizes = [found[name].si for name in PARTS if name in found]
-    if scene in COMBINED and max(sizes) == 0.0:
+    if motion in COMBINED and max(sizes) == 0.0:
         raise InputError(needed[0], given[needed[0]], "allowed is above 0 where no other one is")
-    return motion, texts | {name: one.text for name, one in found.items()}
+    return real, texts | {name: one.text for name, one in found.items()}

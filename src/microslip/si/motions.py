@@ -17,23 +17,23 @@ if TYPE_CHECKING:  # the command line needs the tables alone
     from microslip.motions.motion import Motion
 
 UNIT_OF_AMPLITUDE = {"transverse": "m", "longitudinal": "m", "zigzag": "m", "bore": "rad"}
-"""Scenes that oscillate in one way, and the SI unit of what they oscillate in."""
+"""Motions that oscillate in one way, and the SI unit of what they oscillate in."""
 COMBINED = {
     "elliptic": ("amplitude", "forward_amplitude"),
     "transverse-bore": ("amplitude", "rotation_amplitude"),
     "normal": ("load_amplitude",),
 }
-"""Scenes that oscillate in several ways at once, and which amplitudes they need."""
+"""Motions that oscillate in several ways at once, and which amplitudes they need."""
 PARTS = {
     "amplitude": ("lateral", "m"),
     "forward_amplitude": ("forward", "m"),
     "rotation_amplitude": ("angle", "rad"),
     "load_amplitude": ("load", "N"),
 }
-"""Amplitudes of such scenes: the share of the solver's amplitude that each is, and its unit."""
-TAKES = {scene: (*needed, "phase") for scene, needed in COMBINED.items()}
+"""Amplitudes of such motions: the share of the solver's amplitude that each is, and its unit."""
+TAKES = {motion: (*needed, "phase") for motion, needed in COMBINED.items()}
 TAKES["normal"] = (*PARTS, "phase")
-"""All that such scenes take."""
+"""All that such motions take."""
 MOTIONS = {
     "transverse": "slides forward and oscillates sideways",
     "longitudinal": "slides forward and oscillates along the same direction",
@@ -44,55 +44,55 @@ MOTIONS = {
     "normal": "slides forward while its normal load oscillates, alone or with a motion",
     "continuous-bore": "slides forward and spins steadily about the contact normal",
 }
-"""Scenes of this module, and what the sphere does in each."""
+"""Motions of this module, and what the sphere does in each."""
 ALONG_THE_PULL = ("longitudinal", "elliptic", "normal")
 """Those that vibrate along the pull, or may; or whose load, and so the force, oscillates."""
 SAME = 1e-3
 """Relative difference of two angles, one of them from 721 phases, that are equal."""
 
 
-def check_scene(scene: object) -> None:
-    """Raise InputError unless a scene names a motion that can be described in SI units."""
-    if not isinstance(scene, str) or scene not in MOTIONS:
-        motion = _record(scene)
+def check_motion(motion: object) -> None:
+    """Raise InputError unless a motion names a motion that can be described in SI units."""
+    if not isinstance(motion, str) or motion not in MOTIONS:
+        motion = _record(motion)
         if motion.depth is not None:
             allowed = "allowed is normal with a load_amplitude where the load oscillates"
-            raise InputError("scene", scene, allowed)
+            raise InputError("motion", motion, allowed)
         if motion.periodic and not _unit(motion):
             allowed = "allowed is a translation, or a rotation whose amplitude is that of bore"
-            raise InputError("scene", scene, f"{allowed}; for both see transverse-bore")
+            raise InputError("motion", motion, f"{allowed}; for both see transverse-bore")
 
 
-def is_steady(scene: str) -> bool:
+def is_steady(motion: str) -> bool:
     """Whether nothing oscillates."""
-    return scene == "continuous-bore" or scene not in MOTIONS and not _record(scene).periodic
+    return motion == "continuous-bore" or motion not in MOTIONS and not _record(motion).periodic
 
 
-def unit_of_amplitude(scene: str) -> str | None:
-    """SI unit of the amplitude; None of scenes that are steady or oscillate in several ways."""
-    if scene in MOTIONS:
-        return UNIT_OF_AMPLITUDE.get(scene)
-    motion = _record(scene)
+def unit_of_amplitude(motion: str) -> str | None:
+    """SI unit of the amplitude; None of motions that are steady or oscillate in several ways."""
+    if motion in MOTIONS:
+        return UNIT_OF_AMPLITUDE.get(motion)
+    motion = _record(motion)
     return _unit(motion) if motion.periodic else None
 
 
-def is_along_the_pull(scene: str) -> bool:
+def is_along_the_pull(motion: str) -> bool:
     """Whether the vibration is along the direction of the pull, or may be."""
-    if scene in MOTIONS:
-        return scene in ALONG_THE_PULL
-    ahead, _, _ = _oscillation(_record(scene))
+    if motion in MOTIONS:
+        return motion in ALONG_THE_PULL
+    ahead, _, _ = _oscillation(_record(motion))
     return bool(np.ptp(ahead) > 0.0)
 
 
-def description(scene: str) -> str:
+def description(motion: str) -> str:
     """What the sphere does, in words."""
-    return MOTIONS.get(scene) or f"is {_record(scene).summary}"
+    return MOTIONS.get(motion) or f"is {_record(motion).summary}"
 
 
-def _record(scene) -> Motion:
+def _record(motion) -> Motion:
     from microslip.motions.by_name import motion_named
 
-    return motion_named(scene)
+    return motion_named(motion)
 
 
 def _oscillation(motion):

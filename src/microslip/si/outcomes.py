@@ -199,7 +199,7 @@ def _state(question):
     still = full_friction(motion, contact) * carriers.count
     largest = still * largest_force(contact, motion, carriers, question.drive.mass)
     shape = (contact.pressure,)
-    if amplitude and motion.scene in COMBINED:
+    if amplitude and motion.name in COMBINED:
         shape += tuple(
             round(one / amplitude, SAME_SHARE) for one in parts(motion, contact).values()
         )

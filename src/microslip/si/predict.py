@@ -38,7 +38,7 @@ ARGUMENTS = {
 
 @with_spreads
 def predict(
-    scene: str,
+    motion: str,
     *,
     mu: object,
     load: object = None,
@@ -81,7 +81,7 @@ def predict(
 
     Parameters
     ----------
-    scene : str
+    motion : str
         "transverse", "longitudinal", "zigzag", "bore" (the sphere spins to and fro about the
         contact normal), "continuous-bore" (it spins steadily), "elliptic", "transverse-bore",
         "normal", or another motion that `microslip.solve` takes, which translates or rotates.
@@ -106,10 +106,10 @@ def predict(
         is spread over it, as microslip.solve takes it: "ring:inner=0.5", "file:pad.csv"; "hertz" if
         not given.
     amplitude : quantity
-        Half stroke of the oscillation: a length, or for a bore an angle; of scenes that oscillate
+        Half stroke of the oscillation: a length, or for a bore an angle; of motions that oscillate
         in several ways the one across.
     forward_amplitude, rotation_amplitude, load_amplitude, phase : quantity, optional
-        Of such scenes: half strokes along, m, in spin, rad, and of the load, N; and a phase, rad:
+        Of such motions: half strokes along, m, in spin, rad, and of the load, N; and a phase, rad:
         elliptic moves by sin(omega t + phase) forward, transverse-bore turns by it, normal does all
         but the load by it, and the rest goes with sin(omega t).
     frequency : quantity
@@ -136,7 +136,7 @@ def predict(
     tolerance : quantity
         Largest accepted error of the ratio mu_macro, absolute, 1e-3 if not given; under a force
         relative of the speed, 1e-2 if not given, and of a thousandth of its unit (omega u_lim, or
-        that of the scene) where it is slower.
+        that of the motion) where it is slower.
     power : bool
         Whether to ask the solver, too, what it takes to vibrate the contact.
 
@@ -153,7 +153,7 @@ def predict(
         is half as wide as one of them, and where no amplitude takes that much friction away.
     """
     given = dict(locals())  # all arguments, and nothing else yet
-    return _answered(asked(given.pop("scene"), given))
+    return _answered(asked(given.pop("motion"), given))
 
 
 def _answered(question):
@@ -232,7 +232,7 @@ def _prediction(contact, moved, velocity, answers, understood):
     looked at.  answers: Results at the speed, and at a vanishing one or None."""
     (motion, still, (warnings, not_checked)), (answer, limit) = moved, answers
     return Prediction(
-        scene=motion.scene,
+        motion=motion.name,
         contact_radius_m=contact.contact_radius,
         indentation_m=contact.indentation,
         u_lim_m=contact.u_lim,

@@ -18,7 +18,7 @@ class Prediction:
         What was asked, each by the name of its argument and as it was given, with the value in the
         SI behind it where that is another kind of measure ("1200 rpm = 20 Hz"); what was not given
         and counts is said ("rigid, as none was given").  Not compared by ==.
-    scene : str
+    motion : str
         The motion.
     counterbody : str
         The body opposite, as in `understood`.  Not compared by ==.
@@ -114,7 +114,7 @@ class Prediction:
     pressure : str
         How the load is spread, as microslip.solve takes it.
     forward_amplitude_m, rotation_amplitude_rad, load_amplitude_N, phase_rad : float or None
-        Of scenes that oscillate in several ways: further half strokes, and a phase.
+        Of motions that oscillate in several ways: further half strokes, and a phase.
     contacts : str or None
         Those that carry the body, as microslip.solve writes them; None where it is one.  Forces and
         powers are those of the body then, and sizes and groups of a contact with the mean load.
@@ -143,7 +143,7 @@ class Prediction:
         spreads nothing has the wanted reduction.
     """
 
-    scene: str
+    motion: str
     contact_radius_m: float
     indentation_m: float
     u_lim_m: float

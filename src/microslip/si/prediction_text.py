@@ -29,7 +29,7 @@ from microslip.si.printed_lines import (
 )
 from microslip.si.regimes import REGIMES
 
-UNDERSTOOD = ("scene", "body", "counterbody", "radius", "counter_radius", "radius_across")
+UNDERSTOOD = ("motion", "body", "counterbody", "radius", "counter_radius", "radius_across")
 UNDERSTOOD += ("contact_radius", "pressure", "load", "contacts", "mu", "speed")
 UNDERSTOOD += ("force", "drive_stiffness", "mass", "damping")
 UNDERSTOOD += ("amplitude", "forward_amplitude", "rotation_amplitude", "load_amplitude", "phase")
@@ -91,15 +91,15 @@ class _Text:
     def amplitude(self):
         """The amplitude with its unit and a comma; several share the largest group."""
         found = self.found
-        if found.scene in COMBINED:
+        if found.motion in COMBINED:
             return "the largest is "
-        unit = ("rad", 1.0) if unit_of_amplitude(found.scene) == "rad" else self.length
+        unit = ("rad", 1.0) if unit_of_amplitude(found.motion) == "rad" else self.length
         return f"{in_unit(found.amplitude_si, 0.0, unit)}, "
 
     def unit_of_sought(self):
         found = self.found
         if found.sought == "amplitude":
-            return ("rad", 1.0) if unit_of_amplitude(found.scene) == "rad" else self.length
+            return ("rad", 1.0) if unit_of_amplitude(found.motion) == "rad" else self.length
         return self.speed if found.sought == "speed" else force_unit(found.load_N)
 
     def sought(self):
@@ -133,7 +133,7 @@ class _Text:
 
     def friction(self):
         """Lines of the friction at a given speed: which number is a ratio, which a coefficient."""
-        found, added = self.found, ADDED.get(self.found.scene, "vibration")
+        found, added = self.found, ADDED.get(self.found.motion, "vibration")
         ratio = number_text(found.mu_macro, found.mu_macro_error)
         coefficient = number_text(found.mu_apparent, found.mu_apparent_error)
         force = in_unit(found.friction_force_N, found.friction_force_error_N, self.force)
@@ -159,7 +159,7 @@ class _Text:
         ends = found.mu_static_apparent_low, found.mu_static_apparent_high
         lines += interval_lines(ends, found.mu_static_apparent_error, found.interval_method)
         threshold = found.force_threshold_N
-        if threshold is None and is_along_the_pull(found.scene):
+        if threshold is None and is_along_the_pull(found.motion):
             lines.append(line("", UNKNOWN_THRESHOLD))
         if threshold is not None and not self.moves_at_static_friction():
             lines.append(line("", ALONG_THE_PULL))
@@ -316,7 +316,7 @@ class _Text:
             )
         )
         lines = [
-            line("power", f"{vibration} for the {ADDED.get(found.scene, 'vibration')}"),
+            line("power", f"{vibration} for the {ADDED.get(found.motion, 'vibration')}"),
             line("", f"{drag} for the drag"),
             line("energy", f"{heat} a cycle turn into heat"),
         ]

@@ -25,7 +25,7 @@ REFERENCE_LOADS_OF_DRIVING = (
     "u_lim and the contact radius are those of the load without oscillation (the reference load); "
     "forces and powers follow from mu times the mean load"
 )
-"""Sentence beside a driving line where the normal load oscillates."""
+"""Sentence beside a propulsion line where the normal load oscillates."""
 REFERENCE_LOADS = (
     "stiffness, mass and damping are over mu times the load without oscillation (the reference "
     "load); force and mu_macro are over mu times the mean load"
@@ -113,7 +113,7 @@ def length_unit(u_lim: float) -> tuple[str, float]:
 
 def unit_of_sought(found: object) -> str:
     """SI unit of the quantity that a reduction looks for."""
-    if found.sought == "amplitude" and unit_of_amplitude(found.scene) == "rad":
+    if found.sought == "amplitude" and unit_of_amplitude(found.motion) == "rad":
         return "rad"
     return {"amplitude": "m", "speed": "m/s", "load": "N"}[found.sought]
 

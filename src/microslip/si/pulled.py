@@ -18,7 +18,7 @@ from microslip.si.dimensionless import (
     RealMotion,
     full_friction,
     groups,
-    solver_scene,
+    solver_motion,
     speed_unit,
 )
 from microslip.si.reduction import friction_of
@@ -27,7 +27,7 @@ from microslip.si.several import Carriers
 from microslip.si.static_limit import equals_static_limit, largest_force
 
 SLOWEST = 1e-3
-"""Velocity, in the unit of the scene, below which the accepted error is no longer relative."""
+"""Velocity, in the unit of the motion, below which the accepted error is no longer relative."""
 MARGIN = 0.8
 """Of the accepted error that a second answer is asked for with: its velocity may be less."""
 MILLIMETRE = 1e-3
@@ -62,8 +62,8 @@ def answer_of(
     def found(tolerance):
         settings = {"poisson": contact.poisson, "tolerance": tolerance}
         settings |= {"pressure": contact.pressure} | carriers.settings
-        scene = solver_scene(motion, contact)
-        return solve(scene, velocity, size, **settings, **within_range(pulling))
+        name = solver_motion(motion, contact)
+        return solve(name, velocity, size, **settings, **within_range(pulling))
 
     answer = found(tolerance)
     if "force" not in pulling or not answer.converged:
@@ -163,7 +163,7 @@ def about_drive(
     if body:
         working = Drive(**body)
         widest = answer.amplitude * max(carriers.widest, 1.0)
-        fields["regime"] = regime(motion.scene, widest, working)
+        fields["regime"] = regime(motion.name, widest, working)
         fields["natural_frequency"] = natural_frequency(working)
     return fields
 
@@ -207,7 +207,7 @@ def _way_to_rest(carried, motion, pulling):
     _, size = groups(motion, contact)
     settings = {"pressure": contact.pressure, "poisson": contact.poisson}
     try:
-        found = shakedown(solver_scene(motion, contact), size, force, **settings)
+        found = shakedown(solver_motion(motion, contact), size, force, **settings)
     except InputError as error:  # a motion that exerts a forward force by itself
         return {"displacement_reason": error.allowed}
     if not found.converged:

@@ -80,7 +80,7 @@ class Question:
             raise InputError("reduction", self.given["reduction"], problem) from None
 
 
-def asked(scene: str, given: Mapping[str, object]) -> Question:
+def asked(motion: str, given: Mapping[str, object]) -> Question:
     """The question that is put to predict, given all of its arguments by their names.
 
     Raises InputError for each of them that is none.
@@ -95,11 +95,11 @@ def asked(scene: str, given: Mapping[str, object]) -> Question:
         raise InputError("mu", None, "needed")
     speed, force, reduction = given["speed"], given["force"], given["reduction"]
     known = {"amplitude": given["amplitude"], "load": given["load"]}
-    sought = sought_by(scene, reduction, known | {"speed": force if speed is None else speed})
-    motion, moved = read_motion(
-        scene, speed=speed, sought=sought, **{name: given[name] for name in MOVED}
+    sought = sought_by(motion, reduction, known | {"speed": force if speed is None else speed})
+    real, moved = read_motion(
+        motion, speed=speed, sought=sought, **{name: given[name] for name in MOVED}
     )
-    drive, pulls = read_drive(motion, sought=sought, **{name: given[name] for name in PULLED})
+    drive, pulls = read_drive(real, sought=sought, **{name: given[name] for name in PULLED})
     tolerance = given["tolerance"]
     if tolerance is None:
         tolerance = TOLERANCE if force is None else TOLERANCE_OF_SPEED
@@ -116,22 +116,22 @@ def asked(scene: str, given: Mapping[str, object]) -> Question:
     shape = {name: given[name] for name in (*SHAPES, "mu")}
     load = ANY_LOAD if sought == "load" else given["load"]
     contact, touched = read_contact(*bodies, load=load, contacts=carriers.count, **shape)
-    loaded = motion.load_amplitude
+    loaded = real.load_amplitude
     if several and loaded is not None and loaded * carriers.widest > contact.load:
         allowed = "allowed is at most the load beside contacts: beyond it the bodies part"
         raise InputError("load_amplitude", given["load_amplitude"], allowed)
     about, share = touched | moved | pulls | several, None
     if sought is None:
-        checked_groups(contact, motion, given)
-        checked_drive_groups(carriers.share_of(drive), motion, contact, given)
+        checked_groups(contact, real, given)
+        checked_drive_groups(carriers.share_of(drive), real, contact, given)
     if several:
-        carriers.problem(motion, contact)  # refuses what does not go with them
+        carriers.problem(real, contact)  # refuses what does not go with them
     if sought is not None:
         share = _share(reduction, pulls)
         about["reduction"] = share.text
         about = {name: text for name, text in about.items() if name != sought}
     settings = (sought, share and share.si, accepted.si, about)
-    return Question(given, contact, motion, drive, bodies, carriers, *settings)
+    return Question(given, contact, real, drive, bodies, carriers, *settings)
 
 
 def _is_sequence(value):

@@ -10,8 +10,8 @@ from microslip.adaptive.point import Result, solve
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealMotion, groups, solver_scene, speed_unit
-from microslip.si.motions import COMBINED, check_scene, unit_of_amplitude
+from microslip.si.dimensionless import RealMotion, groups, solver_motion, speed_unit
+from microslip.si.motions import COMBINED, check_motion, unit_of_amplitude
 
 LARGEST_AMPLITUDE = 1e4
 """Dimensionless amplitude beyond which no smaller friction is looked for."""
@@ -81,25 +81,25 @@ def friction_of(
     velocity, size = groups(motion, contact)
     fast = min(velocity, LARGEST["velocity"])  # beyond, the vibration does nothing
     settings = {"poisson": contact.poisson, "pressure": contact.pressure, "tolerance": tolerance}
-    return solve(solver_scene(motion, contact), fast, size, **settings, **contacts)
+    return solve(solver_motion(motion, contact), fast, size, **settings, **contacts)
 
 
-def sought_by(scene: str, reduction: object, given: Mapping[str, object]) -> str | None:
+def sought_by(motion: str, reduction: object, given: Mapping[str, object]) -> str | None:
     """What a reduction looks for, which is what was not given; None without a reduction.
 
-    Raises InputError for a scene that is none or has no such thing, and where more than one thing
+    Raises InputError for a motion that is none or has no such thing, and where more than one thing
     or nothing is left to look for.
     """
-    check_scene(scene)
+    check_motion(motion)
     missing = [name for name in SOUGHT if given[name] is None]
-    single = unit_of_amplitude(scene) is not None
+    single = unit_of_amplitude(motion) is not None
     if reduction is None:
         if given["load"] is None:
             raise InputError("load", None, "needed")
         return None
     if not single and missing != ["speed"]:
-        what = "several amplitudes" if scene in COMBINED else "no amplitude"
-        raise InputError("reduction", reduction, f"{scene} has {what} to look for")
+        what = "several amplitudes" if motion in COMBINED else "no amplitude"
+        raise InputError("reduction", reduction, f"{motion} has {what} to look for")
     if not missing:
         allowed = "allowed without an amplitude, a speed or a load, which is then looked for"
         raise InputError("reduction", reduction, allowed)

@@ -40,19 +40,19 @@ REGIMES = {
 """What the regimes are, in words."""
 
 
-def regime(scene: str, amplitude: float, drive: Drive) -> str:
+def regime(motion: str, amplitude: float, drive: Drive) -> str:
     """A key of REGIMES.
 
     Parameters
     ----------
-    scene : str
+    motion : str
         As for microslip.predict, not a steady one.
     amplitude : float
-        In the group of the scene.
+        In the group of the motion.
     drive : drive.Drive
         With stiffness, mass and damping in working units.
     """
-    first, further = (1, ALONG) if is_along_the_pull(scene) else (2, 1.0)
+    first, further = (1, ALONG) if is_along_the_pull(motion) else (2, 1.0)
     swings = [n * first for n in range(1, HARMONICS + 1)]
     answers = [math.hypot(drive.stiffness - drive.mass * n * n, drive.damping * n) for n in swings]
     if min(answers) >= STIFFER * CONTACT_STIFFNESS * further:

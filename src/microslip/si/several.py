@@ -15,7 +15,7 @@ from microslip.motions.body_contacts import contacts_of, written
 from microslip.motions.by_name import motion_named
 from microslip.pressures.by_name import pressure_named
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealDrive, RealMotion, groups, solver_scene
+from microslip.si.dimensionless import RealDrive, RealMotion, groups, solver_motion
 from microslip.si.shapes import ShapedContact
 from microslip.solver.problem import Problem
 
@@ -64,7 +64,7 @@ class Carriers:
         """What the solver makes of a motion at a vanishing speed; raises InputError about
         `contacts` where these do not go with the motion or the pressure."""
         _, size = groups(motion, contact)
-        named = motion_named(solver_scene(motion, contact), contact.pressure)
+        named = motion_named(solver_motion(motion, contact), contact.pressure)
         return body_of(Problem(named, 0.0, size, contact.poisson), self.text)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from microslip.adaptive.point import solve
 from microslip.foundation.arguments import LARGEST
-from microslip.si.dimensionless import solver_scene
+from microslip.si.dimensionless import solver_motion
 from microslip.si.question import Question
 from microslip.si.static_limit import TOLERANCE, tolerance_of
 
@@ -114,13 +114,13 @@ def _slope(limit: Callable, amplitude: float, ratio: float, deviation: float) ->
 
 def _limits_of(question):
     """limit(amplitude, poisson) -> (mu_static, error), or None where the solver has no answer."""
-    scene = solver_scene(question.motion, question.contact)
+    motion = solver_motion(question.motion, question.contact)
     settings = {"pressure": question.contact.pressure} | question.carriers.settings
     settings["tolerance"] = tolerance_of(question.motion, TOLERANCE)
 
     @cache
     def limit(amplitude, poisson):
-        answer = solve(scene, 0.0, amplitude, poisson=poisson, **settings)
+        answer = solve(motion, 0.0, amplitude, poisson=poisson, **settings)
         finite = math.isfinite(answer.mu_macro) and math.isfinite(answer.mu_macro_error)
         return (answer.mu_macro, answer.mu_macro_error) if finite else None
 

@@ -11,7 +11,7 @@ from microslip.adaptive.under_force import (
     without_forward_motion,
 )
 from microslip.si.bodies import TwoBodies
-from microslip.si.dimensionless import RealMotion, groups, solver_scene
+from microslip.si.dimensionless import RealMotion, groups, solver_motion
 from microslip.si.motions import COMBINED
 from microslip.si.several import Carriers
 
@@ -48,7 +48,7 @@ def static_limit(
         tolerance = min(tolerance, TOLERANCE)
     settings = {"poisson": contact.poisson, "pressure": contact.pressure} | carriers.settings
     return solve(
-        solver_scene(motion, contact),
+        solver_motion(motion, contact),
         0.0,
         size,
         tolerance=tolerance_of(motion, tolerance),
@@ -58,7 +58,7 @@ def static_limit(
 
 def tolerance_of(motion: RealMotion, tolerance: float) -> float:
     """The tolerance of a static limit: as requested, except where several oscillations meet."""
-    return max(tolerance, TOLERANCE_OF_COMBINED) if motion.scene in COMBINED else tolerance
+    return max(tolerance, TOLERANCE_OF_COMBINED) if motion.name in COMBINED else tolerance
 
 
 def equals_static_limit(

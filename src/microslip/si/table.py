@@ -35,7 +35,7 @@ NAMES = ("outcome", "regime", "sought", "contacts", "interval_method")
 
 
 def predict_table(
-    scene: str,
+    motion: str,
     cases: Mapping[str, object] | str | os.PathLike,
     *,
     decimal: str = ".",
@@ -46,7 +46,7 @@ def predict_table(
 
     Parameters
     ----------
-    scene : str
+    motion : str
         As for `microslip.predict`.
     cases : mapping, pandas DataFrame or path of a CSV file
         Sequences of one length by the names of predict's arguments: {"load": ["1 N", "10 N"]}, or
@@ -72,17 +72,17 @@ def predict_table(
     """
     names, errors = None, {}
     if isinstance(cases, str | os.PathLike):
-        every = [name for name in signature(predict).parameters if name not in ("scene", "power")]
+        every = [name for name in signature(predict).parameters if name not in ("motion", "power")]
         found = cases_of_file(cases, every, decimal=decimal, encoding=encoding)
         cases, errors = found.columns, found.errors
         names = [f"line {line}" for line in found.lines]
     elif csv_text.is_table(cases):
         cases = csv_text.by_names(cases)
-    return as_dataset(scene, cases, list(predictions(scene, cases, shared, names, errors)))
+    return as_dataset(motion, cases, list(predictions(motion, cases, shared, names, errors)))
 
 
 def predictions(
-    scene: str,
+    motion: str,
     cases: Mapping[str, object],
     shared: Mapping[str, object],
     names: Sequence[str] | None = None,
@@ -95,7 +95,7 @@ def predictions(
 
     Parameters
     ----------
-    scene, cases, shared
+    motion, cases, shared
         As for predict_table, the cases as lists.
     names : sequence of str, optional
         Of the cases, for messages.
@@ -116,7 +116,7 @@ def predictions(
     for case, given in enumerate(several):
         if case not in errors:
             try:
-                _question(scene, **given)
+                _question(motion, **given)
             except InputError as error:
                 errors[case] = error
     if len(errors) == count:
@@ -126,29 +126,29 @@ def predictions(
         where = names[next(case for case, one in errors.items() if one is first)]
         raise InputError(first.argument, first.value, f"in {where}: {first.allowed}")
     return (
-        NoPrediction(errors[case]) if case in errors else _prediction(scene, given)
+        NoPrediction(errors[case]) if case in errors else _prediction(motion, given)
         for case, given in enumerate(several)
     )
 
 
-def _prediction(scene, given):
+def _prediction(motion, given):
     try:
-        return predict(scene, **given)
+        return predict(motion, **given)
     except NotAttainedError as error:
-        return unattained(_question(scene, **given), error.allowed)
+        return unattained(_question(motion, **given), error.allowed)
     except InputError as error:
         return NoPrediction(error)
 
 
-def _question(scene, **given):
+def _question(motion, **given):
     """What is asked; raises what predict would raise before it solves anything."""
-    plain, _ = without_spreads(scene, given)
+    plain, _ = without_spreads(motion, given)
     every = dict.fromkeys(signature(predict).parameters) | {"power": False}
     strange = [name for name in plain if name not in every]
     if strange:
         raise InputError(strange[0], plain[strange[0]], f"allowed are {', '.join(every)}")
-    del every["scene"]
-    return asked(scene, every | plain)
+    del every["motion"]
+    return asked(motion, every | plain)
 
 
 def number_of(cases: Mapping[str, object], shared: Mapping[str, object]) -> int:
@@ -172,7 +172,7 @@ def number_of(cases: Mapping[str, object], shared: Mapping[str, object]) -> int:
 
 
 def as_dataset(
-    scene: str, cases: Mapping[str, object], found: Sequence[Prediction | NoPrediction]
+    motion: str, cases: Mapping[str, object], found: Sequence[Prediction | NoPrediction]
 ) -> xr.Dataset:
     """What predict_table returns, of the predictions of all cases."""
     import xarray as xr
@@ -180,7 +180,7 @@ def as_dataset(
     variables = {}
     for field in fields(Prediction):
         values = [getattr(one, field.name, None) for one in found]
-        if field.name in ("scene", "understood"):
+        if field.name in ("motion", "understood"):
             continue
         if field.name in TEXTS:
             column, about = ["; ".join(texts) for texts in values], {}
@@ -200,7 +200,7 @@ def as_dataset(
         )
         for name, values in cases.items()
     }
-    amplitude = variables["amplitude_si"][2]["units"] = unit_of_amplitude(scene) or "m"
+    amplitude = variables["amplitude_si"][2]["units"] = unit_of_amplitude(motion) or "m"
     units = {"amplitude": amplitude, "speed": "m s-1", "load": "N"}
     errors = [str(getattr(one, "error", "")) for one in found]
     variables["error"] = "case", errors, {"long_name": "what is wrong with the case"}
@@ -209,7 +209,7 @@ def as_dataset(
         for name in ("sought_error", "sought_spread"):
             unit = units[next(iter(sought))] if len(sought) == 1 else "SI unit of what is sought"
             variables[name][2]["units"] = unit
-    return xr.Dataset(variables, {"case": np.arange(len(found))}, {"scene": scene})
+    return xr.Dataset(variables, {"case": np.arange(len(found))}, {"motion": motion})
 
 
 def _unit(name):

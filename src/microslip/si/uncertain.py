@@ -43,7 +43,7 @@ UNITS = {
     "mass": "kg",
     "damping": "N*s/m",
 }
-"""Arguments that may have a standard uncertainty, and their SI units; the amplitude of some scenes
+"""Arguments that may have a standard uncertainty, and their SI units; the amplitude of some motions
 has another one."""
 FIELDS = {
     "mu_macro": "mu_macro_spread",
@@ -60,13 +60,13 @@ def with_spreads(predict: Callable) -> Callable:
     """predict, of which arguments in UNITS may be texts with a spread."""
 
     @functools.wraps(predict)
-    def asked(scene, **arguments):
-        plain, spread = without_spreads(scene, arguments)
-        found = predict(scene, **plain)
+    def asked(motion, **arguments):
+        plain, spread = without_spreads(motion, arguments)
+        found = predict(motion, **plain)
         if not spread:
             return found
         ends = {
-            name: tuple(_predicted(predict, scene, plain, name, end) for end in pair)
+            name: tuple(_predicted(predict, motion, plain, name, end) for end in pair)
             for name, pair in spread.items()
         }
         squares = {name: 0.0 for name in FIELDS if getattr(found, name) is not None}
@@ -80,9 +80,9 @@ def with_spreads(predict: Callable) -> Callable:
             for name, (low, high) in spread.items()
         ]
         every = dict.fromkeys(inspect.signature(predict).parameters) | {"power": False} | plain
-        del every["scene"]
+        del every["motion"]
         spreads |= with_outcomes(
-            found, inputs, lambda changes: question_of(scene, every | dict(changes)), ends
+            found, inputs, lambda changes: question_of(motion, every | dict(changes)), ends
         )
         if (spreads.get("probability_runs_away") or 0.0) > EXCLUDED:
             spreads["speed_spread_m_s"] = math.inf
@@ -91,7 +91,7 @@ def with_spreads(predict: Callable) -> Callable:
     return asked
 
 
-def without_spreads(scene: object, arguments: Mapping[str, object]) -> tuple[dict, dict]:
+def without_spreads(motion: object, arguments: Mapping[str, object]) -> tuple[dict, dict]:
     """Arguments of predict without the spreads in them, and the ends of those that have one.
 
     Raises InputError for a spread that is none.
@@ -101,8 +101,8 @@ def without_spreads(scene: object, arguments: Mapping[str, object]) -> tuple[dic
         parts = _parts(arguments.get(name))
         if parts is None:
             continue
-        if name == "amplitude" and isinstance(scene, str):
-            unit = unit_of_amplitude(scene) or unit
+        if name == "amplitude" and isinstance(motion, str):
+            unit = unit_of_amplitude(motion) or unit
         plain[name], ends[name] = parts[0], _ends(name, arguments[name], parts, unit)
     return plain, ends
 
@@ -140,9 +140,9 @@ def _half_of_difference(low, high, field):
     return math.inf if math.isnan(half) else half
 
 
-def _predicted(predict, scene, plain, name, end):
+def _predicted(predict, motion, plain, name, end):
     try:
-        return predict(scene, **plain | {name: end})
+        return predict(motion, **plain | {name: end})
     except NotAttainedError:
         return None
     except InputError as error:

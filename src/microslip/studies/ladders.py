@@ -7,7 +7,7 @@ which model applies where, as plain data; a test keeps it the same as what the s
 
 from typing import NamedTuple
 
-from microslip.config.records import MODELS_OF_SCENE
+from microslip.config.records import MODELS_OF_MOTION
 from microslip.solver.method_names import SHIPPED, declared, missing, split
 
 
@@ -50,19 +50,19 @@ which power of the steps it falls. That is below what the discretisation leaves 
 
 
 TRANSLATIONS = ("transverse", "longitudinal", "zigzag")
-"""Scenes without rotation."""
+"""Motions without rotation."""
 
 
-def models_of(scene: str, poisson: float) -> list[str]:
-    """Names of the models that apply to a scene at a Poisson's ratio, from crude to costly."""
+def models_of(motion: str, poisson: float) -> list[str]:
+    """Names of the models that apply to a motion at a Poisson's ratio, from crude to costly."""
     rings_suffice = poisson == 0
-    known = MODELS_OF_SCENE[scene]
+    known = MODELS_OF_MOTION[motion]
     return [m for m in LADDERS if m in known and (m != "radial" or rings_suffice)]
 
 
-def exact_model(scene: str, poisson: float) -> str:
+def exact_model(motion: str, poisson: float) -> str:
     """The model that model auto takes: rings where they suffice, angular points otherwise."""
-    return "radial" if "radial" in models_of(scene, poisson) else "polar"
+    return "radial" if "radial" in models_of(motion, poisson) else "polar"
 
 
 def ladder(model: str, method: str, count: int) -> list:
@@ -81,15 +81,15 @@ def ladder(model: str, method: str, count: int) -> list:
     ]
 
 
-def models_for(method: str, scene: str, poisson: float) -> list[str]:
+def models_for(method: str, motion: str, poisson: float) -> list[str]:
     """Models that `method` is run on: all for the shipped one, else its own or what auto takes.
 
     None for a rotation that it does not know, or where it requires a package that is not installed.
     """
     name, _ = split(method)
     if name == SHIPPED:
-        return models_of(scene, poisson)
-    knows = scene in TRANSLATIONS or declared(name, "turns") is not False
+        return models_of(motion, poisson)
+    knows = motion in TRANSLATIONS or declared(name, "turns") is not False
     if missing(method) or not knows:
         return []
-    return [declared(name, "model") or exact_model(scene, poisson)]
+    return [declared(name, "model") or exact_model(motion, poisson)]

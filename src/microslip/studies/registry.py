@@ -2,7 +2,7 @@
 motions drive.
 
 `ladders` says in which resolutions a model is run; `accuracy_cost`, `stability`, `claims` and
-`driving` say what is asked; `fronts` picks and fits, `verdicts` judges; the modules with `dataset`
+`propulsion` make the requests; `fronts` picks and fits, `verdicts` judges; those with `dataset`
 in their name turn the answers into datasets. What is asked is plain data that imports nothing
 heavy, since the workflow reads it whenever it is parsed.
 """
@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from microslip.config.records import Configuration
 from microslip.studies.accuracy import accuracy_cost
 from microslip.studies.claims import claims
-from microslip.studies.driving import driving
+from microslip.studies.propulsion import propulsion
 from microslip.studies.stability import stability
 
 if TYPE_CHECKING:
@@ -28,14 +28,14 @@ DATASETS = {
     "accuracy": "accuracy_cost",
     "stability": "stability",
     "claims": "claims",
-    "driving": "driving",
+    "propulsion": "propulsion",
 }
 
 _ASKED = {
     "accuracy": accuracy_cost,
     "stability": stability,
     "claims": claims,
-    "driving": driving,
+    "propulsion": propulsion,
 }
 
 

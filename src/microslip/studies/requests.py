@@ -4,7 +4,7 @@
 - choice: one timed solve at a tolerance, which picks its own model and resolution;
 - probe: one solve with a method exchanged, with nothing timed;
 - point: an ordinary point of a sweep, solved tightly, that the others are compared with;
-- drive: the line of a motion that drives, from stall to no load;
+- drive: the line of a self-propelled motion, from stall to no load;
 - scaling: what a step costs at one size.
 
 Requests that are timed (trial, choice, scaling) name the model of the CPU, so that times of
@@ -25,7 +25,7 @@ MOST_WORK = 5_000_000
 def of_point(point: StudyPoint) -> dict:
     """The part of a request that says where: point is a records.StudyPoint."""
     return {
-        "scene": point.scene,
+        "motion": point.motion,
         "velocity": number(point.velocity),
         "amplitude": None if point.amplitude is None else number(point.amplitude),
         "poisson": number(point.poisson),
@@ -72,7 +72,7 @@ def probe(
 def reference(point: StudyPoint, tolerance: float | None = None) -> dict:
     """An ordinary point; tolerance: None for what a reference is worth."""
     if tolerance is None:
-        rings = exact_model(point.scene, point.poisson) == "radial"
+        rings = exact_model(point.motion, point.poisson) == "radial"
         tolerance = RINGS_TOLERANCE if rings else TOLERANCE
     kind = {"kind": "point", "model": "auto", "tolerance": number(tolerance)}
     return of_point(point) | kind | {"cells": None, "steps": None}

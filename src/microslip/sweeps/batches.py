@@ -44,7 +44,7 @@ FOLDERS = {
     "scaling": "scaling",
     "run": "runs",
     "patches": "patches",
-    "drive": "driving_lines",
+    "propulsion": "propulsion_lines",
 }
 
 
@@ -56,10 +56,10 @@ class PointRequests(Sequence):
     """
 
     def __init__(self, sweep: Sweep):
-        scene, pressure = solver_names(sweep)
+        motion, pressure = solver_names(sweep)
         self._common = {
             "kind": "point",
-            "scene": scene,
+            "motion": motion,
             "model": sweep.model,
             "tolerance": None if sweep.tolerance is None else number(sweep.tolerance),
             "cells": sweep.cells,
@@ -107,10 +107,10 @@ def history_requests(configuration: Configuration, name: str) -> list[dict]:
     return [r for run in HISTORIES_OF_SWEEP.get(name, ()) for r in requests[run](given[run])]
 
 
-def _single(kind, scene, settings, **more):
+def _single(kind, motion, settings, **more):
     counts = ("cells", "steps", "periods")
     numbers = {k: number(v) for k, v in settings.items() if k not in counts}
-    return {"kind": kind, "scene": scene} | settings | numbers | more
+    return {"kind": kind, "motion": motion} | settings | numbers | more
 
 
 def key_of(request: dict) -> str:
@@ -131,8 +131,8 @@ def name_of_batch(requests: Sequence[dict]) -> str:
 
 def group(request: dict) -> str:
     """Name the subfolder of the store that a request's result goes to."""
-    scene = request.get("scene", request.get("model"))
-    return "/".join([FOLDERS[request["kind"]], scene.partition(":")[0]])  # numbers apart
+    motion = request.get("motion", request.get("model"))
+    return "/".join([FOLDERS[request["kind"]], motion.partition(":")[0]])  # numbers apart
 
 
 def answer(request: dict, store: Store, time_limit: float | None = None) -> dict:
@@ -251,7 +251,7 @@ def label(request: dict) -> str:
     if request["kind"] != "point":
         names += ["model", "method", "cells", "angles", "steps"]
     given = ", ".join(f"{name} {request[name]}" for name in names if request.get(name) is not None)
-    return f"{request.get('scene', request['kind'])} at {given}"
+    return f"{request.get('motion', request['kind'])} at {given}"
 
 
 @functools.cache

@@ -26,7 +26,7 @@ class Store:
         self._tried = False
 
     def path(self, group: str, key: str) -> Path:
-        """Path of the result `key`; group is a subfolder that keeps scenes apart."""
+        """Path of the result `key`; group is a subfolder that keeps motions apart."""
         return self.folder / group / key[:2] / f"{key}.json"
 
     def read(self, group: str, key: str) -> dict | None:

@@ -77,13 +77,13 @@ def _point(request, time_limit=None):
 
 
 def _history(request):
-    history = microslip.history(request["scene"], **_of_single_run(request))
+    history = microslip.history(request["motion"], **_of_single_run(request))
     names = ("phase", "displacement_forward", "force_forward", "force_lateral", "torque")
     return {name: getattr(history, name) for name in names}
 
 
 def _field(request):
-    return microslip.traction_field(request["scene"], **_of_single_run(request))
+    return microslip.traction_field(request["motion"], **_of_single_run(request))
 
 
 def _period(request):
@@ -99,7 +99,7 @@ def _trial(request):
 
     place = _place(request)
     settings = {"model": request["model"], "method": request["method"]}
-    motion = {name: place[name] for name in ("scene", "poisson", "pressure") if name in place}
+    motion = {name: place[name] for name in ("motion", "poisson", "pressure") if name in place}
     reason = single_run.applies(**motion, **settings)
     if reason:
         return {"applies": False, "converged": False, "reason": reason}
@@ -125,10 +125,10 @@ def _probe(request):
     from microslip.motions.by_name import motion_named
 
     place = _place(request)
-    scene = motion_named(place["scene"], place.get("pressure", "hertz"))
-    model = choose_model(scene, place["poisson"], request["model"])
-    how = {"model": model, "method": request["method"], "pressure": scene.pressure.name}
-    reason = single_run.applies(place["scene"], place["poisson"], **how)
+    motion = motion_named(place["motion"], place.get("pressure", "hertz"))
+    model = choose_model(motion, place["poisson"], request["model"])
+    how = {"model": model, "method": request["method"], "pressure": motion.pressure.name}
+    reason = single_run.applies(place["motion"], place["poisson"], **how)
     if reason:
         return {"applies": False, "converged": False, "reason": reason}
     settings = {"model": request["model"], "method": request["method"]}
@@ -159,11 +159,13 @@ def _patches(request):
     return _found(lambda: patches(**_at(request)))
 
 
-def _drive(request):
-    """The line of a motion that drives."""
+def _propulsion(request):
+    """The line of a self-propelled motion."""
     given = {name: float(request[name]) for name in ("poisson", "tolerance")}
     amplitude = float(request["amplitude"])
-    line = microslip.drive(request["scene"], amplitude, points=request["points"], **given).to_dict()
+    line = microslip.propulsion(
+        request["motion"], amplitude, points=request["points"], **given
+    ).to_dict()
     line.pop("solve_time_s")
     return line
 
@@ -179,7 +181,7 @@ _KINDS = {
     "scaling": _scaling,
     "run": _run,
     "patches": _patches,
-    "drive": _drive,
+    "propulsion": _propulsion,
 }
 
 
@@ -189,7 +191,7 @@ _KINDS = {
 def _place(request):
     amplitude, velocity = request["amplitude"], request["velocity"]
     place = {
-        "scene": request["scene"],
+        "motion": request["motion"],
         "velocity": None if velocity is None else float(velocity),
         "amplitude": None if amplitude is None else float(amplitude),
         "poisson": float(request["poisson"]),
@@ -211,7 +213,7 @@ def _solved(request, **settings):
     settings |= {name: float(request[name]) for name in DRIVES if name in request}
     tolerance = request["tolerance"]
     result = microslip.solve(
-        place.pop("scene"),
+        place.pop("motion"),
         place.pop("velocity"),
         place.pop("amplitude"),
         tolerance=None if tolerance is None else float(tolerance),

@@ -30,7 +30,7 @@ from microslip.sweeps.sealed_files import refuse_no_folder, refuse_unusable
 
 
 def solve_stored(
-    scene: str,
+    motion: str,
     velocity: float | None = None,
     amplitude: float | None = None,
     *,
@@ -76,7 +76,7 @@ def solve_stored(
         raise InputError("results", results, "is not allowed; allowed: the name of a folder")
     drive = checked_drive(velocity, force, stiffness, mass, damping)
     kind, place, amplitude, poisson = checked_point(
-        scene, 0.0 if velocity is None else velocity, amplitude, poisson, pressure, backward=True
+        motion, 0.0 if velocity is None else velocity, amplitude, poisson, pressure, backward=True
     )
     tolerance, cells, steps = checked_request(tolerance, cells, steps)
     refuse_bounds(time_limit=time_limit)
@@ -92,7 +92,7 @@ def solve_stored(
         refuse_choice(kind, model, (moving, amplitude, poisson), cells, steps)
     grid = Sweep(
         name=kind.name,
-        scene=kind.name,
+        motion=kind.name,
         velocity=() if velocity is None else (place,),
         amplitude=None if amplitude is None else (amplitude,),
         poisson=(poisson,),

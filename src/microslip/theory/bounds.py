@@ -18,7 +18,7 @@ and v2 that have become periodic dissipate no less than nothing on the differenc
 (mu1 - mu2)(v1 - v2) >= 0, since Coulomb's law at given pressure is monotone and the half-space is
 elastic.  Where the oscillation reverses its forward motion under the same load half a period later
 (motions/mirror_image.py), friction is odd in the velocity, and so it is never negative for v > 0.
-Other motions may drive the contact (Motion.drives).
+Other motions may propel the contact (Motion.propels).
 """
 
 from __future__ import annotations

@@ -36,17 +36,17 @@ from microslip.theory.catalogue import FORMS
 
 @xr.register_dataset_accessor("friction")
 class Friction(Inverse):
-    """Friction at any point of a scene, from a dataset of one of its sweeps.
+    """Friction at any point of a motion, from a dataset of one of its sweeps.
 
     Raises ValueError where the dataset is none of a sweep.
     """
 
     def __init__(self, dataset: xr.Dataset):
         try:
-            motion = motion_named(dataset.attrs.get("scene"))
+            motion = motion_named(dataset.attrs.get("motion"))
         except ValueError:
             raise ValueError(
-                "no scene of microslip: allowed is the dataset of a sweep, with its attributes"
+                "no motion of microslip: allowed is the dataset of a sweep, with its attributes"
             ) from None
         if "force" in dataset.attrs.get("drive", ""):
             raise ValueError(
@@ -56,7 +56,7 @@ class Friction(Inverse):
             )
         self._dataset = dataset
         # Not the motion itself: it holds functions without a name, which cannot be pickled.
-        self._scene, self._periodic = motion.name, motion.periodic
+        self._motion, self._periodic = motion.name, motion.periodic
         self._pressure = dataset.attrs.get("pressure", "hertz")
         self._limits_known = beyond.known_of(dataset)
         self._nodes = NodesOnce()
@@ -140,7 +140,7 @@ class Friction(Inverse):
                 raise InputError("tolerance", tolerance, "allowed is a number above 0")
             point = flat_velocity, flat_amplitude
             self._solve((value, error, source), point, nu, tolerance)
-        found = answered(self._scene, velocity, (value, error, source), nu)
+        found = answered(self._motion, velocity, (value, error, source), nu)
         return found.assign_attrs(self._note(error, source))
 
     def on_grid(
@@ -185,7 +185,7 @@ class Friction(Inverse):
     def _labelled(self, velocity, amplitude):
         if (amplitude is None) == self._periodic:
             need = "none" if amplitude is not None else "a number"
-            raise InputError("amplitude", amplitude, f"allowed for {self._scene} is {need}")
+            raise InputError("amplitude", amplitude, f"allowed for {self._motion} is {need}")
         velocity = labelled("velocity", velocity)
         return velocity, None if amplitude is None else labelled("amplitude", amplitude)
 
@@ -202,7 +202,7 @@ class Friction(Inverse):
         rows = np.nan_to_num(amplitude)
         tables = self._table(nodes, nu), self._table(nodes, nu, still=True)
         if tolerance is None:
-            what = self._scene if self._pressure == "hertz" else f"pressure {self._pressure}"
+            what = self._motion if self._pressure == "hertz" else f"pressure {self._pressure}"
             if not beyond.is_alone(self._dataset):
                 what = f"{what} under a spring or of several contacts"
             refuse_beyond(*tables, velocity, rows, what)
@@ -230,7 +230,7 @@ class Friction(Inverse):
     def _steady(self, nodes, velocity, nu):
         table = self._table(nodes, nu)
         inside = table.columns.holds(velocity)
-        exact = FORMS[self._scene]["mu_forward_theory"].function
+        exact = FORMS[self._motion]["mu_forward_theory"].function
         value, error = np.array(exact(velocity), float), np.full(len(velocity), beyond.ROUNDING)
         value[inside], error[inside] = table.at(np.zeros(inside.sum()), velocity[inside])
         return value, error, np.where(inside, MAP, EXACT)
@@ -238,7 +238,7 @@ class Friction(Inverse):
     # Oscillation
 
     def _oscillating(self, nodes, velocity, amplitude, nu):
-        table, limits = self._table(nodes, nu), beyond.LIMITS[self._scene]
+        table, limits = self._table(nodes, nu), beyond.LIMITS[self._motion]
         slowest, fastest = table.columns.values[[0, -1]]
         narrowest, widest = table.rows.values[[0, -1]]
         # Outward from the nearest point on the edge of the map; above it, first down to where the
@@ -287,7 +287,7 @@ class Friction(Inverse):
         for k in np.flatnonzero(~(error <= tolerance)):
             velocity, amplitude = (float(part[k]) for part in point)
             size = None if np.isnan(amplitude) else amplitude
-            found = solved(folder, self._scene, velocity, size, **settings)
+            found = solved(folder, self._motion, velocity, size, **settings)
             source[k] = SOLVER
             value[k], error[k] = np.nan, np.inf
             if found.converged:

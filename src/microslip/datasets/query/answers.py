@@ -25,7 +25,7 @@ OUTSIDE = (STATIC, SLOWER, FASTER, WIDER, NARROWER)
 
 
 def answered(
-    scene: str,
+    motion: str,
     shape: xr.DataArray,
     answer: tuple[np.ndarray, np.ndarray, np.ndarray],
     poisson: float,
@@ -34,7 +34,7 @@ def answered(
 
     Parameters
     ----------
-    scene : str
+    motion : str
         What was asked about.
     shape : xarray.DataArray
         Its dimensions and coordinates.
@@ -66,7 +66,7 @@ def answered(
             ),
         },
         coords=shape.coords,
-        attrs={"scene": scene},
+        attrs={"motion": motion},
     )
     if "poisson" in found.dims:
         return found

@@ -58,7 +58,7 @@ class Estimate(NamedTuple):
 
 @dataclass(frozen=True)
 class Limits:
-    """What is proved about a scene, functions of arrays of velocity and amplitude.
+    """What is proved about a motion, functions of arrays of velocity and amplitude.
 
     Attributes
     ----------
@@ -106,16 +106,16 @@ LIMITS = {
 }
 
 
-def is_known(scene: str, pressure: str) -> bool:
-    """Whether limits of a scene under a pressure are proved."""
-    return pressure == "hertz" and (scene in LIMITS or scene == "continuous-bore")
+def is_known(motion: str, pressure: str) -> bool:
+    """Whether limits of a motion under a pressure are proved."""
+    return pressure == "hertz" and (motion in LIMITS or motion == "continuous-bore")
 
 
 def known_of(dataset: xr.Dataset) -> bool:
     """Whether limits are proved for what a dataset holds: for one contact, at a given velocity."""
     if not is_alone(dataset):
         return False
-    return is_known(dataset.attrs["scene"], dataset.attrs.get("pressure", "hertz"))
+    return is_known(dataset.attrs["motion"], dataset.attrs.get("pressure", "hertz"))
 
 
 def is_alone(dataset: xr.Dataset) -> bool:

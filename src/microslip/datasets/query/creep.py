@@ -122,7 +122,7 @@ class Creep:
             "flag_meanings": " ".join(name.replace(" ", "_") for name in STATES),
         }
         found["state"] = shape.dims, state.reshape(shape.shape), flags
-        about = {"scene": self._dataset.attrs["scene"]}
+        about = {"motion": self._dataset.attrs["motion"]}
         return xr.Dataset(found, coords=shape.coords, attrs=about).assign_coords(
             poisson=self._dataset["poisson"]
         )

@@ -99,7 +99,7 @@ class Inverse:
             _answers(_Questions(at, wanted[k : k + AT_A_TIME], other[k : k + AT_A_TIME]), *ends)
             for k in range(0, len(wanted), AT_A_TIME)
         ]
-        return _dataset(sought, parts[0], found, self._scene)
+        return _dataset(sought, parts[0], found, self._motion)
 
 
 class _Questions(NamedTuple):
@@ -224,7 +224,7 @@ def _end(asked, outer, inner, row, skip):
     return end
 
 
-def _dataset(sought, shape, found, scene):
+def _dataset(sought, shape, found, motion):
     """The answers of all questions as arrays of the shape of what was asked."""
     offsets = np.cumsum([0] + [len(outcome) for _, outcome in found])
     rows = np.concatenate(
@@ -250,4 +250,4 @@ def _dataset(sought, shape, found, scene):
         "flag_meanings": " ".join(name.replace(" ", "_") for name in OUTCOMES),
     }
     values["outcome"] = shape.dims, outcome.astype(np.int8).reshape(shape.shape), flags
-    return xr.Dataset(values, coords=shape.coords, attrs={"scene": scene})
+    return xr.Dataset(values, coords=shape.coords, attrs={"motion": motion})

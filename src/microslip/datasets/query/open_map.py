@@ -17,7 +17,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from microslip.config.records import SCENE_OF_SWEEP
+from microslip.config.records import MOTION_OF_SWEEP
 from microslip.datasets.netcdf import group_names, refuse_oversized
 from microslip.datasets.query.accessor import Friction
 from microslip.datasets.query.answers import SOURCES
@@ -87,13 +87,13 @@ def _found(name, results, chunks, group):
     path = Path(name)
     if path.suffix != ".nc":
         path = Path(results, f"{name}.nc")
-        if str(name) not in SCENE_OF_SWEEP and not path.is_file():
-            near = difflib.get_close_matches(str(name), SCENE_OF_SWEEP, n=1)
+        if str(name) not in MOTION_OF_SWEEP and not path.is_file():
+            near = difflib.get_close_matches(str(name), MOTION_OF_SWEEP, n=1)
             hint = f"did you mean {near[0]}? " if near else ""
             raise InputError(
                 "name",
                 name,
-                f"{hint}allowed is {', '.join(SCENE_OF_SWEEP)}, another sweep of which {results} "
+                f"{hint}allowed is {', '.join(MOTION_OF_SWEEP)}, another sweep of which {results} "
                 "has the dataset, or a path that ends in .nc",
             )
     if not path.is_file():
@@ -102,7 +102,7 @@ def _found(name, results, chunks, group):
         raise CacheError(f"{path} is damaged: run the workflow again, which makes it anew")
     refuse_oversized(path)
     dataset = _opened(path, chunks=chunks)
-    if "scene" not in dataset.attrs or not dataset.variables.keys() & SOLVED:
+    if "motion" not in dataset.attrs or not dataset.variables.keys() & SOLVED:
         dataset.close()
         raise CacheError(f"{path} is not the dataset of a sweep")
     if group is None:

@@ -1,9 +1,9 @@
-"""Rings times angular modes: rotating scenes at any nu, translation at nu > 0, and both at once.
+"""Rings times angular modes: rotating motions at any nu, translation at nu > 0, and both at once.
 
 Points sit on rings at angles theta_j = (j + 1/2) pi / M, theta from the lateral axis; the other
 half of the disc follows from symmetry:
 
-- scenes that rotate: mirror image across the lateral axis (forward traction even, lateral odd);
+- motions that rotate: mirror image across the lateral axis (forward traction even, lateral odd);
 - translation: point symmetry, traction(-z) = traction(z), so even modes only.
 
 A motion that does both has neither symmetry, and the points of the other half are resolved, too.

@@ -54,7 +54,7 @@ function frictionAt(map, velocity, amplitude, poisson) {
     if (!(Number.isFinite(value) && value >= 0)) refuse(name, value, "allowed is a finite number >= 0");
   }
   const nu = poissonWithin(map, poisson);
-  const limits = map.has_limits ? LIMITS[map.scene] : undefined;
+  const limits = map.has_limits ? LIMITS[map.motion] : undefined;
   if (limits === undefined) return mapAlone(map, velocity, amplitude, nu);
   const [slowest, fastest] = map.velocity, [narrowest, widest] = map.amplitude;
   if (amplitude === 0) return { value: 1, error: ROUNDING, source: "no vibration" };
@@ -116,7 +116,7 @@ function withinTheBalance(limits, value, error, velocity, amplitude) {
 
 // Answers of a map that no limit is known of.
 function mapAlone(map, velocity, amplitude, poisson) {
-  const what = map.pressure === "hertz" ? map.scene : `pressure ${map.pressure}`;
+  const what = map.pressure === "hertz" ? map.motion : `pressure ${map.pressure}`;
   const advice = `no limit of ${what} is known: with a tolerance the solver is asked`;
   if (velocity === 0) refuse("velocity", 0, `the map has none such; ${advice}`);
   for (const [name, value] of Object.entries({ velocity, amplitude })) {

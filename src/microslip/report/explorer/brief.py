@@ -125,7 +125,7 @@ def about(name: str, dataset: xr.Dataset, poisson: float) -> dict:
         "id": f"{name} {number(poisson)}",
         "title": name.replace("_", " ").capitalize() if group is None else dataset.attrs["title"],
         "group": group,
-        "scene": dataset.attrs["scene"],
+        "motion": dataset.attrs["motion"],
         "pressure": dataset.attrs.get("pressure", "hertz"),
         "poisson": poisson,
     }

@@ -36,9 +36,9 @@ def packed(dataset: xr.Dataset) -> dict:
     """
     found = cells_of(dataset)
     table, coordinates = found.cells, found.cells.coordinates
-    scene, pressure = dataset.attrs["scene"], dataset.attrs.get("pressure", "hertz")
+    motion, pressure = dataset.attrs["motion"], dataset.attrs.get("pressure", "hertz")
     return {
-        "scene": scene,
+        "motion": motion,
         "pressure": pressure,
         "error": float(dataset.attrs["error"]),
         "velocity": list(coordinates.velocity),

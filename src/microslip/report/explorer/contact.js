@@ -52,15 +52,15 @@ function questionOf(si, texts) {
   if (bodies.every((body) => body.young === Infinity)) {
     refuse("the counterbody", "rigid", "allowed is an elastic one for a rigid body");
   }
-  const scene = texts.scene;
+  const motion = texts.motion;
   return {
-    scene,
+    motion,
     bodies,
     radius: value("radius"),
     load: value("load"),
     mu: value("mu"),
     speed: value("speed"),
-    amplitude: value(si.amplitude_of[scene]),
+    amplitude: value(si.amplitude_of[motion]),
     frequency: value("frequency"),
   };
 }
@@ -103,15 +103,15 @@ function contactOf(si, { bodies, radius, load, mu }) {
 }
 
 // The forward speed at the dimensionless velocity 1, in m/s; 0 for a bore without an amplitude.
-function speedUnitOf({ scene, amplitude, frequency }, contact) {
-  return 2 * Math.PI * frequency * (scene === "bore" ? amplitude * contact.a : contact.u_lim);
+function speedUnitOf({ motion, amplitude, frequency }, contact) {
+  return 2 * Math.PI * frequency * (motion === "bore" ? amplitude * contact.a : contact.u_lim);
 }
 
 // The dimensionless groups of the motion: [velocity, amplitude].
-function groupsOf(si, { scene, speed, amplitude, frequency }, contact) {
+function groupsOf(si, { motion, speed, amplitude, frequency }, contact) {
   const omega = 2 * Math.PI * frequency;
   const over = (unit) => (speed === 0 ? 0 : unit > 0 ? speed / unit : Infinity);
-  if (scene !== "bore") return [over(omega * contact.u_lim), amplitude / contact.u_lim];
+  if (motion !== "bore") return [over(omega * contact.u_lim), amplitude / contact.u_lim];
   if (amplitude === 0) return [0, 0];
   const twist = (4 / (Math.PI * (2 - contact.poisson))) * si.half_stuck;
   return [over(omega * amplitude * contact.a), (amplitude * contact.a) / contact.u_lim / twist];
@@ -123,7 +123,7 @@ function measuresOf(si, question, contact) {
   const hard = bodies.map((body) => body.hardness).filter((hardness) => hardness !== null);
   const tabor = ((si.adhesion ** 2 * radius) / (contact.stiffness ** 2 * si.range ** 3)) ** (1 / 3);
   const pull = (tabor > si.short ? 1.5 : 2) * Math.PI * si.adhesion * radius;
-  const turns = question.scene === "bore";
+  const turns = question.motion === "bore";
   const along = turns ? 0 : question.amplitude, angle = turns ? question.amplitude : 0;
   const found = {
     largest_pressure: pressure,
@@ -192,11 +192,11 @@ function answerOf(si, maps, question) {
       "over that of the vibration, it is beyond the range of floating-point numbers");
   }
   if (!(amplitude <= si.largest_amplitude)) {
-    refuse(si.fields[si.amplitude_of[question.scene]].label, general(question.amplitude),
+    refuse(si.fields[si.amplitude_of[question.motion]].label, general(question.amplitude),
       `${general(amplitude, 3)} in the unit of the map; allowed is at most ${general(si.largest_amplitude)}`);
   }
   const said = {
-    scene: question.scene,
+    motion: question.motion,
     velocity,
     amplitude,
     poisson: contact.poisson,
@@ -215,11 +215,11 @@ function answerOf(si, maps, question) {
     slowest: null,
   };
   // What is proved needs no map.
-  const still = staticLimit(si.rule, LIMITS[question.scene], amplitude, contact.poisson);
+  const still = staticLimit(si.rule, LIMITS[question.motion], amplitude, contact.poisson);
   said.static_friction = amplitude === 0 ? { value: 1, error: ROUNDING } : still;
-  const map = mapFor(maps, question.scene, contact.poisson);
+  const map = mapFor(maps, question.motion, contact.poisson);
   if (map === undefined) {
-    return { ...said, refused: `this page holds no certified map of ${question.scene}` };
+    return { ...said, refused: `this page holds no certified map of ${question.motion}` };
   }
   const fast = Math.min(velocity, si.largest_velocity);
   try {
@@ -241,9 +241,9 @@ function answerOf(si, maps, question) {
 }
 
 // The map of a motion that holds a Poisson's ratio, of several the most exact one.
-function mapFor(maps, scene, poisson) {
+function mapFor(maps, motion, poisson) {
   const far = ({ poisson: [low, high] }) => Math.abs(poisson - clipped(poisson, low - SAME_POISSON, high + SAME_POISSON));
-  return maps.filter((one) => one.scene === scene && one.pressure === "hertz")
+  return maps.filter((one) => one.motion === motion && one.pressure === "hertz")
     .sort((a, b) => far(a) - far(b) || a.error - b.error)[0];
 }
 

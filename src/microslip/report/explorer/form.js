@@ -17,7 +17,7 @@ function fillField(id, text) {
 // Where the contact of the form lies on a map: [velocity, amplitude], null if it is none of its motion.
 function contactOn(map) {
   const { contact } = STATE;
-  const same = contact && contact.scene === map.scene && map.pressure === "hertz";
+  const same = contact && contact.motion === map.motion && map.pressure === "hertz";
   return same && contact.velocity > 0 ? [contact.velocity, contact.amplitude] : null;
 }
 
@@ -83,11 +83,11 @@ function offerContact() {
     control.value = TEXTS[id] = SI.chosen[id];
     return labelled(label, control);
   };
-  rows.scene = chosen("scene", "motion", Object.entries(SI.scenes));
+  rows.motion = chosen("motion", "motion", Object.entries(SI.motions));
   rows.material = chosen("material", "sphere", bodies.map((name) => [name, name]));
   rows.counterbody = chosen("counterbody", "flat", bodies.map((name) => [name, name]));
   for (const id of Object.keys(SI.fields)) rows[id] = quantity(id);
-  const bodiesFirst = ["scene"];
+  const bodiesFirst = ["motion"];
   for (const [side, fields] of Object.entries(SI.sides)) bodiesFirst.push(side, ...fields);
   const others = Object.keys(SI.fields).filter((id) => !bodiesFirst.includes(id));
   element("contact-form").append(...[...bodiesFirst, ...others].map((id) => rows[id]));
@@ -115,7 +115,7 @@ function showFields() {
   for (const [side, fields] of Object.entries(SI.sides)) {
     for (const id of fields) rows[id].hidden = TEXTS[side] !== SI.of_numbers;
   }
-  for (const [scene, id] of Object.entries(SI.amplitude_of)) rows[id].hidden = scene !== TEXTS.scene;
+  for (const [motion, id] of Object.entries(SI.amplitude_of)) rows[id].hidden = motion !== TEXTS.motion;
 }
 
 function answerForm() {
@@ -133,8 +133,8 @@ function answerForm() {
     table("contact-facts", []);
     element("contact-warnings").replaceChildren();
   }
-  const own = SWEEPS.find((one) => one.kind === "map" && one.scene === TEXTS.scene && one.pressure === "hertz");
-  const shown = STATE.map === STATE.shown && STATE.map.scene === TEXTS.scene && STATE.map.pressure === "hertz";
+  const own = SWEEPS.find((one) => one.kind === "map" && one.motion === TEXTS.motion && one.pressure === "hertz");
+  const shown = STATE.map === STATE.shown && STATE.map.motion === TEXTS.motion && STATE.map.pressure === "hertz";
   if (own && !shown) {
     show(own.entries[0]);
   } else if (own) {
@@ -196,8 +196,8 @@ function approach({ friction, slowest, static_friction, mu }) {
 const OUTSIDE_MAP = /^between /;
 
 // Whether the star of the contact is on the map beside the form.
-function outside({ scene, velocity, amplitude, poisson }) {
-  const map = NUMBERS.maps.find((one) => one.scene === scene && one.pressure === "hertz");
+function outside({ motion, velocity, amplitude, poisson }) {
+  const map = NUMBERS.maps.find((one) => one.motion === motion && one.pressure === "hertz");
   if (map === undefined) return "";
   const fast = map.velocity[map.velocity.length - 1], wide = map.amplitude[map.amplitude.length - 1];
   const slow = map.velocity.find((one) => one > 0);

@@ -26,18 +26,18 @@ def limits_of(dataset: xr.Dataset, poisson: float) -> list[dict]:
 
     The curve of one that depends on both axes belongs to a single amplitude and is left out.
     """
-    scene = dataset.attrs["scene"].partition(":")[0]
-    own = FORMS.get(scene, {})
+    motion = dataset.attrs["motion"].partition(":")[0]
+    own = FORMS.get(motion, {})
     known = [name for name in NAMES if name in dataset.variables]
     known.sort(key=lambda name: list(own).index(name) if name in own else len(own))
-    return [_limit(dataset, scene, own.get(key, NAMES[key]), poisson) for key in known]
+    return [_limit(dataset, motion, own.get(key, NAMES[key]), poisson) for key in known]
 
 
-def _limit(dataset, scene, form, poisson):
+def _limit(dataset, motion, form, poisson):
     key = form.name
     looks = {}
-    if scene in FIGURES:
-        plan = maps.MAPS[FIGURES[scene]]
+    if motion in FIGURES:
+        plan = maps.MAPS[FIGURES[motion]]
         looks = {overlay.variable: overlay for overlay in (*plan.static, plan.large)}
     spare = list(NAMES).index(key) % len(SPARE_COLOURS)
     look = looks.get(key, maps.Overlay(key, form.label, SPARE_COLOURS[spare], style.DOTTED))

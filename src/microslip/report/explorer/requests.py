@@ -39,7 +39,7 @@ def certified_of(configuration: Configuration) -> list[str]:
         known = [
             map_
             for map_ in configuration.certified.values()
-            if (map_.sweep.scene, map_.sweep.pressure) == (motion, "hertz") and map_.velocity
+            if (map_.sweep.motion, map_.sweep.pressure) == (motion, "hertz") and map_.velocity
         ]
         found += [map_.name for map_ in sorted(known, key=_preference)[:1]]
     return found
@@ -110,7 +110,7 @@ def period_requests(configuration: Configuration, name: str) -> list[dict]:
         every += 1
     common = {
         "kind": "period",
-        "scene": sweep.scene,
+        "motion": sweep.motion,
         "poisson": number(sweep.poisson[0]),
         "cells": CELLS,
         "angles": ANGLES,

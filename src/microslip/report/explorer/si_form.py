@@ -17,7 +17,7 @@ from microslip.si.motions import MOTIONS
 from microslip.si.quantities import read
 from microslip.theory.hertz import D_half
 
-SCENES = ("transverse", "bore")
+CHOICES = ("transverse", "bore")
 """Motions of the form."""
 OF_NUMBERS = "by E and ν"
 """Instead of the name of a material."""
@@ -70,14 +70,14 @@ FIELDS = {
 SIDES = {"material": ("young", "nu"), "counterbody": ("counter_young", "counter_nu")}
 """Both bodies, and the fields that take the place of a name."""
 AMPLITUDE_OF = {"transverse": "stroke", "bore": "angle"}
-CHOSEN = {"material": "steel", "counterbody": "steel", "scene": "transverse"}
+CHOSEN = {"material": "steel", "counterbody": "steel", "motion": "transverse"}
 """What the form holds at first besides numbers."""
 
 
 def packed() -> dict:
     """All that the form needs as one value that JSON can hold."""
     return {
-        "scenes": {scene: f"{scene}: {MOTIONS[scene]}" for scene in SCENES},
+        "motions": {motion: f"{motion}: {MOTIONS[motion]}" for motion in CHOICES},
         "fields": {name: _field(field) for name, field in FIELDS.items()},
         "sides": {side: list(fields) for side, fields in SIDES.items()},
         "amplitude_of": AMPLITUDE_OF,

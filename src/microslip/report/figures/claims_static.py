@@ -45,40 +45,40 @@ LIGHTEST = 0.82
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw friction over amplitude above, shares of the bound over the radius below."""
     needed = ["share_radius", "claims_slowest", "claims_paper_velocity"]
-    for scene, _, _, curves in MOTIONS:
-        needed += [f"{scene}_curve_{n}" for n in ("amplitude", *(c[0] for c in curves))]
-        needed += [f"{scene}_{n}" for n in ("amplitude", "used_share", "left_share", *POINTS)]
+    for motion, _, _, curves in MOTIONS:
+        needed += [f"{motion}_curve_{n}" for n in ("amplitude", *(c[0] for c in curves))]
+        needed += [f"{motion}_{n}" for n in ("amplitude", "used_share", "left_share", *POINTS)]
     require(name, "claims", dataset, needed)
 
     figure = look.new_figure(look.DOUBLE, 6.4)
     grid = figure.subplots(2, 2)
-    for axes, below, upper, lower, scene in zip(*grid, "ab", "cd", MOTIONS, strict=True):
-        _friction(axes, dataset, scene)
-        look.legend_above(axes, upper, scene[1])
-        _shares(below, dataset, scene[0], scene[2])
+    for axes, below, upper, lower, motion in zip(*grid, "ab", "cd", MOTIONS, strict=True):
+        _friction(axes, dataset, motion)
+        look.legend_above(axes, upper, motion[1])
+        _shares(below, dataset, motion[0], motion[2])
         look.legend_above(below, lower, "share of the friction bound")
     return figure
 
 
 def _friction(axes: Axes, dataset: xr.Dataset, column: tuple) -> None:
     """The limit and formulas for it as lines; certified points and the paper's run as marks."""
-    scene, _, quantity, curves = column
-    amplitude = dataset[f"{scene}_curve_amplitude"].values
+    motion, _, quantity, curves = column
+    amplitude = dataset[f"{motion}_curve_amplitude"].values
     for variable, name, color, linestyle in curves:
-        values, form = dataset[f"{scene}_curve_{variable}"].values, FORMS[scene][name]
+        values, form = dataset[f"{motion}_curve_{variable}"].values, FORMS[motion][name]
         ink = {"color": color, "linestyle": linestyle, "label": form.equation or form.label}
         axes.plot(amplitude, values, gid=variable, zorder=3, **ink)
-    at = dataset[f"{scene}_amplitude"].values
+    at = dataset[f"{motion}_amplitude"].values
     paper, slowest = (float(dataset[f"claims_{n}"]) for n in ("paper_velocity", "slowest"))
     for variable, velocity, marker in (("slow", paper, "o"), ("march", slowest, "v")):
-        values, errors = (dataset[f"{scene}_{n}"].values for n in (variable, f"{variable}_error"))
+        values, errors = (dataset[f"{motion}_{n}"].values for n in (variable, f"{variable}_error"))
         text = rf"$\tilde{{v}} = {look.number(velocity)}$"
         good = np.isfinite(errors)
         ink = {"marker": marker, "color": look.BLACK, "clip_on": False}
         computed(axes, at, values, errors, good, text, **ink)
     axes.plot(
         at,
-        dataset[f"{scene}_paper"].values,
+        dataset[f"{motion}_paper"].values,
         label=rf"the paper's run, $\tilde{{v}} = {look.number(paper)}$",
         gid="paper",
         linestyle="none",
@@ -94,15 +94,15 @@ def _friction(axes: Axes, dataset: xr.Dataset, column: tuple) -> None:
     look.unit_range(axes)
 
 
-def _shares(axes: Axes, dataset: xr.Dataset, scene: str, quantity: Quantity) -> None:
+def _shares(axes: Axes, dataset: xr.Dataset, motion: str, quantity: Quantity) -> None:
     """What the oscillation uses at its turning points, solid, and what is left, dashed."""
     radius = dataset["share_radius"].values
-    dim = f"{scene}_share_amplitude"
+    dim = f"{motion}_share_amplitude"
     amplitudes = dataset[dim].values
     shades = matplotlib.colormaps[look.COLOURMAP](np.linspace(0.0, LIGHTEST, amplitudes.size))
     for index, (amplitude, color) in enumerate(zip(amplitudes, shades, strict=True)):
         row = dataset.isel({dim: index})
-        used, left = (row[f"{scene}_{n}_share"].values for n in ("used", "left"))
+        used, left = (row[f"{motion}_{n}_share"].values for n in ("used", "left"))
         text = look.conditions([(quantity.latex, float(amplitude))])
         axes.plot(radius, used, color=color, linestyle=look.SOLID, label=text, gid="used")
         axes.plot(radius, left, color=color, linestyle=look.DASHED, gid="left")

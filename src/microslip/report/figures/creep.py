@@ -43,7 +43,7 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
 
 def _map(axes: Axes, dataset: xr.Dataset, letter: str) -> tuple[ContourSet, bool]:
     """One map; returns its bands, and whether a point is marked as not converged."""
-    scene = dataset.attrs["scene"]
+    motion = dataset.attrs["motion"]
     part, poisson = sweep(dataset.assign(mu_macro=dataset["velocity"]), ("amplitude", "force"))
     part = part.transpose("amplitude", "force", ...)
     force, amplitude = part["force"].values, part["amplitude"].values
@@ -77,9 +77,9 @@ def _map(axes: Axes, dataset: xr.Dataset, letter: str) -> tuple[ContourSet, bool
     axes.plot(held, across, color=look.BLACK, linewidth=1.3, zorder=4, gid=STATIC)
     axes.set(xlim=(force[0], force[-1]), ylim=(amplitude[0], amplitude[-1]))
     axes.set_xlabel(look.axis(DRIVES["force"]))
-    axes.set_ylabel(look.axis(AMPLITUDE[scene]))
+    axes.set_ylabel(look.axis(AMPLITUDE[motion]))
     axes.tick_params(which="both", direction="out", top=False, right=False)
-    note = "velocity " + look.axis(VELOCITY[scene]).removeprefix(VELOCITY[scene].text).strip()
+    note = "velocity " + look.axis(VELOCITY[motion]).removeprefix(VELOCITY[motion].text).strip()
     look.letter(axes, letter, note + (rf", $\nu = {look.number(poisson)}$" if poisson else ""))
     bad = np.argwhere(part["converged"].values == 0)
     axes.plot(force[bad[:, 1]], amplitude[bad[:, 0]], gid="unconverged", **UNCONVERGED)

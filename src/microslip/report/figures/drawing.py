@@ -19,7 +19,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from microslip.config.records import SCENE_OF_SWEEP
+from microslip.config.records import MOTION_OF_SWEEP
 from microslip.sweeps.sealed_files import writing_beside
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ _DRAWN: dict[str, tuple[str, ...]] = {
     "stability_atlas": ("atlas", "stability"),
     "claims_static": ("claims_static", "claims"),
     "claims_patches": ("claims_patches", "claims"),
-    "driving": ("driving", "driving"),
+    "propulsion": ("propulsion", "propulsion"),
 }
 """Every figure: the module beside this one that draws it, and the datasets it is drawn from."""
 _MODULES = {name: module for name, (module, *_) in _DRAWN.items()} | {"fit": "fit"}
@@ -98,7 +98,7 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
     name: a key of `FIGURES` or `ON_DEMAND`, what `figure_of` gives for a group, or the name of a
     certified map. datasets: at
     least those that these list, by their key, or all of that group; others are ignored. Raises
-    ValueError if the name is unknown, a dataset is of another scene, or a dataset, variable or
+    ValueError if the name is unknown, a dataset is of another motion, or a dataset, variable or
     dimension the figure needs is missing. The figure belongs to no window and no global state.
     """
     keys = _keys_of(name, datasets)
@@ -107,9 +107,9 @@ def draw(name: str, datasets: Mapping[str, xr.Dataset]) -> Figure:
         given = ", ".join(map(repr, datasets)) or "none"
         raise ValueError(f"figure {name} needs the dataset {missing[0]!r}; given: {given}")
     for key in keys:
-        scene, found = SCENE_OF_SWEEP.get(key), datasets[key].attrs.get("scene")
-        if scene and found not in (scene, None):
-            raise ValueError(f"figure {name}: dataset {key!r} is of {found!r}; allowed: {scene!r}")
+        motion, found = MOTION_OF_SWEEP.get(key), datasets[key].attrs.get("motion")
+        if motion and found not in (motion, None):
+            raise ValueError(f"figure {name}: dataset {key!r} is of {found!r}; allowed: {motion!r}")
     from microslip.report.figures.style import style
 
     module = importlib.import_module(f"microslip.report.figures.{_module_of(name)}")

@@ -144,7 +144,7 @@ def _series(dataset: xr.Dataset, abscissa: str) -> list[tuple[str, np.ndarray]]:
 
 def _unit(condition: str, dataset: xr.Dataset) -> str:
     """Of a condition in the SI; the amplitude may be an angle."""
-    if condition == "amplitude_si" and dataset.attrs.get("scene") == "bore":
+    if condition == "amplitude_si" and dataset.attrs.get("motion") == "bore":
         return "rad"
     return CONDITIONS[condition][1]
 

@@ -1,4 +1,4 @@
-"""Formulas as scenes write them, "v0 / (omega u_lim)", in mathtext."""
+"""Formulas as motions write them, "v0 / (omega u_lim)", in mathtext."""
 
 from __future__ import annotations
 

@@ -21,24 +21,24 @@ NONE = {"facecolor": "white", "edgecolor": look.GREY, "linewidth": 0.0, "hatch":
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
-    """Draw one row of panels a scene, one column a tolerance."""
+    """Draw one row of panels a motion, one column a tolerance."""
     parts = ("velocity", "amplitude", "cheapest")
-    needed = ["map_tolerance", *(f"{scene}_{part}" for scene in MOTIONS for part in parts)]
+    needed = ["map_tolerance", *(f"{motion}_{part}" for motion in MOTIONS for part in parts)]
     require(name, "accuracy_cost", dataset, needed)
     tolerances = dataset["map_tolerance"].values
-    found = {str(n) for scene in MOTIONS for n in dataset[f"{scene}_cheapest"].values.ravel()}
+    found = {str(n) for motion in MOTIONS for n in dataset[f"{motion}_cheapest"].values.ravel()}
     models = look.in_order(found - {""})
 
     figure = look.new_figure(look.DOUBLE, 5.9)
     grid = figure.subplots(len(MOTIONS), tolerances.size, squeeze=False, sharex="row", sharey="row")
     letters = iter(look.letters(grid.size))
-    for row, scene in zip(grid, MOTIONS, strict=True):
+    for row, motion in zip(grid, MOTIONS, strict=True):
         for index, (axes, tolerance) in enumerate(zip(row, tolerances, strict=True)):
-            _panel(axes, dataset.isel(map_tolerance=index), scene, models)
-            note = rf"{scene}, error within ${look.power_of_ten(float(tolerance))}$"
+            _panel(axes, dataset.isel(map_tolerance=index), motion, models)
+            note = rf"{motion}, error within ${look.power_of_ten(float(tolerance))}$"
             look.letter(axes, next(letters), note)
-            axes.set_xlabel(look.axis(VELOCITY[scene]))
-        row[0].set_ylabel(look.axis(AMPLITUDE[scene]))
+            axes.set_xlabel(look.axis(VELOCITY[motion]))
+        row[0].set_ylabel(look.axis(AMPLITUDE[motion]))
     handles = [Patch(facecolor=_pale(n), edgecolor=look.BLACK, linewidth=0.6) for n in models]
     labels = [rf"$\bf{{{look.model(n)[2]}}}$  {n}" for n in models]
     if "" in found:
@@ -48,10 +48,10 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     return figure
 
 
-def _panel(axes: Axes, dataset: xr.Dataset, scene: str, models: list[str]) -> None:
+def _panel(axes: Axes, dataset: xr.Dataset, motion: str, models: list[str]) -> None:
     """Colour every cell by its model, outline the regions and write the model into each."""
-    velocity, amplitude = f"{scene}_velocity", f"{scene}_amplitude"
-    shown = dataset[f"{scene}_cheapest"].transpose(amplitude, velocity)
+    velocity, amplitude = f"{motion}_velocity", f"{motion}_amplitude"
+    shown = dataset[f"{motion}_cheapest"].transpose(amplitude, velocity)
     x, _ = _edges(dataset[velocity].values, logarithmic=True)
     y, logarithmic = _edges(dataset[amplitude].values)
     number = {name: index for index, name in enumerate(models)}

@@ -80,7 +80,7 @@ def _contours(axes: Axes, shown: xr.Dataset, letter: str) -> None:
         label = rf"$\nu = {look.number(float(one['poisson']))}$"
         axes.plot([], [], color=color, linestyle=linestyle, label=label)
     _share(axes, shown)
-    key = "title" if "group" in shown.attrs else "scene"
+    key = "title" if "group" in shown.attrs else "motion"
     note = look.literal(shown.attrs.get(key, ""))
     look.legend_above(axes, letter, note, ncols=shown.sizes["poisson"])
 

@@ -41,7 +41,7 @@ COSTS = {
     ),
 }
 """What each figure has along x: the variable, the front in it, the label."""
-POINT = ("point", "point_title", "point_scene", "point_velocity", "point_amplitude")
+POINT = ("point", "point_title", "point_motion", "point_velocity", "point_amplitude")
 POINT += ("point_poisson", "reference_error")
 TRIAL = ("trial_point", "trial_model", "trial_method", "trial_level", "trial_tolerance")
 TRIAL += ("error", "converged")
@@ -139,8 +139,8 @@ def _scale_of_errors(dataset: xr.Dataset) -> Scale:
 
 def _title(which: str, point: xr.Dataset) -> str:
     """The heading of a panel: its letter, the title of its point, and the point's numbers."""
-    scene = str(point["point_scene"].item())
-    known = (table.get(scene) for table in (VELOCITY, AMPLITUDE))
+    motion = str(point["point_motion"].item())
+    known = (table.get(motion) for table in (VELOCITY, AMPLITUDE))
     symbols = [one.latex if one else plain for one, plain in zip(known, "vA", strict=True)]
     values = (float(point[f"point_{n}"]) for n in ("velocity", "amplitude", "poisson"))
     numbers = [

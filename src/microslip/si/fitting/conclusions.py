@@ -27,7 +27,7 @@ class Settled(NamedTuple):
 
     Attributes
     ----------
-    scene : str
+    motion : str
         The motion.
     scale : Displacement or Modulus
         The second number.
@@ -41,7 +41,7 @@ class Settled(NamedTuple):
         Others that were tried.
     """
 
-    scene: str
+    motion: str
     scale: Displacement | Modulus
     model: FrictionModel
     rows: estimate.Rows
@@ -65,7 +65,9 @@ def concluded(settled: Settled, confidence: float, texts: dict) -> Fit:
     model_error = mu * rows.weight * model.errors(points)
     if not np.isfinite(model_error).all():
         where = int(np.flatnonzero(~np.isfinite(model_error))[0]) + 1
-        raise InputError("map", settled.scene, f"knows no friction for row {where} at the best fit")
+        raise InputError(
+            "map", settled.motion, f"knows no friction for row {where} at the best fit"
+        )
     allowed = estimate.threshold(rows, best, confidence, model_error / rows.error)
     ends = np.array([estimate.interval(rows, best, which, allowed) for which in (0, 1)])
     told = [which for which in (0, 1) if np.isfinite(ends[which]).all()]
@@ -79,7 +81,7 @@ def concluded(settled: Settled, confidence: float, texts: dict) -> Fit:
     second = _second(settled, ends, moved, allowed if 1 in told else None)
     name = "u_lim" if isinstance(scale, Displacement) else "shear_modulus"
     return Fit(
-        scene=settled.scene,
+        motion=settled.motion,
         quantity=measured.quantity,
         mu=float(mu),
         mu_low=float(np.exp(ends[0, 0])),
@@ -181,5 +183,5 @@ def _warnings(settled, allowed, chance):
         rows, mu = scale.rows, math.exp(best.theta[0])
         widest = int(np.argmax(rows.amplitude))
         sizes = (rows.speed[widest], rows.amplitude[widest], rows.frequency[widest])
-        motion = RealMotion(settled.scene, *(float(size) for size in sizes))
+        motion = RealMotion(settled.motion, *(float(size) for size in sizes))
         yield from broken_assumptions(scale.contact(mu, math.exp(best.theta[1])), motion)

@@ -26,7 +26,7 @@ SETTLED = 5e-4
 
 
 def fit(
-    scene: str,
+    motion: str,
     measured: object,
     *,
     map: object = None,
@@ -50,7 +50,7 @@ def fit(
 
     Parameters
     ----------
-    scene : str
+    motion : str
         "transverse", "longitudinal", "zigzag" or "bore"; a bore needs a radius.
     measured : path, mapping or pandas DataFrame
         A CSV file with a heading such as `speed [mm/s],amplitude [um],friction [N]`, or columns
@@ -86,27 +86,27 @@ def fit(
         For a table that cannot be read, fewer rows than it takes, rows of one condition, and rows
         that do not even tell mu.
     """
-    if not isinstance(scene, str) or scene not in UNIT_OF_AMPLITUDE:
-        raise InputError("scene", scene, f"allowed is one of {', '.join(UNIT_OF_AMPLITUDE)}")
+    if not isinstance(motion, str) or motion not in UNIT_OF_AMPLITUDE:
+        raise InputError("motion", motion, f"allowed is one of {', '.join(UNIT_OF_AMPLITUDE)}")
     shared = {"speed": speed, "amplitude": amplitude, "frequency": frequency, "load": load}
-    rows = read_measured(scene, measured, decimal=decimal, encoding=encoding, **shared)
+    rows = read_measured(motion, measured, decimal=decimal, encoding=encoding, **shared)
     _refuse_too_few(rows, measured)
-    scale, texts = _scale(scene, rows, nu, radius, counterbody)
+    scale, texts = _scale(motion, rows, nu, radius, counterbody)
     accepted = CONFIDENCE if confidence is None else read("confidence", confidence, "").si
     if accepted >= 1.0:
         allowed = "allowed is a number above 0 and below 1, such as 0.95 or '95 %'"
         raise InputError("confidence", confidence, allowed)
     ends = scale.bounds(LEAST, MOST)
     if map is not None:
-        model = MapFriction(map, scene, None if nu is None else scale.poisson)
+        model = MapFriction(map, motion, None if nu is None else scale.poisson)
     else:
         limits = {"low": SMALLEST_TOLERANCE, "low_open": False, "high": LARGEST_TOLERANCE}
         given = TOLERANCE if tolerance is None else read("tolerance", tolerance, "", **limits).si
         reached = [scale.points(0.3, end) for end in ends]
-        model = SolvedFriction(scene, scale.poisson, given, reached)
+        model = SolvedFriction(motion, scale.poisson, given, reached)
     rows_to_fit = _rows(rows, scale, model, ends)
     best, others = _best(rows_to_fit, scale, model)
-    settled = Settled(scene, scale, model, rows_to_fit, best, others)
+    settled = Settled(motion, scale, model, rows_to_fit, best, others)
     try:
         return concluded(settled, accepted, texts | rows.texts)
     except InputError as error:
@@ -127,14 +127,14 @@ def _refuse_too_few(rows, given):
         raise InputError("measured", given, allowed)
 
 
-def _scale(scene, rows, nu, radius, counterbody):
+def _scale(motion, rows, nu, radius, counterbody):
     """The second unknown, and texts of what was understood."""
-    texts = {"scene": scene}
+    texts = {"motion": motion}
     ratio = None if nu is None else read("nu", nu, "", low_open=False, high=0.5)
     if ratio is not None:
         texts["nu"] = ratio.text
     if radius is None:
-        if scene == "bore":
+        if motion == "bore":
             raise InputError("radius", None, "bore needs it: its amplitude is an angle")
         if counterbody is not None:
             raise InputError("counterbody", counterbody, "allowed beside a radius")
@@ -146,7 +146,7 @@ def _scale(scene, rows, nu, radius, counterbody):
     texts["counterbody"] = "rigid, as none was given" if counterbody is None else counterbody
     size = read("radius", radius, "m")
     texts["radius"] = size.text
-    return Modulus(rows, scene == "bore", ratio.si, counterbody == "same", size.si), texts
+    return Modulus(rows, motion == "bore", ratio.si, counterbody == "same", size.si), texts
 
 
 def _rows(rows: Measured, scale, model, ends):

@@ -22,7 +22,7 @@ class Fit:
 
     Attributes
     ----------
-    scene : str
+    motion : str
         The motion.
     quantity : str
         What was measured: "friction", a force in N, or "mu", a coefficient.
@@ -73,7 +73,7 @@ class Fit:
         Friction of the model between the rows, for figures.
     """
 
-    scene: str
+    motion: str
     quantity: str
     mu: float
     mu_low: float
@@ -153,7 +153,7 @@ class Fit:
     def _units(self):
         measured = "N" if self.quantity == "friction" else "1"
         names = ("measured", "measured_error", "fitted", "fitted_error", "standard_error")
-        size = {"amplitude_si": "rad" if self.scene == "bore" else "m"}
+        size = {"amplitude_si": "rad" if self.motion == "bore" else "m"}
         rows = {"speed_m_s": "m s-1", "frequency_Hz": "Hz", "row_load_N": "N"}
         pure = dict.fromkeys(("velocity", "amplitude", "residual"), "1")
         return rows | pure | size | dict.fromkeys(names, measured)

@@ -66,15 +66,15 @@ class MapFriction:
         For what is no such dataset, or does not know that ratio.
     """
 
-    def __init__(self, dataset: object, scene: str, poisson: float):
+    def __init__(self, dataset: object, motion: str, poisson: float):
         attributes = getattr(dataset, "attrs", {})
-        if attributes.get("scene") != scene or attributes.get("pressure", "hertz") != "hertz":
+        if attributes.get("motion") != motion or attributes.get("pressure", "hertz") != "hertz":
             kind = type(dataset).__name__ if hasattr(dataset, "attrs") else dataset
-            what = attributes.get("scene") or kind
-            raise InputError("map", what, f"allowed is the dataset of a sweep of {scene}")
+            what = attributes.get("motion") or kind
+            raise InputError("map", what, f"allowed is the dataset of a sweep of {motion}")
         if {"drive", "contacts"} & set(attributes):
             allowed = "allowed is that of one contact that is moved at a velocity"
-            raise InputError("map", scene, f"it is pulled or has several contacts; {allowed}")
+            raise InputError("map", motion, f"it is pulled or has several contacts; {allowed}")
         self._dataset, self._poisson = dataset, poisson
         self._ends = {
             name: (
@@ -83,7 +83,7 @@ class MapFriction:
             )
             for name in ("velocity", "amplitude")
         }
-        self._proved = scene in PROVED and poisson == 0.0
+        self._proved = motion in PROVED and poisson == 0.0
 
     def at(self, points: Points) -> np.ndarray:
         if not self._proved:  # what is asked on the way may lie anywhere
@@ -103,7 +103,7 @@ class MapFriction:
             return self._answer(points)[1]
         except ValueError as error:
             problem = f"does not hold the rows at the best fit: {error}"
-            raise InputError("map", self._dataset.attrs.get("scene"), problem) from None
+            raise InputError("map", self._dataset.attrs.get("motion"), problem) from None
 
     def _answer(self, points):
         from xarray import DataArray
@@ -126,7 +126,7 @@ class SolvedFriction:
 
     Parameters
     ----------
-    scene : str
+    motion : str
         The motion.
     poisson, tolerance : float
         As microslip.solve takes them.
@@ -139,12 +139,12 @@ class SolvedFriction:
         For more rows than the solver answers for.
     """
 
-    def __init__(self, scene: str, poisson: float, tolerance: float, ends: list[Points]):
+    def __init__(self, motion: str, poisson: float, tolerance: float, ends: list[Points]):
         count = len(ends[0].velocity)
         if count > MOST_SOLVED:
             allowed = f"rows; allowed are at most {MOST_SOLVED}, or any number with a map"
             raise InputError("measured", count, allowed)
-        self._scene, self._settings = scene, {"poisson": poisson, "tolerance": tolerance}
+        self._motion, self._settings = motion, {"poisson": poisson, "tolerance": tolerance}
         self._known = {}
         coordinates = [self._coordinates(points) for points in ends]
         axes = [np.concatenate([each[k] for each in coordinates]) for k in (0, 1)]
@@ -174,7 +174,7 @@ class SolvedFriction:
         velocity, amplitude = points
         moving = amplitude > 0.0
         size = np.clip(amplitude, LEAST, MOST)
-        over = 1.0 if self._scene == "bore" else amplitude
+        over = 1.0 if self._motion == "bore" else amplitude
         ratio = np.divide(velocity, over, out=np.full_like(size, FASTEST), where=moving)
         return np.log(size), np.log(np.clip(ratio, SLOWEST, FASTEST))
 
@@ -187,9 +187,9 @@ class SolvedFriction:
         from scipy.interpolate import RectBivariateSpline
 
         sizes, ratios = (np.exp(axis) for axis in self._axes)
-        over = np.ones_like(sizes) if self._scene == "bore" else sizes
+        over = np.ones_like(sizes) if self._motion == "bore" else sizes
         values = [
-            [_solution(self._scene, ratio * unit, size, COARSE)[0] for ratio in ratios]
+            [_solution(self._motion, ratio * unit, size, COARSE)[0] for ratio in ratios]
             for size, unit in zip(sizes, over, strict=True)
         ]
         return RectBivariateSpline(*self._axes, np.array(values), s=0)
@@ -198,16 +198,16 @@ class SolvedFriction:
         """mu_macro and its error by the solver, each point once."""
         point = float(velocity), float(amplitude)
         if point not in self._known:
-            self._known[point] = _solution(self._scene, *point, self._settings)
+            self._known[point] = _solution(self._motion, *point, self._settings)
         return self._known[point]
 
 
-def _solution(scene, velocity, amplitude, settings):
+def _solution(motion, velocity, amplitude, settings):
     """mu_macro and its error by the solver."""
     if amplitude == 0.0:
         return 1.0, 0.0
     point = (min(part, LARGEST["velocity"]) for part in (velocity, amplitude))
-    found = solve(scene, *point, **settings)
+    found = solve(motion, *point, **settings)
     if not np.isfinite(found.mu_macro):
         where = f"velocity {velocity:.3g} and amplitude {amplitude:.3g}"
         problem = f"no answer at {where}: {found.reason}"

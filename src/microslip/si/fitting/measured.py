@@ -66,13 +66,13 @@ class Measured:
 
 
 def read_measured(
-    scene: str, given: object, *, decimal: str = ".", encoding: str = "utf-8", **shared: object
+    motion: str, given: object, *, decimal: str = ".", encoding: str = "utf-8", **shared: object
 ) -> Measured:
     """The rows of a CSV file or of a table of columns, checked; raises InputError.
 
     Parameters
     ----------
-    scene : str
+    motion : str
         One of motions.UNIT_OF_AMPLITUDE.
     given : path, mapping or pandas DataFrame
         The file, see `measured_csv`, or columns by their names: in the SI, or with a unit as in
@@ -82,7 +82,7 @@ def read_measured(
     shared : quantity or None
         speed, amplitude, frequency and load where they are no columns.
     """
-    unit = UNIT_OF_AMPLITUDE[scene]
+    unit = UNIT_OF_AMPLITUDE[motion]
     table, labels, left_out = _table(given, unit, decimal, encoding)
     count = len(next(iter(table.values())))
     if count == 0:

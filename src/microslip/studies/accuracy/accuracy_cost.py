@@ -2,7 +2,7 @@
 
 At every point (a panel of the figures) every model climbs its ladder with the shipped method and
 every other method climbs that of the model that model auto would take. Beside them stand the
-tolerance-driven choice of `solve` and a reference. A map of two scenes asks which model is the
+tolerance-driven choice of `solve` and a reference. A map of two motions asks which model is the
 cheapest that is good enough, and a series of sizes what a step costs.
 
 Requests come in pieces that one job can answer, large enough that the start of a job is a small
@@ -19,7 +19,7 @@ from microslip.studies import requests
 from microslip.studies.ladders import ladder, models_for
 
 CHOICE_TOLERANCES = (1e-2, 1e-3, 1e-4)
-MAP_SCENES = ("transverse", "bore")
+MAP_MOTIONS = ("transverse", "bore")
 MAP_LEVELS, MAP_REPEATS = 5, 3
 MAP_SQUARES = 16
 """Along a side: these already cost more than rings that are far better; larger ones never win."""
@@ -44,7 +44,7 @@ def trials(study: Accuracy, point: StudyPoint) -> Iterator[tuple[int, dict]]:
     study: records.Accuracy. The level of a choice counts its tolerances.
     """
     for method in study.methods:
-        for model in models_for(method, point.scene, point.poisson):
+        for model in models_for(method, point.motion, point.poisson):
             for k, level, tolerance in ladder(model, method, study.levels):
                 yield (
                     k,
@@ -60,11 +60,11 @@ def truth(point: StudyPoint) -> dict | None:
     return requests.reference(point) if point.amplitude is not None else None
 
 
-def map_points(study: Accuracy, scene: str) -> list[StudyPoint]:
+def map_points(study: Accuracy, motion: str) -> list[StudyPoint]:
     """The points of a map as records.StudyPoint, amplitude by amplitude, the velocity fastest."""
     return [
-        StudyPoint("", scene, velocity, amplitude, 0.0, "")
-        for amplitude in study.map_amplitude[scene]
+        StudyPoint("", motion, velocity, amplitude, 0.0, "")
+        for amplitude in study.map_amplitude[motion]
         for velocity in study.map_velocity
     ]
 
@@ -74,7 +74,7 @@ def map_trials(study: Accuracy, point: StudyPoint) -> list[dict]:
     repeats = min(study.repeats, MAP_REPEATS)
     return [
         requests.trial(point, model, SHIPPED, level, tolerance, repeats)
-        for model in models_for(SHIPPED, point.scene, point.poisson)
+        for model in models_for(SHIPPED, point.motion, point.poisson)
         for _, level, tolerance in ladder(model, SHIPPED, min(study.levels, MAP_LEVELS))
         if model != "cartesian" or level.cells <= MAP_SQUARES
     ]
@@ -110,8 +110,8 @@ def pieces(study: Accuracy) -> tuple[list, list]:
         shipped.append(asked[False])
     rows = [
         _map_row(study, list(row))
-        for scene in MAP_SCENES
-        for _, row in groupby(map_points(study, scene), key=lambda point: point.amplitude)
+        for motion in MAP_MOTIONS
+        for _, row in groupby(map_points(study, motion), key=lambda point: point.amplitude)
     ]
     short = [*shipped, *others.values(), *rows]
     return [piece for piece in long if piece], [piece for piece in short if piece]

@@ -25,11 +25,11 @@ GROUPS = {
     "points": ("Points that trials are run at, and their references", ("point",)),
     "scaling": ("What a step costs on finer grids", ("scaling_model", "scaling_size")),
 } | {
-    f"{scene}_map": (
-        f"The cheapest model that is good enough, scene {scene}",
-        ("map_tolerance", f"{scene}_amplitude", f"{scene}_velocity"),
+    f"{motion}_map": (
+        f"The cheapest model that is good enough, motion {motion}",
+        ("map_tolerance", f"{motion}_amplitude", f"{motion}_velocity"),
     )
-    for scene in study.MAP_SCENES
+    for motion in study.MAP_MOTIONS
 }
 GROUPS["profile"] = (
     "How much dearer than the best a model or a method is",
@@ -76,14 +76,14 @@ def build(settings: Accuracy, answer: Callable) -> xr.Dataset:
     names = [point.name for point in points]
     variables |= profiles.variables(trials, names, settings.map_tolerance)
     variables |= _scaling(settings, answers)
-    for scene in study.MAP_SCENES:
-        variables |= _map(settings, scene, answers)
+    for motion in study.MAP_MOTIONS:
+        variables |= _map(settings, motion, answers)
         for name, values in (
             ("velocity", settings.map_velocity),
-            ("amplitude", settings.map_amplitude[scene]),
+            ("amplitude", settings.map_amplitude[motion]),
         ):
-            long_name = f"{name} in the groups of the scene {scene}"
-            coords[f"{scene}_{name}"] = variable(f"{scene}_{name}", values, long_name)
+            long_name = f"{name} in the groups of the motion {motion}"
+            coords[f"{motion}_{name}"] = variable(f"{motion}_{name}", values, long_name)
     within = "largest error of mu_macro that the map allows"
     coords["map_tolerance"] = variable("map_tolerance", settings.map_tolerance, within)
     models = list(study.SCALING_SIZES)
@@ -124,7 +124,7 @@ def _points(points, answers):
         "point",
         {
             "point_title": ([p.title for p in points], "title of the point", str),
-            "point_scene": ([p.scene for p in points], "what moves", str),
+            "point_motion": ([p.motion for p in points], "what moves", str),
             "point_velocity": ([p.velocity for p in points], "forward velocity of the point"),
             "point_amplitude": (amplitudes, "amplitude of the point"),
             "point_poisson": ([p.poisson for p in points], "Poisson's ratio of the point"),
@@ -193,9 +193,9 @@ def _row(point, level, request, result, reference):
 # Models that are good enough, and the cost of a step
 
 
-def _map(settings, scene, answers):
-    dims = ("map_tolerance", f"{scene}_amplitude", f"{scene}_velocity")
-    points = study.map_points(settings, scene)
+def _map(settings, motion, answers):
+    dims = ("map_tolerance", f"{motion}_amplitude", f"{motion}_velocity")
+    points = study.map_points(settings, motion)
     best = {name: [] for name in ("", "_cells", "_seconds")}
     found = [_candidates(settings, point, answers) for point in points]
     for tolerance in settings.map_tolerance:
@@ -206,7 +206,7 @@ def _map(settings, scene, answers):
             best["_seconds"].append(np.nan if i is None else seconds[i])
     shape = (
         len(settings.map_tolerance),
-        len(settings.map_amplitude[scene]),
+        len(settings.map_amplitude[motion]),
         len(settings.map_velocity),
     )
     described = {
@@ -215,7 +215,7 @@ def _map(settings, scene, answers):
         "_seconds": (float, "s", "median CPU time of the cheapest model"),
     }
     return {
-        f"{scene}_cheapest{name}": variable(
+        f"{motion}_cheapest{name}": variable(
             dims, np.array(best[name], object).reshape(shape), long_name, kind, units
         )
         for name, (kind, units, long_name) in described.items()
@@ -232,7 +232,7 @@ def _candidates(settings, point, answers):
         for r in results
     ]
     models = [request["model"] for request in requests]
-    exact = exact_model(point.scene, point.poisson)
+    exact = exact_model(point.motion, point.poisson)
     return (
         models,
         [request["cells"] for request in requests],

@@ -31,12 +31,12 @@ def within(
     return check(value, against, limit - abs(value - against), error, runs, **place)
 
 
-def _map(study, runs, scene, formula, judge, chosen=lambda amplitude: True):
-    """Checks at all points of a scene: judge(mu, formula(velocity, amplitude)) -> margin."""
+def _map(study, runs, motion, formula, judge, chosen=lambda amplitude: True):
+    """Checks at all points of a motion: judge(mu, formula(velocity, amplitude)) -> margin."""
     found = []
-    for amplitude in filter(chosen, study.amplitude[scene]):
+    for amplitude in filter(chosen, study.amplitude[motion]):
         for velocity in asked.velocities(study):
-            run = runs(asked.point(study, scene, velocity, amplitude))
+            run = runs(asked.point(study, motion, velocity, amplitude))
             mu, error = friction(run)
             against = formula(velocity, amplitude)
             place = {"amplitude": amplitude, "velocity": velocity}
@@ -231,9 +231,9 @@ def _rises(groups):
     return found
 
 
-def _rows(study, runs, scene):
+def _rows(study, runs, motion):
     for row in asked.rows(study):
-        if row[0]["scene"] == scene:
+        if row[0]["motion"] == motion:
             yield [
                 ({name: float(r[name]) for name in ("amplitude", "velocity")}, runs(r)) for r in row
             ]

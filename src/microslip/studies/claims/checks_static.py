@@ -12,11 +12,11 @@ from microslip.studies.claims.runs import Runs, friction
 from microslip.theory import paper
 
 
-def _at_limit(study, runs, scene, judge, chosen):
+def _at_limit(study, runs, motion, judge, chosen):
     """Checks at the static limit: judge(amplitude, limit) -> (against, margin)."""
     found = []
-    for amplitude in filter(chosen, asked.limited(study, scene)):
-        limit = static.limit(study, runs, scene, amplitude)
+    for amplitude in filter(chosen, asked.limited(study, motion)):
+        limit = static.limit(study, runs, motion, amplitude)
         against, margin = judge(amplitude, limit.value)
         place = {"amplitude": amplitude}
         found.append(check(limit.value, against, margin, limit.error, limit.runs, **place))
@@ -27,14 +27,14 @@ def _below_one(amplitude):
     return amplitude < 1.0  # beyond there is no static friction, and nothing to compare
 
 
-def _formula_above(study, runs, scene, formula, chosen):
+def _formula_above(study, runs, motion, formula, chosen):
     """Whether a formula lies above the static limit."""
 
     def judge(amplitude, limit):
         value = formula(amplitude)
         return value, value - limit
 
-    return _at_limit(study, runs, scene, judge, chosen)
+    return _at_limit(study, runs, motion, judge, chosen)
 
 
 def slider_above(study: Claims, runs: Runs) -> list:
@@ -57,12 +57,12 @@ def slider_above_march(study: Claims, runs: Runs) -> list:
     return _above_march(study, runs, "transverse", paper.static_slider, _below_one)
 
 
-def _above_march(study, runs, scene, formula, chosen):
+def _above_march(study, runs, motion, formula, chosen):
     """A formula against the smallest velocity that is marched. Friction rises with velocity, so
     that this bounds the limit from above, whatever one thinks of closed forms for it."""
     velocity, found = asked.velocities(study)[0], []
-    for amplitude in filter(chosen, asked.limited(study, scene)):
-        run = runs(asked.point(study, scene, velocity, amplitude))
+    for amplitude in filter(chosen, asked.limited(study, motion)):
+        run = runs(asked.point(study, motion, velocity, amplitude))
         mu, error = friction(run)
         against = formula(amplitude)
         found.append(check(mu, against, against - mu, error, [run], amplitude=amplitude))

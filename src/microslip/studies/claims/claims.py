@@ -12,7 +12,7 @@ from microslip.studies import requests
 from microslip.studies.ladders import exact_model
 
 PAPER_VELOCITY = 0.005
-"""The smallest velocity in the paper's maps, of both scenes."""
+"""The smallest velocity in the paper's maps, of both motions."""
 PAPER_SQUARES, PAPER_STEPS = 32, 100
 """The paper's squares along a side, and steps in a period that its run here has."""
 PAPER_TOLERANCE = 1e-3
@@ -42,31 +42,31 @@ def velocities(study: Claims) -> list[float]:
 
 def point(
     study: Claims,
-    scene: str,
+    motion: str,
     velocity: float,
     amplitude: float | None = None,
     model: str = "auto",
     cells: int | None = None,
 ) -> dict:
     """A certified point; velocity 0: the static limit; cells: an imposed number of squares."""
-    place = StudyPoint("", scene, velocity, amplitude, 0.0, "")
+    place = StudyPoint("", motion, velocity, amplitude, 0.0, "")
     kind = {"kind": "point", "model": model, "tolerance": number(study.tolerance)}
     return requests.of_point(place) | kind | {"cells": cells, "steps": None}
 
 
-def resolved_limit(study: Claims, scene: str, amplitude: float) -> dict:
+def resolved_limit(study: Claims, motion: str, amplitude: float) -> dict:
     """The static limit on rings: the oscillation's tractions computed, no closed form in it."""
-    return point(study, scene, 0.0, amplitude, exact_model(scene, 0.0))
+    return point(study, motion, 0.0, amplitude, exact_model(motion, 0.0))
 
 
-def limit_on_squares(study: Claims, scene: str, amplitude: float) -> dict:
+def limit_on_squares(study: Claims, motion: str, amplitude: float) -> dict:
     """The static limit on the paper's squares."""
-    return point(study, scene, 0.0, amplitude, "cartesian", PAPER_SQUARES)
+    return point(study, motion, 0.0, amplitude, "cartesian", PAPER_SQUARES)
 
 
-def paper_run(scene: str, amplitude: float) -> dict:
+def paper_run(motion: str, amplitude: float) -> dict:
     """The paper's own run at its smallest velocity: 32 x 32 squares, 8,000 plain steps."""
-    place = StudyPoint("", scene, PAPER_VELOCITY, amplitude, 0.0, "")
+    place = StudyPoint("", motion, PAPER_VELOCITY, amplitude, 0.0, "")
     sizes = {"cells": PAPER_SQUARES, "angles": 1, "steps": PAPER_STEPS}
     how = {"kind": "run", "model": "cartesian", "method": "paper"}
     return requests.of_point(place) | how | sizes | {"tolerance": number(PAPER_TOLERANCE)}
@@ -76,7 +76,7 @@ def transient(start: str, cells: str) -> dict:
     """Forces of the continuous bore from one of the three initial states on; cells: of CELLS."""
     numbers = {"velocity": number(TRANSIENT_VELOCITY), "travel": number(TRAVEL)}
     return (
-        {"kind": "history", "scene": "continuous-bore", "start": start}
+        {"kind": "history", "motion": "continuous-bore", "start": start}
         | numbers
         | {"cells": CELLS[cells]}
     )
@@ -84,7 +84,7 @@ def transient(start: str, cells: str) -> dict:
 
 def field(velocity: float, cells: str) -> dict:
     """Steady tractions of the continuous bore; cells: of CELLS."""
-    place = {"scene": "continuous-bore", "velocity": number(velocity)}
+    place = {"motion": "continuous-bore", "velocity": number(velocity)}
     return {"kind": "field", "cells": CELLS[cells]} | place
 
 
@@ -96,9 +96,9 @@ def period(study: Claims, velocity: float, amplitude: float, coarse: bool = Fals
     return requests.of_point(place) | {"kind": "patches"} | sizes
 
 
-def limited(study: Claims, scene: str) -> list[float]:
+def limited(study: Claims, motion: str) -> list[float]:
     """Amplitudes at which there is static friction that the paper's maps show."""
-    return [a for a in study.amplitude[scene] if a <= STATIC_AMPLITUDES[scene]]
+    return [a for a in study.amplitude[motion] if a <= STATIC_AMPLITUDES[motion]]
 
 
 def sliding(study: Claims) -> list[float]:
@@ -114,10 +114,10 @@ def periods(study: Claims) -> list[tuple[float, float]]:
 
 
 def rows(study: Claims) -> list[list[dict]]:
-    """Certified points, a list for each scene and amplitude, from the static limit upwards."""
+    """Certified points, a list for each motion and amplitude, from the static limit upwards."""
     return [
-        [point(study, scene, v, amplitude) for v in (0.0, *velocities(study))]
-        for scene, amplitudes in study.amplitude.items()
+        [point(study, motion, v, amplitude) for v in (0.0, *velocities(study))]
+        for motion, amplitudes in study.amplitude.items()
         for amplitude in amplitudes
     ]
 
@@ -130,18 +130,18 @@ def steady(study: Claims) -> list[dict]:
 def pieces(study: Claims) -> tuple[list, list]:
     """What one job each answers: two lists of lists of requests, those that take long first."""
     of_paper = [paper_run("transverse", amplitude) for amplitude in sliding(study)]
-    of_paper += [paper_run(scene, a) for scene in study.amplitude for a in limited(study, scene)]
+    of_paper += [paper_run(motion, a) for motion in study.amplitude for a in limited(study, motion)]
     long = [of_paper[i : i + FEW] for i in range(0, len(of_paper), FEW)]
     slow, fast = [], []
     for row in rows(study):
-        (slow if row[0]["scene"] == "bore" else fast).append(row)
+        (slow if row[0]["motion"] == "bore" else fast).append(row)
     inside = [
         period(study, *place, coarse=coarse) for place in periods(study) for coarse in (False, True)
     ]
     statics = [
-        ask(study, scene, a)
-        for scene in study.amplitude
-        for a in limited(study, scene)
+        ask(study, motion, a)
+        for motion in study.amplitude
+        for a in limited(study, motion)
         for ask in (resolved_limit, limit_on_squares)
     ]
     two = [transient(start, cells) for start in STARTS for cells in CELLS]

@@ -26,16 +26,16 @@ GROUPS = {
     "patches": ("What sticks where, at moments of that period", ("patch_moment", "patch_point")),
     "patch_edges": ("Theory's edges of what sticks", ("patch_moment", "patch_edge")),
 }
-for _scene in static_limits.FORMULAS:
+for _motion in static_limits.FORMULAS:
     GROUPS |= {
-        f"{_scene}_static": (f"Static limit, scene {_scene}", (f"{_scene}_amplitude",)),
-        f"{_scene}_curves": (
-            f"Static limit on a fine axis, scene {_scene}",
-            (f"{_scene}_curve_amplitude",),
+        f"{_motion}_static": (f"Static limit, motion {_motion}", (f"{_motion}_amplitude",)),
+        f"{_motion}_curves": (
+            f"Static limit on a fine axis, motion {_motion}",
+            (f"{_motion}_curve_amplitude",),
         ),
-        f"{_scene}_shares": (
-            f"Shares of the friction bound, scene {_scene}",
-            (f"{_scene}_share_amplitude", "share_radius"),
+        f"{_motion}_shares": (
+            f"Shares of the friction bound, motion {_motion}",
+            (f"{_motion}_share_amplitude", "share_radius"),
         ),
     }
 """What is not over statements: titles and dims by the name of a group."""
@@ -169,7 +169,7 @@ def _runs(found):
     table = {
         "run": ([run.key for run in found], "name of the result in the store", str),
         "run_what": (list(map(made_by, requests)), "what was run", str),
-        "run_scene": (texts("scene"), "what moves", str),
+        "run_motion": (texts("motion"), "what moves", str),
         "run_velocity": ([float(r["velocity"]) for r in requests], "forward velocity", float),
         "run_amplitude": (numbers("amplitude"), "amplitude", float),
         "run_poisson": ([float(r.get("poisson", 0)) for r in requests], "Poisson's ratio", float),

@@ -51,15 +51,15 @@ def resolution(run: Run) -> tuple[int, ...]:
 
 def command(request: dict) -> str:
     """A line for the shell that computes a request again."""
-    kind, scene = request["kind"], request["scene"]
+    kind, motion = request["kind"], request["motion"]
     if kind == "point":
-        words = ["microslip point", scene, f"--velocity {request['velocity']}"]
+        words = ["microslip point", motion, f"--velocity {request['velocity']}"]
         words += [f"--amplitude {request['amplitude']}"] if request["amplitude"] else []
         words += [f"--poisson {request['poisson']}"] if request["poisson"] != "0" else []
         words += [f"--model {request['model']}"] if request["model"] != "auto" else []
         words += [f"--{n} {request[n]}" for n in ("tolerance", "cells", "steps") if request[n]]
         return " ".join(words)
-    place = [repr(scene), request["velocity"]]
+    place = [repr(motion), request["velocity"]]
     place += [request["amplitude"]] if request.get("amplitude") else []
     names, call = _CALLS[kind]
     given = [f"{name}={_shown(request[name])}" for name in names if request.get(name) is not None]

@@ -1,6 +1,6 @@
 """The static limit beside the paper's formulas for it, and what hid the difference from the paper.
 
-Everything for the two oscillating scenes; a formula of the paper counts the whole bound inside the
+Everything for the two oscillating motions; a formula of the paper counts the whole bound inside the
 stick zone, while the oscillation has used up a part of it (see microslip.solver.static_limit).
 """
 
@@ -43,11 +43,11 @@ class Limit:
     runs: tuple
 
 
-def limit(study: Claims, runs: Runs, scene: str, amplitude: np.ndarray) -> Limit:
+def limit(study: Claims, runs: Runs, motion: str, amplitude: np.ndarray) -> Limit:
     """The Limit at an amplitude: the closed form, its error its distance from the limit on rings
     and what that claims as its own error."""
-    closed = runs(asked.point(study, scene, 0.0, amplitude))
-    rings = runs(asked.resolved_limit(study, scene, amplitude))
+    closed = runs(asked.point(study, motion, 0.0, amplitude))
+    rings = runs(asked.resolved_limit(study, motion, amplitude))
     value, rounding = friction(closed)
     resolved, error = friction(rings)
     return Limit(value, rounding + error + abs(resolved - value), (closed, rings))
@@ -64,29 +64,29 @@ def asymptote(amplitude: np.ndarray) -> np.ndarray:
     return 0.75 * (1.0 - j0(np.pi)) * radius**2
 
 
-def used_share(scene: str, radius: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+def used_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
     """Share of the friction bound that the oscillation alone uses at its turning points; 1 from the
     stick radius on. radius, amplitude: broadcast."""
-    if scene == "bore":
+    if motion == "bore":
         return hertz.lubkin_share(radius, theory.bore_stick_radius(amplitude))
     bound = hertz.friction_bound(radius)
     traction = hertz.mindlin_traction(radius, amplitude)
     return np.where(bound > 0, traction / np.where(bound > 0, bound, 1.0), 1.0)
 
 
-def left_share(scene: str, radius: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+def left_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
     """Share of the bound that is left for the forward direction, averaged over the angle."""
-    used = used_share(scene, radius, amplitude)
-    if scene == "bore":
+    used = used_share(motion, radius, amplitude)
+    if motion == "bore":
         return 2.0 / np.pi * np.arccos(used)
     return np.sqrt((1.0 - used) * (1.0 + used))
 
 
 def variables(study: Claims, runs: Runs) -> dict:
-    """Variables of the dataset about the static limit of both scenes, as a dict."""
+    """Variables of the dataset about the static limit of both motions, as a dict."""
     found = {}
-    for scene in study.amplitude:
-        found |= _curves(scene) | _shares(scene) | _split(study, runs, scene)
+    for motion in study.amplitude:
+        found |= _curves(motion) | _shares(motion) | _split(study, runs, motion)
     slowest = asked.velocities(study)[0]
     found["claims_slowest"] = variable((), slowest, "smallest velocity of this study")
     paper = "smallest velocity of the paper"
@@ -99,56 +99,56 @@ def variables(study: Claims, runs: Runs) -> dict:
     return found
 
 
-def _curves(scene):
-    amplitude = np.linspace(0.0, STATIC_AMPLITUDES[scene], CURVE_POINTS)
-    dim = f"{scene}_curve_amplitude"
-    exact = FORMS[scene][STATIC].function(amplitude)
+def _curves(motion):
+    amplitude = np.linspace(0.0, STATIC_AMPLITUDES[motion], CURVE_POINTS)
+    dim = f"{motion}_curve_amplitude"
+    exact = FORMS[motion][STATIC].function(amplitude)
     found = {
-        dim: variable(dim, amplitude, f"amplitude of the curves, scene {scene}"),
-        f"{scene}_curve_limit": variable(dim, exact, "static friction, exact limit"),
+        dim: variable(dim, amplitude, f"amplitude of the curves, motion {motion}"),
+        f"{motion}_curve_limit": variable(dim, exact, "static friction, exact limit"),
     }
-    for name, (formula, long_name) in FORMULAS[scene].items():
-        values = FORMS[scene][formula].function(amplitude)
+    for name, (formula, long_name) in FORMULAS[motion].items():
+        values = FORMS[motion][formula].function(amplitude)
         gap = values - exact
         most = int(np.argmax(gap))
         found |= {
-            f"{scene}_curve_{name}": variable(dim, values, long_name),
-            f"{scene}_gap_{name}": variable((), gap[most], f"largest excess of {long_name}"),
-            f"{scene}_gap_{name}_at": variable((), amplitude[most], f"where that is, {long_name}"),
+            f"{motion}_curve_{name}": variable(dim, values, long_name),
+            f"{motion}_gap_{name}": variable((), gap[most], f"largest excess of {long_name}"),
+            f"{motion}_gap_{name}_at": variable((), amplitude[most], f"where that is, {long_name}"),
         }
     return found
 
 
-def _shares(scene):
-    radius, amplitudes = np.linspace(0.0, 1.0, RADII), np.array(SHARE_AMPLITUDES[scene])
-    dims = (f"{scene}_share_amplitude", "share_radius")
-    at = (scene, radius, amplitudes[:, None])
+def _shares(motion):
+    radius, amplitudes = np.linspace(0.0, 1.0, RADII), np.array(SHARE_AMPLITUDES[motion])
+    dims = (f"{motion}_share_amplitude", "share_radius")
+    at = (motion, radius, amplitudes[:, None])
     used = "share of the friction bound that the oscillation uses at its turning points"
     left = "share of the friction bound left for the forward direction, mean over the angle"
     return {
         "share_radius": variable("share_radius", radius, "radius over a"),
-        dims[0]: variable(dims[0], amplitudes, f"amplitude, scene {scene}"),
-        f"{scene}_used_share": variable(dims, used_share(*at), used),
-        f"{scene}_left_share": variable(dims, left_share(*at), left),
+        dims[0]: variable(dims[0], amplitudes, f"amplitude, motion {motion}"),
+        f"{motion}_used_share": variable(dims, used_share(*at), used),
+        f"{motion}_left_share": variable(dims, left_share(*at), left),
     }
 
 
-def _split(study, runs, scene):
+def _split(study, runs, motion):
     """How the paper's run differs from the limit: by its resolution, and by its velocity."""
-    amplitudes = asked.limited(study, scene)
-    rows = [_row(study, runs, scene, amplitude) for amplitude in amplitudes]
-    dim = f"{scene}_amplitude"
-    found = {dim: variable(dim, amplitudes, f"amplitude, scene {scene}")}
+    amplitudes = asked.limited(study, motion)
+    rows = [_row(study, runs, motion, amplitude) for amplitude in amplitudes]
+    dim = f"{motion}_amplitude"
+    found = {dim: variable(dim, amplitudes, f"amplitude, motion {motion}")}
     for name, long_name in SPLIT.items():
         values = [row[name] for row in rows]
-        found[f"{scene}_{name}"] = variable(dim, values, long_name)
-    for name, (formula, long_name) in FORMULAS[scene].items():
-        values = [float(FORMS[scene][formula].function(amplitude)) for amplitude in amplitudes]
-        found[f"{scene}_{name}"] = variable(dim, values, long_name)
-    zone = np.array(found[f"{scene}_zone"][1], float)
+        found[f"{motion}_{name}"] = variable(dim, values, long_name)
+    for name, (formula, long_name) in FORMULAS[motion].items():
+        values = [float(FORMS[motion][formula].function(amplitude)) for amplitude in amplitudes]
+        found[f"{motion}_{name}"] = variable(dim, values, long_name)
+    zone = np.array(found[f"{motion}_zone"][1], float)
     with np.errstate(invalid="ignore", divide="ignore"):
         lost = 1.0 - np.array([row["limit"] for row in rows]) / zone
-    found[f"{scene}_lost"] = variable(dim, np.where(zone > 0.0, lost, np.nan), LOST)
+    found[f"{motion}_lost"] = variable(dim, np.where(zone > 0.0, lost, np.nan), LOST)
     return found
 
 
@@ -169,16 +169,16 @@ SPLIT = {
     "from_resolution_error": "error of that part",
     "squares_shift": "what the squares alone differ from the limit by, at vanishing velocity",
 }
-"""Variables over the amplitudes of each scene: name -> long_name."""
+"""Variables over the amplitudes of each motion: name -> long_name."""
 
 
-def _row(study, runs, scene, amplitude):
-    exact = limit(study, runs, scene, amplitude)
-    slowest = asked.point(study, scene, asked.velocities(study)[0], amplitude)
+def _row(study, runs, motion, amplitude):
+    exact = limit(study, runs, motion, amplitude)
+    slowest = asked.point(study, motion, asked.velocities(study)[0], amplitude)
     march, march_error = friction(runs(slowest))
-    slow, slow_error = friction(runs(asked.point(study, scene, asked.PAPER_VELOCITY, amplitude)))
-    paper = value_of(runs(asked.paper_run(scene, amplitude)).result, "mu_macro")
-    squares = value_of(runs(asked.limit_on_squares(study, scene, amplitude)).result, "mu_macro")
+    slow, slow_error = friction(runs(asked.point(study, motion, asked.PAPER_VELOCITY, amplitude)))
+    paper = value_of(runs(asked.paper_run(motion, amplitude)).result, "mu_macro")
+    squares = value_of(runs(asked.limit_on_squares(study, motion, amplitude)).result, "mu_macro")
     return {
         "limit": exact.value,
         "limit_error": exact.error,

@@ -27,7 +27,7 @@ class Axis:
     note : str
         What is held.
     cases : tuple
-        Pairs of the value and what it sets in the request: scene, velocity, amplitude, poisson,
+        Pairs of the value and what it sets in the request: motion, velocity, amplitude, poisson,
         cells or steps.
     parameters : tuple
         By method, the name of the number that takes the value; an axis that has them asks only
@@ -50,8 +50,8 @@ _SLOW = (1.0, 0.1, 0.01, 1e-3, 1e-4, 1e-5, 1e-6)
 _SLOW_BORE = (1.0, 0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4)
 _AROUND_ONE = (0.9, 0.99, 0.999, 1.0, 1.001, 1.01, 1.1)
 _TINY = (1.0, 0.3, 0.1, 0.05, 0.02, 0.01, 1e-3)
-_BASE = {"scene": "transverse", "velocity": 0.1, "amplitude": 1.0}
-_BORE = {"scene": "bore", "velocity": 0.1, "amplitude": 1.0}
+_BASE = {"motion": "transverse", "velocity": 0.1, "amplitude": 1.0}
+_BORE = {"motion": "bore", "velocity": 0.1, "amplitude": 1.0}
 
 AXES = (
     Axis(
@@ -64,25 +64,25 @@ AXES = (
         "slow-transverse",
         r"velocity $v_0/(\omega{}u_\mathrm{lim})$",
         "transverse, A 0.5",
-        _varied("velocity", _SLOW, scene="transverse", amplitude=0.5),
+        _varied("velocity", _SLOW, motion="transverse", amplitude=0.5),
     ),
     Axis(
         "slow-bore",
         r"velocity $v_0/(\Omega\varphi_0{}a)$",
         "bore, A 1",
-        _varied("velocity", _SLOW_BORE, scene="bore", amplitude=1.0),
+        _varied("velocity", _SLOW_BORE, motion="bore", amplitude=1.0),
     ),
     Axis(
         "critical-amplitude",
         r"amplitude $y_0/u_\mathrm{lim}$ around the critical one",
         "transverse, v 0.01",
-        _varied("amplitude", _AROUND_ONE, scene="transverse", velocity=0.01),
+        _varied("amplitude", _AROUND_ONE, motion="transverse", velocity=0.01),
     ),
     Axis(
         "tiny-amplitude",
         r"amplitude $\varphi_0/\varphi_\mathrm{lk}$",
         "bore, v 0.001",
-        _varied("amplitude", _TINY, scene="bore", velocity=1e-3),
+        _varied("amplitude", _TINY, motion="bore", velocity=1e-3),
     ),
     Axis(
         "poisson",
@@ -91,7 +91,7 @@ AXES = (
         _varied(
             "poisson",
             (0.0, 0.1, 0.2, 0.3, 0.4, 0.49, 0.5),
-            scene="transverse",
+            motion="transverse",
             velocity=0.1,
             amplitude=0.7,
         ),
@@ -101,7 +101,7 @@ AXES = (
         "edge",
         "rings: small at the edge",
         "transverse, v 0.01, A 0.5",
-        _varied("cells", (8, 16, 32, 64, 128), scene="transverse", velocity=0.01, amplitude=0.5),
+        _varied("cells", (8, 16, 32, 64, 128), motion="transverse", velocity=0.01, amplitude=0.5),
     ),
     # The innermost cells of a polar grid get ever more slender.
     Axis(
@@ -115,13 +115,13 @@ AXES = (
         "rotation-centre",
         "velocity: where the centre of rotation lies",
         "bore, A 5; inside the contact up to 1",
-        _varied("velocity", (0.05, 0.2, 0.5, 0.8, 1.0, 1.2, 2.0), scene="bore", amplitude=5.0),
+        _varied("velocity", (0.05, 0.2, 0.5, 0.8, 1.0, 1.2, 2.0), motion="bore", amplitude=5.0),
     ),
     Axis(
         "reversal",
         "amplitude of a zigzag",
         "lateral speed constant but for its sign, v 0.1",
-        _varied("amplitude", (0.5, 1.0, 2.0, 5.0, 20.0, 100.0), scene="zigzag", velocity=0.1),
+        _varied("amplitude", (0.5, 1.0, 2.0, 5.0, 20.0, 100.0), motion="zigzag", velocity=0.1),
     ),
     Axis(
         "penalty",
@@ -196,7 +196,7 @@ def pieces(study: Stability) -> tuple[list, list]:
 
 
 def _point(overrides):
-    place = ("scene", "velocity", "amplitude", "poisson")
+    place = ("motion", "velocity", "amplitude", "poisson")
     given = {"poisson": 0.0} | {key: overrides[key] for key in place if key in overrides}
     return StudyPoint(name="", title="", **given)
 

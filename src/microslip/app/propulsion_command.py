@@ -1,4 +1,4 @@
-"""`microslip drive`: what a motion that drives pulls with, from stall to no load."""
+"""`microslip propulsion`: what a self-propelled motion pulls with, from stall to no load."""
 
 from __future__ import annotations
 
@@ -11,10 +11,6 @@ from microslip.foundation.number_text import aligned, number_text
 
 OPTIONS = {
     "amplitude": ("A", "of the oscillation, in the motion's own unit, as for point"),
-    "path": (
-        "NUMBERS",
-        "of the motion, such as forward_cycles=2,phase=0; see microslip point SCENE --help",
-    ),
     "pressure": ("NAME", "how the load is spread, as for point (hertz)"),
     "poisson": ("NU", "Poisson's ratio, 0 to 0.5 (0)"),
     "model": ("NAME", "auto, rigid, radial, polar or cartesian, as for point (auto)"),
@@ -34,16 +30,18 @@ REFERENCE_LOADS = (
 
 
 def fill(parser: argparse.ArgumentParser) -> None:
-    """Add the description and the arguments of `drive` to its parser."""
+    """Add the description and the arguments of `propulsion` to its parser."""
     parser.description = (
-        "Some motions drive the contact forward by themselves: a loop that is not its "
+        "Some motions propel the contact forward by themselves: a loop that is not its "
         "own image after half a period, or a load that is higher on the way back.  The line from "
         "the stall force, the load that stops it, to the no-load velocity; forces over mu times "
         "the mean normal load, powers over that, u_lim and omega.  A heavy body moves at the "
-        "velocity; below 0 the motion drives backward."
+        "velocity; below 0 it moves backward."
     )
     parser.add_argument(
-        "scene", metavar="SCENE", help="elliptic or normal, with --path or a colon and its numbers"
+        "motion",
+        metavar="MOTION",
+        help="elliptic or normal, with numbers after a colon, such as elliptic:forward_cycles=2",
     )
     for name, (metavar, text) in OPTIONS.items():
         parser.add_argument(
@@ -61,24 +59,20 @@ def fill(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Answer; returns the exit code: 0 converged, 1 not converged, 2 bad input."""
-    from microslip import drive
+    from microslip import propulsion
     from microslip.foundation import spec
     from microslip.foundation.errors import InputError
     from microslip.sweeps.evaluate import plain
 
     said = getattr(options, "said", {})
     given = {name: getattr(options, name) for name in said}
-    path = given.pop("path", None)
-    scene = options.scene if path is None else f"{options.scene}:{path}"
     try:
-        if path is not None and ":" in options.scene:
-            raise InputError("scene", None, "allowed is none: SCENE has numbers of its own")
         for name in given.keys() & {*REALS, "points"}:
             given[name] = spec.read(name, given[name], whole=name == "points")
-        line = drive(scene, given.pop("amplitude"), **given)
+        line = propulsion(options.motion, given.pop("amplitude"), **given)
     except InputError as error:
         named = error.renamed(*_as_given(options, said, error.argument))
-        complain(f"microslip drive {options.scene}: {named}")
+        complain(f"microslip propulsion {options.motion}: {named}")
         return 2
     print(json.dumps(plain(line.to_dict())) if options.json else _as_text(line))
     return 0 if line.converged else 1
@@ -86,8 +80,8 @@ def run(options: argparse.Namespace) -> int:
 
 def _as_given(options, said, argument):
     """Name of the option for an argument of `drive`, and its value on the command line."""
-    if argument == "scene":
-        return ("SCENE", options.scene) if options.path is None else ("--path", options.path)
+    if argument == "motion":
+        return "MOTION", options.motion
     return said.get(argument, f"--{argument.replace('_', '-')}"), getattr(options, argument, None)
 
 
@@ -95,7 +89,7 @@ def _as_text(line):
     stall = number_text(line.stall_force, line.stall_force_error)
     no_load = number_text(line.no_load_velocity, line.no_load_velocity_error)
     lines = [f"stall_force = {stall}", f"no_load_velocity = {no_load}"]
-    if line.scene.startswith("normal"):
+    if line.motion.startswith("normal"):
         lines.append(REFERENCE_LOADS)
     if line.velocity.size:
         best = line.efficiency.argmax()

@@ -1,20 +1,20 @@
-"""Driving: the lines of motions that drive the contact, from stall to no load."""
+"""Propulsion: the lines of self-propelled motions, from stall to no load."""
 
-from microslip.config.records import Driving, DrivingMotion
+from microslip.config.records import Propulsion, SelfPropelledMotion
 from microslip.foundation.canonical import number
 
 LINES_TOGETHER = 2
 """That one job computes."""
 
 
-def line(study: Driving, motion: DrivingMotion) -> dict:
+def line(study: Propulsion, motion: SelfPropelledMotion) -> dict:
     """The request for the line of a motion.
 
-    study: records.Driving. motion: records.DrivingMotion.
+    study: records.Propulsion. motion: records.SelfPropelledMotion.
     """
     return {
-        "kind": "drive",
-        "scene": motion.scene,
+        "kind": "propulsion",
+        "motion": motion.motion,
         "amplitude": number(motion.amplitude),
         "poisson": number(motion.poisson),
         "tolerance": number(study.tolerance),
@@ -22,7 +22,7 @@ def line(study: Driving, motion: DrivingMotion) -> dict:
     }
 
 
-def pieces(study: Driving) -> tuple[list, list]:
+def pieces(study: Propulsion) -> tuple[list, list]:
     """What one job each answers: two lists of lists of requests, those that take long first."""
     asked = [line(study, motion) for motion in study.motions.values()]
     distinct = [request for i, request in enumerate(asked) if request not in asked[:i]]

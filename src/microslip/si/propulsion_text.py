@@ -1,4 +1,4 @@
-"""A RealDrivingLine in words: the lines that `microslip predict --driving` and print() show."""
+"""A RealPropulsionLine in words, as `microslip predict --propulsion` and print() show it."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from microslip.si.printed_lines import (
 )
 
 
-def driving_text(found: object) -> str:
-    """All lines of a driving.RealDrivingLine."""
+def propulsion_text(found: object) -> str:
+    """All lines of a propulsion.RealPropulsionLine."""
     unit = length_unit(found.u_lim_m)
     force = force_unit(found.stall_force_N)
     lines = [line(name.replace("_", " "), text) for name, text in found.understood.items()]
     lines += ["", line("contact radius", in_unit(found.contact_radius_m, 0.0, unit))]
     lines.append(line("u_lim", in_unit(found.u_lim_m, 0.0, unit)))
     lines.append(line("amplitude", f"dimensionless {number_text(found.amplitude)}"))
-    if found.scene.startswith("normal"):
+    if found.motion.startswith("normal"):
         lines.append(line("groups", REFERENCE_LOADS_OF_DRIVING))
     stall = in_unit(found.stall_force_N, found.stall_force_error_N, force)
     lines.append(line("stall force", stall))

@@ -1,8 +1,8 @@
-"""The study of motions that drive: its settings, checked."""
+"""The study of self-propelled motions: its settings, checked."""
 
 from collections.abc import Iterable
 
-from microslip.config.records import ConfigError, Driving, DrivingMotion
+from microslip.config.records import ConfigError, Propulsion, SelfPropelledMotion
 from microslip.foundation.canonical import number
 from microslip.foundation.errors import InputError
 
@@ -11,15 +11,15 @@ MOST_LINES = 8
 MOST_PANELS = 4
 
 
-def study(given: dict, where: str, ask_solver: bool) -> Driving:
-    """The Driving of settings with defaults filled in.
+def study(given: dict, where: str, ask_solver: bool) -> Propulsion:
+    """The Propulsion of settings with defaults filled in.
 
     where: how messages begin, file and key. ask_solver: whether the solver is to say that these
     motions may drive. Raises ConfigError.
     """
     motions = [_motion(name, settings) for name, settings in given["motions"].items()]
     _refuse_crowd(motions, where)
-    found = Driving(
+    found = Propulsion(
         tolerance=float(number(given["tolerance"])),
         points=given["points"],
         motions={motion.name: motion for motion in motions},
@@ -29,10 +29,10 @@ def study(given: dict, where: str, ask_solver: bool) -> Driving:
     return found
 
 
-def _motion(name: str, given: dict) -> DrivingMotion:
-    return DrivingMotion(
+def _motion(name: str, given: dict) -> SelfPropelledMotion:
+    return SelfPropelledMotion(
         name=str(name),
-        scene=given["scene"],
+        motion=given["motion"],
         amplitude=float(number(given["amplitude"])),
         poisson=float(number(given["poisson"])),
         panel=given["panel"],
@@ -40,7 +40,7 @@ def _motion(name: str, given: dict) -> DrivingMotion:
     )
 
 
-def _refuse_crowd(motions: Iterable[DrivingMotion], where: str) -> None:
+def _refuse_crowd(motions: Iterable[SelfPropelledMotion], where: str) -> None:
     panels = {}
     for motion in motions:
         panels.setdefault(motion.panel, []).append(motion.name)
@@ -56,12 +56,12 @@ def _refuse_crowd(motions: Iterable[DrivingMotion], where: str) -> None:
             )
 
 
-def _refuse_what_drives_nothing(motions: Iterable[DrivingMotion], where: str) -> None:
-    from microslip.adaptive.checks import checked_driving
+def _refuse_what_drives_nothing(motions: Iterable[SelfPropelledMotion], where: str) -> None:
+    from microslip.adaptive.checks import checked_propulsion
 
     for motion in motions:
         try:
-            checked_driving(motion.scene, motion.amplitude, motion.poisson)
+            checked_propulsion(motion.motion, motion.amplitude, motion.poisson)
         except InputError as error:  # its arguments have the names of the keys
             line = f"{where}.{motion.name}.{error.argument}: {error.value!r}: {error.allowed}"
             raise ConfigError(" ".join(line.split())) from None

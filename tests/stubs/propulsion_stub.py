@@ -1,27 +1,27 @@
-"""A small configuration of the study of driving, and made-up lines."""
+"""A small configuration of the study of propulsion, and made-up lines."""
 
 import numpy as np
 from stubs.studies_stub import SWEEPS
 
 from microslip.config import load
 
-EIGHT = {"scene": "elliptic:forward_cycles=2,phase=0", "amplitude": 1, "panel": "loops"}
-BACK = {"scene": "elliptic:forward_cycles=2,phase=180", "amplitude": 1, "panel": "loops"}
-STILL = {"scene": "normal:forward=1", "amplitude": 0.1, "panel": "normal", "title": "at $ rest"}
+EIGHT = {"motion": "elliptic:forward_cycles=2,phase=0", "amplitude": 1, "panel": "loops"}
+BACK = {"motion": "elliptic:forward_cycles=2,phase=180", "amplitude": 1, "panel": "loops"}
+STILL = {"motion": "normal:forward=1", "amplitude": 0.1, "panel": "normal", "title": "at $ rest"}
 DRIVING = {"points": 3, "motions": {"eight": EIGHT, "back": BACK, "still": STILL}}
 
 
 def configured(**changes):
     """A configuration of the study with some settings changed."""
-    return load.from_mapping({"sweeps": SWEEPS, "driving": DRIVING | changes})
+    return load.from_mapping({"sweeps": SWEEPS, "propulsion": DRIVING | changes})
 
 
-def driving_result(request):
+def propulsion_result(request):
     """A straight line from the force 0.2 to the velocity 0.5, against a power in of 0.1; backward
     where the phase is 180 degrees, none where the load oscillates."""
-    sign = -1.0 if "phase=180" in request["scene"] else 1.0
+    sign = -1.0 if "phase=180" in request["motion"] else 1.0
     velocity = np.linspace(0.0, 0.5, request["points"])
-    if request["scene"].startswith("normal"):
+    if request["motion"].startswith("normal"):
         sign, velocity = 0.0, np.zeros(0)
     force = 0.2 * (1.0 - 2.0 * velocity)
     small = np.full(velocity.shape, 1e-3)
@@ -42,5 +42,5 @@ def driving_result(request):
         "no_load_velocity": sign * 0.5,
         "no_load_velocity_error": 2e-3,
         "converged": True,
-        "reason": "" if sign else "drives nothing: friction holds",
+        "reason": "" if sign else "propels nothing: friction holds",
     }

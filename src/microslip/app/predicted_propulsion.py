@@ -1,4 +1,4 @@
-"""`microslip predict --driving`: options to arguments of predict_driving."""
+"""`microslip predict --propulsion`: options to arguments of predict_propulsion."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ REFUSED |= dict.fromkeys(
     ("forward_amplitude", "rotation_amplitude", "load_amplitude", "phase"),
     "the numbers of the motion are its shares of the amplitude and its phases",
 )
-"""Options of predict that --driving refuses, and why."""
+"""Options of predict that --propulsion refuses, and why."""
 
 
-def ask(scene: str, given: dict) -> object:
-    """The si.driving.RealDrivingLine; given: options by name.  Raises InputError."""
-    from microslip.si.driving import predict_driving
+def ask(motion: str, given: dict) -> object:
+    """The si.propulsion.RealPropulsionLine; given: options by name.  Raises InputError."""
+    from microslip.si.propulsion import predict_propulsion
 
     for name, reason in REFUSED.items():
         if name in given:
-            raise InputError(name, given[name], f"allowed is none with --driving: {reason}")
+            raise InputError(name, given[name], f"allowed is none with --propulsion: {reason}")
     if "points" in given:
         given = given | {"points": read("points", given["points"], whole=True)}
     missing = dict.fromkeys(("radius", "load", "amplitude", "frequency"))
-    return predict_driving(scene, **missing | given)
+    return predict_propulsion(motion, **missing | given)

@@ -1,4 +1,4 @@
-"""Driving: force and efficiency of motions that drive, from stall to the no-load velocity."""
+"""Propulsion: force and efficiency of self-propelled motions, from stall to no load."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ VELOCITY = r"forward velocity  $v_0/(\omega u_\mathrm{lim})$"
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
     """Draw a column for each panel of the dataset: force above, efficiency below."""
-    require(name, "driving", dataset, VARIABLES)
+    require(name, "propulsion", dataset, VARIABLES)
     panels = [str(panel) for panel in dict.fromkeys(dataset["panel"].values)]
     figure = look.new_figure(max(WIDTH * len(panels), look.SINGLE), HEIGHT)
     grid = figure.subplots(len(ROWS), len(panels), sharex="col", squeeze=False)

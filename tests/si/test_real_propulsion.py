@@ -21,14 +21,14 @@ U_LIM = 3.0 * 0.3 * 10.0 / (4.0 * 2.0 * 105e9 * CONTACT_RADIUS)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("scene", "share"), [(EIGHT, 1.0), (PRESSED, 0.9)])
-def test_the_line_is_that_of_the_groups(scene, share):
+@pytest.mark.parametrize(("motion", "share"), [(EIGHT, 1.0), (PRESSED, 0.9)])
+def test_the_line_is_that_of_the_groups(motion, share):
     """Newtons are mu F_z, metres a second omega u_lim, watts their product; the mean load of what
     oscillates by less than itself is the load."""
     frequency = 20e3
     given = {"amplitude": share * U_LIM, "frequency": frequency, "points": 3}
-    real = microslip.predict_driving(scene, **BALL, **given)
-    line = microslip.drive(scene, share, tolerance=1e-2, points=3)
+    real = microslip.predict_propulsion(motion, **BALL, **given)
+    line = microslip.propulsion(motion, share, tolerance=1e-2, points=3)
     assert real.converged and line.converged
     speed = 2.0 * math.pi * frequency * U_LIM
     assert real.amplitude == pytest.approx(share, rel=1e-9)
@@ -44,8 +44,8 @@ def test_the_line_is_that_of_the_groups(scene, share):
 @pytest.mark.slow
 def test_holding_forces_are_in_newtons():
     """mu F_z, 3 N, times those of the groups; the text has them with their errors."""
-    real = microslip.predict_driving(EIGHT, **BALL, amplitude=0.5 * U_LIM, frequency=20e3)
-    line = microslip.drive(EIGHT, 0.5, tolerance=1e-2)
+    real = microslip.predict_propulsion(EIGHT, **BALL, amplitude=0.5 * U_LIM, frequency=20e3)
+    line = microslip.propulsion(EIGHT, 0.5, tolerance=1e-2)
     for name in ("low", "high"):
         force = getattr(real, f"holding_force_{name}_N")
         error = getattr(real, f"holding_force_{name}_error_N")
@@ -58,7 +58,7 @@ def test_holding_forces_are_in_newtons():
 def test_twice_as_fast_takes_twice_the_power():
     """Friction does not know how fast it goes."""
     slow, fast = (
-        microslip.predict_driving(EIGHT, **BALL, amplitude=U_LIM, frequency=f, points=3)
+        microslip.predict_propulsion(EIGHT, **BALL, amplitude=U_LIM, frequency=f, points=3)
         for f in ("20 kHz", "40 kHz")
     )
     assert fast.force_N == pytest.approx(slow.force_N)
@@ -66,18 +66,18 @@ def test_twice_as_fast_takes_twice_the_power():
     assert fast.power_in_W == pytest.approx(2.0 * slow.power_in_W)
 
 
-def words(scene, **more):
+def words(motion, **more):
     given = {"radius": "5 mm", "load": "10 N", "mu": "0.3", "young": "210 GPa", "nu": "0"}
     given |= {"amplitude": f"{U_LIM} m", "frequency": "20 kHz"} | more
     named = [f"--{name}={value}" for name, value in given.items() if value is not None]
-    return ["predict", scene, "--driving", *named]
+    return ["predict", motion, "--propulsion", *named]
 
 
 @pytest.mark.slow
 def test_the_command_line_says_the_same(capsys):
     assert cli.main([*words(EIGHT, points="3"), "--json"]) == 0
     said = json.loads(capsys.readouterr().out)
-    found = microslip.predict_driving(EIGHT, **BALL, amplitude=U_LIM, frequency=20e3, points=3)
+    found = microslip.predict_propulsion(EIGHT, **BALL, amplitude=U_LIM, frequency=20e3, points=3)
     assert said["force_N"] == pytest.approx(found.force_N.tolist())
     assert cli.main(words(EIGHT, points="3")) == 0
     text = capsys.readouterr().out
@@ -92,27 +92,31 @@ def test_the_command_line_says_the_same(capsys):
 
 
 REFUSED = {
-    "no drive": ("transverse", {}, "SCENE = 'transverse': allowed is a motion that drives"),
-    "a speed": (EIGHT, {"speed": "1 mm/s"}, "--speed = '1 mm/s': allowed is none with --driving"),
+    "no drive": ("transverse", {}, "MOTION = 'transverse': allowed is a self-propelled motion"),
+    "a speed": (
+        EIGHT,
+        {"speed": "1 mm/s"},
+        "--speed = '1 mm/s': allowed is none with --propulsion",
+    ),
     "no amplitude": (EIGHT, {"amplitude": None}, "--amplitude: needed"),
     "no length": (EIGHT, {"amplitude": "1 deg"}, "--amplitude = '1 deg': "),
     "no points": (EIGHT, {"points": "1"}, "--points = 1: allowed is a whole number"),
     "a rotation": (
         "normal:forward=1,angle=1,phase=90",
         {},
-        "SCENE = 'normal:forward=1,angle=1,phase=90': allowed is a motion without a rotation",
+        "MOTION = 'normal:forward=1,angle=1,phase=90': allowed is a motion without a rotation",
     ),
 }
 
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_bad_input_gets_one_line(name, capsys):
-    scene, more, expected = REFUSED[name]
-    assert cli.main(words(scene, **more)) == 2
+    motion, more, expected = REFUSED[name]
+    assert cli.main(words(motion, **more)) == 2
     line = capsys.readouterr().err
     assert line.count("\n") == 1 and expected in line
 
 
 def test_an_amplitude_beyond_all_sizes_is_refused():
     with pytest.raises(InputError, match="times u_lim; allowed is at most"):
-        microslip.predict_driving(EIGHT, **BALL, amplitude="1 m", frequency="1 Hz")
+        microslip.predict_propulsion(EIGHT, **BALL, amplitude="1 m", frequency="1 Hz")

@@ -1,4 +1,4 @@
-"""The answer for a motion that drives: a line from stall force to no-load velocity."""
+"""The answer for a self-propelled motion: a line from stall force to no-load velocity."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class DrivingLine:
+class PropulsionLine:
     """What a motion drives, from stall to no load; dimensionless but for the time.
 
     Forces are over mu times the mean normal load, velocities in the unit of the motion's own
@@ -17,17 +17,17 @@ class DrivingLine:
 
     Attributes
     ----------
-    scene, pressure, model : str
+    motion, pressure, model : str
         What moves, how the load is spread, and the contact model.
     amplitude, poisson, tolerance : float
         As asked for.
     stall_force, stall_force_error : float
-        Load that stops the motion, 0 where it drives nothing; below 0 where it drives backward.
+        Load that stops the motion; 0 where it propels nothing, below 0 where it propels backward.
     no_load_velocity, no_load_velocity_error : float
         Velocity without a load, with the same sign.
     holding_force_low, holding_force_low_error : float or None
         Lowest of the forces against which friction holds a body at rest, below 0: a pull backward;
-        None where the motion drives.
+        None where the motion propels the contact.
     holding_force_high, holding_force_high_error : float or None
         Highest of these forces.
     velocity, force, force_error : np.ndarray, shape (points,)
@@ -48,7 +48,7 @@ class DrivingLine:
         Seconds by the wall clock.
     """
 
-    scene: str
+    motion: str
     pressure: str
     model: str
     amplitude: float

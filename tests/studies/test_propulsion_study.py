@@ -1,10 +1,10 @@
-"""The study of motions that drive: what is asked, its dataset and its figure."""
+"""The study of self-propelled motions: what is asked, its dataset and its figure."""
 
 from pathlib import Path
 
 import numpy as np
 import pytest
-from stubs import driving_stub, studies_stub
+from stubs import propulsion_stub, studies_stub
 
 from microslip.config import load
 from microslip.config.records import ConfigError
@@ -17,24 +17,24 @@ from microslip.sweeps.cache import Store
 
 @pytest.fixture(scope="module")
 def data():
-    answer, _ = studies_stub.answered(driving_stub.driving_result)
-    return registry.build("driving", driving_stub.configured(), answer)
+    answer, _ = studies_stub.answered(propulsion_stub.propulsion_result)
+    return registry.build("propulsion", propulsion_stub.configured(), answer)
 
 
 def test_every_line_is_asked_for_once():
-    again = driving_stub.DRIVING["motions"] | {"twin": driving_stub.EIGHT}
-    given = driving_stub.configured(motions=again)
-    asked = studies_stub.asked("driving", given)
+    again = propulsion_stub.DRIVING["motions"] | {"twin": propulsion_stub.EIGHT}
+    given = propulsion_stub.configured(motions=again)
+    asked = studies_stub.asked("propulsion", given)
     assert len(asked) == len(set(asked)) == 3
-    answer, seen = studies_stub.answered(driving_stub.driving_result)
-    built = registry.build("driving", given, answer)
+    answer, seen = studies_stub.answered(propulsion_stub.propulsion_result)
+    built = registry.build("propulsion", given, answer)
     assert set(seen) == set(asked)
     assert built.sizes == {"line": 4, "point": 3}
 
 
 def test_the_dataset_holds_what_was_answered_and_outlives_its_file(data, tmp_path):
-    sweep_dataset.write(data, tmp_path / "driving.nc", registry.groups("driving"))
-    found = netcdf.whole(tmp_path / "driving.nc")
+    sweep_dataset.write(data, tmp_path / "propulsion.nc", registry.groups("propulsion"))
+    found = netcdf.whole(tmp_path / "propulsion.nc")
     assert found["stall_force"].values.tolist() == [0.2, -0.2, 0.0]
     middle = found.sel(line="back").isel(point=1)  # of the line through (0, 0.2) and (0.5, 0)
     assert float(middle["velocity"]) == -0.25
@@ -45,15 +45,15 @@ def test_the_dataset_holds_what_was_answered_and_outlives_its_file(data, tmp_pat
 
 
 def test_the_report_says_what_each_drives(data):
-    eight, back, still = registry.report("driving", data)
+    eight, back, still = registry.report("propulsion", data)
     assert eight == "eight: stall force 0.2, no-load velocity 0.5, efficiency up to 0.25"
     assert "stall force -0.2, no-load velocity -0.5" in back
-    assert still == "still: drives nothing: friction holds"
+    assert still == "still: propels nothing: friction holds"
 
 
 @pytest.mark.slow
 def test_the_figure_draws_every_line_and_computes_nothing(data):
-    figure = drawing.draw("driving", {"driving": data})
+    figure = drawing.draw("propulsion", {"propulsion": data})
     above, beside, below, _ = figure.axes
     for axes, name in ((above, "force"), (below, "efficiency")):
         found = [line for line in axes.get_lines() if line.get_gid() == name]
@@ -69,39 +69,42 @@ def test_the_figure_draws_every_line_and_computes_nothing(data):
 
 @pytest.mark.slow
 def test_a_line_is_kept_and_found_again(tmp_path):
-    motion = {"only": driving_stub.EIGHT}
-    given = driving_stub.configured(motions=motion, tolerance=1e-2, points=2)
-    (request,) = registry.pieces("driving", given)[1][0]
+    motion = {"only": propulsion_stub.EIGHT}
+    given = propulsion_stub.configured(motions=motion, tolerance=1e-2, points=2)
+    (request,) = registry.pieces("propulsion", given)[1][0]
     first, _ = batches.answer(request, Store(tmp_path))
     again, seconds = batches.answer(request, Store(tmp_path))
     assert again == first and seconds == 0.0
     assert first["result"]["converged"] and len(first["result"]["velocity"]) == 2
-    assert list(tmp_path.glob("driving_lines/elliptic/**/*.json"))
+    assert list(tmp_path.glob("propulsion_lines/elliptic/**/*.json"))
 
 
 @pytest.mark.parametrize(
     ("motion", "said"),
     [
-        ({"scene": "elliptic"}, "driving.motions.odd.scene: 'elliptic': allowed is a motion that"),
-        ({"scene": "eliptic"}, "driving.motions.odd.scene: 'eliptic'"),
-        ({"amplitude": 0}, "driving.motions.odd.amplitude: 0"),
-        ({"panel": " "}, "driving.motions.odd.panel"),
+        (
+            {"motion": "elliptic"},
+            "propulsion.motions.odd.motion: 'elliptic': allowed is a motion that",
+        ),
+        ({"motion": "eliptic"}, "propulsion.motions.odd.motion: 'eliptic'"),
+        ({"amplitude": 0}, "propulsion.motions.odd.amplitude: 0"),
+        ({"panel": " "}, "propulsion.motions.odd.panel"),
     ],
 )
 def test_a_motion_that_cannot_be_asked_is_refused(motion, said):
     with pytest.raises(ConfigError, match=said):
-        driving_stub.configured(motions={"odd": driving_stub.EIGHT | motion})
+        propulsion_stub.configured(motions={"odd": propulsion_stub.EIGHT | motion})
 
 
 def test_more_lines_than_a_panel_can_tell_apart_are_refused():
-    many = {f"line{i}": driving_stub.EIGHT for i in range(9)}
+    many = {f"line{i}": propulsion_stub.EIGHT for i in range(9)}
     with pytest.raises(ConfigError, match="line8.panel: loops has more than 8 lines"):
-        driving_stub.configured(motions=many)
-    many = {f"line{i}": driving_stub.EIGHT | {"panel": f"p{i}"} for i in range(5)}
+        propulsion_stub.configured(motions=many)
+    many = {f"line{i}": propulsion_stub.EIGHT | {"panel": f"p{i}"} for i in range(5)}
     with pytest.raises(ConfigError, match="line4.panel: p4 is one of more than 4; allowed: p0, p1"):
-        driving_stub.configured(motions=many)
+        propulsion_stub.configured(motions=many)
 
 
 def test_the_study_need_not_be_given():
     shipped = load.load(Path(__file__).parents[2] / "config" / "config.yaml")
-    assert load.from_mapping({"sweeps": studies_stub.SWEEPS}).driving == shipped.driving
+    assert load.from_mapping({"sweeps": studies_stub.SWEEPS}).propulsion == shipped.propulsion

@@ -1,4 +1,4 @@
-"""What a motion that drives pulls with, in newtons, metres a second and watts."""
+"""What a self-propelled motion pulls with, in newtons, metres a second and watts."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from microslip.adaptive.checks import checked_driving
-from microslip.adaptive.driving import DRIVES_NOTHING, POINTS, drive
+from microslip.adaptive.checks import checked_propulsion
+from microslip.adaptive.propulsion import POINTS, PROPELS_NOTHING, propulsion
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.si.dimensionless import RealMotion
-from microslip.si.driving_text import driving_text
 from microslip.si.inputs import read_body, read_contact, read_counterbody
 from microslip.si.printed_lines import force_unit, in_unit
+from microslip.si.propulsion_text import propulsion_text
 from microslip.si.quantities import read
 from microslip.si.validity import broken_assumptions, unchecked
 
@@ -23,7 +23,7 @@ TOLERANCE = 1e-2
 
 
 @dataclass(frozen=True, eq=False)
-class RealDrivingLine:
+class RealPropulsionLine:
     """The line from stall force to no-load speed of a real contact.
 
     Every error is the largest that the number before it may have, by estimate.  Negative forces and
@@ -33,7 +33,7 @@ class RealDrivingLine:
     ----------
     understood : dict of str
         What was asked, as in prediction.Prediction.
-    scene : str
+    motion : str
         The motion.
     contact_radius_m, u_lim_m : float
         Of Hertz's contact, and the displacement at which all of it slides, m.
@@ -47,7 +47,7 @@ class RealDrivingLine:
         Speed without a load, m/s.
     holding_force_low_N, holding_force_low_error_N : float or None
         Lowest of the forces against which friction holds a body at rest, N, below 0: a pull
-        backward; None where the motion drives.
+        backward; None where the motion propels the contact.
     holding_force_high_N, holding_force_high_error_N : float or None
         Highest of these forces, N.
     speed_m_s, force_N, force_error_N : np.ndarray, shape (points,)
@@ -59,13 +59,13 @@ class RealDrivingLine:
     efficiency, efficiency_error : np.ndarray, shape (points,)
         Power out over power in, dimensionless.
     converged, reason : bool, str
-        As in driving_line.DrivingLine.
+        As in propulsion_line.PropulsionLine.
     warnings, not_checked : tuple of str
         Where an assumption of the theory breaks, and what was not looked at.
     """
 
     understood: dict = field(repr=False)
-    scene: str
+    motion: str
     contact_radius_m: float
     u_lim_m: float
     amplitude_m: float
@@ -94,8 +94,8 @@ class RealDrivingLine:
     not_checked: tuple
 
     def __str__(self) -> str:
-        """The lines that `microslip predict --driving` prints."""
-        return driving_text(self)
+        """The lines that `microslip predict --propulsion` prints."""
+        return propulsion_text(self)
 
     def to_dict(self) -> dict:
         """Fields as a plain dict, arrays as lists."""
@@ -103,8 +103,8 @@ class RealDrivingLine:
         return {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in fields.items()}
 
 
-def predict_driving(
-    scene: str,
+def predict_propulsion(
+    motion: str,
     *,
     radius: object,
     load: object,
@@ -122,13 +122,13 @@ def predict_driving(
     counter_density: object = None,
     tolerance: object = TOLERANCE,
     points: int = POINTS,
-) -> RealDrivingLine:
+) -> RealPropulsionLine:
     """What a sphere on a flat (or on a second sphere) pulls with whose motion drives.
 
     Parameters
     ----------
-    scene : str
-        A motion that drives, as for `microslip.drive`, without a rotation.
+    motion : str
+        A self-propelled motion, as for `microslip.propulsion`, without a rotation.
     amplitude : quantity
         A length: what a share 1 of the motion oscillates by to either side, m.  Where the normal
         load oscillates, `load` is that without oscillation, and its share counts by the amplitude
@@ -142,8 +142,8 @@ def predict_driving(
 
     Returns
     -------
-    RealDrivingLine
-        The line of `microslip.drive`, with units.
+    RealPropulsionLine
+        The line of `microslip.propulsion`, with units.
 
     Raises
     ------
@@ -168,20 +168,20 @@ def predict_driving(
     if not group <= LARGEST["amplitude"]:
         allowed = f"{group:.3g} times u_lim; allowed is at most {LARGEST['amplitude']:g} times"
         raise InputError("amplitude", amplitude, allowed)
-    motion, _, _ = checked_driving(scene, group, contact.poisson)
-    if motion.rotates:
-        raise InputError("scene", scene, "allowed is a motion without a rotation")
-    line = drive(scene, group, poisson=contact.poisson, tolerance=accepted.si, points=points)
-    said = {"scene": scene, "amplitude": size.text, "frequency": rate.text}
-    mean_load = contact.load * float(motion.mean_load(group, motion.pressure))
+    record, _, _ = checked_propulsion(motion, group, contact.poisson)
+    if record.rotates:
+        raise InputError("motion", motion, "allowed is a motion without a rotation")
+    line = propulsion(motion, group, poisson=contact.poisson, tolerance=accepted.si, points=points)
+    said = {"motion": motion, "amplitude": size.text, "frequency": rate.text}
+    mean_load = contact.load * float(record.mean_load(group, record.pressure))
     newtons, speed = contact.mu * mean_load, 2.0 * math.pi * rate.si * contact.u_lim
     watts = newtons * speed
     fastest = speed * float(np.max(np.abs(line.velocity), initial=0.0))
-    real = RealMotion(scene, fastest, size.si, rate.si)
+    real = RealMotion(motion, fastest, size.si, rate.si)
     holding, reason = _holding_forces(line, newtons)
-    return RealDrivingLine(
+    return RealPropulsionLine(
         understood=understood | said,
-        scene=scene,
+        motion=motion,
         contact_radius_m=contact.contact_radius,
         u_lim_m=contact.u_lim,
         amplitude_m=size.si,
@@ -218,6 +218,6 @@ def _holding_forces(line, newtons):
     if low is None or not line.converged:
         return fields, line.reason
     unit = force_unit(max(abs(low), abs(high)))
-    return fields, DRIVES_NOTHING.format(
+    return fields, PROPELS_NOTHING.format(
         in_unit(low, low_error, unit), in_unit(high, high_error, unit)
     )

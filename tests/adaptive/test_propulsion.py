@@ -1,4 +1,4 @@
-"""Motions that drive: rigid limits, balances of energy, and a contact that is pushed back."""
+"""Self-propelled motions: rigid limits, balances of energy, and a contact that is pushed back."""
 
 from dataclasses import replace
 
@@ -51,8 +51,8 @@ def test_a_rigid_contact_on_an_eight():
     stall, _ = rigid_eight(0.0)
     fastest = brentq(lambda v: rigid_eight(v)[0], 0.0, 2.0)
     sign = -1.0 if stall > 0.0 else 1.0
-    scene = EIGHT if sign > 0.0 else "elliptic:forward_cycles=2,phase=180"
-    line = microslip.drive(scene, 1.0, model="rigid", points=5)
+    motion = EIGHT if sign > 0.0 else "elliptic:forward_cycles=2,phase=180"
+    line = microslip.propulsion(motion, 1.0, model="rigid", points=5)
     assert line.converged, line.reason
     assert abs(line.stall_force + stall) <= line.stall_force_error
     assert abs(line.no_load_velocity - fastest) <= line.no_load_velocity_error
@@ -65,7 +65,7 @@ def test_a_rigid_contact_on_an_eight():
 @pytest.mark.slow
 def test_a_stiff_contact_under_an_oscillating_load_in_closed_form():
     """The path is forty times u_lim: an elastic contact is late by about one u_lim."""
-    line = microslip.drive("normal:forward=1,load=0.0125,phase=90", 40.0, points=3)
+    line = microslip.propulsion("normal:forward=1,load=0.0125,phase=90", 40.0, points=3)
     assert line.converged, line.reason
     late = 2.0 / 40.0  # u_lim lost at each of two turns, over a half stroke
     assert line.stall_force == pytest.approx(-rigid_pressed(0.0, 40.0, 0.5), abs=late)
@@ -76,7 +76,7 @@ def test_a_stiff_contact_under_an_oscillating_load_in_closed_form():
 @pytest.mark.slow
 def test_no_load_by_a_heavy_body_without_a_force():
     """A body so heavy that it does not feel a period moves under no force at that velocity."""
-    line = microslip.drive(EIGHT, 1.0, points=2)
+    line = microslip.propulsion(EIGHT, 1.0, points=2)
     free = microslip.solve(EIGHT, amplitude=1.0, force=0.0, mass=1e3)
     assert free.converged
     swing = 1e-3  # of the velocity, by forces up to 1
@@ -86,15 +86,15 @@ def test_no_load_by_a_heavy_body_without_a_force():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("scene", "amplitude"),
+    ("motion", "amplitude"),
     [(EIGHT, 1.0), pytest.param("normal:forward=1,phase=225", 0.8, marks=pytest.mark.long)],
 )
-def test_what_goes_in_and_not_out_is_dissipated(scene, amplitude):
+def test_what_goes_in_and_not_out_is_dissipated(motion, amplitude):
     """Slip times traction, summed over the points of another model."""
-    line = microslip.drive(scene, amplitude, points=3)
+    line = microslip.propulsion(motion, amplitude, points=3)
     assert line.converged, line.reason
     velocity = float(line.velocity[1])
-    there = microslip.period(scene, velocity, amplitude, cells=16, angles=4, steps=256)
+    there = microslip.period(motion, velocity, amplitude, cells=16, angles=4, steps=256)
     slip = np.array([there.slip_forward, there.slip_lateral])[:, 1:]
     traction = np.array([there.traction_forward, there.traction_lateral])[:, 1:]
     dissipated = float(np.sum(there.area * traction * slip)) / (2.0 * np.pi)
@@ -122,7 +122,7 @@ def test_an_oscillating_load_does_no_work_over_a_period(amplitude):
 def test_two_models_drive_alike():
     """At nu = 0 rings alone and rings with angles are two models of one contact."""
     rings, modes = (
-        microslip.drive(EIGHT, 1.0, model=model, tolerance=1e-2, points=3)
+        microslip.propulsion(EIGHT, 1.0, model=model, tolerance=1e-2, points=3)
         for model in ("radial", "polar")
     )
     errors = rings.no_load_velocity_error + modes.no_load_velocity_error
@@ -136,7 +136,7 @@ def test_two_models_drive_alike():
 
 @pytest.mark.slow
 def test_stall_is_the_limit_of_slow_velocities():
-    line = microslip.drive(EIGHT, 1.2, points=2)
+    line = microslip.propulsion(EIGHT, 1.2, points=2)
     slow = [-microslip.solve(EIGHT, v, 1.2).mu_macro for v in (4e-3, 1e-3)]
     assert line.stall_force > slow[1] > slow[0]
     assert slow[1] == pytest.approx(line.stall_force, abs=3e-3)
@@ -144,8 +144,8 @@ def test_stall_is_the_limit_of_slow_velocities():
 
 @pytest.mark.long
 def test_a_reversed_loop_drives_backward():
-    ahead = microslip.drive("elliptic:forward_cycles=2,phase=20", 1.0, points=4)
-    back = microslip.drive("elliptic:forward_cycles=2,phase=200", 1.0, points=4)
+    ahead = microslip.propulsion("elliptic:forward_cycles=2,phase=20", 1.0, points=4)
+    back = microslip.propulsion("elliptic:forward_cycles=2,phase=200", 1.0, points=4)
     assert ahead.stall_force > 0.0 > back.stall_force
     errors = ahead.stall_force_error + back.stall_force_error
     assert abs(ahead.stall_force + back.stall_force) <= errors
@@ -159,7 +159,7 @@ def test_friction_grows_through_zero_velocity():
     """Pushed back against the way in which it drives, a contact resists more than at a stall."""
     force = [microslip.solve(EIGHT, v, 1.0).mu_macro for v in (-0.5, -0.1, 0.1, 0.5)]
     assert np.all(np.diff(force) > 0.0)
-    assert force[0] < -microslip.drive(EIGHT, 1.0, points=2).stall_force
+    assert force[0] < -microslip.propulsion(EIGHT, 1.0, points=2).stall_force
     fast = microslip.solve(EIGHT, -3.0, 0.1)
     assert fast.mu_macro == pytest.approx(-1.0, abs=1e-2)
 
@@ -188,11 +188,11 @@ def test_a_rigid_contact_pushed_back():
 @pytest.mark.slow
 def test_a_contact_that_sticks_drives_nothing():
     """So small an oscillation leaves friction enough to hold a body against either direction."""
-    line = microslip.drive(EIGHT, 0.1, tolerance=3e-2)
+    line = microslip.propulsion(EIGHT, 0.1, tolerance=3e-2)
     assert line.converged
     assert line.stall_force == line.no_load_velocity == 0.0
     assert line.velocity.size == line.efficiency.size == 0
-    assert line.reason.startswith("drives nothing: friction holds")
+    assert line.reason.startswith("propels nothing: friction holds")
 
 
 @pytest.mark.slow
@@ -200,10 +200,10 @@ def test_the_holding_forces_have_errors_and_the_digits_that_these_allow():
     """The forces against which friction holds are those at vanishing speed either way, which
     microslip.solve gives at a finer tolerance; the figure of eight at 180 degrees is the mirror
     image."""
-    line = microslip.drive(EIGHT, 0.5, tolerance=1e-2)
+    line = microslip.propulsion(EIGHT, 0.5, tolerance=1e-2)
     mirrored = "elliptic:forward_cycles=2,phase=180"
-    for name, scene, sign in (("low", mirrored, -1.0), ("high", EIGHT, 1.0)):
-        finer = microslip.solve(scene, 0.0, 0.5, tolerance=2e-3)
+    for name, motion, sign in (("low", mirrored, -1.0), ("high", EIGHT, 1.0)):
+        finer = microslip.solve(motion, 0.0, 0.5, tolerance=2e-3)
         force = getattr(line, f"holding_force_{name}")
         error = getattr(line, f"holding_force_{name}_error")
         assert 0.0 < error <= 1e-2
@@ -212,7 +212,7 @@ def test_the_holding_forces_have_errors_and_the_digits_that_these_allow():
 
 
 def test_a_motion_that_drives_has_no_holding_forces():
-    line = microslip.drive(EIGHT, 1.0, model="rigid", points=2, tolerance=1e-2)
+    line = microslip.propulsion(EIGHT, 1.0, model="rigid", points=2, tolerance=1e-2)
     assert line.stall_force != 0.0
     assert line.holding_force_low is line.holding_force_high is None
 
@@ -220,12 +220,12 @@ def test_a_motion_that_drives_has_no_holding_forces():
 @pytest.mark.parametrize(
     ("arguments", "named"),
     [
-        (("transverse", 1.0), "scene = 'transverse': allowed is a motion that drives"),
-        (("elliptic", 1.0), "scene = 'elliptic': allowed is a motion that drives"),
+        (("transverse", 1.0), "motion = 'transverse': allowed is a self-propelled motion"),
+        (("elliptic", 1.0), "motion = 'elliptic': allowed is a self-propelled motion"),
         # after half a period of the common divisor the way back is the image of the way forward
-        (("elliptic:lateral=0.8,lateral_cycles=2,phase=70", 1.7), "a motion that drives"),
-        (("elliptic:forward_cycles=6,lateral_cycles=2,phase=30", 1.0), "a motion that drives"),
-        (("normal:forward=1,normal_cycles=2", 1.0), "a motion that drives"),
+        (("elliptic:lateral=0.8,lateral_cycles=2,phase=70", 1.7), "a self-propelled motion"),
+        (("elliptic:forward_cycles=6,lateral_cycles=2,phase=30", 1.0), "a self-propelled motion"),
+        (("normal:forward=1,normal_cycles=2", 1.0), "a self-propelled motion"),
         (("normal:forward=1,lateral=1,lateral_cycles=2,normal_cycles=4", 1.0), "that drives"),
         ((EIGHT, 0.0), "amplitude = 0.0: allowed is a number above 0"),
         ((EIGHT, -1.0), "amplitude = -1.0"),
@@ -234,40 +234,40 @@ def test_a_motion_that_drives_has_no_holding_forces():
 )
 def test_what_does_not_drive_is_refused(arguments, named):
     with pytest.raises(InputError, match=named):
-        microslip.drive(*arguments)
+        microslip.propulsion(*arguments)
 
 
 def test_points_and_tolerance_are_checked():
     with pytest.raises(InputError, match="points = 1: "):
-        microslip.drive(EIGHT, 1.0, points=1)
+        microslip.propulsion(EIGHT, 1.0, points=1)
     with pytest.raises(InputError, match="tolerance = None: "):
-        microslip.drive(EIGHT, 1.0, tolerance=None)
+        microslip.propulsion(EIGHT, 1.0, tolerance=None)
 
 
-@pytest.mark.parametrize("scene", ["transverse", "bore", "elliptic"])
-def test_what_is_odd_in_the_velocity_is_not_asked_for_below_zero(scene):
+@pytest.mark.parametrize("motion", ["transverse", "bore", "elliptic"])
+def test_what_is_odd_in_the_velocity_is_not_asked_for_below_zero(motion):
     with pytest.raises(InputError, match="velocity = -0.1: allowed is a finite number of at least"):
-        microslip.solve(scene, -0.1, 1.0)
+        microslip.solve(motion, -0.1, 1.0)
 
 
 def test_a_line_that_would_take_too_long_is_given_up():
     """Before anything is known there are no points, and the reason says what ran out."""
-    late = microslip.drive(EIGHT, 1.0, points=3, time_limit=1e-9)
+    late = microslip.propulsion(EIGHT, 1.0, points=3, time_limit=1e-9)
     assert not late.converged and len(late.velocity) == 0
     assert "the time limit of 1e-09 s is over" in late.reason
-    idle = microslip.drive(EIGHT, 1.0, points=3, most_work=1e3)
+    idle = microslip.propulsion(EIGHT, 1.0, points=3, most_work=1e3)
     assert not idle.converged
     assert "the work that the point may take, 1e+03, is spent" in idle.reason
     assert np.isinf(idle.stall_force_error) and np.isinf(late.no_load_velocity_error)
     for bound in ("most_work", "time_limit"):
         with pytest.raises(InputError, match=f"{bound} = 0: allowed is a number above 0"):
-            microslip.drive(EIGHT, 1.0, **{bound: 0})
+            microslip.propulsion(EIGHT, 1.0, **{bound: 0})
 
 
 @pytest.mark.slow
 def test_a_line_within_its_bounds_is_the_same():
     free, bound = (
-        microslip.drive(EIGHT, 1.0, tolerance=1e-2, points=3, **given).to_dict()
+        microslip.propulsion(EIGHT, 1.0, tolerance=1e-2, points=3, **given).to_dict()
         for given in ({}, {"most_work": 1e12, "time_limit": 1e6})
     )
     free.pop("solve_time_s"), bound.pop("solve_time_s")

@@ -1,4 +1,4 @@
-"""The dataset driving: a line for every motion, from stall force to no-load velocity."""
+"""The dataset propulsion: a line for every motion, from stall force to no-load velocity."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import asdict
@@ -6,8 +6,8 @@ from dataclasses import asdict
 import numpy as np
 import xarray as xr
 
-from microslip.config.records import Driving
-from microslip.studies.driving import driving as study
+from microslip.config.records import Propulsion
+from microslip.studies.propulsion import propulsion as study
 from microslip.studies.tables import Answers, columns, finished, value_of, variable
 
 GROUPS = {}
@@ -20,7 +20,7 @@ OF_LINE = {
     "no_load_velocity": "forward velocity without a load, in the unit of the motion",
     "no_load_velocity_error": "largest error of no_load_velocity, by estimate",
 }
-"""Numbers of a line; negative where the motion drives backward."""
+"""Numbers of a line; negative where the motion propels the contact backward."""
 OF_POINT = {
     "velocity": "forward velocity, in equal parts from 0 to no_load_velocity",
     "force": "mean force that the motion pulls with, over mu times the mean normal load",
@@ -35,10 +35,10 @@ OF_POINT = {
 """Numbers of every point of a line; NaN where nothing is driven."""
 
 
-def build(settings: Driving, answer: Callable) -> xr.Dataset:
+def build(settings: Propulsion, answer: Callable) -> xr.Dataset:
     """Assemble the Dataset.
 
-    settings: records.Driving. answer(request) -> record, such as batches.answer with a store.
+    settings: records.Propulsion. answer(request) -> record, such as batches.answer with a store.
     """
     answers, motions = Answers(answer), list(settings.motions.values())
     results = [answers(study.line(settings, motion)) for motion in motions]
@@ -61,7 +61,7 @@ def build(settings: Driving, answer: Callable) -> xr.Dataset:
         "line": variable("line", list(settings.motions), "name of the motion", str),
         "title": variable("line", [m.title for m in motions], "title of the line", str),
         "panel": variable("line", [m.panel for m in motions], "heading of its panels", str),
-        "scene": variable("line", [m.scene for m in motions], "what moves", str),
+        "motion": variable("line", [m.motion for m in motions], "what moves", str),
         "amplitude": variable("line", [m.amplitude for m in motions], "amplitude of the motion"),
         "poisson": variable("line", [m.poisson for m in motions], "Poisson's ratio"),
     }

@@ -1,4 +1,4 @@
-"""A motion that drives: the force that it pulls with, from stall to no load, and what that costs.
+"""A self-propelled motion: its pull from stall force to no-load velocity, and the power it takes.
 
 Signs.  The sphere is what moves; its forward velocity v is held, as of a body so heavy that it does
 not feel a single period.  Friction mu(v) is the mean forward force that it takes to move it, so
@@ -17,7 +17,7 @@ returns, and so
 Friction never falls with the velocity (theory/bounds.py), so that the line falls from stall to no
 load, and two velocities at which the sign of friction is certain enclose the no-load velocity.
 A motion may drive backward as well: then velocities and forces of the line are below 0.  Where
-friction keeps a body at rest against a small force in either direction, the motion drives nothing.
+friction keeps a body at rest against a small force in either direction, the motion propels nothing.
 
 A body without mass under a constant load is another case: it goes along with a forward oscillation,
 and nothing drives (see under_force.without_forward_motion).
@@ -35,15 +35,15 @@ import numpy as np
 
 from microslip.adaptive.asked import TOLERANCE, Asked, budget_for
 from microslip.adaptive.checks import (
-    checked_driving,
+    checked_propulsion,
     checked_request,
     refuse_bounds,
     refuse_progress,
 )
 from microslip.adaptive.choice import choose_model
-from microslip.adaptive.driving_line import DrivingLine
 from microslip.adaptive.moved import marched
 from microslip.adaptive.no_load import NoLoad, no_load
+from microslip.adaptive.propulsion_line import PropulsionLine
 from microslip.adaptive.refinement import certify
 from microslip.foundation.arguments import count
 from microslip.foundation.errors import InputError
@@ -53,12 +53,12 @@ from microslip.motions.motion import LOOP
 from microslip.solver.problem import Problem
 
 POINTS, MOST_POINTS = 9, 1000
-DRIVES_NOTHING = "drives nothing: friction holds a body at rest against forces from {} to {}"
-"""The reason of a motion that drives nothing, with the lowest and the highest of these forces."""
+PROPELS_NOTHING = "propels nothing: friction holds a body at rest against forces from {} to {}"
+"""The reason of a motion that propels nothing, with the lowest and the highest of these forces."""
 
 
-def drive(
-    scene: str,
+def propulsion(
+    motion: str,
     amplitude: float,
     *,
     pressure: str = "hertz",
@@ -69,12 +69,12 @@ def drive(
     most_work: float | None = None,
     time_limit: float | None = None,
     progress: Callable | None = None,
-) -> DrivingLine:
-    """The line from stall force to no-load velocity of a motion that drives.
+) -> PropulsionLine:
+    """The line from stall force to no-load velocity of a self-propelled motion.
 
     Parameters
     ----------
-    scene : str
+    motion : str
         A motion that may drive by itself: "elliptic:..." or "normal:forward=1,..." without the
         symmetry that keeps it from that.
     amplitude : float
@@ -95,7 +95,7 @@ def drive(
 
     Returns
     -------
-    DrivingLine
+    PropulsionLine
         For signs and units see there and the docstring of this module.
 
     Raises
@@ -104,7 +104,7 @@ def drive(
         For bad input; it names the argument.
     """
     started = time.perf_counter()
-    motion, amplitude, poisson = checked_driving(scene, amplitude, poisson, pressure)
+    motion, amplitude, poisson = checked_propulsion(motion, amplitude, poisson, pressure)
     if tolerance is None:
         raise InputError("tolerance", tolerance, "allowed is a number")
     tolerance, _, _ = checked_request(tolerance, None, None)
@@ -222,7 +222,7 @@ def _remembered(run):
 
 
 def _line(contact, points):
-    """The DrivingLine of the motion, forward or back."""
+    """The PropulsionLine of the motion, forward or back."""
     ahead = contact.friction(0.0)
     if ahead.value < 0.0 or not math.isfinite(ahead.value):
         return _moving(contact, points)
@@ -240,7 +240,7 @@ def _line(contact, points):
     }
     if converged:
         ends = number_text(-back.value, back.error), number_text(ahead.value, ahead.error)
-        reason = DRIVES_NOTHING.format(*ends)
+        reason = PROPELS_NOTHING.format(*ends)
     stall_error = max(ahead.error - ahead.value, back.error - back.value, 0.0)
     uncertain = [c for c, k in ((contact, ahead), (behind, back)) if k.value < k.error]
     spread = max((no_load(one.friction, one.first).error for one in uncertain), default=0.0)
@@ -251,7 +251,7 @@ def _line(contact, points):
 
 
 def _moving(contact, points):
-    """The DrivingLine of a motion that drives in its own forward direction."""
+    """The PropulsionLine of a motion that drives in its own forward direction."""
     stall, found = contact.friction(0.0), NoLoad(math.nan, math.inf, "")
     velocity = np.zeros(0)
     if math.isfinite(stall.value):
@@ -275,8 +275,8 @@ def _record(contact, stall, found, velocity, verdict):
     least = np.maximum(power_in - power_in_error, np.finfo(float).tiny)
     efficiency_error = (power_out_error + np.abs(efficiency) * power_in_error) / least
     reason = reason or next((known.reason for known in friction + power if known.reason), "")
-    return DrivingLine(
-        scene=problem.motion.name,
+    return PropulsionLine(
+        motion=problem.motion.name,
         pressure=problem.motion.pressure.name,
         model=asked.model,
         amplitude=problem.amplitude,
