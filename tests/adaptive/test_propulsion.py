@@ -226,7 +226,7 @@ def test_a_motion_that_drives_has_no_holding_forces():
         (("elliptic:lateral=0.8,lateral_cycles=2,phase=70", 1.7), "a self-propelled motion"),
         (("elliptic:forward_cycles=6,lateral_cycles=2,phase=30", 1.0), "a self-propelled motion"),
         (("normal:forward=1,normal_cycles=2", 1.0), "a self-propelled motion"),
-        (("normal:forward=1,lateral=1,lateral_cycles=2,normal_cycles=4", 1.0), "that drives"),
+        (("normal:forward=1,lateral=1,lateral_cycles=2,normal_cycles=4", 1.0), "self-propelled"),
         ((EIGHT, 0.0), "amplitude = 0.0: allowed is a number above 0"),
         ((EIGHT, -1.0), "amplitude = -1.0"),
         ((EIGHT, None), "amplitude = None"),

@@ -47,7 +47,7 @@ NUMBERS = [
     (f"{TRANSVERSE} --force 0.1", "--force = '0.1'", "a force or a velocity, not both"),
     (f"{SHAKEN} --force 0.1 --stiffness 1", "--stiffness = '1'", "none beside a force"),
     (f"{SHAKEN} --force 0.1 --damping 1", "--damping = '1'", "none beside a force"),
-    (f"{SHAKEN} --force -1 --results new", "--force = '-1'", "at least 0: transverse drives"),
+    (f"{SHAKEN} --force -1 --results new", "--force = '-1'", "at least 0: transverse propels"),
     (f"{SHAKEN} --force 0.1 --contacts 'load=0'", "--contacts = 'load=0'", "in 0.001..1000"),
     (
         f"{SHAKEN} --force 0.1 --contacts 'phase=1;'",
@@ -213,8 +213,8 @@ NAMES = [
 ]
 
 OPTIONS = [
-    ("", "COMMAND is missing", "allowed: point, sweep, gc, predict, fit, drive"),
-    ("solve", "COMMAND = 'solve'", "point, sweep, gc, predict, fit, drive"),
+    ("", "COMMAND is missing", "allowed: point, sweep, gc, predict, fit, propulsion"),
+    ("solve", "COMMAND = 'solve'", "point, sweep, gc, predict, fit, propulsion"),
     ("pont", "COMMAND = 'pont'", "did you mean point?"),
     ("--json", "--json", "COMMAND before other options"),
     ("point --poisson 0.3", "--poisson", "MOTION before other options"),

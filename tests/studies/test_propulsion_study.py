@@ -84,7 +84,7 @@ def test_a_line_is_kept_and_found_again(tmp_path):
     [
         (
             {"motion": "elliptic"},
-            "propulsion.motions.odd.motion: 'elliptic': allowed is a motion that",
+            "propulsion.motions.odd.motion: 'elliptic': allowed is a self-propelled",
         ),
         ({"motion": "eliptic"}, "propulsion.motions.odd.motion: 'eliptic'"),
         ({"amplitude": 0}, "propulsion.motions.odd.amplitude: 0"),

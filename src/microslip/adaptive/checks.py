@@ -56,18 +56,17 @@ def checked_propulsion(
 ) -> tuple[Motion, float, float]:
     """Motion record and numbers of a motion that may drive; raises InputError naming the argument
     at fault."""
-    motion = motion_named(motion, pressure)
-    if not motion.propels:
+    if not motion_named(motion, pressure).propels:
         allowed = (
             "allowed is a self-propelled motion, such as elliptic:forward_cycles=2,phase=0 or "
         )
         raise InputError("motion", motion, f"{allowed}normal:forward=1,phase=90")
-    motion, _, amplitude, poisson = checked_point(motion, 0.0, amplitude, poisson, pressure)
-    if not motion.pressure.mirrored:
+    record, _, amplitude, poisson = checked_point(motion, 0.0, amplitude, poisson, pressure)
+    if not record.pressure.mirrored:
         raise InputError("pressure", pressure, "allowed is one that is its own mirror image")
     if amplitude == 0.0:
         raise InputError("amplitude", amplitude, "allowed is a number above 0")
-    return motion, amplitude, poisson
+    return record, amplitude, poisson
 
 
 def checked_drive(

@@ -169,7 +169,7 @@ def traction_field(
     """
     motion, velocity, _, poisson = checked_point(motion, velocity, amplitude, poisson)
     if motion.periodic:
-        raise InputError("motion", motion, "allowed is continuous-bore")
+        raise InputError("motion", motion.name, "allowed is continuous-bore")
     if velocity <= 0.0:
         raise InputError("velocity", velocity, "a traction field needs velocity > 0")
     if cells is not None:

@@ -131,7 +131,7 @@ def period(
         motion, velocity, amplitude, poisson, pressure
     )
     if not motion.periodic:
-        raise InputError("motion", motion, "allowed is one that oscillates")
+        raise InputError("motion", motion.name, "allowed is one that oscillates")
     for name, value in (("velocity", velocity), ("amplitude", amplitude)):
         if value <= 0.0:
             raise InputError(name, value, f"a period needs {name} > 0")

@@ -151,7 +151,7 @@ def shakedown(
     started = time.perf_counter()
     motion, _, amplitude, poisson = checked_point(motion, 0.0, amplitude, poisson, pressure)
     if not motion.periodic:
-        raise InputError("motion", motion, "allowed is a motion that oscillates")
+        raise InputError("motion", motion.name, "allowed is a motion that oscillates")
     force = real("force", force, 0.0)
     if tolerance is None:
         raise InputError("tolerance", tolerance, "allowed is a number")
@@ -163,7 +163,7 @@ def shakedown(
     refuse_drive(problem, Drive(force=force), name)
     if not is_even(problem):
         allowed = "allowed is a motion that exerts no forward force by itself, such as transverse"
-        raise InputError("motion", motion, allowed)
+        raise InputError("motion", motion.name, allowed)
     asked = Asked(
         problem=problem,
         model=name,

@@ -54,11 +54,11 @@ SAME = 1e-3
 def check_motion(motion: object) -> None:
     """Raise InputError unless a motion names a motion that can be described in SI units."""
     if not isinstance(motion, str) or motion not in MOTIONS:
-        motion = _record(motion)
-        if motion.depth is not None:
+        record = _record(motion)
+        if record.depth is not None:
             allowed = "allowed is normal with a load_amplitude where the load oscillates"
             raise InputError("motion", motion, allowed)
-        if motion.periodic and not _unit(motion):
+        if record.periodic and not _unit(record):
             allowed = "allowed is a translation, or a rotation whose amplitude is that of bore"
             raise InputError("motion", motion, f"{allowed}; for both see transverse-bore")
 
@@ -72,8 +72,8 @@ def unit_of_amplitude(motion: str) -> str | None:
     """SI unit of the amplitude; None of motions that are steady or oscillate in several ways."""
     if motion in MOTIONS:
         return UNIT_OF_AMPLITUDE.get(motion)
-    motion = _record(motion)
-    return _unit(motion) if motion.periodic else None
+    record = _record(motion)
+    return _unit(record) if record.periodic else None
 
 
 def is_along_the_pull(motion: str) -> bool:
