@@ -202,7 +202,7 @@ def test_a_name_of_two_files_is_an_error_of_its_motion_alone(tmp_path, monkeypat
     del sys.modules["microslip.motions.sine_cubed"]
     with pytest.raises(microslip.InputError) as caught:
         microslip.solve("sine-cubed", 0.1, 0.5)
-    assert caught.value.argument == "scene"
+    assert caught.value.argument == "motion"
     assert caught.value.allowed == (
         f"{places[1]}: {places[0]} has the same name; allowed is another name"
     )
