@@ -51,6 +51,10 @@ def test_public_functions_have_all_their_hints():
     assert not [f"{path}: {said}" for path, text in texts.items() for said in missing(text)]
 
 
+def test_the_package_says_that_it_has_hints():
+    assert (PACKAGE / "py.typed").is_file()  # type checkers of other packages look for it
+
+
 @pytest.mark.parametrize(
     ("source", "found"),
     [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import TypeGuard
 
 import numpy as np
 
@@ -18,14 +19,14 @@ SMALLEST_STIFFNESS = 1e-9
 u_lim, of which rounding leaves no more than 1e-7 u_lim; it pulls with a constant force."""
 
 
-def is_real(value: object) -> bool:
+def is_real(value: object) -> TypeGuard[float]:
     """Whether a value is a real number; a span of time is none, which NumPy counts as whole."""
     return isinstance(value, int | float | np.integer | np.floating) and not isinstance(
         value, bool | np.timedelta64
     )
 
 
-def is_whole(value: object) -> bool:
+def is_whole(value: object) -> TypeGuard[int]:
     """Whether a value is of a type of whole numbers."""
     return is_real(value) and isinstance(value, int | np.integer)
 

@@ -6,8 +6,12 @@ import codecs
 import csv
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from microslip.foundation.errors import InputError
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
 HEADING = re.compile(r"(\w+)\s*(?:\[([^\]]*)\]|\(([^()]*)\))?")
@@ -30,7 +34,7 @@ EMPTY = re.compile(r"[\s,;\"]*")
 DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])|^([+−-]?),(?=[0-9])")
 
 
-def check_format(decimal: object, encoding: object) -> None:
+def check_format(decimal: str, encoding: str) -> None:
     """Raise InputError unless both are known: the decimal mark and the encoding of a file."""
     if decimal not in DECIMALS:
         raise InputError("decimal", decimal, "allowed is '.' or ','")
@@ -56,18 +60,18 @@ def lines(content: bytes, encoding: str = "utf-8") -> Iterator[tuple[int, str]]:
     try:
         text = content.decode("utf-8-sig" if is_utf_8 else encoding)
     except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
+        where = content.count(b"\n", 0, error.start) + 1
         byte = f"byte 0x{content[error.start]:02x}"
         name = "UTF-8" if is_utf_8 else encoding
-        raise ValueError(f"line {line}: {byte} is not {name}; {ENCODING}") from None
+        raise ValueError(f"line {where}: {byte} is not {name}; {ENCODING}") from None
     if "\0" in text:
-        line = text.count("\n", 0, text.index("\0")) + 1
-        raise ValueError(f"line {line}: not text; allowed: CSV or netCDF")
+        where = text.count("\n", 0, text.index("\0")) + 1
+        raise ValueError(f"line {where}: not text; allowed: CSV or netCDF")
     text = text.replace("\r\n", "\n").replace("\r", "\n")
     for number, line in enumerate(text.split("\n"), 1):
-        text = line.strip()
-        counts = not text.startswith("#") or SPREADSHEET_ERROR.match(text)
-        if counts and not EMPTY.fullmatch(text):
+        stripped = line.strip()
+        counts = not stripped.startswith("#") or SPREADSHEET_ERROR.match(stripped)
+        if counts and not EMPTY.fullmatch(stripped):
             yield number, line.rstrip("\r")
 
 
@@ -91,12 +95,13 @@ def columns(
         that is there twice; the message begins with the line and ends with what is allowed.
     """
     for separator in SEPARATORS:
-        found = [HEADING.fullmatch(word) for word in words(heading, separator)]
-        if all(found) and (len(found) > 1 or separator == ","):
+        parts = words(heading, separator)
+        matches = [match for match in map(HEADING.fullmatch, parts) if match]
+        if len(matches) == len(parts) and (len(parts) > 1 or separator == ","):
             break
     else:
         raise ValueError(f"line {where}: the heading is {heading[:80]!r}; {allowed}")
-    given = [name_and_unit(match) for match in found]
+    given = [name_and_unit(match) for match in matches]
     every = [name for name, _ in given]
     for name in every:
         if name not in names and name not in LABELS:
@@ -113,7 +118,7 @@ def name_and_unit(heading: re.Match) -> tuple[str, str | None]:
     return heading[1].lower(), unit and unit.strip()
 
 
-def by_names(table: Mapping | object) -> dict[str, list]:
+def by_names(table: Mapping | DataFrame) -> dict:
     """Columns of a mapping or a pandas DataFrame as lists, None for missing values.
 
     Numbers under a heading with a unit become texts with it.  Values that are no sequences stay as
@@ -140,14 +145,14 @@ def is_table(value: object) -> bool:
     return isinstance(value, Mapping) or hasattr(value, "columns") and hasattr(value, "iloc")
 
 
-def _is_missing(value):
+def _is_missing(value: object) -> bool:
     """Whether a value is None, or the NaN, NA or NaT of pandas, which differ from themselves."""
     if value is None or type(value).__name__ == "NAType":
         return True
     return type(value).__name__ == "NaTType" or isinstance(value, float) and value != value
 
 
-def _digits(value):
+def _digits(value: object) -> str:
     return repr(float(value)) if isinstance(value, float) else str(value)
 
 
@@ -196,7 +201,7 @@ class Thousands:
     def __init__(self, separator: str, columns: Sequence[str]):
         self.columns = tuple(columns)
         self.possible = dict.fromkeys(columns if separator != "," else ())
-        self.plain = set()
+        self.plain: set[str] = set()
 
     def see(self, where: int, cells: Sequence[str]) -> None:
         """Take the cells of a line into account, in the order of the columns."""

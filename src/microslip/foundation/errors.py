@@ -31,7 +31,7 @@ class InputError(ValueError):
         self.argument, self.value, self.allowed = argument, value, allowed
         super().__init__(argument, value, allowed)  # what copying and pickling hand on
 
-    def __str__(self):
+    def __str__(self) -> str:
         return " ".join(f"{self.argument} = {shown(self.value)}: {self.allowed}".split())
 
     def renamed(self, argument: str, value: object = None) -> InputError:

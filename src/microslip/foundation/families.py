@@ -47,7 +47,7 @@ def modules_in(
         except (Exception, SystemExit) as error:  # the code of a user may raise anything
             broken[file.name] = f"{path} cannot be imported: {described(error, path)}"
             continue
-        if not os.path.samefile(os.path.dirname(module.__file__), folder):
+        if not os.path.samefile(os.path.dirname(str(module.__file__)), folder):
             taken = f"{path}: {module.__file__} has the same name; allowed is another name"
             broken[file.name] = taken
             continue
@@ -124,19 +124,23 @@ def record_named(
     if reason:
         raise InputError(what, text, reason)
     family, numbers = spec.split(text, what, known)
-    module = families.get(family)
-    spec.refuse_unknown(text, what, numbers, list(module.DEFAULTS if module else ()))
+    if family not in families:  # a record, which takes no numbers
+        spec.refuse_unknown(text, what, numbers, ())
+    module = families[family]
+    spec.refuse_unknown(text, what, numbers, list(module.DEFAULTS))
     try:
         return _made(module, family, make, tuple(sorted(numbers.items())))
     except InputError as error:  # about the name as it is kept
         raise InputError(what, text, error.allowed) from None
     except Exception as error:  # in a file of the user
-        path = module.__file__
+        path = str(module.__file__)
         raise InputError(what, text, f"{path}: {described(error, path)}") from error
 
 
 @lru_cache(maxsize=128)
-def _made(module, family, make, numbers):
+def _made(
+    module: ModuleType, family: str, make: str, numbers: tuple[tuple[str, float], ...]
+) -> object:
     """One record for a name: what is prepared for it is found again by it."""
     given = {key: value for key, value in numbers if value != module.DEFAULTS[key]}
     words = ",".join(f"{key}={value:.12g}" for key, value in given.items())

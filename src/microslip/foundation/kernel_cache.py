@@ -90,7 +90,7 @@ def places() -> list[Path]:
     return [*given, source_digest.PACKAGE / "__pycache__", user_cache_path("microslip")]
 
 
-def _first_usable():
+def _first_usable() -> Path:
     name = FOLDER_NAME + source_digest.of_kernels()[:16]
     for place in places():
         if _is_usable(place / name):
@@ -108,7 +108,7 @@ def _first_usable():
     return fallback
 
 
-def _is_usable(place):
+def _is_usable(place: Path) -> bool:
     """Whether a folder is there, or can be made, and files can be written to it."""
     try:
         place.mkdir(parents=True, exist_ok=True, mode=0o700)
@@ -118,7 +118,7 @@ def _is_usable(place):
         return False
 
 
-def _is_ones_own(place):
+def _is_ones_own(place: Path) -> bool:
     """Whether nobody else can put code into a folder that all users may write beside."""
     if not hasattr(os, "getuid"):
         return True
@@ -126,5 +126,5 @@ def _is_ones_own(place):
     return about.st_uid == os.getuid() and not about.st_mode & 0o022 and not place.is_symlink()
 
 
-def _user():
+def _user() -> int | str:
     return os.getuid() if hasattr(os, "getuid") else os.environ.get("USERNAME", "user")

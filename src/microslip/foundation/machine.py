@@ -25,7 +25,7 @@ def describe() -> dict[str, str | int]:
     return {"cpu": cpu_model(), "host": platform.node(), "threads": _threads()}
 
 
-def _from_linux():
+def _from_linux() -> str:
     try:
         lines = CPU_LIST.read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
@@ -33,14 +33,14 @@ def _from_linux():
     return next((line.partition(":")[2] for line in lines if line.startswith("model name")), "")
 
 
-def _from_macos():
+def _from_macos() -> str:
     if platform.system() != "Darwin":
         return ""
     command = ["sysctl", "-n", "machdep.cpu.brand_string"]
     return subprocess.run(command, capture_output=True, text=True, check=False).stdout
 
 
-def _threads():
+def _threads() -> int:
     for name in (
         "OPENBLAS_NUM_THREADS",
         "OMP_NUM_THREADS",

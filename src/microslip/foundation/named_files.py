@@ -15,6 +15,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import NoReturn
 
 from microslip.foundation.errors import InputError
 
@@ -64,7 +65,7 @@ class NamedFile:
         """The name with the path and the digest, for a process that has to find the file."""
         return self._text(f"{self.path},sha256={self.digest}")
 
-    def _text(self, file):
+    def _text(self, file: str) -> str:
         usual = NamedFile("")
         options = {name: getattr(self, name) for name in ("grid", "decimal", "encoding")}
         unusual = [f",{k}={v}" for k, v in options.items() if v != getattr(usual, k)]
@@ -133,7 +134,7 @@ def base_name(name: str) -> str:
     return Path(file.path or _PLACES.get(file.digest, "")).name
 
 
-def _place(name, file, folders):
+def _place(name: str, file: NamedFile, folders: Iterable[str | os.PathLike]) -> Path:
     if not file.path:
         if file.digest in _PLACES:
             return _PLACES[file.digest]
@@ -158,8 +159,8 @@ def _place(name, file, folders):
     )
 
 
-def _read(name, place):
-    def refuse(why):
+def _read(name: str, place: Path) -> bytes:
+    def refuse(why: str | None) -> NoReturn:
         raise InputError("pressure", name, f"{place} cannot be read: {why}") from None
 
     try:

@@ -64,7 +64,7 @@ def number_text(
     return f"{text} {unit}".rstrip()
 
 
-def _text(value, error, digits):
+def _text(value: float, error: float, digits: int) -> str:
     if not math.isfinite(value):
         return f"{value:g}"
     if not math.isfinite(error):
@@ -87,7 +87,7 @@ def _text(value, error, digits):
     return f"({parts[0]:f}{SEPARATOR}{parts[1]:f})e{power:+03d}"
 
 
-def _plain(value, digits, zeros=False):
+def _plain(value: float, digits: int, zeros: bool = False) -> str:
     """A number with some significant digits and no exponent unless it is very large or small.
 
     zeros: whether it keeps zeros at its end.
@@ -101,13 +101,13 @@ def _plain(value, digits, zeros=False):
     return _short(number.normalize())
 
 
-def _short(number):
+def _short(number: Decimal) -> str:
     """A decimal as it is, with an exponent where it is very large or small."""
     low, high = FIXED
     return f"{number:f}" if low <= number.adjusted() < high else f"{float(number):g}"
 
 
-def _rounded_up(error):
+def _rounded_up(error: float) -> Decimal:
     return _ROUNDED_UP.create_decimal(Decimal(repr(error)))
 
 
@@ -139,7 +139,7 @@ def interval_text(low: float, high: float, unit: str = "", *, error: float = 0.0
     return f"{texts[0]} to {texts[1]} {unit}".strip()
 
 
-def _outwards(end, place, rounding):
+def _outwards(end: float, place: int, rounding: str) -> Decimal | str:
     """The end of an interval, rounded to a power of 10; infinity and NaN as text."""
     if not math.isfinite(end):
         return f"{end:g}"

@@ -46,7 +46,7 @@ def read(argument: str, text: str, whole: bool = False) -> float | int:
     raise InputError(argument, text, f"allowed is a {'whole ' if whole else ''}number")
 
 
-def _float(argument, text, plain):
+def _float(argument: str, text: str, plain: str) -> float:
     """The float of a number's digits, `plain`; raises InputError where it is out of range."""
     number, digits = float(plain), plain.lower().partition("e")[0]
     if number == 0.0 and re.search("[1-9]", digits):

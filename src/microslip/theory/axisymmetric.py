@@ -12,7 +12,9 @@ from microslip.theory import paper
 from microslip.theory.hertz import checked
 
 
-def static_stick_zone_of(pressure: Callable, stick_radius: np.ndarray | float) -> np.ndarray:
+def static_stick_zone_of(
+    pressure: Callable[[float], float], stick_radius: np.ndarray | float
+) -> np.ndarray | float:
     """Share of the load inside the stick radius (Eq 9), by adaptive quadrature.
 
     Parameters
@@ -32,7 +34,9 @@ def static_stick_zone_of(pressure: Callable, stick_radius: np.ndarray | float) -
     return _each(lambda c: _integral(lambda r: pressure(r) * r, 0.0, c) / total, stick_radius)
 
 
-def bore_of(pressure: Callable, velocity: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+def bore_of(
+    pressure: Callable[[float], float], velocity: np.ndarray | float
+) -> tuple[np.ndarray | float, np.ndarray | float]:
     """Steady continuous bore (Eqs 17, 18; 21 and 22 for Hertz's pressure), by adaptive quadrature.
 
     Parameters
@@ -57,11 +61,13 @@ def bore_of(pressure: Callable, velocity: np.ndarray | float) -> tuple[np.ndarra
     return forward, _bore_mean(pressure, velocity, paper.torque_kernel, power=2)
 
 
-def _bore_mean(pressure, velocity, kernel, power):
+def _bore_mean(
+    pressure: Callable[[float], float], velocity: np.ndarray, kernel: Callable, power: int
+) -> np.ndarray | float:
     total = 2 * np.pi * _total(pressure, power)
 
-    def resistance(v):
-        def ring(r):
+    def resistance(v: float) -> float:
+        def ring(r: float) -> float:
             return kernel(r / v) * pressure(r) * r**power
 
         # The kernel's slope is logarithmic on the ring through the centre of rotation.
@@ -71,18 +77,18 @@ def _bore_mean(pressure, velocity, kernel, power):
     return _each(resistance, velocity)
 
 
-def _total(pressure, power):
+def _total(pressure: Callable[[float], float], power: int) -> float:
     total = _integral(lambda r: pressure(r) * r**power, 0.0, 1.0)
     if not 0 < total < np.inf:
         raise ValueError(f"pressure integrates to {total!r}: allowed is a finite load > 0")
     return total
 
 
-def _integral(function, start, end):
+def _integral(function: Callable[[float], float], start: float, end: float) -> float:
     from scipy.integrate import quad  # takes a third of a second, and few ask for it
 
     return quad(function, start, end, epsabs=0.0, epsrel=1e-11, limit=200)[0]
 
 
-def _each(function, values):
+def _each(function: Callable[[float], float], values: np.ndarray) -> np.ndarray | float:
     return np.array([function(float(v)) for v in values.flat]).reshape(values.shape)[()]

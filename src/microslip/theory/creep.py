@@ -58,7 +58,7 @@ def bore_creep(force: np.ndarray | float, amplitude: np.ndarray | float) -> np.n
     return np.broadcast_arrays(2.0 / np.pi * steady, checked("amplitude", amplitude))[0].copy()
 
 
-def _steady_bore(force):
+def _steady_bore(force: float) -> float:
     """Velocity of a steady bore whose forward friction is `force` (inverse of Eq 21)."""
     if force >= 1.0:
         return np.inf

@@ -91,7 +91,7 @@ def D(c: np.ndarray | float) -> np.ndarray | float:
     return _D_of_log(np.log(checked("c", c, high=1.0, low_open=True)))[()]
 
 
-def _D_of_log(log_c):
+def _D_of_log(log_c: np.ndarray) -> np.ndarray:
     """D as a function of ln c <= 0: accurate for c next to 1 and for c that underflows."""
     k_squared = 0.0 - np.expm1(2 * log_c)
     near = k_squared / 3 * scipy.special.elliprd(0.0, np.exp(2 * np.maximum(log_c, -20.0)), 1.0)
@@ -150,7 +150,7 @@ def bore_amplitude(angle: np.ndarray | float, poisson: float = 0.0) -> np.ndarra
     return checked("angle", angle) / (_twist_unit(poisson) * D_half())
 
 
-def _twist_unit(poisson):
+def _twist_unit(poisson: np.ndarray | float) -> np.ndarray:
     """Factor between D and the angle: torsion feels G alone, u_lim feels G* = 4G/(2-nu)."""
     return 4 / (np.pi * (2 - checked("poisson", poisson, high=0.5)))
 

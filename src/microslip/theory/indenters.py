@@ -7,6 +7,8 @@ integrals over the record of a pressure.Pressure, to about 1e-8.  Dimensionless 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from microslip.theory.indenter_pressure import IndenterPressure
@@ -37,7 +39,7 @@ def static_transverse(pressure: IndenterPressure, amplitude: float) -> float:
         return 0.0
     c = float(pressure.radius(1.0 - amplitude))
 
-    def left(r):
+    def left(r: np.ndarray) -> np.ndarray:
         inner = pressure.bound(r, c)
         return np.sqrt(inner * np.maximum(2.0 * pressure.bound(r, 1.0) - inner, 0.0))
 
@@ -106,7 +108,7 @@ def torsion_stick_radius(pressure: IndenterPressure, angle: float, poisson: floa
     if angle <= 0.0:
         return 1.0
 
-    def excess(log_c):
+    def excess(log_c: float) -> float:
         return torsion_angle(pressure, np.exp(log_c), poisson) - angle
 
     smallest = np.log(SMALLEST_STICK_RADIUS)
@@ -164,7 +166,7 @@ def static_bore(pressure: IndenterPressure, angle: float, poisson: float = 0.0) 
     if c in (0.0, 1.0):
         return c
 
-    def left(r):
+    def left(r: np.ndarray) -> np.ndarray:
         bound = pressure.bound(r, 1.0)
         share = np.clip(torsion_traction(pressure, r, c) / bound, 0.0, 1.0)
         return 2.0 / np.pi * bound * np.arccos(share)
@@ -172,12 +174,14 @@ def static_bore(pressure: IndenterPressure, angle: float, poisson: float = 0.0) 
     return min(_over_the_circle(left, c, _kink(pressure)), 1.0)
 
 
-def _kink(pressure):
+def _kink(pressure: IndenterPressure) -> float:
     """Radius of the flat end of an indenter, where its pressure has a kink; 0 if it has none."""
     return float(pressure.radius(1e-300))
 
 
-def _over_the_circle(function, radius, kink):
+def _over_the_circle(
+    function: Callable[[np.ndarray], np.ndarray], radius: float, kink: float
+) -> float:
     """Integral of a function of the radius over a circle, at whose edge it falls like a root."""
     total = 0.0
     for start, end in ((0.0, min(kink, radius)), (min(kink, radius), radius)):

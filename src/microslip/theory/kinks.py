@@ -69,7 +69,7 @@ def kinks_of(motion: str, pressure: str = "hertz") -> Kinks:
     return known[motion] if motion in known else _of_family(motion)
 
 
-def _of_family(motion):
+def _of_family(motion: str) -> Kinks:
     """Of a loop, and of a load that oscillates together with something else.
 
     Above the velocity that goes with its largest one forward, a loop never goes back.  There is no

@@ -18,6 +18,8 @@ _ANGLES = 0.25 * np.pi * (_NODES + 1.0)
 _NODES, _WEIGHTS = np.sin(_ANGLES) ** 2, 0.25 * np.pi * _WEIGHTS * np.sin(2.0 * _ANGLES)
 _HALVINGS = 60
 
+Function = Callable[[np.ndarray], np.ndarray]
+
 
 def longitudinal(
     velocity: np.ndarray | float, amplitude: np.ndarray | float, curve: Callable = mindlin_force
@@ -53,10 +55,10 @@ def longitudinal(
     return mean[()]
 
 
-def _mean(v, x, curve):
+def _mean(v: np.ndarray, x: np.ndarray, curve: Function) -> np.ndarray:
     """The same where 0 < v < x, shape (n,)."""
 
-    def travel(phase):
+    def travel(phase: np.ndarray) -> np.ndarray:
         return v * phase + x * np.sin(phase)
 
     back = np.arccos(-v / x)  # turns back, and forward again
@@ -66,10 +68,10 @@ def _mean(v, x, curve):
     # What lies behind the last turn back has been forgotten when the sphere gets there again.
     closed = _first(lambda phase: travel(phase) - travel(back), forth, end)
 
-    def backward(phase):
+    def backward(phase: np.ndarray) -> np.ndarray:
         return 1.0 - _turned(curve, travel(back) - travel(phase))
 
-    def forward(phase):
+    def forward(phase: np.ndarray) -> np.ndarray:
         return 1.0 - _turned(curve, stroke) + _turned(curve, travel(phase) - travel(forth))
 
     sliding = _first(lambda phase: travel(back) - travel(phase) - 2.0, back, forth)
@@ -79,12 +81,12 @@ def _mean(v, x, curve):
     return (area + end - closed) / (2.0 * np.pi)
 
 
-def _turned(curve, travel):
+def _turned(curve: Function, travel: np.ndarray) -> np.ndarray:
     """Change of the force on the way from a turn on: the first curve at twice the scale."""
     return 2.0 * curve(np.maximum(0.5 * travel, 0.0))
 
 
-def _first(function, low, high):
+def _first(function: Function, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """Where a rising function passes 0 between low and high, high if it does not; shape (n,)."""
     low, high = low.copy(), high.copy()
     for _ in range(_HALVINGS):
@@ -94,7 +96,7 @@ def _first(function, low, high):
     return high
 
 
-def _integral(function, start, end):
+def _integral(function: Function, start: np.ndarray, end: np.ndarray) -> np.ndarray:
     total = np.zeros_like(start)
     for node, weight in zip(_NODES, _WEIGHTS, strict=True):
         total += weight * function(start + node * (end - start))

@@ -14,6 +14,8 @@ for Poisson's ratio 0.  Dimensionless, in the working units of an indenter's pre
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -84,25 +86,27 @@ def friction(velocity: float, amplitude: float, by_load: bool, pressure: Indente
 class _Motion:
     """The indentation over a period, from its least at t = 0 to its largest at pi and back."""
 
-    def __init__(self, velocity, amplitude, by_load, pressure):
+    def __init__(
+        self, velocity: float, amplitude: float, by_load: bool, pressure: IndenterPressure
+    ):
         self.velocity, self.amplitude, self.by_load = velocity, amplitude, by_load
         self.pressure = pressure
         self.touch = float(np.arccos(1.0 / amplitude)) if amplitude > 1.0 else 0.0
 
-    def depth(self, t):
+    def depth(self, t: np.ndarray) -> np.ndarray:
         height = np.maximum(1.0 - self.amplitude * np.cos(t), 0.0)
         return self.pressure.of_load(height) if self.by_load else height
 
-    def phi(self, t):
+    def phi(self, t: np.ndarray) -> np.ndarray:
         return self.depth(t) - self.velocity * t
 
-    def touched(self, radius):
+    def touched(self, radius: np.ndarray) -> np.ndarray:
         """When the growing contact has a radius."""
         load = self.pressure.load(radius, radius)
         height = load if self.by_load else self.pressure.depth(radius)
         return np.arccos(np.clip((1.0 - height) / self.amplitude, -1.0, 1.0))
 
-    def _climbs(self, t):
+    def _climbs(self, t: np.ndarray) -> np.ndarray:
         """Of the sign of phi', and finite where contact begins."""
         height = np.maximum(1.0 - self.amplitude * np.cos(t), 0.0)
         if self.by_load:  # the load grows by the stiffness of the contact as it is
@@ -110,7 +114,7 @@ class _Motion:
             return self.amplitude * np.sin(t) - self.velocity * self.pressure.stiffness * radius
         return self.amplitude * np.sin(t) - self.velocity
 
-    def rises(self):
+    def rises(self) -> list[tuple[float, float]]:
         """Intervals of the growing contact in which phi rises, as (low, high)."""
         t = self.touch + (np.pi - self.touch) * np.sin(np.linspace(0.0, np.pi / 2, _LOOKED_AT)) ** 2
         up = self._climbs(t) > 0.0
@@ -121,17 +125,23 @@ class _Motion:
             at = np.concatenate([t[:1], at])
         return list(zip(at[::2].tolist(), at[1::2].tolist(), strict=True))
 
-    def kinks(self, low, high, later):
+    def kinks(
+        self, low: float, high: float, later: Sequence[tuple[float, float]]
+    ) -> Iterator[float]:
         """Radii at which a spring that comes into contact begins to slip before a later low."""
         for other, _ in later:
             if self.phi(np.array(low)) < self.phi(np.array(other)) < self.phi(np.array(high)):
                 level = self.phi(np.array([other]))
-                at = _first_not(
-                    lambda t, level=level: self.phi(t) < level, np.array([low]), np.array([high])
-                )
+                below = partial(self._is_below, level)
+                at = _first_not(below, np.array([low]), np.array([high]))
                 yield float(self.pressure.radius(self.depth(at))[0])
 
-    def lack(self, start, high, later):
+    def _is_below(self, level: np.ndarray, t: np.ndarray) -> np.ndarray:
+        return self.phi(t) < level
+
+    def lack(
+        self, start: np.ndarray, high: float, later: Sequence[tuple[float, float]]
+    ) -> np.ndarray:
         """Integral over time of phi - min phi from `start` (n,) on.
 
         phi rises until `high`, and in the intervals `later`.
@@ -150,7 +160,9 @@ class _Motion:
         return lowest + (end - start) * ((self.phi(t) - level[:, None]) @ _WEIGHTS)
 
 
-def _first_not(holds, low, high):
+def _first_not(
+    holds: Callable[[np.ndarray], np.ndarray], low: np.ndarray, high: np.ndarray
+) -> np.ndarray:
     """Where a condition that holds at `low` ceases to before `high`, shape (n,)."""
     low, high = low.copy(), high.copy()
     for _ in range(_HALVINGS):

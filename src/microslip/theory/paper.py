@@ -122,7 +122,7 @@ def torque_kernel(ratio: np.ndarray | float) -> np.ndarray | float:
     return np.where(inside, odd, even)[()]
 
 
-def _ring_integrals(ratio):
+def _ring_integrals(ratio: np.ndarray | float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     ratio = checked("ratio", ratio)
     k = np.minimum(ratio, 1 / np.maximum(ratio, 1.0))
     # Carlson's R_D gives (E - (1 - k^2) K)/k without cancellation; it is infinite at k = 1 only.
@@ -146,7 +146,7 @@ def bore_forward(velocity: np.ndarray | float) -> np.ndarray | float:
     return np.where(velocity <= 1, slow, _fast_forward(1 / np.maximum(velocity, 1.0)))[()]
 
 
-def _fast_forward(inverse):
+def _fast_forward(inverse: np.ndarray) -> np.ndarray:
     # Eq 21 at velocity 1/inverse >= 1: the power series of 4 E(k), integrated term by term.
     return scipy.special.hyp2f1(-0.5, 0.5, 2.5, inverse**2)
 
@@ -177,14 +177,14 @@ def large_amplitude_bore(velocity: np.ndarray | float) -> np.ndarray | float:
     return np.where(velocity > 0, mean, 0.0)[()]
 
 
-def _fast_mean(velocity):
+def _fast_mean(velocity: np.ndarray) -> np.ndarray:
     # The integrand is periodic and smooth, so equal steps converge faster than any power of
     # their number; at velocity 1, where |tau|^5 is left in it, as its sixth power.
     tau = (np.arange(128) + 0.5) * (np.pi / 256)
     return np.mean(_fast_forward(np.cos(tau) / velocity[..., None]), axis=-1)
 
 
-def _slow_mean(velocity):
+def _slow_mean(velocity: np.ndarray) -> np.ndarray:
     # While cos(tau) > v the cubic branch of Eq 21 holds, and the mean of sec and sec^3 is known.
     v = velocity
     sine = np.sqrt((1 - v) * (1 + v))
@@ -265,14 +265,16 @@ def static_limit_bore(amplitude: np.ndarray | float) -> np.ndarray | float:
     the stick radius nor the torsional traction tau depends on it. Integral over the stick zone of
     (2/pi) g arccos(tau/g): the best forward traction, averaged over the angle.
     """
-    c = bore_stick_radius(amplitude)
+    c = np.asarray(bore_stick_radius(amplitude))
     step, bound, inner = _stick_zone_rule(c, np.sqrt((1 - c) * (1 + c)))
     r = np.sqrt(np.maximum(c[..., None] - inner, 0.0) * (c[..., None] + inner))
     angle = np.arccos(hertz.lubkin_share(r, c[..., None]))
     return np.minimum(6 / np.pi * np.sum(step * inner * bound**2 * angle, axis=-1), 1.0)
 
 
-def _stick_zone_rule(c, complement):
+def _stick_zone_rule(
+    c: np.ndarray, complement: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Quadrature over r < c: weights for d(eta), and sqrt(1 - r^2), sqrt(c^2 - r^2) at the nodes.
 
     These roots are complement*cosh(eta) and complement*sinh(eta), complement = sqrt(1 - c^2), and
