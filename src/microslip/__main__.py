@@ -24,7 +24,9 @@ def main() -> int:
 
     if not stoppable:
         signal.signal(signal.SIGINT, asked)
-    return terminal.run(_command, stoppable=stoppable)
+    code = terminal.run(_command, stoppable=stoppable)
+    gc.freeze()  # a search of all modules for garbage at the end would take as long as their import
+    return code
 
 
 def _command():
