@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -50,18 +51,19 @@ def grid(
     return _filled(table, places)
 
 
-def _columns(where, heading):
+def _columns(where: int, heading: str) -> tuple[str, list[int], list[str | None]]:
     """Separator, place of each of COLUMNS, and their units (None: none given)."""
     for separator in csv_text.SEPARATORS:
-        found = [csv_text.HEADING.fullmatch(word) for word in csv_text.words(heading, separator)]
-        names = [match and match[1].lower() for match in found]
-        if set(names) == set(COLUMNS) and len(names) == len(COLUMNS):
+        words = csv_text.words(heading, separator)
+        matches = [match for match in map(csv_text.HEADING.fullmatch, words) if match]
+        names = [match[1].lower() for match in matches]
+        if set(names) == set(COLUMNS) and len(words) == len(names) == len(COLUMNS):
             order = [names.index(name) for name in COLUMNS]
-            return separator, order, [found[i][2] for i in order]
+            return separator, order, [matches[i][2] for i in order]
     raise ValueError(f"line {where}: the heading is {heading[:80]!r}; allowed: {ALLOWED}")
 
 
-def _number(where, name, word):
+def _number(where: int, name: str, word: str) -> float:
     if not NUMBER.fullmatch(word):
         raise ValueError(f"line {where}: {name} is {word[:40]!r}; allowed: a number")
     value = float(word)
@@ -71,7 +73,7 @@ def _number(where, name, word):
     return value
 
 
-def _filled(table, places):
+def _filled(table: np.ndarray, places: Sequence[int]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The grid that the points fill, each once; places: their lines."""
     if len(table) == 0:
         raise ValueError("no points; allowed: a line with three numbers for each point of a grid")
@@ -103,16 +105,16 @@ def _filled(table, places):
     return forward, lateral, values
 
 
-def _distinct(column):
+def _distinct(column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Coordinates in order, (n,), and which of them each point has."""
     values, which = np.unique(column, return_inverse=True)
     group = np.concatenate([[0], np.cumsum(np.diff(values) > SAME * np.ptp(values))])
     return values[np.unique(group, return_index=True)[1]], group[which.reshape(-1)]
 
 
-def _first_pair(i, j):
+def _first_pair(i: np.ndarray, j: np.ndarray) -> tuple[int, int]:
     """The first two of these points that are the same one."""
-    seen = {}
+    seen: dict[tuple, int] = {}
     for number, point in enumerate(zip(i, j, strict=True)):
         if point in seen:
             return seen[point], number
@@ -120,7 +122,7 @@ def _first_pair(i, j):
     raise AssertionError("no two points are the same")
 
 
-def _refuse_uneven(name, axis, at, places):
+def _refuse_uneven(name: str, axis: np.ndarray, at: np.ndarray, places: Sequence[int]) -> None:
     uneven = grid_units.first_uneven(axis)
     if uneven is not None:
         where = places[int(np.flatnonzero(at == uneven)[0])]

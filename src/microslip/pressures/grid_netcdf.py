@@ -6,12 +6,17 @@ import math
 import subprocess
 import sys
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from microslip.pressures import grid_units
 from microslip.pressures.grid_units import COLUMNS, MOST_POINTS
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 BEGINNINGS = (b"\x89HDF", b"CDF\x01", b"CDF\x02", b"CDF\x05")
 LONGEST = 30
@@ -45,7 +50,7 @@ def grid(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
             raise ValueError(f"not a netCDF file that can be read: {said}") from None
 
 
-def _refuse_endless(path):
+def _refuse_endless(path: Path) -> None:
     """Raise ValueError for a file that HDF5 does not come to an end with.
 
     In a damaged one it may search for ever, which nothing inside a process can stop.
@@ -58,7 +63,7 @@ def _refuse_endless(path):
         ) from None
 
 
-def _refuse_oversized(path):
+def _refuse_oversized(path: Path) -> None:
     """Raise ValueError for declared sizes that are too large, before anything is allocated.
 
     xarray reads the coordinates of all dimensions when it opens a file, and HDF5 whole chunks.
@@ -82,7 +87,7 @@ def _refuse_oversized(path):
                 )
 
 
-def _grid(data):
+def _grid(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     missing = [name for name in COLUMNS if name not in data.variables]
     if missing:
         raise ValueError(f"there is no variable {missing[0]}; {ALLOWED}")
@@ -121,10 +126,11 @@ def _grid(data):
     return forward, lateral, values
 
 
-def _unit(name, attributes):
+def _unit(name: str, attributes: Mapping[str, object]) -> str | None:
     """The unit among the attributes of a variable, however the attribute is spelt."""
     given = [value for key, value in attributes.items() if key.lower() in ("unit", "units")]
-    if len(given) > 1 or not all(isinstance(value, str) for value in given):
+    texts = [value for value in given if isinstance(value, str)]
+    if len(given) > 1 or len(texts) < len(given):
         said = ", ".join(map(str, given))[:80]
         raise ValueError(f"{name} has the units {said}; allowed: one attribute units, a text")
-    return given[0] if given else None
+    return texts[0] if texts else None

@@ -36,11 +36,12 @@ def read_batch(path: Path) -> list[dict] | None:
     Raises CacheError if there is no such file or reading is not allowed.
     """
     content, _ = _batch_content(path)
-    records = content and [record_in(line) for line in content.splitlines(keepends=True)]
-    return records if records and None not in records else None
+    lines = content.splitlines(keepends=True)
+    records = [record for record in map(record_in, lines) if record is not None]
+    return records if records and len(records) == len(lines) else None
 
 
-def why_not_whole(path: Path) -> str:
+def why_not_whole(path: str | Path) -> str:
     """Why the file of a batch has to be made again, in a few words; "" if it has not.
 
     Raises CacheError as `read_batch` does.
@@ -69,7 +70,8 @@ class Records:
     """
 
     def __init__(self, paths: Iterable[str | Path]):
-        self._places, self._read = {}, (None, b"")
+        self._places: dict[str, tuple[str | Path, int, int]] = {}
+        self._read: tuple[str | Path | None, bytes] = (None, b"")
         for path in paths:
             content, _ = _batch_content(path)
             if not content:
@@ -78,7 +80,8 @@ class Records:
                 )
             begin = 0
             for line in content.splitlines(keepends=True):
-                self._places[KEY.match(line)[1].decode()] = path, begin, len(line)
+                if match := KEY.match(line):
+                    self._places[match[1].decode()] = path, begin, len(line)
                 begin += len(line)
 
     def get(self, key: str) -> dict | None:
@@ -108,7 +111,7 @@ def without_checksum(text: bytes) -> tuple[bytes, bool]:
     return (text[:end], final) if with_checksum(text[:end], final) == text else (b"", False)
 
 
-def _batch_content(path):
+def _batch_content(path: str | Path) -> tuple[bytes, bool]:
     try:
         return without_checksum(Path(path).read_bytes())
     except OSError as error:

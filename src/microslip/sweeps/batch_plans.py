@@ -68,7 +68,9 @@ def file_of(group: str, requests: Sequence[dict]) -> str:
     return f"batches/{group}/{source_digest.of_request(requests[0])[:16]}.plan"
 
 
-def cut(requests: Sequence[dict], size: int, planned: Mapping[str, list[dict]]) -> dict[str, list]:
+def cut(
+    requests: Sequence[dict], size: int, planned: Mapping[str, list[dict]]
+) -> dict[str, Sequence[dict]]:
     """Batches, requests by name, that answer all requests: those planned, then new ones.
 
     size: requests in a new batch.  planned: batches by name; those that answer nothing of this are
@@ -85,7 +87,7 @@ def cut(requests: Sequence[dict], size: int, planned: Mapping[str, list[dict]]) 
     return found | batches.batches(list(missing.values()), size)
 
 
-def _identity(request):
+def _identity(request: dict) -> tuple:
     return tuple(sorted(request.items()))
 
 
@@ -122,6 +124,6 @@ def packed(requests: Sequence[dict]) -> dict:
     }
 
 
-def _unpacked(line):
+def _unpacked(line: dict) -> list[dict]:
     rows = zip(*line["each"].values(), strict=True) if line["each"] else [()] * line["count"]
     return [line["same"] | dict(zip(line["each"], row, strict=True)) for row in rows]

@@ -13,6 +13,7 @@ import platform
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
+from typing import overload
 
 from microslip.config.axes import DRIVES
 from microslip.config.extended import solver_names
@@ -57,7 +58,7 @@ class PointRequests(Sequence):
 
     def __init__(self, sweep: Sweep):
         motion, pressure = solver_names(sweep)
-        self._common = {
+        self._common: dict = {
             "kind": "point",
             "motion": motion,
             "model": sweep.model,
@@ -71,17 +72,26 @@ class PointRequests(Sequence):
             self._common["contacts"] = written(contacts_of(sweep.contacts))
         amplitudes = [None] if sweep.amplitude is None else [number(a) for a in sweep.amplitude]
         pulls = {name: [number(v) for v in values] for name, values, _ in sweep.drives}
-        last = {"velocity": [number(velocity) for velocity in sweep.velocity]}
+        last: dict[str, list] = {"velocity": [number(velocity) for velocity in sweep.velocity]}
         if not sweep.velocity:
             last = {"force": pulls.pop("force")}
             self._common["velocity"] = None
-        rest = {"poisson": [number(nu) for nu in sweep.poisson], "amplitude": amplitudes}
+        rest: dict[str, list] = {
+            "poisson": [number(nu) for nu in sweep.poisson],
+            "amplitude": amplitudes,
+        }
         self._axes = pulls | rest | last
 
-    def __len__(self):
+    def __len__(self) -> int:
         return math.prod(map(len, self._axes.values()))
 
-    def __getitem__(self, index):
+    @overload
+    def __getitem__(self, index: int) -> dict: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> list[dict]: ...
+
+    def __getitem__(self, index: int | slice) -> dict | list[dict]:
         if isinstance(index, slice):
             return [self[i] for i in range(*index.indices(len(self)))]
         rest, at = range(len(self))[index], {}
@@ -107,7 +117,7 @@ def history_requests(configuration: Configuration, name: str) -> list[dict]:
     return [r for run in HISTORIES_OF_SWEEP.get(name, ()) for r in requests[run](given[run])]
 
 
-def _single(kind, motion, settings, **more):
+def _single(kind: str, motion: str, settings: dict, **more: object) -> dict:
     counts = ("cells", "steps", "periods")
     numbers = {k: number(v) for k, v in settings.items() if k not in counts}
     return {"kind": kind, "motion": motion} | settings | numbers | more
@@ -131,11 +141,11 @@ def name_of_batch(requests: Sequence[dict]) -> str:
 
 def group(request: dict) -> str:
     """Name the subfolder of the store that a request's result goes to."""
-    motion = request.get("motion", request.get("model"))
+    motion = request["motion"] if "motion" in request else request["model"]
     return "/".join([FOLDERS[request["kind"]], motion.partition(":")[0]])  # numbers apart
 
 
-def answer(request: dict, store: Store, time_limit: float | None = None) -> dict:
+def answer(request: dict, store: Store, time_limit: float | None = None) -> tuple[dict, float]:
     """Return the record that answers `request` and the CPU seconds that the solver took for it.
 
     It comes from the store if that has it (0 seconds), else it is computed and stored. The record
@@ -210,7 +220,7 @@ def run_batch(
     return records, statistics
 
 
-def records_in(paths: Iterable[Path]) -> Iterator[tuple[str, dict]]:
+def records_in(paths: Iterable[Path]) -> Iterator[dict]:
     """Records in the files of batches, one by one in their order.
 
     Raises CacheError, one line that says what to do, for a file that is damaged.

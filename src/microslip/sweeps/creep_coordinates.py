@@ -78,10 +78,9 @@ class CreepCoordinates(NamedTuple):
         least: the threshold at these amplitudes, where it is known already; it takes a while.
         """
         force, amplitude = (np.asarray(part, float) for part in (force, amplitude))
-        if least is None:
-            least = threshold(self.motion, amplitude)
-        ends = _stretched(self.force, least)
-        share = np.clip(_stretched(force, least) / np.where(ends > 0.0, ends, 1.0), 0.0, 1.0)
+        known = threshold(self.motion, amplitude) if least is None else least
+        ends = _stretched(self.force, known)
+        share = np.clip(_stretched(force, known) / np.where(ends > 0.0, ends, 1.0), 0.0, 1.0)
         return np.column_stack([share, self._rows.scaled(amplitude)])
 
     def place(self, node: tuple[float, ...]) -> tuple[float, ...]:
@@ -90,11 +89,11 @@ class CreepCoordinates(NamedTuple):
         (amplitude,) = self._rows.place((row,))
         least = min(float(threshold(self.motion, amplitude)), self.force)
         stretched = share * _stretched(self.force, least)
-        force = self.force if share == 1.0 else least + (1.0 - least) * np.tanh(stretched) ** 2
-        return rounded(force), amplitude
+        force = least + (1.0 - least) * float(np.tanh(stretched)) ** 2
+        return rounded(self.force if share == 1.0 else force), amplitude
 
     @property
-    def _rows(self):
+    def _rows(self) -> MapCoordinates:
         """The amplitudes, cut as in a map of the static limit."""
         low, high = self.amplitude
         first = first_amplitude(self.motion, self.force)
@@ -104,7 +103,7 @@ class CreepCoordinates(NamedTuple):
         return MapCoordinates((), (rounded(first), high), Kinks((rounded(first), *kinks)))
 
 
-def _stretched(force, least):
+def _stretched(force: np.ndarray | float, least: np.ndarray | float) -> np.ndarray:
     """0 at the threshold, infinite at 1."""
     return np.arctanh(np.sqrt(np.clip((force - least) / (1.0 - least), 0.0, 1.0)))
 

@@ -8,11 +8,14 @@ import math
 import time
 from collections.abc import Callable
 from statistics import median
+from typing import Any, TypeVar
 
 import microslip
 from microslip.config.axes import DRIVES
 from microslip.foundation import machine
 from microslip.foundation.errors import InputError, SolverError
+
+Answer = TypeVar("Answer")
 
 log = logging.getLogger(__name__)
 
@@ -47,7 +50,7 @@ def is_final(result: dict) -> bool:
     return not result.get("crashed") and result.get("exhausted") != "time"
 
 
-def timed(run: Callable, repeats: int) -> tuple[object, float]:
+def timed(run: Callable[[], Answer], repeats: int) -> tuple[Answer, float]:
     """Return what `run()` gives and the CPU seconds that it takes, compiled and with warm caches.
 
     The first call is never timed, since it may compile. The seconds are the median of `repeats`
@@ -55,7 +58,8 @@ def timed(run: Callable, repeats: int) -> tuple[object, float]:
     same cores meanwhile.
     """
     result = run()
-    readings, spent, calls = [], 0.0, 1
+    readings: list[float] = []
+    spent, calls = 0.0, 1
     while len(readings) < repeats and (spent < LONG_ENOUGH or not readings):
         begun = time.process_time()
         for _ in range(calls):
@@ -72,28 +76,28 @@ def timed(run: Callable, repeats: int) -> tuple[object, float]:
 # Kinds of requests
 
 
-def _point(request, time_limit=None):
+def _point(request: dict, time_limit: float | None = None) -> dict:
     return _solved(request, model=request["model"], time_limit=time_limit)
 
 
-def _history(request):
+def _history(request: dict) -> dict:
     history = microslip.history(request["motion"], **_of_single_run(request))
     names = ("phase", "displacement_forward", "force_forward", "force_lateral", "torque")
     return {name: getattr(history, name) for name in names}
 
 
-def _field(request):
+def _field(request: dict) -> dict:
     return microslip.traction_field(request["motion"], **_of_single_run(request))
 
 
-def _period(request):
+def _period(request: dict) -> dict:
     """A period of the periodic state in few bytes, see microslip.sweeps.period_codec."""
     from microslip.sweeps.period_codec import packed
 
     return _found(lambda: packed(microslip.period(**_at(request)), request["angles"]))
 
 
-def _trial(request):
+def _trial(request: dict) -> dict:
     """One run at one resolution; `applies` is False where there is nothing to run."""
     from microslip.adaptive import single_run
 
@@ -107,18 +111,18 @@ def _trial(request):
     settings["steps"] = request["steps"] or 2  # a steady motion takes any number, and none
     settings["tolerance"] = float(request["tolerance"])
 
-    def run():
+    def run() -> dict:
         return single_run.run_trial(**place, **settings)
 
     return {"applies": True} | _timed(run, request["repeats"])
 
 
-def _choice(request):
+def _choice(request: dict) -> dict:
     """What `solve` does when only a tolerance is given."""
     return _timed(lambda: _solved(request), request["repeats"])
 
 
-def _probe(request):
+def _probe(request: dict) -> dict:
     """A certified solve with another method; `applies` is False where it cannot be used."""
     from microslip.adaptive import single_run
     from microslip.adaptive.choice import choose_model
@@ -135,14 +139,14 @@ def _probe(request):
     return {"applies": True} | _solved(request, **settings)
 
 
-def _scaling(request):
+def _scaling(request: dict) -> dict:
     from microslip.adaptive import single_run
 
     sizes = [request["cells"], request["angles"], float(request["poisson"]), request["steps"]]
     return single_run.measure_steps(request["model"], *sizes) | {"machine": machine.describe()}
 
 
-def _run(request):
+def _run(request: dict) -> dict:
     """One run at one resolution, with nothing timed: equal requests have equal results."""
     from microslip.adaptive import single_run
 
@@ -152,14 +156,14 @@ def _run(request):
     return single_run.run_trial(**_place(request), **settings, tolerance=tolerance)
 
 
-def _patches(request):
+def _patches(request: dict) -> dict:
     """Where the contact sticks over a period."""
     from microslip.adaptive.stick_area import patches
 
     return _found(lambda: patches(**_at(request)))
 
 
-def _propulsion(request):
+def _propulsion(request: dict) -> dict:
     """The line of a self-propelled motion."""
     given = {name: float(request[name]) for name in ("poisson", "tolerance")}
     amplitude = float(request["amplitude"])
@@ -188,7 +192,7 @@ _KINDS = {
 # What they share
 
 
-def _place(request):
+def _place(request: dict) -> dict:
     amplitude, velocity = request["amplitude"], request["velocity"]
     place = {
         "motion": request["motion"],
@@ -201,12 +205,12 @@ def _place(request):
     return place
 
 
-def _of_single_run(request):
+def _of_single_run(request: dict) -> dict:
     given = {k: float(request[k]) for k in ("velocity", "amplitude", "travel") if k in request}
     return given | {k: request[k] for k in ("cells", "steps", "periods", "start") if k in request}
 
 
-def _solved(request, **settings):
+def _solved(request: dict, **settings: object) -> dict:
     place = _place(request)
     names = ("cells", "steps", "most_work", "contacts")
     settings |= {name: request[name] for name in names if name in request}
@@ -224,11 +228,11 @@ def _solved(request, **settings):
     return result
 
 
-def _at(request):
+def _at(request: dict) -> dict:
     return _place(request) | {name: request[name] for name in ("cells", "angles", "steps")}
 
 
-def _found(look):
+def _found(look: Callable[[], dict]) -> dict:
     """What `look` sees in a period, or why there is none."""
     from microslip.adaptive.period import NoPeriodicState
 
@@ -238,12 +242,12 @@ def _found(look):
         return {"converged": False, "reason": str(error)}
 
 
-def _timed(run, repeats):
+def _timed(run: Callable[[], dict], repeats: int) -> dict:
     result, seconds = timed(run, repeats)
     return dict(result) | {"seconds": seconds, "machine": machine.describe()}
 
 
-def plain(value: object) -> object:
+def plain(value: object) -> Any:
     """Python values that JSON can hold, from NumPy's or a dict of them; NaN becomes None."""
     if isinstance(value, dict):
         return {str(name): plain(item) for name, item in value.items()}

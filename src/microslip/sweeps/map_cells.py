@@ -16,11 +16,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from microslip.sweeps.map_coordinates import MapCoordinates
+
+if TYPE_CHECKING:
+    from microslip.sweeps.creep_coordinates import CreepCoordinates
 
 SHARE = 0.1
 """Of the surplus of a cell: what the polynomial may miss.  Measured by benchmarks/certified.py."""
@@ -84,17 +87,19 @@ class Refinement:
     missing: tuple[Node, ...]
 
 
-def first_cells(coordinates: MapCoordinates) -> list[Cell]:
+def first_cells(coordinates: MapCoordinates | CreepCoordinates) -> list[Cell]:
     """A cell for each patch of a map."""
     return [Cell(*patch) for patch in coordinates.patches]
 
 
-def refined(coordinates: MapCoordinates, known: Answers, error: float) -> Refinement:
+def refined(
+    coordinates: MapCoordinates | CreepCoordinates, known: Answers, error: float
+) -> Refinement:
     """Cells that the answers so far lead to, and what has to be asked next.
 
     Parameters
     ----------
-    coordinates : MapCoordinates
+    coordinates : MapCoordinates or CreepCoordinates
         Of the map.
     known : mapping of Node to (float, float)
         All answers so far.
@@ -130,7 +135,7 @@ def surpluses_of(values: np.ndarray) -> tuple[float, ...]:
     return tuple(_surplus(values, axis) for axis in range(values.ndim))
 
 
-def _surplus(values, axis):
+def _surplus(values: np.ndarray, axis: int) -> float:
     degree = values.shape[axis] - 1
     highest, next_to_it = (
         np.abs(np.diff(values, n, axis=axis)).max() for n in (degree, degree - 1)
@@ -140,7 +145,7 @@ def _surplus(values, axis):
     return float(max(highest, LOWER_ORDER * next_to_it))
 
 
-def _worst(cell, surpluses):
+def _worst(cell: Cell, surpluses: tuple[float, ...]) -> int | None:
     """The direction to halve a cell along; None: not at all, where it is small enough, or where
     friction is not known."""
     if not np.all(np.isfinite(surpluses)):
@@ -153,5 +158,5 @@ def _worst(cell, surpluses):
     return max(wide, key=lambda direction: surpluses[direction], default=None)
 
 
-def _with(ends, direction, value):
+def _with(ends: tuple[float, ...], direction: int, value: float) -> tuple[float, ...]:
     return (*ends[:direction], value, *ends[direction + 1 :])

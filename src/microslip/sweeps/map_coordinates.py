@@ -11,6 +11,7 @@ and amplitudes, whose kinks are gone, in that of 1 + 2 A, as they are wherever n
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -37,6 +38,8 @@ DEGREES = {"velocity": 4, "amplitude": 4, "poisson": 2}
 
 Box = tuple[tuple[float, ...], tuple[float, ...]]
 """Lower and upper ends of a box in scaled coordinates, by direction."""
+Ends = Sequence | np.ndarray
+"""Lower and upper end of a range."""
 
 
 class MapCoordinates(NamedTuple):
@@ -72,8 +75,9 @@ class MapCoordinates(NamedTuple):
     @property
     def patches(self) -> list[Box]:
         """Boxes in scaled coordinates that cover the map, those of slow velocities first."""
-        rows = [((float(row),), (row + 1.0,)) for row in range(len(self._borders) - 1)]
-        flat = [((0.0, *low), (1.0, *high)) for low, high in rows] if self.velocity else rows
+        flat: list[Box] = [((float(i),), (i + 1.0,)) for i in range(len(self._borders) - 1)]
+        if self.velocity:
+            flat = [((0.0, *low), (1.0, *high)) for low, high in flat]
         if self._is_cut:
             ends = [FAST + i / FAST_PATCHES for i in range(FAST_PATCHES + 1)]
             flat += [((x, 0.0), (right, 1.0)) for x, right in zip(ends, ends[1:], strict=False)]
@@ -85,8 +89,8 @@ class MapCoordinates(NamedTuple):
         """What `to_json` made a text of."""
         given = json.loads(text)
         kinks = Kinks(*(tuple(given[name]) for name in ("kink_amplitudes", "kink_velocity")))
-        ranges = (tuple(given[name]) for name in ("velocity", "amplitude"))
-        return cls(*ranges, kinks, tuple(given["poisson"]))
+        low, high = given["amplitude"]
+        return cls(tuple(given["velocity"]), (low, high), kinks, tuple(given["poisson"]))
 
     def to_json(self) -> str:
         """The coordinates as a text, for the attribute of a dataset."""
@@ -99,11 +103,11 @@ class MapCoordinates(NamedTuple):
 
         places: by direction, velocities first, shape (n,) each.
         """
-        places = [np.asarray(part, float) for part in places]
-        deep = [_share(places.pop(), self.poisson)] if self.poisson else []
+        values = [np.asarray(part, float) for part in places]
+        deep = [_share(values.pop(), self.poisson)] if self.poisson else []
         if not self.velocity:
-            return np.stack([self._rows(*places), *deep], axis=-1)
-        v, a = places
+            return np.stack([self._rows(*values), *deep], axis=-1)
+        v, a = values
         x, y = _share(np.log(v), np.log(self.velocity)), self._rows(a)
         if self._is_cut:
             middle, (slow, fast) = self._cut_at(a), self.velocity
@@ -116,17 +120,18 @@ class MapCoordinates(NamedTuple):
 
     def place(self, node: tuple[float, ...]) -> tuple[float, ...]:
         """What the directions are at scaled coordinates, in DIGITS digits."""
-        *node, nu = [*node] if self.poisson else [*node, 0.0]
+        *flat_node, nu = node if self.poisson else (*node, 0.0)
         deep = [_between(nu, self.poisson)] if self.poisson else []
-        flat = self._place(*node) if self.velocity else (self._amplitude_at(*node),)
+        flat = self._place(*flat_node) if self.velocity else (self._amplitude_at(*flat_node),)
         return tuple(rounded(value) for value in (*flat, *deep))
 
-    def _place(self, x, y):
+    def _place(self, x: float, y: float) -> tuple[float, float]:
         """Velocity and amplitude."""
         slow, fast = self.velocity
         if self._is_cut and x >= FAST:
             amplitude = _at_spread_share(y, self.amplitude)
-            velocity = np.exp(_between(x - FAST, np.log([self._cut_at(amplitude), fast])))
+            ends = np.log(self._cut_at(amplitude)), np.log(fast)
+            velocity = np.exp(_between(x - FAST, ends))
         elif self._is_cut:
             amplitude = self._amplitude_at(y)
             ends = slow**SLOW_POWER, self._cut_at(amplitude) ** SLOW_POWER
@@ -137,12 +142,12 @@ class MapCoordinates(NamedTuple):
         return velocity, amplitude
 
     @property
-    def _borders(self):
+    def _borders(self) -> tuple[float, ...]:
         low, high = self.amplitude
         return (low, *(a for a in self.kinks.amplitudes if low < a < high), high)
 
     @property
-    def _is_cut(self):
+    def _is_cut(self) -> bool:
         if not (self.velocity and self.kinks.velocity):
             return False
         slow, fast = self.velocity
@@ -151,11 +156,11 @@ class MapCoordinates(NamedTuple):
         at_ends = kink_velocity(self.kinks, np.array(self.amplitude))
         return bool(at_ends.max() > CLEAR * slow and at_ends.min() < fast / CLEAR)
 
-    def _cut_at(self, amplitude):
+    def _cut_at(self, amplitude: np.ndarray | float) -> np.ndarray:
         slow, fast = self.velocity
         return np.clip(kink_velocity(self.kinks, amplitude), CLEAR * slow, fast / CLEAR)
 
-    def _rows(self, amplitude):
+    def _rows(self, amplitude: np.ndarray) -> np.ndarray:
         """Scaled amplitudes where the map is cut at kinks."""
         y = np.empty_like(amplitude)
         for row, (low, high) in enumerate(zip(self._borders, self._borders[1:], strict=False)):
@@ -163,7 +168,7 @@ class MapCoordinates(NamedTuple):
             y[here] = row + self._even(amplitude[here], (low, high))
         return y
 
-    def _amplitude_at(self, y):
+    def _amplitude_at(self, y: float) -> float:
         """The inverse of _rows."""
         row = min(int(y), len(self._borders) - 2)
         ends, share = self._borders[row : row + 2], y - row
@@ -174,7 +179,7 @@ class MapCoordinates(NamedTuple):
             return _at_spread_share(share, ends)
         return _between(share**AT_KINKS if below else 1.0 - (1.0 - share) ** AT_KINKS, ends)
 
-    def _even(self, amplitude, ends):
+    def _even(self, amplitude: np.ndarray, ends: Ends) -> np.ndarray:
         """The inverse of that in one patch, 0 to 1."""
         below, above = self._gathers_at(ends)
         share, power = _share(amplitude, ends), 1.0 / AT_KINKS
@@ -184,29 +189,29 @@ class MapCoordinates(NamedTuple):
             return _spread_share(amplitude, ends)
         return share**power if below else 1.0 - (1.0 - share) ** power
 
-    def _gathers_at(self, ends):
+    def _gathers_at(self, ends: Ends) -> tuple[bool, bool]:
         """Whether places gather at the lower and at the upper end of a patch: at kinks, and, below
         one, at the amplitude 0, where the oscillation sets in."""
         below, above = (end in self.kinks.amplitudes for end in ends)
         return below or (above and ends[0] == 0.0), above
 
 
-def _share(value, ends):
+def _share(value: np.ndarray, ends: Ends) -> np.ndarray:
     """Where a value lies between two ends, 0 to 1 whatever rounding does."""
     return np.clip((value - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0)
 
 
-def _between(share, ends):
+def _between(share: float, ends: Ends) -> float:
     return ends[0] + (ends[1] - ends[0]) * share
 
 
-def _spread_share(amplitude, ends):
+def _spread_share(amplitude: np.ndarray, ends: Ends) -> np.ndarray:
     """Where an amplitude lies between two in the logarithm of 1 + SPREAD A, 0 to 1."""
     low, high = (np.log1p(SPREAD * end) for end in ends)
     return _share(np.log1p(SPREAD * amplitude), (low, high))
 
 
-def _at_spread_share(share, ends):
+def _at_spread_share(share: float, ends: Ends) -> float:
     """The inverse of _spread_share."""
     low, high = (np.log1p(SPREAD * end) for end in ends)
     return np.expm1(_between(share, (low, high))) / SPREAD

@@ -58,13 +58,14 @@ def next_round(map_: CertifiedMap, known: Answers, points_per_job: int) -> dict:
     }
 
 
-def _request(map_, coordinates, node):
+def _request(
+    map_: CertifiedMap, coordinates: MapCoordinates | CreepCoordinates, node: tuple[float, ...]
+) -> dict:
     """The request for a node, as of a sweep that has it."""
     place = dict(zip(coordinates.directions, coordinates.place(node), strict=True))
+    point: dict = {"velocity": (0.0,)}
     if "force" in place:
         point = {"velocity": (), "drives": (("force", (place.pop("force"),), True),)}
-    else:
-        point = {"velocity": (0.0,)}
     point |= {name: (value,) for name, value in place.items()}
     return PointRequests(replace(map_.sweep, tolerance=map_.tolerance, **point))[0]
 
@@ -88,7 +89,7 @@ def answers_in(rounds: Iterable[dict], records: Iterable[dict]) -> dict:
     return found
 
 
-def _answer(request, result):
+def _answer(request: dict, result: dict) -> tuple[float, float]:
     if not result.get("converged", False):
         return math.nan, math.inf
     if "force" in request:
@@ -135,7 +136,7 @@ def read_rounds(paths: Sequence[str | Path]) -> list[dict]:
     return [read_round(path) for path in paths]
 
 
-def _content(path):
+def _content(path: str | Path) -> bytes:
     try:
         return Path(path).read_bytes()
     except OSError as error:

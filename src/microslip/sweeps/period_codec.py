@@ -12,6 +12,7 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import DTypeLike
 
 if TYPE_CHECKING:
     from microslip.adaptive.period import Period
@@ -73,6 +74,6 @@ def text_of(values: np.ndarray) -> str:
     return base64.b64encode(ordered.tobytes()).decode("ascii")
 
 
-def values_of(text: str, kind: str) -> np.ndarray:
+def values_of(text: str, kind: DTypeLike) -> np.ndarray:
     """The array that `text_of` made a text of, flat; kind: its type."""
     return np.frombuffer(base64.b64decode(text), np.dtype(kind).newbyteorder("<"))

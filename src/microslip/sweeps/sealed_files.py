@@ -26,11 +26,11 @@ BEGINNINGS = {".nc": b"\x89HDF", ".png": b"\x89PNG", ".pdf": b"%PDF"}
 ABANDONED = 3600.0
 
 
-def refuse_no_folder(folder: Path) -> None:
+def refuse_no_folder(folder: object) -> None:
     """Raise CacheError for what is not the name of a folder: nothing, what is no text, and a ~ that
     no shell has replaced, which would become a folder of that name."""
-    named = isinstance(folder, str | os.PathLike) and isinstance(os.fspath(folder), str)
-    name = os.fspath(folder) if named else ""
+    path = os.fspath(folder) if isinstance(folder, str | os.PathLike) else ""
+    name = path if isinstance(path, str) else ""
     if not name.strip() or "\0" in name:
         raise CacheError(f"{shown(folder)} is not allowed; allowed: the name of a folder")
     if Path(name).parts[:1] == ("~",):
@@ -38,7 +38,7 @@ def refuse_no_folder(folder: Path) -> None:
         raise CacheError(f"{shown(name)} is not allowed; {home}")
 
 
-def refuse_unusable(folders: Iterable[Path], files: Iterable[Path]) -> None:
+def refuse_unusable(folders: Iterable[str | Path], files: Iterable[str | Path]) -> None:
     """Raise CacheError where a file is in the place of a folder, or a folder in that of a file.
 
     folders, files: to be made in time, with all folders above them. Makes nothing itself.
@@ -97,7 +97,7 @@ def writing_beside(path: Path, sealed: bool = False) -> Iterator[Path]:
             beside.unlink()
 
 
-def _unique_beside(path):
+def _unique_beside(path: Path) -> Path:
     """A name beside a path that no other thread, process or container writes to.
 
     Process numbers are the same in many containers, so it takes a random part; the number is there
@@ -106,7 +106,7 @@ def _unique_beside(path):
     return path.with_name(f".{path.name}.{uuid.uuid4().hex[:12]}.{os.getpid()}.part")
 
 
-def _cause(error, beside):
+def _cause(error: Exception, beside: Path) -> Exception:
     """What keeps files from being written beside one, if anything does, else the error itself.
 
     HDF5 says "Permission denied" and "HDF error" on a full disk.
@@ -148,7 +148,7 @@ def clear_abandoned(folder: Path) -> list[Path]:
     return found
 
 
-def _may_run(path):
+def _may_run(path: Path) -> bool:
     """Whether there is a process with the number in the name of a half written file."""
     if os.name != "posix":
         return False  # there the question itself would end it
@@ -170,13 +170,13 @@ def seal_of(path: Path) -> Path:
     return path.with_name(f".{path.name}.sha256")
 
 
-def _write_seal(path, *words):
+def _write_seal(path: Path, *words: str) -> None:
     # Before the file itself: between the two a run that is killed leaves a seal that does not fit,
     # and the file is made again. The other way round it would leave an old seal on a good file.
     write_atomically(seal_of(path), f"{' '.join(words)}\n".encode())
 
 
-def _seal(path):
+def _seal(path: Path) -> list[str]:
     """The words of a seal, the checksum first; empty where there is none."""
     try:
         return seal_of(path).read_bytes().decode("ascii", errors="replace").split()
@@ -184,7 +184,7 @@ def _seal(path):
         return []
 
 
-def _set_aside(path):
+def _set_aside(path: Path) -> None:
     """Rename a file that is damaged, or that the workflow did not make: it may be of use to
     someone."""
     if path.is_file() and (not _seal(path) or is_damaged(path)):
@@ -227,7 +227,7 @@ def is_damaged(path: Path) -> bool:
         raise CacheError(advice("read", path, error)) from error
 
 
-def advice(verb: str, path: Path, error: OSError) -> str:
+def advice(verb: str, path: str | Path, error: Exception) -> str:
     """One line: what could not be done, why, and what to do about it."""
     reason = getattr(error, "strerror", None) or error
     return (

@@ -121,19 +121,20 @@ def solve_stored(
     return _result(given | {"solve_time_s": time.perf_counter() - started})
 
 
-def _drives(**given):
+def _drives(**given: float | None) -> tuple:
     """What pulls as a Sweep has it."""
-    return tuple((name, (float(given[name]),), False) for name in DRIVES if given[name] is not None)
+    values = ((name, given[name]) for name in DRIVES)
+    return tuple((name, (float(value),), False) for name, value in values if value is not None)
 
 
-def _result(given):
+def _result(given: dict) -> Result:
     """The Result with these fields; what a failed solver or JSON left out is NaN, 0 or empty."""
     left_out = {"float": math.nan, "int": 0, "str": "", "bool": False}
-    values = {"periods": 0.0}
+    values: dict = {"periods": 0.0}
     for field in fields(Result):
         value = given.get(field.name)
         if value is not None:
             values[field.name] = value
         else:
-            values.setdefault(field.name, left_out.get(field.type))
+            values.setdefault(field.name, left_out.get(str(field.type)))
     return Result(**values)

@@ -87,10 +87,8 @@ def _of_family(motion: str) -> Kinks:
     return Kinks((), (0.0, 1.0, 1.0 / back, 1.0 / back, 0.0)) if back > 0.0 else Kinks()
 
 
-def kink_velocity(kinks: Kinks, amplitude: np.ndarray) -> np.ndarray | None:
-    """Velocity of the kink at amplitudes >= 0, of their shape; None: there is none."""
-    if not kinks.velocity:
-        return None
+def kink_velocity(kinks: Kinks, amplitude: np.ndarray | float) -> np.ndarray:
+    """Velocity of the kink at amplitudes >= 0, of their shape, where `kinks.velocity` has one."""
     first, *rest = kinks.velocity
     amplitude = np.asarray(amplitude, float)
     if not rest:
