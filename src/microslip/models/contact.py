@@ -31,7 +31,7 @@ class March:
         Sum over the stages of what the step solver left (force over mu F_z).
     iterations, solves : int
         Step-solver iterations and stages.
-    fields : np.ndarray or None, shape (1 + steps stages, *state.shape)
+    fields : np.ndarray or None, shape (1 + steps stages, shape of state)
         Unknown of the step solver at the start and after every stage: the initial guess of a march
         of the same path from a start near by.
     """

@@ -34,7 +34,8 @@ BROKEN = {}
 def find(folder: str) -> None:
     """Register the motions in a folder: those of the package, or the user's own.
 
-    A file that cannot be used is an InputError where a motion of its name is requested.
+    A file that cannot be used, or whose name a file in another folder has, is an InputError where a
+    motion of its name is requested.
     """
     modules = dict(modules_in(folder, motions, BROKEN))
     for file in dict.fromkeys((*(file for file in _FIRST if file in modules), *modules)):

@@ -32,7 +32,8 @@ BROKEN = {}
 def find(folder: str) -> None:
     """Register the pressures in a folder: those of the package, or the user's own.
 
-    A file that cannot be used is an InputError where a pressure of its name is requested.
+    A file that cannot be used, or whose name a file in another folder has, is an InputError where a
+    pressure of its name is requested.
     """
     for file, module in modules_in(folder, pressures, BROKEN):
         reason = missing_parts(module, "PRESSURE", Pressure, "pressure")
