@@ -10,6 +10,7 @@ from stubs import certified_stub
 import microslip
 from microslip.config import load
 from microslip.datasets import certified_map
+from microslip.datasets.query.accessor import Friction
 from microslip.datasets.query.answers import SOURCES
 from microslip.foundation.errors import InputError
 from microslip.sweeps.batches import key_of
@@ -190,7 +191,7 @@ def test_of_other_motions_the_map_answers_and_nothing_beyond():
         return record(request, {"mu_macro": mu, "mu_macro_error": 0.0, "converged": True})
 
     data = certified_map.build(map_, *certified_stub.played(map_, answered))
-    answer = data.friction.at([0.02, 0.2, 0.9], [0.15, 0.5, 0.85])
+    answer = Friction(data).at([0.02, 0.2, 0.9], [0.15, 0.5, 0.85])
     truth = masing.longitudinal(*np.meshgrid(answer.velocity, answer.amplitude))
     assert (abs(answer.mu_macro - truth) <= answer.mu_macro_error + 1e-9).all()
     assert float(answer.mu_macro_error.max()) <= 0.03

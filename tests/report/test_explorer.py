@@ -206,7 +206,7 @@ def test_the_workflow_makes_the_page_and_makes_it_again_only_when_it_changes(fin
     text = (results / "explorer.html").read_text(encoding="utf-8")
     assert '"name":"bore"' in text
     assert len(list(results.glob("periods/*/*/*.json"))) == 4
-    assert "bore: 2 periods, none" in (results / "logs" / "explorer.log").read_text()
+    assert "bore: 2 periods, all converged" in (results / "logs" / "explorer.log").read_text()
     assert project.planned("explorer") == {}
     project.append("src/microslip/report/explorer/disc.js", "\n// Another look.\n")
     assert project.planned("explorer") == {"explorer": 1}
