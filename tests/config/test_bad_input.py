@@ -28,8 +28,9 @@ def nothing_runs(monkeypatch):
     def work(*_, **__):
         raise AssertionError("work has started")
 
-    for name in ("certify", "simulate", "simulate_static", "no_vibration", "closed_form"):
-        monkeypatch.setattr(f"microslip.adaptive.moved.{name}", work)
+    runs = ("moved.certify", "moved.simulate", "moved.simulate_static")
+    for name in (*runs, "closed_forms.no_vibration", "closed_forms.closed_form"):
+        monkeypatch.setattr(f"microslip.adaptive.{name}", work)
 
 
 @pytest.fixture

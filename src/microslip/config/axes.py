@@ -5,6 +5,7 @@ Imports nothing heavy, since the workflow reads it whenever it is parsed.
 
 import math
 from itertools import pairwise
+from typing import Any
 
 from microslip.config.records import MODELS_OF_MOTION, MOTION_OF_SWEEP, ConfigError, Sweep
 from microslip.foundation.canonical import number
@@ -26,7 +27,7 @@ def of_paper(name: str, given: dict, where: str) -> Sweep:
     return sweep
 
 
-def grid_of(name: str, motion: str, given: dict, where: str, **more: object) -> Sweep:
+def grid_of(name: str, motion: str, given: dict, where: str, **more: Any) -> Sweep:
     """A Sweep with its axes expanded, of settings with defaults filled in; more: its other fields.
 
     Raises ConfigError, beginning with `where`, for a bad axis or too many points.
@@ -52,7 +53,7 @@ def grid_of(name: str, motion: str, given: dict, where: str, **more: object) -> 
     return sweep
 
 
-def _refuse_no_tolerance(sweep, where):
+def _refuse_no_tolerance(sweep: Sweep, where: str) -> None:
     """Raise ConfigError where no tolerance is meant but the resolution is not imposed, either.
 
     What has neither cells nor steps is left to the solver, which then has nothing to choose.
@@ -107,7 +108,7 @@ def axis_of(given: list | dict, where: str, positive: bool = False) -> tuple[flo
     return tuple(values)
 
 
-def _spaced(spacing, spec, where):
+def _spaced(spacing: str, spec: dict, where: str) -> list[float]:
     start, stop, count = spec["start"], spec["stop"], spec["count"]
     if stop <= start:
         raise ConfigError(f"{where}.stop: {stop} is not allowed; allowed: a number above {start}")
@@ -121,7 +122,7 @@ def _spaced(spacing, spec, where):
     return [float(f"{value:.6g}") for value in values]
 
 
-def _refuse_mismatch(sweep, where):
+def _refuse_mismatch(sweep: Sweep, where: str) -> None:
     """Refuse settings that are fine one by one but not together."""
     known = MODELS_OF_MOTION[sweep.motion]
     if sweep.model not in known:

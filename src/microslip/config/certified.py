@@ -41,7 +41,7 @@ def maps(sweeps: dict[str, Sweep], given: dict, where: str) -> dict[str, Certifi
     return found
 
 
-def _tolerance(given, error, where):
+def _tolerance(given: float | None, error: float, where: str) -> float:
     loosest = min(SHARE_OF_POINTS * error, LOOSEST_POINTS)
     tolerance = float(number(loosest if given is None else given))
     if tolerance >= error:
@@ -60,7 +60,9 @@ def refuse_unsolvable(given: dict[str, CertifiedMap], where: str) -> None:
     from microslip.config.extended import solver_names
     from microslip.theory import creep_threshold
 
-    for map_ in (map_ for map_ in given.values() if map_.force is not None):
+    for map_ in given.values():
+        if map_.force is None:
+            continue
         sweep, at = map_.sweep, f"{where}.{map_.sweep.name}.adaptive"
         motion, pressure = solver_names(sweep)
         if not creep_threshold.is_known(motion, pressure, sweep.poisson[0]):
@@ -82,7 +84,7 @@ def refuse_unsolvable(given: dict[str, CertifiedMap], where: str) -> None:
             )
 
 
-def _refuse_mismatch(sweep, where):
+def _refuse_mismatch(sweep: Sweep, where: str) -> None:
     if sweep.drives:
         _refuse_no_creep(sweep, where)
     is_static = len(sweep.amplitude or ()) > 1 and 0.0 in sweep.velocity
@@ -98,7 +100,7 @@ def _refuse_mismatch(sweep, where):
         )
 
 
-def _refuse_no_creep(sweep, where):
+def _refuse_no_creep(sweep: Sweep, where: str) -> None:
     """Raise ConfigError for what is pulled but by a force alone, over which it is to be a map."""
     (name, values, _), *others = sweep.drives
     if others or name != "force" or sweep.contacts is not None:

@@ -100,7 +100,7 @@ def with_files_found(
     return filled | {"extended": found, "drives": pulled}
 
 
-def _as_text(content, path):
+def _as_text(content: bytes, path: str | os.PathLike) -> io.StringIO:
     """Bytes as a stream that knows its name; raises ConfigError for what is not UTF-8."""
     try:
         text = io.StringIO(content.decode("utf-8-sig"))
@@ -171,7 +171,7 @@ def from_mapping(
 # From settings to studies
 
 
-def _accuracy(given, where):
+def _accuracy(given: dict, where: str) -> Accuracy:
     grid = given["map"]
     axes = {
         name: axis_of(grid[name], f"{where}.map.{name}", positive=True)
@@ -197,7 +197,7 @@ def _accuracy(given, where):
     )
 
 
-def _stability(given, where):
+def _stability(given: dict, where: str) -> Stability:
     axes = given["axes"]
     return Stability(
         methods=_methods(given["methods"], where),
@@ -206,7 +206,7 @@ def _stability(given, where):
     )
 
 
-def _claims(given, where):
+def _claims(given: dict, where: str) -> Claims:
     names = ("velocity", "amplitude_transverse", "amplitude_bore")
     axes = {name: axis_of(given[name], f"{where}.{name}", positive=True) for name in names}
     for name in names[1:]:
@@ -227,7 +227,7 @@ def _claims(given, where):
     )
 
 
-def _study_point(name, given, where):
+def _study_point(name: str, given: dict, where: str) -> StudyPoint:
     where = f"{where}.{name}.amplitude"
     steady, amplitude = given["motion"] == "continuous-bore", given["amplitude"]
     if steady and amplitude is not None:
@@ -246,7 +246,7 @@ def _study_point(name, given, where):
     )
 
 
-def _methods(given, where):
+def _methods(given: list[str] | None, where: str) -> tuple[str, ...]:
     if given is None:
         return method_names.names()
     for i, text in enumerate(_once(given, f"{where}.methods")):
@@ -257,12 +257,12 @@ def _methods(given, where):
     return tuple(given)
 
 
-def _once(values, where):
+def _once(values: list[str], where: str) -> list[str]:
     twice = next((value for i, value in enumerate(values) if value in values[:i]), None)
     if twice is not None:
         raise ConfigError(f"{where}: {twice} occurs twice; allowed: different values")
     return values
 
 
-def _one_line(text):
+def _one_line(text: object) -> str:
     return " ".join(str(text).split())

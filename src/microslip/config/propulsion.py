@@ -41,7 +41,7 @@ def _motion(name: str, given: dict) -> SelfPropelledMotion:
 
 
 def _refuse_crowd(motions: Iterable[SelfPropelledMotion], where: str) -> None:
-    panels = {}
+    panels: dict[str, list[str]] = {}
     for motion in motions:
         panels.setdefault(motion.panel, []).append(motion.name)
         if len(panels[motion.panel]) > MOST_LINES:

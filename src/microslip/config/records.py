@@ -87,7 +87,8 @@ class CertifiedMap:
     @property
     def amplitude(self) -> tuple[float, float]:
         """The smallest and the largest amplitude."""
-        return self.sweep.amplitude[0], self.sweep.amplitude[-1]
+        amplitudes = self.sweep.amplitude or ()
+        return amplitudes[0], amplitudes[-1]
 
     @property
     def poisson(self) -> tuple[float, ...]:
@@ -107,7 +108,7 @@ class CertifiedMap:
         kept = ("motion", "pressure", "model")
         found = {name: getattr(self.sweep, name) for name in kept}
         found["poisson"] = self.poisson or self.sweep.poisson
-        ranges = {"velocity": self.velocity, "amplitude": self.amplitude}
+        ranges: dict = {"velocity": self.velocity, "amplitude": self.amplitude}
         if self.force is not None:
             ranges["force"] = self.force
         return found | ranges | {"error": self.error, "tolerance": self.tolerance}

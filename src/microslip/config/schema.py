@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import jsonschema
 import yaml
@@ -50,7 +51,7 @@ def filled(mapping: object) -> dict:
 # Defaults
 
 
-def _filled(value, rule):
+def _filled(value: Any, rule: dict) -> Any:
     """Copy `value` with the defaults of the schema `rule` filled in, and whole floats as int."""
     rule = _resolved(rule)
     if isinstance(value, dict):
@@ -66,7 +67,7 @@ def _filled(value, rule):
     return value
 
 
-def _resolved(rule):
+def _resolved(rule: dict) -> dict:
     if "$ref" not in rule:
         return rule
     return {**schema()["$defs"][rule["$ref"].rpartition("/")[2]], **rule}
@@ -75,11 +76,11 @@ def _resolved(rule):
 # Messages
 
 
-def _not_finite(value, path):
+def _not_finite(value: object, path: tuple) -> str | None:
     # JSON has no such numbers, so the schema does not see them.
     if isinstance(value, float) and not math.isfinite(value):
         return f"{_dotted(path)}: {value} is not allowed; allowed: a finite number"
-    items = ()
+    items: Iterable[tuple[object, object]] = ()
     if isinstance(value, dict):
         items = value.items()
     elif isinstance(value, list):
@@ -87,7 +88,7 @@ def _not_finite(value, path):
     return next(filter(None, (_not_finite(item, (*path, key)) for key, item in items)), None)
 
 
-def _explain(error):
+def _explain(error: jsonschema.ValidationError) -> str:
     """One line for a jsonschema error: key, value, what is allowed."""
     rule, value = error.schema, error.instance
     if error.validator == "additionalProperties":
@@ -110,14 +111,14 @@ def near_miss(given: object, known: Iterable[str]) -> str:
     return f"did you mean {near[0]}? " if near else ""
 
 
-def _unknown_key(error):
+def _unknown_key(error: jsonschema.ValidationError) -> str:
     known = list(error.schema.get("properties", {}))
     unknown = next(key for key in error.instance if key not in known)
     path = _dotted((*error.absolute_path, str(unknown)))
     return f"{path}: unknown key; {near_miss(unknown, known)}allowed: {', '.join(known)}"
 
 
-def _as_number(text):
+def _as_number(text: str) -> str:
     try:
         value = float(text)
     except ValueError:
@@ -134,7 +135,7 @@ def _as_number(text):
     return f"write {mantissa}e{int(exponent):+d}"
 
 
-def _allowed(rule):
+def _allowed(rule: dict) -> str:
     if "enum" in rule:
         return ", ".join(rule["enum"])
     kinds = _types(rule)
@@ -159,16 +160,16 @@ def _allowed(rule):
     return " ".join([first, " and ".join(ranges), *others]).replace("  ", " ").strip()
 
 
-def _types(rule):
+def _types(rule: dict) -> list[str]:
     kinds = rule.get("type", [])
     return [kinds] if isinstance(kinds, str) else kinds
 
 
-def _key(error):
+def _key(error: jsonschema.ValidationError) -> str:
     return _dotted(error.absolute_path) or "(top level)"
 
 
-def _dotted(path):
+def _dotted(path: Iterable) -> str:
     text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)
     return text.removeprefix(".")
 

@@ -24,7 +24,7 @@ class StrictLoader(yaml.SafeLoader):
 
     def __init__(self, stream: str | bytes | IO):
         super().__init__(stream)
-        self._checked = []
+        self._checked: list[yaml.Node] = []
 
     def get_single_node(self) -> yaml.Node | None:
         """The document; refuses one whose aliases stand for too much, before anything is made."""
@@ -41,8 +41,8 @@ class StrictLoader(yaml.SafeLoader):
             self._refuse_twice(node)
         super().flatten_mapping(node)
 
-    def _refuse_twice(self, node):
-        seen = []
+    def _refuse_twice(self, node: yaml.MappingNode) -> None:
+        seen: list[object] = []
         for key_node, _ in node.value:
             if key_node.tag == "tag:yaml.org,2002:merge":
                 continue
@@ -66,7 +66,7 @@ class StrictLoader(yaml.SafeLoader):
             raise ValueError(f"{node.value} is not allowed: nearer 0 than numbers can be; write 0")
         return value
 
-    def _refuse_other_bases(self, node):
+    def _refuse_other_bases(self, node: yaml.ScalarNode) -> None:
         """YAML 1.1 reads 010 as 8 and 1:30 as 90."""
         text = self.construct_scalar(node).lstrip("+-")
         if ":" in text:
@@ -87,7 +87,7 @@ class StrictLoader(yaml.SafeLoader):
             ) from None
 
 
-def _expanded_size(node, sizes):
+def _expanded_size(node: yaml.Node, sizes: dict[int, int]) -> int:
     """Number of nodes in a tree that repeats what has several aliases; sizes: those known by id.
 
     A node inside itself counts once: whoever reads the document refuses it.
@@ -97,7 +97,7 @@ def _expanded_size(node, sizes):
         if isinstance(node, yaml.MappingNode):
             children = [child for pair in node.value for child in pair]
         else:
-            children = node.value if isinstance(node, yaml.SequenceNode) else ()
+            children = node.value if isinstance(node, yaml.SequenceNode) else []
         sizes[id(node)] += sum(_expanded_size(child, sizes) for child in children)
     return sizes[id(node)]
 
