@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
+from matplotlib import rcParams
 from matplotlib.axis import Axis
+from matplotlib.font_manager import FontProperties
 from matplotlib.ticker import Formatter, LogLocator, MaxNLocator, NullFormatter
 
 from microslip.report.figures import style as look
@@ -22,7 +24,8 @@ def logarithmic(axis: Axis, ticks: int = 12) -> None:
 
 
 class LogarithmicTicks(LogLocator):
-    """Powers of ten; on short ranges 1, 2, 5 times these, or numbers in equal steps."""
+    """Powers of ten, or some of them; on short ranges multiples of these, or numbers in equal
+    steps: the first of these with at most so many labels that have room."""
 
     def __init__(self, most: int):
         super().__init__(numticks=most)
@@ -31,14 +34,35 @@ class LogarithmicTicks(LogLocator):
     def tick_values(self, vmin: float, vmax: float) -> np.ndarray:
         """The places of ticks between both ends."""
         low, high = sorted((vmin, vmax))
-        room = max(2, min(self._most, self.axis.get_tick_space() if self.axis else self._most))
-        if not 0.0 < low < high < np.inf or _inside(_powers(low, high, (1,)), low, high) > 1:
+        if not 0.0 < low < high < np.inf:
             return super().tick_values(vmin, vmax)
-        for factors in ((1, 3), (1, 2, 5), (1, 5)):
-            ticks = _powers(low, high, factors)
-            if 2 <= _inside(ticks, low, high) <= room:
-                return ticks
-        return MaxNLocator(nbins=room - 1, steps=[1, 2, 5, 10]).tick_values(low, high)
+        every = [
+            ticks
+            for ticks in _candidates(low, high, self._most)
+            if 2 <= _inside(ticks, low, high).sum() <= self._most
+        ]
+        fitting = (ticks for ticks in every if self._have_room(ticks, low, high))
+        return next(fitting, every[-1] if every else super().tick_values(vmin, vmax))
+
+    def _have_room(self, ticks, low, high):
+        """Whether neighbouring labels are at least the height of a letter apart."""
+        if self.axis is None:
+            return True
+        name, box = self.axis.axis_name, self.axis.axes.bbox
+        size = FontProperties(size=rcParams[f"{name}tick.labelsize"]).get_size_in_points()
+        letter, measure = size / 72.0, look.measurer(size)
+        within = _inside(ticks, low, high)
+        texts = self.axis.get_major_formatter().format_ticks(ticks)
+        sizes = np.array(
+            [
+                measure(text) if name == "x" else letter
+                for text, is_shown in zip(texts, within, strict=True)
+                if is_shown
+            ]
+        )
+        length = (box.width if name == "x" else box.height) / self.axis.get_figure(root=True).dpi
+        places = length * np.log(ticks[within] / low) / np.log(high / low)
+        return bool((np.diff(places) >= 0.5 * (sizes[1:] + sizes[:-1]) + letter).all())
 
 
 class LogarithmicLabels(Formatter):
@@ -55,12 +79,21 @@ class LogarithmicLabels(Formatter):
         return f"${x:.6g}$" if 1e-3 <= x < 1e4 else f"${look.number(x)}$"
 
 
-def _powers(low: float, high: float, factors: tuple[int, ...]) -> np.ndarray:
-    """Multiples of powers of ten, from below `low` to above `high`."""
+def _candidates(low: float, high: float, most: int) -> Iterator[np.ndarray]:
+    """Ticks from below `low` to above `high`, from what is best to what has fewest labels."""
     exponents = np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
-    return np.ravel(10.0 ** exponents[:, None] * np.array(factors))
+    powers = 10.0**exponents
+    if _inside(powers, low, high).sum() > 1:
+        for stride in range(1, len(powers)):
+            yield powers[exponents % stride == 0]
+    else:
+        for factors in ((1, 2, 5), (1, 3), (1, 5), (2,), (3,), (5,)):
+            yield np.ravel(powers[:, None] * np.array(factors))
+    for count in range(most - 1, 0, -1):
+        steps = MaxNLocator(nbins=count, steps=[1, 2, 5, 10], min_n_ticks=1)
+        yield steps.tick_values(low, high)
 
 
-def _inside(ticks: np.ndarray, low: float, high: float) -> int:
-    """How many of the ticks lie between both ends, up to rounding."""
-    return int(((ticks >= low * (1 - 1e-9)) & (ticks <= high * (1 + 1e-9))).sum())
+def _inside(ticks: np.ndarray, low: float, high: float) -> np.ndarray:
+    """Which of the ticks lie between both ends, up to rounding."""
+    return (ticks >= low * (1 - 1e-9)) & (ticks <= high * (1 + 1e-9))
