@@ -79,11 +79,7 @@ class Sources:
 
     def __init__(self, package: str | Path = PACKAGE):
         self.package = Path(package)
-        self.contents: dict[str, bytes] = {}
-        self._stamps: dict[str, tuple[int, ...]] = {}
-        for name, path in _modules(self.package):
-            self._stamps[name] = _stamp(path)
-            self.contents[name] = _read(path)
+        self.contents = {name: _read(path) for name, path in _modules(self.package)}
 
     def closure(self, names: Iterable[str], deep: bool = True) -> set[str]:
         """Paths of modules and of all modules that they import, directly or not.
@@ -127,11 +123,8 @@ class Sources:
         return [name for name in sorted(names) if self._is_edited(name)]
 
     def _is_edited(self, name: str) -> bool:
-        path = self.package / name
         try:
-            if _stamp(path) == self._stamps.get(name):
-                return False
-            now = _read(path)
+            now = _read(self.package / name)
         except OSError:
             return name in self.contents
         then = self.contents.get(name, now)
@@ -210,11 +203,6 @@ def _modules(folder: str | Path, prefix: str = "") -> Iterator[tuple[str, str]]:
 def _read(path: str | Path) -> bytes:
     with open(path, "rb") as file:
         return file.read()
-
-
-def _stamp(path: str | Path) -> tuple[int, ...]:
-    about = os.stat(path)
-    return about.st_mtime_ns, about.st_size, about.st_ino
 
 
 def _in_a_users_folder(name: str) -> Path | None:
