@@ -16,6 +16,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from microslip.config.extended import solver_names
 from microslip.config.quantities import MU_MACRO
@@ -24,6 +25,7 @@ from microslip.datasets import netcdf, sweep_dataset
 from microslip.foundation.canonical import canonical_json
 from microslip.sweeps import map_rounds
 from microslip.sweeps.creep_coordinates import CreepCoordinates, velocity_of
+from microslip.sweeps.map_cells import Cell
 from microslip.sweeps.map_coordinates import MapCoordinates
 from microslip.sweeps.sealed_files import writing_beside
 
@@ -69,7 +71,7 @@ def build(map_: CertifiedMap, rounds: Sequence[dict], records: Iterable[dict]) -
     degrees, places = coordinates.degrees, [coordinates.place(node) for node in nodes]
     values, errors = np.array([known[node] for node in nodes]).T
     picked = np.array([[index[n] for n in cell.nodes(degrees)] for cell in found.cells], np.int32)
-    axes = {
+    axes: dict[str, tuple] = {
         name: ("point", np.array(values))
         for name, values in zip(coordinates.directions, zip(*places, strict=True), strict=True)
     }
@@ -142,7 +144,7 @@ def coordinates_in(dataset: xr.Dataset) -> MapCoordinates | CreepCoordinates:
     return kind.from_json(dataset.attrs[COORDINATES])
 
 
-def _at_points(map_, values, errors):
+def _at_points(map_: CertifiedMap, values: np.ndarray, errors: np.ndarray) -> dict:
     """Variables of what was solved for."""
     if map_.force is None:
         return {
@@ -156,13 +158,13 @@ def _at_points(map_, values, errors):
     }
 
 
-def _bound_of(map_):
+def _bound_of(map_: CertifiedMap) -> str:
     if map_.force is None:
         return "bound of the error in the cell"
     return "bound of the error of asinh(velocity) in the cell"
 
 
-def _borders(coordinates, cells):
+def _borders(coordinates: MapCoordinates | CreepCoordinates, cells: Sequence[Cell]) -> dict:
     """Variables that say where the cells begin and end."""
     found, borders = {}, np.array(cells)  # (cell, beginning or end, direction)
     for i, direction in enumerate(coordinates.directions):
@@ -173,5 +175,5 @@ def _borders(coordinates, cells):
     return found
 
 
-def _variable(dim, values, long_name):
+def _variable(dim: str, values: ArrayLike, long_name: str) -> tuple:
     return dim, np.array(values, float), {"long_name": long_name, "units": "1"}

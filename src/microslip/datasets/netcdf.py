@@ -12,7 +12,8 @@ groups, each again a table of its own, opened by name:
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
+from typing import Any
 
 import netCDF4
 import xarray as xr
@@ -65,12 +66,12 @@ def write(path: str | os.PathLike[str], root: xr.Dataset, parts: Mapping[str, xr
         _append(part, path, mode="a", group=group)
 
 
-def _append(dataset, path, **how):
+def _append(dataset: xr.Dataset, path: str | os.PathLike[str], **how: Any) -> None:
     encoding = {name: _encoding(name, v.dtype.kind) for name, v in dataset.variables.items()}
     dataset.to_netcdf(path, engine="netcdf4", format="NETCDF4", encoding=encoding, **how)
 
 
-def _encoding(name, kind):
+def _encoding(name: Hashable, kind: str) -> dict:
     if kind == "f":
         return {"_FillValue": None}
     if kind in "OUT":
@@ -80,7 +81,7 @@ def _encoding(name, kind):
     return {}
 
 
-def characters_of(name: str) -> str:
+def characters_of(name: Hashable) -> str:
     """Dimension of the characters of a text variable: its own, so that parts can be saved again."""
     return f"characters_of_{name}"
 

@@ -45,7 +45,8 @@ def to_xarray(record: object) -> xr.Dataset:
     if not is_dataclass(record) or kind not in AXES:
         raise InputError("record", record, f"allowed is one of {', '.join(AXES)}, not {kind}")
     axes = AXES[kind]
-    variables, about = {}, {"record": kind}
+    variables: dict[str, tuple] = {}
+    about = {"record": kind}
     for name in (field.name for field in fields(record)):
         value = getattr(record, name)
         if isinstance(value, np.ndarray):
@@ -61,7 +62,7 @@ def to_xarray(record: object) -> xr.Dataset:
     return xr.Dataset(variables, attrs=about)
 
 
-def _axes_of(name, value, axes):
+def _axes_of(name: str, value: np.ndarray, axes: tuple[str, ...]) -> tuple[str, ...]:
     """Names of the axes of an array."""
     if value.ndim == 2:
         return axes

@@ -3,8 +3,9 @@
 Memory does not grow with the number of points: at most BLOCK of them are held at a time.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from itertools import islice
+from typing import Any
 
 import netCDF4
 import numpy as np
@@ -69,12 +70,14 @@ DESCRIPTIONS = {
     "mu_macro_change": "mu_macro less that at the smallest Poisson's ratio",
 }
 """All of what a variable is, where its long_name does not say that: the attribute `description`."""
-MISSING = {float: np.nan, bool: False, np.int32: 0, np.int64: 0, str: ""}
+MISSING: dict[type, Any] = {float: np.nan, bool: False, np.int32: 0, np.int64: 0, str: ""}
 
 WIDTHS = {"model": 32, "reason": 256}
 """Bytes that a text is given in a dataset; what is longer is cut, see `_text`."""
 BLOCK = 4096
 """Points that are held at a time when a dataset is written, and a chunk of larger ones."""
+Box = tuple[slice, ...]
+"""A block of a grid, by axis."""
 
 
 def append(file: netCDF4.Dataset, sweep: Sweep, axes: dict, points: Iterable) -> set[str]:
@@ -86,7 +89,8 @@ def append(file: netCDF4.Dataset, sweep: Sweep, axes: dict, points: Iterable) ->
     boxes = list(_boxes(shape))
     for name, (kind, long_name) in table.items():
         _create(file, name, kind, long_name, tuple(axes), boxes[0] if len(boxes) > 1 else None)
-    records, versions, count = iter(points), set(), 0
+    records, count = iter(points), 0
+    versions: set[str] = set()
     for box in boxes:
         extent = tuple(part.stop - part.start for part in box)
         block = list(islice(records, int(np.prod(extent))))
@@ -106,7 +110,7 @@ def append(file: netCDF4.Dataset, sweep: Sweep, axes: dict, points: Iterable) ->
     return versions
 
 
-def _add_changes(file, dims, box):
+def _add_changes(file: netCDF4.Dataset, dims: tuple[str, ...], box: Box | None) -> None:
     """What Poisson's ratio changes: mu_macro less that at the smallest one, and the errors of both,
     one ratio at a time."""
     file.set_auto_mask(False)
@@ -117,7 +121,7 @@ def _add_changes(file, dims, box):
             file[name][i] = file[source][i] + sign * first
 
 
-def _boxes(shape):
+def _boxes(shape: tuple[int, ...]) -> Iterator[Box]:
     """Boxes of at most BLOCK points, as tuples of slices, that fill a grid in the order of C."""
     whole = len(shape)
     while whole and np.prod(shape[whole - 1 :]) <= BLOCK:
@@ -134,7 +138,14 @@ def _boxes(shape):
             yield (*before, cut, *(slice(0, n) for n in trailing))
 
 
-def _create(file, name, kind, long_name, dims, box):
+def _create(
+    file: netCDF4.Dataset,
+    name: str,
+    kind: type,
+    long_name: str,
+    dims: tuple[str, ...],
+    box: Box | None,
+) -> None:
     """An empty variable; box: one of those that its chunks are to be, None for a single one."""
     stored = {bool: np.int8, str: "S1"}.get(kind, kind)
     chunks = None if box is None else tuple(part.stop - part.start for part in box)
@@ -157,17 +168,17 @@ def _create(file, name, kind, long_name, dims, box):
         variable.set_auto_chartostring(False)
 
 
-def _column(block, name, kind):
+def _column(block: list[dict], name: str, kind: type) -> np.ndarray:
     """A value of every record, as an array; of texts the bytes, along a further axis."""
     values = [record["result"].get(name) for record in block]
     filled = [MISSING[kind] if value is None else value for value in values]
     if kind is str:
         texts = np.array([_text(value, WIDTHS[name]) for value in filled], f"S{WIDTHS[name]}")
         return texts.view("S1").reshape(len(filled), WIDTHS[name])
-    return np.array(filled, {bool: np.int8}.get(kind, kind))
+    return np.array(filled, np.int8 if kind is bool else kind)
 
 
-def _text(value, width):
+def _text(value: str, width: int) -> bytes:
     """A text as at most so many bytes; of a longer one the beginning, and dots."""
     coded = value.encode()
     if len(coded) <= width:

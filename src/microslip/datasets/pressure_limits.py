@@ -4,14 +4,16 @@ Closed forms as in theory.catalogue: what holds for any pressure (Eqs 6 and 7), 
 axisymmetric indenters, and what an elliptic Hertz contact has in common with a circular one.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from microslip.pressures.by_name import pressure_named
+from microslip.pressures.pressure import Pressure
 from microslip.theory import axisymmetric, hertz, indenters, masing, paper
-from microslip.theory.catalogue import FORMS, STATIC
+from microslip.theory.catalogue import FORMS, STATIC, ClosedForm
 
 ZONE = replace(
     FORMS["transverse"]["mu_static_stick_zone"],
@@ -40,15 +42,15 @@ def formulas_under(motion: str, name: str) -> dict:
         exact = replace(exact, function=_each(exact.function))
     else:
         return found
-    zone = replace(ZONE, motion=motion, function=_each(zone))
-    return found | {zone.name: zone, STATIC: exact}
+    whole = replace(ZONE, motion=motion, function=_each(zone))
+    return found | {whole.name: whole, STATIC: exact}
 
 
-def _of_indenter(motion, pressure):
+def _of_indenter(motion: str, pressure: Pressure) -> tuple[Callable, Callable]:
     """Static friction of the whole stick zone, and the exact one, as functions of the amplitude."""
     if motion == "bore":
 
-        def stick_radius(amplitude):
+        def stick_radius(amplitude: float) -> float:
             return indenters.torsion_stick_radius(pressure, float(hertz.bore_angle(amplitude)))
 
         return (
@@ -61,7 +63,7 @@ def _of_indenter(motion, pressure):
     )
 
 
-def _along(curve, of_sphere):
+def _along(curve: Callable, of_sphere: dict[str, ClosedForm]) -> dict[str, ClosedForm]:
     whole = replace(
         of_sphere["mu_closed_form"],
         function=lambda velocity, amplitude: masing.longitudinal(velocity, amplitude, curve),
@@ -72,15 +74,15 @@ def _along(curve, of_sphere):
     return {whole.name: whole, STATIC: static}
 
 
-def _each(function):
+def _each(function: Callable[[float], float]) -> Callable:
     return np.vectorize(lambda value: float(function(float(value))), otypes=[float])
 
 
-def _load_inside(pressure, radius):
-    return indenters.static_stick_zone(pressure, radius) if radius > 0.0 else 0.0
+def _load_inside(pressure: Pressure, radius: float) -> float:
+    return float(indenters.static_stick_zone(pressure, radius)) if radius > 0.0 else 0.0
 
 
-def _steady(pressure, of_sphere):
+def _steady(pressure: Pressure, of_sphere: dict[str, ClosedForm]) -> dict[str, ClosedForm]:
     """Eqs 17 and 18 in the place of 21 and 22."""
     found = {}
     for part, (name, form) in enumerate(of_sphere.items()):

@@ -7,11 +7,12 @@ file depends on when, where or in how many jobs it was made.
 """
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 import netCDF4
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 import microslip
 from microslip.config.extended import solver_names
@@ -92,9 +93,11 @@ GROUPS = {
 """Groups in the file of a sweep, as far as its motion has them, and their titles."""
 
 
-def _root(sweep):
+def _root(sweep: Sweep) -> xr.Dataset:
     """Dataset of the axes and the limits on them, without the points."""
-    coords = {name: (name, np.array(values)) for name, values in _axes(sweep).items()}
+    coords: dict[str, tuple] = {
+        name: (name, np.array(values)) for name, values in _axes(sweep).items()
+    }
     if not sweep.poisson_is_axis:
         coords["poisson"] = ((), sweep.poisson[0])
     coords |= {name: ((), values[0]) for name, values, _ in sweep.drives if name not in coords}
@@ -103,7 +106,7 @@ def _root(sweep):
     return dataset
 
 
-def _parts(sweep, histories):
+def _parts(sweep: Sweep, histories: Sequence[dict]) -> dict[str, xr.Dataset]:
     """Datasets of GROUPS by name, those that have anything."""
     found = theory_limits.curves(sweep) | _single_runs(sweep, histories)
     about = {"motion": solver_names(sweep)[0]}
@@ -156,7 +159,7 @@ def report(dataset: xr.Dataset, name: str | None = None) -> Iterator[str]:
         yield f"  single runs left out: {dataset.single_runs_failed}"
 
 
-def _axes(sweep):
+def _axes(sweep: Sweep) -> dict[str, tuple[float, ...]]:
     pulls = {name: values for name, values, is_axis in sweep.drives if is_axis}
     force = pulls.pop("force", None)
     axes = pulls | ({"poisson": sweep.poisson} if sweep.poisson_is_axis else {})
@@ -188,7 +191,7 @@ def describe_axes(dataset: xr.Dataset, sweep: Sweep) -> None:
 # Single runs, the data of Figures 1, 3 and 5
 
 
-def _single_runs(sweep, records):
+def _single_runs(sweep: Sweep, records: Sequence[dict]) -> dict[str, dict]:
     """Variables of the groups of single runs, a dict of dicts."""
     if not records or any(record["result"].get("crashed") for record in records):
         return {}  # see `report`
@@ -199,7 +202,7 @@ def _single_runs(sweep, records):
     return {"field": _traction_field(fields[0]), "transients": _transients(transients)}
 
 
-def _force_history(record):
+def _force_history(record: dict) -> dict[str, tuple]:
     result, request = record["result"], record["request"]
     step, friction = "history_step", "friction force over mu F_z"
     return {
@@ -220,7 +223,7 @@ FIELD = {
 }
 
 
-def _traction_field(record):
+def _traction_field(record: dict) -> dict[str, tuple]:
     result, velocity = record["result"], record["request"]["velocity"]
     centre = "centre of rotation, lateral, over a"
     variables = {f"field_{name}": _variable("cell", result[name], FIELD[name]) for name in FIELD}
@@ -230,7 +233,7 @@ def _traction_field(record):
     }
 
 
-def _transients(records):
+def _transients(records: Sequence[dict]) -> dict[str, tuple]:
     velocity = float(records[0]["request"]["velocity"])
     starts = [record["request"]["start"] for record in records]
     dims = ("start", "transient_step")
@@ -265,5 +268,7 @@ def _transients(records):
     }
 
 
-def _variable(dims, values, long_name, units="1", **more):
+def _variable(
+    dims: str | tuple[str, ...], values: ArrayLike, long_name: str, units: str = "1", **more: str
+) -> tuple:
     return dims, np.array(values, float), {"long_name": long_name, "units": units} | more

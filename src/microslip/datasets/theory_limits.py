@@ -5,10 +5,12 @@ fine enough to draw. A formula in theory/catalogue.py appears in the dataset of 
 """
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from microslip.config.extended import solver_names
 from microslip.config.records import Sweep
 from microslip.theory import catalogue
+from microslip.theory.catalogue import ClosedForm
 
 CURVE_POINTS = 241
 
@@ -23,7 +25,7 @@ def formulas(motion: str, pressure: str = "hertz") -> dict:
     return formulas_under(motion, pressure)
 
 
-def _forms(sweep):
+def _forms(sweep: Sweep) -> dict[str, ClosedForm]:
     """Those that hold for a records.Sweep: what is said of a velocity holds where one moves."""
     if sweep.contacts is not None:
         return {}  # they are of one contact
@@ -33,18 +35,19 @@ def _forms(sweep):
     return found
 
 
-def _creep_forms(sweep):
+def _creep_forms(sweep: Sweep) -> dict[str, ClosedForm]:
     """Those of the velocity under a force, where one pulls."""
     motion, pressure = solver_names(sweep)
     form = catalogue.CREEP_FORMS.get(motion)
     if sweep.contacts is not None:
         return {}
     is_map = [(name, is_axis) for name, _, is_axis in sweep.drives] == [("force", True)]
-    known = is_map and form is not None and (form.any_pressure or pressure == "hertz")
-    return {form.name: form} if known else {}
+    if form is None or not is_map or not (form.any_pressure or pressure == "hertz"):
+        return {}
+    return {form.name: form}
 
 
-def _axis(sweep, dim):
+def _axis(sweep: Sweep, dim: str) -> np.ndarray:
     pulls = {name: values for name, values, _ in sweep.drives}
     return np.array(pulls[dim] if dim in pulls else getattr(sweep, dim))
 
@@ -66,7 +69,7 @@ def curves(sweep: Sweep) -> dict:
     Beside every limit stands `<name>_curve`, on the fine axis `amplitude_curve` or
     `velocity_curve`; of a limit that depends on both it is the one at the largest amplitude.
     """
-    found = {}
+    found: dict[str, dict] = {}
     for name, form in _forms(sweep).items():
         first, *others = form.arguments
         axes = [np.array(getattr(sweep, dim)) for dim in form.arguments]
@@ -80,7 +83,7 @@ def curves(sweep: Sweep) -> dict:
     return found
 
 
-def _fine(dim, axis):
+def _fine(dim: str, axis: np.ndarray) -> np.ndarray:
     """A fine axis over the range of an axis; velocities in equal ratios, from the first above 0."""
     positive = axis[axis > 0.0]
     if dim == "velocity" and len(positive):
@@ -90,6 +93,8 @@ def _fine(dim, axis):
     return np.linspace(axis[0], axis[-1], CURVE_POINTS)
 
 
-def _variable(dims, values, long_name, description=""):
+def _variable(
+    dims: tuple[str, ...], values: ArrayLike, long_name: str, description: str = ""
+) -> tuple:
     more = {"description": description} if description else {}
     return dims, np.array(values, float), {"long_name": long_name, "units": "1"} | more

@@ -65,7 +65,7 @@ def write_atomically(path: Path, content: bytes) -> None:
 
 
 @contextmanager
-def writing_beside(path: Path, sealed: bool = False) -> Iterator[Path]:
+def writing_beside(path: str | os.PathLike[str], sealed: bool = False) -> Iterator[Path]:
     """Context that yields a Path beside `path` to write to, and puts it in place at its end.
 
     The file is flushed to disk before it is renamed; sealed: with its checksum, see `is_damaged`.

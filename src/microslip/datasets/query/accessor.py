@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -21,10 +22,11 @@ from microslip.datasets.query.answers import (
     WIDER,
     answered,
 )
+from microslip.datasets.query.cells import CellNodes, Map
 from microslip.datasets.query.coordinates import labelled
 from microslip.datasets.query.grid import axes_of_grid
 from microslip.datasets.query.inverse import Inverse
-from microslip.datasets.query.nodes import poisson_within, refuse_negative
+from microslip.datasets.query.nodes import Nodes, poisson_within, refuse_negative
 from microslip.datasets.query.nodes_once import NodesOnce
 from microslip.datasets.query.solver import pulled_by, solved
 from microslip.datasets.query.within import refuse_beyond, within
@@ -32,6 +34,9 @@ from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
 from microslip.motions.by_name import motion_named
 from microslip.theory.catalogue import FORMS
+
+Answer = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""Friction, its error and codes of SOURCES, shape (n,) each."""
 
 
 @xr.register_dataset_accessor("friction")
@@ -60,7 +65,8 @@ class Friction(Inverse):
         self._pressure = dataset.attrs.get("pressure", "hertz")
         self._limits_known = beyond.known_of(dataset)
         self._nodes = NodesOnce()
-        self._tables = {}  # by what they are made of: a dataset may be changed in place
+        # by what they are made of: a dataset may be changed in place
+        self._tables: dict[tuple, Map | None] = {}
 
     def at(
         self,
@@ -109,9 +115,10 @@ class Friction(Inverse):
         """
         if lazily.is_lazy(velocity, amplitude):
             settings = {"poisson": poisson, "tolerance": tolerance}
-            velocity, amplitude = self._labelled(velocity, amplitude)
-            asked = {"amplitude": amplitude, "velocity": velocity}
+            velocities, amplitudes = self._labelled(velocity, amplitude)
+            asked = {"amplitude": amplitudes, "velocity": velocities}
             return lazily.answered(self.at, self._dataset, asked, **settings)
+        nodes: Nodes | CellNodes
         if cells.is_certified(self._dataset):
             nodes = cells.cells_of(self._dataset)
         else:
@@ -119,19 +126,19 @@ class Friction(Inverse):
         if self._limits_known:
             refuse_negative(nodes)
         nu = poisson_within(nodes.poisson, poisson)
-        velocity, amplitude = self._points(velocity, amplitude)
-        flat_velocity = velocity.values.ravel().astype(float)
+        velocities, amplitudes = self._points(velocity, amplitude)
+        flat_velocity = velocities.values.ravel().astype(float)
         flat_amplitude = np.full(len(flat_velocity), np.nan)
-        if amplitude is not None:
-            flat_amplitude = amplitude.values.ravel().astype(float)
+        if amplitudes is not None:
+            flat_amplitude = amplitudes.values.ravel().astype(float)
         if not self._limits_known or cells.is_static(self._dataset):
             answer = self._map_alone(nodes, flat_velocity, flat_amplitude, nu, tolerance)
-        elif self._table(nodes, nu) is None:
+        elif (table := self._table(nodes, nu)) is None:
             raise InputError("velocity", 0.0, "friction.at needs nodes above 0 in the dataset")
-        elif amplitude is None:
-            answer = self._steady(nodes, flat_velocity, nu)
+        elif amplitudes is None:
+            answer = self._steady(table, flat_velocity)
         else:
-            answer = self._oscillating(nodes, flat_velocity, flat_amplitude, nu)
+            answer = self._oscillating(table, flat_velocity, flat_amplitude, nu)
         value, error, source = answer
         error[np.isnan(value) | np.isnan(error)] = np.inf
         if tolerance is not None:
@@ -140,7 +147,7 @@ class Friction(Inverse):
                 raise InputError("tolerance", tolerance, "allowed is a number above 0")
             point = flat_velocity, flat_amplitude
             self._solve((value, error, source), point, nu, tolerance)
-        found = answered(self._motion, velocity, (value, error, source), nu)
+        found = answered(self._motion, velocities, (value, error, source), nu)
         return found.assign_attrs(self._note(error, source))
 
     def on_grid(
@@ -174,22 +181,26 @@ class Friction(Inverse):
 
     # The question
 
-    def _points(self, velocity, amplitude):
-        velocity, amplitude = self._labelled(velocity, amplitude)
-        if amplitude is None:
-            return velocity, None
+    def _points(
+        self, velocity: object, amplitude: object
+    ) -> tuple[xr.DataArray, xr.DataArray | None]:
+        velocities, amplitudes = self._labelled(velocity, amplitude)
+        if amplitudes is None:
+            return velocities, None
         # An outer product has the order of the datasets.
-        amplitude, velocity = xr.broadcast(amplitude, velocity)
-        return velocity, amplitude
+        amplitudes, velocities = xr.broadcast(amplitudes, velocities)
+        return velocities, amplitudes
 
-    def _labelled(self, velocity, amplitude):
+    def _labelled(
+        self, velocity: object, amplitude: object
+    ) -> tuple[xr.DataArray, xr.DataArray | None]:
         if (amplitude is None) == self._periodic:
             need = "none" if amplitude is not None else "a number"
             raise InputError("amplitude", amplitude, f"allowed for {self._motion} is {need}")
-        velocity = labelled("velocity", velocity)
-        return velocity, None if amplitude is None else labelled("amplitude", amplitude)
+        velocities = labelled("velocity", velocity)
+        return velocities, None if amplitude is None else labelled("amplitude", amplitude)
 
-    def _table(self, nodes, nu, still=False):
+    def _table(self, nodes: Nodes | CellNodes, nu: float, still: bool = False) -> Map | None:
         """The map for one Poisson's ratio, see Nodes.table."""
         key = nodes.fingerprint, nu, still
         if key not in self._tables:
@@ -198,7 +209,14 @@ class Friction(Inverse):
 
     # What no limit is known of
 
-    def _map_alone(self, nodes, velocity, amplitude, nu, tolerance):
+    def _map_alone(
+        self,
+        nodes: Nodes | CellNodes,
+        velocity: np.ndarray,
+        amplitude: np.ndarray,
+        nu: float,
+        tolerance: float | None,
+    ) -> Answer:
         rows = np.nan_to_num(amplitude)
         tables = self._table(nodes, nu), self._table(nodes, nu, still=True)
         if tolerance is None:
@@ -209,7 +227,7 @@ class Friction(Inverse):
         value, error = within(*tables, velocity, rows)
         return value, error, np.full(len(value), MAP)
 
-    def _note(self, error, source):
+    def _note(self, error: np.ndarray, source: np.ndarray) -> dict[str, str]:
         """{"note": text} where points outside the tabulated range have a larger error estimate."""
         about = self._dataset.attrs
         try:
@@ -227,8 +245,7 @@ class Friction(Inverse):
 
     # Steady motion
 
-    def _steady(self, nodes, velocity, nu):
-        table = self._table(nodes, nu)
+    def _steady(self, table: Map, velocity: np.ndarray) -> Answer:
         inside = table.columns.holds(velocity)
         exact = FORMS[self._motion]["mu_forward_theory"].function
         value, error = np.array(exact(velocity), float), np.full(len(velocity), beyond.ROUNDING)
@@ -237,8 +254,10 @@ class Friction(Inverse):
 
     # Oscillation
 
-    def _oscillating(self, nodes, velocity, amplitude, nu):
-        table, limits = self._table(nodes, nu), beyond.LIMITS[self._motion]
+    def _oscillating(
+        self, table: Map, velocity: np.ndarray, amplitude: np.ndarray, nu: float
+    ) -> Answer:
+        limits = beyond.LIMITS[self._motion]
         slowest, fastest = table.columns.values[[0, -1]]
         narrowest, widest = table.rows.values[[0, -1]]
         # Outward from the nearest point on the edge of the map; above it, first down to where the
@@ -251,16 +270,17 @@ class Friction(Inverse):
             np.clip(amplitude, narrowest, widest), np.clip(below, slowest, fastest)
         )
         source = np.full(len(value), MAP)
-        last = (part[-1] for part in (table.values, table.errors))
+        last = table.values[-1], table.errors[-1]
         held, ratio = np.fmin(amplitude, widest), np.full_like(value, nu)
         far = np.zeros_like(value)
         far[wide] = beyond.distances(limits, table.columns.values, *last, below[wide], widest)
-        for where, code, rule, coordinates, end in (
+        rules: tuple[tuple[np.ndarray, int, Callable, tuple, float], ...] = (
             (amplitude < narrowest, NARROWER, beyond.narrower, (amplitude,), narrowest),
             (below < slowest, SLOWER, beyond.slower, (below, held, ratio), slowest),
             (below > fastest, FASTER, beyond.faster, (below, held), fastest),
             (wide, WIDER, beyond.wider, (far, velocity, amplitude), widest),
-        ):
+        )
+        for where, code, rule, coordinates, end in rules:
             if where.any():
                 edge = beyond.Estimate(value[where], error[where])
                 at = (part[where] for part in coordinates)
@@ -277,7 +297,9 @@ class Friction(Inverse):
 
     # The solver
 
-    def _solve(self, answer, point, nu, tolerance):
+    def _solve(
+        self, answer: Answer, point: tuple[np.ndarray, ...], nu: float, tolerance: float
+    ) -> None:
         """Replace what is not good enough by what the solver says."""
         value, error, source = answer
         path = self._dataset.encoding.get("source")

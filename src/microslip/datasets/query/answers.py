@@ -50,7 +50,7 @@ def answered(
     """
     value, error, source = answer
 
-    def variable(values, long_name, **more):
+    def variable(values: np.ndarray, long_name: str, **more: object) -> tuple:
         attributes = {"long_name": long_name} | more
         return shape.dims, values.reshape(shape.shape), attributes
 

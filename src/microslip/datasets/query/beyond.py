@@ -87,7 +87,7 @@ class Limits:
         return Estimate((high + low) / 2.0, (high - low) / 2.0 + ROUNDING)
 
 
-def _limits(motion, same_limit):
+def _limits(motion: str, same_limit: Callable) -> Limits:
     static, large = STATIC_LIMITS[motion], FORMS[motion]["mu_large_amplitude"]
     return Limits(
         static.function,
@@ -225,7 +225,7 @@ def within_the_balance(
     return value, np.where(np.isnan(value), error, np.fmin(error, reach))
 
 
-def _within(low, high, guess):
+def _within(low: np.ndarray, high: np.ndarray, guess: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """A guess brought into its bracket, and how far the bracket reaches from there."""
     value = np.clip(guess, low, high)
     return value, np.maximum(high - value, value - low) + ROUNDING

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from microslip.datasets import certified_map
-from microslip.datasets.query.interpolation import Axis
+from microslip.datasets.query.interpolation import Axis, Table
 from microslip.foundation.errors import InputError
 from microslip.sweeps.creep_coordinates import CreepCoordinates
 from microslip.sweeps.map_coordinates import MapCoordinates
@@ -58,17 +58,28 @@ class CellTable:
         """The range of the amplitude."""
         return Axis(np.array(self.coordinates.amplitude))
 
+    @property
+    def _velocity(self) -> tuple[float, ...]:
+        """The range of the velocity; () for a map of the static limit or of creep."""
+        coordinates = self.coordinates
+        return coordinates.velocity if isinstance(coordinates, MapCoordinates) else ()
+
+    @property
+    def is_static(self) -> bool:
+        """Whether the map is of the static limit, where the velocity is no direction."""
+        return not self._velocity
+
     @cached_property
     def columns(self) -> Axis:
         """The range of the velocity, in even ratios; 0 alone of the static limit."""
-        if not self.coordinates.velocity:
+        if not self._velocity:
             return Axis(np.zeros(1))
-        slow, fast = self.coordinates.velocity
+        slow, fast = self._velocity
         inner = np.geomspace(slow, fast, EDGE)[1:-1]
         return Axis(np.array([slow, *inner, fast]))
 
     @cached_property
-    def _edges(self):
+    def _edges(self) -> tuple[np.ndarray, ...]:
         velocity = self.columns.values
         found = [self.at(np.full_like(velocity, a), velocity) for a in self.rows.values]
         return tuple(np.array(part) for part in zip(*found, strict=True))
@@ -86,7 +97,7 @@ class CellTable:
     def at(self, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Values and bounds of their errors at points inside, amplitudes and velocities of shape
         (n,) each; NaN and infinity where a point that counts is not known."""
-        place = [column, row] if self.coordinates.velocity else [row]
+        place = [column, row] if self._velocity else [row]
         if self.coordinates.poisson:
             place.append(np.full(len(row), self.poisson))
         return self.at_scaled(self.coordinates.scaled(*place))
@@ -104,7 +115,7 @@ class CellTable:
         return value, np.where(np.isnan(value), np.inf, error)
 
 
-def _polynomial(nodes, shares):
+def _polynomial(nodes: np.ndarray, shares: np.ndarray) -> np.ndarray:
     """Value of the polynomial through equally spaced nodes, (n,), at shares (n, directions)."""
     value = nodes[..., None]  # the points run last
     for share in shares.T:
@@ -115,7 +126,7 @@ def _polynomial(nodes, shares):
     return value
 
 
-def _weights(share, degree):
+def _weights(share: np.ndarray, degree: int) -> np.ndarray:
     """Weights (degree + 1, n) of equally spaced values for the polynomial through them, at shares
     (n,)."""
     steps = degree * share
@@ -125,6 +136,10 @@ def _weights(share, degree):
             if other != own:
                 weights[own] *= (steps - other) / (own - other)
     return weights
+
+
+Map = Table | CellTable
+"""Friction over velocity and amplitude at one Poisson's ratio."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,7 +169,7 @@ class CellNodes:
 
     def table(self, poisson: float, *, still: bool = False) -> CellTable | None:
         """The map for a Poisson's ratio above velocity 0, or of that alone; None: there is none."""
-        if still == bool(self.cells.coordinates.velocity):
+        if still != self.cells.is_static:
             return None
         return replace(self.cells, poisson=poisson)
 
@@ -184,7 +199,7 @@ def cells_of(dataset: xr.Dataset) -> CellNodes:
     return CellNodes(np.array(poisson), values, errors, cells)
 
 
-def _coordinates_in(dataset):
+def _coordinates_in(dataset: xr.Dataset) -> MapCoordinates | CreepCoordinates:
     try:
         return certified_map.coordinates_in(dataset)
     except (KeyError, TypeError, ValueError):

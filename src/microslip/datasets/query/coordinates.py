@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from decimal import Decimal
 from numbers import Real
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -35,7 +36,7 @@ def labelled(name: str, given: object) -> xr.DataArray:
     )
 
 
-def _array(name, given):
+def _array(name: str, given: Any) -> np.ndarray:
     """What is given as an array: of floats, where it holds numbers.
 
     NumPy makes floats of texts, times, masked places and quantities, too, without a word.
@@ -53,5 +54,5 @@ def _array(name, given):
     return array
 
 
-def _is_plain(value):
+def _is_plain(value: object) -> bool:
     return isinstance(value, Real | Decimal) and not isinstance(value, bool | np.generic)

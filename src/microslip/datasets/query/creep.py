@@ -11,7 +11,7 @@ from microslip.datasets.query.cells import cells_of
 from microslip.datasets.query.coordinates import labelled
 from microslip.datasets.query.grid import axes_of_grid
 from microslip.foundation.errors import InputError
-from microslip.sweeps.creep_coordinates import velocity_of
+from microslip.sweeps.creep_coordinates import CreepCoordinates, velocity_of
 from microslip.theory.creep_threshold import threshold
 
 STATES = ("stays", "creeps", "undecided", "runs away")
@@ -67,22 +67,24 @@ class Creep:
             return lazily.answered(self.at, self._dataset, asked)
         found = cells_of(self._dataset)
         # An outer product has the order of the datasets.
-        shape, force = xr.broadcast(labelled("amplitude", amplitude), labelled("force", force))
-        amplitude = shape.values.ravel().astype(float)
-        flat = force.values.ravel().astype(float)
+        given = labelled("amplitude", amplitude), labelled("force", force)
+        amplitudes, forces = xr.broadcast(*given)
+        rows = amplitudes.values.ravel().astype(float)
+        flat = forces.values.ravel().astype(float)
         coordinates = found.cells.coordinates
-        least = np.asarray(threshold(coordinates.motion, amplitude), float)
+        assert isinstance(coordinates, CreepCoordinates)  # as __init__ demands
+        least = np.asarray(threshold(coordinates.motion, rows), float)
         state = np.full(len(flat), CREEPS, np.int8)
         state[flat <= least + THRESHOLD_ERROR] = UNDECIDED
         state[(flat < least - THRESHOLD_ERROR) | (flat == 0.0)] = STAYS
         state[flat >= 1.0] = RUNS_AWAY
         moves = (state == CREEPS) | (state == UNDECIDED)
-        _refuse_beyond(coordinates, flat[moves], amplitude[moves])
+        _refuse_beyond(coordinates, flat[moves], rows[moves])
         velocity, error = np.zeros((2, len(flat)))
         velocity[state == RUNS_AWAY] = np.inf
-        scaled = coordinates.scaled(flat[moves], amplitude[moves], least[moves])
+        scaled = coordinates.scaled(flat[moves], rows[moves], least[moves])
         velocity[moves], error[moves] = velocity_of(*found.cells.at_scaled(scaled))
-        return self._answered(force, (velocity, error, least, state))
+        return self._answered(forces, (velocity, error, least, state))
 
     def on_grid(self, force: object = 49, amplitude: object = 49) -> xr.Dataset:
         """Velocity and a bound of its error on a regular grid, for figures and plain xarray.
@@ -104,7 +106,7 @@ class Creep:
         """
         return self.at(**axes_of_grid(self._dataset, {"force": force, "amplitude": amplitude}))
 
-    def _answered(self, shape, answer):
+    def _answered(self, shape: xr.DataArray, answer: tuple[np.ndarray, ...]) -> xr.Dataset:
         velocity, error, least, state = answer
         texts = (
             "mean forward velocity",
@@ -112,7 +114,7 @@ class Creep:
             "force up to which the contact stays where it is",
         )
         names = ("velocity", "velocity_error", "threshold")
-        found = {
+        found: dict[str, tuple] = {
             name: (shape.dims, values.reshape(shape.shape), {"long_name": text, "units": "1"})
             for name, values, text in zip(names, (velocity, error, least), texts, strict=True)
         }
@@ -128,7 +130,7 @@ class Creep:
         )
 
 
-def _refuse_beyond(coordinates, force, amplitude):
+def _refuse_beyond(coordinates: CreepCoordinates, force: np.ndarray, amplitude: np.ndarray) -> None:
     """Raise InputError, naming the argument, for the first place beyond the map that creeps."""
     low, high = coordinates.amplitude
     for name, values, ends in (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from numbers import Integral
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -13,7 +14,7 @@ DIGITS = 6
 """Significant digits of coordinates that are spaced evenly, as in a configuration."""
 
 
-def axes_of_grid(dataset: xr.Dataset, wanted: dict) -> dict:
+def axes_of_grid(dataset: xr.Dataset, wanted: dict[str, Any]) -> dict[str, Any]:
     """Coordinates by name; wanted: by name how many of them, or which ones.
 
     Raises InputError for less than two of them.
@@ -24,7 +25,7 @@ def axes_of_grid(dataset: xr.Dataset, wanted: dict) -> dict:
     }
 
 
-def _is_count(name, given):
+def _is_count(name: str, given: object) -> bool:
     if not isinstance(given, Integral) or isinstance(given, bool):
         return False
     if given < 2:
@@ -32,7 +33,7 @@ def _is_count(name, given):
     return True
 
 
-def _spaced(dataset, name, count):
+def _spaced(dataset: xr.Dataset, name: str, count: int) -> np.ndarray:
     if name not in dataset.variables:
         raise InputError(name, None, "friction.on_grid needs it, and the dataset has lost it")
     values = dataset[name].values

@@ -77,12 +77,12 @@ class Axis:
         return out
 
 
-def _unevenness(values):
+def _unevenness(values: np.ndarray) -> float:
     steps = np.diff(values)
     return steps.max() / steps.min()
 
 
-def _lagrange(nodes, points):
+def _lagrange(nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Weights (n, k) of values at nodes (n, k) for the polynomial through them, at points (n,)."""
     weights = np.ones_like(nodes)
     for own in range(nodes.shape[1]):
@@ -103,7 +103,7 @@ class Table:
     errors: np.ndarray
 
     @cached_property
-    def _miss(self):
+    def _miss(self) -> tuple[np.ndarray, np.ndarray]:
         """What leaving nodes out misses along each axis: the largest at a node and around it."""
         along_rows = self.rows.misses(self.values)
         along_columns = self.columns.misses(self.values.T).T
@@ -131,7 +131,7 @@ def largest_around(values: np.ndarray) -> np.ndarray:
     return np.maximum.reduce([padded[a : a + n, b : b + m] for a, b in shifts])
 
 
-def _largest_of_cell(values, i, j):
+def _largest_of_cell(values: np.ndarray, i: np.ndarray, j: np.ndarray) -> np.ndarray:
     n, m = values.shape
     right, above = np.minimum(i + 1, n - 1), np.minimum(j + 1, m - 1)
     corners = (values[a, b] for a in (i, right) for b in (j, above))

@@ -7,7 +7,7 @@ several places, and then there are as many intervals.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -38,6 +38,11 @@ ACCURACY = {"xrtol": 1e-10, "xatol": 1e-14}
 
 class Inverse:
     """Adds questions the other way round to what has a method `at`."""
+
+    at: Callable[..., xr.Dataset]
+    _dataset: xr.Dataset
+    _motion: str
+    _periodic: bool
 
     def solve_for(
         self,
@@ -85,7 +90,7 @@ class Inverse:
         sought = "velocity" if "velocity" not in known else "amplitude"
         ends = _ends(self._dataset, sought, within)
 
-        def at(place, other):
+        def at(place: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             points = {sought: xr.DataArray(place, dims="point")}
             points |= {name: xr.DataArray(other, dims="point") for name in known}
             found = self.at(**points, poisson=poisson)
@@ -94,10 +99,10 @@ class Inverse:
         parts = [labelled("wanted", wanted)]
         parts += [labelled(name, value) for name, value in known.items()]
         parts = xr.broadcast(*parts)
-        wanted, other = (part.values.ravel().astype(float) for part in (parts[0], parts[-1]))
+        values, other = (part.values.ravel().astype(float) for part in (parts[0], parts[-1]))
         found = [
-            _answers(_Questions(at, wanted[k : k + AT_A_TIME], other[k : k + AT_A_TIME]), *ends)
-            for k in range(0, len(wanted), AT_A_TIME)
+            _answers(_Questions(at, values[k : k + AT_A_TIME], other[k : k + AT_A_TIME]), *ends)
+            for k in range(0, len(values), AT_A_TIME)
         ]
         return _dataset(sought, parts[0], found, self._motion)
 
@@ -109,19 +114,21 @@ class _Questions(NamedTuple):
     wanted: np.ndarray
     other: np.ndarray
 
-    def missing(self, place, row):
+    def missing(self, place: np.ndarray, row: np.ndarray) -> np.ndarray:
         """Friction less the wanted one."""
         row = np.asarray(row, int)
         return self.at(place, self.other[row])[0] - self.wanted[row]
 
-    def beyond(self, place, row):
+    def beyond(self, place: np.ndarray, row: np.ndarray) -> np.ndarray:
         """How much further than its error friction is from the wanted one."""
         row = np.asarray(row, int)
         value, error = self.at(place, self.other[row])
         return np.abs(value - self.wanted[row]) - error
 
 
-def _ends(dataset, sought, within):
+def _ends(
+    dataset: xr.Dataset, sought: str, within: tuple[float, float] | None
+) -> tuple[float, float]:
     """The range that is looked through."""
     if within is None:
         return float(dataset[sought].min()), float(dataset[sought].max())
@@ -134,13 +141,13 @@ def _ends(dataset, sought, within):
     return float(low), float(high)
 
 
-def _places(low, high):
+def _places(low: float, high: float) -> np.ndarray:
     least = max(low, high * 10.0**-DECADES)
     both = np.linspace(low, high, EVEN), np.geomspace(least, high, GEOMETRIC)
     return np.unique(np.clip(np.concatenate(both), low, high))
 
 
-def _answers(asked, low, high):
+def _answers(asked: _Questions, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
     """Rows of (question, place or NaN, low end, high end, bounded), and the outcome of each."""
     places = _places(low, high)
     count = len(asked.wanted)
@@ -174,7 +181,7 @@ def _answers(asked, low, high):
     return np.stack([row, place, *ends, bounded], axis=1), outcome
 
 
-def _runs(inside, crosses):
+def _runs(inside: np.ndarray, crosses: np.ndarray) -> Iterator[tuple[int, int]]:
     """Pairs of the first and the last node around what may have the wanted friction.
 
     The nodes of a pair are outside, unless the range ends there.
@@ -189,7 +196,13 @@ def _runs(inside, crosses):
         yield int(part[0]), int(part[-1]) + 1
 
 
-def _roots(asked, places, off, crosses, runs):
+def _roots(
+    asked: _Questions,
+    places: np.ndarray,
+    off: np.ndarray,
+    crosses: np.ndarray,
+    runs: tuple[np.ndarray, ...],
+) -> np.ndarray:
     """In each run the place where friction is the wanted one, NaN: none; the middle one of many."""
     from scipy.optimize.elementwise import find_root
 
@@ -210,7 +223,9 @@ def _roots(asked, places, off, crosses, runs):
     return found
 
 
-def _end(asked, outer, inner, row, skip):
+def _end(
+    asked: _Questions, outer: np.ndarray, inner: np.ndarray, row: np.ndarray, skip: np.ndarray
+) -> np.ndarray:
     """Where friction comes within the error, between a place outside and one inside."""
     from scipy.optimize.elementwise import find_root
 
@@ -224,7 +239,9 @@ def _end(asked, outer, inner, row, skip):
     return end
 
 
-def _dataset(sought, shape, found, motion):
+def _dataset(
+    sought: str, shape: xr.DataArray, found: list[tuple[np.ndarray, np.ndarray]], motion: str
+) -> xr.Dataset:
     """The answers of all questions as arrays of the shape of what was asked."""
     offsets = np.cumsum([0] + [len(outcome) for _, outcome in found])
     rows = np.concatenate(
@@ -241,7 +258,7 @@ def _dataset(sought, shape, found, motion):
     size = (*shape.shape, most)
     about = {"units": "1"}
     names = (sought, f"{sought}_low", f"{sought}_high")
-    values = {
+    values: dict[str, tuple] = {
         name: (dims, part.reshape(size), about) for name, part in zip(names, table, strict=False)
     }
     values["bounded"] = dims, (table[3] == 1.0).reshape(size)

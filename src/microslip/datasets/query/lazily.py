@@ -38,10 +38,10 @@ def answered(
     inside = {name: _largest(dataset, name) for name in asked}
     pattern = at(**inside, **settings | dict.fromkeys(settings.keys() & {"tolerance"}))
 
-    def block(*places):
-        places = dict(zip(asked, np.broadcast_arrays(*places), strict=True))
-        shape = next(iter(places.values())).shape
-        flat = {name: xr.DataArray(place.ravel(), dims="n") for name, place in places.items()}
+    def block(*places: np.ndarray) -> tuple[np.ndarray, ...]:
+        arrays = dict(zip(asked, np.broadcast_arrays(*places), strict=True))
+        shape = next(iter(arrays.values())).shape
+        flat = {name: xr.DataArray(array.ravel(), dims="n") for name, array in arrays.items()}
         found = at(**flat, **settings)
         return tuple(found[name].values.reshape(shape) for name in pattern.data_vars)
 
@@ -60,6 +60,6 @@ def answered(
     return xr.Dataset(named, attrs=pattern.attrs).assign_coords(rest)
 
 
-def _largest(dataset, name):
+def _largest(dataset: xr.Dataset, name: str) -> float:
     """A place where any map answers; 1 where it has lost its coordinate, which `at` says better."""
     return float(dataset[name].max()) if name in dataset.variables else 1.0

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
@@ -16,6 +17,9 @@ import xarray as xr
 from microslip.datasets.query.interpolation import Axis, Table, largest_around
 from microslip.foundation.arguments import is_real
 from microslip.foundation.errors import InputError
+
+if TYPE_CHECKING:
+    from microslip.datasets.query.cells import CellNodes
 
 READ = ("mu_macro", "mu_macro_error", "converged", "velocity", "amplitude", "poisson")
 """Of a dataset: what its nodes are made of, beside the attribute `tolerance`."""
@@ -56,7 +60,7 @@ class Nodes:
         columns = Axis(self.velocity[chosen])
         return Table(Axis(self.amplitude), columns, values[:, chosen], errors[:, chosen])
 
-    def _at(self, poisson):
+    def _at(self, poisson: float) -> tuple[np.ndarray, np.ndarray]:
         """Values and errors at a Poisson's ratio, shape (n, m)."""
         near = int(np.argmin(np.abs(self.poisson - poisson)))
         if abs(self.poisson[near] - poisson) <= SAME:
@@ -135,14 +139,14 @@ def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = Non
     return nodes
 
 
-def _refuse_no_numbers(dataset, names):
+def _refuse_no_numbers(dataset: xr.Dataset, names: tuple[str, ...]) -> None:
     for name in names:
         kind = dataset[name].dtype
         if kind.kind not in "iuf":
             raise InputError(name, f"of type {kind}", "friction.at needs numbers there")
 
 
-def _refuse_contradictions(chosen, axes):
+def _refuse_contradictions(chosen: xr.Dataset, axes: tuple[str, ...]) -> None:
     """Of nodes that are there twice, as after a join, one is taken: they have to be the same."""
     for axis in axes:
         values = chosen[axis].values
@@ -162,7 +166,7 @@ def _refuse_contradictions(chosen, axes):
                 )
 
 
-def _refuse_impossible(nodes):
+def _refuse_impossible(nodes: Nodes) -> None:
     """Coordinates, or values by more than their errors, that no sweep can have."""
     for name, top in (("poisson", 0.5 + SAME), ("amplitude", np.inf), ("velocity", np.inf)):
         axis = getattr(nodes, name)
@@ -177,12 +181,12 @@ def _refuse_impossible(nodes):
     _refuse_values(nodes, -1.0)
 
 
-def refuse_negative(nodes: Nodes) -> None:
+def refuse_negative(nodes: Nodes | CellNodes) -> None:
     """Raise InputError for mu_macro below 0, where the vibration cannot turn friction round."""
     _refuse_values(nodes, 0.0)
 
 
-def _refuse_values(nodes, least):
+def _refuse_values(nodes: Nodes | CellNodes, least: float) -> None:
     """Raise InputError for mu_macro outside of least to 1: the force is at most mu F_z."""
     off = np.fmax(nodes.values - 1.0, least - nodes.values) > nodes.errors + SAME
     if off.any():
@@ -191,7 +195,7 @@ def _refuse_values(nodes, least):
         )
 
 
-def _known(dataset):
+def _known(dataset: xr.Dataset) -> xr.DataArray:
     """Which nodes converged."""
     if "converged" in dataset:
         return dataset["converged"] == 1  # not what a join has filled in

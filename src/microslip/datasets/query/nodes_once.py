@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from typing import Any
 
 import xarray as xr
 
@@ -17,15 +18,16 @@ class NodesOnce:
     are made of is compared by its digest.
     """
 
-    def __init__(self):
-        self._seen, self._nodes = None, None
+    def __init__(self) -> None:
+        self._seen: tuple | None = None
+        self._nodes: Nodes | None = None
 
-    def of(self, dataset: xr.Dataset, **settings: object) -> Nodes:
+    def of(self, dataset: xr.Dataset, **settings: Any) -> Nodes:
         """The nodes of a dataset; settings and errors are those of `nodes_of`."""
         if any(dataset[name].chunks for name in READ if name in dataset.variables):
             return nodes_of(dataset, **settings)
         seen = _digest(dataset), tuple(settings.items())
-        if self._seen != seen:
+        if self._nodes is None or self._seen != seen:
             self._nodes = nodes_of(dataset, **settings)
             self._seen = seen
         return self._nodes

@@ -14,6 +14,7 @@ from __future__ import annotations
 import difflib
 import os
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 
@@ -83,7 +84,12 @@ def open_map(
         ) from None
 
 
-def _found(name, results, chunks, group):
+def _found(
+    name: str | os.PathLike[str],
+    results: str | os.PathLike[str],
+    chunks: object,
+    group: str | None,
+) -> xr.Dataset:
     path = Path(name)
     if path.suffix != ".nc":
         path = Path(results, f"{name}.nc")
@@ -113,7 +119,7 @@ def _found(name, results, chunks, group):
     return part.assign_attrs(dataset.attrs | part.attrs)
 
 
-def _opened(path, **how):
+def _opened(path: Path, **how: Any) -> xr.Dataset:
     dataset = xr.open_dataset(path, engine="netcdf4", **how)
     for variable in dataset.variables.values():
         variable.encoding.pop("original_shape", None)  # else xarray warns when a part is saved

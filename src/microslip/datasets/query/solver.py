@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from functools import cache
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import xarray as xr
 
@@ -14,7 +15,7 @@ from microslip.sweeps.sealed_files import CacheError
 from microslip.sweeps.solve_stored import solve_stored
 
 
-def solved(folder: str, *point: str | float | None, **settings: object) -> Result:
+def solved(folder: str, *point: Any, **settings: Any) -> Result:
     """What solve_stored says, kept in the folder, or for now where that takes nothing."""
     try:
         return solve_stored(*point, results=folder, **settings)
@@ -38,6 +39,6 @@ def pulled_by(dataset: xr.Dataset) -> dict[str, object]:
 
 
 @cache
-def _spare_folder():
+def _spare_folder() -> TemporaryDirectory:
     """A folder that is gone when Python ends."""
     return TemporaryDirectory(prefix="microslip-")

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.datasets.query.interpolation import Table
+from microslip.datasets.query.cells import Map
 
 
 def within(
-    table: Table | None, still: Table | None, velocity: np.ndarray, amplitude: np.ndarray
+    table: Map | None, still: Map | None, velocity: np.ndarray, amplitude: np.ndarray
 ) -> tuple:
     """Values and bounds of their errors, shape (n,) each; NaN and infinity beyond the map.
 
@@ -25,7 +25,7 @@ def within(
 
 
 def refuse_beyond(
-    table: Table | None, still: Table | None, velocity: np.ndarray, amplitude: np.ndarray, what: str
+    table: Map | None, still: Map | None, velocity: np.ndarray, amplitude: np.ndarray, what: str
 ) -> None:
     """Raise ValueError, naming the argument, for the first point beyond a map; as `within`."""
     outside = np.ones(len(velocity), bool)
