@@ -40,7 +40,8 @@ from scipy.stats import beta
 
 import microslip
 from microslip.motions.by_name import motion_named
-from microslip.solver.problem import Problem
+from microslip.motions.problem import Problem
+from microslip.pressures.by_name import pressure_named
 
 REFERRED = {1e-2: 0.1, 1e-3: 0.1, 1e-4: 0.25}
 """Tolerance of the reference, over that of the point: by that, since 1e-5 is out of reach of most
@@ -79,8 +80,9 @@ def examine(seed: int, k: int, known: dict | None = None) -> dict:
     if known is None:
         known = tighter(given, LONGEST)
     if known["by"] != "finer" and not decides(known):
-        motion = motion_named(point["motion"], point["pressure"])
-        problem = Problem(motion, point["velocity"], point["amplitude"], point["poisson"])
+        pressure = pressure_named(point["pressure"])
+        place = (point["velocity"], point["amplitude"], point["poisson"])
+        problem = Problem(motion_named(point["motion"]), *place, pressure)
         mu, uncertainty = finer.reference(problem, point["tolerance"], result)
         known = {"reference": mu, "uncertainty": uncertainty, "by": "finer"}
         if not decides(known):

@@ -20,7 +20,7 @@ import numpy as np
 
 from microslip.adaptive.cells_policies import like_a_sphere
 from microslip.adaptive.choice import choose_model
-from microslip.solver.problem import Resolution
+from microslip.solver.discretise import Resolution
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 from microslip.solver.static_limit import at_turning_points
@@ -48,12 +48,12 @@ PERIODICITY = 0.1
 def reference(problem, tolerance, certified):
     """(mu, uncertainty) four times as fine as the ``certified`` Result."""
     kind = problem.motion
-    model = choose_model(kind, problem.poisson)
-    stroke = min(max(kind.stroke(problem.amplitude, problem.poisson), 1.0), 16.0) ** 0.5
+    model = choose_model(replace(problem, velocity=1.0))
+    stroke = min(max(problem.stroke, 1.0), 16.0) ** 0.5
     stroke *= kind.cycles
 
     # on a loop the limit finds the edges of what sticks by itself, at the resolution of the run
-    by_itself = problem.velocity == 0.0 and not at_turning_points(kind)
+    by_itself = problem.velocity == 0.0 and not at_turning_points(problem)
     settings = Settings(focus=None if by_itself else found_focus(problem, model))
 
     @lru_cache
@@ -63,7 +63,7 @@ def reference(problem, tolerance, certified):
             return simulate_static(problem, model, resolution, share, settings)
         return simulate(problem, model, resolution, share, settings=settings)
 
-    if kind.depth is not None:
+    if kind.loads:
         coarse, fine = (
             run(Resolution(rings, angles, 2 * round(0.5 * SWEPT_STEPS * rings * stroke)))
             for rings, angles in SWEPT[model]

@@ -23,7 +23,8 @@ import tables
 import microslip
 from microslip.models.contact import forward_slip
 from microslip.models.squares.contact import CartesianContact
-from microslip.motions.by_name import MOTIONS
+from microslip.motions.by_name import motion_named
+from microslip.motions.problem import Problem
 from microslip.solver.methods.paper import (
     CELLS,
     STEPS,
@@ -32,7 +33,6 @@ from microslip.solver.methods.paper import (
     last_means,
     path_of,
 )
-from microslip.solver.problem import Problem
 
 POINTS = [("transverse", 0.5), ("bore", 1.0)]
 """Motion and amplitude."""
@@ -51,7 +51,7 @@ def timed(function):
 def compare(name, amplitude, steps, repeats):
     """One row of the table: the two methods in turns, ``repeats`` times."""
     contact = CartesianContact(CELLS)
-    motion = Problem(MOTIONS[name], VELOCITY, amplitude, 0.0)
+    motion = Problem(motion_named(name), VELOCITY, amplitude, 0.0)
     path, start = path_of(motion, steps), forward_slip(contact)
 
     def paper():

@@ -12,7 +12,8 @@ from microslip.contacts import splitting
 from microslip.models.rings import contact as rings
 from microslip.models.squares import contact as squares
 from microslip.motions.by_name import motion_named
-from microslip.solver.problem import Problem, Resolution
+from microslip.motions.problem import Problem
+from microslip.solver.discretise import Resolution
 from microslip.solver.simulate import simulate
 
 POINTS = ((0.1, 1.0), (0.01, 0.3), (1.0, 3.0))

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from microslip.adaptive.chains import CALIBRATED, EXTRAPOLATED_SHARES, RESOLVED, SPREAD, Axis
 from microslip.adaptive.refinement import MOST_REBASED, PERIODICITY_SHARE, certify, run_tolerance
 from microslip.solver.budget import Spent
-from microslip.solver.problem import Resolution
+from microslip.solver.discretise import Resolution
 from microslip.solver.simulate import Run
 
 EXACT, EXACT_TORQUE = 0.4, 0.7

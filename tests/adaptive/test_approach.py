@@ -15,8 +15,9 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.motions.by_name import MOTIONS
-from microslip.solver.problem import Problem, Resolution
+from microslip.motions.by_name import motion_named
+from microslip.motions.problem import Problem
+from microslip.solver.discretise import Resolution
 from microslip.solver.simulate import simulate
 from microslip.theory import paper
 
@@ -28,7 +29,7 @@ def ladder(motion, model, amplitude, velocities, resolution):
     """Mean forces at falling velocities, each search started from the state before it."""
     means, guess = [], None
     for velocity in velocities:
-        problem = Problem(MOTIONS[motion], velocity, amplitude, 0.0)
+        problem = Problem(motion_named(motion), velocity, amplitude, 0.0)
         run = simulate(problem, model, resolution, 1e-6, guess)
         assert run.converged, f"{velocity}: {run.reason}"
         means.append(run.mu)

@@ -13,8 +13,9 @@ from microslip.models import system_contact
 from microslip.models.contact import forward_slip
 from microslip.models.registry import MODELS
 from microslip.motions.by_name import motion_named
+from microslip.motions.problem import Problem
 from microslip.solver.budget import Budget, Spent
-from microslip.solver.problem import Problem, Resolution, build_contact
+from microslip.solver.discretise import Resolution, build_contact, path_of
 from microslip.solver.simulate import Settings, simulate
 from microslip.solver.static_run import simulate_static
 
@@ -112,9 +113,9 @@ def test_ctrl_c_ends_a_march_that_would_take_minutes(name):
     label, model, resolution = MARCHES[name]
     motion = Problem(motion_named(label), 0.01, 0.5, 0.0)
     contact = build_contact(motion, model, Resolution(4, 4, 2))
-    contact.march(motion.path(contact, 2), forward_slip(contact), 1e-3)  # compiles
+    contact.march(path_of(motion, contact, 2), forward_slip(contact), 1e-3)  # compiles
     contact = build_contact(motion, model, resolution)
-    path, returned = motion.path(contact, resolution.steps), threading.Event()
+    path, returned = path_of(motion, contact, resolution.steps), threading.Event()
     timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     try:
@@ -130,7 +131,7 @@ def test_a_march_is_done_again_where_the_program_goes_on_after_ctrl_c(monkeypatc
     """A handler of its own that does not raise: the answer is what it would have been."""
     motion = Problem(motion_named("transverse"), 0.1, 0.5, 0.0)
     contact = build_contact(motion, "radial", Resolution(4, 1, 4))
-    path, state = motion.path(contact, 4), forward_slip(contact)
+    path, state = path_of(motion, contact, 4), forward_slip(contact)
     expected, march, calls, heard = contact.march(path, state, 1e-8), system_contact.march, [], []
 
     def broken_once(*arguments):

@@ -1,6 +1,7 @@
 """What is run for a point: the model, the closed forms that spare a run, the resolutions."""
 
 import math
+from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -12,11 +13,12 @@ from microslip.adaptive.choice import choose_model
 from microslip.adaptive.closed_forms import closed_form
 from microslip.adaptive.resolutions import plan
 from microslip.models.registry import MODELS
-from microslip.motions.bore import MOTION as BORE
-from microslip.motions.by_name import MOTIONS
-from microslip.motions.continuous_bore import MOTION as CONTINUOUS_BORE
-from microslip.motions.transverse import MOTION as TRANSVERSE
-from microslip.solver.problem import Problem, Resolution
+from microslip.motions.bore import Bore
+from microslip.motions.by_name import MOTIONS, motion_named
+from microslip.motions.continuous_bore import ContinuousBore
+from microslip.motions.problem import Problem
+from microslip.motions.transverse import Transverse
+from microslip.solver.discretise import Resolution
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
 from microslip.theory import paper
@@ -25,25 +27,33 @@ TURNING = {"rigid", "polar", "cartesian"}
 WITH_CELLS = {"mdr", "radial", "polar", "cartesian"}
 """Models that have points off the axis to turn, and those that are refined for a translation."""
 
+EACH = [one() for one in MOTIONS.values() if not fields(one)]
+
+
+def problem_of(motion, poisson):
+    return Problem(motion, 1.0, 1.0 if motion.periodic else None, poisson)
+
+
 # The model
 
 
 @pytest.mark.parametrize(
     ("motion", "poisson", "expected"),
     [
-        (TRANSVERSE, 0.0, "radial"),
-        (TRANSVERSE, 1e-12, "polar"),
-        (TRANSVERSE, 0.5, "polar"),
-        *((motion, nu, "polar") for motion in (BORE, CONTINUOUS_BORE) for nu in (0.0, 0.3, 0.5)),
+        (Transverse(), 0.0, "radial"),
+        (Transverse(), 1e-12, "polar"),
+        (Transverse(), 0.5, "polar"),
+        *((motion, nu, "polar") for motion in (Bore(), ContinuousBore()) for nu in (0.0, 0.3, 0.5)),
     ],
 )
 def test_cheapest_exact_model_is_chosen(motion, poisson, expected):
-    chosen = choose_model(motion, poisson)
+    chosen = choose_model(problem_of(motion, poisson))
     assert chosen == expected
-    assert MODELS[chosen].exact(motion) and not MODELS[chosen].refuses(motion, poisson)
+    problem = problem_of(motion, poisson)
+    assert MODELS[chosen].exact(problem) and not MODELS[chosen].refuses(problem)
 
 
-@pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
+@pytest.mark.parametrize("motion", EACH, ids=str)
 @pytest.mark.parametrize("poisson", [0.0, 0.3])
 def test_models_asked_for_are_taken_or_refused(motion, poisson):
     if motion.rotates:
@@ -53,24 +63,24 @@ def test_models_asked_for_are_taken_or_refused(motion, poisson):
     for name in MODELS:
         if name not in applicable:
             with pytest.raises(ValueError, match=f"^model = '{name}': .*{motion.name}"):
-                choose_model(motion, poisson, name)
+                choose_model(problem_of(motion, poisson), name)
         else:
-            assert choose_model(motion, poisson, name) == name
+            assert choose_model(problem_of(motion, poisson), name) == name
 
 
 @pytest.mark.parametrize(
     "model", ["best", "", "AUTO", None, ["radial"], {}, ("auto",), 3, 0.5, b""]
 )
 def test_unknown_models_are_refused(model):
-    for motion in MOTIONS.values():
+    for motion in EACH:
         with pytest.raises(ValueError, match="^model = .*auto.*radial"):
-            choose_model(motion, 0.0, model)
+            choose_model(problem_of(motion, 0.0), model)
 
 
 # Closed forms
 
 
-@pytest.mark.parametrize("motion", [TRANSVERSE, BORE], ids=lambda motion: motion.name)
+@pytest.mark.parametrize("motion", [Transverse(), Bore()], ids=lambda motion: motion.name)
 @pytest.mark.parametrize("poisson", [0.0, 0.5])
 def test_no_vibration_needs_no_run(motion, poisson):
     for velocity in (0.0, 1e-6, 1.0, 1e3):
@@ -87,7 +97,7 @@ def test_vanishing_velocity_needs_no_run(motion, amplitude, poisson):
     result = microslip.solve(motion, 0.0, amplitude, poisson=poisson)
     assert result.model == "closed-form" and result.cells == 0
     model = "polar" if motion == "bore" else "radial"
-    problem = Problem(MOTIONS[motion], 0.0, amplitude, poisson)
+    problem = Problem(motion_named(motion), 0.0, amplitude, poisson)
     coarse, fine = (
         simulate_static(problem, model, Resolution(cells, 24, 0), 1e-8).mu for cells in (24, 48)
     )
@@ -96,7 +106,7 @@ def test_vanishing_velocity_needs_no_run(motion, amplitude, poisson):
 
 
 def test_vanishing_velocity_is_computed_where_no_form_is_known():
-    assert closed_form(Problem(TRANSVERSE, 0.0, 0.5, 0.3), 1e-2) is None
+    assert closed_form(Problem(Transverse(), 0.0, 0.5, 0.3), 1e-2) is None
     result = microslip.solve("transverse", 0.0, 0.5, poisson=0.3, tolerance=1e-2)
     assert result.model == "polar" and result.cells > 0
     # nu changes the tractions, but not what Mindlin's theory makes of them by much
@@ -116,7 +126,7 @@ def test_the_steady_bore_is_eqs_21_and_22_which_the_resolved_contact_confirms(ve
 
 
 def test_pure_rotation_needs_no_run():
-    assert closed_form(Problem(CONTINUOUS_BORE, 0.0, None, 0.3), 1e-6)[:2] == (0.0, 1.0)
+    assert closed_form(Problem(ContinuousBore(), 0.0, None, 0.3), 1e-6)[:2] == (0.0, 1.0)
     result = microslip.solve("continuous-bore", 0.0, model="polar", tolerance=1e-2)
     assert result.model == "polar" and result.cells > 0
     assert result.mu_macro == pytest.approx(0.0, abs=1e-2)
@@ -125,12 +135,12 @@ def test_pure_rotation_needs_no_run():
 
 def fast(motion, amplitude, tolerance):
     """Velocity at which half the bracket of bounds.py is the tolerance."""
-    if motion is TRANSVERSE:
+    if motion == Transverse():
         return amplitude * math.sqrt(0.5 / tolerance - 0.5)
     return 1.0 + math.sqrt(0.1 / tolerance)
 
 
-@pytest.mark.parametrize("motion", [TRANSVERSE, BORE], ids=lambda motion: motion.name)
+@pytest.mark.parametrize("motion", [Transverse(), Bore()], ids=lambda motion: motion.name)
 @pytest.mark.parametrize("tolerance", [1e-1, 1e-3, 1e-6])
 def test_fast_sliding_needs_no_run_and_not_before(motion, tolerance):
     for amplitude, poisson in ((1e-6, 0.0), (0.4, 0.3), (1e3, 0.5)):
@@ -147,7 +157,12 @@ def test_fast_sliding_needs_no_run_and_not_before(motion, tolerance):
 
 @pytest.mark.parametrize(
     ("motion", "amplitude", "poisson"),
-    [(TRANSVERSE, 0.2, 0.0), (TRANSVERSE, 4.0, 0.0), (TRANSVERSE, 1.0, 0.3), (BORE, 0.5, 0.3)],
+    [
+        (Transverse(), 0.2, 0.0),
+        (Transverse(), 4.0, 0.0),
+        (Transverse(), 1.0, 0.3),
+        (Bore(), 0.5, 0.3),
+    ],
 )
 @pytest.mark.parametrize("tolerance", [5e-2, 2e-3])
 def test_fast_sliding_is_covered(motion, amplitude, poisson, tolerance):
@@ -157,7 +172,7 @@ def test_fast_sliding_is_covered(motion, amplitude, poisson, tolerance):
         result = microslip.solve(*arguments, poisson=poisson, tolerance=tolerance)
         assert result.model == "closed-form" and result.converged
         assert result.mu_macro_error <= tolerance
-        model = choose_model(motion, poisson)
+        model = choose_model(problem_of(motion, poisson))
         run = microslip.solve(*arguments, poisson=poisson, model=model, tolerance=1e-4)
         assert run.model == model and run.converged
         apart = abs(run.mu_macro - result.mu_macro)
@@ -165,7 +180,7 @@ def test_fast_sliding_is_covered(motion, amplitude, poisson, tolerance):
     before = microslip.solve(
         motion.name, 0.99 * velocity, amplitude, poisson=poisson, tolerance=tolerance
     )
-    assert before.model == choose_model(motion, poisson)
+    assert before.model == choose_model(problem_of(motion, poisson))
 
 
 def test_a_model_asked_for_is_run_where_a_form_is_known():
@@ -182,7 +197,7 @@ def test_a_model_asked_for_is_run_where_a_form_is_known():
 
 decades = st.floats(-6.0, 3.0).map(lambda x: 10**x)
 points = st.tuples(
-    st.sampled_from(list(MOTIONS.values())),
+    st.sampled_from(EACH),
     st.one_of(st.just(0.0), decades),
     decades,
     st.sampled_from([0.0, 0.3, 0.5]),
@@ -195,7 +210,7 @@ def planned(point, **imposed):
     """(coarsest, axes by name), or None if the model does not apply."""
     motion, velocity, amplitude, poisson, tolerance, model = point
     try:
-        name = choose_model(motion, poisson, model)
+        name = choose_model(problem_of(motion, poisson), model)
     except ValueError:
         return None
     amplitude = amplitude if motion.periodic else None
@@ -233,7 +248,7 @@ def test_axes_are_those_that_the_motion_and_the_model_have(point):
     if found is None:
         return
     motion, velocity, _, poisson, _, model = point
-    name = choose_model(motion, poisson, model)
+    name = choose_model(problem_of(motion, poisson), model)
     expected = {"steps"} if motion.periodic and velocity > 0.0 else set()
     if name in WITH_CELLS or (name == "rigid" and motion.rotates):
         expected.add("cells")
@@ -244,7 +259,7 @@ def test_axes_are_those_that_the_motion_and_the_model_have(point):
 
 def test_tighter_tolerances_start_from_finer_steps():
     def base(tolerance, amplitude=1.0):
-        _, axes = planned((TRANSVERSE, 0.5, amplitude, 0.0, tolerance, "auto"))
+        _, axes = planned((Transverse(), 0.5, amplitude, 0.0, tolerance, "auto"))
         return axes["steps"].levels[axes["steps"].base]
 
     assert base(1e-1) == base(1e-2) < base(1e-3) < base(1e-4) < base(1e-6)
@@ -273,7 +288,7 @@ def test_imposed_resolutions_are_run_beside_coarser_ones(point, cells, steps):
 
 def test_imposed_resolution_is_that_of_one_run():
     result = microslip.solve("transverse", 0.01, 0.6, cells=8, steps=24, tolerance=1e-3)
-    problem = Problem(TRANSVERSE, 0.01, 0.6, 0.0)
+    problem = Problem(Transverse(), 0.01, 0.6, 0.0)
     finer = simulate(problem, "radial", Resolution(64, 1, 96), 1e-6)
     run = simulate(problem, "radial", Resolution(8, 1, 12), 1e-6)
     assert (result.cells, result.steps_per_period) == (8, 24)

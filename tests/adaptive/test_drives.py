@@ -14,9 +14,11 @@ from microslip.foundation.arguments import SMALLEST_STIFFNESS
 from microslip.foundation.errors import InputError
 from microslip.models.path import EULER
 from microslip.motions.by_name import motion_named
-from microslip.motions.drive import Drive
+from microslip.motions.drive import Force, Spring
+from microslip.motions.problem import Problem
+from microslip.pressures.by_name import pressure_named
+from microslip.solver.discretise import Resolution
 from microslip.solver.method import Method
-from microslip.solver.problem import Problem, Resolution
 from microslip.solver.pulled_run import Accuracy, simulate_pulled
 from microslip.solver.run import Settings
 from microslip.theory import indenters, paper
@@ -101,9 +103,7 @@ LIMITS = {
         "transverse",
         0.5,
         "power:exponent=1",
-        lambda: indenters.static_transverse(
-            motion_named("transverse", "power:exponent=1").pressure, 0.5
-        ),
+        lambda: indenters.static_transverse(pressure_named("power:exponent=1"), 0.5),
     ),
 }
 
@@ -128,16 +128,20 @@ def test_a_contact_under_less_than_the_limit_comes_to_rest(mass):
     """Marched on its own, from a start that moves: what is answered without a march."""
     limit = paper.static_limit_transverse(0.5)
     problem = Problem(motion_named("transverse"), 0.01, 0.5, 0.0)
-    rest = moving_at(problem, Drive(force=limit - 0.03, mass=mass or 0.0))
+    rest = moving_at(problem, Force(limit - 0.03, mass=mass or 0.0))
     assert abs(rest.velocity) < 1e-5
-    moves = moving_at(problem, Drive(force=limit + 0.05, mass=mass or 0.0))
+    moves = moving_at(problem, Force(limit + 0.05, mass=mass or 0.0))
     assert moves.velocity > 1e-3
 
 
 def moving_at(problem, drive, cells=24, steps=64, method=None):
     settings = Settings() if method is None else Settings(method)
     found = simulate_pulled(
-        problem, drive, "radial", Resolution(cells, 1, steps), Accuracy(1e-5), settings
+        replace(problem, drive=drive),
+        "radial",
+        Resolution(cells, 1, steps),
+        Accuracy(1e-5),
+        settings,
     )
     assert found.converged
     return found
@@ -163,7 +167,7 @@ def test_a_limit_that_leaves_no_force_to_march_at_gives_no_velocity():
 
 
 def test_a_velocity_with_an_unsolved_step_and_a_larger_error_is_no_number(monkeypatch):
-    def unsolved(asked, drive, accuracy):
+    def unsolved(asked, accuracy):
         finest = Resolution(cells=8, angles=1, steps=4)
         unknown = nothing(finest)
         return replace(
@@ -286,7 +290,7 @@ def test_friction_through_a_spring_is_that_of_the_prototype(body):
     problem = Problem(motion_named("transverse"), 0.1, 1.0, 0.0)
     euler = Method("backward Euler", integrator=EULER)
     stiffness, mass = body
-    found = moving_at(problem, Drive(stiffness=stiffness, mass=mass), method=euler)
+    found = moving_at(problem, Spring(stiffness=stiffness, mass=mass), method=euler)
     assert found.mu == pytest.approx(SPRINGS[body], rel=0.003)
 
 

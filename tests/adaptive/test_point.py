@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 from stubs.point_contract import CONTRACT
 
 import microslip
-from microslip.motions.by_name import MOTIONS, motion_named
-from microslip.solver.problem import Problem, Resolution
+from microslip.motions.by_name import motion_named
+from microslip.motions.problem import Problem
+from microslip.solver.discretise import Resolution
 from microslip.solver.simulate import simulate
 from microslip.theory import paper
 
@@ -20,7 +21,7 @@ from microslip.theory import paper
 def reference(motion, velocity, amplitude, nu):
     """(friction, allowance): a finer resolution than solve's base, refined once more along each
     axis by itself, each periodic state ten times closer and searched for from scratch."""
-    kind = MOTIONS[motion]
+    kind = motion_named(motion)
     model = "polar" if kind.rotates or nu > 0 else "radial"
     cells, angles, steps = (24, 1, 128) if model == "radial" else (16, 8, 32)
 
@@ -86,7 +87,7 @@ def test_certificate_sees_rings_and_angles_together():
 
 @pytest.mark.parametrize(("velocity", "amplitude"), [(0.3, 0.8), (0.05, 2.0), (2.0, 4.0)])
 def test_tighter_tolerances_come_closer(velocity, amplitude):
-    problem = Problem(MOTIONS["transverse"], velocity, amplitude, 0.0)
+    problem = Problem(motion_named("transverse"), velocity, amplitude, 0.0)
     expected = simulate(problem, "radial", Resolution(48, 1, 384), 1e-6).mu
     for tolerance in (1e-2, 1e-3, 2e-4):
         result = microslip.solve("transverse", velocity, amplitude, tolerance=tolerance)
@@ -215,7 +216,7 @@ def test_friction_falls_with_amplitude(motion, velocity, nu):
     st.sampled_from([0.0, 0.3, 0.5]),
 )
 def test_friction_lies_between_none_and_full(motion, velocity, amplitude, nu):
-    amplitude = amplitude if MOTIONS[motion].periodic else None
+    amplitude = amplitude if motion_named(motion).periodic else None
     result = microslip.solve(motion, velocity, amplitude, poisson=nu, tolerance=5e-3)
     assert result.converged and result.reason == ""
     assert 0.0 <= result.mu_macro <= 1.0
@@ -281,7 +282,7 @@ def test_imposed_resolution_is_what_runs(motion, model, nu, cells, steps):
     )
     assert result.periodic and (result.cells, result.steps_per_period) == (cells, steps)
     if model != "polar":  # whose angles are still chosen, and corrected for
-        problem, share = Problem(MOTIONS[motion], 0.3, 1.2, nu), 1e-5
+        problem, share = Problem(motion_named(motion), 0.3, 1.2, nu), 1e-5
 
         def mean(c, s):
             return simulate(problem, model, Resolution(c, 1, s), share).mu

@@ -8,8 +8,8 @@ from microslip.foundation.errors import InputError
 from microslip.models.pull import Body
 from microslip.motions.body_contacts import contacts_of
 from microslip.motions.by_name import motion_named
-from microslip.solver.body_problem import BodyProblem
-from microslip.solver.problem import Resolution
+from microslip.motions.problem import Problem
+from microslip.solver.discretise import Resolution, contact_of, path_of
 from microslip.theory import paper
 from microslip.theory.creep import antiphase_creep
 
@@ -171,15 +171,15 @@ def test_below_the_threshold_a_body_comes_to_rest(motion):
     """Marched on its own: the way of a period dies away, and above the threshold it does not."""
     contacts, limit = (UNEQUAL, unequal_limit(0.4)) if motion == "transverse" else (AGAINST, None)
     limit = limit or (1.0 - 0.4) ** 1.5
-    problem = BodyProblem(motion_named(motion), 0.1, 0.4, 0.0, contacts=contacts_of(contacts))
-    contact, ways = problem.contact("radial", Resolution(24, 1, 24)), {}
-    path = problem.path(contact, 24)
+    problem = Problem(motion_named(motion), 0.1, 0.4, contacts=contacts_of(contacts))
+    contact, ways = contact_of(problem, "radial", Resolution(24, 1, 24)), {}
+    path = path_of(problem, contact, 24)
     for share in (0.8, 1.2):
         body = Body(0.0, 0.0, 0.0, share * limit)
         state, march = np.zeros((2, 1, len(contact.bound))), None
         for _ in range(40):
             march = contact.pulled_march(path, state, 1e-10, body, np.zeros(2), march)
-            mirrored = problem.motion.half_period_mirror
+            mirrored = problem.half_period_mirror
             state = contact.mirrored(march.state) if mirrored else march.state
         # ahead of a path that itself goes forward
         ways[share] = march.body[-1, 0] - march.body[0, 0] + np.ptp(path.positions[:, 0])

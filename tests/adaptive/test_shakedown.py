@@ -9,7 +9,8 @@ import pytest
 import microslip
 from microslip.foundation.errors import InputError
 from microslip.motions.by_name import motion_named
-from microslip.solver.problem import Problem, Resolution
+from microslip.motions.problem import Problem
+from microslip.solver.discretise import Resolution
 from microslip.solver.run import Settings
 from microslip.solver.shakedown_run import run_to_rest
 
@@ -65,7 +66,7 @@ def test_claims_hold_against_finer_runs(motion, amplitude, share):
 
 
 def walked(model, **resolution):
-    problem = Problem(motion_named("transverse", "hertz"), 0.0, 0.4, 0.0)
+    problem = Problem(motion_named("transverse"), 0.0, 0.4, 0.0)
     return run_to_rest(problem, 0.4, model, Resolution(**resolution), 1e-3, Settings())
 
 
@@ -82,7 +83,7 @@ def test_rings_angles_and_squares_go_equally_far():
 
 def test_what_is_left_is_no_more_than_is_said():
     """A run that looks ten times as closely marches on, and gains no more than was left open."""
-    problem = Problem(motion_named("transverse", "hertz"), 0.0, 0.5, 0.0)
+    problem = Problem(motion_named("transverse"), 0.0, 0.5, 0.0)
     resolution = Resolution(cells=16, angles=1, steps=16)
     for force in (0.3, 0.5, 0.56):
         early, late = (
@@ -104,7 +105,7 @@ def test_above_the_threshold_there_is_no_end():
 
 def test_a_contact_that_would_march_for_ever_says_so():
     """Above the threshold, which the run does not know of."""
-    problem = Problem(motion_named("transverse", "hertz"), 0.0, 0.5, 0.0)
+    problem = Problem(motion_named("transverse"), 0.0, 0.5, 0.0)
     resolution = Resolution(cells=8, angles=1, steps=8)
     found = run_to_rest(problem, 0.65, "radial", resolution, 1e-2, Settings())
     assert not found.converged and "still moves after" in found.reason

@@ -6,8 +6,8 @@ import pytest
 import microslip
 from microslip.adaptive.resolutions import plan
 from microslip.motions.by_name import motion_named
+from microslip.motions.problem import Problem
 from microslip.solver.period_map import CreepRate
-from microslip.solver.problem import Problem
 
 SHARP = "punch:flat=0.95"
 # motion, pressure, velocity, amplitude, and rings and steps that leave much less than is claimed

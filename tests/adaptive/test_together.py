@@ -13,14 +13,15 @@ from microslip.contacts import splitting
 from microslip.models.contact import forward_slip, full_slip
 from microslip.models.polar import contact as polar
 from microslip.motions.by_name import motion_named
-from microslip.solver.problem import Problem, Resolution
+from microslip.motions.problem import Problem
+from microslip.solver.discretise import Resolution, contact_of
 from microslip.solver.run import Run
 from microslip.solver.simulate import simulate
 
 EXACT = 0.4
 CELLS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128)
 TIED = ("angles", tuple(n // 2 for n in CELLS)), ("steps", tuple(3 * n // 2 for n in CELLS))
-BORE = Problem(motion_named("bore", "hertz"), 0.3, 1.0, 0.0)
+BORE = Problem(motion_named("bore"), 0.3, 1.0, 0.0)
 
 
 def together(first=0):
@@ -109,7 +110,7 @@ def test_scattered_errors_are_covered_nearly_always():
     ],
 )
 def test_axes_are_apart_elsewhere(motion, tolerance, imposed):
-    problem = Problem(motion_named(motion, "hertz"), 0.3, 1.0, 0.3)
+    problem = Problem(motion_named(motion), 0.3, 1.0, 0.3)
     axes = plan(problem, "polar", tolerance, **imposed, together=True)[1]
     assert [axis.name for axis in axes] == ["cells", "angles", "steps"]
 
@@ -137,7 +138,7 @@ def test_tight_claims_agree_with_separate_chains(velocity, amplitude):
 
 
 def contact(cells, angles):
-    return BORE.contact("polar", Resolution(cells, angles, 8))
+    return contact_of(BORE, "polar", Resolution(cells, angles, 8))
 
 
 def test_full_slip_stays_full_slip_on_finer_points():

@@ -12,7 +12,7 @@ from stubs.point_contract import CONTRACT
 import microslip
 from microslip.app import cli, sweep_command
 from microslip.foundation.number_text import number_text
-from microslip.motions.by_name import FAMILIES, MOTIONS
+from microslip.motions.by_name import MOTIONS
 
 TRANSVERSE = ("point", "transverse", "--velocity", "0.5", "--amplitude", "0.5")
 SPIN = "spin: rotation about the contact normal"
@@ -189,7 +189,7 @@ def test_model_that_does_not_apply_says_to_which_motion():
             ("propulsion",),
             ["stall force", "no-load velocity", "--points", "after a colon", "heavy body"],
         ),
-        (("point",), [*MOTIONS, *FAMILIES, "mu F_z", "ratio", "mu_apparent", SPIN]),
+        (("point",), [*MOTIONS, "mu F_z", "ratio", "mu_apparent", SPIN]),
         (("sweep",), [*sweep_command.TARGETS, "--cores", "--report", SPIN]),
         (
             ("point", "transverse"),

@@ -59,7 +59,7 @@ NUMBERS = [
         "MOTION = 'elliptic:forward'",
         "in it 'forward'",
     ),
-    ("point transverse:x=1 --velocity 1 --amplitude 1", "MOTION = 'transverse:x=1'", "one of"),
+    ("point transverse:x=1 --velocity 1 --amplitude 1", "MOTION = 'transverse:x=1'", "number x"),
     (
         "point continuous-bore --velocity 1 --contacts phase=1",
         "--contacts = 'phase=1'",

@@ -224,6 +224,7 @@ def test_the_workflow_shows_the_same_schema():
 def test_models_are_refused_here_exactly_where_the_solver_refuses_them():
     from microslip.models.registry import MODELS
     from microslip.motions.by_name import motion_named
+    from microslip.motions.problem import Problem
 
     assert schemas.schema()["$defs"]["model"]["enum"] == ["auto", *MODELS]
     for sweep, motion in config.MOTION_OF_SWEEP.items():
@@ -236,7 +237,11 @@ def test_models_are_refused_here_exactly_where_the_solver_refuses_them():
                 refused = False
             except ConfigError:
                 refused = True
-            assert refused == bool(MODELS[model].refuses(motion_named(motion), poisson))
+            assert refused == bool(
+                MODELS[model].refuses(
+                    Problem(motion_named(motion), 1.0, given.get("amplitude", [None])[0], poisson)
+                )
+            )
 
 
 def test_settings_of_a_sweep_are_plain_json(tmp_path):

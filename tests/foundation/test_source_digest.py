@@ -274,7 +274,7 @@ def test_all_that_answering_a_request_loads_counts_for_it():
 def test_what_reads_a_file_counts_for_its_pressure():
     named = {"kind": "point", "motion": "bore", "pressure": "file:sha256=0123456789abcdef"}
     files = source_digest.files_of_request(named)
-    assert {"pressures/from_file.py", "pressures/measured.py", "pressures/grid_csv.py"} <= files
+    assert {"pressures/from_file.py", "pressures/grid.py", "pressures/grid_csv.py"} <= files
 
 
 def test_every_kind_of_request_has_its_digest():

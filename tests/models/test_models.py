@@ -20,11 +20,12 @@ from microslip.models.reduced.slider import slider_contact
 from microslip.models.registry import MODELS
 from microslip.models.rings.contact import RadialContact
 from microslip.models.squares.contact import CartesianContact
-from microslip.motions.bore import MOTION as BORE
-from microslip.motions.transverse import MOTION as TRANSVERSE
+from microslip.motions.bore import Bore
+from microslip.motions.problem import Problem
+from microslip.motions.transverse import Transverse
+from microslip.solver.discretise import Resolution
 from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
-from microslip.solver.problem import Problem, Resolution
 from microslip.solver.simulate import simulate
 from microslip.theory import hertz, paper
 
@@ -172,7 +173,7 @@ def test_slider_has_the_static_friction_of_eq_7(amplitude):
     """... and approaches it in proportion to the velocity."""
     excess = []
     for velocity in (1e-4, 1e-5):
-        problem = Problem(TRANSVERSE, velocity, amplitude, 0.0)
+        problem = Problem(Transverse(), velocity, amplitude, 0.0)
         run = simulate(problem, "slider", Resolution(1, 1, 192), 1e-7)
         assert run.converged
         excess.append(run.mu - paper.static_slider(amplitude))
@@ -197,7 +198,7 @@ def test_slider_is_the_closed_return_mapping():
 def test_rigid_translation_is_eq_6(velocity, amplitude):
     expected = paper.large_amplitude_transverse(velocity, amplitude)
     steps = [32, 64, 128]
-    problem = Problem(TRANSVERSE, velocity, amplitude, 0.0)
+    problem = Problem(Transverse(), velocity, amplitude, 0.0)
     errors = [simulate(problem, "rigid", Resolution(1, 1, n), 1e-6).mu - expected for n in steps]
     assert abs(errors[-1]) < 2e-4
     assert fitted_order(steps, errors) == pytest.approx(2.0, abs=0.2)
@@ -207,7 +208,7 @@ def test_rigid_translation_is_eq_6(velocity, amplitude):
 def test_rigid_rotation_is_eq_29(velocity):
     resolution = Resolution(32, 32, 128)
     for amplitude in (0.3, 4.0):  # which does not matter
-        run = simulate(Problem(BORE, velocity, amplitude, 0.3), "rigid", resolution, 1e-6)
+        run = simulate(Problem(Bore(), velocity, amplitude, 0.3), "rigid", resolution, 1e-6)
         assert run.mu == pytest.approx(paper.large_amplitude_bore(velocity), abs=5e-4)
 
 
@@ -225,7 +226,7 @@ def half_period(motion, velocity, amplitude, nu, steps, integrator=SDIRK2):
 def test_radial_is_polar_in_translation_without_coupling(integrator):
     rings, angles = 10, 4
     radial, polar = RadialContact.resolved(rings, 0.6), PolarContact(rings, angles, False, 0.0, 0.6)
-    path = half_period(TRANSVERSE, 0.1, 0.8, 0.0, 24, integrator)
+    path = half_period(Transverse(), 0.1, 0.8, 0.0, 24, integrator)
     start = [0.9 * project(np.ones((2, n, rings)), radial.bound) for n in (1, angles)]
     one, other = radial.march(path, start[0], 1e-10), polar.march(path, start[1], 1e-10)
     assert other.forces[:, :2] == pytest.approx(one.forces[:, :2], abs=1e-8)
@@ -235,7 +236,7 @@ def test_radial_is_polar_in_translation_without_coupling(integrator):
 @pytest.mark.parametrize("nu", [0.0, 0.3])
 @pytest.mark.parametrize(
     ("motion", "velocity", "amplitude"),
-    [(TRANSVERSE, 0.2, 1.2), (BORE, 0.2, 1.0), (BORE, 0.5, 2.0)],
+    [(Transverse(), 0.2, 1.2), (Bore(), 0.2, 1.0), (Bore(), 0.5, 2.0)],
 )
 def test_cartesian_converges_to_polar(motion, velocity, amplitude, nu):
     """At equal steps, so that only the discretisation in space differs."""
@@ -464,10 +465,10 @@ def test_step_solution_is_that_of_plain_descent(name, size):
 
 
 SMOOTH = {
-    "slider": (slider_contact, TRANSVERSE, 1.0, 1.5),
-    "radial": (lambda: RadialContact.resolved(8), TRANSVERSE, 0.5, 2.0),
-    "polar": (lambda: PolarContact(6, 4, True, 0.3), BORE, 0.5, 2.0),
-    "cartesian": (lambda: CartesianContact(8, 0.3), BORE, 0.5, 2.0),
+    "slider": (slider_contact, Transverse(), 1.0, 1.5),
+    "radial": (lambda: RadialContact.resolved(8), Transverse(), 0.5, 2.0),
+    "polar": (lambda: PolarContact(6, 4, True, 0.3), Bore(), 0.5, 2.0),
+    "cartesian": (lambda: CartesianContact(8, 0.3), Bore(), 0.5, 2.0),
 }
 
 
@@ -514,6 +515,7 @@ def test_order_of_the_integrators_in_the_periodic_mean(name):
 
 
 def test_models_refuse_what_they_cannot_resolve():
-    assert MODELS["radial"].refuses(BORE, 0.0) and MODELS["radial"].refuses(TRANSVERSE, 0.1)
-    assert MODELS["slider"].refuses(BORE, 0.0)
-    assert not any(model.refuses(TRANSVERSE, 0.0) for model in MODELS.values())
+    refuses = MODELS["radial"].refuses
+    assert refuses(Problem(Bore(), 1.0, 1.0)) and refuses(Problem(Transverse(), 1.0, 1.0, 0.1))
+    assert MODELS["slider"].refuses(Problem(Bore(), 1.0, 1.0))
+    assert not any(model.refuses(Problem(Transverse(), 1.0, 1.0)) for model in MODELS.values())

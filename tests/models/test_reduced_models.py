@@ -10,7 +10,7 @@ from microslip.models.path import EULER, make_path
 from microslip.models.reduced.dahl import DahlContact
 from microslip.models.reduced.mdr import mdr_contact
 from microslip.models.rings.contact import RadialContact
-from microslip.pressures.by_name import HERTZ
+from microslip.pressures.hertz import HERTZ
 from microslip.theory import hertz, paper
 
 

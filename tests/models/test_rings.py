@@ -10,7 +10,7 @@ from microslip.models.contact import energy_norm, forward_slip
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.reduced.slider import slider_contact
 from microslip.models.rings.contact import RadialContact
-from microslip.motions.transverse import MOTION as TRANSVERSE
+from microslip.motions.transverse import Transverse
 
 # Friction of ``exponential_contact`` after six half periods from forward slip, from a solver in
 # complex numbers, Gauss-Seidel and dense Newton, that has no line in common with this one
@@ -29,7 +29,7 @@ KNOWN = [
 
 def half_period(velocity, amplitude, steps, integrator=SDIRK2):
     def displacement(phase):
-        return TRANSVERSE.displacement(phase, velocity, amplitude, 0.0)
+        return Transverse().displacement(phase, velocity, amplitude, 0.0)
 
     return make_path(displacement, half_period_phases(steps), integrator)
 
@@ -37,7 +37,7 @@ def half_period(velocity, amplitude, steps, integrator=SDIRK2):
 def plain_half_period(velocity, amplitude, steps):
     """... in equal steps of time."""
     phase = np.linspace(-np.pi / 2, np.pi / 2, steps + 1)
-    return make_path(lambda t: TRANSVERSE.displacement(t, velocity, amplitude, 0.0), phase)
+    return make_path(lambda t: Transverse().displacement(t, velocity, amplitude, 0.0), phase)
 
 
 def exponential_contact(cells):

@@ -13,8 +13,8 @@ from microslip.models.contact import forward_slip
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.squares.contact import CartesianContact
 from microslip.models.squares.convolution import convolve, influence, square_convolution, workspace
-from microslip.motions.bore import MOTION as BORE
-from microslip.motions.transverse import MOTION as TRANSVERSE
+from microslip.motions.bore import Bore
+from microslip.motions.transverse import Transverse
 
 NUS = [0.0, 0.4]
 
@@ -178,7 +178,7 @@ def test_the_worst_that_can_be_asked_ends(rng):
 def test_a_march_reaches_tolerances_near_rounding():
     """The motion that once stalled: an exact line search drowns in rounding at 1e-8."""
     contact = CartesianContact(16)
-    march = contact.march(path_of(TRANSVERSE, 16), forward_slip(contact), 1e-12)
+    march = contact.march(path_of(Transverse(), 16), forward_slip(contact), 1e-12)
     assert march.residual <= march.solves * 1e-12
     assert march.iterations < 150 * march.solves
 
@@ -188,7 +188,7 @@ def test_cells_without_load_carry_nothing(nu):
     contact = CartesianContact(16, nu)
     outside = contact.bound == 0.0
     assert outside.sum() > 4
-    march = contact.march(path_of(BORE, 8, nu=nu), forward_slip(contact), 1e-8)
+    march = contact.march(path_of(Bore(), 8, nu=nu), forward_slip(contact), 1e-8)
     assert np.all(march.fields[..., outside] == 0.0)
     assert np.all(march.state[:, outside] == 0.0)
     size = np.hypot(*march.state)
@@ -196,7 +196,7 @@ def test_cells_without_load_carry_nothing(nu):
 
 
 @pytest.mark.parametrize("integrator", [EULER, SDIRK2], ids=lambda method: method.name)
-@pytest.mark.parametrize("motion", [TRANSVERSE, BORE], ids=lambda motion: motion.name)
+@pytest.mark.parametrize("motion", [Transverse(), Bore()], ids=lambda motion: motion.name)
 def test_first_guesses_change_the_effort_but_not_the_march(motion, integrator, rng):
     contact, tolerance = CartesianContact(8), 1e-11
     path = path_of(motion, 12, integrator=integrator)
@@ -212,7 +212,7 @@ def test_first_guesses_change_the_effort_but_not_the_march(motion, integrator, r
 
 
 def test_the_same_march_twice_is_the_same_to_the_bit():
-    contact, path = CartesianContact(8, 0.3), path_of(BORE, 8, nu=0.3)
+    contact, path = CartesianContact(8, 0.3), path_of(Bore(), 8, nu=0.3)
     one, other = (contact.march(path, forward_slip(contact), 1e-6) for _ in range(2))
     assert np.array_equal(one.state, other.state) and np.array_equal(one.forces, other.forces)
 

@@ -1,7 +1,5 @@
 """Squares that stand for their images against all of them, and where they are not enough."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from models.test_squares import direct_sum
@@ -16,8 +14,10 @@ from microslip.models.squares.convolution import convolve, square_convolution, w
 from microslip.models.squares.half import MIRROR, TURN
 from microslip.models.squares.side_by_side import SquaresSideBySide
 from microslip.motions.by_name import motion_named
-from microslip.pressures.by_name import HERTZ, pressure_named
-from microslip.solver.problem import Problem, Resolution
+from microslip.motions.problem import Problem
+from microslip.pressures.by_name import pressure_named
+from microslip.pressures.hertz import HERTZ, Hertz
+from microslip.solver.discretise import Resolution
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
 
@@ -178,7 +178,7 @@ def test_they_stand_side_by_side(kind, rng):
     [("transverse", 0.0, 4), (LOOP, 0.0, 4), (LOOP, 0.3, 2), ("bore", 0.3, 2)],
 )
 def test_a_run_finds_what_one_on_all_squares_does(motion, nu, images, velocity, monkeypatch):
-    problem = Problem(motion_named(motion, ELLIPSE), velocity, 0.6, nu)
+    problem = Problem(motion_named(motion), velocity, 0.6, nu, pressure_named(ELLIPSE))
     run_of = simulate if velocity else simulate_static
     resolution, tolerance = Resolution(12, 1, 12), 1e-9
     other = run_of(problem, "cartesian", resolution, tolerance)
@@ -192,7 +192,18 @@ def test_a_run_finds_what_one_on_all_squares_does(motion, nu, images, velocity, 
 
 def images_of(motion, nu, cells=8, pressure="hertz"):
     """Squares that one stands for in what the registry builds."""
-    contact = MODELS["cartesian"].build(motion_named(motion, pressure), nu, cells, 1, None)
+    contact = MODELS["cartesian"].build(
+        Problem(
+            motion_named(motion),
+            1.0,
+            None if motion == "continuous-bore" else 1.0,
+            nu,
+            pressure_named(pressure),
+        ),
+        cells,
+        1,
+        None,
+    )
     assert contact.bound.size * contact.images == cells**2
     return contact.images
 
@@ -227,12 +238,13 @@ def test_the_pressure_has_a_say(places, more):
     """... unless what it says is rounding."""
 
     def contact_of(more, symmetry, nu):
-        def cell_loads(cells):
-            loads = HERTZ.cell_loads(cells)
-            loads[tuple(zip(*places, strict=True))] += more * loads.max()
-            return loads
+        class Uneven(Hertz):
+            def cell_loads(self, cells):
+                loads = super().cell_loads(cells)
+                loads[tuple(zip(*places, strict=True))] += more * loads.max()
+                return loads
 
-        return CartesianContact(8, nu, replace(HERTZ, cell_loads=cell_loads), symmetry)
+        return CartesianContact(8, nu, Uneven(), symmetry)
 
     for (symmetry, nu), images in PLACES[places].items():
         assert contact_of(more, symmetry, nu).images == images

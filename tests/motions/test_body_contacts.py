@@ -3,7 +3,7 @@
 import pytest
 
 from microslip.foundation.errors import InputError
-from microslip.motions.body_contacts import BodyContact, contacts_of, written
+from microslip.motions.body_contacts import BodyContact, contacts_of, contacts_text
 
 
 def test_what_is_not_said_is_usual():
@@ -21,7 +21,7 @@ def test_loads_count_by_their_ratios():
 
 def test_what_is_written_is_read_as_it_was():
     contacts = contacts_of("load=0.25,phase=120.5;load=0.75,amplitude=0.5")
-    assert contacts_of(written(contacts)) == contacts
+    assert contacts_of(contacts_text(contacts)) == contacts
 
 
 BAD = {

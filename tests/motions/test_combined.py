@@ -5,7 +5,8 @@ import pytest
 
 import microslip
 from microslip.motions.by_name import motion_named
-from microslip.solver.problem import Problem, Resolution
+from microslip.motions.problem import Problem
+from microslip.solver.discretise import Resolution
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
 from microslip.theory import hertz

@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import sys
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -15,13 +16,14 @@ from microslip import motions
 from microslip.app.cli import main
 from microslip.motions import by_name
 from microslip.motions.by_name import MOTIONS
-from microslip.motions.transverse import MOTION as TRANSVERSE
-from microslip.motions.zigzag import MOTION as ZIGZAG
-from microslip.solver.problem import Problem, Resolution
+from microslip.motions.problem import Problem
+from microslip.motions.transverse import Transverse
+from microslip.motions.zigzag import Zigzag
+from microslip.solver.discretise import Resolution
 from microslip.solver.static_run import simulate_static
 from microslip.theory import paper
 
-PERIODIC = [motion for motion in MOTIONS.values() if motion.periodic]
+PERIODIC = [one() for one in MOTIONS.values() if one.periodic and not fields(one)]
 MIRRORED = [motion for motion in PERIODIC if motion.half_period_mirror]
 PHASE = np.linspace(-3.0, 3.0, 101)
 
@@ -31,15 +33,15 @@ def test_half_a_period_later_a_motion_is_its_own_mirror_image(name):
     """... moved on forward: the search for the periodic state stands on it."""
     motion = Problem(name, 0.3, 0.7, 0.2)
     now, later = motion.displacement(PHASE), motion.displacement(PHASE + np.pi)
-    moved = np.pi * motion.creep
+    moved = np.pi * motion.drift
     for one, other, sign, way in zip(now, later, (1, -1, -1), (moved, 0.0, 0.0), strict=True):
         assert other == pytest.approx(sign * one + way, abs=1e-12)
 
 
 @pytest.mark.parametrize("motion", PERIODIC, ids=lambda motion: motion.name)
 def test_a_creep_slower_than_the_rounding_of_the_oscillation_is_told_exactly(motion):
-    creep = motion.creep(1.0, 0.7, 0.2)
-    assert motion.creep(1e-99, 0.7, 0.2) == pytest.approx(1e-99 * creep, rel=1e-12, abs=0.0)
+    creep = motion.drift(1.0, 0.7, 0.2)
+    assert motion.drift(1e-99, 0.7, 0.2) == pytest.approx(1e-99 * creep, rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize("motion", PERIODIC, ids=lambda motion: motion.name)
@@ -51,7 +53,7 @@ def test_the_oscillation_turns_at_both_ends_of_half_a_period(motion):
 
 
 def test_the_zigzag_has_one_speed_sideways():
-    _, lateral, _ = ZIGZAG.displacement(np.linspace(-1.5, 1.5, 31), 0.1, 0.7, 0.0)
+    _, lateral, _ = Zigzag().displacement(np.linspace(-1.5, 1.5, 31), 0.1, 0.7, 0.0)
     assert np.diff(lateral) == pytest.approx(0.7 * 2.0 / np.pi * 0.1)
 
 
@@ -78,7 +80,7 @@ def test_the_static_limit_knows_the_turning_points_alone():
     resolution = Resolution(64, 1, 0)
     one, other = (
         simulate_static(Problem(motion, 0.0, 0.5, 0.0), "radial", resolution, 1e-8).mu
-        for motion in (ZIGZAG, TRANSVERSE)
+        for motion in (Zigzag(), Transverse())
     )
     assert one == pytest.approx(other, abs=1e-9)
     assert one == pytest.approx(paper.static_limit_transverse(0.5), abs=1e-3)
@@ -93,24 +95,21 @@ def test_a_slow_zigzag_tends_to_the_static_limit():
 
 CUBE = '''"""To and fro across the motion like the cube of a sine: slow in the middle."""
 
-from dataclasses import replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.motions import transverse
+from microslip.motions.transverse import Transverse
 
 
-def displacement(phase, velocity, amplitude, poisson):
+@dataclass(frozen=True)
+class SineCubed(Transverse):
     """Forward v~ t, lateral y~ sin^3 t."""
-    return velocity * phase, amplitude * np.sin(phase) ** 3, np.zeros_like(phase)
 
+    summary = "sliding forward while oscillating sideways, slowly in the middle"
 
-MOTION = replace(
-    transverse.MOTION,
-    name="sine-cubed",
-    summary="sliding forward while oscillating sideways, slowly in the middle",
-    displacement=displacement,
-)
+    def displacement(self, phase, velocity, amplitude, poisson):
+        return velocity * phase, amplitude * np.sin(phase) ** 3, np.zeros_like(phase)
 '''
 
 
@@ -147,13 +146,13 @@ def test_a_motion_is_one_file(cube, capsys):
 
 
 BROKEN = {
-    "unfinished.py": ("MOTION = replace(", "SyntaxError in line 1"),
+    "unfinished.py": ("class Unfinished(", "SyntaxError in line 1"),
     "no_package.py": ("\nimport no_such_package", "ModuleNotFoundError in line 2"),
-    "number.py": ("MOTION = 3", "MOTION is no Motion"),
-    "no_function.py": ("DEFAULTS = {}", "no function motion"),
+    "number.py": ("NUMBER = 3", "no Motion named Number"),
     "fails.py": (
-        'DEFAULTS = {"x": 1.0}\ndef motion(name, x):\n    return 1 / 0',
-        "ZeroDivisionError in line 3",
+        "from microslip.motions.transverse import Transverse\nclass Fails(Transverse):\n"
+        "    def __init__(self):\n        1 / 0",
+        "ZeroDivisionError in line 4",
     ),
 }
 
@@ -161,7 +160,7 @@ BROKEN = {
 @pytest.fixture
 def broken(tmp_path):
     """A folder of motions with files that cannot be used; the registry is restored afterwards."""
-    registries = (by_name.MOTIONS, by_name.FAMILIES, by_name.BROKEN)
+    registries = (by_name.MOTIONS, by_name.BROKEN)
     before, path = [dict(registry) for registry in registries], list(motions.__path__)
     for name, (text, _) in BROKEN.items():
         (tmp_path / name).write_text(text)
@@ -191,8 +190,9 @@ def test_a_broken_file_is_an_error_of_its_motion_alone(broken, capsys, file):
 
 def test_a_name_of_two_files_is_an_error_of_its_motion_alone(tmp_path, monkeypatch):
     """Python keeps the first module of a name, whichever folder the second file is in."""
-    for registry in ("MOTIONS", "FAMILIES", "BROKEN"):
-        monkeypatch.setattr(by_name, registry, dict(getattr(by_name, registry)))
+    for registry in (by_name.MOTIONS, by_name.BROKEN):
+        for name, value in registry.items():
+            monkeypatch.setitem(registry, name, value)
     monkeypatch.setattr(motions, "__path__", list(motions.__path__))
     places = [tmp_path / folder / "sine_cubed.py" for folder in ("one", "two")]
     for place in places:

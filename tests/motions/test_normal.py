@@ -15,8 +15,9 @@ from microslip.models.reduced.mdr import mdr_contact
 from microslip.models.registry import MODELS
 from microslip.models.rings.contact import RadialContact
 from microslip.motions.by_name import motion_named
-from microslip.pressures.by_name import HERTZ
-from microslip.solver.problem import Problem, Resolution, build_contact
+from microslip.motions.problem import Problem
+from microslip.pressures.hertz import HERTZ
+from microslip.solver.discretise import Resolution, build_contact, path_of
 from microslip.solver.simulate import simulate
 from microslip.theory import oscillating_load
 
@@ -70,7 +71,7 @@ def run(motion, velocity, amplitude, model="radial", cells=32, steps=128):
 @pytest.mark.parametrize("place", ALONE, ids=str)
 def test_the_closed_form_is_that_of_springs_marched_one_by_one(place):
     motion, velocity, amplitude = place
-    exact = motion_named(motion).closed_form_of(velocity, amplitude, HERTZ)
+    exact = motion_named(motion).closed_form(velocity, amplitude, HERTZ)
     coarse, fine = (marched_springs(*place, count, periods=2) for count in (100, 200))
     assert abs(fine - exact) < 1e-3
     assert 2.0 * fine - coarse == pytest.approx(exact, abs=1e-4)  # they err in first order
@@ -83,8 +84,7 @@ def test_springs_and_rings_agree_with_the_closed_form(place, model):
     answer = microslip.solve(*place, model=model)
     assert answer.converged
     assert (
-        abs(answer.mu_macro - motion_named(motion).closed_form_of(velocity, amplitude, HERTZ))
-        < 1e-3
+        abs(answer.mu_macro - motion_named(motion).closed_form(velocity, amplitude, HERTZ)) < 1e-3
     )
 
 
@@ -179,7 +179,7 @@ def tractions_of(march, bounds):
 def test_every_stage_keeps_within_the_bound_of_its_time(name, velocity):
     motion = Problem(motion_named(name), velocity, 0.9, 0.0)
     contact = build_contact(motion, "radial", Resolution(12, 1, 24))
-    path = motion.path(contact, 24)
+    path = path_of(motion, contact, 24)
     march = contact.march(path, np.zeros((2, 1, 12)), 1e-9)
     bounds = contact.bounds_along(path)
     assert (np.hypot(*tractions_of(march, bounds)) <= bounds * (1 + 1e-12)).all()
@@ -193,7 +193,7 @@ def test_work_is_dissipated(place):
     motion = Problem(motion_named(name), velocity, amplitude, 0.0)
     resolution = Resolution(16, 1, 256)
     contact, found = build_contact(motion, "radial", resolution), run(*place, "radial", 16, 256)
-    phase = motion.path(contact, 256).phase
+    phase = path_of(motion, contact, 256).phase
     path = make_path(motion.displacement, phase, EULER, motion.depth)
     before = found.state
     march = contact.march(path, before, 1e-11)
@@ -245,8 +245,8 @@ def test_without_vibration_friction_is_that_of_coulomb():
 
 def test_a_small_change_of_the_load_is_one_of_the_indentation():
     """Load goes like the power 3/2 of the indentation, so that small shares differ by that."""
-    load = 1.0 - motion_named("normal").closed_form_of(1e-3, 0.015, HERTZ)
-    indentation = 1.0 - motion_named("normal:indentation=1").closed_form_of(1e-3, 0.01, HERTZ)
+    load = 1.0 - motion_named("normal").closed_form(1e-3, 0.015, HERTZ)
+    indentation = 1.0 - motion_named("normal:indentation=1").closed_form(1e-3, 0.01, HERTZ)
     assert load == pytest.approx(indentation, rel=0.01)
 
 
@@ -280,7 +280,7 @@ def test_half_a_period_suffices_where_it_is_mirrored():
 
 def test_friction_rises_with_velocity_and_falls_with_amplitude():
     for motion in ("normal", "normal:indentation=1"):
-        whole = motion_named(motion).closed_form_of
+        whole = motion_named(motion).closed_form
         table = np.array(
             [[whole(v, a, HERTZ) for v in (1e-3, 0.03, 0.1, 0.4)] for a in (0.2, 0.7, 1.3)]
         )
@@ -326,7 +326,7 @@ def test_methods_that_know_one_load_are_refused(method):
 def test_a_method_with_another_integrator_finds_the_same():
     answer = microslip.solve("normal", 0.1, 0.5, model="radial", method="euler", tolerance=1e-2)
     assert (
-        abs(answer.mu_macro - motion_named("normal").closed_form_of(0.1, 0.5, HERTZ))
+        abs(answer.mu_macro - motion_named("normal").closed_form(0.1, 0.5, HERTZ))
         <= answer.mu_macro_error
     )
 

@@ -6,8 +6,9 @@ import pytest
 import microslip
 from microslip.models.path import make_path
 from microslip.motions.by_name import motion_named
-from microslip.pressures.by_name import HERTZ
-from microslip.solver.problem import Problem, Resolution, build_contact
+from microslip.motions.problem import Problem
+from microslip.pressures.hertz import HERTZ
+from microslip.solver.discretise import Resolution, build_contact
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
 from microslip.theory import hertz, paper

@@ -14,8 +14,10 @@ from microslip.app.cli import main
 from microslip.foundation import named_files
 from microslip.foundation.errors import InputError
 from microslip.motions.by_name import motion_named
-from microslip.pressures.by_name import HERTZ, pressure_named
-from microslip.pressures.measured import of_grid
+from microslip.motions.problem import Problem
+from microslip.pressures.by_name import pressure_named
+from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Measured
 
 AXIS = np.linspace(-1.25, 1.25, 51)
 HERTZIAN = np.sqrt(np.maximum(1.0 - AXIS[:, None] ** 2 - AXIS**2, 0.0))
@@ -65,7 +67,7 @@ def test_a_uniform_square_is_one_pressure_at_any_resolution(reading):
     """The torque is the mean distance of a square from its centre, u_lim that at the centre."""
     for count in (2, 3, 41):
         axis = np.linspace(3.0, 7.0, count)
-        square = of_grid("square", axis, axis, np.full((count, count), 5.0), reading)
+        square = Measured.on_grid("square", axis, axis, np.full((count, count), 5.0), reading)
         assert square.torque == pytest.approx((np.sqrt(2.0) + np.arcsinh(1.0)) / 3.0, abs=1e-12)
         # (1/pi) Integral of 1/distance over [-1, 1]^2 at load 1, seen from cells by the centre
         assert square.G_star == pytest.approx(2.0 * np.arcsinh(1.0) / np.pi, abs=2e-5)
@@ -94,7 +96,7 @@ def test_friction_of_a_uniform_square_does_not_depend_on_its_grid(tmp_path, moti
 
 def test_cells_are_even_up_to_half_a_step_beyond_the_points():
     values = np.array([[1.0, 2.0], [3.0, 4.0]])
-    pressure = of_grid("four", [0.0, 1.0], [5.0, 6.0], values)
+    pressure = Measured.on_grid("four", [0.0, 1.0], [5.0, 6.0], values)
     assert pressure.cell_loads(2) == pytest.approx(values / 10.0, abs=1e-14)
     assert pressure.cell_loads(4) == pytest.approx(np.kron(values, np.ones((2, 2))) / 40.0)
     # mean distance of the unit square from its corner, whichever carries more
@@ -104,18 +106,20 @@ def test_cells_are_even_up_to_half_a_step_beyond_the_points():
 def test_samples_are_bilinear_between_the_points_and_end_there():
     """p = 1 + x on [0, 1]^2: 5/12 and 7/12 of the load in the two halves."""
     values = np.array([[1.0, 1.0], [2.0, 2.0]])
-    pressure = of_grid("ramp", [0.0, 1.0], [0.0, 1.0], values, "samples")
+    pressure = Measured.on_grid("ramp", [0.0, 1.0], [0.0, 1.0], values, "samples")
     assert pressure.cell_loads(2).sum(axis=1) == pytest.approx([5.0 / 12.0, 7.0 / 12.0], abs=1e-14)
     assert pressure.cell_loads(2).sum(axis=0) == pytest.approx([0.5, 0.5], abs=1e-14)
     finer = np.linspace(0.0, 1.0, 5)
-    same = of_grid("ramp", finer, finer, np.repeat(1.0 + finer[:, None], 5, axis=1), "samples")
+    same = Measured.on_grid(
+        "ramp", finer, finer, np.repeat(1.0 + finer[:, None], 5, axis=1), "samples"
+    )
     assert same.cell_loads(6) == pytest.approx(pressure.cell_loads(6), abs=1e-14)
 
 
 def test_oblong_cells_and_grids_keep_their_shape():
     """Half as wide as long: a is half the longer side, and nothing lies beyond the shorter one."""
     forward, lateral = np.arange(4) * 0.5, np.arange(8) * 0.125
-    loads = of_grid("oblong", forward, lateral, np.ones((4, 8))).cell_loads(8)
+    loads = Measured.on_grid("oblong", forward, lateral, np.ones((4, 8))).cell_loads(8)
     expected = np.zeros((8, 8))
     expected[:, 2:6] = 1.0 / 32.0
     assert loads == pytest.approx(expected, abs=1e-14)
@@ -124,10 +128,10 @@ def test_oblong_cells_and_grids_keep_their_shape():
 @pytest.mark.slow
 def test_zeros_around_the_contact_change_nothing():
     values = np.array([[1.0, 2.0], [3.0, 4.0]])
-    inside = of_grid("four", [0.0, 1.0], [0.0, 1.0], values)
+    inside = Measured.on_grid("four", [0.0, 1.0], [0.0, 1.0], values)
     around = np.zeros((5, 5))
     around[1:3, 2:4] = values
-    outside = of_grid("four", np.arange(-1.0, 4.0), np.arange(-2.0, 3.0), around)
+    outside = Measured.on_grid("four", np.arange(-1.0, 4.0), np.arange(-2.0, 3.0), around)
     assert outside.cell_loads(6) == pytest.approx(inside.cell_loads(6), abs=1e-14)
     assert outside.torque == pytest.approx(inside.torque, abs=1e-14)
 
@@ -138,7 +142,7 @@ def test_a_finer_grid_of_hertzs_pressure_is_nearer_to_it(reading):
     def off(count):
         axis = np.linspace(-1.0, 1.0, count + 1)
         values = np.sqrt(np.maximum(1.0 - axis[:, None] ** 2 - axis**2, 0.0))
-        pressure = of_grid("sphere", axis, axis, values, reading)
+        pressure = Measured.on_grid("sphere", axis, axis, values, reading)
         return np.abs([pressure.torque - HERTZ.torque, pressure.G_star - HERTZ.G_star])
 
     coarse, fine = off(16), off(64)
@@ -233,9 +237,9 @@ def test_units_and_formats_do_not_matter(tmp_path):
 def test_a_pressure_that_is_not_symmetric_is_marched_over_the_whole_period(tmp_path):
     values = HERTZIAN * (1.0 + 0.5 * AXIS)
     name = csv(tmp_path / "p.csv", values=values)
-    motion = motion_named("bore", name)
-    assert not motion.half_period_mirror
-    assert motion.turns(0.1, 1.0) == pytest.approx((-np.pi / 2, np.pi / 2, 1.5 * np.pi))
+    problem = Problem(motion_named("bore"), 0.1, 1.0, pressure=pressure_named(name))
+    assert not problem.half_period_mirror
+    assert problem.turns == pytest.approx((-np.pi / 2, np.pi / 2, 1.5 * np.pi))
     found = microslip.solve("bore", 0.3, 1.0, pressure=name, tolerance=4e-2)
     mirrored = csv(tmp_path / "m.csv", values=values[:, ::-1])
     other = microslip.solve("bore", 0.3, 1.0, pressure=mirrored, tolerance=4e-2)
@@ -435,9 +439,9 @@ def test_a_file_is_found_without_any_other_import(tmp_path):
     """By the module that solves alone, in a fresh process."""
     name = csv(tmp_path / "p.csv", *2 * [np.array([0.0, 1.0])], np.ones((2, 2)))
     script = (
-        "from microslip.adaptive.checks import checked_point\n"
-        f"kind = checked_point('transverse', 0.5, 0.5, 0.0, {name!r})[0]\n"
-        "print(kind.pressure.name)"
+        "from microslip.adaptive.checks import checked_problem\n"
+        f"problem = checked_problem('transverse', 0.5, 0.5, pressure={name!r})\n"
+        "print(problem.pressure)"
     )
     found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
     assert found.returncode == 0, found.stderr

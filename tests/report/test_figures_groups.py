@@ -12,7 +12,7 @@ from matplotlib.legend import Legend
 from matplotlib.text import Text
 from test_figures import artists, check_nothing_cut_off, fake_map
 
-from microslip.motions.by_name import FAMILIES, MOTIONS, motion_named
+from microslip.motions.by_name import MOTIONS, motion_named
 from microslip.report.figures import drawing, lines, small_maps
 from microslip.report.figures.formulas import mathtext
 from microslip.theory import paper
@@ -316,7 +316,7 @@ def test_formulas_become_math(formula, expected):
     assert mathtext(formula) == expected
 
 
-@pytest.mark.parametrize("name", [*MOTIONS, *FAMILIES])
+@pytest.mark.parametrize("name", [*MOTIONS])
 def test_labels_of_every_motion_can_be_set(name):
     from matplotlib.mathtext import MathTextParser
 

@@ -11,6 +11,7 @@ from bad_input_tables.odd_quantities import Q
 
 import microslip
 from microslip.app import cli
+from microslip.motions.by_name import motion_named
 from microslip.si.materials import Material
 from microslip.si.motions import MOTIONS
 
@@ -153,7 +154,7 @@ def test_the_command_line_answers_in_words(capsys):
         assert "54.57 um" in found
         assert "warning: " in found
         for text in (
-            f"{name}: the sphere {MOTIONS[name]}",
+            f"{name}: the sphere {motion_named(name)}",
             "rigid, as none was given",
             *said_first,
         ):

@@ -11,7 +11,7 @@ import microslip
 from microslip.app import cli
 from microslip.foundation.arguments import LARGEST_BODY
 from microslip.foundation.errors import InputError
-from microslip.motions.drive import Drive
+from microslip.motions.drive import Spring
 from microslip.si import pulled
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealDrive, RealMotion, drive_groups, groups, speed_unit
@@ -301,7 +301,7 @@ def test_at_the_edge_of_a_regime_friction_is_as_its_words_say(
 ):
     """Just within a limit of the rule, where it matters: between a velocity and a force friction
     differs by more than SAME.  Along the direction of the pull a force leaves all of friction."""
-    drive = Drive(None, stiffness, mass)
+    drive = Spring(stiffness, mass)
     assert regime(motion, amplitude, drive) == expected
     found = microslip.solve(motion, velocity, amplitude, stiffness=stiffness, mass=mass)
     limits = {"velocity": microslip.solve(motion, velocity, amplitude).mu_macro, "force": 1.0}
@@ -340,12 +340,12 @@ def test_a_refusal_of_the_solver_names_the_argument_of_predict(monkeypatch, argu
 
 
 def test_between_stiff_and_soft_it_may_resonate():
-    assert regime("transverse", 1.0, Drive(None, 1.0, 1.0)) == "between"
+    assert regime("transverse", 1.0, Spring(1.0, 1.0)) == "between"
     # stiff as they are, a spring and a mass that are in step with twice the vibration give way
-    assert regime("transverse", 1.0, Drive(None, 400.0, 100.0)) == "between"
-    assert regime("transverse", 1.0, Drive(None, 400.0, 100.0, 50.0)) == "velocity"
-    assert natural_frequency(Drive(None, 2.5, 1.0)) == 2.0
-    assert natural_frequency(Drive(None, 2.5)) is None
+    assert regime("transverse", 1.0, Spring(400.0, 100.0)) == "between"
+    assert regime("transverse", 1.0, Spring(400.0, 100.0, 50.0)) == "velocity"
+    assert natural_frequency(Spring(2.5, 1.0)) == 2.0
+    assert natural_frequency(Spring(2.5)) is None
 
 
 # In words

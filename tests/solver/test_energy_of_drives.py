@@ -5,6 +5,7 @@ what pulls works on the body: a force where the body is, a spring at its far end
 friction bound times its way, point by point, from tractions that are marched step by step.
 """
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -14,16 +15,17 @@ from microslip.models.contact import forces
 from microslip.models.path import make_path
 from microslip.models.pull import Body
 from microslip.motions.by_name import motion_named
-from microslip.motions.drive import Drive
-from microslip.solver.problem import Problem, Resolution
+from microslip.motions.drive import Force, Spring
+from microslip.motions.problem import Problem
+from microslip.solver.discretise import Resolution, contact_of, path_of
 from microslip.solver.pulled_run import Accuracy, simulate_pulled
 from microslip.solver.run import AS_SHIPPED
 
 DRIVES = {
-    "a force": Drive(force=0.4),
-    "a force on a mass": Drive(force=0.4, mass=0.5),
-    "a spring": Drive(stiffness=0.3),
-    "a spring, a mass and a dashpot": Drive(stiffness=0.3, mass=0.5, damping=0.4),
+    "a force": Force(0.4),
+    "a force on a mass": Force(0.4, mass=0.5),
+    "a spring": Spring(stiffness=0.3),
+    "a spring, a mass and a dashpot": Spring(stiffness=0.3, mass=0.5, damping=0.4),
 }
 PLACES = {
     "rings": ("transverse", 0.2, 1.2, 0.0, "radial", Resolution(16, 1, 192)),
@@ -47,18 +49,19 @@ def travel_of(contact, problem, phase):
 
 
 def balance(problem, drive, model, resolution):
-    """Mean powers: of the vibration, of what pulls, of slip and of the dashpot."""
-    found = simulate_pulled(problem, drive, model, resolution, Accuracy(1e-6, 1.0), AS_SHIPPED)
+    """Mean powers: of the vibration, of the drive, of slip and of the dashpot."""
+    driven = replace(problem, drive=drive)
+    found = simulate_pulled(driven, model, resolution, Accuracy(1e-6, 1.0), AS_SHIPPED)
     assert found.converged, found.reason
-    contact = problem.contact(model, resolution)
-    load = (drive.force or 0.0) - drive.damping * problem.creep
+    contact = contact_of(problem, model, resolution)
+    load = (drive.force or 0.0) - drive.damping * problem.drift
     body = Body(drive.stiffness, drive.damping, drive.mass, load)
     shape = (2, *np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape))
     points = int(np.prod(shape))
     q, at = found.state[:points].reshape(shape), np.append(found.state[points:], np.zeros(2))[:2]
     if drive.stiffness > 0.0 and not body.remembers:
         at = np.array([(load - forces(contact, q)[0]) / drive.stiffness, 0.0])
-    phases = problem.path(contact, resolution.steps).phase
+    phases = path_of(problem, contact, resolution.steps).phase
     vibration = pulled = slipped = damped = 0.0
     for begin, end in pairwise(phases):
         step = make_path(problem.displacement, np.array([begin, end]))
@@ -72,10 +75,10 @@ def balance(problem, drive, model, resolution):
         vibration += 0.5 * (forces(contact, q) + forces(contact, march.state)) @ swung
         length, places = end - begin, march.body[:, 0]
         if drive.force is None:
-            pulled += -drive.stiffness * places.mean() * problem.creep * length
+            pulled += -drive.stiffness * places.mean() * problem.drift * length
         else:
-            pulled += drive.force * (ahead + problem.creep * length)
-        damped += drive.damping * np.mean((problem.creep + march.body[:, 1]) ** 2) * length
+            pulled += drive.force * (ahead + problem.drift * length)
+        damped += drive.damping * np.mean((problem.drift + march.body[:, 1]) ** 2) * length
         q = march.state
         at = march.body[1] if body.remembers else np.array([places[1], 0.0])
     return np.array([vibration, pulled, slipped, damped]) / (phases[-1] - phases[0])

@@ -4,9 +4,10 @@ ended: what it finds is the same, and it takes less."""
 import pytest
 
 from microslip.motions.by_name import motion_named
-from microslip.motions.drive import Drive
+from microslip.motions.drive import Force, Spring
+from microslip.motions.problem import Problem
 from microslip.solver import pulled_run
-from microslip.solver.problem import Problem, Resolution
+from microslip.solver.discretise import Resolution
 from microslip.solver.pulled_run import COARSENING, PREPARED_FROM, Accuracy, simulate_pulled
 from microslip.solver.run import AS_SHIPPED, failed_run
 from microslip.theory import paper
@@ -14,12 +15,12 @@ from microslip.theory import paper
 PLACES = {
     "just above the threshold": (
         ("transverse", 1e-5, 0.5),
-        Drive(force=1.0001 * float(paper.static_limit_transverse(0.5))),
+        Force(1.0001 * float(paper.static_limit_transverse(0.5))),
         Accuracy(2e-6, 50.0),
     ),
     "a mass under a load that oscillates": (
         ("normal:lateral=1", 0.3, 0.6),
-        Drive(stiffness=0.1, mass=1.0),
+        Spring(stiffness=0.1, mass=1.0),
         Accuracy(1e-5),
     ),
 }
@@ -29,11 +30,12 @@ PLACES = {
 @pytest.mark.parametrize("name", PLACES)
 def test_the_state_is_the_same_and_takes_less(name, monkeypatch):
     place, drive, accuracy = PLACES[name]
-    problem, resolution = Problem(motion_named(place[0]), *place[1:], 0.0), Resolution(24, 1, 192)
+    problem = Problem(motion_named(place[0]), *place[1:], drive=drive)
+    resolution = Resolution(24, 1, 192)
     runs = []
     for first in (PREPARED_FROM, resolution.steps + 1):
         monkeypatch.setattr(pulled_run, "PREPARED_FROM", first)
-        runs.append(simulate_pulled(problem, drive, "radial", resolution, accuracy, AS_SHIPPED))
+        runs.append(simulate_pulled(problem, "radial", resolution, accuracy, AS_SHIPPED))
     ahead, plain = runs
     assert ahead.converged and plain.converged
     answers = [run.mu if drive.force is None else run.velocity for run in runs]
@@ -44,15 +46,15 @@ def test_the_state_is_the_same_and_takes_less(name, monkeypatch):
 
 
 def test_a_search_goes_on_without_one_that_failed(monkeypatch):
-    problem, drive = Problem(motion_named("transverse"), 0.1, 1.0, 0.0), Drive(stiffness=1.0)
+    problem = Problem(motion_named("transverse"), 0.1, 1.0, drive=Spring(stiffness=1.0))
     tried, really = [], simulate_pulled
 
-    def fails(problem, drive, model, resolution, *others, **more):
+    def fails(problem, model, resolution, *others, **more):
         tried.append(resolution.steps)
         return failed_run("on purpose")
 
     monkeypatch.setattr(pulled_run, "simulate_pulled", fails)
     fine = Resolution(8, 1, PREPARED_FROM)
-    found = really(problem, drive, "radial", fine, Accuracy(1e-4), AS_SHIPPED)
+    found = really(problem, "radial", fine, Accuracy(1e-4), AS_SHIPPED)
     assert tried == [PREPARED_FROM // COARSENING]
     assert found.converged and found.periods > 0.0

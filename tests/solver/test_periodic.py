@@ -8,11 +8,13 @@ import pytest
 from microslip.models.contact import energy_norm, forward_slip
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.registry import MODELS
-from microslip.motions.bore import MOTION as BORE
-from microslip.motions.transverse import MOTION as TRANSVERSE
+from microslip.motions.bore import Bore
+from microslip.motions.problem import Problem
+from microslip.motions.transverse import Transverse
+from microslip.solver import discretise
+from microslip.solver.discretise import Resolution, build_contact
 from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
-from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.simulate import simulate
 from microslip.theory import paper
 
@@ -21,13 +23,13 @@ STEP_TOLERANCE = 1e-3 * TOLERANCE  # what simulate asks of a step
 STEPS = 12
 
 CASES = {
-    "slider": ("slider", TRANSVERSE, 0.0, 1, 1),
-    "radial": ("radial", TRANSVERSE, 0.0, 8, 1),
-    "polar, translation": ("polar", TRANSVERSE, 0.3, 5, 4),
-    "polar, rotation": ("polar", BORE, 0.0, 5, 4),
-    "polar, coupled rotation": ("polar", BORE, 0.3, 5, 4),
-    "cartesian, translation": ("cartesian", TRANSVERSE, 0.0, 6, 1),
-    "cartesian, rotation": ("cartesian", BORE, 0.3, 6, 1),
+    "slider": ("slider", Transverse(), 0.0, 1, 1),
+    "radial": ("radial", Transverse(), 0.0, 8, 1),
+    "polar, translation": ("polar", Transverse(), 0.3, 5, 4),
+    "polar, rotation": ("polar", Bore(), 0.0, 5, 4),
+    "polar, coupled rotation": ("polar", Bore(), 0.3, 5, 4),
+    "cartesian, translation": ("cartesian", Transverse(), 0.0, 6, 1),
+    "cartesian, rotation": ("cartesian", Bore(), 0.3, 6, 1),
 }
 """model, motion, nu, cells, angles"""
 POINTS = {
@@ -43,9 +45,8 @@ POINTS = {
 
 def contact_of(name, velocity, amplitude):
     model, motion, nu, cells, angles = CASES[name]
-    return MODELS[model].build(
-        motion, nu, cells, angles, motion.focus(velocity, amplitude, motion.pressure)
-    )
+    problem = Problem(motion, velocity, amplitude, nu)
+    return MODELS[model].build(problem, cells, angles, problem.focus)
 
 
 def path_of(name, velocity, amplitude, integrator=SDIRK2, whole=False):
@@ -84,7 +85,7 @@ def test_found_state_is_that_of_the_plain_march(name, velocity, amplitude):
     run = simulate(motion, model, resolution, TOLERANCE)
     assert run.converged and run.distance <= TOLERANCE
     contact = build_contact(motion, model, resolution)
-    path = motion.path(contact, STEPS)
+    path = discretise.path_of(motion, contact, STEPS)
     stands_still = 1e-7 if model == "cartesian" else 1e-9  # its steps are solved no further
     state, forces = plain_march(contact, path, 0.0 * forward_slip(contact), stands_still)
     assert run.mu == pytest.approx(path.mean(forces[:, 0]), abs=2 * TOLERANCE)
@@ -132,7 +133,7 @@ def test_verdict_is_that_of_the_plain_map(name):
 
 def test_run_reports_what_was_not_reached(monkeypatch):
     monkeypatch.setattr("microslip.solver.simulate.MOST_MARCHES", 2)
-    for motion, model, angles in ((BORE, "polar", 4), (TRANSVERSE, "radial", 1)):
+    for motion, model, angles in ((Bore(), "polar", 4), (Transverse(), "radial", 1)):
         problem = Problem(motion, 0.1, 1.0, 0.0)
         run = simulate(problem, model, Resolution(6, angles, 8), TOLERANCE)
         assert not run.converged
@@ -144,7 +145,7 @@ def test_rings_converge_down_to_very_small_velocities(amplitude):
     """Towards the static limit, from above, and a state that the plain map leaves alone."""
     means = []
     for velocity in (1e-3, 1e-4, 1e-5):
-        problem = Problem(TRANSVERSE, velocity, amplitude, 0.0)
+        problem = Problem(Transverse(), velocity, amplitude, 0.0)
         run = simulate(problem, "radial", Resolution(24, 1, 24), TOLERANCE)
         assert run.converged and run.periods < 20
         means.append(run.mu)
@@ -155,7 +156,7 @@ def test_rings_converge_down_to_very_small_velocities(amplitude):
 @pytest.mark.parametrize(("velocity", "amplitude"), [(1e-3, 0.05), (3e-4, 0.5)])
 def test_slow_motions_of_small_amplitude_are_not_taken_for_periodic_too_early(velocity, amplitude):
     """A state changes so little in a slow period that a small residual alone proves nothing."""
-    problem = Problem(BORE, velocity, amplitude, 0.0)
+    problem = Problem(Bore(), velocity, amplitude, 0.0)
     runs = [
         simulate(problem, "polar", Resolution(6, 4, 12), tolerance) for tolerance in (3e-5, 3e-7)
     ]
@@ -180,7 +181,7 @@ def test_slow_motions_of_small_amplitude_are_not_taken_for_periodic_too_early(ve
     ],
 )
 def test_rings_converge_at_the_ends_of_the_parameters(velocity, amplitude, rings, steps):
-    problem = Problem(TRANSVERSE, velocity, amplitude, 0.0)
+    problem = Problem(Transverse(), velocity, amplitude, 0.0)
     runs = [
         simulate(problem, "radial", Resolution(rings, 1, steps), tolerance)
         for tolerance in (1e-4, 1e-7)
@@ -190,7 +191,7 @@ def test_rings_converge_at_the_ends_of_the_parameters(velocity, amplitude, rings
 
 
 def radial_run(velocity, amplitude, rings, steps, tolerance=1e-6, guess=None):
-    problem = Problem(TRANSVERSE, velocity, amplitude, 0.0)
+    problem = Problem(Transverse(), velocity, amplitude, 0.0)
     return simulate(problem, "radial", Resolution(rings, 1, steps), tolerance, guess)
 
 
@@ -228,6 +229,6 @@ def test_equal_runs_give_equal_bits():
 
 
 def test_vibration_much_slower_than_the_sliding_leaves_the_friction_as_it_is():
-    problem = Problem(TRANSVERSE, 50.0, 0.5, 0.0)
+    problem = Problem(Transverse(), 50.0, 0.5, 0.0)
     run = simulate(problem, "radial", Resolution(6, 1, 12), 1e-6)
     assert run.converged and run.mu == pytest.approx(1.0, abs=1e-4) and run.mu <= 1.0

@@ -5,15 +5,16 @@ import pytest
 
 import microslip
 from microslip.models.registry import MODELS
-from microslip.motions.bore import MOTION as BORE
-from microslip.motions.transverse import MOTION as TRANSVERSE
+from microslip.motions.bore import Bore
+from microslip.motions.problem import Problem
+from microslip.motions.transverse import Transverse
 from microslip.solver.static_limit import oscillating_part, residual_part, static_state
 from microslip.theory import hertz, paper
 
 
 def contact_for(motion, amplitude, model, cells, angles=1, poisson=0.0):
-    focus = motion.focus(0.0, amplitude, motion.pressure)
-    return MODELS[model].build(motion, poisson, cells, angles, focus)
+    problem = Problem(motion, 0.0, amplitude, poisson)
+    return MODELS[model].build(problem, cells, angles, problem.focus)
 
 
 def oscillation(motion, amplitude, poisson=0.0):
@@ -27,14 +28,14 @@ def numerical_limit(motion, amplitude, model, cells, angles=1, poisson=0.0):
 
 
 def test_oscillating_tractions_are_those_of_mindlin_and_lubkin():
-    radial = contact_for(TRANSVERSE, 0.5, "radial", 64)
-    found = oscillating_part(radial, oscillation(TRANSVERSE, 0.5), 1e-11)
+    radial = contact_for(Transverse(), 0.5, "radial", 64)
+    found = oscillating_part(radial, oscillation(Transverse(), 0.5), 1e-11)
     total = np.sum(radial.weight * found[1])
     assert found[0] == pytest.approx(0.0, abs=1e-14)
     assert total == pytest.approx(-hertz.mindlin_force(0.5), abs=3e-4)
 
-    polar = contact_for(BORE, 1.0, "polar", 32, 4)
-    forward, lateral = oscillating_part(polar, oscillation(BORE, 1.0), 1e-10)
+    polar = contact_for(Bore(), 1.0, "polar", 32, 4)
+    forward, lateral = oscillating_part(polar, oscillation(Bore(), 1.0), 1e-10)
     torque = polar.lateral_position * forward - polar.forward_position * lateral
     assert np.sum(polar.weight * torque) == pytest.approx(-hertz.lubkin_torque(0.5), abs=3e-4)
 
@@ -63,7 +64,7 @@ def test_residual_is_the_furthest_point_of_the_lens():
 @pytest.mark.parametrize("amplitude", [0.1, 0.5, 0.9])
 def test_pointwise_form_converges_to_the_closed_form_transverse(amplitude):
     exact = float(paper.static_limit_transverse(amplitude))
-    errors = [abs(numerical_limit(TRANSVERSE, amplitude, "radial", n) - exact) for n in (8, 32)]
+    errors = [abs(numerical_limit(Transverse(), amplitude, "radial", n) - exact) for n in (8, 32)]
     order = np.log(errors[0] / errors[1]) / np.log(4.0)
     assert errors[1] < 3e-4
     assert order > 1.3
@@ -72,14 +73,14 @@ def test_pointwise_form_converges_to_the_closed_form_transverse(amplitude):
 @pytest.mark.parametrize("amplitude", [0.3, 1.0, 2.0])
 @pytest.mark.parametrize("poisson", [0.0, 0.4])
 def test_pointwise_form_agrees_with_the_closed_form_bore(amplitude, poisson):
-    found = numerical_limit(BORE, amplitude, "polar", 32, 16, poisson)
+    found = numerical_limit(Bore(), amplitude, "polar", 32, 16, poisson)
     assert found == pytest.approx(float(paper.static_limit_bore(amplitude)), abs=3e-4)
 
 
 def test_squares_find_the_same_limits():
-    found = numerical_limit(TRANSVERSE, 0.5, "cartesian", 32)
+    found = numerical_limit(Transverse(), 0.5, "cartesian", 32)
     assert found == pytest.approx(float(paper.static_limit_transverse(0.5)), abs=5e-3)
-    found = numerical_limit(BORE, 1.0, "cartesian", 32)
+    found = numerical_limit(Bore(), 1.0, "cartesian", 32)
     assert found == pytest.approx(float(paper.static_limit_bore(1.0)), abs=5e-3)
 
 

@@ -6,7 +6,9 @@ from scipy.integrate import quad
 
 import microslip
 from microslip.motions.by_name import motion_named
-from microslip.solver.problem import Problem, Resolution
+from microslip.motions.problem import Problem
+from microslip.pressures.by_name import pressure_named
+from microslip.solver.discretise import Resolution
 from microslip.solver.simulate import simulate
 from microslip.solver.static_loop import largest_shift
 from microslip.solver.static_run import simulate_static
@@ -108,7 +110,7 @@ def test_other_models_find_the_same_limit():
     within(modes, rings.mu_macro, rings.mu_macro_error)
     # squares, too, and an elliptic contact, whose stick zones are ellipses of its own shape
     for pressure in ("hertz", "ellipse:ratio=0.7"):
-        problem = Problem(motion_named("elliptic", pressure), 0.0, 0.5, 0.0)
+        problem = Problem(motion_named("elliptic"), 0.0, 0.5, 0.0, pressure_named(pressure))
         squares = simulate_static(problem, "cartesian", Resolution(24, 1, 24), 1e-3)
         assert squares.converged
         assert squares.mu == pytest.approx(rings.mu_macro, abs=8e-3)

@@ -7,7 +7,7 @@ import microslip
 from microslip.adaptive.history import STARTS
 from microslip.models.polar.contact import PolarContact
 from microslip.models.squares.contact import CartesianContact
-from microslip.motions.continuous_bore import MOTION as CONTINUOUS_BORE
+from microslip.motions.continuous_bore import ContinuousBore
 from microslip.solver.steady import steady_state
 from microslip.theory import hertz, paper
 
@@ -93,7 +93,7 @@ def test_nothing_sticks_around_a_centre_of_rotation_inside(build):
     contact = build()
 
     def displacement(phase):
-        return CONTINUOUS_BORE.displacement(phase, 0.5, None, 0.3)
+        return ContinuousBore().displacement(phase, 0.5, None, 0.3)
 
     found = steady_state(contact, displacement, 0.5, 1e-5, 1e-8)
     assert found.converged

@@ -9,7 +9,8 @@ from microslip.foundation.errors import SolverError
 from microslip.models.polar.contact import PolarContact
 from microslip.models.rings.contact import RadialContact
 from microslip.motions.by_name import motion_named
-from microslip.solver.problem import Problem, Resolution
+from microslip.motions.problem import Problem
+from microslip.solver.discretise import Resolution
 from microslip.solver.static_run import simulate_static
 from microslip.theory import paper
 

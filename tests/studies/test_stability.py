@@ -8,13 +8,14 @@ from microslip.models.contact import FORWARD, StepFailure, energy_norm, forward_
 from microslip.models.path import SDIRK2, make_path
 from microslip.models.reduced.slider import slider_contact
 from microslip.models.rings.contact import RadialContact
-from microslip.motions.bore import MOTION as BORE
-from microslip.motions.transverse import MOTION as TRANSVERSE
+from microslip.motions.bore import Bore
+from microslip.motions.problem import Problem
+from microslip.motions.transverse import Transverse
+from microslip.solver.discretise import Resolution, build_contact, path_of
 from microslip.solver.method_names import method_named
 from microslip.solver.methods import _searches
 from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
-from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.static_limit import static_state
 from microslip.theory import hertz
 
@@ -66,11 +67,11 @@ def test_theta_method_rings_and_forgets():
 
 @pytest.mark.parametrize("model", ["radial", "polar", "cartesian"])
 def test_midpoint_tractions_leave_the_bound_and_shipped_ones_never_do(model):
-    motion = Problem(TRANSVERSE, 0.1, 1.0, 0.0)
+    motion = Problem(Transverse(), 0.1, 1.0, 0.0)
     contact = build_contact(motion, model, Resolution(8, 4, 16))
     beyond = {}
     for name in ("midpoint", "shipped"):
-        path = motion.path(contact, 16, method_named(name).integrator)
+        path = path_of(motion, contact, 16, method_named(name).integrator)
         state = contact.march(path, forward_slip(contact), 1e-10).state
         beyond[name] = np.max(np.hypot(*state) - contact.bound) / np.max(contact.bound)
     assert beyond["midpoint"] > 1e-3
@@ -81,11 +82,11 @@ def test_midpoint_tractions_leave_the_bound_and_shipped_ones_never_do(model):
 
 
 def iterations_a_step(method, cells):
-    motion = Problem(TRANSVERSE, 0.1, 0.5, 0.0)
+    motion = Problem(Transverse(), 0.1, 0.5, 0.0)
     contact = method_named(method).dressed(
         build_contact(motion, "radial", Resolution(cells, 1, 16))
     )
-    march = contact.march(motion.path(contact, 16), forward_slip(contact), 1e-6)
+    march = contact.march(path_of(motion, contact, 16), forward_slip(contact), 1e-6)
     return march.iterations / march.solves
 
 
@@ -119,14 +120,14 @@ def test_undamped_jacobi_never_gets_there():
 
 @pytest.mark.long
 def test_switching_is_right_in_one_direction_and_lost_where_slip_turns():
-    motion = Problem(TRANSVERSE, 0.1, 0.5, 0.0)
+    motion = Problem(Transverse(), 0.1, 0.5, 0.0)
     rings = build_contact(motion, "radial", Resolution(32, 1, 16))
     contact = method_named("switching").dressed(rings)
     march = contact.march(straight(0.8, 16), np.zeros((2, 1, 32)), 1e-10)
     mindlin = hertz.mindlin_force(0.8)
     assert march.forces[-1, FORWARD] == pytest.approx(mindlin, abs=2e-3)
     with pytest.raises(StepFailure):
-        contact.march(motion.path(contact, 16), forward_slip(contact), 1e-6)
+        contact.march(path_of(motion, contact, 16), forward_slip(contact), 1e-6)
 
 
 # False convergence
@@ -163,9 +164,9 @@ SHARES = (0.0, 0.5, 1.0)
 def periodic_force(velocity, share, search):
     """Mean forward force of the periodic state found from the oscillation's own tractions plus a
     share of all the forward traction that they leave room for."""
-    motion = Problem(TRANSVERSE, velocity, 0.5, 0.0)
-    contact = RadialContact.resolved(16, TRANSVERSE.focus(velocity, 0.5, TRANSVERSE.pressure))
-    path = motion.path(contact, 32)
+    motion = Problem(Transverse(), velocity, 0.5, 0.0)
+    contact = RadialContact.resolved(16, Transverse().focus(velocity, 0.5, Transverse().pressure))
+    path = path_of(motion, contact, 32)
     room, oscillating, *_ = static_state(contact, motion.oscillation, 1e-12)
     goal = Goal(1e-6, 1e-9, most_marches=1000)
     found = search(PeriodMap(contact, path), oscillating + share * room, goal)
@@ -220,9 +221,9 @@ def test_methods_agree_with_what_ships(method):
 @pytest.mark.parametrize("method", COMPILED)
 def test_step_solvers_find_the_one_solution_of_a_step(method):
     """Each step is a convex problem: whoever solves it finds the same tractions."""
-    motion = Problem(BORE, 0.2, 1.0, 0.3)
+    motion = Problem(Bore(), 0.2, 1.0, 0.3)
     contact = build_contact(motion, "polar", Resolution(6, 4, 8))
-    path = motion.path(contact, 8)
+    path = path_of(motion, contact, 8)
     start = forward_slip(contact)
     one = contact.march(path, start, 1e-10).state
     other = method_named(method).dressed(contact).march(path, start, 1e-10).state

@@ -21,7 +21,8 @@ from microslip.config import load, schema
 from microslip.foundation.errors import SolverError
 from microslip.models.contact import StepFailure
 from microslip.models.registry import MODELS
-from microslip.motions.by_name import MOTIONS
+from microslip.motions.by_name import MOTIONS, motion_named
+from microslip.motions.problem import Problem
 from microslip.solver.methods import paper
 from microslip.studies import ladders, registry
 from microslip.studies import requests as study_requests
@@ -38,7 +39,9 @@ from microslip.sweeps.cache import Store
 def test_models_apply_here_exactly_where_the_solver_lets_them(motion, poisson):
     known = {m for m in MODELS if not single_run.applies(motion, poisson, m, "shipped")}
     assert set(ladders.models_of(motion, poisson)) == known
-    assert ladders.exact_model(motion, poisson) == choose_model(MOTIONS[motion], poisson)
+    assert ladders.exact_model(motion, poisson) == choose_model(
+        Problem(motion_named(motion), 1.0, None if motion == "continuous-bore" else 1.0, poisson)
+    )
 
 
 def test_every_model_has_a_ladder_and_fixed_methods_run_where_they_say():

@@ -10,10 +10,11 @@ from dataclasses import dataclass, replace
 from microslip.adaptive.certified import Certified
 from microslip.adaptive.chains import Axis
 from microslip.foundation.errors import InputError
+from microslip.motions.body_contacts import contacts_text
+from microslip.motions.problem import Problem
 from microslip.solver import method_names
 from microslip.solver.budget import Budget
 from microslip.solver.method import SHIPPED, Method
-from microslip.solver.problem import Problem
 
 TOLERANCE = 1e-3
 """Unless told otherwise; and how strict the search for a periodic state is where none is meant."""
@@ -72,14 +73,14 @@ class Asked:
     @property
     def point(self) -> dict:
         """Fields of a result.Result that say what was asked."""
-        motion = self.problem.motion
-        contacts = {"contacts": self.problem.written} if self.problem.parts else {}
-        return contacts | {
-            "motion": motion.name,
-            "pressure": motion.pressure.name,
-            "velocity": self.problem.velocity,
-            "amplitude": self.problem.amplitude,
-            "poisson": self.problem.poisson,
+        problem = self.problem
+        several = {"contacts": contacts_text(problem.contacts)} if problem.contacts else {}
+        return several | {
+            "motion": problem.motion.name,
+            "pressure": problem.pressure.name,
+            "velocity": problem.velocity,
+            "amplitude": problem.amplitude,
+            "poisson": problem.poisson,
             "tolerance": self.tolerance,
             "method": self.method,
         }
@@ -124,7 +125,7 @@ def verdict(
         imposed = any(axis.imposed for axis in axes)
         where = "at the imposed resolution the error" if imposed else "the estimated error"
         reason = f"{where} is {certified.error:.1e}, above the tolerance of {largest:g}"
-        read = asked.problem.motion.pressure.readings
+        read = asked.problem.pressure.readings
         left_open = certified.errors.get("model", 0.0) if read else 0.0
         if left_open > 0.5 * certified.error:
             reason += f": the file's own resolution leaves {left_open:.1e} open"

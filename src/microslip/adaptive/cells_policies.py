@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from microslip.adaptive.chains import EXTRAPOLATED_SHARES, JUDGED, Axis
-from microslip.pressures.by_name import HERTZ
-from microslip.solver.problem import Problem
+from microslip.motions.problem import Problem
+from microslip.pressures.hertz import HERTZ
 from microslip.solver.static_limit import at_turning_points
 from microslip.solver.stick_edge import SLOW_LOOP, found_focus
 
@@ -92,27 +92,27 @@ class CellsPolicy:
 
 def _is_slow(problem):
     """Whether the layer at the stick radius is thin."""
-    return problem.motion.periodic and 0.0 < problem.creep < SLOW_CREEP
+    return problem.motion.periodic and 0.0 < problem.drift < SLOW_CREEP
 
 
 def is_loop(problem: Problem, model: str) -> bool:
     """Whether rings are marched through a translation whose halves are not lateral mirror images,
     or that never comes to rest."""
     motion = problem.motion
-    if model != "radial" or motion.depth is not None or problem.parts:
+    if model != "radial" or motion.loads or problem.parts:
         return False
-    back = motion.straight and motion.half_period_mirror
+    back = problem.straight and problem.half_period_mirror
     return motion.periodic and problem.velocity > 0.0 and not back
 
 
 def _is_slow_loop(problem, model):
     """Whether it is so slow that rings gather at an edge of what sticks."""
-    return is_loop(problem, model) and problem.creep < SLOW_LOOP
+    return is_loop(problem, model) and problem.drift < SLOW_LOOP
 
 
 def like_a_sphere(problem: Problem) -> bool:
     """Whether the load is as far from the centre, in the mean, as that of a sphere."""
-    return abs(problem.motion.pressure.torque - HERTZ.torque) < ROUNDED
+    return abs(problem.pressure.torque - HERTZ.torque) < ROUNDED
 
 
 def _is_static(problem):
@@ -123,7 +123,7 @@ CELLS_POLICIES = (
     CellsPolicy(
         "static limit on a loop: cells come and go at the edge, and a period is marched",
         lambda problem, model: (
-            model == "cartesian" and _is_static(problem) and not at_turning_points(problem.motion)
+            model == "cartesian" and _is_static(problem) and not at_turning_points(problem)
         ),
         base=24,
         first=(16, 48),
@@ -169,7 +169,7 @@ CELLS_POLICIES = (
     ),
     CellsPolicy(
         "static limit on a loop: rings gather at an edge of what sticks that a coarse run found",
-        lambda problem, model: _is_static(problem) and not at_turning_points(problem.motion),
+        lambda problem, model: _is_static(problem) and not at_turning_points(problem),
         base=24,
         first=(16, 48),
         regular=False,
@@ -209,7 +209,7 @@ CELLS_POLICIES = (
     CellsPolicy(
         "translation to and fro at nu > 0, slow: the layer at the stick radius is thin",
         lambda problem, model: (
-            problem.poisson > 0.0 and problem.motion.half_period_mirror and _is_slow(problem)
+            problem.poisson > 0.0 and problem.half_period_mirror and _is_slow(problem)
         ),
         base=8,
         first=(8, 16),
@@ -217,7 +217,7 @@ CELLS_POLICIES = (
     ),
     CellsPolicy(
         "translation to and fro at nu > 0: the front of slip is oval, which rings are not",
-        lambda problem, model: problem.poisson > 0.0 and problem.motion.half_period_mirror,
+        lambda problem, model: problem.poisson > 0.0 and problem.half_period_mirror,
         base=8,
         first=(8, 16),
         shares=PROJECTED_SHARES,
@@ -241,7 +241,7 @@ CELLS_POLICIES = (
     ),
     CellsPolicy(
         "translation at nu = 0: few unknowns, so enough of them that no two runs agree by chance",
-        lambda problem, model: model == "radial" and problem.motion.half_period_mirror,
+        lambda problem, model: model == "radial" and problem.half_period_mirror,
         base=8,
         first=(6, 12),
         made_for=1e-2,

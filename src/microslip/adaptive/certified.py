@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from microslip.solver.problem import Resolution
+from microslip.solver.discretise import Resolution
 
 
 @dataclass(frozen=True)

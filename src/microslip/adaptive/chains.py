@@ -11,7 +11,7 @@ from operator import attrgetter
 
 import numpy as np
 
-from microslip.solver.problem import Resolution
+from microslip.solver.discretise import Resolution
 
 EXTRAPOLATED_SHARES = 0.6, 0.5
 """Errors of regular axes over the last extrapolation, and over the change of the extrapolated

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from microslip.foundation.arguments import (
     LARGEST,
@@ -13,60 +14,102 @@ from microslip.foundation.arguments import (
     real,
 )
 from microslip.foundation.errors import InputError
+from microslip.motions.body_contacts import contacts_of, contacts_text
 from microslip.motions.by_name import motion_named
-from microslip.motions.drive import Drive
+from microslip.motions.drive import Drive, Force, Spring
 from microslip.motions.motion import Motion
+from microslip.motions.problem import Problem, contacts_refusal
+from microslip.pressures.by_name import pressure_named
+from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
 
 SMALLEST_TOLERANCE = 1e-6
 LARGEST_FORCE = 1e6
 """Over mu times the mean normal load: it runs away from 1 on, which is an answer."""
 
 
-def checked_point(
-    motion: str,
-    velocity: float,
+def checked_problem(
+    motion: str | Motion | Problem,
+    velocity: float | None,
     amplitude: float | None,
-    poisson: float,
-    pressure: str = "hertz",
     *,
+    pressure: str | Pressure = HERTZ,
+    poisson: float = 0.0,
+    contacts: str | None = None,
+    drive: Drive | None = None,
     backward: bool = False,
-) -> tuple[Motion, float, float | None, float]:
-    """Motion record and numbers of a point; raises InputError naming the argument at fault.
+) -> Problem:
+    """The problem of the arguments of a question, whose texts are read here.
 
-    backward: whether the velocity may be below 0 where the motion propels the contact.
+    Parameters
+    ----------
+    motion : str, Motion or Problem
+        A Problem takes the place of all other arguments.
+    velocity, amplitude, pressure, poisson, contacts, drive
+        As for `microslip.solve` and Problem.
+    backward : bool
+        Whether the velocity may be below 0, for self-propelled motions.
+
+    Raises
+    ------
+    InputError
+        For an argument out of range, and others beside a Problem; it names the argument.
     """
-    motion = motion_named(motion, pressure)
+    if isinstance(motion, Problem):
+        others = {"velocity": velocity, "amplitude": amplitude, "contacts": contacts}
+        others |= {"pressure": None if pressure == HERTZ else pressure, "poisson": poisson or None}
+        for name, value in others.items():
+            if value is not None:
+                raise InputError(name, value, "allowed is none beside a Problem, which has its own")
+        problem = motion
+        place = (problem.velocity, problem.amplitude, problem.poisson)
+        _place(problem.motion, problem.pressure, place, backward)
+    else:
+        motion = motion if isinstance(motion, Motion) else motion_named(motion)
+        pressure = pressure if isinstance(pressure, Pressure) else pressure_named(pressure)
+        several = () if contacts is None else contacts_of(contacts)
+        place = _place(motion, pressure, (velocity, amplitude, poisson), backward)
+        problem = Problem(motion, *place, pressure, drive, several)
+    refusal = contacts_refusal(problem) if problem.contacts else ""
+    if refusal:
+        raise InputError("contacts", contacts or contacts_text(problem.contacts), refusal)
+    return problem
+
+
+def _place(motion, pressure, place, backward):
+    """Velocity, amplitude and Poisson's ratio, checked to be within the range of the solver."""
+    velocity, amplitude, poisson = place
     slowest = -LARGEST["velocity"] if backward and motion.propels else 0.0
-    velocity = real("velocity", velocity, slowest, LARGEST["velocity"])
-    if velocity < 0.0 and not motion.pressure.mirrored:
-        allowed = f"allowed is a number of at least 0 under {motion.pressure.name}"
+    velocity = real("velocity", 0.0 if velocity is None else velocity, slowest, LARGEST["velocity"])
+    if velocity < 0.0 and not pressure.mirrored:
+        allowed = f"allowed is a number of at least 0 under {pressure.name}"
         raise InputError("velocity", velocity, f"{allowed}, which need not be symmetric")
     poisson = real("poisson", poisson, 0.0, 0.5)
-    if motion.periodic:
-        if amplitude is None:
-            raise InputError("amplitude", None, f"{motion.name} needs an amplitude >= 0")
+    if motion.periodic and amplitude is not None:
         amplitude = real("amplitude", amplitude, 0.0, LARGEST["amplitude"])
-    elif amplitude is not None:
-        raise InputError("amplitude", amplitude, f"{motion.name} has no amplitude")
-    return motion, velocity, amplitude, poisson
+    return velocity, amplitude, poisson
 
 
 def checked_propulsion(
-    motion: str, amplitude: float, poisson: float, pressure: str = "hertz"
-) -> tuple[Motion, float, float]:
-    """Motion record and numbers of a motion that may drive; raises InputError naming the argument
-    at fault."""
-    if not motion_named(motion, pressure).propels:
+    motion: str | Motion | Problem,
+    amplitude: float | None,
+    *,
+    pressure: str | Pressure = HERTZ,
+    poisson: float = 0.0,
+) -> Problem:
+    """The problem of a self-propelled motion at velocity 0; see `checked_problem`."""
+    problem = checked_problem(motion, None, amplitude, pressure=pressure, poisson=poisson)
+    if not problem.propels:
         allowed = (
             "allowed is a self-propelled motion, such as elliptic:forward_cycles=2,phase=0 or "
         )
-        raise InputError("motion", motion, f"{allowed}normal:forward=1,phase=90")
-    record, _, amplitude, poisson = checked_point(motion, 0.0, amplitude, poisson, pressure)
-    if not record.pressure.mirrored:
-        raise InputError("pressure", pressure, "allowed is one that is its own mirror image")
-    if amplitude == 0.0:
-        raise InputError("amplitude", amplitude, "allowed is a number above 0")
-    return record, amplitude, poisson
+        raise InputError("motion", problem.motion.name, f"{allowed}normal:forward=1,phase=90")
+    if not problem.pressure.mirrored:
+        allowed = "allowed is one that is its own mirror image"
+        raise InputError("pressure", problem.pressure.name, allowed)
+    if problem.amplitude == 0.0:
+        raise InputError("amplitude", problem.amplitude, "allowed is a number above 0")
+    return replace(problem, velocity=0.0)
 
 
 def checked_drive(
@@ -90,9 +133,7 @@ def checked_drive(
             if body[name] is not None:
                 allowed = "allowed is none beside a force, which does not pull through a spring"
                 raise InputError(name, body[name], allowed)
-        return Drive(
-            force=real("force", force, -LARGEST_FORCE, LARGEST_FORCE), mass=body["mass"] or 0.0
-        )
+        return Force(real("force", force, -LARGEST_FORCE, LARGEST_FORCE), body["mass"] or 0.0)
     if stiffness is None:
         for name in ("mass", "damping"):
             if body[name] is not None:
@@ -103,7 +144,14 @@ def checked_drive(
         allowed = "allowed is a number above 0, at least "
         allowed += f"{SMALLEST_STIFFNESS:g} and at most {LARGEST_BODY:g}"
         raise InputError("stiffness", stiffness, allowed)
-    return Drive(None, body["stiffness"], body["mass"] or 0.0, body["damping"] or 0.0)
+    return Spring(body["stiffness"], body["mass"] or 0.0, body["damping"] or 0.0)
+
+
+def refuse_drive_arguments(**given: float | None) -> None:
+    """Raise InputError for an argument of the drive beside a Problem."""
+    for name, value in given.items():
+        if value is not None:
+            raise InputError(name, value, "allowed is none beside a Problem, which has its own")
 
 
 def checked_request(

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from microslip.foundation.errors import InputError
 from microslip.models.registry import MODELS
-from microslip.motions.motion import Motion
-from microslip.pressures.by_name import HERTZ
+from microslip.motions.problem import Problem
+from microslip.pressures.hertz import HERTZ
 from microslip.solver.method import SHIPPED, Method
 
 STEPLESS = ("rigid", "dahl")
 """Models whose march is an evaluation: no step of theirs is solved."""
 
 
-def choose_model(
-    motion: Motion, poisson: float, model: str = "auto", *, static: bool = False
-) -> str:
+def choose_model(problem: Problem, model: str = "auto") -> str:
     """The model to use: the cheapest that is exact for the motion, or the one asked for.
 
     Rings where the traction depends on the radius alone (translation at nu = 0), angular modes
@@ -26,14 +24,10 @@ def choose_model(
 
     Parameters
     ----------
-    motion : motion.Motion
-        What moves.
-    poisson : float
-        Poisson's ratio.
+    problem : problem.Problem
+        At velocity 0, unless a drive sets the velocity, the static limit is meant.
     model : str
         "auto", or a name in models.registry.MODELS.
-    static : bool
-        Whether the limit of vanishing velocity is asked for.
 
     Raises
     ------
@@ -42,42 +36,45 @@ def choose_model(
     """
     if not isinstance(model, str) or model not in ("auto", *MODELS):
         raise InputError("model", model, f"allowed is one of auto, {', '.join(MODELS)}")
+    motion = problem.motion
     if model == "auto":
-        by_squares = static and motion.depth is None and not motion.half_disc
-        if by_squares or not motion.pressure.is_round:
+        static = problem.velocity == 0.0 and problem.drive is None and motion.periodic
+        by_squares = static and not motion.loads and not motion.half_disc
+        if by_squares or not problem.pressure.is_round:
             name = "cartesian"
         else:
-            name = "polar" if motion.rotates or poisson > 0.0 else "radial"
-        refusal = MODELS[name].refuses(motion, poisson)
+            name = "polar" if motion.rotates or problem.poisson > 0.0 else "radial"
+        refusal = MODELS[name].refuses(problem)
         if refusal:
             why = f"only {name} could resolve it, and {refusal}"
-            if motion.pressure is HERTZ and poisson == 0.0:
+            if problem.pressure == HERTZ and problem.poisson == 0.0:
                 raise InputError("motion", motion.name, why)
-            given = ("poisson", poisson)
-            if motion.pressure is not HERTZ:
-                given = ("pressure", motion.pressure.name)
+            given = ("poisson", problem.poisson)
+            if problem.pressure != HERTZ:
+                given = ("pressure", problem.pressure.name)
             raise InputError(*given, f"does not go with {motion.name}: {why}")
         return name
-    refusal = MODELS[model].refuses(motion, poisson)
+    refusal = MODELS[model].refuses(problem)
     if refusal:
         raise InputError("model", model, f"does not apply to {motion.name}: {refusal}")
     return model
 
 
-def method_refusal(motion: Motion, model: str, method: Method) -> str:
+def method_refusal(problem: Problem, model: str, method: Method) -> str:
     """Why a method has no part in how a model (by name) computes a motion, as one line; "" if it
     has."""
+    motion = problem.motion
     if method.run is not None:
         if model != method.model:
             return f"it is a run of the model {method.model}"
         if not motion.periodic:
             return "nothing oscillates"
-        if motion.depth is not None:
+        if motion.loads:
             return "it knows a constant normal load alone"
         return "it knows translations alone" if motion.rotates and not method.turns else ""
     if method == SHIPPED:
         return ""
-    if motion.depth is not None and (method.dress is not None or method.integrator.end < 1.0):
+    if motion.loads and (method.dress is not None or method.integrator.end < 1.0):
         return "its steps know one friction bound"
     if model in STEPLESS:
         return "no step of the model has to be solved"

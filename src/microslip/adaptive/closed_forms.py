@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from microslip.adaptive.asked import Asked
 from microslip.adaptive.result import Result, of_closed_form
-from microslip.motions.motion import Motion
-from microslip.pressures.by_name import HERTZ
+from microslip.motions.problem import Problem
+from microslip.pressures.hertz import HERTZ
 from microslip.solver.method_names import SHIPPED
-from microslip.solver.problem import Problem
 from microslip.theory import hertz, paper
 from microslip.theory.exact import LARGEST_DROPS, STATIC_LIMITS
 
@@ -24,7 +23,7 @@ ROUNDING = 1e-12
 
 def known_exactly(asked: Asked) -> Result | None:
     """The Result where nothing has to be computed, else None."""
-    exact = no_vibration(asked.problem.motion, asked.problem.amplitude)
+    exact = no_vibration(asked.problem)
     if exact is None and asked.chosen and asked.method == SHIPPED:
         exact = unless_imposed(asked.problem, asked.tolerance, asked.cells, asked.steps)
     if exact is None:
@@ -33,9 +32,10 @@ def known_exactly(asked: Asked) -> Result | None:
     return of_closed_form(asked.point | {"model": used}, exact, asked.seconds)
 
 
-def no_vibration(motion: Motion, amplitude: float | None) -> tuple | None:
-    """(mu, torque, error) where nothing oscillates, whatever the model, else None."""
-    return (1.0, None, ROUNDING) if motion.periodic and amplitude == 0.0 else None
+def no_vibration(problem: Problem) -> tuple | None:
+    """(mu, torque, error) at amplitude 0, for any model, else None."""
+    still = problem.motion.periodic and problem.amplitude == 0.0
+    return (1.0, None, ROUNDING) if still else None
 
 
 def unless_imposed(
@@ -68,49 +68,53 @@ def closed_form(problem: Problem, tolerance: float) -> tuple | None:
     """
     motion, velocity, amplitude = problem.motion, problem.velocity, problem.amplitude
     if not motion.periodic:
-        return _steady_bore(motion, velocity) if motion.name == "continuous-bore" else None
-    if motion.closed_form_of is not None and problem.poisson == 0.0:
-        mu = motion.closed_form_of(velocity, amplitude, motion.pressure)
+        return _steady_bore(problem) if motion.name == "continuous-bore" else None
+    transformed = problem.follows or problem.backward
+    if motion.closed_form is not None and problem.poisson == 0.0 and not transformed:
+        mu = motion.closed_form(velocity, amplitude, problem.pressure)
         if mu is not None:
             error = WHOLE_ROUNDING if velocity > 0.0 else ROUNDING
-            return float(mu), None, error if motion.pressure.hertzian else OF_RECORD
+            return float(mu), None, error if problem.pressure.hertzian else OF_RECORD
     if velocity == 0.0:
-        known = None if motion.closed_form_of is not None else STATIC_LIMITS.get(motion.name)
+        known = None if motion.closed_form is not None else STATIC_LIMITS.get(motion.name)
         if known is None or (problem.poisson > 0.0 and not known.any_poisson):
             return None
-        return _static(motion, known.function, amplitude, problem.poisson)
+        return _static(problem, known.function)
     largest_drop = LARGEST_DROPS.get(motion.name)
-    if largest_drop is not None and not (motion.rotates and motion.pressure is not HERTZ):
+    if largest_drop is not None and not (motion.rotates and problem.pressure != HERTZ):
         drop = largest_drop(velocity, amplitude)
         if 0.5 * drop + ROUNDING <= tolerance:
             return 1.0 - 0.5 * drop, None, 0.5 * drop + ROUNDING
     return None
 
 
-def _steady_bore(motion, velocity):
+def _steady_bore(problem):
     """Eqs 17 and 18; 21 and 22 for a sphere."""
-    if motion.pressure is HERTZ:
+    velocity = problem.velocity
+    if problem.pressure == HERTZ:
         forward, torque = paper.bore_forward(velocity), paper.bore_torque(velocity)
         return float(forward), float(torque), ROUNDING
-    if not motion.pressure.is_round:
+    if not problem.pressure.is_round:
         return None
     from microslip.theory import axisymmetric  # only now: integration takes a while to load
 
-    forward, torque = axisymmetric.bore_of(motion.pressure.bound, velocity)
+    forward, torque = axisymmetric.bore_of(problem.pressure.bound, velocity)
     return float(forward), float(torque), QUADRATURE
 
 
-def _static(motion, of_sphere, amplitude, poisson):
+def _static(problem, of_sphere):
     """The limit of vanishing velocity, if it has a closed form under this pressure."""
-    pressure = motion.pressure
-    if pressure is HERTZ or (pressure.hertzian and not motion.rotates):
+    motion, pressure, amplitude = problem.motion, problem.pressure, problem.amplitude
+    if pressure == HERTZ or (pressure.hertzian and not motion.rotates):
         return float(of_sphere(amplitude)), None, ROUNDING
     if not pressure.is_indenter:
         return None
     from microslip.theory import indenters as limits  # only now, as above
 
     if motion.rotates:
-        mu = limits.static_bore(pressure, float(hertz.bore_angle(amplitude, poisson)), poisson)
+        mu = limits.static_bore(
+            pressure, float(hertz.bore_angle(amplitude, problem.poisson)), problem.poisson
+        )
     else:
         mu = limits.static_transverse(pressure, amplitude)
     return mu, None, OF_RECORD

@@ -6,14 +6,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.adaptive.checks import checked_point
+from microslip.adaptive.checks import checked_problem
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.whole_disc import points_of, whole_disc
 from microslip.foundation.arguments import LARGEST, count, real
 from microslip.foundation.errors import InputError
 from microslip.models.contact import StepFailure, forward_slip, full_slip
 from microslip.models.path import make_path
-from microslip.solver.problem import Problem, Resolution, build_contact
+from microslip.motions.motion import Motion
+from microslip.motions.problem import Problem
+from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
+from microslip.solver.discretise import Resolution, build_contact
 from microslip.solver.run import unsolved
 from microslip.solver.steady import steady_state
 
@@ -54,11 +58,11 @@ class History:
 
 
 def history(
-    motion: str,
-    velocity: float,
+    motion: str | Motion | Problem,
+    velocity: float | None = None,
     amplitude: float | None = None,
     *,
-    pressure: str = "hertz",
+    pressure: str | Pressure = HERTZ,
     poisson: float = 0.0,
     model: str = "auto",
     cells: int | None = None,
@@ -97,9 +101,8 @@ def history(
     microslip.models.contact.StepFailure
         Where a step stays unsolved.
     """
-    motion, velocity, amplitude, poisson = checked_point(
-        motion, velocity, amplitude, poisson, pressure
-    )
+    problem = checked_problem(motion, velocity, amplitude, pressure=pressure, poisson=poisson)
+    motion, velocity = problem.motion, problem.velocity
     if velocity <= 0.0:
         raise InputError("velocity", velocity, "a history needs velocity > 0")
     if not isinstance(start, str) or start not in STARTS:
@@ -117,7 +120,6 @@ def history(
     if not motion.periodic and travel / velocity > LONGEST_PHASE:
         allowed = f"allowed is at least {LONGEST_PHASE:g} times less than the travel, {travel:g}"
         raise InputError("velocity", velocity, allowed)
-    problem = Problem(motion, velocity, amplitude, poisson)
     contact = _contact(problem, model, cells)
     end = 2 * np.pi * periods if motion.periodic else travel / velocity
     total = steps * (periods if motion.periodic else 1)
@@ -131,13 +133,13 @@ def history(
         displacement_forward=path.positions[:, 0],
         force_forward=march.forces[:, 0],
         force_lateral=march.forces[:, 1],
-        torque=march.forces[:, 2] / motion.pressure.torque,
+        torque=march.forces[:, 2] / problem.pressure.torque,
     )
 
 
 def traction_field(
-    motion: str,
-    velocity: float,
+    motion: str | Motion | Problem,
+    velocity: float | None = None,
     amplitude: float | None = None,
     *,
     poisson: float = 0.0,
@@ -167,14 +169,14 @@ def traction_field(
     microslip.models.contact.StepFailure
         Where the march does not settle, or a step stays unsolved.
     """
-    motion, velocity, _, poisson = checked_point(motion, velocity, amplitude, poisson)
-    if motion.periodic:
-        raise InputError("motion", motion.name, "allowed is continuous-bore")
+    problem = checked_problem(motion, velocity, amplitude, poisson=poisson)
+    velocity = problem.velocity
+    if problem.motion.periodic:
+        raise InputError("motion", problem.motion.name, "allowed is continuous-bore")
     if velocity <= 0.0:
         raise InputError("velocity", velocity, "a traction field needs velocity > 0")
     if cells is not None:
         count("cells", cells, 2, most=LARGEST["cells"])
-    problem = Problem(motion, velocity, None, poisson)
     contact = _contact(problem, "polar", cells)
     found = steady_state(contact, problem.displacement, velocity, 1e-6, STEP_TOLERANCE)
     if not found.converged:
@@ -195,7 +197,7 @@ def traction_field(
 
 
 def _contact(problem, model, cells):
-    name = choose_model(problem.motion, problem.poisson, model)
+    name = choose_model(problem, model)
     return build_contact(problem, name, Resolution(cells or CELLS, ANGLES, steps=0))
 
 

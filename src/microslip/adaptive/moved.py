@@ -16,11 +16,10 @@ from microslip.adaptive.continuation import run_safely
 from microslip.adaptive.refinement import certify, run_tolerance
 from microslip.adaptive.resolutions import plan
 from microslip.adaptive.result import Result
-from microslip.motions.by_name import read_otherwise
-from microslip.motions.motion import Motion
+from microslip.motions.problem import Problem
 from microslip.solver.budget import Spent
+from microslip.solver.discretise import Resolution
 from microslip.solver.method_names import SHIPPED
-from microslip.solver.problem import Problem, Resolution
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
@@ -80,7 +79,8 @@ def marched(asked: Asked) -> Marched:
         return run_safely(run_at, problem.velocity, guess)
 
     readings = [
-        partial(run, problem=replace(problem, motion=other)) for other in read_otherwise(motion)
+        partial(run, problem=replace(problem, pressure=other))
+        for other in problem.pressure.readings
     ]
     return Marched(run, coarsest, axes, readings)
 
@@ -96,13 +96,13 @@ def _nothing_to_run(spent):
 
 def solve_moved(asked: Asked) -> Result:
     """The certified friction, a result.Result, of a point that has no closed form."""
-    motion, (run, coarsest, axes, readings) = asked.problem.motion, marched(asked)
+    problem, (run, coarsest, axes, readings) = asked.problem, marched(asked)
     certified = certify(run, coarsest, axes, asked.accuracy, readings)
-    steady = not motion.periodic
+    steady = not problem.motion.periodic
     return Result(
         **asked.point,
         model=asked.model,
-        mu_macro=_within(motion, certified.mu),
+        mu_macro=_within(problem, certified.mu),
         mu_macro_error=certified.error,
         mu_torque=certified.torque if steady else None,
         mu_torque_error=certified.torque_error + certified.errors["periodicity"]
@@ -112,22 +112,16 @@ def solve_moved(asked: Asked) -> Result:
     )
 
 
-def _within(motion, mu):
+def _within(problem, mu):
     """A mean force brought to where it can be: what lies beyond is rounding and error."""
-    least = -1.0 if motion.propels else 0.0
+    least = -1.0 if problem.propels else 0.0
     return min(max(mu, least), 1.0) if math.isfinite(mu) else math.nan
 
 
-def refuse_choice(
-    motion: Motion, model: str, place: tuple, cells: int | None, steps: int | None
-) -> None:
-    """Raise InputError where a resolution would have to be chosen, and there is no tolerance to do
-    that; place: velocity, amplitude, poisson, and all as checked."""
-    problem = Problem(motion, *place)
-    exact = no_vibration(motion, problem.amplitude)
+def refuse_choice(problem: Problem, model: str, cells: int | None, steps: int | None) -> None:
+    """Raise InputError where a resolution would have to be chosen without a tolerance."""
+    exact = no_vibration(problem)
     if exact is None and model == "auto":
         exact = unless_imposed(problem, None, cells, steps)
     if exact is None:
-        static = problem.velocity == 0.0
-        name = choose_model(motion, problem.poisson, model, static=static)
-        refuse_free(plan(problem, name, TOLERANCE, cells, steps)[1])
+        refuse_free(plan(problem, choose_model(problem, model), TOLERANCE, cells, steps)[1])

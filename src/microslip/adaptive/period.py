@@ -6,14 +6,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.adaptive.checks import checked_point
+from microslip.adaptive.checks import checked_problem
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.history import ANGLES, STEP_TOLERANCE
 from microslip.adaptive.whole_disc import points_of, whole_disc
 from microslip.foundation.arguments import LARGEST, count
 from microslip.foundation.errors import InputError, SolverError
 from microslip.models.contact import FORWARD, LATERAL, TORQUE
-from microslip.solver.problem import Problem, Resolution, build_contact
+from microslip.motions.motion import Motion
+from microslip.motions.problem import Problem
+from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
+from microslip.solver.discretise import Resolution, build_contact, path_of
 from microslip.solver.run import unsolved
 from microslip.solver.simulate import simulate
 from microslip.solver.snapshots import bounds_at_phases, frames
@@ -91,11 +95,11 @@ class Period:
 
 
 def period(
-    motion: str,
-    velocity: float,
-    amplitude: float,
+    motion: str | Motion | Problem,
+    velocity: float | None = None,
+    amplitude: float | None = None,
     *,
-    pressure: str = "hertz",
+    pressure: str | Pressure = HERTZ,
     poisson: float = 0.0,
     cells: int = PERIOD_CELLS,
     angles: int = ANGLES,
@@ -127,11 +131,10 @@ def period(
     microslip.adaptive.period.NoPeriodicState
         Where the march broke off.
     """
-    motion, velocity, amplitude, poisson = checked_point(
-        motion, velocity, amplitude, poisson, pressure
-    )
-    if not motion.periodic:
-        raise InputError("motion", motion.name, "allowed is one that oscillates")
+    problem = checked_problem(motion, velocity, amplitude, pressure=pressure, poisson=poisson)
+    velocity, amplitude = problem.velocity, problem.amplitude
+    if not problem.motion.periodic:
+        raise InputError("motion", problem.motion.name, "allowed is one that oscillates")
     for name, value in (("velocity", velocity), ("amplitude", amplitude)):
         if value <= 0.0:
             raise InputError(name, value, f"a period needs {name} > 0")
@@ -141,20 +144,19 @@ def period(
     if cells * angles * steps > MOST_VALUES:
         allowed = f"allowed is at most {MOST_VALUES:g} for cells x angles x steps"
         raise InputError("steps", steps, allowed)
-    choose_model(motion, poisson, "polar")
-    problem = Problem(motion, velocity, amplitude, poisson)
+    choose_model(problem, "polar")
     resolution = Resolution(cells, angles, steps // 2)
     run = simulate(problem, "polar", resolution, PERIOD_TOLERANCE)
     if run.state is None:
         raise NoPeriodicState(f"velocity = {velocity!r}: {run.reason}")
     contact = build_contact(problem, "polar", resolution)
-    path = problem.path(contact, steps // 2)
+    path = path_of(problem, contact, steps // 2)
     tractions, forces, residual, solves = frames(contact, path, run.state, STEP_TOLERANCE)
     reason = run.reason or unsolved(residual, solves, STEP_TOLERANCE)
     slip = _slip(contact, path, tractions)
     bounds = np.broadcast_to(bounds_at_phases(contact, path), tractions[:, 0].shape)
     phase = path.phase
-    if motion.half_period_mirror:  # the second half is the mirror image of the first
+    if problem.half_period_mirror:  # the second half is the mirror image of the first
         tractions = np.concatenate([tractions, [contact.mirrored(q) for q in tractions[1:]]])
         slip = np.concatenate([slip, [contact.mirrored(part) for part in slip]])
         forces = np.concatenate([forces, forces[1:] * MIRRORED_FORCES])
@@ -172,10 +174,10 @@ def period(
         *(np.array(part) for part in problem.displacement(phase)),
         forces[:, FORWARD],
         forces[:, LATERAL],
-        forces[:, TORQUE] / motion.pressure.torque,
+        forces[:, TORQUE] / problem.pressure.torque,
         forward_position,
         lateral_position,
-        bound if motion.depth is not None else bound[0],
+        bound if problem.motion.loads else bound[0],
         area,
         forward,
         lateral,

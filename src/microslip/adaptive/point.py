@@ -9,22 +9,25 @@ from dataclasses import replace
 from microslip.adaptive.asked import TOLERANCE, Asked, budget_for
 from microslip.adaptive.checks import (
     checked_drive,
-    checked_point,
+    checked_problem,
     checked_request,
     refuse_bounds,
+    refuse_drive_arguments,
     refuse_progress,
 )
 from microslip.adaptive.choice import choose_model, method_refusal
 from microslip.adaptive.result import Result
-from microslip.adaptive.several import body_of, solve_each
+from microslip.adaptive.several import solve_each
 from microslip.foundation.errors import InputError
-from microslip.motions.mirror_image import mirror_image
+from microslip.motions.motion import Motion
+from microslip.motions.problem import Problem
+from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
 from microslip.solver.method_names import SHIPPED, method_named, refuse_missing
-from microslip.solver.problem import Problem
 
 
 def solve(
-    motion: str,
+    motion: str | Motion | Problem,
     velocity: float | None = None,
     amplitude: float | None = None,
     *,
@@ -33,7 +36,7 @@ def solve(
     mass: float | None = None,
     damping: float | None = None,
     contacts: str | None = None,
-    pressure: str = "hertz",
+    pressure: str | Pressure = HERTZ,
     poisson: float = 0.0,
     model: str = "auto",
     tolerance: float | None = TOLERANCE,
@@ -48,9 +51,10 @@ def solve(
 
     Parameters
     ----------
-    motion : str
-        What moves: "transverse", "bore", "continuous-bore" or another, with the numbers that its
-        name takes.
+    motion : str, Motion or Problem
+        "transverse", "bore", "continuous-bore" or another, with the numbers of its class, as in
+        "elliptic:forward=0.5".  A Problem takes the place of all arguments of the problem, up to
+        `poisson`.
     velocity : float or None
         The paper's dimensionless group, in units of the pressure's own u_lim; 0: the limit v -> 0;
         None: what is asked for, under a force.  Below 0, for a contact that is pushed back, where
@@ -70,7 +74,7 @@ def solve(
         that of another, its phase in degrees, and its share of the amplitude, all 1, 0 and 1 if not
         given.  Velocity and amplitude are in units of u_lim of the contact with the mean load, and
         forces over mu times the load of all.
-    pressure : str
+    pressure : str or Pressure
         "hertz", "power:exponent=1", "file:measured.csv", see microslip.pressures.by_name.
     poisson : float
         Poisson's ratio, 0 to 0.5.
@@ -104,18 +108,29 @@ def solve(
     InputError
         For input out of range or a model that does not apply; it names the argument.
     """
-    drive = checked_drive(velocity, force, stiffness, mass, damping)
-    motion, velocity, amplitude, poisson = checked_point(
-        motion, 0.0 if velocity is None else velocity, amplitude, poisson, pressure, backward=True
+    if isinstance(motion, Problem):
+        refuse_drive_arguments(force=force, stiffness=stiffness, mass=mass, damping=damping)
+        drive = motion.drive
+    else:
+        drive = checked_drive(velocity, force, stiffness, mass, damping)
+    problem = checked_problem(
+        motion,
+        velocity,
+        amplitude,
+        pressure=pressure,
+        poisson=poisson,
+        contacts=contacts,
+        drive=drive,
+        backward=True,
     )
     tolerance, cells, steps = checked_request(tolerance, cells, steps)
     refuse_bounds(most_work=most_work, time_limit=time_limit)
     refuse_progress(progress)
-    name = choose_model(motion, poisson, model, static=drive is None and velocity == 0.0)
+    name = choose_model(problem, model)
     how = method_named(method)
-    _refuse_method(motion, name, method, how)
-    asked = Asked(
-        problem=body_of(Problem(motion, velocity, amplitude, poisson), contacts),
+    _refuse_method(problem, name, method, how)
+    request = Asked(
+        problem=problem,
         model=name,
         chosen=model == "auto",
         method=method,
@@ -127,38 +142,35 @@ def solve(
         progress=progress,
         started=time.perf_counter(),
     )
-    if velocity < 0.0:
-        return _seen_from_behind(asked, drive)
-    return _answer(asked, drive)
+    return _answer(request) if problem.velocity >= 0.0 else _answer_backward(request)
 
 
-def _answer(asked, drive):
-    if drive is None:
-        return solve_each(asked)
+def _answer(request):
+    if request.problem.drive is None:
+        return solve_each(request)
     from microslip.adaptive.pulled import refuse_pull, solve_pulled  # only now: it takes a while
 
-    refuse_pull(asked, drive)
-    return solve_pulled(asked, drive)
+    refuse_pull(request)
+    return solve_pulled(request)
 
 
-def _seen_from_behind(asked, drive):
+def _answer_backward(request):
     """The answer at a velocity below 0: that of the mirror image at the opposite one."""
-    problem = asked.problem
-    behind = replace(problem, motion=mirror_image(problem.motion), velocity=-problem.velocity)
-    answer = _answer(replace(asked, problem=behind), drive)
+    problem = request.problem
+    behind = replace(problem, velocity=-problem.velocity, backward=not problem.backward)
+    answer = _answer(replace(request, problem=behind))
     return replace(answer, velocity=problem.velocity, mu_macro=-answer.mu_macro)
 
 
-def _refuse_method(motion, model, method, how):
+def _refuse_method(problem, model, method, how):
     """Raise InputError where a method, by name and as a method.Method, has no part in a solve."""
     refuse_missing(method)
-    refusal = method_refusal(motion, model, how)
+    refusal = method_refusal(problem, model, how)
     if not refusal and how.run is not None:
         refusal = "it is one run, which cannot be refined"
     if refusal:
-        raise InputError(
-            "method", method, f"does not apply to {motion.name}, model {model}: {refusal}"
-        )
+        name = problem.motion.name
+        raise InputError("method", method, f"does not apply to {name}, model {model}: {refusal}")
 
 
 KERNELS = {

@@ -48,9 +48,10 @@ from microslip.adaptive.refinement import certify
 from microslip.foundation.arguments import count
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
-from microslip.motions.mirror_image import mirror_image
-from microslip.motions.motion import LOOP
-from microslip.solver.problem import Problem
+from microslip.motions.motion import LOOP, Motion
+from microslip.motions.problem import Problem
+from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
 
 POINTS, MOST_POINTS = 9, 1000
 PROPELS_NOTHING = "propels nothing: friction holds a body at rest against forces from {} to {}"
@@ -58,10 +59,10 @@ PROPELS_NOTHING = "propels nothing: friction holds a body at rest against forces
 
 
 def propulsion(
-    motion: str,
-    amplitude: float,
+    motion: str | Motion | Problem,
+    amplitude: float | None = None,
     *,
-    pressure: str = "hertz",
+    pressure: str | Pressure = HERTZ,
     poisson: float = 0.0,
     model: str = "auto",
     tolerance: float = TOLERANCE,
@@ -104,16 +105,16 @@ def propulsion(
         For bad input; it names the argument.
     """
     started = time.perf_counter()
-    motion, amplitude, poisson = checked_propulsion(motion, amplitude, poisson, pressure)
+    problem = checked_propulsion(motion, amplitude, pressure=pressure, poisson=poisson)
     if tolerance is None:
         raise InputError("tolerance", tolerance, "allowed is a number")
     tolerance, _, _ = checked_request(tolerance, None, None)
     points = count("points", points, 2, most=MOST_POINTS)
     refuse_bounds(most_work=most_work, time_limit=time_limit)
     refuse_progress(progress)
-    name = choose_model(motion, poisson, model)
+    name = choose_model(problem, model)
     asked = Asked(
-        problem=Problem(motion, 0.0, amplitude, poisson),
+        problem=problem,
         model=name,
         tolerance=tolerance,
         budget=budget_for(name, most_work, time_limit),
@@ -151,7 +152,7 @@ class _Contact:
     def creep(self):
         """Creep in a radian at the velocity 1."""
         problem = self.asked.problem
-        return problem.motion.creep(1.0, problem.amplitude, problem.poisson)
+        return problem.unit_drift
 
     @property
     def first(self):
@@ -161,7 +162,7 @@ class _Contact:
     def reversed(self):
         """The mirror image, which moves forward where this one moves back."""
         problem = self.asked.problem
-        behind = replace(problem, motion=mirror_image(problem.motion))
+        behind = replace(problem, backward=not problem.backward)
         image = _Contact(replace(self.asked, problem=behind))
         image.sign = -self.sign
         return image
@@ -277,7 +278,7 @@ def _record(contact, stall, found, velocity, verdict):
     reason = reason or next((known.reason for known in friction + power if known.reason), "")
     return PropulsionLine(
         motion=problem.motion.name,
-        pressure=problem.motion.pressure.name,
+        pressure=problem.pressure.name,
         model=asked.model,
         amplitude=problem.amplitude,
         poisson=problem.poisson,

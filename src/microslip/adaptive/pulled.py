@@ -27,13 +27,12 @@ from microslip.adaptive.under_force import (
 )
 from microslip.foundation.errors import InputError
 from microslip.models.registry import MODELS
-from microslip.motions.by_name import read_otherwise
-from microslip.motions.drive import Drive
-from microslip.pressures.by_name import HERTZ
+from microslip.motions.problem import Problem
+from microslip.pressures.hertz import HERTZ
 from microslip.solver.body_run import simulate_each
 from microslip.solver.budget import Spent
+from microslip.solver.discretise import Resolution, contact_of
 from microslip.solver.method_names import SHIPPED
-from microslip.solver.problem import Problem, Resolution
 from microslip.solver.pulled_run import Accuracy, simulate_pulled
 from microslip.solver.run import Settings
 from microslip.solver.stick_edge import found_focus
@@ -61,53 +60,56 @@ GAP_MARGIN = 2.0
 """Errors of the static limit above it at which the contact moves for certain."""
 
 
-def refuse_drive(problem: Problem, drive: Drive, model: str) -> None:
+def refuse_drive(problem: Problem, model: str) -> None:
     """Raise InputError where a model, by name, or a motion does not go with a drive."""
-    motion, pulls = problem.motion, "stiffness" if drive.force is None else "force"
-    if drive.force is not None and drive.force < 0.0 and not motion.propels:
+    motion, drive = problem.motion, problem.drive
+    pulls = "stiffness" if drive.force is None else "force"
+    if drive.force is not None and drive.force < 0.0 and not problem.propels:
         allowed = f"allowed is a number of at least 0: {motion.name} propels nothing"
         raise InputError("force", drive.force, allowed)
     if not MODELS[model].pulled:
         raise InputError("model", model, f"does not know a {pulls}, a velocity alone")
     if drive.force is not None:
         if not motion.periodic:
-            refuse_steady(motion, drive.force)
-        refuse_nearly_full(problem, drive)
+            refuse_steady(problem)
+        refuse_nearly_full(problem)
     elif motion.periodic and problem.velocity == 0.0 and not is_even(problem):
         allowed = f"allowed is a number above 0 where a spring pulls {motion.name}"
         raise InputError("velocity", 0.0, allowed)
 
 
-def refuse_pull(asked: Asked, drive: Drive) -> None:
+def refuse_pull(asked: Asked) -> None:
     """Raise InputError where what is asked does not go with a drive."""
-    refuse_drive(asked.problem, drive, asked.model)
+    drive = asked.problem.drive
+    refuse_drive(asked.problem, asked.model)
     if asked.method != SHIPPED:
         pulls = "stiffness" if drive.force is None else "force"
         raise InputError("method", asked.method, f"allowed is {SHIPPED} with a {pulls}")
 
 
-def solve_pulled(asked: Asked, drive: Drive) -> Result:
+def solve_pulled(asked: Asked) -> Result:
     """The certified friction, or under a force the velocity, a result.Result; see microslip.solve.
 
     It is for the caller to `refuse_pull` before.
     """
+    drive = asked.problem.drive
     if drive.force is not None:
-        return _under_force(asked, drive)
+        return _under_force(asked)
     body = {"stiffness": drive.stiffness, "mass": drive.mass, "damping": drive.damping}
     problem = asked.problem
     if not problem.motion.periodic or problem.velocity == 0.0 or not oscillates(problem):
         # what is steady stretches the spring to one length, whatever it is
-        return replace(solve_each(asked), **body)
+        return replace(solve_each(_prescribed(asked)), **body)
     bracket = _bracket(asked)
     if bracket is not None:
         point = asked.point | {"model": CLOSED_FORM}
         return replace(of_closed_form(point, bracket, asked.seconds), **body)
-    certified, axes = _certified(asked, drive, Accuracy(asked.accuracy))
+    certified, axes = _certified(asked, Accuracy(asked.accuracy))
     return Result(
         **asked.point,
         **body,
         model=asked.model,
-        mu_macro=_between(certified.mu, -1.0 if problem.motion.propels else 0.0, 1.0),
+        mu_macro=_between(certified.mu, -1.0 if problem.propels else 0.0, 1.0),
         mu_macro_error=certified.error,
         **verdict(asked, certified, axes, asked.tolerance),
     )
@@ -125,7 +127,7 @@ def _bracket(asked):
     if not asked.chosen or imposed or asked.tolerance is None or asked.problem.parts:
         return None
     if motion.name not in ("transverse", "bore") or (
-        motion.rotates and motion.pressure is not HERTZ
+        motion.rotates and asked.problem.pressure != HERTZ
     ):
         return None
     drop = LARGEST_DROPS[motion.name](asked.problem.velocity, asked.problem.amplitude)
@@ -133,24 +135,34 @@ def _bracket(asked):
     return (1.0 - 0.5 * drop, None, error) if error <= asked.tolerance else None
 
 
-def _under_force(asked, drive):
+def _prescribed(asked):
+    """The request at the prescribed velocity of the problem, without its drive."""
+    return replace(asked, problem=replace(asked.problem, drive=None))
+
+
+def _driven(asked, **drive):
+    """The request with a changed drive."""
+    problem = asked.problem
+    return replace(asked, problem=replace(problem, drive=replace(problem.drive, **drive)))
+
+
+def _under_force(asked):
     """The velocity under a force."""
+    drive = asked.problem.drive
     if drive.mass == 0.0 and asked.problem.motion.periodic:
         asked = replace(asked, problem=without_forward_motion(asked.problem))
     problem, force = asked.problem, drive.force
-    if (
-        force < 0.0 and not problem.motion.propels
-    ):  # a pull back is a pull forward, seen from behind
-        ahead = _under_force(asked, replace(drive, force=-force))
+    if force < 0.0 and not problem.propels:  # a pull back is a pull forward, seen from behind
+        ahead = _under_force(_driven(asked, force=-force))
         return replace(ahead, force=force, mu_macro=-ahead.mu_macro, velocity=-ahead.velocity)
-    away = runs_away(problem, drive)
+    away = runs_away(problem)
     if away:
-        return _known(asked, drive, math.nan, math.inf, away)
+        return _known(asked, math.nan, math.inf, away)
     if not problem.motion.periodic:
-        velocity = steady_velocity(problem.motion, force)
-        return _known(asked, drive, velocity, STEADY_ERROR * max(1.0, velocity))
+        velocity = steady_velocity(problem)
+        return _known(asked, velocity, STEADY_ERROR * max(1.0, velocity))
     if not oscillates(problem):
-        return _known(asked, drive, 0.0, 0.0)
+        return _known(asked, 0.0, 0.0)
     least = -math.inf
     if is_even(problem):
         static = _static(asked, force)
@@ -160,7 +172,7 @@ def _under_force(asked, drive):
                 static = exact
         if _is_below(force, static):
             return replace(
-                _known(asked, drive, 0.0, 0.0),
+                _known(asked, 0.0, 0.0),
                 model=static.model,
                 cells=static.cells,
                 angles=static.angles,
@@ -171,11 +183,10 @@ def _under_force(asked, drive):
                 error = static.mu_macro_error
                 return _given_up(
                     asked,
-                    drive,
                     f"the error of the force threshold, {error:.1e}, does not tell whether the "
                     "contact moves, and a larger force is too close to full friction",
                 )
-    return _moving(asked, drive, max(force, least))
+    return _moving(asked, max(force, least))
 
 
 def _is_below(force, static):
@@ -205,12 +216,13 @@ def _static(asked, force):
 
 def _at_rest(asked, tolerance):
     """The Result of the static limit, to a tolerance."""
-    problem = replace(asked.problem, velocity=0.0)
+    problem = replace(asked.problem, velocity=0.0, drive=None)
     return solve_each(replace(asked, problem=problem, tolerance=tolerance))
 
 
-def _known(asked, drive, velocity, error, reason=""):
+def _known(asked, velocity, error, reason=""):
     """The Result where nothing has to be marched."""
+    drive = asked.problem.drive
     return Result(
         **asked.point | {"velocity": velocity},
         **_pulling(drive),
@@ -234,22 +246,23 @@ def _pulling(drive):
     return {"force": drive.force} | ({"mass": drive.mass} if drive.mass > 0.0 else {})
 
 
-def _moving(asked, drive, marched):
+def _moving(asked, marched):
     """The Result of a contact that moves, marched under a force that it moves under for certain.
 
     Where the static limit is not known well enough to tell whether it moves under the force that
     was asked for, its velocity is between 0 and that one.
     """
-    drive_marched = replace(drive, force=marched)
+    drive, request = asked.problem.drive, asked
+    asked = _driven(asked, force=marched)
     try:
-        near = _near(asked, drive_marched)
+        near = _near(asked)
     except Spent as spent:
-        return _given_up(asked, drive, str(spent))
+        return _given_up(request, str(spent))
     asked = replace(asked, problem=replace(asked.problem, velocity=near.velocity))
     accuracy = Accuracy(asked.accuracy * max(1.0, SCALE_SHARE * near.velocity), near.slope)
-    certified, axes = _certified(asked, drive_marched, accuracy)
+    certified, axes = _certified(asked, accuracy)
     velocity, error = float(certified.mu), float(certified.error)
-    if not asked.problem.motion.propels:
+    if not asked.problem.propels:
         velocity = max(velocity, 0.0)  # what lies below is rounding and error
     if not certified.converged and not error < abs(velocity):  # not even its order of magnitude
         velocity, error = math.nan, math.inf
@@ -268,13 +281,14 @@ def _moving(asked, drive, marched):
     )
 
 
-def _near(asked, drive):
+def _near(asked):
     """The under_force.Near of what the force makes of the contact, by coarse runs.
 
     Friction of the contact that is moved tells about where it is, and one run under the force more
     exactly, unless it is so slow that this would take finer ones.
     """
     moving = replace(asked.problem, velocity=FIRST_VELOCITY)
+    force = asked.problem.drive.force
     # the plan depends on where slip starts, and finds it again by itself
     found_focus(moving, asked.model, asked.budget, asked.progress)
     coarsest, axes = plan(moving, asked.model, COARSE_TOLERANCE, asked.cells, asked.steps)
@@ -290,32 +304,36 @@ def _near(asked, drive):
         there = replace(moving, velocity=velocity)
         return simulate_each(there, asked.model, coarse, COARSE_TOLERANCE, settings).mu
 
-    near = velocity_near(moving, drive.force, friction_at)
+    near = velocity_near(moving, force, friction_at)
     place = replace(moving, velocity=near.velocity)
     accuracy = Accuracy(COARSE_TOLERANCE * near.velocity, near.slope)
-    found = simulate_pulled(place, drive, asked.model, coarse, accuracy, settings)
+    found = simulate_pulled(place, asked.model, coarse, accuracy, settings)
     if found.converged and found.velocity > SLOWEST_SHARE * near.velocity:
         return near._replace(velocity=found.velocity)
     return near
 
 
-def _given_up(asked, drive, reason):
+def _given_up(asked, reason):
     """The Result of a point of which nothing is known yet."""
-    unknown = replace(_known(asked, drive, math.nan, math.inf, reason), model=asked.model)
+    unknown = replace(_known(asked, math.nan, math.inf, reason), model=asked.model)
     return replace(
-        unknown, mu_macro=drive.force, exhausted=asked.budget.exhausted, **asked.budget.counts()
+        unknown,
+        mu_macro=asked.problem.drive.force,
+        exhausted=asked.budget.exhausted,
+        **asked.budget.counts(),
     )
 
 
-def _certified(asked, drive, accuracy):
+def _certified(asked, accuracy):
     """The certified.Certified to an accuracy, and what was refined."""
     problem, tolerance = asked.problem, accuracy.tolerance
+    drive = problem.drive
     try:
         found_focus(problem, asked.model, asked.budget, asked.progress)
     except Spent as spent:
         return given_up(spent), ()
     coarsest, axes = plan(problem, asked.model, tolerance, asked.cells, asked.steps)
-    contact = problem.contact(asked.model, COARSEST)
+    contact = contact_of(problem, asked.model, COARSEST)
     axes, unresolved = with_mass(axes, problem, contact, drive.mass, tolerance)
     share = accuracy._replace(tolerance=run_tolerance(coarsest, axes, tolerance))
     if asked.tolerance is None:
@@ -325,13 +343,11 @@ def _certified(asked, drive, accuracy):
     def run(resolution, guess, problem=problem):
         if asked.progress is not None:
             asked.progress(resolution)
-        return simulate_pulled(
-            problem, drive, asked.model, resolution, share, settings, guess=guess
-        )
+        return simulate_pulled(problem, asked.model, resolution, share, settings, guess=guess)
 
     readings = [
-        partial(run, problem=replace(problem, motion=other))
-        for other in read_otherwise(problem.motion)
+        partial(run, problem=replace(problem, pressure=other))
+        for other in problem.pressure.readings
     ]
     quantity = "mu" if drive.force is None else "velocity"
     certified = certify(run, coarsest, axes, tolerance, readings, quantity)

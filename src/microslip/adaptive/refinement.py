@@ -45,7 +45,7 @@ from microslip.adaptive.chains import (
 )
 from microslip.adaptive.mixed_differences import mixed_differences
 from microslip.solver.budget import Spent
-from microslip.solver.problem import Resolution
+from microslip.solver.discretise import Resolution
 from microslip.solver.run import Run
 
 LARGEST_OPEN = 0.5

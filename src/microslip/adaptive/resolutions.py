@@ -19,7 +19,8 @@ from microslip.adaptive.cells_policies import (
 from microslip.adaptive.chains import JUDGED, Axis
 from microslip.models.contact import Contact
 from microslip.models.registry import MODELS
-from microslip.solver.problem import Problem, Resolution
+from microslip.motions.problem import Problem
+from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.static_limit import at_turning_points
 from microslip.solver.stick_edge import found_focus
 
@@ -97,9 +98,9 @@ def plan(
     free = cells is None and steps is None and tolerance <= TOGETHER_FROM
     if together and free and _falls_smoothly(problem, model):
         return Resolution(cells=1, angles=1, steps=STEPS[0]), (_all_together(problem, tolerance),)
-    resolved, axes = MODELS[model].axes(motion), []
-    marches = motion.periodic and (problem.velocity > 0.0 or not at_turning_points(motion))
-    sweeps = motion.depth is not None and marches and cells is None and steps is None
+    resolved, axes = MODELS[model].axes(problem), []
+    marches = motion.periodic and (problem.velocity > 0.0 or not at_turning_points(problem))
+    sweeps = motion.loads and marches and cells is None and steps is None
     if sweeps:
         axes.append(_sweeping(problem, model, tolerance))
     elif "cells" in resolved:
@@ -164,7 +165,7 @@ def with_mass(
         return WithMass(tuple(axes), "")
     count = steps.levels[steps.base]
     frequency = (contact.stiffness / mass) ** 0.5
-    longest = float(np.diff(problem.path(contact, count).phase).max())
+    longest = float(np.diff(path_of(problem, contact, count).phase).max())
     allowed = LONGEST_NATURAL_STEP
     if not steps.imposed:
         allowed *= (tolerance / 1e-2) ** 0.5  # second order in time
@@ -185,14 +186,14 @@ def with_mass(
 def _imposed(name, count, motion):
     """An axis whose resolution is asked for; two coarser ones show what it is worth."""
     levels = (count // 2, round(0.75 * count), count)
-    caution = 1.0 if motion.depth is None else SWEEPING_CAUTION
+    caution = 1.0 if not motion.loads else SWEEPING_CAUTION
     return Axis(name, levels, 2, (0, 1, 2), imposed=True, caution=caution)
 
 
 def _falls_smoothly(problem, model):
     """Whether the error of a contact that oscillates falls smoothly if all is refined together."""
     motion = problem.motion
-    oscillates = motion.periodic and motion.rotates and motion.half_disc and motion.depth is None
+    oscillates = motion.periodic and motion.rotates and motion.half_disc and not motion.loads
     least, most = TOGETHER_AMPLITUDES
     if not (model == "polar" and oscillates and least <= problem.amplitude <= most):
         return False
@@ -216,7 +217,7 @@ def _sweeping(problem, model, tolerance):
     levels = _step_levels(problem, [SWEEPING_STEPS * count for count in rings])
     base = 1 if tolerance >= 5e-3 else 2
     first = tuple(range(base - 1, base + 3))
-    if problem.motion.rotates and problem.creep < SLOW_CREEP:
+    if problem.motion.rotates and problem.drift < SLOW_CREEP:
         # few rings are far off there, and finer runs that outweigh them cost more than they do
         base = 1 if tolerance >= 1e-2 else 2
         first = (base, base + 1, base + 2)
@@ -227,7 +228,7 @@ def _sweeping(problem, model, tolerance):
 def _step_levels(problem, counts):
     """Even numbers of steps that stay short against u_lim where the stroke is long."""
     motion = problem.motion
-    stroke = min(max(1.0, motion.stroke(problem.amplitude, problem.poisson)), LONGEST_STROKE)
+    stroke = min(max(1.0, problem.stroke), LONGEST_STROKE)
     return tuple(2 * round(0.5 * count * motion.cycles * stroke**0.5) for count in counts)
 
 
@@ -247,7 +248,7 @@ def _coarsest(problem):
         return None
     if motion.rotates:
         return Coarsest(angles=4, steps=12)
-    if problem.poisson > 0.0 and motion.half_period_mirror:
+    if problem.poisson > 0.0 and problem.half_period_mirror:
         return Coarsest(angles=2, steps=16)  # tractions depend on the angle a little only
     return None
 
@@ -275,17 +276,17 @@ def _doubled_steps(problem, tolerance):
 def _steps(problem, model, tolerance):
     if is_loop(problem, model):
         return _doubled_steps(problem, tolerance)
-    motion, levels, coarsest = problem.motion, _step_levels(problem, STEPS), _coarsest(problem)
+    levels, coarsest = _step_levels(problem, STEPS), _coarsest(problem)
     if coarsest is None:
-        few_unknowns = model == "radial" and motion.half_period_mirror
+        few_unknowns = model == "radial" and problem.half_period_mirror
         wanted, runs = RADIAL_STEPS if few_unknowns else BASE_STEPS, 3
-        if problem.parts and not motion.half_period_mirror:
+        if problem.parts and not problem.half_period_mirror:
             wanted, runs = COUPLED_STEPS, COUPLED_RUNS
         # second order in time
         wanted *= (1e-3 / tolerance) ** 0.5
         base = next(k for k, count in enumerate(STEPS) if count >= max(wanted, BASE_STEPS))
         caution = RADIAL_CAUTION if few_unknowns else 1.0
-        if not motion.half_period_mirror:
+        if not problem.half_period_mirror:
             caution = TURNING_CAUTION
         first = tuple(range(base + 1 - runs, base + 1))
         return Axis("steps", levels, base, first, caution=caution)

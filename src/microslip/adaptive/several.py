@@ -7,24 +7,6 @@ from dataclasses import replace
 from microslip.adaptive.asked import Asked
 from microslip.adaptive.closed_forms import CLOSED_FORM, known_exactly
 from microslip.adaptive.result import Result
-from microslip.foundation.errors import InputError
-from microslip.motions.body_contacts import contacts_of
-from microslip.solver.body_problem import BodyProblem, why_not
-from microslip.solver.problem import Problem
-
-
-def body_of(problem: Problem, contacts: str | None) -> Problem:
-    """The problem with the contacts that a text says, if there is one.
-
-    Raises InputError about `contacts` where these do not go with the problem.
-    """
-    if contacts is None:
-        return problem
-    body = BodyProblem(**vars(problem), contacts=contacts_of(contacts))
-    refusal = why_not(body)
-    if refusal:
-        raise InputError("contacts", contacts, refusal)
-    return body
 
 
 def solve_each(asked: Asked) -> Result:

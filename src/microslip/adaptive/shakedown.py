@@ -15,7 +15,12 @@ from dataclasses import asdict, dataclass, fields, replace
 
 from microslip.adaptive.asked import Asked, budget_for, verdict
 from microslip.adaptive.certified import given_up
-from microslip.adaptive.checks import checked_point, checked_request, refuse_bounds, refuse_progress
+from microslip.adaptive.checks import (
+    checked_problem,
+    checked_request,
+    refuse_bounds,
+    refuse_progress,
+)
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.pulled import refuse_drive
 from microslip.adaptive.refinement import certify, run_tolerance
@@ -29,9 +34,12 @@ from microslip.adaptive.under_force import (
 )
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
-from microslip.motions.drive import Drive
+from microslip.motions.drive import Force
+from microslip.motions.motion import Motion
+from microslip.motions.problem import Problem
+from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
 from microslip.solver.budget import Spent
-from microslip.solver.problem import Problem
 from microslip.solver.run import Settings
 from microslip.solver.shakedown_run import run_to_rest
 from microslip.solver.stick_edge import found_focus
@@ -113,11 +121,11 @@ class Shakedown:
 
 
 def shakedown(
-    motion: str,
-    amplitude: float,
-    force: float,
+    motion: str | Motion | Problem,
+    amplitude: float | None = None,
+    force: float | None = None,
     *,
-    pressure: str = "hertz",
+    pressure: str | Pressure = HERTZ,
     poisson: float = 0.0,
     model: str = "auto",
     tolerance: float = TOLERANCE,
@@ -149,21 +157,23 @@ def shakedown(
         For bad input, and for motions of which no force is known to be held: it names the argument.
     """
     started = time.perf_counter()
-    motion, _, amplitude, poisson = checked_point(motion, 0.0, amplitude, poisson, pressure)
-    if not motion.periodic:
-        raise InputError("motion", motion.name, "allowed is a motion that oscillates")
+    problem = checked_problem(motion, None, amplitude, pressure=pressure, poisson=poisson)
+    if not problem.motion.periodic:
+        raise InputError("motion", problem.motion.name, "allowed is a motion that oscillates")
+    if isinstance(motion, Problem) and force is None and problem.drive is not None:
+        force = problem.drive.force
     force = real("force", force, 0.0)
     if tolerance is None:
         raise InputError("tolerance", tolerance, "allowed is a number")
     tolerance, _, _ = checked_request(tolerance, None, None)
     refuse_bounds(most_work=most_work, time_limit=time_limit)
     refuse_progress(progress)
-    name = choose_model(motion, poisson, model)
-    problem = without_forward_motion(Problem(motion, 0.0, amplitude, poisson))
-    refuse_drive(problem, Drive(force=force), name)
+    problem = without_forward_motion(replace(problem, velocity=0.0, drive=Force(force)))
+    name = choose_model(problem, model)
+    refuse_drive(problem, name)
     if not is_even(problem):
         allowed = "allowed is a motion that exerts no forward force by itself, such as transverse"
-        raise InputError("motion", motion.name, allowed)
+        raise InputError("motion", problem.motion.name, allowed)
     asked = Asked(
         problem=problem,
         model=name,
@@ -180,7 +190,7 @@ def _answer(asked, force):
     threshold, error, away = _threshold(asked, force)
     known = {
         "motion": asked.problem.motion.name,
-        "pressure": asked.problem.motion.pressure.name,
+        "pressure": asked.problem.pressure.name,
         "model": asked.model,
         "amplitude": asked.problem.amplitude,
         "poisson": asked.problem.poisson,
@@ -203,7 +213,7 @@ def _answer(asked, force):
 def _threshold(asked, force):
     """The static limit, its error, and why the contact does not even come near it, or ""."""
     problem = asked.problem
-    away = runs_away(problem, Drive(force=force))
+    away = runs_away(problem)
     if not oscillates(problem):
         return 1.0, 0.0, away
     if away:

@@ -14,12 +14,14 @@ from microslip.adaptive.choice import method_refusal
 from microslip.models.contact import forward_slip
 from microslip.models.path import EULER, half_period_phases, make_path
 from microslip.models.registry import MODELS
-from microslip.motions.bore import MOTION as BORE
+from microslip.motions.bore import Bore
 from microslip.motions.by_name import motion_named
-from microslip.motions.transverse import MOTION as TRANSVERSE
-from microslip.pressures.by_name import HERTZ
+from microslip.motions.problem import Problem
+from microslip.motions.transverse import Transverse
+from microslip.pressures.by_name import pressure_named
+from microslip.pressures.hertz import HERTZ
+from microslip.solver.discretise import Resolution, build_contact
 from microslip.solver.method_names import method_named, missing
-from microslip.solver.problem import Problem, Resolution, build_contact
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
 
@@ -30,9 +32,11 @@ def applies(
     motion: str, poisson: float, model: str, method: str, pressure: str = HERTZ.name
 ) -> str:
     """Why a model or a method, by name, cannot be tried on a motion, as one line; "" if it can."""
-    motion = motion_named(motion, pressure)
-    refusal = MODELS[model].refuses(motion, poisson) or missing(method)
-    return refusal or method_refusal(motion, model, method_named(method))
+    kind = motion_named(motion)
+    amplitude = 1.0 if kind.periodic else None
+    problem = Problem(kind, 1.0, amplitude, poisson, pressure_named(pressure))
+    refusal = MODELS[model].refuses(problem) or missing(method)
+    return refusal or method_refusal(problem, model, method_named(method))
 
 
 def run_trial(
@@ -82,7 +86,7 @@ def run_trial(
     if refusal:
         raise ValueError(f"model = {model!r}, method = {method!r}: {refusal}")
     resolution = Resolution(cells, angles, max(steps // 2, 1))
-    problem = Problem(motion_named(motion, pressure), velocity, amplitude, poisson)
+    problem = Problem(motion_named(motion), velocity, amplitude, poisson, pressure_named(pressure))
     settings = Settings(method_named(method))
     run = simulate(problem, model, resolution, tolerance, settings=settings)
     unknowns = run.work // run.solves if run.solves else 0
@@ -120,8 +124,7 @@ def measure_steps(model: str, cells: int, angles: int, poisson: float, steps: in
         unknowns; iterations and seconds (CPU) a step; memory, the bytes that the arrays of the
         contact take.
     """
-    motion = TRANSVERSE if model == "radial" else BORE
-    problem = Problem(motion, 0.1, 1.0, poisson)
+    problem = Problem(Transverse() if model == "radial" else Bore(), 0.1, 1.0, poisson)
     contact = build_contact(problem, model, Resolution(cells, angles, steps))
     path = make_path(problem.displacement, half_period_phases(steps), EULER)
     start = forward_slip(contact)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from microslip.adaptive.period import period
-from microslip.pressures.by_name import HERTZ
+from microslip.pressures.hertz import HERTZ
 
 
 def patches(

@@ -15,9 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.motions.drive import Drive
-from microslip.motions.motion import LOOP, Motion
-from microslip.solver.problem import Problem
+from microslip.motions.motion import LOOP
+from microslip.motions.problem import Problem
 from microslip.theory import paper
 
 RETURNED = 1e-12
@@ -45,25 +44,7 @@ def without_forward_motion(problem: Problem) -> Problem:
     A constant force on a contact without mass keeps the forward force of the contact constant: the
     contact goes along with a forward oscillation, as if there were none.
     """
-    motion = problem.motion
-    if not oscillates_forward(problem):
-        return problem
-    if problem.parts and not problem.moves_together:
-        return replace(problem, steadied=True)
-
-    def displacement(phase, velocity, amplitude, poisson):
-        forward, lateral, angle = motion.displacement(phase, velocity, amplitude, poisson)
-        return forward - motion.displacement(phase, 0.0, amplitude, poisson)[0], lateral, angle
-
-    still = replace(
-        motion,
-        displacement=displacement,
-        turns=lambda velocity, amplitude: motion.turns(0.0, amplitude),
-        straight=False,
-        propels=False,
-        closed_form_of=None,
-    )
-    return replace(problem, motion=still)
+    return replace(problem, follows=True) if oscillates_forward(problem) else problem
 
 
 def oscillates_forward(problem: Problem) -> bool:
@@ -92,11 +73,11 @@ def is_even(problem: Problem) -> bool:
     """
     if problem.parts:
         return all(is_even(part.problem) for part in problem.parts) or problem.is_balanced
-    motion, pressure = problem.motion, problem.motion.pressure
+    motion, pressure = problem.motion, problem.pressure
     if oscillates_forward(problem) or not motion.half_disc:
         return False
     if motion.rotates:
-        return pressure.is_round or (pressure.mirrored and motion.depth is None)
+        return pressure.is_round or (pressure.mirrored and not motion.loads)
     return pressure.is_round or pressure.mirrored or problem.poisson == 0.0
 
 
@@ -104,14 +85,15 @@ def least_load(problem: Problem) -> float:
     """Least normal load in a period, over its mean."""
     if not problem.motion.periodic or problem.depth is None:
         return 1.0
-    loads = problem.motion.pressure.total(np.asarray(problem.depth(LOOP), dtype=float))
+    loads = problem.pressure.total(np.asarray(problem.depth(LOOP), dtype=float))
     if problem.parts:
         loads = np.array([part.share for part in problem.parts]) @ loads
     return max(float(loads.min()), 0.0) / problem.mean_load
 
 
-def runs_away(problem: Problem, drive: Drive) -> str:
+def runs_away(problem: Problem) -> str:
     """Why there is no mean velocity, as one line; "" if there is one."""
+    drive = problem.drive
     if abs(drive.force) >= 1.0:
         return f"runs away: the force {drive.force:g} is all that friction can hold, or more"
     least = least_load(problem)
@@ -123,11 +105,11 @@ def runs_away(problem: Problem, drive: Drive) -> str:
     return ""
 
 
-def refuse_nearly_full(problem: Problem, drive: Drive) -> None:
+def refuse_nearly_full(problem: Problem) -> None:
     """Raise InputError for a force so close to full friction that no velocity can be computed."""
-    steady = not problem.motion.periodic
+    steady, drive = not problem.motion.periodic, problem.drive
     closest = CLOSEST_STEADY_FORCE if steady else CLOSEST_FORCE
-    if not closest <= abs(drive.force) < 1.0 or runs_away(problem, drive):
+    if not closest <= abs(drive.force) < 1.0 or runs_away(problem):
         return
     if not steady and not oscillates(problem if drive.mass else without_forward_motion(problem)):
         return
@@ -140,21 +122,21 @@ def refuse_nearly_full(problem: Problem, drive: Drive) -> None:
     raise InputError("force", drive.force, allowed)
 
 
-def refuse_steady(motion: Motion, force: float) -> None:
+def refuse_steady(problem: Problem) -> None:
     """Raise InputError where the velocity of a steady motion under a force has no closed form."""
-    if motion.name != "continuous-bore" or not motion.pressure.is_round:
-        place = f"{motion.name} under {motion.pressure.name}"
+    if problem.motion.name != "continuous-bore" or not problem.pressure.is_round:
+        force, place = problem.drive.force, f"{problem.motion.name} under {problem.pressure.name}"
         raise InputError("force", force, f"allowed is none for {place}, which has no closed form")
 
 
-def steady_velocity(motion: Motion, force: float) -> float:
-    """Velocity of a steady rotation under a force from 0 to below 1, from Eqs 17 and 21; it is for
+def steady_velocity(problem: Problem) -> float:
+    """Velocity of a steady rotation under its force, 0 to below 1, from Eqs 17 and 21; it is for
     the caller to `refuse_steady` before."""
     from scipy.optimize import brentq  # only now: these take a while to load
 
     from microslip.theory import axisymmetric
 
-    pressure = motion.pressure
+    pressure, force = problem.pressure, problem.drive.force
 
     def left(velocity):
         if pressure.hertzian:
@@ -197,7 +179,7 @@ def velocity_near(problem: Problem, force: float, friction_at: Callable[[float],
     friction_at : callable
         friction_at(velocity) -> mean forward force likewise, NaN where there is none.
     """
-    unit = problem.motion.creep(1.0, problem.amplitude, problem.poisson)
+    unit = problem.unit_drift
 
     @cache
     def at(creep):

@@ -13,13 +13,15 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.adaptive.asked import TOLERANCE, Asked, budget_for
-from microslip.adaptive.checks import checked_point, checked_request
+from microslip.adaptive.checks import checked_problem, checked_request
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.moved import marched
 from microslip.adaptive.refinement import certify
 from microslip.foundation.errors import InputError
-from microslip.motions.motion import LOOP
-from microslip.solver.problem import Problem
+from microslip.motions.motion import LOOP, Motion
+from microslip.motions.problem import Problem
+from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
 
 
 class VibrationPower(NamedTuple):
@@ -40,11 +42,11 @@ class VibrationPower(NamedTuple):
 
 
 def vibration_power(
-    motion: str,
-    velocity: float,
-    amplitude: float,
+    motion: str | Motion | Problem,
+    velocity: float | None = None,
+    amplitude: float | None = None,
     *,
-    pressure: str = "hertz",
+    pressure: str | Pressure = HERTZ,
     poisson: float = 0.0,
     tolerance: float = TOLERANCE,
 ) -> VibrationPower:
@@ -67,15 +69,12 @@ def vibration_power(
     InputError
         For bad input; it names the argument.
     """
-    motion, velocity, amplitude, poisson = checked_point(
-        motion, velocity, amplitude, poisson, pressure
-    )
-    for name, value in (("velocity", velocity), ("amplitude", amplitude)):
+    problem = checked_problem(motion, velocity, amplitude, pressure=pressure, poisson=poisson)
+    for name, value in (("velocity", problem.velocity), ("amplitude", problem.amplitude)):
         if not value:
             raise InputError(name, value, "allowed is a number above 0, for work to be done")
     tolerance, _, _ = checked_request(tolerance, None, None)
-    name = choose_model(motion, poisson, "auto")
-    problem = Problem(motion, velocity, amplitude, poisson)
+    name = choose_model(problem)
     asked = Asked(
         problem=problem,
         model=name,

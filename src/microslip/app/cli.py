@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import sys
+from dataclasses import fields
 from importlib import import_module
 
 from microslip import __version__
@@ -63,26 +64,20 @@ def _module_of(command):
 
 def _add_motions(parser):
     """A parser for each motion; what they are is asked of the solver, so only where it counts."""
-    from microslip.motions.by_name import FAMILIES, MOTIONS, motion_named
+    from microslip.motions.by_name import MOTIONS
 
     motions = parser.add_subparsers(dest="motion", required=True, metavar="MOTION")
-    for name in (*MOTIONS, *FAMILIES):
-        family = FAMILIES.get(name)
-        try:
-            record = motion_named(name)
-        except InputError:  # in a file of the user: see _problem_of_motion
-            continue
-        summary = getattr(family, "SUMMARY", record.summary)
-        numbers = ""
-        if family:
-            numbers = getattr(family, "HELP", f"of {', '.join(family.DEFAULTS)}")
+    for name, record in MOTIONS.items():
+        numbers, spin = "", f"  {BORE}" if "bore" in name else ""
+        if fields(record):
+            numbers = record.numbers or f"of {', '.join(field.name for field in fields(record))}"
             numbers = f"  Numbers follow the name after a colon: {numbers}."
         motion = motions.add_parser(
             name,
-            help=summary,
-            description=f"The indenter is {summary}. u_lim: the tangential displacement at which "
-            "the whole contact slides; a: contact radius; phi_lk(a/2): the angle that leaves half "
-            f"of it sticking.{numbers}{f'  {BORE}' if 'bore' in name else ''}",
+            help=record.summary,
+            description=f"The indenter is {record.summary}. u_lim: the tangential displacement at "
+            "which the whole contact slides; a: contact radius; phi_lk(a/2): the angle that leaves "
+            f"half of it sticking.{numbers}{spin}",
             allow_abbrev=False,
         )
         motion.add_argument(
@@ -229,15 +224,11 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _problem_of_motion(words):
     """The InputError of a motion whose file cannot be used; None for all other words."""
-    from microslip.motions.by_name import BROKEN, FAMILIES, motion_named
+    from microslip.motions.by_name import BROKEN
 
     name = words[0].partition(":")[0] if words else ""
-    if name in FAMILIES or name.replace("-", "_") in BROKEN:
-        try:
-            motion_named(name)
-        except InputError as error:
-            return error.renamed("MOTION")
-    return None
+    reason = BROKEN.get(name.replace("-", "_"))
+    return None if reason is None else InputError("MOTION", words[0], reason)
 
 
 def _split_motion(words):
@@ -245,10 +236,10 @@ def _split_motion(words):
     motion with its numbers, such as elliptic:forward=0.5; other words and "" unchanged."""
     if words[:1] != ["point"] or len(words) < 2:
         return words, ""
-    from microslip.motions.by_name import FAMILIES
+    from microslip.motions.by_name import MOTIONS
 
     name = words[1].partition(":")[0]
-    return ["point", name if name in FAMILIES else words[1], *words[2:]], words[1]
+    return ["point", name if name in MOTIONS else words[1], *words[2:]], words[1]
 
 
 def _as_given(options, argument):

@@ -6,6 +6,7 @@ from microslip.adaptive.result import Result
 from microslip.foundation.number_text import number_text
 from microslip.models.registry import MODELS
 from microslip.motions.by_name import motion_named
+from microslip.motions.problem import Problem
 
 RATIO = "a ratio: mean forward force over mu F_z; the coefficient felt is mu_apparent = mu mu_macro"
 """What is said beside a number."""
@@ -45,4 +46,5 @@ def _leaves_something_out(result):
     """Whether no refinement of the model would find what the contact does."""
     if result.model not in MODELS:
         return False  # a closed form, whose error is known
-    return not MODELS[result.model].exact(motion_named(result.motion, result.pressure))
+    problem = Problem(motion_named(result.motion), result.velocity, result.amplitude)
+    return not MODELS[result.model].exact(problem)

@@ -149,7 +149,11 @@ def refuse_unsolvable(given: list, where: str) -> None:
 def _ask_solver(sweep, where):
     """Raise InputError, in the solver's words, for what it does not know or do; ConfigError for an
     amplitude that is missing, or too much."""
-    motion = _motion_of(sweep)
+    from microslip.motions.by_name import motion_named
+    from microslip.pressures.by_name import pressure_named
+
+    motion = motion_named(sweep.motion)
+    pressure_named(sweep.pressure)
     if motion.periodic and sweep.amplitude is None:
         raise ConfigError(f"{where}.amplitude: missing; required for {motion.name}")
     if sweep.amplitude is not None and not motion.periodic:
@@ -160,34 +164,40 @@ def _ask_solver(sweep, where):
     if sweep.model != "auto":
         from microslip.adaptive.choice import choose_model
 
-        choose_model(motion, sweep.poisson[-1], sweep.model)
+        choose_model(_problem(sweep, 1.0, -1), sweep.model)
     if sweep.velocity[:1] == (0,):
-        from microslip.adaptive.checks import checked_point
-
-        amplitude = sweep.amplitude and sweep.amplitude[0]
-        checked_point(sweep.motion, 0, amplitude, sweep.poisson[-1], sweep.pressure)
+        _problem(sweep, 0.0, 0)
     if sweep.drives:
-        _ask_of_drive(sweep, motion)
+        _ask_of_drive(sweep)
 
 
-def _ask_of_drive(sweep, motion):
+def _problem(sweep, velocity, end, drive=None):
+    """The problem of a Sweep at a velocity and one end of its amplitudes; raises InputError."""
+    from microslip.adaptive.checks import checked_problem
+
+    return checked_problem(
+        sweep.motion,
+        velocity,
+        sweep.amplitude and sweep.amplitude[end],
+        pressure=sweep.pressure,
+        poisson=sweep.poisson[-1],
+        contacts=sweep.contacts,
+        drive=drive,
+    )
+
+
+def _ask_of_drive(sweep):
     """Raise InputError for what does not go together, or with the motion, at any point."""
     from microslip.adaptive.checks import checked_drive
     from microslip.adaptive.choice import choose_model
     from microslip.adaptive.pulled import refuse_drive
-    from microslip.adaptive.several import body_of
-    from microslip.solver.problem import Problem
 
     drives = {name: values for name, values, _ in sweep.drives}
-    amplitude = sweep.amplitude and sweep.amplitude[-1]
     for end in (0, -1):
         given = {name: drives[name][end] if name in drives else None for name in axes.DRIVES}
         velocity = sweep.velocity[end] if sweep.velocity else None
-        drive = checked_drive(velocity, **given)
-        model = choose_model(motion, sweep.poisson[-1], sweep.model)
-        problem = Problem(motion, velocity or 0.0, amplitude, sweep.poisson[-1])
-        problem = body_of(problem, sweep.contacts)
-        refuse_drive(problem, drive, model)
+        problem = _problem(sweep, velocity, -1, checked_drive(velocity, **given))
+        refuse_drive(problem, choose_model(problem, sweep.model))
 
 
 def solver_names(sweep: Sweep) -> tuple[str, str]:
@@ -197,12 +207,7 @@ def solver_names(sweep: Sweep) -> tuple[str, str]:
     """
     if ":" not in sweep.motion + sweep.pressure:
         return sweep.motion, sweep.pressure  # there are no two ways to write a plain name
-    motion = _motion_of(sweep)
-    return motion.name, motion.pressure.name
-
-
-def _motion_of(sweep):
-    """The Motion of a Sweep; raises ValueError for a motion or a pressure that there is not."""
     from microslip.motions.by_name import motion_named
+    from microslip.pressures.by_name import pressure_named
 
-    return motion_named(sweep.motion, sweep.pressure)
+    return motion_named(sweep.motion).name, pressure_named(sweep.pressure).name

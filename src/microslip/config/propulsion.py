@@ -61,7 +61,7 @@ def _refuse_what_drives_nothing(motions: Iterable[SelfPropelledMotion], where: s
 
     for motion in motions:
         try:
-            checked_propulsion(motion.motion, motion.amplitude, motion.poisson)
+            checked_propulsion(motion.motion, motion.amplitude, poisson=motion.poisson)
         except InputError as error:  # its arguments have the names of the keys
             line = f"{where}.{motion.name}.{error.argument}: {error.value!r}: {error.allowed}"
             raise ConfigError(" ".join(line.split())) from None

@@ -1,13 +1,14 @@
-"""Files that hold a record each, or a family of records for numbers that follow a name.
+"""Classes with a file each, and the text forms of their objects.
 
-A family is a module with DEFAULTS, the numbers and their values if they are not given, and a
-function that makes a record of a name and these numbers.
+A class is a frozen dataclass whose fields are numbers with defaults.  The text of an object is the
+name of its class with the numbers that differ from their defaults, as in "power:exponent=1".
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Sequence
+from dataclasses import fields
 from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
@@ -16,7 +17,7 @@ from traceback import extract_tb
 from types import ModuleType
 
 from microslip.foundation import spec
-from microslip.foundation.errors import InputError, shown
+from microslip.foundation.errors import InputError
 
 
 def modules_in(
@@ -47,7 +48,7 @@ def modules_in(
         except (Exception, SystemExit) as error:  # the code of a user may raise anything
             broken[file.name] = f"{path} cannot be imported: {described(error, path)}"
             continue
-        if not os.path.samefile(os.path.dirname(str(module.__file__)), folder):
+        if not os.path.samefile(os.path.dirname(module.__file__), folder):
             taken = f"{path}: {module.__file__} has the same name; allowed is another name"
             broken[file.name] = taken
             continue
@@ -67,82 +68,96 @@ def described(error: BaseException, path: str | os.PathLike) -> str:
     return " ".join(f"{type(error).__name__}{where}: {message}".split())
 
 
-def missing_parts(module: ModuleType, constant: str, kind: type, make: str) -> str:
-    """What keeps a module from being a record or a family; "" if nothing does.
+class Registry:
+    """Classes by name, found in the folders of a package and of the user.
 
     Parameters
     ----------
-    module : module
-        With the constant, or with DEFAULTS for a family.
-    constant, kind : str and type
-        Name and type of the record.
-    make : str
-        Name of the function of a family.
-    """
-    if hasattr(module, constant):
-        record = getattr(module, constant)
-        if not isinstance(record, kind):
-            return f"{module.__file__}: {constant} is no {kind.__name__}: {shown(record)}"
-    elif hasattr(module, "DEFAULTS"):
-        if not isinstance(module.DEFAULTS, dict):
-            return f"{module.__file__}: DEFAULTS is no dict: {shown(module.DEFAULTS)}"
-        if not callable(getattr(module, make, None)):
-            return f"{module.__file__}: there is no function {make} beside DEFAULTS"
-    return ""
+    package : module
+        Package whose modules the files become.
+    base : type
+        Base class.
+    argument : str
+        Argument that messages name.
+    first : sequence of str
+        Names that are listed before all others.
 
-
-def record_named(
-    text: str,
-    what: str,
-    families: Mapping[str, ModuleType],
-    known: Iterable[str],
-    make: str,
-    broken: Mapping[str, str],
-) -> object:
-    """The record of a family for the numbers in a text, such as "power:exponent=1".
-
-    Parameters
+    Attributes
     ----------
-    text, what : str
-        The text, and the argument that it was given for.
-    families : dict of str to module
-        Families by name.
-    known : iterable of str
-        All names that are allowed, for messages.
-    make : str
-        Name of the function of a family.
+    classes : dict of str to type
+        Classes by name.
     broken : dict of str to str
-        Path and error of each file that cannot be used, see `modules_in`.
-
-    Raises
-    ------
-    InputError
-        For a text that names none or a broken file, for numbers that the family does not take, and
-        for an error in the function of a family.
+        Path and error of each file that cannot be used.
     """
-    reason = broken.get(text.partition(":")[0].strip().replace("-", "_"))
-    if reason:
-        raise InputError(what, text, reason)
-    family, numbers = spec.split(text, what, known)
-    if family not in families:  # a record, which takes no numbers
-        spec.refuse_unknown(text, what, numbers, ())
-    module = families[family]
-    spec.refuse_unknown(text, what, numbers, list(module.DEFAULTS))
-    try:
-        return _made(module, family, make, tuple(sorted(numbers.items())))
-    except InputError as error:  # about the name as it is kept
-        raise InputError(what, text, error.allowed) from None
-    except Exception as error:  # in a file of the user
-        path = str(module.__file__)
-        raise InputError(what, text, f"{path}: {described(error, path)}") from error
+
+    def __init__(self, package: ModuleType, base: type, argument: str, first: Sequence[str] = ()):
+        self.package, self.base, self.argument, self.first = package, base, argument, first
+        self.classes: dict[str, type] = {}
+        self.broken: dict[str, str] = {}
+        self._own = list(package.__path__)
+        for folder in self._own:
+            self.find(folder)
+
+    def find(self, folder: str | os.PathLike) -> None:
+        """Register the classes in a folder.
+
+        A file that cannot be used raises an InputError only where its name is requested.
+        """
+        modules = dict(modules_in(folder, self.package, self.broken))
+        for file, module in modules.items():
+            name = file.replace("_", "-")
+            mine = [one for one in vars(module).values() if self._is_class_of(one, module)]
+            named = [one for one in mine if spec.name_of(one) == name]
+            if named:
+                self.classes[name] = named[0]
+            elif str(folder) not in self._own:
+                title = file.title().replace("_", "")
+                self.broken[file] = (
+                    f"{module.__file__}: no {self.base.__name__} named {title} in it"
+                )
+        for file in self.broken:
+            self.classes.pop(file.replace("_", "-"), None)
+        listed = [name for name in self.first if name in self.classes]
+        order = dict.fromkeys([*listed, *self.classes])
+        self.classes.update({name: self.classes.pop(name) for name in order})
+
+    def _is_class_of(self, one, module):
+        """Whether an object is a class that the module defines."""
+        return (
+            isinstance(one, type)
+            and issubclass(one, self.base)
+            and one is not self.base
+            and one.__module__ == module.__name__
+        )
+
+    def parse(self, text: str) -> object:
+        """The object of a text such as "power:exponent=1".
+
+        Raises
+        ------
+        InputError
+            For a text without a known name, a broken file, and numbers that the class does not
+            have or accept.
+        """
+        known = list(self.classes)
+        if not isinstance(text, str):
+            raise InputError(self.argument, text, f"allowed is one of {', '.join(known)}")
+        reason = self.broken.get(text.partition(":")[0].strip().replace("-", "_"))
+        if reason:
+            raise InputError(self.argument, text, reason)
+        name, numbers = spec.split(text, self.argument, known)
+        cls = self.classes[name]
+        spec.refuse_unknown(text, self.argument, numbers, [field.name for field in fields(cls)])
+        try:
+            return _made(cls, tuple(sorted(numbers.items())))
+        except InputError as error:  # about the text without its default numbers
+            raise InputError(self.argument, text, error.allowed) from None
+        except Exception as error:  # in a file of the user
+            path = import_module(cls.__module__).__file__
+            raise InputError(self.argument, text, f"{path}: {described(error, path)}") from error
 
 
 @lru_cache(maxsize=128)
-def _made(
-    module: ModuleType, family: str, make: str, numbers: tuple[tuple[str, float], ...]
-) -> object:
-    """One record for a name: what is prepared for it is found again by it."""
-    given = {key: value for key, value in numbers if value != module.DEFAULTS[key]}
-    words = ",".join(f"{key}={value:.12g}" for key, value in given.items())
-    name = f"{family}:{words}" if words else family
-    return getattr(module, make)(name, **(module.DEFAULTS | dict(numbers)))
+def _made(cls, numbers):
+    """One object for equal numbers, which keeps its cached properties."""
+    return cls(**dict(numbers))

@@ -42,7 +42,7 @@ class NamedFile:
     path : str
         As it was given; empty if the digest alone names the file.
     grid : str
-        What the values of the grid are, see pressures.measured.READINGS.
+        What the values of the grid are, see pressures.grid.READINGS.
     digest : str
         First DIGITS hexadecimal digits of the SHA-256 of its content; empty if it is not known.
     decimal, encoding : str

@@ -6,6 +6,7 @@ import difflib
 import math
 import re
 from collections.abc import Iterable
+from dataclasses import fields
 
 from microslip.foundation.errors import InputError
 
@@ -120,3 +121,17 @@ def refuse_counts(text: str, what: str, counts: dict[str, float], most: int) -> 
             raise InputError(
                 what, text, f"{key} = {count:g}: allowed is a whole number from 1 to {most}"
             )
+
+
+def name_of(cls: type) -> str:
+    """Name of a class in texts: ContinuousBore is "continuous-bore"."""
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "-", cls.__name__).lower()
+
+
+def text_of(record: object) -> str:
+    """Text of a dataclass of numbers: its name, and the numbers that differ from their defaults,
+    to 12 digits."""
+    numbers = {field.name: getattr(record, field.name) for field in fields(record)}
+    usual = {field.name: field.default for field in fields(record)}
+    words = ",".join(f"{k}={v:.12g}" for k, v in numbers.items() if v != usual[k])
+    return f"{name_of(type(record))}:{words}" if words else name_of(type(record))

@@ -70,6 +70,10 @@ class Contact(Protocol):
         Force over mu F_z per uniform displacement u_lim without slip, at least.
     sticks : bool
         Whether points may stick, so that something is left of it in the static limit.
+    grading : float or None
+        Grading of the steps towards the turning points; None: that of the problem.
+    edges : np.ndarray or None, shape (cells + 1,)
+        Radii between the rings; None for contacts without rings.
     radius : float
         Of the contact at its largest, over the reference one, where the normal load changes: 1 if
         it is not there, and `bound` is that at the start of a period then.
@@ -83,9 +87,14 @@ class Contact(Protocol):
     compiled: bool
     stiffness: float
     sticks: bool
+    grading: float | None = None
+    edges: np.ndarray | None = None
 
     def displacement(self, state: np.ndarray) -> np.ndarray:
         """A q: elastic displacement of each point, same shape as the state."""
+
+    def prolonged(self, state: np.ndarray) -> np.ndarray | None:
+        """Tractions of a coarser contact at the points of this one; None if there is no way."""
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
         """The state after lateral -> -lateral (lateral traction negated)."""

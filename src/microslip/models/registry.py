@@ -35,13 +35,13 @@ class Model:
     Attributes
     ----------
     build : callable
-        build(motion, poisson, cells, angles, focus) -> Contact.
+        build(problem, cells, angles, focus) -> Contact.
     refuses : callable
-        refuses(motion, poisson) -> why it does not apply, or "".
+        refuses(problem) -> why it does not apply, or "".
     exact : callable
-        exact(motion) -> whether refinement converges to the truth.
+        exact(problem) -> whether refinement converges to the truth.
     axes : callable
-        axes(motion) -> what of its space can be refined: "cells", "angles".
+        axes(problem) -> what of its space can be refined: "cells", "angles".
     side_by_side : callable or None
         side_by_side(contacts, shares, extents) -> Contact of a body on several of its contacts,
         each in its own units; None where its contact cannot be pulled, see pull.PullsContact.
@@ -49,8 +49,8 @@ class Model:
 
     build: Callable
     refuses: Callable
-    exact: Callable = lambda motion: True
-    axes: Callable = lambda motion: ("cells",)
+    exact: Callable = lambda problem: True
+    axes: Callable = lambda problem: ("cells",)
     side_by_side: Callable | None = None
 
     @property
@@ -59,89 +59,89 @@ class Model:
         return self.side_by_side is not None
 
 
-def _never(motion):
+def _never(problem):
     return False
 
 
 LOAD_CHANGES = "it knows a constant normal load alone"
 
 
-def _refuse_pulsation(motion, poisson):
-    return LOAD_CHANGES if motion.depth is not None else ""
+def _refuse_pulsation(problem):
+    return LOAD_CHANGES if problem.motion.loads else ""
 
 
-def _refuse_other_loads(motion, poisson):
-    if motion.depth is None or motion.pressure.is_indenter:
+def _refuse_other_loads(problem):
+    if not problem.motion.loads or problem.pressure.is_indenter:
         return ""
-    return f"the load of axisymmetric indenters may change, not that of {motion.pressure.name}"
+    return f"the load of axisymmetric indenters may change, not that of {problem.pressure.name}"
 
 
 def _any_of(*refusals):
     """What the first refusal says that says something."""
-    return lambda motion, poisson: next(filter(None, (r(motion, poisson) for r in refusals)), "")
+    return lambda problem: next(filter(None, (refuse(problem) for refuse in refusals)), "")
 
 
-def _refuse_rings(motion, poisson):
-    if not motion.pressure.is_round:
-        return f"rings cannot resolve the pressure {motion.pressure.name}"
-    if motion.rotates:
+def _refuse_rings(problem):
+    if not problem.pressure.is_round:
+        return f"rings cannot resolve the pressure {problem.pressure.name}"
+    if problem.motion.rotates:
         return "rings alone cannot resolve a rotation"
-    return "rings alone cannot resolve nu > 0" if poisson > 0.0 else ""
+    return "rings alone cannot resolve nu > 0" if problem.poisson > 0.0 else ""
 
 
-def _refuse_rotation(motion, poisson):
-    return "it has no extension that could turn" if motion.rotates else ""
+def _refuse_rotation(problem):
+    return "it has no extension that could turn" if problem.motion.rotates else ""
 
 
-def _refuse_springs(motion, poisson):
-    if not motion.pressure.is_indenter:
-        return f"it is known for axisymmetric indenters only, not for {motion.pressure.name}"
-    return _refuse_rotation(motion, poisson)
+def _refuse_springs(problem):
+    if not problem.pressure.is_indenter:
+        return f"it is known for axisymmetric indenters only, not for {problem.pressure.name}"
+    return _refuse_rotation(problem)
 
 
-def _refuse_angles(motion, poisson):
-    if motion.pressure.is_round:
+def _refuse_angles(problem):
+    if problem.pressure.is_round:
         return ""
-    return f"rings cannot resolve the pressure {motion.pressure.name}"
+    return f"rings cannot resolve the pressure {problem.pressure.name}"
 
 
-def _refuse_rigid(motion, poisson):
-    if motion.rotates and not motion.half_disc:
+def _refuse_rigid(problem):
+    if problem.motion.rotates and not problem.motion.half_disc:
         return "half of the contact does not tell the other half"
-    return _refuse_angles(motion, poisson) if motion.rotates else ""
+    return _refuse_angles(problem) if problem.motion.rotates else ""
 
 
 _NO_ROTATION = _any_of(_refuse_rotation, _refuse_pulsation)
 
 
-def _rigid(motion, poisson, cells, angles, focus):
+def _rigid(problem, cells, angles, focus):
     from microslip.models.reduced.rigid import RigidContact
 
-    return RigidContact(cells, angles, motion.rotates, motion.pressure)
+    return RigidContact(cells, angles, problem.motion.rotates, problem.pressure)
 
 
-def _slider(motion, poisson, cells, angles, focus):
+def _slider(problem, cells, angles, focus):
     from microslip.models.reduced.slider import slider_contact
 
     return slider_contact()
 
 
-def _dahl(motion, poisson, cells, angles, focus):
+def _dahl(problem, cells, angles, focus):
     from microslip.models.reduced.dahl import DahlContact
 
-    return DahlContact(motion.pressure.stiffness)
+    return DahlContact(problem.pressure.stiffness)
 
 
-def _mdr(motion, poisson, cells, angles, focus):
+def _mdr(problem, cells, angles, focus):
     from microslip.models.reduced.mdr import mdr_contact
 
-    return mdr_contact(cells, focus, motion.pressure)
+    return mdr_contact(cells, focus, problem.pressure)
 
 
-def _radial(motion, poisson, cells, angles, focus):
+def _radial(problem, cells, angles, focus):
     from microslip.models.rings.contact import RadialContact
 
-    return RadialContact.resolved(cells, focus, motion.pressure)
+    return RadialContact.resolved(cells, focus, problem.pressure)
 
 
 def _rings_side_by_side(contacts, shares, extents):
@@ -150,11 +150,12 @@ def _rings_side_by_side(contacts, shares, extents):
     return RingsSideBySide(contacts, shares, extents)
 
 
-def _polar(motion, poisson, cells, angles, focus):
+def _polar(problem, cells, angles, focus):
     from microslip.models.polar.contact import PolarContact
 
-    whole = not motion.half_disc
-    return PolarContact(cells, angles, motion.rotates, poisson, focus, motion.pressure, whole=whole)
+    motion, whole = problem.motion, not problem.motion.half_disc
+    place = (problem.poisson, focus, problem.pressure)
+    return PolarContact(cells, angles, motion.rotates, *place, whole=whole)
 
 
 def _polar_side_by_side(contacts, shares, extents):
@@ -163,14 +164,14 @@ def _polar_side_by_side(contacts, shares, extents):
     return PolarSideBySide(contacts, shares, extents)
 
 
-def _cartesian(motion, poisson, cells, angles, focus):
+def _cartesian(problem, cells, angles, focus):
     from microslip.models.squares import half
     from microslip.models.squares.contact import CartesianContact
 
     symmetry = ""  # of the tractions, as far as the pressure has it, too
-    if motion.half_disc:
-        symmetry = half.MIRROR if motion.rotates else half.TURN
-    return CartesianContact(cells, poisson, motion.pressure, symmetry)
+    if problem.motion.half_disc:
+        symmetry = half.MIRROR if problem.motion.rotates else half.TURN
+    return CartesianContact(cells, problem.poisson, problem.pressure, symmetry)
 
 
 def _squares_side_by_side(contacts, shares, extents):
@@ -183,17 +184,17 @@ MODELS = {
     "rigid": Model(
         _rigid,
         _any_of(_refuse_pulsation, _refuse_rigid),
-        exact=lambda motion: not motion.periodic,
-        axes=lambda motion: ("cells", "angles") if motion.rotates else (),
+        exact=lambda problem: not problem.motion.periodic,
+        axes=lambda problem: ("cells", "angles") if problem.motion.rotates else (),
     ),
     "slider": Model(
         _slider,
         _NO_ROTATION,
         exact=_never,
-        axes=lambda motion: (),
+        axes=lambda problem: (),
         side_by_side=_rings_side_by_side,
     ),
-    "dahl": Model(_dahl, _NO_ROTATION, exact=_never, axes=lambda motion: ()),
+    "dahl": Model(_dahl, _NO_ROTATION, exact=_never, axes=lambda problem: ()),
     "mdr": Model(
         _mdr,
         _any_of(_refuse_other_loads, _refuse_springs),
@@ -208,7 +209,7 @@ MODELS = {
     "polar": Model(
         _polar,
         _any_of(_refuse_other_loads, _refuse_angles),
-        axes=lambda motion: ("cells", "angles"),
+        axes=lambda problem: ("cells", "angles"),
         side_by_side=_polar_side_by_side,
     ),
     "cartesian": Model(_cartesian, _refuse_pulsation, side_by_side=_squares_side_by_side),

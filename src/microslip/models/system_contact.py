@@ -28,6 +28,8 @@ class SystemContact(ABC):
     compiled = True
     sticks = True
     radius = 1.0
+    grading = None
+    edges = None
 
     @abstractmethod
     def system(self) -> System:
@@ -45,6 +47,10 @@ class SystemContact(ABC):
     def loading(self, path: Path) -> Loading:
         """What a path imposes on the contact."""
         return Loading(path.motion(), self.field_bounds(path), path.carry, float(path.end))
+
+    def prolonged(self, state: np.ndarray) -> np.ndarray | None:
+        """Tractions of a coarser contact at the points of this one; None if there is no way."""
+        return None
 
     def affordable(self, work: float) -> float:
         """Marches until a budget has to be looked at: without one, as many as you like."""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from microslip.pressures.by_name import Pressure
+from microslip.pressures.pressure import Pressure
 
 
 def load_on_rings(pressure: Pressure, edges: np.ndarray, depth: np.ndarray) -> np.ndarray:

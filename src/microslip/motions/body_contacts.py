@@ -60,7 +60,7 @@ def contacts_of(text: str) -> tuple[BodyContact, ...]:
     )
 
 
-def written(contacts: tuple[BodyContact, ...]) -> str:
+def contacts_text(contacts: tuple[BodyContact, ...]) -> str:
     """The text of contacts, to 12 digits."""
     return ";".join(
         f"load={one.load:.12g},phase={one.phase:.12g},amplitude={one.amplitude:.12g}"

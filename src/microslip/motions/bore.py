@@ -1,6 +1,10 @@
 """Forward sliding with an oscillating rotation about the contact normal, the paper's second
 motion."""
 
+from __future__ import annotations
+
+from dataclasses import dataclass
+
 import numpy as np
 
 from microslip.motions.motion import Motion, within_rings
@@ -8,26 +12,24 @@ from microslip.pressures.pressure import Pressure
 from microslip.theory import hertz
 
 
-def displacement(phase: np.ndarray, velocity: float, amplitude: float, poisson: float) -> tuple:
-    """Eq 23 with Eqs 27 and 28: forward v~ phi_0 t, angle phi_0 sin t."""
-    angle = hertz.bore_angle(amplitude, poisson)
-    return velocity * angle * phase, np.zeros_like(phase), angle * np.sin(phase)
+@dataclass(frozen=True)
+class Bore(Motion):
+    """Sliding forward with a sinusoidal rotation about the contact normal (spin)."""
 
+    summary = "sliding forward while oscillating in rotation about the contact normal"
+    velocity_label = "v0 / (Omega phi0 a)"
+    amplitude_label = "phi0 / phi_lk(a/2)"
+    rotates = True
+    half_period_mirror = True
 
-def focus(velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-    """Lubkin's stick radius of the oscillation alone (Eq 30); under another pressure rings there do
-    no harm."""
-    return within_rings(hertz.lubkin_stick_radius(hertz.bore_angle(amplitude)))
+    def displacement(
+        self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Eq 23 with Eqs 27 and 28: forward v~ phi_0 t, angle phi_0 sin t."""
+        angle = hertz.bore_angle(amplitude, poisson)
+        return velocity * angle * phase, np.zeros_like(phase), angle * np.sin(phase)
 
-
-MOTION = Motion(
-    name="bore",
-    summary="sliding forward while oscillating in rotation about the contact normal",
-    displacement=displacement,
-    periodic=True,
-    rotates=True,
-    half_period_mirror=True,
-    focus=focus,
-    velocity_label="v0 / (Omega phi0 a)",
-    amplitude_label="phi0 / phi_lk(a/2)",
-)
+    def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
+        """Lubkin's stick radius of the oscillation alone (Eq 30), also under other pressures,
+        where this grading does no harm."""
+        return within_rings(hertz.lubkin_stick_radius(hertz.bore_angle(amplitude)))

@@ -1,28 +1,31 @@
 """Forward sliding with a steady rotation about the contact normal, the paper's third motion."""
 
+from __future__ import annotations
+
+from dataclasses import dataclass
+
 import numpy as np
 
 from microslip.motions.motion import Motion, within_rings
 from microslip.pressures.pressure import Pressure
 
 
-def displacement(phase: np.ndarray, velocity: float, amplitude: float, poisson: float) -> tuple:
-    """Eqs 12 and 13: forward v~ and angle 1 for each unit of turned angle (in u_lim / a)."""
-    return velocity * phase, np.zeros_like(phase), phase + 0.0
+@dataclass(frozen=True)
+class ContinuousBore(Motion):
+    """Sliding forward with a steady rotation about the contact normal."""
 
+    summary = "sliding forward while rotating steadily about the contact normal"
+    velocity_label = "v0 / (omega a)"
+    amplitude_label = ""
+    periodic = False
+    rotates = True
 
-def focus(velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-    """The instantaneous centre of rotation, while it lies inside the contact (Eq 14)."""
-    return within_rings(velocity) if velocity < 1.0 else None
+    def displacement(
+        self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Eqs 12 and 13: forward v~ and angle 1 for each unit of turned angle (in u_lim / a)."""
+        return velocity * phase, np.zeros_like(phase), phase + 0.0
 
-
-MOTION = Motion(
-    name="continuous-bore",
-    summary="sliding forward while rotating steadily about the contact normal",
-    displacement=displacement,
-    periodic=False,
-    rotates=True,
-    half_period_mirror=False,
-    focus=focus,
-    velocity_label="v0 / (omega a)",
-)
+    def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
+        """The instantaneous centre of rotation, while it lies inside the contact (Eq 14)."""
+        return within_rings(velocity) if velocity < 1.0 else None

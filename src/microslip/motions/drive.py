@@ -1,32 +1,70 @@
-"""What pulls the contact forward: a velocity, as in the paper, a force, or a spring with a body.
+"""Drives other than a prescribed velocity: a prescribed force, or a spring that pulls a body.
 
     velocity   u = v t                              force   m u'' + f = P
     spring     m u'' + c u' + f = k (v t - u)
 
 u: forward displacement of the body beyond the oscillation of the motion; f: forward force of the
-contact; all over mu F_z, u_lim and the time 1 / omega.
+contact; all over mu F_z, u_lim and the time 1 / omega.  Here F_z is the load without oscillation.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from microslip.foundation import spec
+
 
 @dataclass(frozen=True)
 class Drive:
-    """A drive other than a velocity.
+    """Base class of drives.
 
     Attributes
     ----------
     force : float or None
-        P, over mu times the mean normal load; None: a spring pulls.
-    stiffness : float
-        k, over mu F_z / u_lim; 0 under a force.
-    mass, damping : float
-        m and c, over mu F_z / (u_lim omega^2) and mu F_z / (u_lim omega).
+        P; None for a spring.
+    stiffness, mass, damping : float
+        k over mu F_z / u_lim, m over mu F_z / (u_lim omega^2), c over mu F_z / (u_lim omega).
     """
 
-    force: float | None = None
-    stiffness: float = 0.0
+    force = None
+    stiffness = 0.0
+    mass = 0.0
+    damping = 0.0
+
+    def __str__(self) -> str:
+        return spec.text_of(self)
+
+
+@dataclass(frozen=True)
+class Force(Drive):
+    """A prescribed forward force, on a body that may have a mass.
+
+    Parameters
+    ----------
+    force : float
+        Over mu times the mean normal load.
+    mass : float
+        Over mu F_z / (u_lim omega^2).
+    """
+
+    force: float
+    mass: float = 0.0
+
+
+@dataclass(frozen=True)
+class Spring(Drive):
+    """A spring whose far end has the velocity of the problem, and the body that it pulls.
+
+    Parameters
+    ----------
+    stiffness : float
+        Over mu F_z / u_lim, above 0.
+    mass : float
+        Over mu F_z / (u_lim omega^2).
+    damping : float
+        Of a dashpot beside the spring, over mu F_z / (u_lim omega).
+    """
+
+    stiffness: float
     mass: float = 0.0
     damping: float = 0.0

@@ -8,69 +8,100 @@ u_lim.  The defaults are a circle; F = 0 is the transverse motion, L = 0 the lon
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
-from microslip.motions.mirror_image import reverses_forward
-from microslip.motions.motion import HALF_PERIOD, LOOP, Motion, stick_focus
+from microslip.motions.motion import LOOP, Motion, stick_focus
+from microslip.motions.symmetry import reverses_forward
+from microslip.pressures.pressure import Pressure
 
-SUMMARY = "sliding forward while oscillating along two directions"
-HELP = (
-    "such as forward=0.5,phase=30: shares of A, forward and lateral (1), phase of forward in "
-    "degrees (90), forward_cycles and lateral_cycles (1)"
-)
-DEFAULTS = {
-    "forward": 1.0,
-    "lateral": 1.0,
-    "phase": 90.0,
-    "forward_cycles": 1.0,
-    "lateral_cycles": 1.0,
-}
 MOST_CYCLES = 20
-WHOLE_PERIOD = (*HALF_PERIOD, 1.5 * np.pi)
 
 
-def motion(
-    name: str,
-    forward: float,
-    lateral: float,
-    phase: float,
-    forward_cycles: float,
-    lateral_cycles: float,
-) -> Motion:
-    """The Motion of these numbers; raises InputError for shares below 0, none at all, and cycles
-    that are no whole numbers."""
-    spec.refuse_shares(name, "motion", {"forward": forward, "lateral": lateral})
-    if max(forward, lateral) == 0.0:
-        raise InputError("motion", name, "allowed is forward or lateral above 0")
-    cycles = {"forward_cycles": forward_cycles, "lateral_cycles": lateral_cycles}
-    spec.refuse_counts(name, "motion", cycles, MOST_CYCLES)
-    lead = np.deg2rad(phase % 360.0)
+@dataclass(frozen=True)
+class Elliptic(Motion):
+    """Sliding forward while oscillating along two directions.
 
-    def displacement(phase, velocity, amplitude, poisson):
-        along = velocity * phase + amplitude * forward * np.sin(forward_cycles * phase + lead)
-        across = amplitude * lateral * np.sin(lateral_cycles * phase)
-        return along, across, np.zeros_like(phase)
+    Parameters
+    ----------
+    forward, lateral : float
+        Shares of the amplitude, 0 to 1.
+    phase : float
+        Phase of the forward oscillation, degrees.
+    forward_cycles, lateral_cycles : int
+        Cycles in a period, 1 to 20.
 
-    ahead, aside, _ = displacement(LOOP, 0.0, 1.0, 0.0)
-    reach = float(np.hypot(ahead, aside).max())
-    mirrored = lateral_cycles % 2 == 1 and (forward == 0.0 or forward_cycles % 2 == 0)
-    simple = forward_cycles == lateral_cycles == 1.0
-    return Motion(
-        name=name,
-        summary=SUMMARY,
-        displacement=displacement,
-        periodic=True,
-        rotates=False,
-        half_period_mirror=mirrored,
-        focus=lambda velocity, amplitude, pressure: stick_focus(amplitude * reach, pressure),
-        velocity_label="v0 / (omega u_lim)",
-        amplitude_label="A / u_lim",
-        turns=lambda velocity, amplitude: HALF_PERIOD if mirrored else WHOLE_PERIOD,
-        straight=simple and (forward == 0.0 or lead % np.pi == 0.0),
-        propels=forward > 0.0
-        and lateral > 0.0
-        and not reverses_forward(forward=int(forward_cycles), lateral=int(lateral_cycles)),
-        cycles=int(max(forward_cycles if forward else 1.0, lateral_cycles if lateral else 1.0)),
+    Raises
+    ------
+    InputError
+        For shares outside 0..1, both 0, and cycles that are no whole numbers in their range.
+    """
+
+    forward: float = 1.0
+    lateral: float = 1.0
+    phase: float = 90.0
+    forward_cycles: int = 1
+    lateral_cycles: int = 1
+
+    summary = "sliding forward while oscillating along two directions"
+    numbers = (
+        "such as forward=0.5,phase=30: shares of A, forward and lateral (1), phase of forward in "
+        "degrees (90), forward_cycles and lateral_cycles (1)"
     )
+    amplitude_label = "A / u_lim"
+
+    def __post_init__(self):
+        shares = {"forward": self.forward, "lateral": self.lateral}
+        spec.refuse_shares(self.name, "motion", shares)
+        if max(shares.values()) == 0.0:
+            raise InputError("motion", self.name, "allowed is forward or lateral above 0")
+        cycles = {"forward_cycles": self.forward_cycles, "lateral_cycles": self.lateral_cycles}
+        spec.refuse_counts(self.name, "motion", cycles, MOST_CYCLES)
+
+    @property
+    def lead(self) -> float:
+        """Phase of the forward oscillation, radians."""
+        return float(np.deg2rad(self.phase % 360.0))
+
+    @cached_property
+    def reach(self) -> float:
+        """Largest distance from the middle, over the amplitude."""
+        ahead, aside, _ = self.displacement(LOOP, 0.0, 1.0, 0.0)
+        return float(np.hypot(ahead, aside).max())
+
+    @property
+    def half_period_mirror(self) -> bool:
+        return self.lateral_cycles % 2 == 1 and (
+            self.forward == 0.0 or self.forward_cycles % 2 == 0
+        )
+
+    @property
+    def straight(self) -> bool:
+        simple = self.forward_cycles == self.lateral_cycles == 1
+        return simple and (self.forward == 0.0 or self.lead % np.pi == 0.0)
+
+    @property
+    def propels(self) -> bool:
+        cycles = {"forward": int(self.forward_cycles), "lateral": int(self.lateral_cycles)}
+        return min(self.forward, self.lateral) > 0.0 and not reverses_forward(**cycles)
+
+    @property
+    def cycles(self) -> int:
+        ahead = self.forward_cycles if self.forward else 1
+        return int(max(ahead, self.lateral_cycles if self.lateral else 1))
+
+    def displacement(
+        self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Forward v~ t + A F sin(M t + P), lateral A L sin(N t)."""
+        ahead = amplitude * self.forward * np.sin(self.forward_cycles * phase + self.lead)
+        aside = amplitude * self.lateral * np.sin(self.lateral_cycles * phase)
+        return velocity * phase + ahead, aside, np.zeros_like(phase)
+
+    def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
+        """Stick radius of a straight oscillation of the same reach."""
+        return stick_focus(amplitude * self.reach, pressure)

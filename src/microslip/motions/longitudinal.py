@@ -1,40 +1,41 @@
 """Forward sliding with an oscillation along the same direction."""
 
-from dataclasses import replace
+from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.motions import transverse
+from microslip.motions.motion import Motion, stick_focus
 from microslip.pressures.pressure import Pressure
 from microslip.theory import masing
 
 
-def displacement(phase: np.ndarray, velocity: float, amplitude: float, poisson: float) -> tuple:
-    """Forward v~ t + x~ sin t."""
-    forward = velocity * phase + amplitude * np.sin(phase)
-    return forward, np.zeros_like(phase), np.zeros_like(phase)
+@dataclass(frozen=True)
+class Longitudinal(Motion):
+    """Sliding forward with a sinusoidal oscillation in the forward direction."""
 
+    summary = "sliding forward while oscillating along the same direction"
+    amplitude_label = "x0 / u_lim"
 
-def turns(velocity: float, amplitude: float) -> tuple[float, ...]:
-    """Where the sphere turns back and forth, if it does: v~ + x~ cos t = 0."""
-    back = np.arccos(-velocity / amplitude) if velocity < amplitude else np.pi / 2
-    return -back, back, 2.0 * np.pi - back
+    def displacement(
+        self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Forward v~ t + x~ sin t."""
+        forward = velocity * phase + amplitude * np.sin(phase)
+        return forward, np.zeros_like(phase), np.zeros_like(phase)
 
+    def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
+        """Stick radius of the oscillation alone (Eq 8)."""
+        return stick_focus(amplitude, pressure)
 
-def closed_form_of(velocity: float, amplitude: float, pressure: Pressure) -> float | None:
-    """First loading with Masing's memory, where the curve of first loading is known."""
-    if pressure.loading is None:
-        return None
-    return masing.longitudinal(velocity, amplitude, pressure.loading)
+    def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
+        """Phases at which the sphere turns back and forth, if it does: v~ + x~ cos t = 0."""
+        back = np.arccos(-velocity / amplitude) if velocity < amplitude else np.pi / 2
+        return -back, back, 2.0 * np.pi - back
 
-
-MOTION = replace(
-    transverse.MOTION,
-    name="longitudinal",
-    summary="sliding forward while oscillating along the same direction",
-    displacement=displacement,
-    half_period_mirror=False,
-    turns=turns,
-    amplitude_label="x0 / u_lim",
-    closed_form_of=closed_form_of,
-)
+    def closed_form(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
+        """First loading with Masing's memory, for pressures with a known loading curve."""
+        if pressure.loading is None:
+            return None
+        return masing.longitudinal(velocity, amplitude, pressure.loading)

@@ -1,4 +1,4 @@
-"""The record of a motion: where it goes, which symmetries it has, what pressure it is under.
+"""The base class of motions: displacement as a function of the phase, and its symmetries.
 
 Names do not depend on the paper's axes: *forward* is the direction of sliding, *lateral* the one
 across it, with forward x lateral such that a positive angle moves points on the positive lateral
@@ -9,96 +9,116 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
-from microslip.pressures.by_name import HERTZ, Pressure
+from microslip.foundation import spec
+from microslip.pressures.pressure import Pressure
 
 FOCUS_RANGE = (0.05, 0.9995)
-"""Radii that rings may gather at; a stick zone smaller than the first carries next to no load."""
+"""Radii that rings may be graded towards; a smaller stick zone carries next to no load."""
 
 
 LOOP = np.linspace(0.0, 2.0 * np.pi, 721)
-"""Phases of a period, close enough to see where an oscillation goes."""
+"""Phases of a period, fine enough to find the extremes of an oscillation."""
 HALF_PERIOD = (-np.pi / 2, np.pi / 2)
 """From one turning point of a sine to the next."""
+WHOLE_PERIOD = (*HALF_PERIOD, 1.5 * np.pi)
 
 
 @dataclass(frozen=True)
 class Motion:
-    """One kind of motion.
+    """A prescribed motion.
+
+    Each motion is a subclass in a file of its own.  Its fields are the numbers that may follow its
+    name, as in "elliptic:forward=0.5,phase=30", which `str` writes back.  The name is that of the
+    class: ContinuousBore is "continuous-bore".
 
     Attributes
     ----------
-    name, summary : str
-        As it is asked for, and in a line.
-    displacement : callable
-        displacement(phase, velocity, amplitude, poisson) -> (forward, lateral, angle), arrays of
-        the shape of the phase.
-    periodic : bool
-        The motion oscillates with period 2 pi and needs an amplitude; otherwise it is steady.
-    rotates : bool
-        The angle is not zero, so tractions depend on the angle around the contact.
-    half_period_mirror : bool
-        Half a period later the motion is its own image under lateral -> -lateral.  Without it a
-        whole period is marched.
-    focus : callable
-        focus(velocity, amplitude, pressure): radius where the traction has its kink (None: nowhere
-        special).
+    summary, numbers : str
+        Description in a line, and of the numbers.
     velocity_label, amplitude_label : str
         Formulas of the dimensionless groups.
-    turns : callable
-        turns(velocity, amplitude): phases at which the motion turns, from where a march begins to
-        where it ends, half a period later or a whole one.
+    periodic : bool
+        Whether the motion oscillates with period 2 pi and has an amplitude; otherwise it is steady.
+    rotates : bool
+        Whether the angle varies, so that tractions depend on the angle around the contact.
+    half_period_mirror : bool
+        Whether the motion half a period later is its own image under lateral -> -lateral, angle ->
+        -angle.  Otherwise a march takes a whole period.
     straight : bool
-        The oscillation alone goes to and fro on a line, from the phase -pi/2 to pi/2.
+        Whether the oscillation alone goes to and fro on a line, from the phase -pi/2 to pi/2.
     propels : bool
-        The oscillation alone may propel the contact forward, so that friction may be negative;
-        without it the mean force resists, see theory/bounds.py and mirror_image.reverses_forward.
+        Whether the oscillation alone may propel the contact forward, so that friction may be
+        negative; see `symmetry.reverses_forward`.
     cycles : int
-        Of the oscillation in a period, along the direction that has more.
+        Largest number of cycles in a period.
     half_disc : bool
-        Half of a round contact tells the other half: where the motion rotates by mirror symmetry
-        across the lateral axis, else by point symmetry.  A rotation together with a lateral motion
-        has neither, and all of the disc is resolved.
-    pressure : pressure.Pressure
-        How the load is spread; it does not change while the contact moves.
-    depth : callable or None
-        depth(phase, amplitude, pressure): indentation over that of the reference state, >= 0 (0: no
-        contact), of the shape of the phase; None: it does not change.
-    deepest, mean_load : callable
-        Of (amplitude, pressure): its largest value, and the mean of the normal load over that of
-        the reference state.
-    whole : callable or None
-        whole(velocity, amplitude, pressure): mean friction in closed form at nu = 0, velocity 0 as
-        its limit, or None if there is none; None: there never is.
+        Whether half of a round contact determines the other half: by mirror symmetry across the
+        lateral axis for rotations, else by point symmetry.  A rotation together with a lateral
+        motion has neither.
+    loads : bool
+        Whether the normal load oscillates; then `depth`, `deepest` and `mean_load` count.
     """
 
-    name: str
-    summary: str
-    displacement: Callable
-    periodic: bool
-    rotates: bool
-    half_period_mirror: bool
-    focus: Callable
-    velocity_label: str
-    amplitude_label: str = ""
-    turns: Callable = lambda velocity, amplitude: HALF_PERIOD
-    straight: bool = True
-    propels: bool = False
-    cycles: int = 1
-    half_disc: bool = True
-    pressure: Pressure = HERTZ
-    depth: Callable | None = None
-    deepest: Callable = lambda amplitude, pressure: 1.0
-    mean_load: Callable = lambda amplitude, pressure: 1.0
-    closed_form_of: Callable | None = None
+    summary: ClassVar[str] = ""
+    numbers: ClassVar[str] = ""
+    velocity_label: ClassVar[str] = "v0 / (omega u_lim)"
+    amplitude_label: ClassVar[str] = "A"
+    periodic: ClassVar[bool] = True
+    rotates = False
+    half_period_mirror = False
+    straight = True
+    propels = False
+    cycles = 1
+    half_disc = True
+    loads: ClassVar[bool] = False
+    closed_form: ClassVar[Callable | None] = None
+    """closed_form(velocity, amplitude, pressure) -> mean friction at nu = 0 (velocity 0: its
+    limit), or None where it is not known; None for motions without one."""
 
-    def creep(self, velocity: float, amplitude: float, poisson: float) -> float:
+    @property
+    def name(self) -> str:
+        """Name with the numbers that differ from their defaults."""
+        return spec.text_of(self)
+
+    def __str__(self) -> str:
+        return self.name
+
+    def displacement(
+        self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Forward, lateral and angular displacement, arrays of the shape of the phase."""
+        raise NotImplementedError
+
+    def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
+        """Radius towards which rings are graded, where the traction has its kink; None: nowhere."""
+        return None
+
+    def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
+        """Turning points: phases from the start of a march to its end, half a period or a whole
+        one later."""
+        return HALF_PERIOD if self.half_period_mirror else WHOLE_PERIOD
+
+    def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
+        """Indentation over that of the reference state, >= 0; 0 where contact is lost."""
+        return np.ones_like(phase)
+
+    def deepest(self, amplitude: float, pressure: Pressure) -> float:
+        """Largest value of `depth`."""
+        return 1.0
+
+    def mean_load(self, amplitude: float, pressure: Pressure) -> float:
+        """Mean of the normal load over that of the reference state."""
+        return 1.0
+
+    def drift(self, velocity: float, amplitude: float, poisson: float) -> float:
         """Mean forward displacement in one radian of phase, in u_lim.
 
-        It is proportional to the velocity, so that it is taken at one which the oscillation, whose
-        return is rounded, does not drown.
+        It is proportional to the velocity, so it is computed at velocity 1: at a small velocity it
+        would drown in the rounding of the oscillation.
         """
         ends = np.array([0.0, 2.0 * np.pi])
         fast, _, _ = self.displacement(ends, 1.0, amplitude, poisson)
@@ -120,7 +140,7 @@ def within_rings(radius: float) -> float:
 
 
 def stick_focus(reach: float, pressure: Pressure) -> float | None:
-    """Where the contact would stick if it went so far (u_lim) along a line and back (Eq 8 for a
-    sphere); nowhere once all of it slides, or if that is not a circle."""
+    """Stick radius after a displacement `reach` (u_lim) along a line and back (Eq 8 for a sphere);
+    None at full slip, or if the stick zone is not a circle."""
     radius = pressure.stick_radius(reach) if reach < 1.0 else None
     return None if radius is None else within_rings(radius)

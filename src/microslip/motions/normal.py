@@ -12,141 +12,173 @@ it is.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
 from microslip.motions.elliptic import MOST_CYCLES
-from microslip.motions.mirror_image import reverses_forward
 from microslip.motions.motion import Motion, within_rings
+from microslip.motions.symmetry import reverses_forward
+from microslip.pressures.pressure import Pressure
 from microslip.theory import hertz, oscillating_load
 
-SUMMARY = "sliding forward while the normal load oscillates, or the indentation"
-HELP = (
-    "such as lateral=1,phase=90: shares of A, load (1, over the mean) or indentation (0: the load "
-    "oscillates), lateral and forward (0, over u_lim), angle (0, over phi_lk(a/2)), phase of these "
-    "in degrees (0), normal_cycles, lateral_cycles, forward_cycles and angle_cycles (1)"
-)
-DEFAULTS = {
-    "load": 1.0,
-    "indentation": 0.0,
-    "lateral": 0.0,
-    "forward": 0.0,
-    "angle": 0.0,
-    "phase": 0.0,
-    "normal_cycles": 1.0,
-    "lateral_cycles": 1.0,
-    "forward_cycles": 1.0,
-    "angle_cycles": 1.0,
-}
 
+@dataclass(frozen=True)
+class Normal(Motion):
+    """Sliding forward while the normal load or the indentation oscillates.
 
-def motion(
-    name: str,
-    *,
-    load: float,
-    indentation: float,
-    lateral: float,
-    forward: float,
-    angle: float,
-    phase: float,
-    normal_cycles: float,
-    lateral_cycles: float,
-    forward_cycles: float,
-    angle_cycles: float,
-) -> Motion:
-    """The Motion of these numbers; raises InputError for shares out of 0..1, where neither or both
-    of load and indentation oscillate, and for cycles that are no whole numbers."""
-    cycles = {
-        "normal_cycles": normal_cycles,
-        "lateral_cycles": lateral_cycles,
-        "forward_cycles": forward_cycles,
-        "angle_cycles": angle_cycles,
-    }
-    in_plane = {"lateral": lateral, "forward": forward, "angle": angle}
-    shares = {"load": load, "indentation": indentation} | in_plane
-    _check(name, shares, cycles)
-    by_load = indentation == 0.0
-    share = load if by_load else indentation
-    lead = np.deg2rad(phase % 360.0)
+    Parameters
+    ----------
+    load, indentation : float
+        Share of the amplitude by which the load or the indentation oscillates, over its mean, 0 to
+        1; exactly one of them is above 0.
+    lateral, forward, angle : float
+        Shares of the amplitude, 0 to 1: of u_lim, u_lim and phi_lk(a/2).
+    phase : float
+        Phase of the oscillation in the plane, degrees.
+    normal_cycles, lateral_cycles, forward_cycles, angle_cycles : int
+        Cycles in a period, 1 to 20.
 
-    def displacement(phase, velocity, amplitude, poisson):
-        along = velocity * phase + amplitude * forward * np.sin(forward_cycles * phase + lead)
-        across = amplitude * lateral * np.sin(lateral_cycles * phase + lead)
-        turn = np.sin(angle_cycles * phase + lead)
-        return along, across, hertz.bore_angle(amplitude * angle, poisson) * turn
+    Raises
+    ------
+    InputError
+        For shares outside 0..1, neither or both of load and indentation, and cycles that are no
+        whole numbers in their range.
+    """
 
-    def depth(phase, amplitude, pressure):
-        height = np.maximum(1.0 + amplitude * share * np.sin(normal_cycles * phase), 0.0)
-        return pressure.of_load(height) if by_load else height
+    load: float = 1.0
+    indentation: float = 0.0
+    lateral: float = 0.0
+    forward: float = 0.0
+    angle: float = 0.0
+    phase: float = 0.0
+    normal_cycles: int = 1
+    lateral_cycles: int = 1
+    forward_cycles: int = 1
+    angle_cycles: int = 1
 
-    def extreme(sign, amplitude, pressure):
-        height = max(1.0 + sign * amplitude * share, 0.0)
-        return float(pressure.of_load(height)) if by_load else height
-
-    def focus(velocity, amplitude, pressure):
-        """The edge of what never loses contact."""
-        least = pressure.radius(extreme(-1.0, amplitude, pressure))
-        return within_rings(least / pressure.radius(extreme(1.0, amplitude, pressure)))
-
-    def turns(velocity, amplitude):
-        least = -0.5 * np.pi / normal_cycles
-        return tuple(least + np.pi * np.arange(2 if mirrored else 3))
-
-    def closed_form_of(velocity, amplitude, pressure):
-        if not pressure.is_indenter:
-            return None
-        place = (velocity / normal_cycles, amplitude * share, by_load, pressure)
-        return oscillating_load.friction(*place)
-
-    aside_odd = lateral == 0.0 or lateral_cycles % 2 == 1
-    turns_odd = angle == 0.0 or angle_cycles % 2 == 1
-    ahead_even = forward == 0.0 or forward_cycles % 2 == 0
-    mirrored = normal_cycles % 2 == 0 and aside_odd and turns_odd and ahead_even
-    reverses = reverses_forward(
-        forward=int(forward_cycles),
-        lateral=int(lateral_cycles) if lateral else 0,
-        angle=int(angle_cycles) if angle else 0,
-        load=int(normal_cycles),
+    summary = "sliding forward while the normal load oscillates, or the indentation"
+    numbers = (
+        "such as lateral=1,phase=90: shares of A, load (1, over the mean) or indentation (0: the "
+        "load oscillates), lateral and forward (0, over u_lim), angle (0, over phi_lk(a/2)), phase "
+        "of these in degrees (0), normal_cycles, lateral_cycles, forward_cycles and angle_cycles "
+        "(1)"
     )
-    alone = lateral == forward == angle == 0.0
-    return Motion(
-        name=name,
-        summary=SUMMARY,
-        displacement=displacement,
-        periodic=True,
-        rotates=angle > 0.0,
-        half_disc=angle == 0.0 or lateral == 0.0,
-        half_period_mirror=mirrored,
-        focus=focus,
-        velocity_label="v0 / (omega u_lim)",
-        amplitude_label="A",
-        turns=turns,
-        straight=alone,
-        propels=forward > 0.0 and not reverses,
-        cycles=int(
-            max(
-                normal_cycles,
-                lateral_cycles if lateral else 1.0,
-                forward_cycles if forward else 1.0,
-                angle_cycles if angle else 1.0,
-            )
-        ),
-        depth=depth,
-        deepest=lambda amplitude, pressure: extreme(1.0, amplitude, pressure),
-        mean_load=lambda amplitude, pressure: oscillating_load.mean_load(
-            amplitude * share, by_load, pressure
-        ),
-        closed_form_of=closed_form_of if alone else None,
-    )
+    loads = True
 
+    def __post_init__(self):
+        in_plane = {"lateral": self.lateral, "forward": self.forward, "angle": self.angle}
+        normal = {"load": self.load, "indentation": self.indentation}
+        spec.refuse_shares(self.name, "motion", normal | in_plane)
+        if self.load == self.indentation == 0.0:
+            raise InputError("motion", self.name, "allowed is load or indentation above 0")
+        if self.indentation > 0.0 and self.load != 1.0:
+            allowed = f"load = {self.load:g}: allowed is no load beside an indentation"
+            raise InputError("motion", self.name, allowed)
+        names = ("normal_cycles", "lateral_cycles", "forward_cycles", "angle_cycles")
+        cycles = {name: getattr(self, name) for name in names}
+        spec.refuse_counts(self.name, "motion", cycles, MOST_CYCLES)
 
-def _check(name, shares, cycles):
-    spec.refuse_shares(name, "motion", shares)
-    if shares["load"] == shares["indentation"] == 0.0:
-        raise InputError("motion", name, "allowed is load or indentation above 0")
-    if shares["indentation"] > 0.0 and shares["load"] != DEFAULTS["load"]:
-        raise InputError(
-            "motion", name, f"load = {shares['load']:g}: allowed is no load beside an indentation"
+    @property
+    def lead(self) -> float:
+        """Phase of the oscillation in the plane, radians."""
+        return float(np.deg2rad(self.phase % 360.0))
+
+    @property
+    def by_load(self) -> bool:
+        """Whether the load oscillates, else the indentation."""
+        return self.indentation == 0.0
+
+    @property
+    def share(self) -> float:
+        """Share of the amplitude by which the load or the indentation oscillates."""
+        return self.load if self.by_load else self.indentation
+
+    @property
+    def in_plane(self) -> dict[str, int]:
+        """Cycles of the components in the plane that oscillate."""
+        components = {
+            "lateral": (self.lateral, self.lateral_cycles),
+            "forward": (self.forward, self.forward_cycles),
+            "angle": (self.angle, self.angle_cycles),
+        }
+        return {name: int(cycles) for name, (size, cycles) in components.items() if size}
+
+    @property
+    def rotates(self) -> bool:
+        return self.angle > 0.0
+
+    @property
+    def half_disc(self) -> bool:
+        return self.angle == 0.0 or self.lateral == 0.0
+
+    @property
+    def half_period_mirror(self) -> bool:
+        cycles = self.in_plane
+        ahead = cycles.pop("forward", 2)
+        odd = all(count % 2 == 1 for count in cycles.values())
+        return self.normal_cycles % 2 == 0 and ahead % 2 == 0 and odd
+
+    @property
+    def straight(self) -> bool:
+        return not self.in_plane
+
+    @property
+    def propels(self) -> bool:
+        cycles = self.in_plane | {"forward": int(self.forward_cycles)}
+        return self.forward > 0.0 and not reverses_forward(**cycles, load=int(self.normal_cycles))
+
+    @property
+    def cycles(self) -> int:
+        return max(int(self.normal_cycles), *self.in_plane.values(), 1)
+
+    def displacement(
+        self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Forward v~ t + A F sin(M t + P), lateral A L sin(N t + P), angle ~ sin(Q t + P)."""
+        ahead = amplitude * self.forward * np.sin(self.forward_cycles * phase + self.lead)
+        aside = amplitude * self.lateral * np.sin(self.lateral_cycles * phase + self.lead)
+        turn = np.sin(self.angle_cycles * phase + self.lead)
+        return (
+            velocity * phase + ahead,
+            aside,
+            hertz.bore_angle(amplitude * self.angle, poisson) * turn,
         )
-    spec.refuse_counts(name, "motion", cycles, MOST_CYCLES)
+
+    def turns(self, velocity: float, amplitude: float) -> tuple[float, ...]:
+        """Half periods from the least load of the first cycle on."""
+        least = -0.5 * np.pi / self.normal_cycles
+        return tuple(least + np.pi * np.arange(2 if self.half_period_mirror else 3))
+
+    def depth(self, phase: np.ndarray, amplitude: float, pressure: Pressure) -> np.ndarray:
+        """Indentation over that of the reference state, >= 0."""
+        height = 1.0 + amplitude * self.share * np.sin(self.normal_cycles * phase)
+        height = np.maximum(height, 0.0)
+        return pressure.of_load(height) if self.by_load else height
+
+    def _extreme(self, sign, amplitude, pressure):
+        """Least (sign -1) or largest (1) indentation."""
+        height = max(1.0 + sign * amplitude * self.share, 0.0)
+        return float(pressure.of_load(height)) if self.by_load else height
+
+    def deepest(self, amplitude: float, pressure: Pressure) -> float:
+        """Largest indentation over that of the reference state."""
+        return self._extreme(1.0, amplitude, pressure)
+
+    def mean_load(self, amplitude: float, pressure: Pressure) -> float:
+        """Mean of the normal load over that of the reference state."""
+        return oscillating_load.mean_load(amplitude * self.share, self.by_load, pressure)
+
+    def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
+        """Edge of the area that never loses contact, over the largest radius."""
+        least = pressure.radius(self._extreme(-1.0, amplitude, pressure))
+        return within_rings(least / pressure.radius(self.deepest(amplitude, pressure)))
+
+    def closed_form(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
+        """Friction without an oscillation in the plane, for axisymmetric indenters."""
+        if self.in_plane or not pressure.is_indenter:
+            return None
+        place = (velocity / self.normal_cycles, amplitude * self.share, self.by_load, pressure)
+        return oscillating_load.friction(*place)

@@ -1,24 +1,29 @@
 """Forward sliding with an oscillation across it, the paper's first motion."""
 
+from __future__ import annotations
+
+from dataclasses import dataclass
+
 import numpy as np
 
 from microslip.motions.motion import Motion, stick_focus
+from microslip.pressures.pressure import Pressure
 
 
-def displacement(phase: np.ndarray, velocity: float, amplitude: float, poisson: float) -> tuple:
-    """Eq 1 with Eqs 2 and 4: forward v~ t, lateral y~ sin t."""
-    return velocity * phase, amplitude * np.sin(phase), np.zeros_like(phase)
+@dataclass(frozen=True)
+class Transverse(Motion):
+    """Sliding forward with a sinusoidal oscillation in the lateral direction."""
 
+    summary = "sliding forward while oscillating sideways"
+    amplitude_label = "y0 / u_lim"
+    half_period_mirror = True
 
-MOTION = Motion(
-    name="transverse",
-    summary="sliding forward while oscillating sideways",
-    displacement=displacement,
-    periodic=True,
-    rotates=False,
-    half_period_mirror=True,
-    # the stick radius of the oscillation alone (Eq 8); nowhere once it slides fully
-    focus=lambda velocity, amplitude, pressure: stick_focus(amplitude, pressure),
-    velocity_label="v0 / (omega u_lim)",
-    amplitude_label="y0 / u_lim",
-)
+    def displacement(
+        self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Eq 1 with Eqs 2 and 4: forward v~ t, lateral y~ sin t."""
+        return velocity * phase, amplitude * np.sin(phase), np.zeros_like(phase)
+
+    def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
+        """Stick radius of the oscillation alone (Eq 8)."""
+        return stick_focus(amplitude, pressure)

@@ -8,47 +8,76 @@ the amplitude.  B = 0 is the transverse motion, L = 0 the bore with its velocity
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
 from microslip.motions.motion import Motion, stick_focus, within_rings
+from microslip.pressures.pressure import Pressure
 from microslip.theory import hertz
 
-SUMMARY = "sliding forward while oscillating sideways and in rotation"
-HELP = (
-    "such as angle=0.5,phase=90: shares of A, lateral (1, over u_lim) and angle (1, over "
-    "phi_lk(a/2)), phase of the rotation in degrees (0)"
-)
-DEFAULTS = {"lateral": 1.0, "angle": 1.0, "phase": 0.0}
 
+@dataclass(frozen=True)
+class TransverseBore(Motion):
+    """Sliding forward while oscillating sideways and in rotation.
 
-def motion(name: str, lateral: float, angle: float, phase: float) -> Motion:
-    """The Motion of these numbers; raises InputError for shares below 0, and none at all."""
-    spec.refuse_shares(name, "motion", {"lateral": lateral, "angle": angle})
-    if max(lateral, angle) == 0.0:
-        raise InputError("motion", name, "allowed is lateral or angle above 0")
-    lead = np.deg2rad(phase % 360.0) if lateral > 0.0 else 0.0
+    Parameters
+    ----------
+    lateral, angle : float
+        Shares of the amplitude, 0 to 1: of u_lim, and of phi_lk(a/2).
+    phase : float
+        Phase of the rotation, degrees.
 
-    def displacement(phase, velocity, amplitude, poisson):
-        turned = hertz.bore_angle(amplitude * angle, poisson) * np.sin(phase + lead)
-        return velocity * phase, amplitude * lateral * np.sin(phase), turned
+    Raises
+    ------
+    InputError
+        For shares outside 0..1, or both 0.
+    """
 
-    def focus(velocity, amplitude, pressure):
-        if lateral > 0.0:
-            return stick_focus(amplitude * lateral, pressure)
-        return within_rings(hertz.lubkin_stick_radius(hertz.bore_angle(amplitude * angle)))
+    lateral: float = 1.0
+    angle: float = 1.0
+    phase: float = 0.0
 
-    return Motion(
-        name=name,
-        summary=SUMMARY,
-        displacement=displacement,
-        periodic=True,
-        rotates=angle > 0.0,
-        half_disc=angle == 0.0 or lateral == 0.0,
-        half_period_mirror=True,
-        focus=focus,
-        velocity_label="v0 / (omega u_lim)",
-        amplitude_label="A",
-        straight=angle == 0.0 or lead % np.pi == 0.0,
+    summary = "sliding forward while oscillating sideways and in rotation"
+    numbers = (
+        "such as angle=0.5,phase=90: shares of A, lateral (1, over u_lim) and angle (1, over "
+        "phi_lk(a/2)), phase of the rotation in degrees (0)"
     )
+    half_period_mirror = True
+
+    def __post_init__(self):
+        spec.refuse_shares(self.name, "motion", {"lateral": self.lateral, "angle": self.angle})
+        if max(self.lateral, self.angle) == 0.0:
+            raise InputError("motion", self.name, "allowed is lateral or angle above 0")
+
+    @property
+    def lead(self) -> float:
+        """Phase of the rotation, radians."""
+        return float(np.deg2rad(self.phase % 360.0)) if self.lateral > 0.0 else 0.0
+
+    @property
+    def rotates(self) -> bool:
+        return self.angle > 0.0
+
+    @property
+    def half_disc(self) -> bool:
+        return self.angle == 0.0 or self.lateral == 0.0
+
+    @property
+    def straight(self) -> bool:
+        return self.angle == 0.0 or self.lead % np.pi == 0.0
+
+    def displacement(
+        self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Forward v~ t, lateral A L sin t, angle ~ sin(t + P)."""
+        turned = hertz.bore_angle(amplitude * self.angle, poisson) * np.sin(phase + self.lead)
+        return velocity * phase, amplitude * self.lateral * np.sin(phase), turned
+
+    def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
+        """Stick radius of the lateral oscillation alone, or of the rotation if there is none."""
+        if self.lateral > 0.0:
+            return stick_focus(amplitude * self.lateral, pressure)
+        return within_rings(hertz.lubkin_stick_radius(hertz.bore_angle(amplitude * self.angle)))

@@ -1,21 +1,23 @@
 """The transverse motion at a lateral speed that is constant but for its sign."""
 
-from dataclasses import replace
+from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
-from microslip.motions import transverse
+from microslip.motions.transverse import Transverse
 
 
-def displacement(phase: np.ndarray, velocity: float, amplitude: float, poisson: float) -> tuple:
-    """Forward v~ t, lateral to and fro between -y~ and y~, straight in the plane."""
-    lateral = amplitude * 2.0 / np.pi * np.arcsin(np.sin(phase))
-    return velocity * phase, lateral, np.zeros_like(phase)
+@dataclass(frozen=True)
+class Zigzag(Transverse):
+    """Sliding forward with a triangular oscillation in the lateral direction."""
 
+    summary = "sliding forward while moving sideways at constant speed, with abrupt turns"
 
-MOTION = replace(
-    transverse.MOTION,
-    name="zigzag",
-    summary="sliding forward while moving sideways at constant speed, with abrupt turns",
-    displacement=displacement,
-)
+    def displacement(
+        self, phase: np.ndarray, velocity: float, amplitude: float, poisson: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Forward v~ t, lateral to and fro between -y~ and y~, straight in the plane."""
+        lateral = amplitude * 2.0 / np.pi * np.arcsin(np.sin(phase))
+        return velocity * phase, lateral, np.zeros_like(phase)

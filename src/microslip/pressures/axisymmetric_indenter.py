@@ -13,7 +13,8 @@ With x = r cosh(eta) these integrals are smooth.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -32,53 +33,44 @@ _REFINEMENTS = 3
 """Grids on which the largest bound is searched, each 128 times finer than the one before."""
 
 
-def indenter(
-    name: str,
-    summary: str,
-    depth: Callable,
-    slope: Callable,
-    radius: Callable,
-    *,
-    flat: float = 0.0,
-    of_load: Callable | None = None,
-    largest: float | None = None,
-) -> Pressure:
-    """The Pressure of an axisymmetric indenter; all functions are of arrays.
+@dataclass(frozen=True)
+class Indenter(Pressure):
+    """Base class of axisymmetric indenters: a subclass gives `depth`, `slope` and `radius`.
 
-    Parameters
+    Attributes
     ----------
-    name, summary : str
-        Of the pressure.
-    depth : callable
-        depth(c): indentation that makes the contact radius c, 1 at 1.
-    slope : callable
-        slope(c): its derivative, 0 below the radius of a flat end.
-    radius : callable
-        radius(depth): inverse of depth.
     flat : float
         Radius of a flat end, over the contact radius.
-    of_load : callable or None
-        of_load(share): depth of a share of the load; None: it is searched for.
-    largest : float or None
-        Largest friction bound, or infinity; None: it is searched for, and has to be finite.
-
-    Returns
-    -------
-    pressure.Pressure
-        In its own working units.
     """
-    # x = flat + (1 - flat) s^2 takes the square root out of slopes that begin at a flat end
-    x = flat + (1.0 - flat) * _NODES**2
-    step = (1.0 - flat) * 2.0 * _NODES * _WEIGHTS
-    G_star = 0.5 / float(np.sum(step * x * slope(x)))
 
-    def rule(r, c):
+    flat = 0.0
+
+    def depth(self, c: np.ndarray) -> np.ndarray:
+        """Indentation that makes the contact radius c, 1 at 1."""
+        raise NotImplementedError
+
+    def slope(self, c: np.ndarray) -> np.ndarray:
+        """Derivative of the depth, 0 below the radius of a flat end."""
+        raise NotImplementedError
+
+    def radius(self, depth: np.ndarray) -> np.ndarray:
+        """Inverse of `depth`."""
+        raise NotImplementedError
+
+    @cached_property
+    def G_star(self) -> float:
+        # x = flat + (1 - flat) s^2 takes the square root out of slopes that begin at a flat end
+        x = self.flat + (1.0 - self.flat) * _NODES**2
+        step = (1.0 - self.flat) * 2.0 * _NODES * _WEIGHTS
+        return 0.5 / float(np.sum(step * x * self.slope(x)))
+
+    def _rule(self, r, c):
         """Nodes x with weights dx / sqrt(x^2 - r^2) on a last axis, and that root."""
         r, c = np.broadcast_arrays(np.asarray(r, float), np.asarray(c, float))
         c = np.maximum(c, SMALLEST_CONTACT)
         r = np.clip(r, SMALLEST_RADIUS * c, c)[..., None]
         c = c[..., None]
-        first = np.arccosh(np.maximum(np.minimum(flat, c) / r, 1.0))
+        first = np.arccosh(np.maximum(np.minimum(self.flat, c) / r, 1.0))
         length = np.arccosh(np.maximum(c / r, 1.0)) - first
         # clustered at both ends: at a flat end the slope begins like a root, at the edge of a
         # contact that is nearly flat all of it rises
@@ -86,72 +78,72 @@ def indenter(
         step = length * 0.5 * np.pi * np.sin(np.pi * _NODES) * _WEIGHTS
         return r * np.cosh(eta), step, r, r * np.sinh(eta)
 
-    def bound(r, c=1.0):
-        x, weight, _, _ = rule(r, c)
-        beyond = np.asarray(r, float) >= c
-        return np.where(beyond, 0.0, G_star / np.pi * np.sum(weight * slope(x), axis=-1))[()]
+    def bound(self, r: np.ndarray, c: float = 1.0) -> np.ndarray:
+        """Friction bound of a contact of radius c."""
+        x, weight, _, _ = self._rule(r, c)
+        bound = self.G_star / np.pi * np.sum(weight * self.slope(x), axis=-1)
+        return np.where(np.asarray(r, float) >= c, 0.0, bound)[()]
 
-    def load(r, c=1.0):
-        return (_outside(0.0, c) - _outside(r, c))[()]
+    def load(self, r: np.ndarray, c: np.ndarray = 1.0) -> np.ndarray:
+        """Load within r of a contact of radius c."""
+        return (self._outside(0.0, c) - self._outside(r, c))[()]
 
-    def _outside(r, c):
-        x, weight, _, root = rule(r, c)
-        return 2.0 * G_star * np.sum(weight * root**2 * slope(x), axis=-1)
+    def _outside(self, r, c):
+        x, weight, _, root = self._rule(r, c)
+        return 2.0 * self.G_star * np.sum(weight * root**2 * self.slope(x), axis=-1)
 
-    def moment_outside(r):
-        x, weight, r, root = rule(r, 1.0)
+    def _moment_outside(self, r):
+        x, weight, r, root = self._rule(r, 1.0)
         lever = x**2 * np.arccos(np.minimum(r / x, 1.0)) + r * root
-        return G_star * np.sum(weight * root * lever * slope(x), axis=-1)
+        return self.G_star * np.sum(weight * root * lever * self.slope(x), axis=-1)
 
-    def loading(displacement):
-        """What slips at the depth 1 less what would still slip at the depth 1 - u: the load of a
-        smaller contact is missing (Ciavarella 1998, Jaeger 1998)."""
+    def loading(self, displacement: np.ndarray) -> np.ndarray:
+        """Tangential force after a displacement from rest: full slip at the depth 1 without that at
+        the depth 1 - u, the load of a smaller contact (Ciavarella 1998, Jaeger 1998)."""
         left = np.maximum(1.0 - np.asarray(displacement, float), 0.0)
-        c = radius(left)
-        return 1.0 - np.where(left > 0.0, load(c, c), 0.0)
+        c = self.radius(left)
+        return 1.0 - np.where(left > 0.0, self.load(c, c), 0.0)
 
-    def searched(share):
+    def of_load(self, share: np.ndarray) -> np.ndarray:
+        """Depth at a share of the mean load, by a table and Newton's method."""
         share = np.asarray(share, float)
         largest = 1.0
-        while load(largest, largest) < share.max(initial=0.0):
+        while self.load(largest, largest) < share.max(initial=0.0):
             largest = 2.0 * largest
-        grid = flat + (largest - flat) * _GRID**2
-        k = np.clip(np.searchsorted(load(grid, grid), share), 1, len(grid) - 1)
+        grid = self.flat + (largest - self.flat) * _GRID**2
+        k = np.clip(np.searchsorted(self.load(grid, grid), share), 1, len(grid) - 1)
         low, high = grid[k - 1], grid[k]
         c = 0.5 * (low + high)
-        for _ in range(_CORRECTIONS):  # Newton's; the load grows by the stiffness 2 G* c
-            rise = 2.0 * G_star * c * slope(c)
-            c = np.clip(c - (load(c, c) - share) / np.maximum(rise, 1e-300), low, high)
-        return np.where(share > 0.0, depth(c), 0.0)[()]
+        for _ in range(_CORRECTIONS):  # the load grows by the stiffness 2 G* c
+            rise = 2.0 * self.G_star * c * self.slope(c)
+            c = np.clip(c - (self.load(c, c) - share) / np.maximum(rise, 1e-300), low, high)
+        return np.where(share > 0.0, self.depth(c), 0.0)[()]
 
-    def peak():
-        """Largest bound: the best point of a grid, refined between its neighbours."""
+    @cached_property
+    def largest(self) -> float:
+        """Largest friction bound: the best point of a grid, refined between its neighbours."""
         low, high = 0.0, 1.0
         for _ in range(_REFINEMENTS):
             r = np.linspace(low, high, len(_GRID))
-            values = bound(r)
+            values = self.bound(r)
             best = int(values.argmax())
             low, high = r[max(best - 1, 0)], r[min(best + 1, len(r) - 1)]
         return float(values[best])
 
-    def ring_loads(psi):
-        return -np.diff(_outside(np.sin(psi), 1.0))
+    @cached_property
+    def torque(self) -> float:
+        return float(self._moment_outside(0.0))
 
-    def ring_moments(psi):
-        return -np.diff(moment_outside(np.sin(psi)))
+    def _ring_loads(self, psi):
+        return -np.diff(self._outside(np.sin(psi), 1.0))
 
-    return Pressure(
-        name=name,
-        summary=summary,
-        G_star=G_star,
-        torque=float(moment_outside(0.0)),
-        largest=peak() if largest is None else largest,
-        cell_loads=lambda cells: round_loads(cells, ring_loads),
-        ring_means=lambda psi: of_radii(ring_loads, ring_moments, psi),
-        bound=bound,
-        depth=depth,
-        radius=radius,
-        of_load=of_load or searched,
-        load=load,
-        loading=loading,
-    )
+    def _ring_moments(self, psi):
+        return -np.diff(self._moment_outside(np.sin(psi)))
+
+    def cell_loads(self, cells: int) -> np.ndarray:
+        """Load on each square, (cells, cells)."""
+        return round_loads(cells, self._ring_loads)
+
+    def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Mean friction bound and lever arm of the rings between r = sin(psi)."""
+        return of_radii(self._ring_loads, self._ring_moments, psi)

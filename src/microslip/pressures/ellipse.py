@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
 import scipy
 
@@ -11,40 +14,68 @@ from microslip.pressures.cell_loads import of_corner_loads
 from microslip.pressures.pressure import Pressure
 from microslip.theory import hertz
 
-DEFAULTS = {"ratio": 0.5, "across": 0.0}
 SMALLEST_RATIO = 0.05
 
 
-def pressure(name: str, ratio: float, across: float) -> Pressure:
-    """The Pressure of an elliptic Hertz contact of semi-axes a and ratio a.
+@dataclass(frozen=True)
+class Ellipse(Pressure):
+    """The pressure of an elliptic Hertz contact of semi-axes a and ratio a.
 
-    across: 0 if the long axis is the forward one, 1 if it is the lateral one.  u_lim is the
-    displacement under full slip at the centre, so that G* = 3 K / (2 pi), K the complete elliptic
-    integral of the eccentricity: 3/4 for a circle.  Raises InputError for a ratio outside 0.05..1
-    and another `across`.
+    u_lim is the displacement under full slip at the centre, so that G* = 3 K / (2 pi), K the
+    complete elliptic integral of the eccentricity: 3/4 for a circle.
+
+    Parameters
+    ----------
+    ratio : float
+        Ratio of the semi-axes, 0.05 to 1.
+    across : int
+        0 if the long axis is the forward one, 1 if it is the lateral one.
+
+    Raises
+    ------
+    InputError
+        For a ratio outside its range, and another `across`.
     """
-    spec.refuse_outside(name, "pressure", "ratio", ratio, (SMALLEST_RATIO, 1.0))
-    if across not in (0.0, 1.0):
-        raise InputError("pressure", name, f"across = {across:g}: allowed is 0 or 1")
-    axes = (ratio, 1.0) if across else (1.0, ratio)
-    return Pressure(
-        name=name,
-        summary=f"a Hertz contact on an ellipse of ratio {ratio:g}",
-        G_star=1.5 / np.pi * float(scipy.special.ellipk(1.0 - ratio**2)),
-        torque=_torque(ratio),
-        largest=1.5 / (np.pi * ratio),
-        cell_loads=lambda cells: ellipse_loads(cells, axes),
-        loading=hertz.mindlin_force,
-        hertzian=True,
-    )
 
+    ratio: float = 0.5
+    across: int = 0
 
-def _torque(ratio):
-    """Mean distance from the centre under Hertz's pressure: on the unit circle it is 3 pi/16, and
-    along the ray at an angle t of the squeezed circle it is stretched by hypot(cos t, ratio sin t).
-    """
-    angle = (np.arange(512) + 0.5) * (np.pi / 1024)
-    return hertz.TORQUE_FULL_SLIP * float(np.hypot(np.cos(angle), ratio * np.sin(angle)).mean())
+    hertzian = True
+
+    def __post_init__(self):
+        limits = (SMALLEST_RATIO, 1.0)
+        spec.refuse_outside(self.name, "pressure", "ratio", self.ratio, limits)
+        if self.across not in (0, 1):
+            raise InputError("pressure", self.name, f"across = {self.across:g}: allowed is 0 or 1")
+
+    @property
+    def summary(self) -> str:
+        return f"a Hertz contact on an ellipse of ratio {self.ratio:g}"
+
+    @cached_property
+    def G_star(self) -> float:
+        return 1.5 / np.pi * float(scipy.special.ellipk(1.0 - self.ratio**2))
+
+    @cached_property
+    def torque(self) -> float:
+        """Mean distance from the centre under Hertz's pressure: on the unit circle it is 3 pi/16,
+        and along the ray at an angle t of the squeezed circle it is stretched by
+        hypot(cos t, ratio sin t)."""
+        angle = (np.arange(512) + 0.5) * (np.pi / 1024)
+        stretch = np.hypot(np.cos(angle), self.ratio * np.sin(angle))
+        return hertz.TORQUE_FULL_SLIP * float(stretch.mean())
+
+    @property
+    def largest(self) -> float:
+        return 1.5 / (np.pi * self.ratio)
+
+    def cell_loads(self, cells: int) -> np.ndarray:
+        """Load on each square, (cells, cells)."""
+        return ellipse_loads(cells, (self.ratio, 1.0) if self.across else (1.0, self.ratio))
+
+    def loading(self, displacement: np.ndarray) -> np.ndarray:
+        """Tangential force after a displacement from rest: that of the sphere."""
+        return hertz.mindlin_force(displacement)
 
 
 def ellipse_loads(cells: int, axes: tuple[float, float] = (1.0, 1.0)) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Pressures from files, "file:measured.csv": a grid of them, see measured.
+"""Pressures from files, "file:measured.csv": values on a grid, see grid.
 
 CSV: a line that names the columns forward, lateral and pressure, then one line a point; netCDF: a
 variable `pressure` with the coordinates `forward` and `lateral`.  The points fill a regular
@@ -15,11 +15,9 @@ from pathlib import PurePath
 from microslip.foundation import csv_text, named_files
 from microslip.foundation.errors import InputError
 from microslip.pressures import grid_csv, grid_netcdf
-from microslip.pressures.measured import READINGS, of_grid
-from microslip.pressures.pressure import Pressure
+from microslip.pressures.grid import READINGS
+from microslip.pressures.pressure import Measured, Pressure
 
-SOURCE = "file"
-"""What names begin with, before a colon and a text of their own."""
 PACKED = {
     b"\x1f\x8b": "gzip",
     b"PK\x03\x04": "zip, as spreadsheets are",
@@ -32,6 +30,11 @@ MOST_KNOWN = 8
 
 _KNOWN: dict[str, Pressure] = {}
 """One record for a name: what is prepared for a pressure is found again by it."""
+
+
+def is_file(text: object) -> bool:
+    """Whether a text names a file."""
+    return named_files.speaks_of_file(text)
 
 
 def pressure(name: str) -> Pressure:
@@ -65,7 +68,7 @@ def _of_content(file, content):
         if content.startswith(begins):
             raise ValueError(f"packed ({kind}); allowed: CSV or netCDF as it is")
     if content.startswith(grid_netcdf.BEGINNINGS):
-        return of_grid(file.name, *grid_netcdf.grid(content), file.grid)
+        return Measured.on_grid(file.name, *grid_netcdf.grid(content), file.grid)
     if PurePath(file.path).suffix.lower() in NETCDF:
         raise ValueError("not a netCDF file that can be read: it does not begin as one does")
     decimal = named_files.DECIMALS[file.decimal]
@@ -73,4 +76,4 @@ def _of_content(file, content):
         csv_text.check_format(decimal, file.encoding)
     except InputError as error:
         raise InputError("pressure", file.encoding, error.allowed) from None
-    return of_grid(file.name, *grid_csv.grid(content, decimal, file.encoding), file.grid)
+    return Measured.on_grid(file.name, *grid_csv.grid(content, decimal, file.encoding), file.grid)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from microslip.pressures.measured import irregular_at
+from microslip.pressures.grid import irregular_at
 
 COLUMNS = ("forward", "lateral", "pressure")
 KINDS = {"forward": "[length]", "lateral": "[length]", "pressure": "[pressure]"}

@@ -1,6 +1,8 @@
-"""Hertz's pressure over a circle: a sphere on a flat, which the paper is about."""
+"""Hertz's pressure over a circle: a sphere on a flat, the contact of the paper."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -9,35 +11,51 @@ from microslip.pressures.pressure import Pressure
 from microslip.theory import hertz
 
 
-def _hertz_means(psi):
-    radii = np.sin(psi)
-    # Integral of sin^2 cos^2 over each ring is the first moment of the bound
-    moment = np.diff(psi / 8 - np.sin(4 * psi) / 32)
-    load = -np.diff(np.cos(psi) ** 3) / 3
-    return hertz.ring_bounds(np.minimum(radii, 1.0)), moment / load
+@dataclass(frozen=True)
+class Hertz(Pressure):
+    """The pressure of a sphere on a flat."""
+
+    summary = "a sphere on a flat"
+    hertzian = True
+    G_star = hertz.G_STAR
+    torque = hertz.TORQUE_FULL_SLIP
+    largest = 1.5 / np.pi
+
+    def cell_loads(self, cells: int) -> np.ndarray:
+        """Load on each square, (cells, cells)."""
+        return ellipse_loads(cells)
+
+    def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Mean friction bound and lever arm of the rings between r = sin(psi)."""
+        radii = np.sin(psi)
+        # Integral of sin^2 cos^2 over each ring is the first moment of the bound
+        moment = np.diff(psi / 8 - np.sin(4 * psi) / 32)
+        load = -np.diff(np.cos(psi) ** 3) / 3
+        return hertz.ring_bounds(np.minimum(radii, 1.0)), moment / load
+
+    def bound(self, r: np.ndarray, c: float = 1.0) -> np.ndarray:
+        """Friction bound of a contact of radius c."""
+        return 1.5 / np.pi * np.sqrt(np.maximum((c - r) * (c + r), 0.0))
+
+    def depth(self, c: np.ndarray) -> np.ndarray:
+        """Indentation that makes the contact radius c."""
+        return c * c
+
+    def radius(self, depth: np.ndarray) -> np.ndarray:
+        """Contact radius at a depth."""
+        return np.sqrt(np.maximum(depth, 0.0))
+
+    def of_load(self, share: np.ndarray) -> np.ndarray:
+        """Depth at a share of the mean load."""
+        return np.cbrt(share) ** 2
+
+    def load(self, r: np.ndarray, c: np.ndarray = 1.0) -> np.ndarray:
+        """Load within r of a contact of radius c."""
+        return c**3 - np.maximum((c - r) * (c + r), 0.0) ** 1.5
+
+    def loading(self, displacement: np.ndarray) -> np.ndarray:
+        """Tangential force after a displacement from rest (Mindlin)."""
+        return hertz.mindlin_force(displacement)
 
 
-def _hertz_bound(r, c=1.0):
-    return 1.5 / np.pi * np.sqrt(np.maximum((c - r) * (c + r), 0.0))
-
-
-def _hertz_load(r, c=1.0):
-    return c**3 - np.maximum((c - r) * (c + r), 0.0) ** 1.5
-
-
-PRESSURE = Pressure(
-    name="hertz",
-    summary="a sphere on a flat",
-    G_star=hertz.G_STAR,
-    torque=hertz.TORQUE_FULL_SLIP,
-    largest=1.5 / np.pi,
-    cell_loads=ellipse_loads,
-    ring_means=_hertz_means,
-    bound=_hertz_bound,
-    depth=lambda c: c * c,
-    radius=lambda depth: np.sqrt(np.maximum(depth, 0.0)),
-    of_load=lambda share: np.cbrt(share) ** 2,
-    load=_hertz_load,
-    loading=hertz.mindlin_force,
-    hertzian=True,
-)
+HERTZ = Hertz()

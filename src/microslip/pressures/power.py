@@ -2,33 +2,62 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
 
 from microslip.foundation import spec
-from microslip.pressures.axisymmetric_indenter import indenter
-from microslip.pressures.pressure import Pressure
+from microslip.pressures.axisymmetric_indenter import Indenter
 
-DEFAULTS = {"exponent": 2.0}
 LIMITS = (1.0, 100.0)
 
 
-def pressure(name: str, exponent: float) -> Pressure:
-    """The Pressure of an indenter r^exponent; raises InputError for one below 1 or above 100.
+@dataclass(frozen=True)
+class Power(Indenter):
+    """The pressure of an indenter r^exponent.
 
-    Up to the exponent n = 2 the bound is largest at the centre, where it is
-    (G*/pi) Integral_0^1 n x^(n - 2) dx = (n + 1) / (2 pi (n - 1)).
+    Parameters
+    ----------
+    exponent : float
+        1 to 100.
+
+    Raises
+    ------
+    InputError
+        For an exponent outside its range.
     """
-    spec.refuse_outside(name, "pressure", "exponent", exponent, LIMITS)
-    largest = None
-    if exponent <= 2.0:
-        over = 2.0 * np.pi * (exponent - 1.0)
-        largest = (exponent + 1.0) / over if over > 0.0 else np.inf
-    return indenter(
-        name,
-        f"an indenter with the profile r^{exponent:g}",
-        depth=lambda c: np.asarray(c, float) ** exponent,
-        slope=lambda c: exponent * c ** (exponent - 1.0),
-        radius=lambda depth: np.maximum(depth, 0.0) ** (1.0 / exponent),
-        of_load=lambda share: np.maximum(share, 0.0) ** (exponent / (exponent + 1.0)),
-        largest=largest,
-    )
+
+    exponent: float = 2.0
+
+    def __post_init__(self):
+        spec.refuse_outside(self.name, "pressure", "exponent", self.exponent, LIMITS)
+
+    @property
+    def summary(self) -> str:
+        return f"an indenter with the profile r^{self.exponent:g}"
+
+    def depth(self, c: np.ndarray) -> np.ndarray:
+        """Indentation that makes the contact radius c."""
+        return np.asarray(c, float) ** self.exponent
+
+    def slope(self, c: np.ndarray) -> np.ndarray:
+        """Derivative of the depth."""
+        return self.exponent * c ** (self.exponent - 1.0)
+
+    def radius(self, depth: np.ndarray) -> np.ndarray:
+        """Contact radius at a depth."""
+        return np.maximum(depth, 0.0) ** (1.0 / self.exponent)
+
+    def of_load(self, share: np.ndarray) -> np.ndarray:
+        """Depth at a share of the mean load."""
+        return np.maximum(share, 0.0) ** (self.exponent / (self.exponent + 1.0))
+
+    @cached_property
+    def largest(self) -> float:
+        """Largest friction bound: up to the exponent n = 2 it is that at the centre,
+        (G*/pi) Integral_0^1 n x^(n - 2) dx = (n + 1) / (2 pi (n - 1))."""
+        if self.exponent > 2.0:
+            return super().largest
+        over = 2.0 * np.pi * (self.exponent - 1.0)
+        return (self.exponent + 1.0) / over if over > 0.0 else np.inf

@@ -1,4 +1,4 @@
-"""The record of a pressure: what carries the load, and how much friction each point may take.
+"""Pressures: distribution of the load, and with it the friction bound of a point.
 
 Working units, dimensionless: a = 1 (outer radius, or half the longer side of what bounds the
 contact), mu F_z = 1 and u_lim = 1.  Here u_lim is the largest displacement that full slip of the
@@ -10,82 +10,136 @@ which for every indenter pressed to a depth d is mu d E*/G*, the usual 3 mu F_z/
 sphere.  The contact of a round body slides everywhere from u_lim on, pushed in one direction from
 rest, and so does any contact at nu = 0.  Others at nu > 0 do so some percent before or after, by
 direction.
-What these units leave of the stiffness is the number G*, 3/4 for a sphere.
+In these units the stiffness is the number G*, 3/4 for a sphere.
 """
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
+
+from microslip.foundation import spec
+from microslip.foundation.errors import InputError
+from microslip.pressures.grid import READINGS, Grid, read_grids
 
 
 @dataclass(frozen=True)
 class Pressure:
     """One distribution of the load over the contact; dimensionless, in the working units above.
 
+    Each pressure is a subclass in a file of its own.  Its fields are the numbers that may follow
+    its name, as in "power:exponent=1", which `str` writes back.
+
     Attributes
     ----------
-    name, summary : str
-        As it is asked for, and in a line.
+    summary : str
+        Description in a line.
     G_star : float
         Reduced shear modulus 4G/(2 - nu).
     torque : float
-        Of a contact that slips everywhere about its centre, in mu F_z a.
+        Torque at full slip about the centre, in mu F_z a.
     largest : float
         Largest friction bound, or infinity; largest pressure over F_z / a^2.
-    cell_loads : callable
-        cell_loads(cells): load on each of cells x cells squares over [-1, 1]^2, forward axis first,
-        sum 1.
     mirrored : bool
         Whether it is its own image under lateral -> -lateral.
-    ring_means : callable or None
-        ring_means(psi) -> (bound, lever): mean friction bound of the rings between r = sin(psi),
-        and mean lever arm of a traction shaped like it, shape (n,) each, from (n + 1,).  This and
-        the next two: of contacts whose pressure depends on the radius alone.
-    bound : callable or None
-        bound(r): friction bound mu p, of arrays; of an indenter bound(r, c), too.
     inner : float
         Radius of the hole in the middle.
-    depth : callable or None
-        depth(c): indentation that makes the contact radius c, other than 1 if the load is not the
-        mean one.  This and the next four: of axisymmetric indenters, which touch a full circle and
-        whose contact grows with the load.
-    radius : callable or None
-        radius(depth): its inverse, 0 for no contact.
-    of_load : callable or None
-        of_load(share): the depth at which the load is that share of the mean one.
-    load : callable or None
-        load(r, c): load within r; of arrays that broadcast.
-    loading : callable or None
-        loading(u): tangential force over mu F_z after a displacement u_lim >= 0 in one direction
-        from rest, nu = 0, of any shape; also of elliptic Hertz contacts.
     hertzian : bool
         Whether it is that of an elliptic Hertz contact, whose stick zones are ellipses of the same
         shape (Vermeulen and Johnson), so that it shares `loading` with the sphere.
     readings : tuple of Pressure
-        Of a pressure that is known on a grid alone, others that the same numbers may stand for; how
-        far friction differs under them is what the grid leaves open.
+        Other pressures that the same numbers of a measured grid may stand for: the change of
+        friction under them is what the grid leaves open.
     """
 
-    name: str
-    summary: str
-    G_star: float
-    torque: float
-    largest: float
-    cell_loads: Callable
-    mirrored: bool = True
-    ring_means: Callable | None = None
-    bound: Callable | None = None
-    inner: float = 0.0
-    depth: Callable | None = None
-    radius: Callable | None = None
-    of_load: Callable | None = None
-    load: Callable | None = None
-    loading: Callable | None = None
-    hertzian: bool = False
-    readings: tuple[Pressure, ...] = ()
+    summary: ClassVar[str] = ""
+    mirrored = True
+    inner = 0.0
+    hertzian: ClassVar[bool] = False
+    readings = ()
+
+    # Of pressures that depend on the radius alone:
+    ring_means: ClassVar[Callable | None] = None
+    """ring_means(psi) -> (bound, lever): mean friction bound of the rings between r = sin(psi), and
+    mean lever arm of a traction shaped like it, shape (n,) each, from (n + 1,)."""
+    bound: ClassVar[Callable | None] = None
+    """bound(r): friction bound mu p, of arrays; of an indenter bound(r, c), too."""
+
+    # Of axisymmetric indenters, which touch a full circle that grows with the load:
+    depth: ClassVar[Callable | None] = None
+    """depth(c): indentation that makes the contact radius c, 1 at 1."""
+    radius: ClassVar[Callable | None] = None
+    """radius(depth): inverse of `depth`, 0 for no contact."""
+    of_load: ClassVar[Callable | None] = None
+    """of_load(share): depth at which the load is that share of the mean one."""
+    load: ClassVar[Callable | None] = None
+    """load(r, c): load within r; of arrays that broadcast."""
+
+    loading: ClassVar[Callable | None] = None
+    """loading(u): tangential force over mu F_z after a displacement u_lim >= 0 in one direction
+    from rest, nu = 0, of any shape; of axisymmetric indenters and elliptic Hertz contacts."""
+
+    @staticmethod
+    def from_array(
+        forward: np.ndarray, lateral: np.ndarray, pressure: np.ndarray, *, grid: str = "cells"
+    ) -> Measured:
+        """The pressure of values on a regular grid.
+
+        a is half the longer side of the rectangle that holds all pressure.  The grid leaves open
+        how the pressure varies between the points; the effect on friction is part of the error.
+
+        Parameters
+        ----------
+        forward, lateral : array, shapes (n,) and (m,)
+            Coordinates, increasing, in one unit of length.
+        pressure : array, shape (n, m)
+            In any unit, 0 outside the contact.
+        grid : str
+            "cells": values are means over cells around the points; "samples": values at the points,
+            with bilinear interpolation between them.
+
+        Raises
+        ------
+        InputError
+            For coordinates that are not regular, values below 0 or not finite, a load that is 0.
+        """
+        if grid not in READINGS:
+            raise InputError("grid", grid, f"allowed is one of {', '.join(READINGS)}")
+        arrays = [np.ascontiguousarray(one, float) for one in (forward, lateral, pressure)]
+        if arrays[2].shape != (arrays[0].size, arrays[1].size):
+            allowed = f"allowed is the shape of the coordinates, {(arrays[0].size, arrays[1].size)}"
+            raise InputError("pressure", arrays[2].shape, allowed)
+        digest = hashlib.sha256(b"".join(one.tobytes() for one in arrays)).hexdigest()[:16]
+        return Measured.on_grid(f"array:sha256={digest},grid={grid}", *arrays, grid)
+
+    @property
+    def name(self) -> str:
+        """Name with the numbers that differ from their defaults."""
+        return spec.text_of(self)
+
+    def __str__(self) -> str:
+        return self.name
+
+    @property
+    def G_star(self) -> float:
+        raise NotImplementedError
+
+    @property
+    def torque(self) -> float:
+        raise NotImplementedError
+
+    @property
+    def largest(self) -> float:
+        raise NotImplementedError
+
+    def cell_loads(self, cells: int) -> np.ndarray:
+        """Load on each of cells x cells squares over [-1, 1]^2, forward axis first, sum 1."""
+        raise NotImplementedError
 
     @property
     def is_round(self) -> bool:
@@ -117,6 +171,67 @@ class Pressure:
         if displacement >= 1.0:
             return 0.0
         return float(self.radius(1.0 - displacement))
+
+
+@dataclass(frozen=True, eq=False)
+class Measured(Pressure):
+    """A pressure known on a grid alone, see `Pressure.from_array`.
+
+    Attributes
+    ----------
+    text : str
+        Its name, with a digest of the values.
+    grid : grid.Grid
+        The values.
+    """
+
+    text: str
+    grid: Grid
+    readings: tuple[Measured, ...] = ()
+
+    summary = "a pressure on a grid"
+    mirrored = False
+
+    @classmethod
+    def on_grid(
+        cls,
+        name: str,
+        forward: np.ndarray,
+        lateral: np.ndarray,
+        values: np.ndarray,
+        reading: str = "cells",
+    ) -> Measured:
+        """The pressure of a name; the other arguments are those of `grid.read_grids`."""
+        grids = read_grids(forward, lateral, values, reading)
+        grid = grids.pop("")
+        return cls(name, grid, tuple(cls(f"{name} ({kind})", one) for kind, one in grids.items()))
+
+    @property
+    def name(self) -> str:
+        """Name with a digest of the values."""
+        return self.text
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Measured) and self.text == other.text
+
+    def __hash__(self) -> int:
+        return hash(self.text)
+
+    @cached_property
+    def G_star(self) -> float:
+        return self.grid.reduced_modulus()
+
+    @cached_property
+    def torque(self) -> float:
+        return self.grid.mean_distance()
+
+    @cached_property
+    def largest(self) -> float:
+        return self.grid.largest()
+
+    def cell_loads(self, cells: int) -> np.ndarray:
+        """Load on each square, (cells, cells)."""
+        return self.grid.cell_loads(cells)
 
 
 def of_radii(

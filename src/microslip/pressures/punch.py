@@ -2,55 +2,74 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
 
 from microslip.foundation import spec
-from microslip.pressures.axisymmetric_indenter import indenter
-from microslip.pressures.pressure import Pressure
+from microslip.pressures.axisymmetric_indenter import Indenter
 
-DEFAULTS = {"flat": 0.8}
 LARGEST_FLAT = 0.99
 _HALVINGS = 100
 
 
-def pressure(name: str, flat: float) -> Pressure:
-    """The Pressure of a punch whose flat end reaches up to `flat` contact radii.
+@dataclass(frozen=True)
+class Punch(Indenter):
+    """The pressure of a punch whose flat end reaches up to `flat` contact radii.
 
     Equivalent plane profile (Ciavarella 1999): D(c) ~ c (sqrt(c^2 - b^2) - b arccos(b/c)) for c
-    above b.  Raises InputError for a flat end outside 0..0.99.
+    above b.
+
+    Parameters
+    ----------
+    flat : float
+        Radius of the flat end over the contact radius, 0 to 0.99.
+
+    Raises
+    ------
+    InputError
+        For a radius outside its range.
     """
-    kind = "a share of the contact radius"
-    spec.refuse_outside(name, "pressure", "flat", flat, (0.0, LARGEST_FLAT), kind=kind)
 
-    def rises(c):
-        c = np.maximum(np.asarray(c, float), flat)
-        return c * (_root(c, flat) - flat * _angle(c, flat))
+    flat: float = 0.8
 
-    scale = 1.0 / float(rises(1.0))
+    def __post_init__(self):
+        kind, limits = "a share of the contact radius", (0.0, LARGEST_FLAT)
+        spec.refuse_outside(self.name, "pressure", "flat", self.flat, limits, kind=kind)
 
-    def slope(c):
-        c = np.maximum(c, flat)
-        return scale * (2.0 * _root(c, flat) - flat * _angle(c, flat))
+    @property
+    def summary(self) -> str:
+        return f"a punch with a rounded edge, flat up to {self.flat:g} of its contact radius"
 
-    def radius(depth):
+    def _rises(self, c):
+        c = np.maximum(np.asarray(c, float), self.flat)
+        return c * (_root(c, self.flat) - self.flat * _angle(c, self.flat))
+
+    @cached_property
+    def _scale(self):
+        return 1.0 / float(self._rises(1.0))
+
+    def depth(self, c: np.ndarray) -> np.ndarray:
+        """Indentation that makes the contact radius c."""
+        return self._scale * self._rises(c)
+
+    def slope(self, c: np.ndarray) -> np.ndarray:
+        """Derivative of the depth."""
+        c = np.maximum(c, self.flat)
+        return self._scale * (2.0 * _root(c, self.flat) - self.flat * _angle(c, self.flat))
+
+    def radius(self, depth: np.ndarray) -> np.ndarray:
+        """Contact radius at a depth, by bisection."""
         depth = np.asarray(depth, float)
-        low, high = np.full(depth.shape, flat), np.ones(depth.shape)
-        while np.any(scale * rises(high) < depth):
+        low, high = np.full(depth.shape, self.flat), np.ones(depth.shape)
+        while np.any(self.depth(high) < depth):
             high = 2.0 * high
         for _ in range(_HALVINGS):
             middle = 0.5 * (low + high)
-            below = scale * rises(middle) < depth
+            below = self.depth(middle) < depth
             low, high = np.where(below, middle, low), np.where(below, high, middle)
         return np.where(depth > 0.0, high, 0.0)[()]
-
-    return indenter(
-        name,
-        f"a punch with a rounded edge, flat up to {flat:g} of its contact radius",
-        depth=lambda c: scale * rises(c),
-        slope=slope,
-        radius=radius,
-        flat=flat,
-    )
 
 
 def _root(c, flat):

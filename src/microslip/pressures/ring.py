@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from functools import cache
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy
@@ -11,76 +12,115 @@ from microslip.foundation import spec
 from microslip.pressures.cell_loads import round_loads
 from microslip.pressures.pressure import Pressure, of_radii
 
-DEFAULTS = {"inner": 0.5}
 LIMITS = (0.05, 0.95)
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
-def pressure(name: str, inner: float) -> Pressure:
-    """The Pressure sqrt((r - b)(1 - r)) on the ring from b = `inner` to 1.
+@dataclass(frozen=True)
+class Ring(Pressure):
+    """The pressure sqrt((r - b)(1 - r)) on the ring from b = `inner` to 1.
 
     That is Hertz's pressure of a line contact laid around a circle, which a slender torus comes
-    close to; of a wide ring it is an assumption.  Raises InputError for b outside 0.05..0.95.
+    close to; of a wide ring it is an assumption.
+
+    Parameters
+    ----------
+    inner : float
+        Radius of the hole over the outer radius, 0.05 to 0.95.
+
+    Raises
+    ------
+    InputError
+        For a radius outside its range.
     """
-    kind = "a share of the outer radius"
-    spec.refuse_outside(name, "pressure", "inner", inner, LIMITS, kind=kind)
-    half, middle = 0.5 * (1.0 - inner), 0.5 * (1.0 + inner)
-    # Integral of sqrt((r - b)(1 - r)) 2 pi r dr, r = middle - half cos(t)
-    top = 1.0 / (np.pi**2 * half**2 * middle)
 
-    def bound(r):
+    inner: float = 0.5
+
+    def __post_init__(self):
+        kind = "a share of the outer radius"
+        spec.refuse_outside(self.name, "pressure", "inner", self.inner, LIMITS, kind=kind)
+
+    @property
+    def summary(self) -> str:
+        return f"a ring-shaped contact with a hole of {self.inner:g} of its radius"
+
+    @property
+    def _half(self):
+        return 0.5 * (1.0 - self.inner)
+
+    @property
+    def _middle(self):
+        return 0.5 * (1.0 + self.inner)
+
+    @property
+    def _top(self):
+        """Factor of the root: 1 / Integral of sqrt((r - b)(1 - r)) 2 pi r dr, by r = middle - half
+        cos t."""
+        return 1.0 / (np.pi**2 * self._half**2 * self._middle)
+
+    def bound(self, r: np.ndarray) -> np.ndarray:
+        """Friction bound at a radius."""
         r = np.asarray(r, float)
-        return top * np.sqrt(np.maximum((r - inner) * (1.0 - r), 0.0))[()]
+        return self._top * np.sqrt(np.maximum((r - self.inner) * (1.0 - r), 0.0))[()]
 
-    def ring_integrals(psi, power):
+    def _ring_integrals(self, psi, power):
         """Integrals of the bound times 2 pi r^power between the radii sin(psi)."""
-        at = np.arccos(np.clip((middle - np.sin(psi)) / half, -1.0, 1.0))
+        at = np.arccos(np.clip((self._middle - np.sin(psi)) / self._half, -1.0, 1.0))
         turn = at[:-1, None] + np.diff(at)[:, None] * 0.5 * (_NODES + 1.0)
-        r = middle - half * np.cos(turn)
-        values = top * half**2 * np.sin(turn) ** 2 * 2.0 * np.pi * r**power
+        r = self._middle - self._half * np.cos(turn)
+        values = self._top * self._half**2 * np.sin(turn) ** 2 * 2.0 * np.pi * r**power
         return 0.5 * np.diff(at) * (values @ _WEIGHTS)
 
-    def ring_loads(psi):
-        return ring_integrals(psi, 1)
+    def _ring_loads(self, psi):
+        return self._ring_integrals(psi, 1)
 
-    def ring_moments(psi):
-        return ring_integrals(psi, 2)
+    def _ring_moments(self, psi):
+        return self._ring_integrals(psi, 2)
 
-    whole = np.linspace(np.arcsin(inner), np.pi / 2, 65)
-    return Pressure(
-        name=name,
-        summary=f"a ring-shaped contact with a hole of {inner:g} of its radius",
-        G_star=_largest_displacement(inner, top),
-        torque=float(ring_moments(whole).sum()),
-        largest=top * half,
-        cell_loads=lambda cells: round_loads(cells, ring_loads, inner),
-        ring_means=lambda psi: of_radii(ring_loads, ring_moments, psi),
-        bound=bound,
-        inner=inner,
-    )
+    def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Mean friction bound and lever arm of the rings between r = sin(psi)."""
+        return of_radii(self._ring_loads, self._ring_moments, psi)
 
+    def cell_loads(self, cells: int) -> np.ndarray:
+        """Load on each square, (cells, cells)."""
+        return round_loads(cells, self._ring_loads, self.inner)
 
-@cache
-def _largest_displacement(inner, top):
-    """Largest displacement under full slip for G* = 1, and so the G* that makes it u_lim.
+    @property
+    def torque(self) -> float:
+        whole = np.linspace(np.arcsin(self.inner), np.pi / 2, 65)
+        return float(self._ring_moments(whole).sum())
 
-    A circle of radius s under unit load per area causes 4 s/(r + s) K(m)/pi at r, 1 - m the square
-    of (r - s)/(r + s).
-    """
-    # These take a third of a second to load, and few ask for a ring.
-    from scipy.integrate import quad
-    from scipy.optimize import minimize_scalar
+    @property
+    def largest(self) -> float:
+        return self._top * self._half
 
-    def displacement(r):
-        def of_circle(s):
-            apart = max(((r - s) / (r + s)) ** 2, 1e-300)
-            kernel = 4.0 / np.pi * s / (r + s) * scipy.special.ellipkm1(apart)
-            return kernel * top * np.sqrt(max((s - inner) * (1.0 - s), 0.0))
+    @cached_property
+    def G_star(self) -> float:
+        """Largest displacement under full slip for G* = 1, and so the G* that makes it u_lim.
 
-        parts = (inner, r), (r, 1.0)
-        return sum(quad(of_circle, *part, epsabs=0.0, epsrel=1e-10, limit=200)[0] for part in parts)
+        A circle of radius s under unit load per area causes 4 s/(r + s) K(m)/pi at r, 1 - m the
+        square of (r - s)/(r + s).
+        """
+        # These take a third of a second to load, and few ask for a ring.
+        from scipy.integrate import quad
+        from scipy.optimize import minimize_scalar
 
-    found = minimize_scalar(
-        lambda r: -displacement(r), bounds=(inner, 1.0), method="bounded", options={"xatol": 1e-7}
-    )
-    return float(-found.fun)
+        inner, top = self.inner, self._top
+
+        def displacement(r):
+            def of_circle(s):
+                apart = max(((r - s) / (r + s)) ** 2, 1e-300)
+                kernel = 4.0 / np.pi * s / (r + s) * scipy.special.ellipkm1(apart)
+                return kernel * top * np.sqrt(max((s - inner) * (1.0 - s), 0.0))
+
+            parts = (inner, r), (r, 1.0)
+            settings = {"epsabs": 0.0, "epsrel": 1e-10, "limit": 200}
+            return sum(quad(of_circle, *part, **settings)[0] for part in parts)
+
+        best = minimize_scalar(
+            lambda r: -displacement(r),
+            bounds=(inner, 1.0),
+            method="bounded",
+            options={"xatol": 1e-7},
+        )
+        return float(-best.fun)

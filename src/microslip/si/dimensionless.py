@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from microslip.motions.by_name import motion_named
+from microslip.pressures.by_name import pressure_named
 from microslip.si.bodies import TwoBodies
 from microslip.si.motions import COMBINED, MOTIONS, PARTS, is_steady, unit_of_amplitude
 from microslip.theory import hertz
@@ -108,7 +109,7 @@ def speed_unit(motion: RealMotion, contact: TwoBodies) -> float:
     if motion.name in MOTIONS:
         return omega * contact.u_lim
     record, size = motion_named(motion.name), _size(motion, contact)
-    return omega * contact.u_lim * record.creep(1.0, size, contact.poisson)
+    return omega * contact.u_lim * record.drift(1.0, size, contact.poisson)
 
 
 def _over(speed, unit):
@@ -122,8 +123,11 @@ def mean_load(motion: RealMotion, contact: TwoBodies) -> float:
     """Mean normal load, N: more than the load where its oscillation parts the bodies."""
     if motion.load_amplitude is None or motion.load_amplitude <= contact.load:
         return contact.load
-    named = motion_named(solver_motion(motion, contact), contact.pressure)
-    return contact.load * float(named.mean_load(_size(motion, contact), named.pressure))
+    record, pressure = (
+        motion_named(solver_motion(motion, contact)),
+        pressure_named(contact.pressure),
+    )
+    return contact.load * float(record.mean_load(_size(motion, contact), pressure))
 
 
 def full_friction(motion: RealMotion, contact: TwoBodies) -> float:

@@ -55,7 +55,7 @@ def check_motion(motion: object) -> None:
     """Raise InputError unless a motion names a motion that can be described in SI units."""
     if not isinstance(motion, str) or motion not in MOTIONS:
         record = _record(motion)
-        if record.depth is not None:
+        if record.loads:
             allowed = "allowed is normal with a load_amplitude where the load oscillates"
             raise InputError("motion", motion, allowed)
         if record.periodic and not _unit(record):

@@ -168,12 +168,12 @@ def predict_propulsion(
     if not group <= LARGEST["amplitude"]:
         allowed = f"{group:.3g} times u_lim; allowed is at most {LARGEST['amplitude']:g} times"
         raise InputError("amplitude", amplitude, allowed)
-    record, _, _ = checked_propulsion(motion, group, contact.poisson)
-    if record.rotates:
+    problem = checked_propulsion(motion, group, poisson=contact.poisson)
+    if problem.motion.rotates:
         raise InputError("motion", motion, "allowed is a motion without a rotation")
     line = propulsion(motion, group, poisson=contact.poisson, tolerance=accepted.si, points=points)
     said = {"motion": motion, "amplitude": size.text, "frequency": rate.text}
-    mean_load = contact.load * float(record.mean_load(group, record.pressure))
+    mean_load = contact.load * problem.mean_load
     newtons, speed = contact.mu * mean_load, 2.0 * math.pi * rate.si * contact.u_lim
     watts = newtons * speed
     fastest = speed * float(np.max(np.abs(line.velocity), initial=0.0))

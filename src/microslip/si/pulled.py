@@ -10,7 +10,7 @@ from microslip.adaptive.point import Result, solve
 from microslip.adaptive.shakedown import shakedown
 from microslip.foundation.arguments import LARGEST, LARGEST_BODY, SMALLEST_STIFFNESS
 from microslip.foundation.errors import InputError
-from microslip.motions.drive import Drive
+from microslip.motions.drive import Spring
 from microslip.pressures.by_name import pressure_named
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import (
@@ -161,7 +161,7 @@ def about_drive(
             fields |= _way_to_rest((contact, carriers), motion, pulling)
     body = {name: value for name, value in pulling.items() if name != "force"}
     if body:
-        working = Drive(**body)
+        working = Spring(**body)
         widest = answer.amplitude * max(carriers.widest, 1.0)
         fields["regime"] = regime(motion.name, widest, working)
         fields["natural_frequency"] = natural_frequency(working)

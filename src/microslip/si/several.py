@@ -9,15 +9,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from microslip.adaptive.several import body_of
+from microslip.adaptive.checks import checked_problem
 from microslip.foundation.errors import InputError
-from microslip.motions.body_contacts import contacts_of, written
-from microslip.motions.by_name import motion_named
+from microslip.motions.body_contacts import contacts_of, contacts_text
+from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named
 from microslip.si.bodies import TwoBodies
 from microslip.si.dimensionless import RealDrive, RealMotion, groups, solver_motion
 from microslip.si.shapes import ShapedContact
-from microslip.solver.problem import Problem
 
 
 @dataclass(frozen=True)
@@ -64,8 +63,9 @@ class Carriers:
         """What the solver makes of a motion at a vanishing speed; raises InputError about
         `contacts` where these do not go with the motion or the pressure."""
         _, size = groups(motion, contact)
-        named = motion_named(solver_motion(motion, contact), contact.pressure)
-        return body_of(Problem(named, 0.0, size, contact.poisson), self.text)
+        settings = {"pressure": contact.pressure, "poisson": contact.poisson}
+        name = solver_motion(motion, contact)
+        return checked_problem(name, None, size, **settings, contacts=self.text)
 
 
 def read_carriers(contacts: object, **alone: object) -> tuple[Carriers, dict[str, str]]:
@@ -79,6 +79,6 @@ def read_carriers(contacts: object, **alone: object) -> tuple[Carriers, dict[str
     for name, value in alone.items():
         if value:
             raise InputError(name, value, "allowed is none beside contacts: they go with one alone")
-    text = written(found)
+    text = contacts_text(found)
     most = (max(one.load for one in found), max(one.amplitude for one in found))
     return Carriers(text, len(found), *most), {"contacts": " ".join(contacts.split())}

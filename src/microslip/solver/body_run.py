@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from microslip.models.path import make_path
-from microslip.solver.problem import Problem, Resolution
+from microslip.motions.problem import Problem
+from microslip.solver.discretise import Resolution
 from microslip.solver.run import AS_SHIPPED, Run, Settings
 from microslip.solver.simulate import simulate
 
@@ -72,14 +73,14 @@ def _led(problem, part, model, resolution, found):
     run, settings = found
     alone = part.problem
     contact = settings.contact(alone, model, resolution)
-    first = alone.motion.turns(alone.velocity, alone.amplitude)[0]
+    first = alone.start
     ahead = problem.start + part.lead - first
-    interval = np.pi if alone.motion.half_period_mirror else 2.0 * np.pi
+    interval = np.pi if alone.half_period_mirror else 2.0 * np.pi
     times, left = divmod(ahead, interval)
     state = run.state
     if left > 0.0:
         phases = first + np.linspace(0.0, left, LEAD_STEPS + 1)
         path = make_path(alone.displacement, phases, depth=alone.depth)
         state = contact.march(path, state, LEAD_TOLERANCE).state
-    mirrored = alone.motion.half_period_mirror and int(times) % 2 == 1
+    mirrored = alone.half_period_mirror and int(times) % 2 == 1
     return contact.mirrored(state) if mirrored else state

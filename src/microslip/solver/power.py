@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from microslip.models.path import Path
-from microslip.solver.problem import Problem
+from microslip.motions.problem import Problem
 
 
 def oscillation_power(problem: Problem, path: Path, forces: np.ndarray) -> float:

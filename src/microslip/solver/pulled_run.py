@@ -15,11 +15,11 @@ import numpy as np
 from microslip.contacts.coulomb import project
 from microslip.models.contact import FORWARD, StepFailure, forces, forward_slip
 from microslip.models.pull import Body
-from microslip.motions.drive import Drive
+from microslip.motions.problem import Problem
 from microslip.solver.body_run import simulate_each
+from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.period_map import MOST_MARCHES, CreepRate, Goal
 from microslip.solver.periodic import find_periodic_state
-from microslip.solver.problem import Problem, Resolution
 from microslip.solver.pulled_map import PulledMap
 from microslip.solver.run import Run, Settings, failed_run, unsolved
 from microslip.solver.simulate import mean_forces, periods_of, stages_of, step_share
@@ -53,7 +53,6 @@ class Accuracy(NamedTuple):
 
 def simulate_pulled(
     problem: Problem,
-    drive: Drive,
     model: str,
     resolution: Resolution,
     accuracy: Accuracy,
@@ -66,9 +65,7 @@ def simulate_pulled(
     Parameters
     ----------
     problem : problem.Problem
-        Its velocity is that of the spring's far end, or a guess of the one to be found.
-    drive : drive.Drive
-        What pulls.
+        With a drive; its velocity is that of the spring's far end, or an initial guess.
     model : str
         Name in models.registry.MODELS, of a contact that may be pulled.
     resolution : problem.Resolution
@@ -91,7 +88,7 @@ def simulate_pulled(
     budget.Spent
         Where the budget is.
     """
-    pulled = _Pulled(problem, drive, model, resolution, settings)
+    pulled = _Pulled(problem, model, resolution, settings)
     pulled.slope = accuracy.slope
     try:
         return pulled.run(accuracy.tolerance * pulled.force_of_answer, guess)
@@ -102,13 +99,14 @@ def simulate_pulled(
 class _Pulled:
     """The search for the periodic state of one run."""
 
-    def __init__(self, problem, drive, model, resolution, settings):
+    def __init__(self, problem, model, resolution, settings):
+        drive = problem.drive
         self.problem, self.drive, self.model = problem, drive, model
         self.resolution, self.settings = resolution, settings
         self.contact = settings.contact(problem, model, resolution)
-        self.path = problem.path(self.contact, resolution.steps, settings.method.integrator)
+        self.path = path_of(problem, self.contact, resolution.steps, settings.method.integrator)
         self.interval = self.path.phase[-1] - self.path.phase[0]
-        load = -drive.damping * problem.creep
+        load = -drive.damping * problem.drift
         if drive.force is not None:
             load += drive.force * problem.mean_load
         self.body = Body(drive.stiffness, drive.damping, drive.mass, load)
@@ -124,13 +122,13 @@ class _Pulled:
         """
         if self.drive.force is None:
             return self.problem.mean_load
-        unit = self.problem.motion.creep(1.0, self.problem.amplitude, self.problem.poisson)
+        unit = self.problem.unit_drift
         stuck = self.contact.stiffness * self.interval * unit
         return min(stuck, self.slope * self.problem.mean_load)
 
     def run(self, tolerance, guess=None):
         """The Run, to a tolerance that is a force over mu F_z; guess: see simulate_pulled."""
-        rate = self.contact.stiffness * self.problem.creep
+        rate = self.contact.stiffness * self.problem.drift
         step_tolerance = tolerance * step_share(rate, self.resolution.steps, False)
         goal, done = Goal(tolerance, step_tolerance, MARCHES), []
         for start, static_force, mu in self._starts(tolerance, guess):
@@ -147,8 +145,8 @@ class _Pulled:
         if self.drive.force is None:
             creep_rate = CreepRate(static_force, full, rate * self.interval)
             # 1 - mu falls at most as 1 / velocity^2, the law of large velocities
-            slope = 2.0 * (1.0 - mu) * full / (self.problem.creep * self.interval)
-        mirror = self.problem.motion.half_period_mirror
+            slope = 2.0 * (1.0 - mu) * full / (self.problem.drift * self.interval)
+        mirror = self.problem.half_period_mirror
         return PulledMap(self.contact, self.path, self.body, creep_rate, mirror, slope)
 
     def _fits(self, start, period_map):
@@ -176,9 +174,7 @@ class _Pulled:
         """The Run with fewer steps."""
         fewer = replace(self.resolution, steps=self.resolution.steps // COARSENING)
         accuracy = Accuracy(tolerance / self.force_of_answer, self.slope)
-        found = simulate_pulled(
-            self.problem, self.drive, self.model, fewer, accuracy, self.settings
-        )
+        found = simulate_pulled(self.problem, self.model, fewer, accuracy, self.settings)
         self.before.append(found)
         return found
 
@@ -201,15 +197,15 @@ class _Pulled:
     def _summary(self, done, static_force, step_tolerance):
         problem, unit, found = self.problem, self.force_of_answer, done[-1]
         forward, _, torque = mean_forces(self.contact, problem, self.path, found.forces)
-        periods = periods_of(sum(one.marches for one in done), problem.motion)
+        periods = periods_of(sum(one.marches for one in done), problem)
         reason = unsolved(found.solver_residual, stages_of(self.path), step_tolerance)
         if not found.converged:
             reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
         ahead = float(found.body[-1, 0] - found.body[0, 0]) / self.interval
-        creep = problem.motion.creep(1.0, problem.amplitude, problem.poisson)
+        drift = problem.unit_drift
         return Run(
             mu=float(forward) / problem.mean_load,
-            torque=float(torque) / problem.motion.pressure.torque,
+            torque=float(torque) / problem.pressure.torque,
             distance=found.distance / unit,
             solver_residual=found.solver_residual / unit,
             periods=periods + self._spent("periods"),
@@ -221,7 +217,7 @@ class _Pulled:
             reason=reason,
             state=found.start,
             static_force=static_force,
-            velocity=problem.velocity + ahead / creep,
+            velocity=problem.velocity + ahead / drift,
             retried=max((run.retried for run in self.before), default=0),
         )
 

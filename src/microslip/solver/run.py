@@ -13,7 +13,8 @@ from microslip.solver.method import SHIPPED, Method
 
 if TYPE_CHECKING:
     from microslip.models.rings.mesh import Focus
-    from microslip.solver.problem import Problem, Resolution
+    from microslip.motions.problem import Problem
+from microslip.solver.discretise import Resolution, contact_of
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ class Settings:
         self, problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
     ) -> Contact:
         """The contact of a problem with the method's steps, whose marches count."""
-        contact = self.method.dressed(problem.contact(model, resolution, focus or self.focus))
+        contact = self.method.dressed(contact_of(problem, model, resolution, focus or self.focus))
         return contact if self.budget is None else self.budget.metered(contact)
 
 

@@ -16,7 +16,8 @@ from microslip.models.contact import StepFailure, forward_slip
 from microslip.models.path import EULER, make_path
 from microslip.models.pull import Body
 from microslip.motions.motion import HALF_PERIOD
-from microslip.solver.problem import Problem, Resolution
+from microslip.motions.problem import Problem
+from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.pulled_map import PulledMap
 from microslip.solver.run import Run, Settings, failed_run, unsolved
 
@@ -97,8 +98,8 @@ class _Walk:
 
     def __init__(self, problem, contact, steps, body):
         self.problem, self.contact, self.steps, self.body = problem, contact, steps, body
-        path = problem.path(contact, steps)
-        self.map = PulledMap(contact, path, body, mirror=problem.motion.half_period_mirror)
+        path = path_of(problem, contact, steps)
+        self.map = PulledMap(contact, path, body, mirror=problem.half_period_mirror)
         self.interval = path.phase[-1] - path.phase[0]
         self.gone, self.residual, self.iterations, self.solves = [], 0.0, 0, 0
 

@@ -9,11 +9,11 @@ import numpy as np
 from microslip.contacts.coulomb import project
 from microslip.models.contact import FORWARD, Contact, StepFailure, forces, forward_slip
 from microslip.models.path import Path
-from microslip.motions.motion import Motion
+from microslip.motions.problem import Problem
+from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.period_map import MOST_MARCHES, CreepRate, Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.power import oscillation_power
-from microslip.solver.problem import Problem, Resolution
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run, unsolved
 from microslip.solver.static_limit import static_state
 from microslip.solver.steady import steady_state
@@ -92,7 +92,7 @@ def _run(problem, model, resolution, tolerance, guess, settings):
     contact = settings.contact(problem, model, resolution)
     if not problem.motion.periodic:
         return _steady_run(contact, problem, tolerance, STEP_SHARE * tolerance)
-    share = step_share(contact.stiffness * problem.creep, resolution.steps, settings.tighter)
+    share = step_share(contact.stiffness * problem.drift, resolution.steps, settings.tighter)
     step_tolerance = share * tolerance
     search = _Search(contact, problem, settings.method, resolution.steps, tolerance, step_tolerance)
     return search.run(guess)
@@ -133,12 +133,12 @@ class _Search:
     def __init__(self, contact, problem, method, steps, tolerance, step_tolerance):
         self.contact, self.problem, self.method, self.steps = contact, problem, method, steps
         self.tolerance, self.step_tolerance = tolerance, step_tolerance
-        interval = np.pi if problem.motion.half_period_mirror else 2.0 * np.pi
+        interval = np.pi if problem.half_period_mirror else 2.0 * np.pi
         # a search that is prepared finds the limit of a line, and none that of a loop
-        limit = 0.0 if problem.motion.straight or not contact.sticks else np.nan
-        gain = contact.stiffness * problem.creep * interval
+        limit = 0.0 if problem.straight or not contact.sticks else np.nan
+        gain = contact.stiffness * problem.drift * interval
         self.creep_rate = CreepRate(limit, problem.mean_load, gain)
-        self.path = problem.path(contact, steps, method.integrator)
+        self.path = path_of(problem, contact, steps, method.integrator)
         self.done = []
 
     def run(self, guess=None):
@@ -157,8 +157,7 @@ class _Search:
             return None
         if guess.state.shape == (2, *self.contact.forward_position.shape):
             return guess.state
-        prolonged = getattr(self.contact, "prolonged", None)
-        start = None if prolonged is None else prolonged(guess.state)
+        start = self.contact.prolonged(guess.state)
         return None if start is None else project(start, self.contact.bound)
 
     def _search_afresh(self):
@@ -173,8 +172,8 @@ class _Search:
 
     def _start_near_the_limit(self, slipping):
         """The static limit with all points pushed forward; also takes note of its force."""
-        contact, creep = self.contact, self.problem.creep
-        if not (contact.sticks and self.problem.motion.straight):
+        contact, creep = self.contact, self.problem.drift
+        if not (contact.sticks and self.problem.straight):
             return slipping
         limit = static_state(contact, self.problem.oscillation, self.step_tolerance)
         if not unsolved(limit.solver_residual, limit.solves, self.step_tolerance):
@@ -186,7 +185,7 @@ class _Search:
 
     def _find(self, start, near=False):
         period_map = PeriodMap(
-            self.contact, self.path, self.creep_rate, self.problem.motion.half_period_mirror
+            self.contact, self.path, self.creep_rate, self.problem.half_period_mirror
         )
         most = MARCHES_FROM_COARSER if near else MOST_MARCHES
         goal = Goal(self.tolerance, self.step_tolerance, most, near)
@@ -198,13 +197,13 @@ class _Search:
         full = self.problem.mean_load
         forward, _, torque = mean_forces(self.contact, self.problem, self.path, found.forces)
         solves = sum(one.solves for one in self.done)
-        periods = periods_of(sum(one.marches for one in self.done), self.problem.motion)
+        periods = periods_of(sum(one.marches for one in self.done), self.problem)
         reason = unsolved(found.solver_residual, stages_of(self.path), self.step_tolerance)
         if not found.converged:
             reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
         return Run(
             mu=float(forward) / full,
-            torque=float(torque) / self.problem.motion.pressure.torque,
+            torque=float(torque) / self.problem.pressure.torque,
             distance=found.distance / full,
             solver_residual=found.solver_residual / full,
             periods=periods,
@@ -220,10 +219,10 @@ class _Search:
         )
 
 
-def periods_of(marches: int, motion: Motion) -> float:
-    """Full periods in so many marches of a motion.Motion, a float: each is half of one where its
-    second half is the mirror image of the first."""
-    return 0.5 * marches if motion.half_period_mirror else float(marches)
+def periods_of(marches: int, problem: Problem) -> float:
+    """Full periods in so many marches: each is half a period if the second half is the mirror image
+    of the first."""
+    return 0.5 * marches if problem.half_period_mirror else float(marches)
 
 
 def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarray) -> np.ndarray:
@@ -246,7 +245,7 @@ def _steady_run(contact, problem, tolerance, step_tolerance):
     found = steady_state(contact, problem.displacement, problem.velocity, tolerance, step_tolerance)
     return Run(
         mu=float(found.forces[0]),
-        torque=float(found.forces[2]) / problem.motion.pressure.torque,
+        torque=float(found.forces[2]) / problem.pressure.torque,
         distance=found.distance,
         solver_residual=found.solver_residual,
         periods=0.0,

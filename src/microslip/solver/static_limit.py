@@ -21,7 +21,7 @@ import numpy as np
 
 from microslip.models.contact import Contact
 from microslip.models.path import EULER, make_path
-from microslip.motions.motion import Motion
+from microslip.motions.problem import Problem
 
 STEPS = 4
 """Steps from one turning point to the next.  Between them the slip of each point keeps its
@@ -29,10 +29,10 @@ direction and only grows, so that backward Euler steps of any size end in the sa
 method of second order may end a step below the bound, and the residual feels the square root.)"""
 
 
-def at_turning_points(motion: Motion) -> bool:
-    """Whether the turning points tell the static limit of a motion.Motion: motion on a line under a
-    load that stays."""
-    return motion.straight and motion.depth is None
+def at_turning_points(problem: Problem) -> bool:
+    """Whether the static limit follows from the turning points: motion on a line under a constant
+    load."""
+    return problem.straight and not problem.motion.loads
 
 
 class StaticState(NamedTuple):

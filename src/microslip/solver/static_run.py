@@ -9,10 +9,11 @@ import numpy as np
 
 from microslip.models.contact import FORWARD, StepFailure, forces
 from microslip.models.rings.mesh import Focus
+from microslip.motions.problem import Problem
+from microslip.solver.discretise import STRONGEST_FOCUS, Resolution, path_of
 from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.power import oscillation_power
-from microslip.solver.problem import STRONGEST_FOCUS, Problem, Resolution
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run, unsolved
 from microslip.solver.simulate import MARCH_SHARE, STEP_SHARE, mean_forces, periods_of, stages_of
 from microslip.solver.snapshots import bounds_at_phases, frames
@@ -53,7 +54,7 @@ def simulate_static(
     oscillation is on a line.
     """
     try:
-        if at_turning_points(problem.motion):
+        if at_turning_points(problem):
             return _on_a_line(settings.contact(problem, model, resolution), problem, tolerance)
         return _on_a_loop(problem, model, resolution, tolerance, settings)
     except StepFailure as failure:
@@ -167,7 +168,7 @@ def _gathered(contact_at, run_on, near=()):
 def _stick_radii(contact, left):
     """Radii between rings of which more than half has something `left` and others, the outermost
     alone where there are too many; none where these are not known."""
-    edges = getattr(contact, "edges", None)
+    edges = contact.edges
     if left is None or edges is None:
         return ()
     sticks = (left.mean(axis=0) if left.ndim > 1 else left) > 0.5
@@ -187,8 +188,8 @@ def _without_slivers(radii):
 
 def _on_these_points(contact, problem, resolution, tolerance, settings):
     """The Run on one contact, and which points have something left to resist with, if any has."""
-    path = problem.path(contact, resolution.steps, settings.method.integrator)
-    mirror = problem.motion.half_period_mirror
+    path = path_of(problem, contact, resolution.steps, settings.method.integrator)
+    mirror = problem.half_period_mirror
     distance = tolerance / FELT
     shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
     period_map = PeriodMap(contact, path, mirror=mirror)
@@ -213,7 +214,7 @@ def _on_these_points(contact, problem, resolution, tolerance, settings):
         force += float(np.sum(contact.weight * shift))
         left = shift > NOTHING_LEFT * bounds.max()
     near = found.converged or found.distance <= ENOUGH * distance  # and its error is told
-    periods, reason = periods_of(found.marches, problem.motion), unsolved(residual, solves, inner)
+    periods, reason = periods_of(found.marches, problem), unsolved(residual, solves, inner)
     if not near:
         reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
     run = Run(

@@ -11,9 +11,10 @@ from functools import lru_cache, partial
 
 from microslip.models.contact import StepFailure
 from microslip.models.rings.mesh import Focus
-from microslip.pressures.by_name import HERTZ
+from microslip.motions.problem import Problem
+from microslip.pressures.hertz import HERTZ
 from microslip.solver.budget import Budget
-from microslip.solver.problem import Problem, Resolution, focus_strength
+from microslip.solver.discretise import Resolution, focus_strength
 from microslip.solver.run import Settings
 from microslip.solver.static_limit import at_turning_points
 from microslip.solver.static_run import gathered_on_a_line, gathered_on_a_loop
@@ -66,20 +67,20 @@ def found_focus(
     budget.Spent
         Where the budget is.
     """
-    motion, creep = problem.motion, problem.creep
+    motion, drift = problem.motion, problem.drift
     if model not in ("radial", "polar") or not motion.periodic:
         return None
-    if at_turning_points(motion):
-        wanted = motion.pressure is not HERTZ and motion.half_disc and creep < SLOW_LINE
+    if at_turning_points(problem):
+        wanted = problem.pressure != HERTZ and motion.half_disc and drift < SLOW_LINE
         search = _on_a_line
     else:
-        slow = motion.depth is None and model == "radial" and creep < SLOW_LOOP
-        wanted = creep == 0.0 or slow
+        slow = not motion.loads and model == "radial" and drift < SLOW_LOOP
+        wanted = drift == 0.0 or slow
         search = _on_a_loop
     if not wanted:
         return None
-    radii = search(motion, problem.amplitude).within(budget or Budget(), progress)
-    return Focus(radii, focus_strength(creep)) if radii else None
+    radii = search(_limit(problem)).within(budget or Budget(), progress)
+    return Focus(radii, focus_strength(drift)) if radii else None
 
 
 class _EdgeSearch:
@@ -117,18 +118,31 @@ class _Recorder(Budget):
         self.marches.append((solves, iterations, unknowns))
 
 
+def _limit(problem):
+    """The static limit at nu = 0: Poisson's ratio moves the edges little."""
+    return Problem(
+        problem.motion,
+        0.0,
+        problem.amplitude,
+        pressure=problem.pressure,
+        backward=problem.backward,
+        follows=problem.follows,
+    )
+
+
 @lru_cache(maxsize=64)
-def _on_a_line(motion, amplitude):
-    """The _EdgeSearch of a motion on a line; Poisson's ratio moves the edges little."""
+def _on_a_line(limit):
+    """The _EdgeSearch of a motion on a line."""
+    rotates = limit.motion.rotates
 
     def locate(settings, progress):
-        if motion.focus(0.0, amplitude, motion.pressure) is not None and not motion.rotates:
+        if limit.focus is not None and not rotates:
             return ()  # ... of an indenter, by its profile
-        limit, model = Problem(motion, 0.0, amplitude, 0.0), "polar" if motion.rotates else "radial"
+        model = "polar" if rotates else "radial"
         try:
             search = partial(gathered_on_a_line, limit, model, settings=settings, progress=progress)
             radii = search(TELLING_LINE, TOLD)
-            if radii and not motion.rotates:
+            if radii and not rotates:
                 radii = search(TELLING_FINER, TOLD_FINER, near=radii)
             return radii
         except StepFailure:
@@ -138,13 +152,14 @@ def _on_a_line(motion, amplitude):
 
 
 @lru_cache(maxsize=64)
-def _on_a_loop(motion, amplitude):
-    """The _EdgeSearch of a motion on a loop; Poisson's ratio moves the edges little."""
-    telling = TELLING_LOOP if motion.depth is None else TELLING_SWEPT
+def _on_a_loop(limit):
+    """The _EdgeSearch of a motion on a loop."""
+    motion = limit.motion
+    telling = TELLING_SWEPT if motion.loads else TELLING_LOOP
     telling = replace(telling, steps=telling.steps * motion.cycles)
 
     def locate(settings, progress):
-        limit, model = Problem(motion, 0.0, amplitude, 0.0), "polar" if motion.rotates else "radial"
+        model = "polar" if motion.rotates else "radial"
         try:
             return gathered_on_a_loop(limit, model, telling, TOLD, settings, progress)[1]
         except StepFailure:

@@ -21,7 +21,7 @@ from microslip.config.records import HISTORIES_OF_SWEEP, Configuration, Sweep
 from microslip.foundation import source_digest
 from microslip.foundation.canonical import number
 from microslip.foundation.errors import SolverError
-from microslip.motions.body_contacts import contacts_of, written
+from microslip.motions.body_contacts import contacts_of, contacts_text
 from microslip.sweeps import batch_files, evaluate
 from microslip.sweeps.cache import Store
 from microslip.sweeps.keys import batch_name, result_key
@@ -69,7 +69,7 @@ class PointRequests(Sequence):
         if pressure != "hertz":  # which goes without saying, as it did before there were others
             self._common["pressure"] = pressure
         if sweep.contacts is not None:
-            self._common["contacts"] = written(contacts_of(sweep.contacts))
+            self._common["contacts"] = contacts_text(contacts_of(sweep.contacts))
         amplitudes = [None] if sweep.amplitude is None else [number(a) for a in sweep.amplitude]
         pulls = {name: [number(v) for v in values] for name, values, _ in sweep.drives}
         last: dict[str, list] = {"velocity": [number(velocity) for velocity in sweep.velocity]}

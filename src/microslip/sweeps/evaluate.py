@@ -125,13 +125,13 @@ def _choice(request: dict) -> dict:
 def _probe(request: dict) -> dict:
     """A certified solve with another method; `applies` is False where it cannot be used."""
     from microslip.adaptive import single_run
+    from microslip.adaptive.checks import checked_problem
     from microslip.adaptive.choice import choose_model
-    from microslip.motions.by_name import motion_named
 
     place = _place(request)
-    motion = motion_named(place["motion"], place.get("pressure", "hertz"))
-    model = choose_model(motion, place["poisson"], request["model"])
-    how = {"model": model, "method": request["method"], "pressure": motion.pressure.name}
+    problem = checked_problem(**{"amplitude": None} | place)
+    model = choose_model(problem, request["model"])
+    how = {"model": model, "method": request["method"], "pressure": problem.pressure.name}
     reason = single_run.applies(place["motion"], place["poisson"], **how)
     if reason:
         return {"applies": False, "converged": False, "reason": reason}

@@ -6,24 +6,22 @@ import math
 import os
 import time
 import warnings
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 from microslip.adaptive.asked import TOLERANCE
 from microslip.adaptive.checks import (
     checked_drive,
-    checked_point,
+    checked_problem,
     checked_request,
     refuse_bounds,
 )
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.pulled import refuse_drive
 from microslip.adaptive.result import Result
-from microslip.adaptive.several import body_of
 from microslip.config.axes import DRIVES
 from microslip.config.records import Sweep
 from microslip.foundation.errors import InputError
-from microslip.solver.problem import Problem
 from microslip.sweeps import batches
 from microslip.sweeps.cache import Store
 from microslip.sweeps.sealed_files import refuse_no_folder, refuse_unusable
@@ -75,33 +73,39 @@ def solve_stored(
     if not isinstance(results, str | os.PathLike):
         raise InputError("results", results, "is not allowed; allowed: the name of a folder")
     drive = checked_drive(velocity, force, stiffness, mass, damping)
-    kind, place, amplitude, poisson = checked_point(
-        motion, 0.0 if velocity is None else velocity, amplitude, poisson, pressure, backward=True
+    problem = checked_problem(
+        motion,
+        velocity,
+        amplitude,
+        pressure=pressure,
+        poisson=poisson,
+        contacts=contacts,
+        drive=drive,
+        backward=True,
     )
     tolerance, cells, steps = checked_request(tolerance, cells, steps)
     refuse_bounds(time_limit=time_limit)
-    chosen = choose_model(kind, poisson, model, static=drive is None and place == 0.0)
-    problem = Problem(kind, place, amplitude, poisson)
-    problem = body_of(problem, contacts)
+    chosen = choose_model(problem, model)
     if drive is not None:
-        refuse_drive(problem, drive, chosen)
+        refuse_drive(problem, chosen)
     if tolerance is None:
         from microslip.adaptive.moved import refuse_choice  # only now: it loads compiled code
 
-        moving = place if force is None else 1.0  # under a force it is the velocity that is asked
-        refuse_choice(kind, model, (moving, amplitude, poisson), cells, steps)
+        moving = problem if force is None else replace(problem, velocity=1.0, drive=None)
+        refuse_choice(moving, model, cells, steps)
+    kind, pressure = problem.motion.name, problem.pressure.name
     grid = Sweep(
-        name=kind.name,
-        motion=kind.name,
-        velocity=() if velocity is None else (place,),
-        amplitude=None if amplitude is None else (amplitude,),
-        poisson=(poisson,),
+        name=kind,
+        motion=kind,
+        velocity=() if velocity is None else (problem.velocity,),
+        amplitude=None if amplitude is None else (problem.amplitude,),
+        poisson=(problem.poisson,),
         poisson_is_axis=False,
         model=model,
         tolerance=tolerance,
         cells=cells,
         steps=steps,
-        pressure=kind.pressure.name,
+        pressure=pressure,
         contacts=contacts,
         drives=_drives(force=force, stiffness=stiffness, mass=mass, damping=damping),
     )
@@ -115,7 +119,7 @@ def solve_stored(
             raise
         warnings.warn(str(edited), stacklevel=2)
         record = edited.record
-    given = {"pressure": kind.pressure.name} | request | record["result"]
+    given = {"pressure": pressure} | request | record["result"]
     numbers = ("velocity", "amplitude", "poisson", "tolerance", *DRIVES)
     given |= {k: float(given[k]) for k in numbers if given.get(k) is not None}
     return _result(given | {"solve_time_s": time.perf_counter() - started})

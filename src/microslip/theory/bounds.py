@@ -17,7 +17,7 @@ Friction never falls with the forward velocity: two marches of the same oscillat
 and v2 that have become periodic dissipate no less than nothing on the difference of their motions,
 (mu1 - mu2)(v1 - v2) >= 0, since Coulomb's law at given pressure is monotone and the half-space is
 elastic.  Where the oscillation reverses its forward motion under the same load half a period later
-(motions/mirror_image.py), friction is odd in the velocity, and so it is never negative for v > 0.
+(motions/symmetry.py), friction is odd in the velocity, and so it is never negative for v > 0.
 Other motions may propel the contact (Motion.propels).
 """
 

@@ -20,7 +20,7 @@ from microslip.models.polar.folding import fold, unfold
 from microslip.models.polar.symmetry import waves
 from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import Focus, make_rings
-from microslip.pressures.by_name import HERTZ
+from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 FUSED = {"fastmath": {"contract"}}

@@ -35,7 +35,7 @@ from microslip.models.polar.angular_modes import (
 from microslip.models.rings.contact import RadialContact
 from microslip.models.rings.mesh import Focus, make_rings
 from microslip.models.system_contact import SystemContact
-from microslip.pressures.by_name import HERTZ
+from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 FEWEST_PROLONGED = 16

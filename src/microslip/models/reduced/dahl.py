@@ -16,7 +16,7 @@ from microslip.models import contact
 from microslip.models.path import Path
 
 
-class DahlContact:
+class DahlContact(contact.Contact):
     """A single bristle (see models.contact.Contact); states have shape (2, 1, 1)."""
 
     compiled = False

@@ -15,7 +15,7 @@ import numpy as np
 from microslip.models.rings.contact import RadialContact
 from microslip.models.rings.mesh import Focus, make_rings
 from microslip.models.varying_load import Growth, load_on_springs
-from microslip.pressures.by_name import HERTZ
+from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 

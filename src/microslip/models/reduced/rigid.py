@@ -11,14 +11,14 @@ import numpy as np
 from microslip.models import contact
 from microslip.models.path import Path
 from microslip.models.rings.mesh import make_rings
-from microslip.pressures.by_name import HERTZ
+from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 GRADING = 0.98
 """Steps at the turning points, over the mean: the direction turns there within a phase v/y."""
 
 
-class RigidContact:
+class RigidContact(contact.Contact):
     """Points on rings x half-circle angles (one point for translation); see models.contact."""
 
     compiled = False

@@ -14,7 +14,7 @@ from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import Focus, make_rings
 from microslip.models.system_contact import SystemContact
 from microslip.models.varying_load import Growth, load_on_rings
-from microslip.pressures.by_name import HERTZ
+from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 

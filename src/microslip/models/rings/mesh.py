@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.foundation.errors import InputError
-from microslip.pressures.by_name import HERTZ
+from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 

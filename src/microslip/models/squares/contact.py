@@ -20,7 +20,7 @@ from microslip.models.squares.convolution import (
     workspace,
 )
 from microslip.models.system_contact import SystemContact
-from microslip.pressures.by_name import HERTZ
+from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 ROUNDED = 1e-10

@@ -26,6 +26,7 @@ import numpy as np
 from microslip.contacts.coulomb import project
 from microslip.models.path import EULER, Path
 from microslip.models.squares.convolution import square_convolution
+from microslip.solver.discretise import path_of
 from microslip.solver.method import Method
 from microslip.solver.run import Run, failed_run
 from microslip.theory.hertz import G_STAR
@@ -47,7 +48,7 @@ class Solver:
         modulus = G_STAR * (2.0 - poisson) / (2.0 * (1.0 - poisson))
         self.size = 2.0 / cells
         self.scale = square_convolution(cells, poisson)[1]
-        self.unknowns = 2 * cells**2
+        self.unknowns, self.grading = 2 * cells**2, None
         self.iterations = self.solves = self.failed = 0
         self._solver = aspher.FrictionSolver(
             grid_size=cells,
@@ -91,7 +92,7 @@ def _run(problem, model, resolution, tolerance):
     solver = Solver(resolution.cells, problem.poisson)
     if not solver.loaded:
         return failed_run("the normal contact was left unsolved")
-    path = problem.path(solver, resolution.steps, EULER)
+    path = path_of(problem, solver, resolution.steps, EULER)
     force, means, residuals, change = 0.0, [], [], math.inf
     for number in range(2 * MOST_PERIODS):
         forces, residual = half_period(solver, path, number)

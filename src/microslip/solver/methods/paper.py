@@ -12,8 +12,8 @@ import numpy as np
 from microslip.models.contact import FORWARD, March, forward_slip
 from microslip.models.path import EULER, Path, make_path
 from microslip.models.squares.contact import CartesianContact
+from microslip.motions.problem import Problem
 from microslip.solver.method import Method
-from microslip.solver.problem import Problem
 from microslip.solver.run import Run
 
 CELLS, STEPS_PER_PERIOD = 32, 100
@@ -35,7 +35,7 @@ def last_means(march: March) -> tuple[float, float]:
 
 
 def _run(problem, model, resolution, tolerance):
-    contact = CartesianContact(CELLS, problem.poisson, problem.motion.pressure)
+    contact = CartesianContact(CELLS, problem.poisson, problem.pressure)
     march = contact.march(path_of(problem), forward_slip(contact), STRESS_TOLERANCE)
     mean, before = last_means(march)
     return Run(

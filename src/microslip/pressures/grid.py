@@ -1,4 +1,4 @@
-"""A pressure given on a regular grid: what a sensor measured, or another program computed."""
+"""Numbers on a regular grid as a pressure: measured by a sensor, or computed by another program."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import numpy as np
 
 from microslip.foundation.errors import InputError
 from microslip.pressures.cell_loads import of_loads
-from microslip.pressures.pressure import Pressure
 
 AXES = ("forward", "lateral")
 READINGS = ("cells", "samples")
@@ -22,25 +21,28 @@ REGULAR = 1e-3
 """Coordinates may be off the regular grid by this share of its step."""
 
 
-def of_grid(
-    name: str, forward: np.ndarray, lateral: np.ndarray, values: np.ndarray, reading: str = "cells"
-) -> Pressure:
-    """The Pressure of values on a regular grid.
+def read_grids(
+    forward: np.ndarray, lateral: np.ndarray, values: np.ndarray, reading: str
+) -> dict[str, Grid]:
+    """The Grid of values on a regular grid, and others that the same numbers may stand for.
 
     a is half the longer side of the rectangle that holds all pressure, and its centre is the one
-    that rotations turn about.  What such numbers leave open shows in the `readings` of the
-    record: the same numbers read in the other way, and at half of the resolution.
+    that rotations turn about.
 
     Parameters
     ----------
-    name : str
-        Name of the record.
     forward, lateral : array, shapes (n,) and (m,)
         Coordinates, increasing, in one unit of length.
     values : array, shape (n, m)
         Pressure, in any unit, 0 outside the contact.
     reading : str
         One of READINGS.
+
+    Returns
+    -------
+    dict of str to Grid
+        By what they differ in: "" for the grid itself, then the same numbers read in the other way,
+        and the grid at half its resolution.
 
     Raises
     ------
@@ -56,11 +58,11 @@ def of_grid(
     values = values / values.max()
     points = _in_steps(points)
     grid, other = (_grid(points, values, kind) for kind in sorted(READINGS, key=reading.__ne__))
-    readings = (
-        _pressure(f"{name} (read as {other.reading})", other),
-        _pressure(f"{name} (at half its resolution)", _coarsened(grid)),
-    )
-    return replace(_pressure(name, grid), readings=readings)
+    return {
+        "": grid,
+        f"read as {other.reading}": other,
+        "at half its resolution": _coarsened(grid),
+    }
 
 
 def _refuse(values):
@@ -161,20 +163,61 @@ class _Axis:
 
 
 @dataclass(frozen=True, eq=False)
-class _Grid:
-    """forward, lateral: _Axis; values: (n, m)."""
+class Grid:
+    """Values on a grid over the smallest rectangle that holds all of the pressure.
+
+    forward, lateral: _Axis; values: (n, m).
+    """
 
     forward: _Axis
     lateral: _Axis
     values: np.ndarray
 
     @property
-    def reading(self):
+    def reading(self) -> str:
+        """One of READINGS."""
         return self.forward.reading
 
-    def loads(self, along, across):
+    def loads(self, along: np.ndarray, across: np.ndarray) -> np.ndarray:
         """Load of each rectangle between edges along and across, (n,) and (m,)."""
         return self.forward.integrals(along) @ self.values @ self.lateral.integrals(across).T
+
+    @property
+    def middles(self) -> list[float]:
+        """Coordinates of the centre."""
+        return [0.5 * (side.low + side.high) for side in (self.forward, self.lateral)]
+
+    @property
+    def half(self) -> float:
+        """Half the longer side: the unit of length, a."""
+        return 0.5 * max(side.high - side.low for side in (self.forward, self.lateral))
+
+    def cell_loads(self, cells: int) -> np.ndarray:
+        """Load on each of cells x cells squares over [-1, 1]^2, sum 1."""
+        edges = self.half * (np.arange(cells + 1) * 2.0 / cells - 1.0)
+        along, across = (middle + edges for middle in self.middles)
+        return of_loads(self.loads(along, across))
+
+    def reduced_modulus(self) -> float:
+        """G* in working units: the largest displacement under full slip for G* = 1."""
+        fine = min(max(FINE, *self.values.shape), FINEST)
+        return _largest_displacement(self.cell_loads(fine))
+
+    def largest(self) -> float:
+        """Largest pressure over F_z / a^2."""
+        edges = (side.edges(1) for side in (self.forward, self.lateral))
+        return float(self.values.max()) * self.half**2 / float(self.loads(*edges).sum())
+
+    def mean_distance(self) -> float:
+        """Mean distance from the centre under the load, over a.
+
+        It is exact for cells, since the parts that distances are averaged over do not cut them.
+        """
+        edges = [side.edges(-(-FINE // side.steps)) for side in (self.forward, self.lateral)]
+        loads = self.loads(*edges)
+        x, y = ((axis - at) / self.half for axis, at in zip(edges, self.middles, strict=True))
+        areas = np.diff(x)[:, None] * np.diff(y)
+        return float(np.sum(loads * _distances(x, y) / areas) / loads.sum())
 
 
 def _grid(points, values, reading):
@@ -190,52 +233,13 @@ def _grid(points, values, reading):
             low, high = places[first], places[last]
         axes.append(_Axis(places[first : last + 1], low, high, step, reading))
         values = values.take(range(first, last + 1), axis=number)
-    return _Grid(*axes, values)
+    return Grid(*axes, values)
 
 
 def _coarsened(grid):
     forward, along = grid.forward.coarsened()
     lateral, across = grid.lateral.coarsened()
-    return _Grid(forward, lateral, along @ grid.values @ across.T)
-
-
-def _pressure(name, grid):
-    """The record of a grid, without readings."""
-    sides = (grid.forward, grid.lateral)
-    middles = [0.5 * (side.low + side.high) for side in sides]
-    half = 0.5 * max(side.high - side.low for side in sides)  # the unit of length, a
-
-    def cell_loads(cells):
-        edges = half * (np.arange(cells + 1) * 2.0 / cells - 1.0)
-        return of_loads(grid.loads(middles[0] + edges, middles[1] + edges))
-
-    fine = min(max(FINE, *grid.values.shape), FINEST)
-    return Pressure(
-        name=name,
-        summary="a pressure from a file",
-        G_star=_largest_displacement(cell_loads(fine)),
-        torque=_mean_distance(grid, middles, half),
-        largest=float(grid.values.max()) * half**2 / _total(grid),
-        cell_loads=cell_loads,
-        mirrored=False,  # what is measured never is
-    )
-
-
-def _total(grid):
-    """Load of the grid."""
-    return float(grid.loads(*(side.edges(1) for side in (grid.forward, grid.lateral))).sum())
-
-
-def _mean_distance(grid, middles, half):
-    """Mean distance from the centre under the load, over a.
-
-    It is exact for cells, since the parts that distances are averaged over do not cut them.
-    """
-    edges = [side.edges(-(-FINE // side.steps)) for side in (grid.forward, grid.lateral)]
-    loads = grid.loads(*edges)
-    x, y = ((axis - middle) / half for axis, middle in zip(edges, middles, strict=True))
-    areas = np.diff(x)[:, None] * np.diff(y)
-    return float(np.sum(loads * _distances(x, y) / areas) / loads.sum())
+    return Grid(forward, lateral, along @ grid.values @ across.T)
 
 
 def _distances(x, y):

@@ -1,0 +1,194 @@
+"""Discretisation of a problem: its contact at a resolution, and its path in time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import pairwise
+
+import numpy as np
+
+from microslip.models.contact import Contact
+from microslip.models.path import (
+    SDIRK2,
+    BodyPath,
+    Integrator,
+    Path,
+    make_path,
+    phases_between,
+    turning_point_grading,
+)
+from microslip.models.registry import MODELS
+from microslip.models.rings.mesh import Focus
+from microslip.motions.problem import Part, Problem
+
+WEAKEST_FOCUS, STRONGEST_FOCUS, STATIC_FOCUS = 0.3, 1.0 - 2.0**-6, 0.9
+"""Bounds of mesh.Focus.strength, and its value for the static limit."""
+NEAREST_TURNS = 1e-6
+"""Radians between two turning points, below which they are one."""
+
+
+@dataclass(frozen=True, order=True)
+class Resolution:
+    """How finely a problem is resolved.
+
+    Attributes
+    ----------
+    cells : int
+        Rings, or squares along a side.
+    angles : int
+        Angular points on half the disc.
+    steps : int
+        In half a period (steady motion: not used).
+    """
+
+    cells: int
+    angles: int
+    steps: int
+
+
+def focus_strength(drift: float) -> float:
+    """Strength of the grading of rings towards the stick radius; drift: in a radian, in u_lim, 0
+    in the static limit.
+
+    Slip that is as small as the drift fills a layer whose width goes like drift^(2/3).  With ring
+    widths that grow quadratically from it, the square root of that is the right share of the mean
+    width; in powers of two, so that points share grids.
+    """
+    if drift == 0.0:
+        return STATIC_FOCUS
+    layer = 2.0 ** round(np.log2(drift) / 3.0)
+    return float(np.clip(1.0 - layer, WEAKEST_FOCUS, STRONGEST_FOCUS))
+
+
+def contact_of(
+    problem: Problem, model: str, resolution: Resolution, focus: Focus | None = None
+) -> Contact:
+    """The contact of a problem, or all of its contacts side by side; see build_contact."""
+    if not problem.contacts:
+        return build_contact(problem, model, resolution, focus)
+    parts, start = problem.parts, problem.start
+    return MODELS[model].side_by_side(
+        [
+            build_contact(part.problem, model, resolution, focus, start + part.lead)
+            for part in parts
+        ],
+        [part.share for part in parts],
+        [part.extent for part in parts],
+    )
+
+
+def _focus(problem):
+    """Radius where the slip starts, with the grading towards it."""
+    radius = problem.focus
+    if radius is None or not problem.motion.periodic:
+        return radius
+    return Focus((radius,), focus_strength(problem.drift))
+
+
+def build_contact(
+    problem: Problem,
+    model: str,
+    resolution: Resolution,
+    focus: Focus | None = None,
+    start: float | None = None,
+) -> Contact:
+    """The contact of a problem on one contact.
+
+    Parameters
+    ----------
+    problem : Problem
+        If the normal load oscillates, the contact is that of the start of a period.
+    model : str
+        Name in models.registry.MODELS.
+    resolution : Resolution
+        Of the model.
+    focus : mesh.Focus or None
+        Grading of the rings; None: towards the radius where the slip starts.
+    start : float or None
+        Phase at which a period starts; None: the first turning point.
+    """
+    focus = focus or _focus(problem)
+    contact = MODELS[model].build(problem, resolution.cells, resolution.angles, focus)
+    if problem.depth is None:
+        return contact
+    start = problem.start if start is None else start
+    return contact.at_indentation(problem.deepest, float(problem.depth(np.array(start))))
+
+
+def path_of(
+    problem: Problem, contact: Contact, steps: int, integrator: Integrator = SDIRK2
+) -> Path:
+    """The path of a problem from turning point to turning point.
+
+    It is half a period if the second half is the mirror image of the first, else a whole one.  Of
+    several contacts it is a BodyPath, with steps graded towards the turning points of each.
+
+    Parameters
+    ----------
+    problem : Problem
+        The motion.
+    contact : Contact
+        Its `grading` replaces that of the problem, if it has one.
+    steps : int
+        In half a period, about.
+    integrator : path.Integrator
+        Places of the stages.
+    """
+    grading = turning_point_grading(problem.drift, problem.stroke)
+    if contact.grading is not None:
+        grading = contact.grading
+    return _path(problem, steps, grading, integrator)
+
+
+@lru_cache(maxsize=32)
+def _path(problem, steps, grading, integrator):
+    if not problem.contacts:
+        phases = phases_between(problem.turns, steps, grading)
+        return make_path(problem.displacement, phases, integrator, problem.depth)
+    phases, drift = _body_phases(problem, steps, grading), problem.drift
+
+    def forward(phase):
+        return drift * phase, np.zeros_like(phase), np.zeros_like(phase)
+
+    each = (
+        make_path(_beside(problem, part), phases, integrator, problem.depth and part.depth)
+        for part in problem.parts
+    )
+    return BodyPath(**vars(make_path(forward, phases, integrator)), each=tuple(each))
+
+
+def _beside(problem: Problem, part: Part) -> Callable:
+    """Displacement of a contact beyond that of the body."""
+
+    def displacement(phase):
+        forward, lateral, angle = part.oscillation(phase)
+        if problem.follows:
+            forward = forward - _mean_oscillation(problem, phase)
+        return forward, lateral, angle
+
+    return displacement
+
+
+def _mean_oscillation(problem, phase):
+    """Mean forward oscillation of the contacts, weighted by their stiffness."""
+    stiff = np.array([part.share / part.extent for part in problem.parts])
+    ahead = np.array([part.oscillation(phase)[0] for part in problem.parts])
+    return np.tensordot(stiff / stiff.sum(), ahead, axes=1)
+
+
+def _body_phases(problem, steps, grading):
+    """From the first turning point of the first contact over half a period, or a whole one, in
+    pieces from turning point to turning point of any contact."""
+    interval = np.pi if problem.half_period_mirror else 2.0 * np.pi
+    turns, start = [part.turns(problem.follows) for part in problem.parts], problem.start
+    inner = np.sort(np.concatenate([(turn - start) % interval for turn in turns]))
+    inside = inner[(inner > NEAREST_TURNS) & (inner < interval - NEAREST_TURNS)]
+    kept = inside[np.diff(inside, prepend=0.0) > NEAREST_TURNS]
+    ends = start + np.concatenate([[0.0], kept, [interval]])
+    pieces = [ends[:1]]
+    for one, other in pairwise(ends):
+        count = max(round(steps * (other - one) / np.pi), 1)
+        pieces.append(phases_between((one, other), count, grading)[1:])
+    return np.concatenate(pieces)
