@@ -53,7 +53,7 @@ COVERED = 0.999
 CONFIDENCE = 0.95
 """Of the bound on the share of those that do not."""
 DOCS = Path(__file__).parents[1] / "docs/measured"
-SOURCES = ("space", "time", "periodicity", "solver", "model")
+SOURCES = ("resolution", "periodicity", "solver", "model")
 """Of what is claimed, kept to see which is to blame."""
 LONGEST = 4.0
 """Seconds for a reference by a tighter tolerance; what takes longer is decided by `finer.py`, which

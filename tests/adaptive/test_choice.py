@@ -3,15 +3,11 @@
 import math
 from dataclasses import fields
 
-import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 import microslip
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.closed_forms import closed_form
-from microslip.adaptive.resolutions import plan
 from microslip.models.registry import MODELS
 from microslip.motions.bore import Bore
 from microslip.motions.by_name import MOTIONS, motion_named
@@ -193,97 +189,6 @@ def test_a_model_asked_for_is_run_where_a_form_is_known():
 
 
 # Resolutions
-
-
-decades = st.floats(-6.0, 3.0).map(lambda x: 10**x)
-points = st.tuples(
-    st.sampled_from(EACH),
-    st.one_of(st.just(0.0), decades),
-    decades,
-    st.sampled_from([0.0, 0.3, 0.5]),
-    st.floats(-6.0, -1.0).map(lambda x: 10**x),
-    st.sampled_from(["auto", *MODELS]),
-)
-
-
-def planned(point, **imposed):
-    """(coarsest, axes by name), or None if the model does not apply."""
-    motion, velocity, amplitude, poisson, tolerance, model = point
-    try:
-        name = choose_model(problem_of(motion, poisson), model)
-    except ValueError:
-        return None
-    amplitude = amplitude if motion.periodic else None
-    problem = Problem(motion, velocity, amplitude, poisson)
-    coarsest, axes = plan(problem, name, tolerance, **imposed)
-    assert len({axis.name for axis in axes}) == len(axes)
-    return coarsest, {axis.name: axis for axis in axes}
-
-
-@pytest.mark.slow
-@settings(max_examples=300, deadline=None, derandomize=True)
-@given(points)
-def test_every_plan_can_be_run(point):
-    found = planned(point)
-    if found is None:
-        return
-    for axis in found[1].values():
-        assert all(level % 2 == 0 for level in axis.levels)
-        assert all(np.diff(axis.levels) > 0) and axis.levels[0] >= 2
-        assert len(axis.first) >= 3
-        assert all(np.diff(axis.first) > 0) and axis.base in axis.first
-        assert axis.first[0] >= 0 and axis.first[-1] < len(axis.levels)
-        # runs that lie close together may agree by chance
-        assert not axis.projected or axis.levels[axis.first[-1]] >= 2 * axis.levels[axis.first[0]]
-        # the base has a neighbour for the mixed difference
-        assert axis.base >= 1 or axis.first[-1] > axis.base
-        assert axis.base < len(axis.levels) and not axis.imposed
-
-
-@pytest.mark.slow
-@settings(max_examples=200, deadline=None, derandomize=True)
-@given(points)
-def test_axes_are_those_that_the_motion_and_the_model_have(point):
-    found = planned(point)
-    if found is None:
-        return
-    motion, velocity, _, poisson, _, model = point
-    name = choose_model(problem_of(motion, poisson), model)
-    expected = {"steps"} if motion.periodic and velocity > 0.0 else set()
-    if name in WITH_CELLS or (name == "rigid" and motion.rotates):
-        expected.add("cells")
-    if name == "polar" or (name == "rigid" and motion.rotates):
-        expected.add("angles")
-    assert found[1].keys() == expected
-
-
-def test_tighter_tolerances_start_from_finer_steps():
-    def base(tolerance, amplitude=1.0):
-        _, axes = planned((Transverse(), 0.5, amplitude, 0.0, tolerance, "auto"))
-        return axes["steps"].levels[axes["steps"].base]
-
-    assert base(1e-1) == base(1e-2) < base(1e-3) < base(1e-4) < base(1e-6)
-    # second order: steps go with the root of the tolerance
-    assert base(1e-5) / base(1e-3) == pytest.approx(10.0, rel=0.4)
-    assert base(1e-3, 9.0) == pytest.approx(3.0 * base(1e-3), rel=0.1)
-
-
-@settings(max_examples=100, deadline=None, derandomize=True)
-@given(points, st.integers(2, 64).map(lambda n: 2 * n), st.integers(4, 64).map(lambda n: 2 * n))
-def test_imposed_resolutions_are_run_beside_coarser_ones(point, cells, steps):
-    found = planned(point, cells=cells, steps=steps)
-    if found is None:
-        return
-    free = planned(point)[1]
-    assert found[1].keys() == free.keys()
-    for name, wanted in (("cells", cells), ("steps", steps // 2)):
-        if name in free:
-            axis = found[1][name]
-            assert axis.imposed and axis.levels[axis.base] == axis.levels[-1] == wanted
-            assert axis.levels[0] == wanted // 2 < axis.levels[1] < wanted
-            assert axis.first == (0, 1, 2)
-    if "angles" in free:
-        assert found[1]["angles"] == free["angles"]
 
 
 def test_imposed_resolution_is_that_of_one_run():

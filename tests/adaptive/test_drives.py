@@ -9,7 +9,8 @@ from scipy.optimize import brentq
 
 import microslip
 from microslip.adaptive import pulled as adaptive_pulled
-from microslip.adaptive.certified import nothing
+from microslip.estimate.ladder import Ladder
+from microslip.estimate.refine import unknown
 from microslip.foundation.arguments import SMALLEST_STIFFNESS
 from microslip.foundation.errors import InputError
 from microslip.models.path import EULER
@@ -168,13 +169,10 @@ def test_a_limit_that_leaves_no_force_to_march_at_gives_no_velocity():
 
 def test_a_velocity_with_an_unsolved_step_and_a_larger_error_is_no_number(monkeypatch):
     def unsolved(asked, accuracy):
-        finest = Resolution(cells=8, angles=1, steps=4)
-        unknown = nothing(finest)
-        return replace(
-            unknown, mu=5.4, errors={"solver": 1e9}, reason="a step was left unsolved"
-        ), ()
+        refined = replace(unknown("a step was left unsolved"), value=5.4, errors={"solver": 1e9})
+        return refined, Ladder(1, 0, 0)
 
-    monkeypatch.setattr(adaptive_pulled, "_certified", unsolved)
+    monkeypatch.setattr(adaptive_pulled, "_refined", unsolved)
     found = microslip.solve("transverse", amplitude=1.0, force=0.8)
     assert math.isnan(found.velocity) and found.velocity_error == math.inf
     assert (found.converged, found.reason) == (False, "a step was left unsolved")

@@ -68,7 +68,7 @@ def test_certificate_covers_a_much_finer_reference(motion, velocity, amplitude, 
     expected, allowance = reference(motion, velocity, amplitude, nu)
     assert allowance < 6e-4
     assert abs(result.mu_macro - expected) <= result.mu_macro_error + allowance
-    sources = ("space", "time", "periodicity", "solver", "model")
+    sources = ("resolution", "periodicity", "solver", "model")
     shares = [getattr(result, f"error_{source}") for source in sources]
     assert result.mu_macro_error == pytest.approx(sum(shares), rel=1e-12)
     assert min(shares) >= 0.0
@@ -287,22 +287,23 @@ def test_imposed_resolution_is_what_runs(motion, model, nu, cells, steps):
         def mean(c, s):
             return simulate(problem, model, Resolution(c, 1, s), share).mu
 
-        fine = mean(cells, steps // 2)
-        coarser = [round(part * cells) for part in (0.5, 0.75)]
-        over_cells = [fine, *(mean(c, steps // 2) for c in coarser)]
-        over_steps = [fine, *(mean(cells, round(part * steps / 2)) for part in (0.5, 0.75))]
-        slack = 1.5e-2 * result.tolerance * 2
+        coarse, middle, fine = (
+            mean(max(round(part * cells), 2), max(round(part * steps / 2), 4))
+            for part in (0.25, 0.5, 1.0)
+        )
+        slack = 0.05 * result.tolerance
         assert result.mu_macro == pytest.approx(fine, abs=slack)
-        assert result.error_space == pytest.approx(np.ptp(over_cells), abs=2 * slack)
-        assert result.error_time == pytest.approx(np.ptp(over_steps), abs=2 * slack)
+        expected = max(abs(fine - middle), abs(middle - coarse) / 4.0)
+        assert result.error_resolution == pytest.approx(expected, abs=2 * slack)
 
 
-def test_imposing_one_axis_leaves_the_other_to_the_tolerance():
+def test_imposing_one_number_leaves_the_other_to_the_tolerance():
     result = microslip.solve("transverse", 0.3, 1.2, cells=32)
     assert result.periodic and result.cells == 32
-    assert result.error_time <= 1e-3
+    assert result.error_resolution <= 1e-3
     coarse = microslip.solve("transverse", 0.3, 1.2, cells=4)
-    assert coarse.cells == 4 and coarse.error_space > 10 * result.error_space
+    assert coarse.cells == 4 and coarse.error_resolution > 3 * result.error_resolution
+    assert coarse.steps_per_period > 8 * coarse.cells
 
 
 # Fields
@@ -357,17 +358,17 @@ def test_equal_inputs_give_equal_bits(motion, amplitude, nu):
 def test_progress_sees_every_run():
     seen = []
     result = microslip.solve("transverse", 0.3, 1.2, progress=seen.append)
-    assert len(seen) == len(set(seen)) >= 5
+    assert len(seen) == len(set(seen)) >= 3
     assert max(r.cells for r in seen) == result.cells
     assert 2 * max(r.steps for r in seen) == result.steps_per_period
 
 
 def test_unmet_tolerance_is_said():
-    """Squares no finer than the last level cannot certify one part in a million."""
+    """The finest level does not reach one part in a million."""
     result = microslip.solve("continuous-bore", 0.5, model="rigid", tolerance=1e-6)
-    assert not result.converged and "error over" in result.reason
+    assert not result.converged and "the error is still" in result.reason
     error = abs(result.mu_macro - paper.bore_forward(0.5))
-    assert 1e-6 < error < result.mu_macro_error < 1e-3
+    assert error < result.mu_macro_error and 1e-6 < result.mu_macro_error < 1e-3
 
 
 def test_warm_up_leaves_a_working_solver():
@@ -431,7 +432,7 @@ def test_no_tolerance_is_asked_for_by_name():
         ("transverse", 1.0, {}, "cells and steps"),
         ("transverse", 1.0, {"cells": 16}, "steps"),
         ("bore", 1.0, {"steps": 16}, "cells"),
-        ("normal:lateral=1", 0.5, {}, "steps and cells"),
+        ("normal:lateral=1", 0.5, {}, "cells and steps"),
         ("transverse", 1.0, {"model": "dahl"}, "steps"),
     ],
 )

@@ -28,7 +28,7 @@ def nothing_runs(monkeypatch):
     def work(*_, **__):
         raise AssertionError("work has started")
 
-    runs = ("moved.certify", "moved.simulate", "moved.simulate_static")
+    runs = ("moved.refine", "moved.simulate", "moved.simulate_static")
     for name in (*runs, "closed_forms.no_vibration", "closed_forms.closed_form"):
         monkeypatch.setattr(f"microslip.adaptive.{name}", work)
 

@@ -70,7 +70,7 @@ def made_up_sweep(folder, configuration, name):
     """Dataset of a sweep whose k-th point has mu_macro = 1 / (3 + k), and the velocity k."""
     grid = configuration.grids[name]
     result = EFFORT | {"mu_macro_error": 1e-4, "velocity_error": 1e-5, "converged": True}
-    result |= {f"error_{part}": 1 / 7 for part in ("space", "time", "periodicity", "solver")}
+    result |= {f"error_{part}": 1 / 7 for part in ("resolution", "periodicity", "solver")}
     result |= {"mu_torque": 0.5, "mu_torque_error": 1e-4, "model": "polar"}
     points = [
         {"result": result | {"mu_macro": 1 / (3 + k), "velocity": float(k)}, "versions": {}}

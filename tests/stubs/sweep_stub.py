@@ -31,7 +31,7 @@ class Solver:
         self.calls += 1
         result = {"motion": motion, "velocity": velocity, "amplitude": amplitude, **EFFORT}
         result |= {"poisson": settings["poisson"], "tolerance": settings["tolerance"]}
-        result |= {f"error_{part}": 1e-5 for part in ("space", "time", "periodicity", "solver")}
+        result |= {f"error_{part}": 1e-5 for part in ("resolution", "periodicity", "solver")}
         good = self.fails is None or amplitude != self.fails
         result["mu_macro"] = velocity / (1 + velocity + (amplitude or 0)) if good else float("nan")
         result |= {"mu_macro_error": 4e-5, "model": "polar", "converged": good}

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from microslip.adaptive.certified import Certified
-from microslip.adaptive.chains import Axis
-from microslip.foundation.errors import InputError
+from microslip.estimate.ladder import Ladder
+from microslip.estimate.refine import Refined
 from microslip.motions.body_contacts import contacts_text
 from microslip.motions.problem import Problem
 from microslip.solver import method_names
@@ -100,48 +99,36 @@ def budget_for(
     return Budget(most_work, math.inf if time_limit is None else time_limit)
 
 
-def refuse_free(axes: Sequence[Axis]) -> None:
-    """Raise InputError where a tolerance would have to choose the cells or the steps."""
-    free = [name for axis in axes if not axis.imposed for name in axis.refines if name != "angles"]
-    if free:
-        what = " and ".join(free)
-        allowed = f"allowed is a number, or none where {what} are imposed"
-        raise InputError("tolerance", None, allowed)
-
-
-def verdict(
-    asked: Asked, certified: Certified, axes: Sequence[Axis], largest: float | None
-) -> dict:
+def verdict(asked: Asked, refined: Refined, ladder: Ladder, largest: float | None) -> dict:
     """Fields of a result.Result that say how an answer was found, and whether it is good enough.
 
     largest: error that is accepted, None: any.
     """
     if asked.budget.exhausted:
-        certified = replace(certified, **asked.budget.counts())
-    names = [name for axis in axes for name in axis.refines]
-    within = largest is None or certified.error <= largest
-    reason = certified.reason
-    if certified.converged and not within:
-        imposed = any(axis.imposed for axis in axes)
-        where = "at the imposed resolution the error" if imposed else "the estimated error"
-        reason = f"{where} is {certified.error:.1e}, above the tolerance of {largest:g}"
+        refined = replace(refined, **asked.budget.counts())
+    within = largest is None or refined.error <= largest
+    reason = refined.reason
+    if refined.converged and not within:
+        where = "at the imposed resolution the error" if ladder.imposed else "the estimated error"
+        reason = f"{where} is {refined.error:.1e}, above the tolerance of {largest:g}"
         read = asked.problem.pressure.readings
-        left_open = certified.errors.get("model", 0.0) if read else 0.0
-        if left_open > 0.5 * certified.error:
+        left_open = refined.errors.get("model", 0.0) if read else 0.0
+        if left_open > 0.5 * refined.error:
             reason += f": the file's own resolution leaves {left_open:.1e} open"
     return {
-        **{f"error_{source}": error for source, error in certified.errors.items()},
-        "converged": bool(certified.converged and within),
-        "periodic": certified.periodic,
+        **{f"error_{source}": error for source, error in refined.errors.items()},
+        "converged": bool(refined.converged and within),
+        "periodic": refined.periodic,
         "reason": reason,
-        "cells": certified.finest.cells,
-        "angles": certified.finest.angles,
-        "steps_per_period": 2 * certified.finest.steps if "steps" in names else 0,
-        "periods": certified.periods,
-        "iterations": certified.iterations,
-        "work": certified.work,
-        "effort": certified.effort,
-        "retried": certified.retried,
+        "cells": refined.finest.cells,
+        "angles": refined.finest.angles,
+        "steps_per_period": 2 * refined.finest.steps if ladder.steps else 0,
+        "observed_order": refined.order if math.isfinite(refined.order) else None,
+        "periods": refined.periods,
+        "iterations": refined.iterations,
+        "work": refined.work,
+        "effort": refined.effort,
+        "retried": refined.retried,
         "exhausted": asked.budget.exhausted,
         "solve_time_s": asked.seconds,
     }

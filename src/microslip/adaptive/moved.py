@@ -8,17 +8,15 @@ from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
-from microslip.adaptive.asked import TOLERANCE, Asked, refuse_free, verdict
-from microslip.adaptive.chains import Axis
+from microslip.adaptive.asked import TOLERANCE, Asked, verdict
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.closed_forms import no_vibration, unless_imposed
 from microslip.adaptive.continuation import run_safely
-from microslip.adaptive.refinement import certify, run_tolerance
-from microslip.adaptive.resolutions import plan
 from microslip.adaptive.result import Result
+from microslip.estimate.ladder import Ladder, ladder_for, refuse_free
+from microslip.estimate.refine import refine, run_tolerance
 from microslip.motions.problem import Problem
 from microslip.solver.budget import Spent
-from microslip.solver.discretise import Resolution
 from microslip.solver.method_names import SHIPPED
 from microslip.solver.run import Settings
 from microslip.solver.simulate import simulate
@@ -27,23 +25,20 @@ from microslip.solver.stick_edge import found_focus
 
 
 class Marched(NamedTuple):
-    """What refinement.certify asks for, of a contact that is moved.
+    """Arguments of refine.refine for a contact that is moved.
 
     Attributes
     ----------
     run : callable
         run(resolution, guess) -> run.Run.
-    coarsest : problem.Resolution
-        For what is not refined.
-    axes : tuple of chains.Axis
-        To be refined.
+    ladder : ladder.Ladder
+        Its resolutions.
     readings : list of callable
         Like `run`, for other pressures that the same numbers may stand for.
     """
 
     run: Callable
-    coarsest: Resolution
-    axes: tuple[Axis, ...]
+    ladder: Ladder
     readings: list[Callable]
 
 
@@ -57,10 +52,10 @@ def marched(asked: Asked) -> Marched:
         focus = found_focus(problem, asked.model, asked.budget, asked.progress)
     except Spent as spent:
         return _nothing_to_run(spent)
-    coarsest, axes = plan(problem, asked.model, tolerance, asked.cells, asked.steps, together=True)
+    ladder = ladder_for(problem, asked.model, tolerance, asked.cells, asked.steps)
     if asked.tolerance is None:
-        refuse_free(axes)
-    share = run_tolerance(coarsest, axes, tolerance)
+        refuse_free(ladder, asked.cells, asked.steps)
+    share = run_tolerance(tolerance)
     settings = Settings(asked.how, budget=asked.budget, focus=focus)
 
     def run(resolution, guess, problem=problem):
@@ -82,7 +77,7 @@ def marched(asked: Asked) -> Marched:
         partial(run, problem=replace(problem, pressure=other))
         for other in problem.pressure.readings
     ]
-    return Marched(run, coarsest, axes, readings)
+    return Marched(run, ladder, readings)
 
 
 def _nothing_to_run(spent):
@@ -91,24 +86,22 @@ def _nothing_to_run(spent):
     def run(resolution, guess):
         raise spent
 
-    return Marched(run, Resolution(0, 0, 0), (), [])
+    return Marched(run, Ladder(1, 0, 0), [])
 
 
 def solve_moved(asked: Asked) -> Result:
-    """The certified friction, a result.Result, of a point that has no closed form."""
-    problem, (run, coarsest, axes, readings) = asked.problem, marched(asked)
-    certified = certify(run, coarsest, axes, asked.accuracy, readings)
+    """The friction with its error estimate, a result.Result, of a point that has no closed form."""
+    problem, (run, ladder, readings) = asked.problem, marched(asked)
+    refined = refine(run, ladder, asked.accuracy, readings)
     steady = not problem.motion.periodic
     return Result(
         **asked.point,
         model=asked.model,
-        mu_macro=_within(problem, certified.mu),
-        mu_macro_error=certified.error,
-        mu_torque=certified.torque if steady else None,
-        mu_torque_error=certified.torque_error + certified.errors["periodicity"]
-        if steady
-        else None,
-        **verdict(asked, certified, axes, asked.tolerance),
+        mu_macro=_within(problem, refined.value),
+        mu_macro_error=refined.error,
+        mu_torque=refined.torque if steady else None,
+        mu_torque_error=refined.torque_error + refined.errors["periodicity"] if steady else None,
+        **verdict(asked, refined, ladder, asked.tolerance),
     )
 
 
@@ -124,4 +117,5 @@ def refuse_choice(problem: Problem, model: str, cells: int | None, steps: int | 
     if exact is None and model == "auto":
         exact = unless_imposed(problem, None, cells, steps)
     if exact is None:
-        refuse_free(plan(problem, choose_model(problem, model), TOLERANCE, cells, steps)[1])
+        name = choose_model(problem, model)
+        refuse_free(ladder_for(problem, name, TOLERANCE, cells, steps), cells, steps)

@@ -44,7 +44,7 @@ from microslip.adaptive.choice import choose_model
 from microslip.adaptive.moved import marched
 from microslip.adaptive.no_load import NoLoad, no_load
 from microslip.adaptive.propulsion_line import PropulsionLine
-from microslip.adaptive.refinement import certify
+from microslip.estimate.refine import refine
 from microslip.foundation.arguments import count
 from microslip.foundation.errors import InputError
 from microslip.foundation.number_text import number_text
@@ -177,17 +177,17 @@ class _Contact:
 
     def _certified(self, velocity, quantity):
         if (velocity, quantity) not in self.done:
-            run, coarsest, axes, readings = self._marched(velocity)
+            run, ladder, readings = self._marched(velocity)
             if quantity == "power":
                 run = self._power_as_force(run)
                 readings = [self._power_as_force(other) for other in readings]
-            found = certify(run, coarsest, axes, self.asked.tolerance, readings)
+            found = refine(run, ladder, self.asked.tolerance, readings)
             reason = found.reason
             if found.converged and found.error > self.asked.tolerance:
                 reason = f"the estimated error of its {quantity} is {found.error:.1e}"
             if reason:
                 reason = f"velocity = {self.sign * velocity:g}: {reason}"
-            self.done[velocity, quantity] = Known(float(found.mu), float(found.error), reason)
+            self.done[velocity, quantity] = Known(float(found.value), float(found.error), reason)
         return self.done[velocity, quantity]
 
     def _marched(self, velocity):

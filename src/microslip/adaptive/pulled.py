@@ -6,12 +6,8 @@ import math
 from dataclasses import replace
 from functools import partial
 
-from microslip.adaptive.asked import Asked, refuse_free, verdict
-from microslip.adaptive.certified import given_up
-from microslip.adaptive.chains import Runs
+from microslip.adaptive.asked import Asked, verdict
 from microslip.adaptive.closed_forms import CLOSED_FORM, ROUNDING
-from microslip.adaptive.refinement import certify, run_tolerance
-from microslip.adaptive.resolutions import plan, with_mass
 from microslip.adaptive.result import Result, of_closed_form
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
@@ -25,6 +21,8 @@ from microslip.adaptive.under_force import (
     velocity_near,
     without_forward_motion,
 )
+from microslip.estimate.ladder import Ladder, ladder_for, refuse_free, with_mass
+from microslip.estimate.refine import refine, run_tolerance, unknown
 from microslip.foundation.errors import InputError
 from microslip.models.registry import MODELS
 from microslip.motions.problem import Problem
@@ -88,7 +86,8 @@ def refuse_pull(asked: Asked) -> None:
 
 
 def solve_pulled(asked: Asked) -> Result:
-    """The certified friction, or under a force the velocity, a result.Result; see microslip.solve.
+    """The friction, or under a force the velocity, with its error estimate: a result.Result; see
+    microslip.solve.
 
     It is for the caller to `refuse_pull` before.
     """
@@ -104,14 +103,14 @@ def solve_pulled(asked: Asked) -> Result:
     if bracket is not None:
         point = asked.point | {"model": CLOSED_FORM}
         return replace(of_closed_form(point, bracket, asked.seconds), **body)
-    certified, axes = _certified(asked, Accuracy(asked.accuracy))
+    refined, ladder = _refined(asked, Accuracy(asked.accuracy))
     return Result(
         **asked.point,
         **body,
         model=asked.model,
-        mu_macro=_between(certified.mu, -1.0 if problem.propels else 0.0, 1.0),
-        mu_macro_error=certified.error,
-        **verdict(asked, certified, axes, asked.tolerance),
+        mu_macro=_between(refined.value, -1.0 if problem.propels else 0.0, 1.0),
+        mu_macro_error=refined.error,
+        **verdict(asked, refined, ladder, asked.tolerance),
     )
 
 
@@ -260,15 +259,15 @@ def _moving(asked, marched):
         return _given_up(request, str(spent))
     asked = replace(asked, problem=replace(asked.problem, velocity=near.velocity))
     accuracy = Accuracy(asked.accuracy * max(1.0, SCALE_SHARE * near.velocity), near.slope)
-    certified, axes = _certified(asked, accuracy)
-    velocity, error = float(certified.mu), float(certified.error)
+    refined, ladder = _refined(asked, accuracy)
+    velocity, error = float(refined.value), float(refined.error)
     if not asked.problem.propels:
         velocity = max(velocity, 0.0)  # what lies below is rounding and error
-    if not certified.converged and not error < abs(velocity):  # not even its order of magnitude
+    if not refined.converged and not error < abs(velocity):  # not even its order of magnitude
         velocity, error = math.nan, math.inf
     elif marched > drive.force:
         velocity, error = 0.5 * velocity, 0.5 * velocity + error
-        certified = replace(certified, errors=certified.errors | {"model": 0.5 * certified.mu})
+        refined = replace(refined, errors=refined.errors | {"model": 0.5 * refined.value})
     largest = None if asked.tolerance is None else asked.tolerance * max(1.0, abs(velocity))
     return Result(
         **asked.point | {"velocity": velocity},
@@ -277,7 +276,7 @@ def _moving(asked, marched):
         mu_macro=drive.force,
         mu_macro_error=0.0,
         velocity_error=error,
-        **verdict(asked, certified, axes, largest),
+        **verdict(asked, refined, ladder, largest),
     )
 
 
@@ -291,11 +290,10 @@ def _near(asked):
     force = asked.problem.drive.force
     # the plan depends on where slip starts, and finds it again by itself
     found_focus(moving, asked.model, asked.budget, asked.progress)
-    coarsest, axes = plan(moving, asked.model, COARSE_TOLERANCE, asked.cells, asked.steps)
+    ladder = ladder_for(moving, asked.model, COARSE_TOLERANCE, asked.cells, asked.steps)
     if asked.tolerance is None:
-        refuse_free(axes)
-    first = {axis.name: axis.first[0] for axis in axes}
-    coarse = Runs(None, coarsest, axes).resolution(**first)
+        refuse_free(ladder, asked.cells, asked.steps)
+    coarse = ladder.resolution(ladder.levels(COARSE_TOLERANCE)[0])
     settings = Settings(asked.how, budget=asked.budget)
     if asked.progress is not None:
         asked.progress(coarse)
@@ -324,20 +322,20 @@ def _given_up(asked, reason):
     )
 
 
-def _certified(asked, accuracy):
-    """The certified.Certified to an accuracy, and what was refined."""
+def _refined(asked, accuracy):
+    """The refine.Refined to an accuracy, and its ladder."""
     problem, tolerance = asked.problem, accuracy.tolerance
     drive = problem.drive
     try:
         found_focus(problem, asked.model, asked.budget, asked.progress)
     except Spent as spent:
-        return given_up(spent), ()
-    coarsest, axes = plan(problem, asked.model, tolerance, asked.cells, asked.steps)
+        return unknown(f"{spent}: no error is known yet"), Ladder(1, 0, 0)
+    ladder = ladder_for(problem, asked.model, tolerance, asked.cells, asked.steps)
     contact = contact_of(problem, asked.model, COARSEST)
-    axes, unresolved = with_mass(axes, problem, contact, drive.mass, tolerance)
-    share = accuracy._replace(tolerance=run_tolerance(coarsest, axes, tolerance))
+    ladder, unresolved = with_mass(ladder, problem, contact, drive.mass, tolerance)
+    share = accuracy._replace(tolerance=run_tolerance(tolerance))
     if asked.tolerance is None:
-        refuse_free(axes)
+        refuse_free(ladder, asked.cells, asked.steps)
     settings = Settings(asked.how, budget=asked.budget)
 
     def run(resolution, guess, problem=problem):
@@ -350,10 +348,10 @@ def _certified(asked, accuracy):
         for other in problem.pressure.readings
     ]
     quantity = "mu" if drive.force is None else "velocity"
-    certified = certify(run, coarsest, axes, tolerance, readings, quantity)
-    if unresolved and certified.converged:
-        certified = replace(certified, converged=False, reason=unresolved)
-    return certified, axes
+    refined = refine(run, ladder, tolerance, readings, quantity)
+    if unresolved and refined.converged:
+        refined = replace(refined, converged=False, reason=unresolved)
+    return refined, ladder
 
 
 def _between(value, least, most):

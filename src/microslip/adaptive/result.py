@@ -39,10 +39,10 @@ class Result:
     mu_macro : float
         Mean forward friction force over mu F_z, a ratio: 1 means that the vibration does nothing.
     mu_macro_error : float
-        Largest error that mu_macro may have, by estimate: the sum of the next five.  Under a force
+        Largest error that mu_macro may have, by estimate: the sum of the next four.  Under a force
         these are of the velocity, and mu_macro is the force.
-    error_space, error_time : float
-        Parts of it from the rings or squares and the angles, and from the time steps.
+    error_resolution : float
+        Part of it from the rings or squares, the angles and the time steps.
     error_periodicity, error_solver : float
         ... from the distance to the periodic state, and from what the steps left unsolved.
     error_model : float
@@ -64,6 +64,9 @@ class Result:
         Angular points on half the disc, of the finest run; 1 where rings or squares suffice.
     steps_per_period : int
         Time steps in a full period, of the finest run.
+    observed_order : float or None
+        Observed order of convergence of the last three levels; None where it is not known.  2 is
+        expected; far below 1 the runs are too coarse for the error estimate.
     periods : float
         Full periods marched in search of the periodic state in the longest run: 2.5 are five half
         ones.
@@ -98,8 +101,7 @@ class Result:
     contacts: str | None = None
     mu_macro: float
     mu_macro_error: float
-    error_space: float = 0.0
-    error_time: float = 0.0
+    error_resolution: float = 0.0
     error_periodicity: float = 0.0
     error_solver: float = 0.0
     error_model: float = 0.0
@@ -111,6 +113,7 @@ class Result:
     cells: int = 0
     angles: int = 0
     steps_per_period: int = 0
+    observed_order: float | None = None
     periods: float = 0.0
     iterations: int = 0
     work: int = 0

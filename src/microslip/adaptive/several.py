@@ -29,7 +29,7 @@ def solve_each(asked: Asked) -> Result:
 
     marched = [result for result in results if result.model != CLOSED_FORM]
     summed = ("iterations", "work", "effort", "retried")
-    means = ("mu_macro", "mu_macro_error", "error_space", "error_time")
+    means = ("mu_macro", "mu_macro_error", "error_resolution")
     means += ("error_periodicity", "error_solver", "error_model")
     return Result(
         **asked.point,

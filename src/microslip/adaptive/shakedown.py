@@ -14,7 +14,6 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields, replace
 
 from microslip.adaptive.asked import Asked, budget_for, verdict
-from microslip.adaptive.certified import given_up
 from microslip.adaptive.checks import (
     checked_problem,
     checked_request,
@@ -23,8 +22,6 @@ from microslip.adaptive.checks import (
 )
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.pulled import refuse_drive
-from microslip.adaptive.refinement import certify, run_tolerance
-from microslip.adaptive.resolutions import plan
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
     is_even,
@@ -32,6 +29,8 @@ from microslip.adaptive.under_force import (
     runs_away,
     without_forward_motion,
 )
+from microslip.estimate.ladder import Ladder, ladder_for
+from microslip.estimate.refine import refine, run_tolerance, unknown
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Force
@@ -48,9 +47,6 @@ TOLERANCE = 1e-2
 """Of the displacement, in u_lim, unless told otherwise."""
 PLANNED_VELOCITY = 0.1
 """For which the steps are planned: near the static limit there would be none."""
-CAUTION = 1.5
-"""Errors over the spread of the last runs along an axis: what slips comes to lie between rings and
-steps, and nothing says that values fall smoothly."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,7 +73,7 @@ class Shakedown:
         Whether the contact comes to rest for certain and the error is within the tolerance.
     reason : str
         Why not, else empty.
-    error_space, error_time, error_periodicity, error_solver : float
+    error_resolution, error_periodicity, error_solver : float
         Parts of the error: what may be left of the way is the periodicity.
     cells, angles, steps_per_period : int
         The finest used.
@@ -104,8 +100,7 @@ class Shakedown:
     most_after: float = math.nan
     converged: bool
     reason: str = ""
-    error_space: float = 0.0
-    error_time: float = 0.0
+    error_resolution: float = 0.0
     error_periodicity: float = 0.0
     error_solver: float = 0.0
     cells: int = 0
@@ -228,10 +223,8 @@ def _certified(asked, force):
     try:  # the plan depends on where slip starts, and finds it again by itself
         found_focus(planned, asked.model, asked.budget, asked.progress)
     except Spent as spent:
-        return _fields(asked, given_up(spent), (), None)
-    coarsest, axes = plan(planned, asked.model, asked.tolerance)
-    axes = [replace(axis, regular=False, projected=False, caution=CAUTION) for axis in axes]
-    left = run_tolerance(coarsest, axes, asked.tolerance)
+        return _fields(asked, unknown(f"{spent}: no error is known yet"), Ladder(1, 0, 0), None)
+    ladder, left = ladder_for(planned, asked.model), run_tolerance(asked.tolerance)
     settings, finest = Settings(asked.how, budget=asked.budget), {}
 
     def run(resolution, guess):
@@ -242,18 +235,18 @@ def _certified(asked, force):
         )
         return finest[resolution]
 
-    certified = certify(run, coarsest, axes, asked.tolerance, (), "displacement")
+    refined = refine(run, ladder, asked.tolerance, (), "displacement")
     last = finest[max(finest, key=lambda one: (one.cells, one.steps))] if finest else None
-    return _fields(asked, certified, axes, last)
+    return _fields(asked, refined, ladder, last)
 
 
-def _fields(asked, certified, axes, last):
-    """Fields of a Shakedown from its Certified and its finest ShakedownRun, if there is one."""
-    said = verdict(asked, certified, axes, asked.tolerance)
+def _fields(asked, refined, ladder, last):
+    """Fields of a Shakedown from its Refined and its finest ShakedownRun, if there is one."""
+    said = verdict(asked, refined, ladder, asked.tolerance)
     taken = {field.name for field in fields(Shakedown)}
     return {name: value for name, value in said.items() if name in taken} | {
-        "displacement": float(certified.mu),
-        "displacement_error": float(certified.error),
+        "displacement": float(refined.value),
+        "displacement_error": float(refined.error),
         "pushed": math.nan if last is None else last.pushed,
         "most_after": math.nan if last is None else last.most_after,
     }

@@ -16,7 +16,7 @@ from microslip.adaptive.asked import TOLERANCE, Asked, budget_for
 from microslip.adaptive.checks import checked_problem, checked_request
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.moved import marched
-from microslip.adaptive.refinement import certify
+from microslip.estimate.refine import refine
 from microslip.foundation.errors import InputError
 from microslip.motions.motion import LOOP, Motion
 from microslip.motions.problem import Problem
@@ -96,8 +96,8 @@ def vibration_power(
 
     plan = marched(asked)
     readings = [power_as_force(one) for one in plan.readings]
-    found = certify(power_as_force(plan.run), plan.coarsest, plan.axes, tolerance, readings)
+    found = refine(power_as_force(plan.run), plan.ladder, tolerance, readings)
     reason = found.reason
     if found.converged and found.error > tolerance:
         reason = f"the estimated error of the power is {found.error * speed:.1e}"
-    return VibrationPower(float(speed * found.mu), float(speed * found.error), reason)
+    return VibrationPower(float(speed * found.value), float(speed * found.error), reason)

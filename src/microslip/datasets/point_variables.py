@@ -21,8 +21,7 @@ from microslip.foundation.canonical import canonical_json
 POINT_VARIABLES = {
     "mu_macro": (float, MU_MACRO.description),
     "mu_macro_error": (float, "estimated error of mu_macro"),
-    "error_space": (float, "error of mu_macro from the cells"),
-    "error_time": (float, "error of mu_macro from the time steps"),
+    "error_resolution": (float, "error of mu_macro from the resolution"),
     "error_periodicity": (float, "error of mu_macro from periodicity"),
     "error_solver": (float, "error of mu_macro from the iteration"),
     "error_model": (float, "error of mu_macro from model or data"),
@@ -54,8 +53,7 @@ CHANGES = {
 }
 """Variables of a sweep over Poisson's ratios: name -> (of what, sign of the first, long_name)."""
 DESCRIPTIONS = {
-    "error_space": "part of mu_macro_error from the cells",
-    "error_time": "part of mu_macro_error from the time steps",
+    "error_resolution": "part of mu_macro_error from cells, angles and time steps",
     "error_periodicity": "part of mu_macro_error from the distance to the periodic state",
     "error_solver": "part of mu_macro_error from the iteration in each step",
     "error_model": "part of mu_macro_error from a closed form in place of a run, or a file's "

@@ -43,8 +43,7 @@ LABELS = {
     ),
 }
 ERRORS = {
-    "error_space": "cells",
-    "error_time": "time steps",
+    "error_resolution": "cells, angles and time steps",
     "error_periodicity": "distance to the periodic state",
     "error_solver": "iteration in each step",
     "error_model": "closed form",

@@ -1,0 +1,1 @@
+"""Discretisation error: levels of resolution, Richardson extrapolation, refinement."""

@@ -1,0 +1,243 @@
+"""Levels of resolution of a problem: cells, angles and time steps refined together.
+
+One number, the level n, is the number of cells and sets angles and steps in proportion.  The error
+then has one leading term C / n^2, which three levels n/4, n/2 and n reveal.  LEVELS are two
+interleaved series of doublings, so that the next level costs little more and shares its coarser
+levels with the level after it.
+
+The first level follows from the tolerance and from what moves.  Whatever else a point needs is in
+its mesh and its path: rings are graded towards the slip front by the stick radius and the width of
+the slip layer (discretise.focus_strength), and the number of time steps grows with the stroke
+and with the natural frequency of a mass.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from microslip.foundation.errors import InputError
+from microslip.models.contact import Contact
+from microslip.models.registry import MODELS
+from microslip.motions.problem import Problem
+from microslip.solver.discretise import Resolution, path_of
+from microslip.solver.static_limit import at_turning_points
+from microslip.solver.stick_edge import SLOW_LOOP
+
+LEVELS = tuple(sorted(base * 2**k for k in range(9) for base in (2, 3)))
+"""Levels 2, 3, 4, 6, 8, 12, ..., 512, 768."""
+START_TOLERANCE, LOOSEST = 1e-3, 1e-2
+"""Tolerance that Ladder.start is for, and the largest one for which first levels become coarser."""
+RATE = math.log10(2.0)
+"""The first level is proportional to the tolerance to minus this power: it doubles per decade.
+Extrapolated errors fall with about the third power of the level."""
+FINEST = 12
+"""Finest level over the start: one above that of the smallest tolerance, 1e-6."""
+LONGEST_STROKE = 16.0
+"""Stroke in u_lim beyond which the number of steps no longer grows."""
+LONGEST_NATURAL_STEP = 1.0
+"""Longest step at the tolerance 1e-2, in radians of the natural oscillation of a mass against the
+contact: within about a radian second-order steps converge, and differences show their error."""
+MOST_MASS_STEPS = 8192
+"""Steps in half a period that a mass may need: runs over 24 rings take a few seconds then."""
+
+
+@dataclass(frozen=True)
+class Ladder:
+    """Resolutions of a problem, one a level.
+
+    Attributes
+    ----------
+    start : int
+        First level at the tolerance START_TOLERANCE.
+    angles, steps : float
+        Angles on half the disc and time steps in half a period, per level; 0 for a number that is
+        not refined.
+    cells : float
+        Rings, or squares across the contact, per level; 0 likewise.
+    least_angles : int
+        Smallest number of angles.
+    imposed : bool
+        Whether the user imposes a resolution: then it is that of the level `start`, and no other
+        level is the answer.
+    """
+
+    start: int
+    angles: float
+    steps: float
+    cells: float = 1.0
+    least_angles: int = 2
+    imposed: bool = False
+
+    def resolution(self, level: int) -> Resolution:
+        """Resolution at a level."""
+        angles = 2 * math.ceil(0.5 * self.angles * level)
+        return Resolution(
+            cells=max(round(self.cells * level), 2) if self.cells else 1,
+            angles=max(angles, self.least_angles) if self.angles else 1,
+            steps=max(round(self.steps * level), 4),
+        )
+
+    def levels(self, tolerance: float) -> tuple[int, ...]:
+        """Levels to try one after the other at a tolerance."""
+        if self.imposed:
+            return (self.start,)
+        first = self.start * (START_TOLERANCE / min(tolerance, LOOSEST)) ** RATE
+        levels = [level for level in LEVELS if level <= FINEST * self.start]
+        # rounding of the power must not skip a level
+        return tuple(level for level in levels if level > 0.999 * first) or (levels[-1],)
+
+
+# start: calibrated by benchmarks/ladders.py, where 2/3 of it has 20 misses in 5,712 points
+TRANSLATION = Ladder(start=16, angles=0.25, steps=2)
+"""Tractions depend on the angle a little, and only at nu > 0."""
+LOOP = Ladder(start=32, angles=0.25, steps=2)
+"""Slow motion whose halves are no mirror images, so that slip fronts differ between them."""
+COUPLED = Ladder(start=32, angles=0.25, steps=4)
+"""Several contacts that work against each other: which one slides changes within a step."""
+ROTATION = Ladder(start=24, angles=0.5, steps=1, least_angles=4)
+LOAD = Ladder(start=48, angles=0.5, steps=4, least_angles=4)
+"""Oscillating normal load: the edge of the contact sweeps over the rings, one after the other."""
+SQUARES = Ladder(start=48, angles=0, steps=1)
+"""Squares across the diameter, which are not graded towards the slip front."""
+STATIC = Ladder(start=64, angles=0.5, steps=0, least_angles=4)
+"""Static limit at turning points: nothing is marched, and slip fronts cut through the cells."""
+
+
+def ladder_for(
+    problem: Problem,
+    model: str,
+    tolerance: float = START_TOLERANCE,
+    cells: int | None = None,
+    steps: int | None = None,
+) -> Ladder:
+    """Ladder of a problem.
+
+    Parameters
+    ----------
+    problem : problem.Problem
+        As checked by the caller.
+    model : str
+        Name in models.registry.MODELS.
+    tolerance : float
+        Absolute, on the friction: it chooses the steps of imposed cells, and the cells of imposed
+        steps.
+    cells, steps : int or None
+        Imposed resolution; steps in a full period.
+    """
+    motion, refined = problem.motion, MODELS[model].axes(problem)
+    kind = _kind(problem, model)
+    longer = min(max(problem.stroke, 1.0), LONGEST_STROKE) ** 0.5 * motion.cycles
+    ladder = replace(
+        kind,
+        cells=kind.cells if "cells" in refined else 0.0,
+        angles=kind.angles if "angles" in refined else 0.0,
+        steps=kind.steps * longer if motion.periodic else 0.0,
+    )
+    return _imposing(ladder, tolerance, cells, steps)
+
+
+def _kind(problem, model):
+    """The Ladder of problems of this kind."""
+    motion = problem.motion
+    on_a_line = at_turning_points(problem)
+    if motion.periodic and problem.velocity == 0.0 and on_a_line:
+        return STATIC
+    if motion.loads:
+        return LOAD
+    if model == "cartesian":
+        return SQUARES
+    if motion.rotates:
+        return ROTATION
+    mirrored = problem.straight and problem.half_period_mirror
+    slow = motion.periodic and problem.drift < SLOW_LOOP
+    if problem.parts and not mirrored:
+        return COUPLED
+    return LOOP if slow and not mirrored else TRANSLATION
+
+
+def _imposing(ladder, tolerance, cells, steps):
+    """The ladder whose start is an imposed resolution; a number that is not imposed is as fine as
+    the tolerance or the imposed cells need."""
+    cells, steps = cells if ladder.cells else None, steps if ladder.steps else None
+    if cells is None and steps is None:
+        return ladder
+    level = max(ladder.levels(tolerance)[0], cells or 0)
+    return replace(
+        ladder,
+        cells=(ladder.cells * level if cells is None else cells) / ladder.start,
+        angles=ladder.angles * level / ladder.start,
+        steps=(ladder.steps * level if steps is None else steps // 2) / ladder.start,
+        imposed=True,
+    )
+
+
+def refuse_free(ladder: Ladder, cells: int | None, steps: int | None) -> None:
+    """Raise InputError where a tolerance would have to choose the cells or the steps."""
+    numbers = (("cells", ladder.cells, cells), ("steps", ladder.steps, steps))
+    free = " and ".join(name for name, refined, given in numbers if refined and given is None)
+    if free:
+        allowed = f"allowed is a number, or none where {free} are imposed"
+        raise InputError("tolerance", None, allowed)
+
+
+class WithMass(NamedTuple):
+    """Ladder whose steps suit a mass.
+
+    Attributes
+    ----------
+    ladder : Ladder
+        With shorter steps.
+    reason : str
+        Why its steps do not resolve the natural oscillation of the mass; "" if they do.
+    """
+
+    ladder: Ladder
+    reason: str
+
+
+def with_mass(
+    ladder: Ladder, problem: Problem, contact: Contact, mass: float, tolerance: float
+) -> WithMass:
+    """Shorten the steps of a ladder until they resolve a mass that oscillates against the contact.
+
+    The natural frequency is sqrt(stiffness / mass), with the stiffness of the contact (1.5 for a
+    sphere at nu = 0), over that of the vibration.  Runs whose steps are longer than a radian of it
+    may agree with each other, but not with the solution.  A spring that is s times stiffer than the
+    contact raises the frequency by the square root of s, and lowers the force of the oscillation on
+    the contact by s.  An error of second order then asks for the same steps.
+
+    Parameters
+    ----------
+    ladder : Ladder
+        As for a contact without mass.
+    problem : problem.Problem
+        Its path is cut into steps.
+    contact : contact.Contact
+        A contact of the problem at any resolution.
+    mass : float
+        Over mu F_z / (u_lim omega^2).
+    tolerance : float
+        Absolute, on the answer.
+    """
+    if mass == 0.0 or not ladder.steps:
+        return WithMass(ladder, "")
+    count = ladder.resolution(ladder.levels(tolerance)[0]).steps
+    frequency = (contact.stiffness / mass) ** 0.5
+    longest = float(np.diff(path_of(problem, contact, count).phase).max())
+    allowed = LONGEST_NATURAL_STEP
+    if not ladder.imposed:
+        allowed *= (tolerance / 1e-2) ** 0.5  # second order in time
+    finer = max(longest * frequency / allowed, 1.0)
+    if finer > 1.0 and (ladder.imposed or finer * count > MOST_MASS_STEPS):
+        most = 2 * (count if ladder.imposed else MOST_MASS_STEPS)
+        return WithMass(
+            ladder,
+            f"mass too small for {most} steps in a period: it oscillates against the contact at"
+            f" {frequency:.3g} times the frequency of the vibration, which takes"
+            f" {2 * int(np.ceil(finer * count))}",
+        )
+    return WithMass(replace(ladder, steps=finer * ladder.steps), "")

@@ -1,0 +1,58 @@
+"""Richardson extrapolation of three levels, each twice as fine as the one before, and its error.
+
+The methods are of second order, f(n) = f + C / n^2 + ..., so that the last difference D of two
+levels leaves a correction of D / 3.  The difference before it predicts a quarter of its own value
+for the last one.  The larger of both is used in the error estimate: two coarse levels may agree by
+chance, but then the third one differs.  This is the grid convergence index of Roache (J. Fluids
+Eng. 116, 1994), with the difference of both pairs of levels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+ORDER = 2
+"""Order of convergence of rings, angles and time steps."""
+SAFETY = 1.5
+"""Safety factor on the correction: 2 covers convergence of first order.  Calibrated by
+benchmarks/ladders.py, where 1.25 has 3 misses in 803 points, 1.5 and 2 have 1."""
+
+
+WEIGHTS = 0.0, -1.0 / (2**ORDER - 1), 2**ORDER / (2**ORDER - 1)
+"""Weights of the levels n/4, n/2 and n in the extrapolated value."""
+
+
+class Extrapolation(NamedTuple):
+    """Limit of a sequence of levels.
+
+    Attributes
+    ----------
+    value : float
+        Limit at infinite n.
+    error : float
+        Its estimated error.
+    difference : float
+        Difference of the last two levels, or a quarter of the one before if that is larger: covers
+        the error of the last level at first order.
+    order : float
+        Observed order of convergence: infinite where the last two levels agree, NaN where all do.
+    """
+
+    value: float
+    error: float
+    difference: float
+    order: float
+
+
+def extrapolate(values: Sequence[float]) -> Extrapolation:
+    """Richardson extrapolation of the values at levels n/4, n/2 and n."""
+    coarse, middle, fine = values
+    before, last = abs(middle - coarse), abs(fine - middle)
+    difference = max(last, before / 2**ORDER)
+    error = SAFETY * difference / (2**ORDER - 1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        order = float(np.log2(np.divide(before, last)))
+    return Extrapolation(float(np.dot(WEIGHTS, values)), error, difference, order)
