@@ -40,6 +40,7 @@ from microslip.adaptive.moved import marched
 from microslip.estimate import refine as refinement
 from microslip.estimate import richardson
 from microslip.motions.by_name import motion_named
+from microslip.pressures.by_name import pressure_named
 
 DOCS = Path(__file__).parents[1] / "docs/measured"
 
