@@ -31,7 +31,6 @@ import blind_points
 import known_references
 import numpy as np
 import tables
-from microslip.solver.problem import Problem
 
 from microslip.adaptive.asked import Asked, budget_for
 from microslip.adaptive.choice import choose_model
@@ -40,6 +39,7 @@ from microslip.adaptive.moved import marched
 from microslip.estimate import refine as refinement
 from microslip.estimate import richardson
 from microslip.motions.by_name import motion_named
+from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named
 
 DOCS = Path(__file__).parents[1] / "docs/measured"
