@@ -11,7 +11,6 @@ from bad_input_tables.odd_quantities import Q
 
 import microslip
 from microslip.app import cli
-from microslip.motions.by_name import motion_named
 from microslip.si.materials import Material
 from microslip.si.motions import MOTIONS
 
@@ -154,7 +153,7 @@ def test_the_command_line_answers_in_words(capsys):
         assert "54.57 um" in found
         assert "warning: " in found
         for text in (
-            f"{name}: the sphere {motion_named(name)}",
+            f"{name}: the sphere {MOTIONS[name]}",
             "rigid, as none was given",
             *said_first,
         ):

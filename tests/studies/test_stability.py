@@ -165,7 +165,8 @@ def periodic_force(velocity, share, search):
     """Mean forward force of the periodic state found from the oscillation's own tractions plus a
     share of all the forward traction that they leave room for."""
     motion = Problem(Transverse(), velocity, 0.5, 0.0)
-    contact = RadialContact.resolved(16, Transverse().focus(velocity, 0.5, Transverse().pressure))
+    focus = Problem(Transverse(), velocity, 0.5).focus
+    contact = RadialContact.resolved(16, focus)
     path = path_of(motion, contact, 32)
     room, oscillating, *_ = static_state(contact, motion.oscillation, 1e-12)
     goal = Goal(1e-6, 1e-9, most_marches=1000)

@@ -81,6 +81,8 @@ class Registry:
         Argument that messages name.
     first : sequence of str
         Names that are listed before all others.
+    others : sequence of str
+        Words before a colon that are parsed elsewhere; messages list them.
 
     Attributes
     ----------
@@ -90,8 +92,16 @@ class Registry:
         Path and error of each file that cannot be used.
     """
 
-    def __init__(self, package: ModuleType, base: type, argument: str, first: Sequence[str] = ()):
-        self.package, self.base, self.argument, self.first = package, base, argument, first
+    def __init__(
+        self,
+        package: ModuleType,
+        base: type,
+        argument: str,
+        first: Sequence[str] = (),
+        others: Sequence[str] = (),
+    ):
+        self.package, self.base, self.argument = package, base, argument
+        self.first, self.others = first, others
         self.classes: dict[str, type] = {}
         self.broken: dict[str, str] = {}
         self._own = list(package.__path__)
@@ -139,7 +149,7 @@ class Registry:
             For a text without a known name, a broken file, and numbers that the class does not
             have or accept.
         """
-        known = list(self.classes)
+        known = [*self.classes, *self.others]
         if not isinstance(text, str):
             raise InputError(self.argument, text, f"allowed is one of {', '.join(known)}")
         reason = self.broken.get(text.partition(":")[0].strip().replace("-", "_"))

@@ -11,7 +11,7 @@ from microslip.foundation.families import Registry
 from microslip.pressures import from_file
 from microslip.pressures.pressure import Pressure
 
-_REGISTRY = Registry(pressures, Pressure, "pressure", first=("hertz",))
+_REGISTRY = Registry(pressures, Pressure, "pressure", first=("hertz",), others=("file",))
 PRESSURES = _REGISTRY.classes
 """Name -> subclass of Pressure."""
 BROKEN = _REGISTRY.broken
