@@ -91,7 +91,7 @@ def test_an_edited_law_of_friction_is_the_one_that_runs(copy):
     )
     program = "from microslip.caller import called; print(called(4.0))"
     assert float(run(program, copy).stdout) == pytest.approx(1.0)
-    law = copy / "models" / "coulomb.py"
+    law = copy / "contacts" / "coulomb.py"
     text = law.read_text()
     law.write_text(text.replace("return min(1.0, bound /", "return min(1.0, 0.5 * bound /", 1))
     assert law.read_text() != text
