@@ -6,12 +6,19 @@ What the solver calls a motion or a pressure is a name with numbers, such as
 functions that ask it, and by nothing else: the workflow reads this whenever it is parsed.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from microslip.config import axes
 from microslip.config.records import TAKEN, ConfigError, Sweep
 from microslip.foundation import named_files
 from microslip.foundation.errors import InputError
+
+if TYPE_CHECKING:
+    from microslip.motions.drive import Drive
+    from microslip.motions.problem import Problem
 
 MOST_PANELS = 12
 """Sweeps on a figure of maps, each as often as it has Poisson's ratios."""
@@ -99,7 +106,7 @@ def pulled_sweeps(given: dict, where: str, others: Iterable) -> dict:
     return found
 
 
-def _by_content(pressure):
+def _by_content(pressure: str) -> str:
     """The name of a pressure, without the place of a file whose content is known."""
     if not named_files.speaks_of_file(pressure):
         return pressure
@@ -113,7 +120,7 @@ def refuse_mixtures(given: list, where: str) -> None:
         _refuse_mixture([sweep for sweep in given if sweep.group == group], where)
 
 
-def _refuse_mixture(together, where):
+def _refuse_mixture(together: list[Sweep], where: str) -> None:
     first, last = together[0], together[-1]
     for sweep in together:
         if sweep.drawn_over != first.drawn_over:
@@ -146,7 +153,7 @@ def refuse_unsolvable(given: list, where: str) -> None:
             raise ConfigError(" ".join(line.split())) from None
 
 
-def _ask_solver(sweep, where):
+def _ask_solver(sweep: Sweep, where: str) -> None:
     """Raise InputError, in the solver's words, for what it does not know or do; ConfigError for an
     amplitude that is missing, or too much."""
     from microslip.motions.by_name import motion_named
@@ -171,14 +178,14 @@ def _ask_solver(sweep, where):
         _ask_of_drive(sweep)
 
 
-def _problem(sweep, velocity, end, drive=None):
+def _problem(sweep: Sweep, velocity: float | None, end: int, drive: Drive | None = None) -> Problem:
     """The problem of a Sweep at a velocity and one end of its amplitudes; raises InputError."""
     from microslip.adaptive.checks import checked_problem
 
     return checked_problem(
         sweep.motion,
         velocity,
-        sweep.amplitude and sweep.amplitude[end],
+        None if sweep.amplitude is None else sweep.amplitude[end],
         pressure=sweep.pressure,
         poisson=sweep.poisson[-1],
         contacts=sweep.contacts,
@@ -186,7 +193,7 @@ def _problem(sweep, velocity, end, drive=None):
     )
 
 
-def _ask_of_drive(sweep):
+def _ask_of_drive(sweep: Sweep) -> None:
     """Raise InputError for what does not go together, or with the motion, at any point."""
     from microslip.adaptive.checks import checked_drive
     from microslip.adaptive.choice import choose_model

@@ -58,7 +58,7 @@ def _of_indenter(motion: str, pressure: Pressure) -> tuple[Callable, Callable]:
             lambda a: indenters.static_bore(pressure, float(hertz.bore_angle(a))),
         )
     return (
-        lambda a: _load_inside(pressure, pressure.stick_radius(a)),
+        lambda a: _load_inside(pressure, pressure.stick_radius(a) or 0.0),
         partial(indenters.static_transverse, pressure),
     )
 

@@ -15,9 +15,12 @@ from pathlib import Path
 from pkgutil import iter_modules
 from traceback import extract_tb
 from types import ModuleType
+from typing import Any, Generic, TypeVar
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
+
+T = TypeVar("T")
 
 
 def modules_in(
@@ -48,7 +51,7 @@ def modules_in(
         except (Exception, SystemExit) as error:  # the code of a user may raise anything
             broken[file.name] = f"{path} cannot be imported: {described(error, path)}"
             continue
-        if not os.path.samefile(os.path.dirname(module.__file__), folder):
+        if not os.path.samefile(os.path.dirname(str(module.__file__)), folder):
             taken = f"{path}: {module.__file__} has the same name; allowed is another name"
             broken[file.name] = taken
             continue
@@ -68,7 +71,7 @@ def described(error: BaseException, path: str | os.PathLike) -> str:
     return " ".join(f"{type(error).__name__}{where}: {message}".split())
 
 
-class Registry:
+class Registry(Generic[T]):
     """Classes by name, found in the folders of a package and of the user.
 
     Parameters
@@ -95,14 +98,14 @@ class Registry:
     def __init__(
         self,
         package: ModuleType,
-        base: type,
+        base: type[T],
         argument: str,
         first: Sequence[str] = (),
         others: Sequence[str] = (),
     ):
         self.package, self.base, self.argument = package, base, argument
         self.first, self.others = first, others
-        self.classes: dict[str, type] = {}
+        self.classes: dict[str, type[T]] = {}
         self.broken: dict[str, str] = {}
         self._own = list(package.__path__)
         for folder in self._own:
@@ -131,7 +134,7 @@ class Registry:
         order = dict.fromkeys([*listed, *self.classes])
         self.classes.update({name: self.classes.pop(name) for name in order})
 
-    def _is_class_of(self, one, module):
+    def _is_class_of(self, one: object, module: ModuleType) -> bool:
         """Whether an object is a class that the module defines."""
         return (
             isinstance(one, type)
@@ -140,7 +143,7 @@ class Registry:
             and one.__module__ == module.__name__
         )
 
-    def parse(self, text: str) -> object:
+    def parse(self, text: str) -> T:
         """The object of a text such as "power:exponent=1".
 
         Raises
@@ -156,18 +159,18 @@ class Registry:
         if reason:
             raise InputError(self.argument, text, reason)
         name, numbers = spec.split(text, self.argument, known)
-        cls = self.classes[name]
+        cls: Any = self.classes[name]
         spec.refuse_unknown(text, self.argument, numbers, [field.name for field in fields(cls)])
         try:
             return _made(cls, tuple(sorted(numbers.items())))
         except InputError as error:  # about the text without its default numbers
             raise InputError(self.argument, text, error.allowed) from None
         except Exception as error:  # in a file of the user
-            path = import_module(cls.__module__).__file__
+            path = str(import_module(cls.__module__).__file__)
             raise InputError(self.argument, text, f"{path}: {described(error, path)}") from error
 
 
 @lru_cache(maxsize=128)
-def _made(cls, numbers):
+def _made(cls: type[T], numbers: tuple[tuple[str, float], ...]) -> T:
     """One object for equal numbers, which keeps its cached properties."""
     return cls(**dict(numbers))

@@ -5,8 +5,9 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
+from typing import Any
 
 from microslip.foundation.errors import InputError
 
@@ -114,7 +115,7 @@ def refuse_shares(text: str, what: str, shares: dict[str, float]) -> None:
         refuse_outside(text, what, key, share, (0.0, 1.0), kind="a share")
 
 
-def refuse_counts(text: str, what: str, counts: dict[str, float], most: int) -> None:
+def refuse_counts(text: str, what: str, counts: Mapping[str, float], most: int) -> None:
     """... for what is no whole number from 1 to `most`; counts: dict."""
     for key, count in counts.items():
         if count != round(count) or not 1 <= count <= most:
@@ -128,7 +129,7 @@ def name_of(cls: type) -> str:
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "-", cls.__name__).lower()
 
 
-def text_of(record: object) -> str:
+def text_of(record: Any) -> str:
     """Text of a dataclass of numbers: its name, and the numbers that differ from their defaults,
     to 12 digits."""
     numbers = {field.name: getattr(record, field.name) for field in fields(record)}

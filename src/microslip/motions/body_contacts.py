@@ -68,7 +68,7 @@ def contacts_text(contacts: tuple[BodyContact, ...]) -> str:
     )
 
 
-def _numbers(number, part, text):
+def _numbers(number: int, part: str, text: str) -> dict[str, float]:
     """What is said of a contact; what is wrong is told with its number."""
     try:
         given = spec.numbers_in(part, text, "contacts", EXAMPLE)

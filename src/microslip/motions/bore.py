@@ -9,7 +9,7 @@ import numpy as np
 
 from microslip.motions.motion import Motion, within_rings
 from microslip.pressures.pressure import Pressure
-from microslip.theory import hertz
+from microslip.theory import hertz, paper
 
 
 @dataclass(frozen=True)
@@ -32,4 +32,4 @@ class Bore(Motion):
     def focus(self, velocity: float, amplitude: float, pressure: Pressure) -> float | None:
         """Lubkin's stick radius of the oscillation alone (Eq 30), also under other pressures,
         where this grading does no harm."""
-        return within_rings(hertz.lubkin_stick_radius(hertz.bore_angle(amplitude)))
+        return within_rings(float(paper.bore_stick_radius(amplitude)))

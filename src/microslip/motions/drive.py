@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from microslip.foundation import spec
 
 
-@dataclass(frozen=True)
 class Drive:
     """Base class of drives.
 
@@ -26,10 +25,10 @@ class Drive:
         k over mu F_z / u_lim, m over mu F_z / (u_lim omega^2), c over mu F_z / (u_lim omega).
     """
 
-    force = None
-    stiffness = 0.0
-    mass = 0.0
-    damping = 0.0
+    force: float | None
+    stiffness: float
+    mass: float
+    damping: float
 
     def __str__(self) -> str:
         return spec.text_of(self)
@@ -50,6 +49,9 @@ class Force(Drive):
     force: float
     mass: float = 0.0
 
+    stiffness = 0.0
+    damping = 0.0
+
 
 @dataclass(frozen=True)
 class Spring(Drive):
@@ -68,3 +70,5 @@ class Spring(Drive):
     stiffness: float
     mass: float = 0.0
     damping: float = 0.0
+
+    force = None

@@ -54,7 +54,7 @@ class Elliptic(Motion):
     )
     amplitude_label = "A / u_lim"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         shares = {"forward": self.forward, "lateral": self.lateral}
         spec.refuse_shares(self.name, "motion", shares)
         if max(shares.values()) == 0.0:

@@ -38,4 +38,4 @@ class Longitudinal(Motion):
         """First loading with Masing's memory, for pressures with a known loading curve."""
         if pressure.loading is None:
             return None
-        return masing.longitudinal(velocity, amplitude, pressure.loading)
+        return float(masing.longitudinal(velocity, amplitude, pressure.loading))

@@ -68,16 +68,34 @@ class Motion:
     velocity_label: ClassVar[str] = "v0 / (omega u_lim)"
     amplitude_label: ClassVar[str] = "A"
     periodic: ClassVar[bool] = True
-    rotates = False
-    half_period_mirror = False
-    straight = True
-    propels = False
-    cycles = 1
-    half_disc = True
     loads: ClassVar[bool] = False
     closed_form: ClassVar[Callable | None] = None
     """closed_form(velocity, amplitude, pressure) -> mean friction at nu = 0 (velocity 0: its
     limit), or None where it is not known; None for motions without one."""
+
+    @property
+    def rotates(self) -> bool:
+        return False
+
+    @property
+    def half_period_mirror(self) -> bool:
+        return False
+
+    @property
+    def straight(self) -> bool:
+        return True
+
+    @property
+    def propels(self) -> bool:
+        return False
+
+    @property
+    def cycles(self) -> int:
+        return 1
+
+    @property
+    def half_disc(self) -> bool:
+        return True
 
     @property
     def name(self) -> str:

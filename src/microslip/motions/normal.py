@@ -68,7 +68,7 @@ class Normal(Motion):
     )
     loads = True
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         in_plane = {"lateral": self.lateral, "forward": self.forward, "angle": self.angle}
         normal = {"load": self.load, "indentation": self.indentation}
         spec.refuse_shares(self.name, "motion", normal | in_plane)
@@ -158,7 +158,7 @@ class Normal(Motion):
         height = np.maximum(height, 0.0)
         return pressure.of_load(height) if self.by_load else height
 
-    def _extreme(self, sign, amplitude, pressure):
+    def _extreme(self, sign: float, amplitude: float, pressure: Pressure) -> float:
         """Least (sign -1) or largest (1) indentation."""
         height = max(1.0 + sign * amplitude * self.share, 0.0)
         return float(pressure.of_load(height)) if self.by_load else height
@@ -180,5 +180,5 @@ class Normal(Motion):
         """Friction without an oscillation in the plane, for axisymmetric indenters."""
         if self.in_plane or not pressure.is_indenter:
             return None
-        place = (velocity / self.normal_cycles, amplitude * self.share, self.by_load, pressure)
-        return oscillating_load.friction(*place)
+        over = velocity / self.normal_cycles
+        return oscillating_load.friction(over, amplitude * self.share, self.by_load, pressure)

@@ -14,7 +14,7 @@ phases do not count.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -126,12 +126,19 @@ class Problem:
     # Kinematics
 
     @property
+    def size(self) -> float:
+        """The amplitude; 0 for a steady motion, which has none."""
+        return 0.0 if self.amplitude is None else self.amplitude
+
+    @property
     def _sign(self) -> float:
         return -1.0 if self.backward else 1.0
 
-    def _moved(self, phase, velocity):
+    def _moved(
+        self, phase: np.ndarray, velocity: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         motion, sign = self.motion, self._sign
-        place = (self.amplitude, self.poisson)
+        place = (self.size, self.poisson)
         forward, lateral, angle = motion.displacement(phase, sign * velocity, *place)
         if self.follows and not self.contacts:
             forward = forward - motion.displacement(phase, 0.0, *place)[0]
@@ -150,7 +157,7 @@ class Problem:
         """Turning points, see Motion; under a pressure that is not symmetric both halves of a
         period."""
         velocity = 0.0 if self.follows else self._sign * self.velocity
-        first = self.motion.turns(velocity, self.amplitude)
+        first = self.motion.turns(velocity, self.size)
         if self.motion.half_period_mirror and not self.half_period_mirror:
             return (*first, *(phase + np.pi for phase in first[1:]))
         return first
@@ -163,22 +170,22 @@ class Problem:
     @property
     def focus(self) -> float | None:
         """Radius towards which rings are graded, see Motion."""
-        return self.motion.focus(self._sign * self.velocity, self.amplitude, self.pressure)
+        return self.motion.focus(self._sign * self.velocity, self.size, self.pressure)
 
     @property
     def unit_drift(self) -> float:
         """Mean forward displacement in one radian of phase at velocity 1, in u_lim."""
-        return self.motion.drift(1.0, self.amplitude, self.poisson)
+        return self.motion.drift(1.0, self.size, self.poisson)
 
     @cached_property
     def drift(self) -> float:
         """Mean forward displacement in one radian of phase, in u_lim."""
-        return self.motion.drift(self.velocity, self.amplitude, self.poisson)
+        return self.motion.drift(self.velocity, self.size, self.poisson)
 
     @property
     def stroke(self) -> float:
         """Half the way that the edge of the contact oscillates, in u_lim."""
-        return self.motion.stroke(self.amplitude, self.poisson)
+        return self.motion.stroke(self.size, self.poisson)
 
     # Normal load
 
@@ -190,19 +197,19 @@ class Problem:
             return None
         if self.contacts:
             return lambda phase: np.stack([part.depth(phase) for part in self.parts])
-        return lambda phase: self.motion.depth(phase, self.amplitude, self.pressure)
+        return lambda phase: self.motion.depth(phase, self.size, self.pressure)
 
     @property
     def deepest(self) -> float:
         """Largest indentation over that of the reference state."""
-        return self.motion.deepest(self.amplitude, self.pressure)
+        return self.motion.deepest(self.size, self.pressure)
 
     @cached_property
     def mean_load(self) -> float:
         """Mean of the normal load over a period, over that of the reference state."""
         if self.contacts:
             return sum(part.share * part.problem.mean_load for part in self.parts)
-        return float(self.motion.mean_load(self.amplitude, self.pressure))
+        return float(self.motion.mean_load(self.size, self.pressure))
 
     # Several contacts
 
@@ -212,7 +219,7 @@ class Problem:
         if not (self.follows and self.contacts):
             return tuple(_part(self, one) for one in self.contacts)
         parts = replace(self, follows=False).parts
-        if not _move_together(parts, self.amplitude):
+        if not _move_together(parts, self.size):
             return parts
         return tuple(replace(part, problem=replace(part.problem, follows=True)) for part in parts)
 
@@ -226,16 +233,16 @@ class Problem:
     @property
     def moves_together(self) -> bool:
         """Whether all contacts oscillate alike along the forward direction."""
-        return _move_together(self.parts, self.amplitude)
+        return _move_together(self.parts, self.size)
 
     @cached_property
     def is_balanced(self) -> bool:
         """Whether each contact has an opposite that oscillates half a period later, where the
         oscillation is its own reverse: at rest the two exert no forward force together."""
-        there = self.motion.displacement(LOOP + np.pi, 0.0, self.amplitude, self.poisson)
-        here = self.motion.displacement(LOOP, 0.0, self.amplitude, self.poisson)
+        there = self.motion.displacement(LOOP + np.pi, 0.0, self.size, self.poisson)
+        here = self.motion.displacement(LOOP, 0.0, self.size, self.poisson)
         reversed_at = max(float(np.ptp(a + b)) for a, b in zip(here, there, strict=True))
-        if reversed_at > RETURNED * max(self.amplitude, 1.0):
+        if reversed_at > RETURNED * max(self.size, 1.0):
             return False
         count = self.contacts.count
         opposite = [replace(one, phase=(one.phase + 180.0) % 360.0) for one in self.contacts]
@@ -270,7 +277,8 @@ class Part:
 
     def depth(self, phase: np.ndarray) -> np.ndarray:
         """Indentation at a phase of the body, if the load oscillates; see Problem."""
-        return self.problem.depth(phase + self.lead)
+        one = self.problem
+        return one.motion.depth(phase + self.lead, one.size, one.pressure)
 
     def turns(self, still: bool) -> np.ndarray:
         """Phases of the body at which the contact turns, or its oscillation alone (`still`)."""
@@ -278,19 +286,19 @@ class Part:
         return np.array(problem.turns) - self.lead
 
 
-def _move_together(parts, amplitude):
+def _move_together(parts: Sequence[Part], amplitude: float) -> bool:
     ahead = np.array([part.oscillation(LOOP)[0] for part in parts])
     return float(np.ptp(ahead, axis=0).max()) <= RETURNED * max(amplitude, 1.0)
 
 
-def _part(body, one):
+def _part(body: Problem, one: BodyContact) -> Part:
     motion, pressure = body.motion, body.pressure
     extent = radius = 1.0
     if one.load != 1.0:
         extent = float(pressure.of_load(one.load))
         radius = float(pressure.radius(extent))
     length = radius / extent if motion.rotates else 1.0 / extent
-    amplitude = body.amplitude * one.amplitude * length
+    amplitude = body.size * one.amplitude * length
     alone = replace(body, amplitude=amplitude, drive=None, contacts=())
     unit = extent * alone.unit_drift
     if unit > 0.0:
@@ -309,7 +317,7 @@ def contacts_refusal(problem: Problem) -> str:
             return f"allowed are equal loads: how {problem.pressure.name} grows is not known"
         if motion.loads:
             return f"allowed are equal loads for {motion.name}, whose load oscillates"
-        along = motion.displacement(LOOP, 0.0, problem.amplitude, problem.poisson)[:2]
+        along = motion.displacement(LOOP, 0.0, problem.size, problem.poisson)[:2]
         if motion.rotates and max(np.ptp(one) for one in along) > 0.0:
             return f"allowed are equal loads for {motion.name}, which translates and rotates"
     if motion.rotates and any(one.amplitude == 0.0 for one in problem.contacts):

@@ -16,7 +16,7 @@ from microslip.foundation import spec
 from microslip.foundation.errors import InputError
 from microslip.motions.motion import Motion, stick_focus, within_rings
 from microslip.pressures.pressure import Pressure
-from microslip.theory import hertz
+from microslip.theory import hertz, paper
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class TransverseBore(Motion):
     )
     half_period_mirror = True
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         spec.refuse_shares(self.name, "motion", {"lateral": self.lateral, "angle": self.angle})
         if max(self.lateral, self.angle) == 0.0:
             raise InputError("motion", self.name, "allowed is lateral or angle above 0")
@@ -80,4 +80,4 @@ class TransverseBore(Motion):
         """Stick radius of the lateral oscillation alone, or of the rotation if there is none."""
         if self.lateral > 0.0:
             return stick_focus(amplitude * self.lateral, pressure)
-        return within_rings(hertz.lubkin_stick_radius(hertz.bore_angle(amplitude * self.angle)))
+        return within_rings(float(paper.bore_stick_radius(amplitude * self.angle)))

@@ -64,19 +64,20 @@ class Indenter(Pressure):
         step = (1.0 - self.flat) * 2.0 * _NODES * _WEIGHTS
         return 0.5 / float(np.sum(step * x * self.slope(x)))
 
-    def _rule(self, r, c):
+    def _rule(
+        self, r: np.ndarray | float, c: np.ndarray | float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Nodes x with weights dx / sqrt(x^2 - r^2) on a last axis, and that root."""
-        r, c = np.broadcast_arrays(np.asarray(r, float), np.asarray(c, float))
-        c = np.maximum(c, SMALLEST_CONTACT)
-        r = np.clip(r, SMALLEST_RADIUS * c, c)[..., None]
-        c = c[..., None]
-        first = np.arccosh(np.maximum(np.minimum(self.flat, c) / r, 1.0))
-        length = np.arccosh(np.maximum(c / r, 1.0)) - first
+        radii, contact = np.broadcast_arrays(np.asarray(r, float), np.asarray(c, float))
+        contact = np.maximum(contact, SMALLEST_CONTACT)[..., None]
+        radii = np.clip(radii[..., None], SMALLEST_RADIUS * contact, contact)
+        first = np.arccosh(np.maximum(np.minimum(self.flat, contact) / radii, 1.0))
+        length = np.arccosh(np.maximum(contact / radii, 1.0)) - first
         # clustered at both ends: at a flat end the slope begins like a root, at the edge of a
         # contact that is nearly flat all of it rises
         eta = first + length * np.sin(0.5 * np.pi * _NODES) ** 2
         step = length * 0.5 * np.pi * np.sin(np.pi * _NODES) * _WEIGHTS
-        return r * np.cosh(eta), step, r, r * np.sinh(eta)
+        return radii * np.cosh(eta), step, radii, radii * np.sinh(eta)
 
     def bound(self, r: np.ndarray, c: float = 1.0) -> np.ndarray:
         """Friction bound of a contact of radius c."""
@@ -84,15 +85,15 @@ class Indenter(Pressure):
         bound = self.G_star / np.pi * np.sum(weight * self.slope(x), axis=-1)
         return np.where(np.asarray(r, float) >= c, 0.0, bound)[()]
 
-    def load(self, r: np.ndarray, c: np.ndarray = 1.0) -> np.ndarray:
+    def load(self, r: np.ndarray | float, c: np.ndarray | float = 1.0) -> np.ndarray:
         """Load within r of a contact of radius c."""
         return (self._outside(0.0, c) - self._outside(r, c))[()]
 
-    def _outside(self, r, c):
+    def _outside(self, r: np.ndarray | float, c: np.ndarray | float) -> np.ndarray:
         x, weight, _, root = self._rule(r, c)
         return 2.0 * self.G_star * np.sum(weight * root**2 * self.slope(x), axis=-1)
 
-    def _moment_outside(self, r):
+    def _moment_outside(self, r: np.ndarray | float) -> np.ndarray:
         x, weight, r, root = self._rule(r, 1.0)
         lever = x**2 * np.arccos(np.minimum(r / x, 1.0)) + r * root
         return self.G_star * np.sum(weight * root * lever * self.slope(x), axis=-1)
@@ -134,10 +135,10 @@ class Indenter(Pressure):
     def torque(self) -> float:
         return float(self._moment_outside(0.0))
 
-    def _ring_loads(self, psi):
+    def _ring_loads(self, psi: np.ndarray) -> np.ndarray:
         return -np.diff(self._outside(np.sin(psi), 1.0))
 
-    def _ring_moments(self, psi):
+    def _ring_moments(self, psi: np.ndarray) -> np.ndarray:
         return -np.diff(self._moment_outside(np.sin(psi)))
 
     def cell_loads(self, cells: int) -> np.ndarray:

@@ -42,7 +42,7 @@ class Ellipse(Pressure):
 
     hertzian = True
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         limits = (SMALLEST_RATIO, 1.0)
         spec.refuse_outside(self.name, "pressure", "ratio", self.ratio, limits)
         if self.across not in (0, 1):
@@ -73,7 +73,7 @@ class Ellipse(Pressure):
         """Load on each square, (cells, cells)."""
         return ellipse_loads(cells, (self.ratio, 1.0) if self.across else (1.0, self.ratio))
 
-    def loading(self, displacement: np.ndarray) -> np.ndarray:
+    def loading(self, displacement: np.ndarray | float) -> np.ndarray | float:
         """Tangential force after a displacement from rest: that of the sphere."""
         return hertz.mindlin_force(displacement)
 

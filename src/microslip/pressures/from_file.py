@@ -63,7 +63,7 @@ def pressure(name: str) -> Pressure:
     return _KNOWN[file.name]
 
 
-def _of_content(file, content):
+def _of_content(file: named_files.NamedFile, content: bytes) -> Measured:
     for begins, kind in PACKED.items():
         if content.startswith(begins):
             raise ValueError(f"packed ({kind}); allowed: CSV or netCDF as it is")

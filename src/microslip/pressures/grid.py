@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -65,7 +66,7 @@ def read_grids(
     }
 
 
-def _refuse(values):
+def _refuse(values: np.ndarray) -> None:
     allowed = np.isfinite(values) & (values >= 0.0)
     if not allowed.all():
         bad = float(values[~allowed][0])
@@ -87,7 +88,7 @@ def irregular_at(axis: np.ndarray) -> int | None:
     return 1 + int(np.abs(steps - usual).argmax())
 
 
-def _even(label, axis):
+def _even(label: str, axis: np.ndarray) -> np.ndarray:
     """The evenly spaced coordinates that those of an axis are, but for rounding."""
     index = 0 if not np.isfinite(axis).all() else irregular_at(axis)
     if index is not None:
@@ -99,7 +100,7 @@ def _even(label, axis):
     return np.linspace(axis[0], axis[-1], len(axis))
 
 
-def _in_steps(points):
+def _in_steps(points: Sequence[np.ndarray]) -> list[np.ndarray]:
     """Coordinates from 0 in units of the longer step: the unit of length does not matter, and
     products of steps as small or large as numbers can be are no numbers.
 
@@ -130,7 +131,7 @@ class _Axis:
     step: float
     reading: str
 
-    def integrals(self, edges):
+    def integrals(self, edges: np.ndarray) -> np.ndarray:
         """Integral of what each point stands for over each interval, (intervals, n)."""
         t = (edges[:, None] - self.points) / self.step
         if self.reading == "cells":
@@ -141,15 +142,15 @@ class _Axis:
         return self.step * np.diff(t - 0.5 * t * np.abs(t), axis=0)
 
     @property
-    def steps(self):
+    def steps(self) -> int:
         """How many of them the side is long."""
         return len(self.points) - (self.reading == "samples")
 
-    def edges(self, parts):
+    def edges(self, parts: int) -> np.ndarray:
         """Coordinates that cut each step into that many parts."""
         return np.linspace(self.low, self.high, self.steps * parts + 1)
 
-    def coarsened(self):
+    def coarsened(self) -> tuple[_Axis, np.ndarray]:
         """The same side with half as many steps, and the matrix of means that fills it."""
         steps = -(-self.steps // 2)
         points = edges = np.linspace(self.low, self.high, steps + 1)
@@ -220,7 +221,7 @@ class Grid:
         return float(np.sum(loads * _distances(x, y) / areas) / loads.sum())
 
 
-def _grid(points, values, reading):
+def _grid(points: Sequence[np.ndarray], values: np.ndarray, reading: str) -> Grid:
     axes = []
     for number, places in enumerate(points):
         loaded = np.flatnonzero(values.any(axis=1 - number))
@@ -233,16 +234,17 @@ def _grid(points, values, reading):
             low, high = places[first], places[last]
         axes.append(_Axis(places[first : last + 1], low, high, step, reading))
         values = values.take(range(first, last + 1), axis=number)
-    return Grid(*axes, values)
+    forward, lateral = axes
+    return Grid(forward, lateral, values)
 
 
-def _coarsened(grid):
+def _coarsened(grid: Grid) -> Grid:
     forward, along = grid.forward.coarsened()
     lateral, across = grid.lateral.coarsened()
     return Grid(forward, lateral, along @ grid.values @ across.T)
 
 
-def _distances(x, y):
+def _distances(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Integral of the distance from the origin over each rectangle between edges x and y."""
     x, y = x[:, None], y[None, :]
     r = np.hypot(x, y)
@@ -253,7 +255,7 @@ def _distances(x, y):
     return np.diff(np.diff(corner / 6.0, axis=0), axis=1)
 
 
-def _largest_displacement(loads):
+def _largest_displacement(loads: np.ndarray) -> float:
     """Largest displacement under full slip for G* = 1, and so the G* that makes it u_lim.
 
     loads: on squares, (n, n), each spread evenly over its own; displacements at their centres.

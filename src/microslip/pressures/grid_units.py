@@ -33,18 +33,18 @@ def factors(units: list[str | None]) -> list[float]:
     if bool(given[0]) != bool(given[1]):
         with_unit = COLUMNS[0] if given[0] else COLUMNS[1]
         raise ValueError(f"{with_unit} alone has a unit; allowed: one for both coordinates or none")
-    found = [_factor(name, text) for name, text in zip(COLUMNS, given, strict=True)]
-    if (found[0] is None) != (found[1] is None):
+    along, across, _ = (_factor(name, text) for name, text in zip(COLUMNS, given, strict=True))
+    if (along is None) != (across is None):
         raise ValueError(
             f"forward [{given[0]}] and lateral [{given[1]}] are not the same kind; allowed: two "
             "lengths, or two numbers"
         )
-    if found[0] is None or given[0] == given[1]:
+    if along is None or across is None or given[0] == given[1]:
         return [1.0, 1.0, 1.0]
-    return [1.0, found[1] / found[0], 1.0]
+    return [1.0, across / along, 1.0]
 
 
-def _factor(name, text):
+def _factor(name: str, text: str) -> float | None:
     """Unit in SI units; None for a number without one."""
     if text in ("", "1", "-"):
         return None

@@ -33,7 +33,7 @@ class Hertz(Pressure):
         load = -np.diff(np.cos(psi) ** 3) / 3
         return hertz.ring_bounds(np.minimum(radii, 1.0)), moment / load
 
-    def bound(self, r: np.ndarray, c: float = 1.0) -> np.ndarray:
+    def bound(self, r: np.ndarray | float, c: float = 1.0) -> np.ndarray:
         """Friction bound of a contact of radius c."""
         return 1.5 / np.pi * np.sqrt(np.maximum((c - r) * (c + r), 0.0))
 
@@ -49,11 +49,11 @@ class Hertz(Pressure):
         """Depth at a share of the mean load."""
         return np.cbrt(share) ** 2
 
-    def load(self, r: np.ndarray, c: np.ndarray = 1.0) -> np.ndarray:
+    def load(self, r: np.ndarray | float, c: np.ndarray | float = 1.0) -> np.ndarray:
         """Load within r of a contact of radius c."""
         return c**3 - np.maximum((c - r) * (c + r), 0.0) ** 1.5
 
-    def loading(self, displacement: np.ndarray) -> np.ndarray:
+    def loading(self, displacement: np.ndarray | float) -> np.ndarray | float:
         """Tangential force after a displacement from rest (Mindlin)."""
         return hertz.mindlin_force(displacement)
 

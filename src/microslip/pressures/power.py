@@ -30,7 +30,7 @@ class Power(Indenter):
 
     exponent: float = 2.0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         spec.refuse_outside(self.name, "pressure", "exponent", self.exponent, LIMITS)
 
     @property

@@ -19,7 +19,7 @@ import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -57,30 +57,27 @@ class Pressure:
         friction under them is what the grid leaves open.
     """
 
-    summary: ClassVar[str] = ""
-    mirrored = True
-    inner = 0.0
+    mirrored: ClassVar[bool] = True
     hertzian: ClassVar[bool] = False
-    readings = ()
 
     # Of pressures that depend on the radius alone:
-    ring_means: ClassVar[Callable | None] = None
+    ring_means: ClassVar[Any] = None
     """ring_means(psi) -> (bound, lever): mean friction bound of the rings between r = sin(psi), and
     mean lever arm of a traction shaped like it, shape (n,) each, from (n + 1,)."""
-    bound: ClassVar[Callable | None] = None
+    bound: ClassVar[Any] = None
     """bound(r): friction bound mu p, of arrays; of an indenter bound(r, c), too."""
 
     # Of axisymmetric indenters, which touch a full circle that grows with the load:
-    depth: ClassVar[Callable | None] = None
+    depth: ClassVar[Any] = None
     """depth(c): indentation that makes the contact radius c, 1 at 1."""
-    radius: ClassVar[Callable | None] = None
+    radius: ClassVar[Any] = None
     """radius(depth): inverse of `depth`, 0 for no contact."""
-    of_load: ClassVar[Callable | None] = None
+    of_load: ClassVar[Any] = None
     """of_load(share): depth at which the load is that share of the mean one."""
-    load: ClassVar[Callable | None] = None
+    load: ClassVar[Any] = None
     """load(r, c): load within r; of arrays that broadcast."""
 
-    loading: ClassVar[Callable | None] = None
+    loading: ClassVar[Any] = None
     """loading(u): tangential force over mu F_z after a displacement u_lim >= 0 in one direction
     from rest, nu = 0, of any shape; of axisymmetric indenters and elliptic Hertz contacts."""
 
@@ -110,12 +107,24 @@ class Pressure:
         """
         if grid not in READINGS:
             raise InputError("grid", grid, f"allowed is one of {', '.join(READINGS)}")
-        arrays = [np.ascontiguousarray(one, float) for one in (forward, lateral, pressure)]
-        if arrays[2].shape != (arrays[0].size, arrays[1].size):
-            allowed = f"allowed is the shape of the coordinates, {(arrays[0].size, arrays[1].size)}"
-            raise InputError("pressure", arrays[2].shape, allowed)
-        digest = hashlib.sha256(b"".join(one.tobytes() for one in arrays)).hexdigest()[:16]
-        return Measured.on_grid(f"array:sha256={digest},grid={grid}", *arrays, grid)
+        x, y, values = (np.ascontiguousarray(one, float) for one in (forward, lateral, pressure))
+        if values.shape != (x.size, y.size):
+            allowed = f"allowed is the shape of the coordinates, {(x.size, y.size)}"
+            raise InputError("pressure", values.shape, allowed)
+        digest = hashlib.sha256(b"".join(one.tobytes() for one in (x, y, values))).hexdigest()[:16]
+        return Measured.on_grid(f"array:sha256={digest},grid={grid}", x, y, values, grid)
+
+    @property
+    def summary(self) -> str:
+        return ""
+
+    @property
+    def inner(self) -> float:
+        return 0.0
+
+    @property
+    def readings(self) -> tuple[Pressure, ...]:
+        return ()
 
     @property
     def name(self) -> str:

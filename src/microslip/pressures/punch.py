@@ -34,7 +34,7 @@ class Punch(Indenter):
 
     flat: float = 0.8
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         kind, limits = "a share of the contact radius", (0.0, LARGEST_FLAT)
         spec.refuse_outside(self.name, "pressure", "flat", self.flat, limits, kind=kind)
 
@@ -42,12 +42,12 @@ class Punch(Indenter):
     def summary(self) -> str:
         return f"a punch with a rounded edge, flat up to {self.flat:g} of its contact radius"
 
-    def _rises(self, c):
-        c = np.maximum(np.asarray(c, float), self.flat)
-        return c * (_root(c, self.flat) - self.flat * _angle(c, self.flat))
+    def _rises(self, c: np.ndarray | float) -> np.ndarray:
+        beyond = np.maximum(np.asarray(c, float), self.flat)
+        return beyond * (_root(beyond, self.flat) - self.flat * _angle(beyond, self.flat))
 
     @cached_property
-    def _scale(self):
+    def _scale(self) -> float:
         return 1.0 / float(self._rises(1.0))
 
     def depth(self, c: np.ndarray) -> np.ndarray:
@@ -72,9 +72,9 @@ class Punch(Indenter):
         return np.where(depth > 0.0, high, 0.0)[()]
 
 
-def _root(c, flat):
+def _root(c: np.ndarray, flat: float) -> np.ndarray:
     return np.sqrt((c - flat) * (c + flat))
 
 
-def _angle(c, flat):
+def _angle(c: np.ndarray, flat: float) -> np.ndarray:
     return np.arccos(np.minimum(flat / np.maximum(c, 1e-300), 1.0))

@@ -36,7 +36,7 @@ class Ring(Pressure):
 
     inner: float = 0.5
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         kind = "a share of the outer radius"
         spec.refuse_outside(self.name, "pressure", "inner", self.inner, LIMITS, kind=kind)
 
@@ -45,15 +45,15 @@ class Ring(Pressure):
         return f"a ring-shaped contact with a hole of {self.inner:g} of its radius"
 
     @property
-    def _half(self):
+    def _half(self) -> float:
         return 0.5 * (1.0 - self.inner)
 
     @property
-    def _middle(self):
+    def _middle(self) -> float:
         return 0.5 * (1.0 + self.inner)
 
     @property
-    def _top(self):
+    def _top(self) -> float:
         """Factor of the root: 1 / Integral of sqrt((r - b)(1 - r)) 2 pi r dr, by r = middle - half
         cos t."""
         return 1.0 / (np.pi**2 * self._half**2 * self._middle)
@@ -63,7 +63,7 @@ class Ring(Pressure):
         r = np.asarray(r, float)
         return self._top * np.sqrt(np.maximum((r - self.inner) * (1.0 - r), 0.0))[()]
 
-    def _ring_integrals(self, psi, power):
+    def _ring_integrals(self, psi: np.ndarray, power: int) -> np.ndarray:
         """Integrals of the bound times 2 pi r^power between the radii sin(psi)."""
         at = np.arccos(np.clip((self._middle - np.sin(psi)) / self._half, -1.0, 1.0))
         turn = at[:-1, None] + np.diff(at)[:, None] * 0.5 * (_NODES + 1.0)
@@ -71,10 +71,10 @@ class Ring(Pressure):
         values = self._top * self._half**2 * np.sin(turn) ** 2 * 2.0 * np.pi * r**power
         return 0.5 * np.diff(at) * (values @ _WEIGHTS)
 
-    def _ring_loads(self, psi):
+    def _ring_loads(self, psi: np.ndarray) -> np.ndarray:
         return self._ring_integrals(psi, 1)
 
-    def _ring_moments(self, psi):
+    def _ring_moments(self, psi: np.ndarray) -> np.ndarray:
         return self._ring_integrals(psi, 2)
 
     def ring_means(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -107,8 +107,8 @@ class Ring(Pressure):
 
         inner, top = self.inner, self._top
 
-        def displacement(r):
-            def of_circle(s):
+        def displacement(r: float) -> float:
+            def of_circle(s: float) -> float:
                 apart = max(((r - s) / (r + s)) ** 2, 1e-300)
                 kernel = 4.0 / np.pi * s / (r + s) * scipy.special.ellipkm1(apart)
                 return kernel * top * np.sqrt(max((s - inner) * (1.0 - s), 0.0))

@@ -19,13 +19,26 @@ class IndenterPressure(Protocol):
         See pressure.Pressure.
     """
 
-    G_star: float
-    stiffness: float
-    bound: Callable
-    depth: Callable
-    radius: Callable
-    of_load: Callable
-    load: Callable
+    @property
+    def G_star(self) -> float: ...
+
+    @property
+    def stiffness(self) -> float: ...
+
+    @property
+    def bound(self) -> Callable: ...
+
+    @property
+    def depth(self) -> Callable: ...
+
+    @property
+    def radius(self) -> Callable: ...
+
+    @property
+    def of_load(self) -> Callable: ...
+
+    @property
+    def load(self) -> Callable: ...
 
     def total(self, depth: np.ndarray) -> np.ndarray:
         """Load at a depth >= 0, any shape."""
