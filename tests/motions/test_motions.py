@@ -16,6 +16,7 @@ from microslip import motions
 from microslip.app.cli import main
 from microslip.motions import by_name
 from microslip.motions.by_name import MOTIONS
+from microslip.motions.drive import Force, Spring
 from microslip.motions.problem import Problem
 from microslip.motions.transverse import Transverse
 from microslip.motions.zigzag import Zigzag
@@ -227,3 +228,10 @@ def test_broken_files_in_the_package_do_not_end_other_commands(tmp_path):
     assert done.returncode == 2
     assert "unfinished.py cannot be imported: SyntaxError in line 1" in done.stderr
     assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("kind", [Force, Spring])
+def test_a_drive_has_no_default_for_the_number_that_it_is_named_by(kind):
+    with pytest.raises(TypeError, match="missing 1 required"):
+        kind()
+    assert kind(0.5).damping == 0.0
