@@ -90,6 +90,7 @@ NOT_RUN = {
     ("docs/explanation/claims.md", ".venv/bin/snakemake -j2 claims"): SMALL,
     ("docs/how-to/explorer.md", ".venv/bin/snakemake -j2 explorer"): SMALL,
     ("docs/explanation/accuracy.md", "python benchmarks/certificates.py --first 9700"): BENCHMARK,
+    ("docs/explanation/accuracy.md", "python benchmarks/ladders.py"): BENCHMARK,
     ("docs/explanation/accuracy.md", "python benchmarks/slow_loops.py"): BENCHMARK,
     ("docs/explanation/accuracy.md", "python benchmarks/static_approach.py"): BENCHMARK,
     ("docs/explanation/accuracy.md", "python benchmarks/sweep_cost.py"): BENCHMARK,
