@@ -51,7 +51,7 @@ class Refined:
         Error of the torque by resolution and model.
     order : float
         Observed order of convergence, NaN where it is not known.
-    finest : problem.Resolution
+    finest : discretise.Resolution
         Resolution of the finest run.
     periods : float
         Periods of the longest run.

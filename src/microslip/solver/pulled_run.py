@@ -68,7 +68,7 @@ def simulate_pulled(
         With a drive; its velocity is that of the spring's far end, or an initial guess.
     model : str
         Name in models.registry.MODELS, of a contact that may be pulled.
-    resolution : problem.Resolution
+    resolution : discretise.Resolution
         Of the model.
     accuracy : Accuracy
         Of the periodic state.

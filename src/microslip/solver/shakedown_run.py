@@ -73,7 +73,7 @@ def run_to_rest(
         Over mu times the mean normal load, below the static limit.
     model : str
         Name in models.registry.MODELS, of a contact that may be pulled.
-    resolution : problem.Resolution
+    resolution : discretise.Resolution
         Of the model.
     tolerance : float
         Of what may be left of the way, in u_lim.

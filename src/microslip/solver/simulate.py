@@ -52,7 +52,7 @@ def simulate(
         Velocity and amplitude above 0 (amplitude None for steady motions), checked by the caller.
     model : str
         Name in models.registry.MODELS.
-    resolution : problem.Resolution
+    resolution : discretise.Resolution
         Of the model.
     tolerance : float
         Of the periodic state, a force over mu F_z; steps are solved a hundred times tighter.
