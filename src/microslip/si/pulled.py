@@ -161,7 +161,7 @@ def about_drive(
             fields |= _way_to_rest((contact, carriers), motion, pulling)
     body = {name: value for name, value in pulling.items() if name != "force"}
     if body:
-        working = Spring(**body)
+        working = Spring(**{"stiffness": 0.0} | body)  # a body under a force has none
         widest = answer.amplitude * max(carriers.widest, 1.0)
         fields["regime"] = regime(motion.name, widest, working)
         fields["natural_frequency"] = natural_frequency(working)
