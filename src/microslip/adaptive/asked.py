@@ -6,14 +6,17 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
-from microslip.estimate.ladder import Ladder
-from microslip.estimate.refine import Refined
 from microslip.motions.body_contacts import contacts_text
 from microslip.motions.problem import Problem
 from microslip.solver import method_names
 from microslip.solver.budget import Budget
 from microslip.solver.method import SHIPPED, Method
+
+if TYPE_CHECKING:  # they load compiled code, which a closed form does without
+    from microslip.estimate.ladder import Ladder
+    from microslip.estimate.refine import Refined
 
 TOLERANCE = 1e-3
 """Unless told otherwise; and how strict the search for a periodic state is where none is meant."""
