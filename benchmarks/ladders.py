@@ -32,10 +32,10 @@ import known_references
 import numpy as np
 import tables
 
-from microslip.adaptive.asked import Asked, budget_for
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.closed_forms import closed_form
 from microslip.adaptive.moved import marched
+from microslip.adaptive.request import Request, budget_for
 from microslip.estimate import refine as refinement
 from microslip.estimate import richardson
 from microslip.motions.by_name import motion_named
@@ -86,7 +86,7 @@ def examine(store: Store, k: int, point: dict, problem: Problem, start: float) -
     """What the rule makes of a point."""
     model = choose_model(problem)
     plan = marched(
-        Asked(
+        Request(
             problem=problem,
             model=model,
             tolerance=point["tolerance"],

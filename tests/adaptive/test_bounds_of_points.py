@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.adaptive import asked
+from microslip.adaptive import request
 from microslip.models import system_contact
 from microslip.models.contact import forward_slip
 from microslip.models.registry import MODELS
@@ -54,7 +54,7 @@ def test_every_point_has_a_bound(monkeypatch, model):
         seen.append((most_work, time_limit))
         return Budget(most_work, time_limit)
 
-    monkeypatch.setattr(asked, "Budget", noted)
+    monkeypatch.setattr(request, "Budget", noted)
     found = microslip.solve("transverse", 0.3, 1.0, model=model, tolerance=0.1)
     ((most_work, time_limit),) = seen
     assert found.work < 1e-2 * most_work < np.inf

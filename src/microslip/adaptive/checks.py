@@ -1,4 +1,4 @@
-"""What a point is asked with, checked: every refusal names the argument."""
+"""Checks of the arguments of a request; every error names the argument."""
 
 from __future__ import annotations
 

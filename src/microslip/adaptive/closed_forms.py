@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from microslip.adaptive.asked import Asked
+from microslip.adaptive.request import Request
 from microslip.adaptive.result import Result, of_closed_form
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
@@ -21,15 +21,15 @@ indenter's pressure."""
 ROUNDING = 1e-12
 
 
-def known_exactly(asked: Asked) -> Result | None:
+def known_exactly(request: Request) -> Result | None:
     """The Result where nothing has to be computed, else None."""
-    exact = no_vibration(asked.problem)
-    if exact is None and asked.chosen and asked.method == SHIPPED:
-        exact = unless_imposed(asked.problem, asked.tolerance, asked.cells, asked.steps)
+    exact = no_vibration(request.problem)
+    if exact is None and request.chosen and request.method == SHIPPED:
+        exact = unless_imposed(request.problem, request.tolerance, request.cells, request.steps)
     if exact is None:
         return None
-    used = CLOSED_FORM if asked.chosen else asked.model
-    return of_closed_form(asked.point | {"model": used}, exact, asked.seconds)
+    used = CLOSED_FORM if request.chosen else request.model
+    return of_closed_form(request.point | {"model": used}, exact, request.seconds)
 
 
 def no_vibration(problem: Problem) -> tuple | None:

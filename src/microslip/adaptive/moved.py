@@ -8,10 +8,10 @@ from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
-from microslip.adaptive.asked import TOLERANCE, Asked, verdict
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.closed_forms import no_vibration, unless_imposed
 from microslip.adaptive.continuation import run_safely
+from microslip.adaptive.request import TOLERANCE, Request, verdict
 from microslip.adaptive.result import Result
 from microslip.estimate.ladder import Ladder, ladder_for, refuse_free
 from microslip.estimate.refine import refine, run_tolerance
@@ -42,34 +42,34 @@ class Marched(NamedTuple):
     readings: list[Callable]
 
 
-def marched(asked: Asked) -> Marched:
+def marched(request: Request) -> Marched:
     """The Marched of a point with a velocity of at least 0.
 
     Where the search for stick edges takes more than the point may, its run raises budget.Spent.
     """
-    problem, motion, tolerance = asked.problem, asked.problem.motion, asked.accuracy
+    problem, motion, tolerance = request.problem, request.problem.motion, request.accuracy
     try:
-        focus = found_focus(problem, asked.model, asked.budget, asked.progress)
+        focus = found_focus(problem, request.model, request.budget, request.progress)
     except Spent as spent:
         return _nothing_to_run(spent)
-    ladder = ladder_for(problem, asked.model, tolerance, asked.cells, asked.steps)
-    if asked.tolerance is None:
-        refuse_free(ladder, asked.cells, asked.steps)
+    ladder = ladder_for(problem, request.model, tolerance, request.cells, request.steps)
+    if request.tolerance is None:
+        refuse_free(ladder, request.cells, request.steps)
     share = run_tolerance(tolerance)
-    settings = Settings(asked.how, budget=asked.budget, focus=focus)
+    settings = Settings(request.how, budget=request.budget, focus=focus)
 
     def run(resolution, guess, problem=problem):
-        if asked.progress is not None:
-            asked.progress(resolution)
+        if request.progress is not None:
+            request.progress(resolution)
         if problem.velocity == 0.0 and motion.periodic:
-            return simulate_static(problem, asked.model, resolution, share, settings)
+            return simulate_static(problem, request.model, resolution, share, settings)
 
         def run_at(velocity, guess, tighter=False):
             there = replace(problem, velocity=velocity)
             how_so = replace(settings, tighter=tighter)
-            return simulate(there, asked.model, resolution, share, guess, how_so)
+            return simulate(there, request.model, resolution, share, guess, how_so)
 
-        if asked.method != SHIPPED or not motion.periodic:
+        if request.method != SHIPPED or not motion.periodic:
             return run_at(problem.velocity, guess)
         return run_safely(run_at, problem.velocity, guess)
 
@@ -89,19 +89,19 @@ def _nothing_to_run(spent):
     return Marched(run, Ladder(1, 0, 0), [])
 
 
-def solve_moved(asked: Asked) -> Result:
+def solve_moved(request: Request) -> Result:
     """The friction with its error estimate, a result.Result, of a point that has no closed form."""
-    problem, (run, ladder, readings) = asked.problem, marched(asked)
-    refined = refine(run, ladder, asked.accuracy, readings)
+    problem, (run, ladder, readings) = request.problem, marched(request)
+    refined = refine(run, ladder, request.accuracy, readings)
     steady = not problem.motion.periodic
     return Result(
-        **asked.point,
-        model=asked.model,
+        **request.point,
+        model=request.model,
         mu_macro=_within(problem, refined.value),
         mu_macro_error=refined.error,
         mu_torque=refined.torque if steady else None,
         mu_torque_error=refined.torque_error + refined.errors["periodicity"] if steady else None,
-        **verdict(asked, refined, ladder, asked.tolerance),
+        **verdict(request, refined, ladder, request.tolerance),
     )
 
 

@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
-from microslip.adaptive.asked import TOLERANCE, Asked, budget_for
 from microslip.adaptive.checks import (
     checked_drive,
     checked_problem,
@@ -16,6 +15,7 @@ from microslip.adaptive.checks import (
     refuse_progress,
 )
 from microslip.adaptive.choice import choose_model, method_refusal
+from microslip.adaptive.request import TOLERANCE, Request, budget_for
 from microslip.adaptive.result import Result
 from microslip.adaptive.several import solve_each
 from microslip.foundation.errors import InputError
@@ -129,7 +129,7 @@ def solve(
     name = choose_model(problem, model)
     how = method_named(method)
     _refuse_method(problem, name, method, how)
-    request = Asked(
+    request = Request(
         problem=problem,
         model=name,
         chosen=model == "auto",

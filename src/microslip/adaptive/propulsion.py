@@ -33,7 +33,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from microslip.adaptive.asked import TOLERANCE, Asked, budget_for
 from microslip.adaptive.checks import (
     checked_propulsion,
     checked_request,
@@ -44,6 +43,7 @@ from microslip.adaptive.choice import choose_model
 from microslip.adaptive.moved import marched
 from microslip.adaptive.no_load import NoLoad, no_load
 from microslip.adaptive.propulsion_line import PropulsionLine
+from microslip.adaptive.request import TOLERANCE, Request, budget_for
 from microslip.estimate.refine import refine
 from microslip.foundation.arguments import count
 from microslip.foundation.errors import InputError
@@ -113,7 +113,7 @@ def propulsion(
     refuse_bounds(most_work=most_work, time_limit=time_limit)
     refuse_progress(progress)
     name = choose_model(problem, model)
-    asked = Asked(
+    request = Request(
         problem=problem,
         model=name,
         tolerance=tolerance,
@@ -121,7 +121,7 @@ def propulsion(
         progress=progress,
         started=started,
     )
-    return _line(_Contact(asked), points)
+    return _line(_Contact(request), points)
 
 
 class Known(NamedTuple):
@@ -143,15 +143,15 @@ class Known(NamedTuple):
 class _Contact:
     """Friction and power of a motion at any velocity of at least 0; no run is done twice."""
 
-    def __init__(self, asked):
-        self.asked, self.done, self.sign = asked, {}, 1
-        moves = np.diff(np.stack(asked.problem.oscillation(LOOP)), axis=1)
+    def __init__(self, request):
+        self.request, self.done, self.sign = request, {}, 1
+        moves = np.diff(np.stack(request.problem.oscillation(LOOP)), axis=1)
         self.speed = float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
 
     @property
     def creep(self):
         """Creep in a radian at the velocity 1."""
-        problem = self.asked.problem
+        problem = self.request.problem
         return problem.unit_drift
 
     @property
@@ -161,9 +161,9 @@ class _Contact:
 
     def reversed(self):
         """The mirror image, which moves forward where this one moves back."""
-        problem = self.asked.problem
+        problem = self.request.problem
         behind = replace(problem, backward=not problem.backward)
-        image = _Contact(replace(self.asked, problem=behind))
+        image = _Contact(replace(self.request, problem=behind))
         image.sign = -self.sign
         return image
 
@@ -181,9 +181,9 @@ class _Contact:
             if quantity == "power":
                 run = self._power_as_force(run)
                 readings = [self._power_as_force(other) for other in readings]
-            found = refine(run, ladder, self.asked.tolerance, readings)
+            found = refine(run, ladder, self.request.tolerance, readings)
             reason = found.reason
-            if found.converged and found.error > self.asked.tolerance:
+            if found.converged and found.error > self.request.tolerance:
                 reason = f"the estimated error of its {quantity} is {found.error:.1e}"
             if reason:
                 reason = f"velocity = {self.sign * velocity:g}: {reason}"
@@ -193,9 +193,9 @@ class _Contact:
     def _marched(self, velocity):
         if velocity not in self.done:
             there = replace(
-                self.asked,
-                problem=replace(self.asked.problem, velocity=velocity),
-                budget=self.asked.budget.renewed(),
+                self.request,
+                problem=replace(self.request.problem, velocity=velocity),
+                budget=self.request.budget.renewed(),
             )
             plan = marched(there)
             readings = [_remembered(run) for run in plan.readings]
@@ -203,7 +203,7 @@ class _Contact:
         return self.done[velocity]
 
     def _power_as_force(self, run):
-        return lambda *asked: _with_power(run(*asked), self.speed)
+        return lambda *arguments: _with_power(run(*arguments), self.speed)
 
 
 def _with_power(run, speed):
@@ -264,8 +264,8 @@ def _moving(contact, points):
 
 
 def _record(contact, stall, found, velocity, verdict):
-    asked, sign = contact.asked, contact.sign
-    problem, (converged, reason) = asked.problem, verdict
+    request, sign = contact.request, contact.sign
+    problem, (converged, reason) = request.problem, verdict
     friction = [contact.friction(v) for v in velocity]
     power = [contact.power(v) for v in velocity]
     force, error = (np.array([known[k] for known in friction]) for k in (0, 1))
@@ -279,10 +279,10 @@ def _record(contact, stall, found, velocity, verdict):
     return PropulsionLine(
         motion=problem.motion.name,
         pressure=problem.pressure.name,
-        model=asked.model,
+        model=request.model,
         amplitude=problem.amplitude,
         poisson=problem.poisson,
-        tolerance=asked.tolerance,
+        tolerance=request.tolerance,
         stall_force=sign * -stall.value + 0.0,
         stall_force_error=stall.error,
         no_load_velocity=sign * found.velocity,
@@ -298,5 +298,5 @@ def _record(contact, stall, found, velocity, verdict):
         efficiency_error=efficiency_error,
         converged=converged and (not reason or not len(velocity)),
         reason=reason,
-        solve_time_s=asked.seconds,
+        solve_time_s=request.seconds,
     )

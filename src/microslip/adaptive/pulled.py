@@ -6,8 +6,8 @@ import math
 from dataclasses import replace
 from functools import partial
 
-from microslip.adaptive.asked import Asked, verdict
 from microslip.adaptive.closed_forms import CLOSED_FORM, ROUNDING
+from microslip.adaptive.request import Request, verdict
 from microslip.adaptive.result import Result, of_closed_form
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
@@ -76,102 +76,102 @@ def refuse_drive(problem: Problem, model: str) -> None:
         raise InputError("velocity", 0.0, allowed)
 
 
-def refuse_pull(asked: Asked) -> None:
+def refuse_pull(request: Request) -> None:
     """Raise InputError where what is asked does not go with a drive."""
-    drive = asked.problem.drive
-    refuse_drive(asked.problem, asked.model)
-    if asked.method != SHIPPED:
+    drive = request.problem.drive
+    refuse_drive(request.problem, request.model)
+    if request.method != SHIPPED:
         pulls = "stiffness" if drive.force is None else "force"
-        raise InputError("method", asked.method, f"allowed is {SHIPPED} with a {pulls}")
+        raise InputError("method", request.method, f"allowed is {SHIPPED} with a {pulls}")
 
 
-def solve_pulled(asked: Asked) -> Result:
+def solve_pulled(request: Request) -> Result:
     """The friction, or under a force the velocity, with its error estimate: a result.Result; see
     microslip.solve.
 
     It is for the caller to `refuse_pull` before.
     """
-    drive = asked.problem.drive
+    drive = request.problem.drive
     if drive.force is not None:
-        return _under_force(asked)
+        return _under_force(request)
     body = {"stiffness": drive.stiffness, "mass": drive.mass, "damping": drive.damping}
-    problem = asked.problem
+    problem = request.problem
     if not problem.motion.periodic or problem.velocity == 0.0 or not oscillates(problem):
         # what is steady stretches the spring to one length, whatever it is
-        return replace(solve_each(_prescribed(asked)), **body)
-    bracket = _bracket(asked)
+        return replace(solve_each(_prescribed(request)), **body)
+    bracket = _bracket(request)
     if bracket is not None:
-        point = asked.point | {"model": CLOSED_FORM}
-        return replace(of_closed_form(point, bracket, asked.seconds), **body)
-    refined, ladder = _refined(asked, Accuracy(asked.accuracy))
+        point = request.point | {"model": CLOSED_FORM}
+        return replace(of_closed_form(point, bracket, request.seconds), **body)
+    refined, ladder = _refined(request, Accuracy(request.accuracy))
     return Result(
-        **asked.point,
+        **request.point,
         **body,
-        model=asked.model,
+        model=request.model,
         mu_macro=_between(refined.value, -1.0 if problem.propels else 0.0, 1.0),
         mu_macro_error=refined.error,
-        **verdict(asked, refined, ladder, asked.tolerance),
+        **verdict(request, refined, ladder, request.tolerance),
     )
 
 
-def _bracket(asked):
+def _bracket(request):
     """(mu, torque, error) by the energy bound of theory/bounds.py, or None where its error is above
     the tolerance.
 
     The bound of a transverse or bore motion holds for any body on a spring: the work of the spring
     in a period is the mean force times the way, a mass adds nothing, and a dashpot takes some away.
     """
-    motion = asked.problem.motion
-    imposed = asked.cells is not None or asked.steps is not None
-    if not asked.chosen or imposed or asked.tolerance is None or asked.problem.parts:
+    motion = request.problem.motion
+    imposed = request.cells is not None or request.steps is not None
+    if not request.chosen or imposed or request.tolerance is None or request.problem.parts:
         return None
     if motion.name not in ("transverse", "bore") or (
-        motion.rotates and asked.problem.pressure != HERTZ
+        motion.rotates and request.problem.pressure != HERTZ
     ):
         return None
-    drop = LARGEST_DROPS[motion.name](asked.problem.velocity, asked.problem.amplitude)
+    drop = LARGEST_DROPS[motion.name](request.problem.velocity, request.problem.amplitude)
     error = 0.5 * drop + ROUNDING
-    return (1.0 - 0.5 * drop, None, error) if error <= asked.tolerance else None
+    return (1.0 - 0.5 * drop, None, error) if error <= request.tolerance else None
 
 
-def _prescribed(asked):
+def _prescribed(request):
     """The request at the prescribed velocity of the problem, without its drive."""
-    return replace(asked, problem=replace(asked.problem, drive=None))
+    return replace(request, problem=replace(request.problem, drive=None))
 
 
-def _driven(asked, **drive):
+def _driven(request, **drive):
     """The request with a changed drive."""
-    problem = asked.problem
-    return replace(asked, problem=replace(problem, drive=replace(problem.drive, **drive)))
+    problem = request.problem
+    return replace(request, problem=replace(problem, drive=replace(problem.drive, **drive)))
 
 
-def _under_force(asked):
+def _under_force(request):
     """The velocity under a force."""
-    drive = asked.problem.drive
-    if drive.mass == 0.0 and asked.problem.motion.periodic:
-        asked = replace(asked, problem=without_forward_motion(asked.problem))
-    problem, force = asked.problem, drive.force
+    drive = request.problem.drive
+    if drive.mass == 0.0 and request.problem.motion.periodic:
+        request = replace(request, problem=without_forward_motion(request.problem))
+    problem, force = request.problem, drive.force
     if force < 0.0 and not problem.propels:  # a pull back is a pull forward, seen from behind
-        ahead = _under_force(_driven(asked, force=-force))
+        ahead = _under_force(_driven(request, force=-force))
         return replace(ahead, force=force, mu_macro=-ahead.mu_macro, velocity=-ahead.velocity)
     away = runs_away(problem)
     if away:
-        return _known(asked, math.nan, math.inf, away)
+        return _known(request, math.nan, math.inf, away)
     if not problem.motion.periodic:
         velocity = steady_velocity(problem)
-        return _known(asked, velocity, STEADY_ERROR * max(1.0, velocity))
+        return _known(request, velocity, STEADY_ERROR * max(1.0, velocity))
     if not oscillates(problem):
-        return _known(asked, 0.0, 0.0)
+        return _known(request, 0.0, 0.0)
     least = -math.inf
     if is_even(problem):
-        static = _static(asked, force)
-        if _is_close(force, static) and (asked.tolerance or 0.0) > STATIC_TOLERANCE:
-            exact = _at_rest(asked, STATIC_TOLERANCE)
+        static = _static(request, force)
+        if _is_close(force, static) and (request.tolerance or 0.0) > STATIC_TOLERANCE:
+            exact = _at_rest(request, STATIC_TOLERANCE)
             if _is_below(force, exact) or _surely_moving(static) >= CLOSEST_FORCE:
                 static = exact
         if _is_below(force, static):
             return replace(
-                _known(asked, 0.0, 0.0),
+                _known(request, 0.0, 0.0),
                 model=static.model,
                 cells=static.cells,
                 angles=static.angles,
@@ -181,11 +181,11 @@ def _under_force(asked):
             if not least < CLOSEST_FORCE:
                 error = static.mu_macro_error
                 return _given_up(
-                    asked,
+                    request,
                     f"the error of the force threshold, {error:.1e}, does not tell whether the "
                     "contact moves, and a larger force is too close to full friction",
                 )
-    return _moving(asked, max(force, least))
+    return _moving(request, max(force, least))
 
 
 def _is_below(force, static):
@@ -204,35 +204,35 @@ def _surely_moving(static):
     return static.mu_macro + GAP_MARGIN * static.mu_macro_error
 
 
-def _static(asked, force):
+def _static(request, force):
     """The Result of the static limit, no more exactly than the force needs to be told from it."""
-    if asked.tolerance is not None and asked.tolerance < ROUGH_TOLERANCE:
-        rough = _at_rest(asked, ROUGH_TOLERANCE)
+    if request.tolerance is not None and request.tolerance < ROUGH_TOLERANCE:
+        rough = _at_rest(request, ROUGH_TOLERANCE)
         if abs(force - rough.mu_macro) > rough.mu_macro_error:
             return rough
-    return _at_rest(asked, asked.tolerance)
+    return _at_rest(request, request.tolerance)
 
 
-def _at_rest(asked, tolerance):
+def _at_rest(request, tolerance):
     """The Result of the static limit, to a tolerance."""
-    problem = replace(asked.problem, velocity=0.0, drive=None)
-    return solve_each(replace(asked, problem=problem, tolerance=tolerance))
+    problem = replace(request.problem, velocity=0.0, drive=None)
+    return solve_each(replace(request, problem=problem, tolerance=tolerance))
 
 
-def _known(asked, velocity, error, reason=""):
+def _known(request, velocity, error, reason=""):
     """The Result where nothing has to be marched."""
-    drive = asked.problem.drive
+    drive = request.problem.drive
     return Result(
-        **asked.point | {"velocity": velocity},
+        **request.point | {"velocity": velocity},
         **_pulling(drive),
-        model=CLOSED_FORM if asked.chosen else asked.model,
+        model=CLOSED_FORM if request.chosen else request.model,
         mu_macro=math.copysign(1.0, drive.force) if reason else drive.force,
         mu_macro_error=0.0,
         velocity_error=error,
-        converged=not reason and _good_enough(error, velocity, asked.tolerance),
+        converged=not reason and _good_enough(error, velocity, request.tolerance),
         periodic=not reason,
         reason=reason,
-        solve_time_s=asked.seconds,
+        solve_time_s=request.seconds,
     )
 
 
@@ -245,103 +245,103 @@ def _pulling(drive):
     return {"force": drive.force} | ({"mass": drive.mass} if drive.mass > 0.0 else {})
 
 
-def _moving(asked, marched):
+def _moving(request, marched):
     """The Result of a contact that moves, marched under a force that it moves under for certain.
 
     Where the static limit is not known well enough to tell whether it moves under the force that
     was asked for, its velocity is between 0 and that one.
     """
-    drive, request = asked.problem.drive, asked
-    asked = _driven(asked, force=marched)
+    drive, original = request.problem.drive, request
+    request = _driven(request, force=marched)
     try:
-        near = _near(asked)
+        near = _near(request)
     except Spent as spent:
-        return _given_up(request, str(spent))
-    asked = replace(asked, problem=replace(asked.problem, velocity=near.velocity))
-    accuracy = Accuracy(asked.accuracy * max(1.0, SCALE_SHARE * near.velocity), near.slope)
-    refined, ladder = _refined(asked, accuracy)
+        return _given_up(original, str(spent))
+    request = replace(request, problem=replace(request.problem, velocity=near.velocity))
+    accuracy = Accuracy(request.accuracy * max(1.0, SCALE_SHARE * near.velocity), near.slope)
+    refined, ladder = _refined(request, accuracy)
     velocity, error = float(refined.value), float(refined.error)
-    if not asked.problem.propels:
+    if not request.problem.propels:
         velocity = max(velocity, 0.0)  # what lies below is rounding and error
     if not refined.converged and not error < abs(velocity):  # not even its order of magnitude
         velocity, error = math.nan, math.inf
     elif marched > drive.force:
         velocity, error = 0.5 * velocity, 0.5 * velocity + error
         refined = replace(refined, errors=refined.errors | {"model": 0.5 * refined.value})
-    largest = None if asked.tolerance is None else asked.tolerance * max(1.0, abs(velocity))
+    largest = None if request.tolerance is None else request.tolerance * max(1.0, abs(velocity))
     return Result(
-        **asked.point | {"velocity": velocity},
+        **request.point | {"velocity": velocity},
         **_pulling(drive),
-        model=asked.model,
+        model=request.model,
         mu_macro=drive.force,
         mu_macro_error=0.0,
         velocity_error=error,
-        **verdict(asked, refined, ladder, largest),
+        **verdict(request, refined, ladder, largest),
     )
 
 
-def _near(asked):
+def _near(request):
     """The under_force.Near of what the force makes of the contact, by coarse runs.
 
     Friction of the contact that is moved tells about where it is, and one run under the force more
     exactly, unless it is so slow that this would take finer ones.
     """
-    moving = replace(asked.problem, velocity=FIRST_VELOCITY)
-    force = asked.problem.drive.force
+    moving = replace(request.problem, velocity=FIRST_VELOCITY)
+    force = request.problem.drive.force
     # the plan depends on where slip starts, and finds it again by itself
-    found_focus(moving, asked.model, asked.budget, asked.progress)
-    ladder = ladder_for(moving, asked.model, COARSE_TOLERANCE, asked.cells, asked.steps)
-    if asked.tolerance is None:
-        refuse_free(ladder, asked.cells, asked.steps)
+    found_focus(moving, request.model, request.budget, request.progress)
+    ladder = ladder_for(moving, request.model, COARSE_TOLERANCE, request.cells, request.steps)
+    if request.tolerance is None:
+        refuse_free(ladder, request.cells, request.steps)
     coarse = ladder.resolution(ladder.levels(COARSE_TOLERANCE)[0])
-    settings = Settings(asked.how, budget=asked.budget)
-    if asked.progress is not None:
-        asked.progress(coarse)
+    settings = Settings(request.how, budget=request.budget)
+    if request.progress is not None:
+        request.progress(coarse)
 
     def friction_at(velocity):
         there = replace(moving, velocity=velocity)
-        return simulate_each(there, asked.model, coarse, COARSE_TOLERANCE, settings).mu
+        return simulate_each(there, request.model, coarse, COARSE_TOLERANCE, settings).mu
 
     near = velocity_near(moving, force, friction_at)
     place = replace(moving, velocity=near.velocity)
     accuracy = Accuracy(COARSE_TOLERANCE * near.velocity, near.slope)
-    found = simulate_pulled(place, asked.model, coarse, accuracy, settings)
+    found = simulate_pulled(place, request.model, coarse, accuracy, settings)
     if found.converged and found.velocity > SLOWEST_SHARE * near.velocity:
         return near._replace(velocity=found.velocity)
     return near
 
 
-def _given_up(asked, reason):
+def _given_up(request, reason):
     """The Result of a point of which nothing is known yet."""
-    unknown = replace(_known(asked, math.nan, math.inf, reason), model=asked.model)
+    unknown = replace(_known(request, math.nan, math.inf, reason), model=request.model)
     return replace(
         unknown,
-        mu_macro=asked.problem.drive.force,
-        exhausted=asked.budget.exhausted,
-        **asked.budget.counts(),
+        mu_macro=request.problem.drive.force,
+        exhausted=request.budget.exhausted,
+        **request.budget.counts(),
     )
 
 
-def _refined(asked, accuracy):
+def _refined(request, accuracy):
     """The refine.Refined to an accuracy, and its ladder."""
-    problem, tolerance = asked.problem, accuracy.tolerance
+    problem, tolerance = request.problem, accuracy.tolerance
     drive = problem.drive
     try:
-        found_focus(problem, asked.model, asked.budget, asked.progress)
+        found_focus(problem, request.model, request.budget, request.progress)
     except Spent as spent:
         return unknown(f"{spent}: no error is known yet"), Ladder(1, 0, 0)
-    ladder = ladder_for(problem, asked.model, tolerance, asked.cells, asked.steps)
-    contact = contact_of(problem, asked.model, COARSEST)
+    ladder = ladder_for(problem, request.model, tolerance, request.cells, request.steps)
+    contact = contact_of(problem, request.model, COARSEST)
     ladder, unresolved = with_mass(ladder, problem, contact, drive.mass, tolerance)
     share = accuracy._replace(tolerance=run_tolerance(tolerance))
-    if asked.tolerance is None:
-        refuse_free(ladder, asked.cells, asked.steps)
-    settings = Settings(asked.how, budget=asked.budget)
+    if request.tolerance is None:
+        refuse_free(ladder, request.cells, request.steps)
+    settings = Settings(request.how, budget=request.budget)
 
     def run(resolution, guess, problem=problem):
-        if asked.progress is not None:
-            asked.progress(resolution)
-        return simulate_pulled(problem, asked.model, resolution, share, settings, guess=guess)
+        if request.progress is not None:
+            request.progress(resolution)
+        return simulate_pulled(problem, request.model, resolution, share, settings, guess=guess)
 
     readings = [
         partial(run, problem=replace(problem, pressure=other))

@@ -130,8 +130,8 @@ class Result:
 
 def of_closed_form(point: dict, values: tuple, seconds: float) -> Result:
     """The Result of a point, a dict of its fields, where (mu, torque, error) are known."""
-    (mu, torque, error), asked = values, point["tolerance"]
-    within = asked is None or error <= asked
+    (mu, torque, error), tolerance = values, point["tolerance"]
+    within = tolerance is None or error <= tolerance
     return Result(
         **point,
         mu_macro=mu,
@@ -141,6 +141,6 @@ def of_closed_form(point: dict, values: tuple, seconds: float) -> Result:
         mu_torque_error=None if torque is None else error,
         converged=within,
         periodic=True,
-        reason="" if within else f"the error is {error:.1e}, above the tolerance of {asked:g}",
+        reason="" if within else f"the error is {error:.1e}, above the tolerance of {tolerance:g}",
         solve_time_s=seconds,
     )

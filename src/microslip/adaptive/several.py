@@ -1,23 +1,23 @@
-"""Several contacts on one body: at a given velocity none feels the others, each is asked alone."""
+"""Several contacts on one body: at a prescribed velocity each is solved by itself."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from microslip.adaptive.asked import Asked
 from microslip.adaptive.closed_forms import CLOSED_FORM, known_exactly
+from microslip.adaptive.request import Request
 from microslip.adaptive.result import Result
 
 
-def solve_each(asked: Asked) -> Result:
+def solve_each(request: Request) -> Result:
     """The certified friction of a contact, or the mean over the contacts of a body."""
-    problem = asked.problem
+    problem = request.problem
     if not problem.parts:
-        return _solve(asked)
+        return _solve(request)
     alone = {}
     for part in problem.parts:
         if part.problem not in alone:
-            alone[part.problem] = _solve(replace(asked, problem=part.problem))
+            alone[part.problem] = _solve(replace(request, problem=part.problem))
     results = list(alone.values())
 
     def weighted(name):
@@ -32,7 +32,7 @@ def solve_each(asked: Asked) -> Result:
     means = ("mu_macro", "mu_macro_error", "error_resolution")
     means += ("error_periodicity", "error_solver", "error_model")
     return Result(
-        **asked.point,
+        **request.point,
         model=marched[0].model if marched else results[0].model,
         **{name: float(weighted(name)) for name in means},
         converged=all(result.converged for result in results),
@@ -40,16 +40,16 @@ def solve_each(asked: Asked) -> Result:
         reason=next((result.reason for result in results if result.reason), ""),
         **{name: most(name) for name in ("cells", "angles", "steps_per_period", "periods")},
         **{name: sum(getattr(result, name) for result in results) for name in summed},
-        exhausted=asked.budget.exhausted,
-        solve_time_s=asked.seconds,
+        exhausted=request.budget.exhausted,
+        solve_time_s=request.seconds,
     )
 
 
-def _solve(asked):
+def _solve(request):
     """The certified friction of one contact."""
-    exact = known_exactly(asked)
+    exact = known_exactly(request)
     if exact is not None:
         return exact
     from microslip.adaptive.moved import solve_moved  # only now: it loads compiled code
 
-    return solve_moved(asked)
+    return solve_moved(request)

@@ -13,7 +13,6 @@ import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields, replace
 
-from microslip.adaptive.asked import Asked, budget_for, verdict
 from microslip.adaptive.checks import (
     checked_problem,
     checked_request,
@@ -22,6 +21,7 @@ from microslip.adaptive.checks import (
 )
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.pulled import refuse_drive
+from microslip.adaptive.request import Request, budget_for, verdict
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
     is_even,
@@ -169,7 +169,7 @@ def shakedown(
     if not is_even(problem):
         allowed = "allowed is a motion that exerts no forward force by itself, such as transverse"
         raise InputError("motion", problem.motion.name, allowed)
-    asked = Asked(
+    request = Request(
         problem=problem,
         model=name,
         tolerance=tolerance,
@@ -177,20 +177,20 @@ def shakedown(
         progress=progress,
         started=started,
     )
-    return _answer(asked, force)
+    return _answer(request, force)
 
 
-def _answer(asked, force):
+def _answer(request, force):
     """The Shakedown under a force."""
-    threshold, error, away = _threshold(asked, force)
+    threshold, error, away = _threshold(request, force)
     known = {
-        "motion": asked.problem.motion.name,
-        "pressure": asked.problem.pressure.name,
-        "model": asked.model,
-        "amplitude": asked.problem.amplitude,
-        "poisson": asked.problem.poisson,
+        "motion": request.problem.motion.name,
+        "pressure": request.problem.pressure.name,
+        "model": request.model,
+        "amplitude": request.problem.amplitude,
+        "poisson": request.problem.poisson,
         "force": force,
-        "tolerance": asked.tolerance,
+        "tolerance": request.tolerance,
         "threshold": threshold,
         "threshold_error": error,
     }
@@ -200,49 +200,49 @@ def _answer(asked, force):
             away = f"creeps on for ever: the force is above the threshold, {threshold:.4g}"
     if away:
         endless = {"displacement": math.inf, "displacement_error": math.inf}
-        endless |= {"converged": False, "reason": away, "solve_time_s": asked.seconds}
+        endless |= {"converged": False, "reason": away, "solve_time_s": request.seconds}
         return Shakedown(**known, **endless)
-    return Shakedown(**known, **_certified(asked, force))
+    return Shakedown(**known, **_certified(request, force))
 
 
-def _threshold(asked, force):
+def _threshold(request, force):
     """The static limit, its error, and why the contact does not even come near it, or ""."""
-    problem = asked.problem
+    problem = request.problem
     away = runs_away(problem)
     if not oscillates(problem):
         return 1.0, 0.0, away
     if away:
         return math.nan, math.inf, away
-    static = solve_each(replace(asked, chosen=True))
+    static = solve_each(replace(request, chosen=True))
     return static.mu_macro, static.mu_macro_error, ""
 
 
-def _certified(asked, force):
+def _certified(request, force):
     """Fields of a Shakedown that comes of runs."""
-    planned = replace(asked.problem, velocity=PLANNED_VELOCITY)
+    planned = replace(request.problem, velocity=PLANNED_VELOCITY)
     try:  # the plan depends on where slip starts, and finds it again by itself
-        found_focus(planned, asked.model, asked.budget, asked.progress)
+        found_focus(planned, request.model, request.budget, request.progress)
     except Spent as spent:
-        return _fields(asked, unknown(f"{spent}: no error is known yet"), Ladder(1, 0, 0), None)
-    ladder, left = ladder_for(planned, asked.model), run_tolerance(asked.tolerance)
-    settings, finest = Settings(asked.how, budget=asked.budget), {}
+        return _fields(request, unknown(f"{spent}: no error is known yet"), Ladder(1, 0, 0), None)
+    ladder, left = ladder_for(planned, request.model), run_tolerance(request.tolerance)
+    settings, finest = Settings(request.how, budget=request.budget), {}
 
     def run(resolution, guess):
-        if asked.progress is not None:
-            asked.progress(resolution)
+        if request.progress is not None:
+            request.progress(resolution)
         finest[resolution] = run_to_rest(
-            asked.problem, force, asked.model, resolution, left, settings
+            request.problem, force, request.model, resolution, left, settings
         )
         return finest[resolution]
 
-    refined = refine(run, ladder, asked.tolerance, (), "displacement")
+    refined = refine(run, ladder, request.tolerance, (), "displacement")
     last = finest[max(finest, key=lambda one: (one.cells, one.steps))] if finest else None
-    return _fields(asked, refined, ladder, last)
+    return _fields(request, refined, ladder, last)
 
 
-def _fields(asked, refined, ladder, last):
+def _fields(request, refined, ladder, last):
     """Fields of a Shakedown from its Refined and its finest ShakedownRun, if there is one."""
-    said = verdict(asked, refined, ladder, asked.tolerance)
+    said = verdict(request, refined, ladder, request.tolerance)
     taken = {field.name for field in fields(Shakedown)}
     return {name: value for name, value in said.items() if name in taken} | {
         "displacement": float(refined.value),

@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from microslip.adaptive.asked import TOLERANCE, Asked, budget_for
 from microslip.adaptive.checks import checked_problem, checked_request
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.moved import marched
+from microslip.adaptive.request import TOLERANCE, Request, budget_for
 from microslip.estimate.refine import refine
 from microslip.foundation.errors import InputError
 from microslip.motions.motion import LOOP, Motion
@@ -75,7 +75,7 @@ def vibration_power(
             raise InputError(name, value, "allowed is a number above 0, for work to be done")
     tolerance, _, _ = checked_request(tolerance, None, None)
     name = choose_model(problem)
-    asked = Asked(
+    request = Request(
         problem=problem,
         model=name,
         tolerance=tolerance,
@@ -94,7 +94,7 @@ def vibration_power(
 
         return of_resolution
 
-    plan = marched(asked)
+    plan = marched(request)
     readings = [power_as_force(one) for one in plan.readings]
     found = refine(power_as_force(plan.run), plan.ladder, tolerance, readings)
     reason = found.reason

@@ -9,7 +9,6 @@ import warnings
 from dataclasses import fields, replace
 from pathlib import Path
 
-from microslip.adaptive.asked import TOLERANCE
 from microslip.adaptive.checks import (
     checked_drive,
     checked_problem,
@@ -18,6 +17,7 @@ from microslip.adaptive.checks import (
 )
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.pulled import refuse_drive
+from microslip.adaptive.request import TOLERANCE
 from microslip.adaptive.result import Result
 from microslip.config.axes import DRIVES
 from microslip.config.records import Sweep

@@ -1,4 +1,4 @@
-"""What is asked of a point, as every part of its answer needs it."""
+"""The request for an answer at a point: problem, model, method, accuracy and budget."""
 
 from __future__ import annotations
 
@@ -19,36 +19,35 @@ if TYPE_CHECKING:  # they load compiled code, which a closed form does without
     from microslip.estimate.refine import Refined
 
 TOLERANCE = 1e-3
-"""Unless told otherwise; and how strict the search for a periodic state is where none is meant."""
+"""Default tolerance, also that of runs without a tolerance."""
 MOST_WORK = {"polar": 2e9, "cartesian": 2e9}
 MOST_WORK_OF_OTHERS = 2e8
-"""Work, by model, beyond which a point is given up unless told otherwise: more than ten times what
-the slowest points of the paper's range take at the tolerance 1e-4.  Rings have few unknowns, and
-each of them takes longer."""
+"""Default largest work by model: more than ten times the work of the slowest points of the paper's
+range at the tolerance 1e-4."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Asked:
-    """A point, checked; unless told otherwise under a model that was named, by the method shipped.
+class Request:
+    """A checked request for the friction, or the velocity, of a problem.
 
     Attributes
     ----------
     problem : problem.Problem
-        The motion and its numbers.
+        The problem.
     model : str
         Name in models.registry.MODELS.
     chosen : bool
-        Whether the model was left open, so that a closed form may take its place.
+        Whether the model is "auto", so that a closed form may replace it.
     method : str
         Name of the method.
     how : method.Method
         The method.
     tolerance : float or None
-        None: none is meant.
+        Absolute; None: any error is accepted.
     cells, steps : int or None
-        Imposed, steps in a full period.
+        Imposed resolution; steps in a full period.
     budget : budget.Budget
-        Of all runs.
+        Budget of all runs together.
     progress : callable or None
         Called with the Resolution of every run before it starts.
     started : float
@@ -69,12 +68,12 @@ class Asked:
 
     @property
     def accuracy(self) -> float:
-        """The tolerance that runs are done to."""
+        """Tolerance of the runs."""
         return TOLERANCE if self.tolerance is None else self.tolerance
 
     @property
     def point(self) -> dict:
-        """Fields of a result.Result that say what was asked."""
+        """Fields of a result.Result that repeat the request."""
         problem = self.problem
         several = {"contacts": contacts_text(problem.contacts)} if problem.contacts else {}
         return several | {
@@ -89,7 +88,7 @@ class Asked:
 
     @property
     def seconds(self) -> float:
-        """By the wall clock, so far."""
+        """Seconds by the wall clock since the request."""
         return time.perf_counter() - self.started
 
 
@@ -102,19 +101,19 @@ def budget_for(
     return Budget(most_work, math.inf if time_limit is None else time_limit)
 
 
-def verdict(asked: Asked, refined: Refined, ladder: Ladder, largest: float | None) -> dict:
+def verdict(request: Request, refined: Refined, ladder: Ladder, largest: float | None) -> dict:
     """Fields of a result.Result that say how an answer was found, and whether it is good enough.
 
     largest: error that is accepted, None: any.
     """
-    if asked.budget.exhausted:
-        refined = replace(refined, **asked.budget.counts())
+    if request.budget.exhausted:
+        refined = replace(refined, **request.budget.counts())
     within = largest is None or refined.error <= largest
     reason = refined.reason
     if refined.converged and not within:
         where = "at the imposed resolution the error" if ladder.imposed else "the estimated error"
         reason = f"{where} is {refined.error:.1e}, above the tolerance of {largest:g}"
-        read = asked.problem.pressure.readings
+        read = request.problem.pressure.readings
         left_open = refined.errors.get("model", 0.0) if read else 0.0
         if left_open > 0.5 * refined.error:
             reason += f": the file's own resolution leaves {left_open:.1e} open"
@@ -132,6 +131,6 @@ def verdict(asked: Asked, refined: Refined, ladder: Ladder, largest: float | Non
         "work": refined.work,
         "effort": refined.effort,
         "retried": refined.retried,
-        "exhausted": asked.budget.exhausted,
-        "solve_time_s": asked.seconds,
+        "exhausted": request.budget.exhausted,
+        "solve_time_s": request.seconds,
     }
