@@ -29,7 +29,7 @@ from microslip.datasets import certified_map
 
 def questions(dataset, count, chunk):
     """What is asked, by the names of the arguments, in chunks."""
-    across = "force" if certified_map.is_of_creep(dataset) else "velocity"
+    across = "force" if certified_map.is_of_drift(dataset) else "velocity"
     draw = dask.array.random.default_rng(3)
     return {
         name: xr.DataArray(
@@ -56,8 +56,8 @@ def main():
     tables.add_markdown(parser)
     options = parser.parse_args()
     dataset = microslip.open_map(options.map).load()
-    creeps = certified_map.is_of_creep(dataset)
-    accessor, value = (dataset.creep, "velocity") if creeps else (dataset.friction, "mu_macro")
+    drifts = certified_map.is_of_drift(dataset)
+    accessor, value = (dataset.microslip, "velocity" if drifts else "mu_macro")
     few = accessor.at(**questions(dataset, options.chunk, options.chunk))
     dask.compute(few[value].mean())
     before, begun = memory(), time.process_time()

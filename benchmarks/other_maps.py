@@ -28,14 +28,14 @@ from tqdm import tqdm
 from microslip.config import load
 from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import Friction
-from microslip.datasets.query.creep import Creep
+from microslip.datasets.query.drift import Drift
 from microslip.sweeps import evaluate, map_rounds
 from microslip.sweeps.batches import PointRequests, answer
 from microslip.sweeps.cache import Store
 
 CONFIGURATION = Path(__file__).parents[1] / "config" / "config.yaml"
 NAMES = (
-    *("longitudinal", "normal_load", "normal_indentation", "creep_transverse"),
+    *("longitudinal", "normal_load", "normal_indentation", "drift_transverse"),
     *("flat_end", "punch", "ring", "cone", "ellipse", "figure_of_eight"),
 )
 ERRORS = (1e-2, 3e-3)
@@ -43,7 +43,7 @@ HEAD = """# Certified maps of other motions, pressures and drives
 
 Made by `benchmarks/other_maps.py`: maps of sweeps in `config/config.yaml` at random places that
 they have not used, where the solver was asked for a tenth of the error. A place is covered if the
-map misses by no more than it claims and the solver's own error. Errors of creep are over the root
+map misses by no more than it claims and the solver's own error. Errors of drift are over the root
 of 1 + velocity squared; some of its places stay where they are.
 """
 TIMED = 20
@@ -94,9 +94,9 @@ def judged(name, error, options, store):
     map_ = map_of(name, error)
     rounds, records = made(map_, store)
     data = certified_map.build(map_, rounds, records)
-    creeps = map_.force is not None
-    question = Creep(data) if creeps else Friction(data)
-    value, across = ("velocity", "force") if creeps else ("mu_macro", "velocity")
+    drifts = map_.force is not None
+    question = Drift(data) if drifts else Friction(data)
+    value, across = ("velocity", "force") if drifts else ("mu_macro", "velocity")
     rows = []
     for request in tqdm(places_of(map_, options.places, options.seed), desc=map_.name, leave=False):
         true = answer(request, store)[0]["result"]
@@ -104,7 +104,7 @@ def judged(name, error, options, store):
         pair = [float(said[part]) for part in (value, f"{value}_error")]
         rows.append([*pair, true[value], true[f"{value}_error"]])
     said, claim, true, own = np.array(rows).T
-    miss, scale = abs(said - true), np.hypot(1.0, true) if creeps else 1.0
+    miss, scale = abs(said - true), np.hypot(1.0, true) if drifts else 1.0
     return {
         "map": name,
         "error": f"{error:g}",

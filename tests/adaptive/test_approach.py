@@ -4,7 +4,7 @@ Nothing here is computed at velocity 0: every number is the mean force of a peri
 marched, extrapolated in the rings and with an error from coarser rings and steps.
 
 How it falls: the slip of the oscillation alone grows like the 3/2 power of the distance from the
-stick radius, so that the creep matters in a layer as wide as velocity^(2/3), and with it the excess
+stick radius, so that the drift matters in a layer as wide as velocity^(2/3), and with it the excess
 over the limit.  Measured: transverse, amplitudes 0.25, 0.5 and 0.75: exponents 0.63, 0.67 and 0.69
 below velocity 1e-3, rising slowly to 0.70, 0.70 and 0.72 above 1e-5; bore: 0.72 to 0.76.
 """
@@ -73,7 +73,7 @@ def test_transverse_marches_fall_to_the_closed_form(amplitude):
     exact = float(paper.static_limit_transverse(amplitude))
     assert error.max() < 1.5e-4
     excess = mu - exact
-    # the local exponent still creeps, which moves a limit that assumes a single one
+    # the local exponent still drifts, which moves a limit that assumes a single one
     assert abs(free_limit(mu) - exact) <= error.max() + 0.05 * excess[-1]
     assert np.all(excess > 5 * error) and np.all(np.diff(mu) < 0.0)
     found = exponents(SLOW, excess)

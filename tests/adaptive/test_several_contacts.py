@@ -11,7 +11,7 @@ from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, contact_of, path_of
 from microslip.theory import paper
-from microslip.theory.creep import antiphase_creep
+from microslip.theory.drift import antiphase_drift
 
 DRIVES = {
     "a velocity": {"velocity": 0.1},
@@ -98,14 +98,14 @@ def test_what_does_not_give_way_has_the_friction_of_the_velocity(motion, endless
 def test_two_sliders_against_each_other_have_their_closed_form(amplitude, force):
     found = microslip.solve("longitudinal", amplitude=amplitude, force=force, contacts=AGAINST)
     assert found.converged
-    assert abs(found.velocity - antiphase_creep(force, amplitude)) <= found.velocity_error
+    assert abs(found.velocity - antiphase_drift(force, amplitude)) <= found.velocity_error
 
 
 @pytest.mark.slow
 def test_more_sliders_that_work_against_each_other_in_pairs_do_as_well():
     four = ";".join(["phase=0", "phase=180", "load=1,phase=180", "phase=360"])
     found = microslip.solve("longitudinal", amplitude=1.0, force=0.3, contacts=four)
-    assert abs(found.velocity - antiphase_creep(0.3, 1.0)) <= found.velocity_error
+    assert abs(found.velocity - antiphase_drift(0.3, 1.0)) <= found.velocity_error
 
 
 def rigid_velocity(force, contacts, amplitude):

@@ -98,7 +98,7 @@ def test_what_is_left_is_no_more_than_is_said():
 def test_above_the_threshold_there_is_no_end():
     found = microslip.shakedown("transverse", 0.5, 0.6)
     assert not found.converged and found.displacement == math.inf
-    assert found.reason.startswith("creeps on for ever: the force is above the threshold, 0.5644")
+    assert found.reason.startswith("drifts on for ever: the force is above the threshold, 0.5644")
     away = microslip.shakedown("transverse", 0.5, 1.2)
     assert not away.converged and away.reason.startswith("runs away")
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.solver.period_map import CreepRate
+from microslip.solver.period_map import DriftRate
 
 SHARP = "punch:flat=0.95"
 # motion, pressure, velocity, amplitude, and rings and steps that leave much less than is claimed
@@ -69,10 +69,10 @@ def test_a_slow_loop_that_lost_what_it_takes_long_to_gain_is_not_periodic():
     assert abs(given.mu_macro - many.mu_macro) <= given.mu_macro_error < 0.1
 
 
-def test_a_creep_rate_without_a_known_limit_takes_the_largest_excess():
-    known, unknown = CreepRate(0.3, 1.0, 2e-3), CreepRate(np.nan, 1.0, 2e-3)
+def test_a_drift_rate_without_a_known_limit_takes_the_largest_excess():
+    known, unknown = DriftRate(0.3, 1.0, 2e-3), DriftRate(np.nan, 1.0, 2e-3)
     assert known.force_error(1e-3, 0.5) == pytest.approx(0.1)
     for force in (0.1, 0.5, 0.9):
-        limits = [CreepRate(limit, 1.0, 2e-3) for limit in np.linspace(0.0, 1.0, 11)]
+        limits = [DriftRate(limit, 1.0, 2e-3) for limit in np.linspace(0.0, 1.0, 11)]
         largest = max(limit.force_error(1e-3, force) for limit in limits)
         assert unknown.force_error(1e-3, force) == pytest.approx(largest)

@@ -22,7 +22,7 @@ def folder(tmp_path, monkeypatch):
     velocity = np.tile(np.geomspace(0.05, 3.0, 6), 2)
     amplitude = np.repeat([0.7, 1.8], 6)
     points = (xr.DataArray(part, dims="row") for part in (velocity, amplitude))
-    force = MU * LOAD * dataset.friction.at(*points).mu_macro.values
+    force = MU * LOAD * dataset.microslip.at(*points).mu_macro.values
     table(velocity, amplitude, force)
     return tmp_path
 

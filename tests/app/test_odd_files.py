@@ -123,15 +123,15 @@ def test_damaged_pressures_are_refused_and_do_not_hang(tmp_path):
 def test_a_dataset_that_no_sweep_has_made_is_refused(case):
     change, word = odd.DATASETS[case]
     with pytest.raises(InputError) as caught:
-        change(odd.whole()).friction.at(0.15, 1.3)
+        change(odd.whole()).microslip.at(0.15, 1.3)
     one_line(caught, [word])
-    assert odd.whole().friction.at(0.15, 1.3).mu_macro_error < 0.1  # the same, unchanged
+    assert odd.whole().microslip.at(0.15, 1.3).mu_macro_error < 0.1  # the same, unchanged
 
 
 @pytest.mark.parametrize(("arguments", "more", "word"), odd.QUESTIONS)
 def test_odd_questions(arguments, more, word):
     with pytest.raises(InputError) as caught:
-        odd.whole().friction.at(*arguments, **more)
+        odd.whole().microslip.at(*arguments, **more)
     one_line(caught, [word])
 
 

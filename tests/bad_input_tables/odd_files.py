@@ -234,7 +234,7 @@ DATASETS = {
     "with the other sign": (lambda d: d.assign(mu_macro=-d.mu_macro), "allowed is 0 to 1"),
     "with an infinity": (every("mu_macro", np.inf), "mu_macro = inf"),
     "of text": (every("mu_macro", "a"), "mu_macro = 'of type <U1'"),
-    "of complex numbers": (every("mu_macro", 1j), "friction.at needs numbers"),
+    "of complex numbers": (every("mu_macro", 1j), "microslip.at needs numbers"),
     "with errors below 0": (every("mu_macro_error", -1e-4), "mu_macro_error = -0.0001"),
     "velocity as text": (axis("velocity", [str(v) for v in VELOCITY]), "velocity = 'of type"),
     "velocity as dates": (
@@ -251,7 +251,7 @@ DATASETS = {
     "Poisson's ratio not a number": (axis("poisson", np.nan), "poisson = nan"),
     "Poisson's ratio along the amplitude": (
         axis("poisson", ("amplitude", np.linspace(0, 0.5, 13))),
-        "friction.at needs one, or an axis",
+        "microslip.at needs one, or an axis",
     ),
     "a tolerance in words": (
         lambda d: d.drop_vars("converged").assign_attrs(tolerance="fine"),

@@ -59,7 +59,7 @@ def places(count, seed=4, dim="n"):
 
 def test_answers_are_within_their_errors_and_these_within_what_was_asked(dataset):
     velocity, amplitude = places(2000)
-    answer = dataset.friction.at(velocity, amplitude)
+    answer = dataset.microslip.at(velocity, amplitude)
     miss = abs(answer.mu_macro - friction(velocity.values, amplitude.values))
     assert float((miss <= answer.mu_macro_error).mean()) >= 0.999
     assert float(answer.mu_macro_error.max()) <= ERROR
@@ -70,7 +70,7 @@ def test_answers_are_within_their_errors_and_these_within_what_was_asked(dataset
 
 
 def test_at_a_node_the_answer_is_the_node(dataset):
-    answer = dataset.friction.at(dataset.velocity.drop_vars("velocity"), dataset.amplitude)
+    answer = dataset.microslip.at(dataset.velocity.drop_vars("velocity"), dataset.amplitude)
     off = abs(answer.mu_macro - dataset.mu_macro).values
     assert (off <= answer.mu_macro_error.values).all()
     # a neighbour with other nodes may answer on a border, and nobody else inside
@@ -79,7 +79,7 @@ def test_at_a_node_the_answer_is_the_node(dataset):
 
 
 def test_beyond_the_map_the_limits_answer_as_from_any_map(dataset):
-    answer = dataset.friction.at([0.0, 1e-4, 20.0], [0.5, 6.0])
+    answer = dataset.microslip.at([0.0, 1e-4, 20.0], [0.5, 6.0])
     assert float(answer.mu_macro[0, 0]) == pytest.approx(paper.static_limit_transverse(0.5))
     names = np.array(SOURCES)[answer.source.values]
     assert names[0].tolist() == [
@@ -89,7 +89,7 @@ def test_beyond_the_map_the_limits_answer_as_from_any_map(dataset):
     ]
     assert set(names[1, 1:]) == {"between map and large amplitude"}
     assert np.isfinite(answer.mu_macro_error).all()
-    assert float(dataset.friction.at(0.1, 0.0).mu_macro) == 1.0
+    assert float(dataset.microslip.at(0.1, 0.0).mu_macro) == 1.0
 
 
 def test_equal_answers_give_equal_files(made, tmp_path):
@@ -104,7 +104,7 @@ def test_a_point_that_failed_leaves_its_cells_unanswered(made):
     failed = [r if r["request"] != bad else record(bad, {"converged": False}) for r in made.records]
     data = certified_map.build(made.map, made.rounds, failed)
     there = float(bad["velocity"]) * 1.01, float(bad["amplitude"]) * 0.99
-    answer = data.friction.at(*there)
+    answer = data.microslip.at(*there)
     assert np.isnan(answer.mu_macro) and np.isinf(answer.mu_macro_error)
     said = list(certified_map.report(data, "certified_transverse"))
     assert "1 not converged" in said[0]
@@ -113,8 +113,8 @@ def test_a_point_that_failed_leaves_its_cells_unanswered(made):
 
 def test_in_chunks_the_answer_is_the_same_and_waits(dataset):
     velocity, amplitude = places(1000)
-    at_once = dataset.friction.at(velocity, amplitude)
-    lazy = dataset.friction.at(velocity.chunk(n=300), amplitude.chunk(n=300))
+    at_once = dataset.microslip.at(velocity, amplitude)
+    lazy = dataset.microslip.at(velocity.chunk(n=300), amplitude.chunk(n=300))
     assert {name: lazy[name].chunks for name in lazy.data_vars} == dict.fromkeys(
         at_once.data_vars, ((300, 300, 300, 100),)
     )
@@ -124,26 +124,26 @@ def test_in_chunks_the_answer_is_the_same_and_waits(dataset):
 def test_in_chunks_questions_broadcast_by_their_dimensions(dataset):
     velocity, _ = places(20, dim="v")
     _, amplitude = places(30, dim="a")
-    lazy = dataset.friction.at(velocity.chunk(v=7), amplitude)
+    lazy = dataset.microslip.at(velocity.chunk(v=7), amplitude)
     assert lazy.mu_macro.dims == ("a", "v")
-    xr.testing.assert_identical(lazy.compute(), dataset.friction.at(velocity, amplitude))
+    xr.testing.assert_identical(lazy.compute(), dataset.microslip.at(velocity, amplitude))
 
 
 def test_in_chunks_a_bad_question_is_refused_when_it_is_looked_at(dataset):
-    lazy = dataset.friction.at(xr.DataArray([1.0, -1.0], dims="n").chunk(n=2), 1.0)
+    lazy = dataset.microslip.at(xr.DataArray([1.0, -1.0], dims="n").chunk(n=2), 1.0)
     with pytest.raises(InputError, match="velocity"):
         lazy.compute()
 
 
 def test_a_grid_has_the_range_of_the_map_and_answers_as_points_do(dataset):
-    grid = dataset.friction.on_grid(velocity=5, amplitude=[0.5, 1.0])
+    grid = dataset.microslip.on_grid(velocity=5, amplitude=[0.5, 1.0])
     assert grid.mu_macro.dims == ("amplitude", "velocity")
     assert grid.velocity.values == pytest.approx([0.001, 0.01, 0.1, 1, 10])
-    xr.testing.assert_identical(grid, dataset.friction.at(grid.velocity.values, [0.5, 1.0]))
-    assert dataset.friction.on_grid().sizes == {"amplitude": 49, "velocity": 49}
+    xr.testing.assert_identical(grid, dataset.microslip.at(grid.velocity.values, [0.5, 1.0]))
+    assert dataset.microslip.on_grid().sizes == {"amplitude": 49, "velocity": 49}
     # a grid is a map again, for whoever knows nothing of cells
     plain = grid.assign_attrs(tolerance=ERROR)
-    assert np.isfinite(plain.friction.at(0.05, 0.7).mu_macro)
+    assert np.isfinite(plain.microslip.at(0.05, 0.7).mu_macro)
 
 
 def test_a_grid_of_a_plain_map_leaves_out_velocity_0():
@@ -155,25 +155,25 @@ def test_a_grid_of_a_plain_map_leaves_out_velocity_0():
         {"velocity": velocity, "amplitude": amplitude, "poisson": 0.0},
         {"motion": "transverse", "tolerance": 1e-2},
     )
-    grid = plain.friction.on_grid(3, 3)
+    grid = plain.microslip.on_grid(3, 3)
     assert grid.velocity.values == pytest.approx([0.01, 0.1, 1.0])
     assert grid.amplitude.values == pytest.approx([0.0, 1.0, 2.0])
 
 
 def test_a_grid_of_one_is_refused(dataset):
     with pytest.raises(InputError, match="velocity = 1: allowed is how many, 2 or more"):
-        dataset.friction.on_grid(velocity=1)
+        dataset.microslip.on_grid(velocity=1)
 
 
 @pytest.mark.parametrize("name", ["mu_macro", "cell_error", "cell_low", "poisson"])
 def test_what_a_map_has_lost_is_named(dataset, name):
-    with pytest.raises(InputError, match=f"{name} = None: friction.at needs it"):
-        dataset.drop_vars(name).friction.at(0.1, 1.0)
+    with pytest.raises(InputError, match=f"{name} = None: microslip.at needs it"):
+        dataset.drop_vars(name).microslip.at(0.1, 1.0)
 
 
 def test_a_map_without_all_its_points_is_refused(dataset):
     with pytest.raises(InputError, match="all points"):
-        dataset.isel(point=slice(0, 20)).friction.at(0.1, 1.0)
+        dataset.isel(point=slice(0, 20)).microslip.at(0.1, 1.0)
 
 
 @pytest.mark.long
@@ -196,4 +196,4 @@ def test_of_other_motions_the_map_answers_and_nothing_beyond():
     assert (abs(answer.mu_macro - truth) <= answer.mu_macro_error + 1e-9).all()
     assert float(answer.mu_macro_error.max()) <= 0.03
     with pytest.raises(ValueError, match="velocity = 2: allowed is 0.01 to 1"):
-        data.friction.at(2.0, 0.5)
+        data.microslip.at(2.0, 0.5)

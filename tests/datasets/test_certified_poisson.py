@@ -54,7 +54,7 @@ def test_answers_at_any_poissons_ratio_are_within_their_errors(dataset, poisson)
     rng = np.random.default_rng(8)
     velocity = xr.DataArray(10 ** rng.uniform(-2, 1, 500), dims="n")
     amplitude = xr.DataArray(rng.uniform(0, 3, 500), dims="n")
-    answer = dataset.friction.at(velocity, amplitude, poisson=poisson)
+    answer = dataset.microslip.at(velocity, amplitude, poisson=poisson)
     off = abs(answer.mu_macro - friction(velocity.values, amplitude.values, poisson))
     assert float((off <= answer.mu_macro_error).mean()) >= 0.999
     assert float(answer.mu_macro_error.max()) <= ERROR
@@ -63,17 +63,17 @@ def test_answers_at_any_poissons_ratio_are_within_their_errors(dataset, poisson)
 
 def test_which_poissons_ratio_has_to_be_told(dataset):
     with pytest.raises(InputError, match=r"poisson = None: allowed is 0 to 0.4"):
-        dataset.friction.at(0.1, 1.0)
+        dataset.microslip.at(0.1, 1.0)
     with pytest.raises(InputError, match=r"poisson = 0.45: allowed is 0 to 0.4"):
-        dataset.friction.at(0.1, 1.0, poisson=0.45)
+        dataset.microslip.at(0.1, 1.0, poisson=0.45)
 
 
 def test_grids_and_questions_the_other_way_round_have_one(dataset):
-    grid = dataset.friction.on_grid(3, 3, poisson=0.2)
+    grid = dataset.microslip.on_grid(3, 3, poisson=0.2)
     xr.testing.assert_identical(
-        grid, dataset.friction.at(grid.velocity.values, grid.amplitude.values, poisson=0.2)
+        grid, dataset.microslip.at(grid.velocity.values, grid.amplitude.values, poisson=0.2)
     )
-    found = dataset.friction.solve_for(0.5, amplitude=1.0, poisson=0.2)
+    found = dataset.microslip.solve_for(0.5, amplitude=1.0, poisson=0.2)
     low, high = (float(found[name][0]) for name in ("velocity_low", "velocity_high"))
     # friction is made up without an error, so it crosses what is wanted within the interval
     assert friction(low, 1.0, 0.2) <= 0.5 <= friction(high, 1.0, 0.2)
@@ -81,12 +81,12 @@ def test_grids_and_questions_the_other_way_round_have_one(dataset):
 
 def test_chunks_answer_alike(dataset):
     velocity = xr.DataArray(np.geomspace(0.02, 5.0, 40), dims="n")
-    at_once = dataset.friction.at(velocity, 1.3, poisson=0.25)
-    lazy = dataset.friction.at(velocity.chunk(n=7), 1.3, poisson=0.25)
+    at_once = dataset.microslip.at(velocity, 1.3, poisson=0.25)
+    lazy = dataset.microslip.at(velocity.chunk(n=7), 1.3, poisson=0.25)
     xr.testing.assert_identical(lazy.compute(), at_once)
 
 
 def test_a_map_of_another_version_is_refused(dataset):
     text = dataset.attrs[certified_map.COORDINATES].replace('"poisson"', '"nu"')
     with pytest.raises(InputError, match="make it again"):
-        dataset.assign_attrs({certified_map.COORDINATES: text}).friction.at(0.1, 1.0, poisson=0.1)
+        dataset.assign_attrs({certified_map.COORDINATES: text}).microslip.at(0.1, 1.0, poisson=0.1)

@@ -44,7 +44,7 @@ def test_the_closed_form_is_met_to_within_the_errors(tmp_path):
     certified_map.write(path, built())
     with microslip.open_map(path) as dataset:
         amplitude = xr.DataArray(np.random.default_rng(2).uniform(0, 1.5, 500), dims="n")
-        answer = dataset.friction.at(0.0, amplitude)
+        answer = dataset.microslip.at(0.0, amplitude)
         off = abs(answer.mu_macro - paper.static_limit_transverse(amplitude.values))
         assert bool((off <= answer.mu_macro_error).all())
         assert float(answer.mu_macro_error.max()) <= ERROR
@@ -56,10 +56,10 @@ def test_over_poissons_ratio_it_answers_at_any():
     dataset = built(poisson=[0.0, 0.5])
     assert dataset.directions == "amplitude poisson"
     amplitude = xr.DataArray(np.linspace(0, 1.5, 200), dims="n")
-    answer = dataset.friction.at(0.0, amplitude, poisson=0.35)
+    answer = dataset.microslip.at(0.0, amplitude, poisson=0.35)
     truth = paper.static_limit_transverse(amplitude.values) * (1.0 - 0.1 * 0.35**2)
     assert bool((abs(answer.mu_macro - truth) <= answer.mu_macro_error).all())
-    found = dataset.friction.solve_for(0.5, velocity=0.0, poisson=0.35)
+    found = dataset.microslip.solve_for(0.5, velocity=0.0, poisson=0.35)
     low, high = (float(found[name][0]) for name in ("amplitude_low", "amplitude_high"))
     friction = [paper.static_limit_transverse(a) * (1.0 - 0.1 * 0.35**2) for a in (high, low)]
     assert friction[0] <= 0.5 <= friction[1]
@@ -67,17 +67,17 @@ def test_over_poissons_ratio_it_answers_at_any():
 
 def test_chunks_answer_alike():
     dataset, amplitude = built(), xr.DataArray(np.linspace(0, 1.5, 40), dims="n")
-    lazy = dataset.friction.at(0.0, amplitude.chunk(n=7))
-    xr.testing.assert_identical(lazy.compute(), dataset.friction.at(0.0, amplitude))
+    lazy = dataset.microslip.at(0.0, amplitude.chunk(n=7))
+    xr.testing.assert_identical(lazy.compute(), dataset.microslip.at(0.0, amplitude))
 
 
 def test_what_slides_is_not_answered():
     with pytest.raises(ValueError, match="velocity = 0.1: the map has none such"):
-        built().friction.at(0.1, 0.5)
+        built().microslip.at(0.1, 0.5)
 
 
 def test_a_grid_is_at_velocity_0():
-    grid = built().friction.on_grid(amplitude=5)
+    grid = built().microslip.on_grid(amplitude=5)
     assert grid.velocity.values.tolist() == [0.0]
     assert grid.amplitude.values == pytest.approx([0, 0.375, 0.75, 1.125, 1.5])
 

@@ -26,15 +26,15 @@ def test_the_answer_put_into_the_map_gives_what_was_wanted(sought):
     dataset = eq6_map(1e-3)
     known = {"amplitude": 1.2} if sought == "velocity" else {"velocity": 0.5}
     wanted = np.array([0.5, 0.7, 0.9])
-    answer = dataset.friction.solve_for(wanted, **known)
+    answer = dataset.microslip.solve_for(wanted, **known)
     assert answer[sought].dims == ("wanted", "root") and outcome(answer) == ["found"] * 3
     at = answer[sought].isel(root=0)
-    back = dataset.friction.at(**{sought: at}, **known)
+    back = dataset.microslip.at(**{sought: at}, **known)
     assert back.mu_macro.values == pytest.approx(wanted, abs=1e-9)
     # At the ends friction is off by its error; friction rises with velocity, falls with amplitude.
     sign = 1.0 if sought == "velocity" else -1.0
     for end, side in (("low", -sign), ("high", sign)):
-        there = dataset.friction.at(**{sought: answer[f"{sought}_{end}"].isel(root=0)}, **known)
+        there = dataset.microslip.at(**{sought: answer[f"{sought}_{end}"].isel(root=0)}, **known)
         off = there.mu_macro - wanted
         assert off.values == pytest.approx(side * there.mu_macro_error.values, rel=1e-6)
     assert answer.bounded.values.all()
@@ -42,7 +42,7 @@ def test_the_answer_put_into_the_map_gives_what_was_wanted(sought):
 
 def test_the_interval_is_that_of_a_closed_form():
     """1 - 4 (x - 1)^2 / 9 with the error e is w between x = 1 +- 1.5 sqrt(1 - w -+ e)."""
-    answer = peaked(error=0.01).friction.solve_for(0.75, velocity=0.3)
+    answer = peaked(error=0.01).microslip.solve_for(0.75, velocity=0.3)
     expected = [[1.0 - 1.5 * np.sqrt(0.25 + k) for k in (0.0, 0.01, -0.01)]]
     expected += [[1.0 + 1.5 * np.sqrt(0.25 + k) for k in (0.0, -0.01, 0.01)]]
     assert outcome(answer) == ["several"]
@@ -52,7 +52,7 @@ def test_the_interval_is_that_of_a_closed_form():
 
 
 def test_two_places_that_the_error_does_not_tell_apart_are_one():
-    answer = peaked(error=0.02).friction.solve_for(0.99, velocity=0.3)
+    answer = peaked(error=0.02).microslip.solve_for(0.99, velocity=0.3)
     assert answer.sizes["root"] == 1
     reach = 1.5 * np.sqrt(0.03)
     assert float(answer.amplitude_low[0]) == pytest.approx(1.0 - reach, abs=1e-8)
@@ -72,7 +72,7 @@ def test_what_is_nowhere_and_what_may_be_somewhere():
 
 
 def test_an_interval_that_the_range_cuts_off_says_so():
-    answer = peaked(error=0.01).friction.solve_for(0.75, velocity=0.3, within=(0.245, 1.0))
+    answer = peaked(error=0.01).microslip.solve_for(0.75, velocity=0.3, within=(0.245, 1.0))
     assert not bool(answer.bounded[0])
     assert float(answer.amplitude_low[0]) == 0.245
 
@@ -81,10 +81,10 @@ def test_an_interval_that_the_range_cuts_off_says_so():
 def test_questions_of_many_dimensions_are_each_their_own():
     dataset = eq6_map(1e-4)
     velocity = xr.DataArray([0.2, 0.5, 1.0], dims="case", coords={"case": list("abc")})
-    answer = dataset.friction.solve_for([0.6, 0.8], velocity=velocity)
+    answer = dataset.microslip.solve_for([0.6, 0.8], velocity=velocity)
     assert answer.amplitude.dims == ("wanted", "case", "root")
     for k, v in enumerate(velocity.values):
-        alone = dataset.friction.solve_for(0.8, velocity=float(v))
+        alone = dataset.microslip.solve_for(0.8, velocity=float(v))
         assert float(answer.amplitude[1, k, 0]) == pytest.approx(
             float(alone.amplitude[0]), rel=1e-8
         )
@@ -103,7 +103,7 @@ def test_a_steady_motion_has_a_velocity_to_look_for():
         {"velocity": velocity, "poisson": 0.0},
         {"motion": "continuous-bore"},
     )
-    answer = dataset.friction.solve_for(3.0 * np.pi / 8.0 * (0.5 - 0.125 / 4.0))
+    answer = dataset.microslip.solve_for(3.0 * np.pi / 8.0 * (0.5 - 0.125 / 4.0))
     assert outcome(answer) == ["found"]
     assert float(answer.velocity[0]) == pytest.approx(0.5, abs=1e-5)
     assert float(answer.velocity_low[0]) <= 0.5 <= float(answer.velocity_high[0])
@@ -122,4 +122,4 @@ def test_a_steady_motion_has_a_velocity_to_look_for():
 )
 def test_bad_questions_are_refused(question, said):
     with pytest.raises(InputError, match=said):
-        eq6_map(0.0).friction.solve_for(0.5, **question)
+        eq6_map(0.0).microslip.solve_for(0.5, **question)

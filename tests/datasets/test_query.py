@@ -33,10 +33,10 @@ def made_up(velocity=VELOCITY, amplitude=AMPLITUDE, error=0.0, **more):
 def test_a_dataset_can_be_pickled_after_it_was_asked():
     data = made_up()
     place = {"velocity": 0.3, "amplitude": 1.1}
-    answer = data.friction.at(**place)
+    answer = data.microslip.at(**place)
     copy = pickle.loads(pickle.dumps(data))
     assert copy.identical(data)
-    assert copy.friction.at(**place).identical(answer)
+    assert copy.microslip.at(**place).identical(answer)
     assert pickle.loads(pickle.dumps(data.friction)).at(**place).identical(answer)
 
 
@@ -108,12 +108,12 @@ def test_the_error_covers_what_is_missed_and_what_the_nodes_are_off():
     v = xr.DataArray(10 ** rng.uniform(-3, 1, 500), dims="n")
     a = xr.DataArray(rng.uniform(0, 3, 500), dims="n")
     truth = paper.large_amplitude_transverse(v.values, a.values**1.5)
-    answer = made_up().friction.at(v, a)
+    answer = made_up().microslip.at(v, a)
     miss = np.abs(answer.mu_macro.values - truth)
     assert (miss <= answer.mu_macro_error.values + 1e-12).mean() >= 0.99
-    fine = made_up(np.geomspace(1e-3, 10, 25), np.linspace(0, 3, 25)).friction.at(v, a)
+    fine = made_up(np.geomspace(1e-3, 10, 25), np.linspace(0, 3, 25)).microslip.at(v, a)
     assert np.median(fine.mu_macro_error) < 0.1 * np.median(answer.mu_macro_error)
-    off = made_up(error=0.01).friction.at(v, a)
+    off = made_up(error=0.01).microslip.at(v, a)
     more = off.mu_macro_error.values - answer.mu_macro_error.values
     assert np.median(more) == pytest.approx(0.01)  # less where the energy balance says so
     assert more.max() < 0.01 + 1e-12
@@ -135,9 +135,9 @@ def test_a_point_that_did_not_converge_is_not_interpolated_over():
     dataset = made_up()
     dataset["converged"][6, 6] = False
     v, a = float(VELOCITY[6]), float(AMPLITUDE[6])
-    near = dataset.friction.at(v * 1.1, a * 1.05)
+    near = dataset.microslip.at(v * 1.1, a * 1.05)
     assert np.isnan(near.mu_macro) and np.isinf(near.mu_macro_error)
-    far = dataset.friction.at(VELOCITY[2], AMPLITUDE[2])
+    far = dataset.microslip.at(VELOCITY[2], AMPLITUDE[2])
     assert np.isfinite(far.mu_macro)
 
 
@@ -156,7 +156,7 @@ def test_between_poissons_ratios_the_error_covers_what_is_missed(poissons):
     a = xr.DataArray(rng.uniform(0, 3, 300), dims="n")
     both = over_poisson(poissons)
     for nu in (0.05, 0.2, 0.33, 0.5):
-        answer = both.friction.at(v, a, poisson=nu)
+        answer = both.microslip.at(v, a, poisson=nu)
         truth = paper.large_amplitude_transverse(v.values, a.values**1.5)
         truth = 1 - (1 - truth) * (1 - nu**2)
         miss = np.abs(answer.mu_macro.values - truth)
@@ -166,9 +166,9 @@ def test_between_poissons_ratios_the_error_covers_what_is_missed(poissons):
 
 def test_more_poissons_ratios_leave_less_error():
     few, many = (
-        over_poisson(p).friction.at(1.0, 1.5, poisson=0.15) for p in ((0, 0.5), (0, 0.1, 0.2, 0.5))
+        over_poisson(p).microslip.at(1.0, 1.5, poisson=0.15) for p in ((0, 0.5), (0, 0.1, 0.2, 0.5))
     )
-    node = made_up().friction.at(1.0, 1.5)
+    node = made_up().microslip.at(1.0, 1.5)
     assert float(few.mu_macro_error) > float(many.mu_macro_error) > float(node.mu_macro_error)
 
 
@@ -176,11 +176,11 @@ def test_one_of_the_poissons_ratios_is_its_own_map_alone():
     both = over_poisson((0.0, 0.5))
     both["converged"][0, 6, 6] = False
     v, a = float(VELOCITY[6]), float(AMPLITUDE[6])
-    alone = both.sel(poisson=0.5).friction.at(v * 1.1, a * 1.05)
-    xr.testing.assert_identical(both.friction.at(v * 1.1, a * 1.05, poisson=0.5), alone)
+    alone = both.sel(poisson=0.5).microslip.at(v * 1.1, a * 1.05)
+    xr.testing.assert_identical(both.microslip.at(v * 1.1, a * 1.05, poisson=0.5), alone)
     assert np.isfinite(alone.mu_macro)
     for nu in (0.0, 0.2):
-        near = both.friction.at(v * 1.1, a * 1.05, poisson=nu)
+        near = both.microslip.at(v * 1.1, a * 1.05, poisson=nu)
         assert np.isnan(near.mu_macro) and np.isinf(near.mu_macro_error)
 
 
@@ -196,9 +196,9 @@ def test_one_of_the_poissons_ratios_is_its_own_map_alone():
 )
 def test_beyond_the_poissons_ratios_nothing_is_said(poisson, message):
     with pytest.raises(InputError, match=message):
-        over_poisson((0.0, 0.5)).friction.at(0.1, 1, poisson=poisson)
+        over_poisson((0.0, 0.5)).microslip.at(0.1, 1, poisson=poisson)
     with pytest.raises(InputError, match="poisson = 0.2: allowed is 0, the dataset's only one"):
-        made_up().friction.at(0.1, 1, poisson=0.2)
+        made_up().microslip.at(0.1, 1, poisson=0.2)
 
 
 def test_below_the_map_friction_lies_between_the_static_limit_and_the_edge_at_any_poissons_ratio():
@@ -206,7 +206,7 @@ def test_below_the_map_friction_lies_between_the_static_limit_and_the_edge_at_an
     data = map_of(exact + (1 - exact) * VELOCITY / (1 + VELOCITY), VELOCITY, AMPLITUDE)
     data = data.assign_coords(poisson=0.5)
     for amplitude in AMPLITUDE[[2, 3, 6]]:
-        still, slow, edge = (data.friction.at(v, amplitude) for v in (0.0, 1e-4, 1e-3))
+        still, slow, edge = (data.microslip.at(v, amplitude) for v in (0.0, 1e-4, 1e-3))
         low, high = (float(slow.mu_macro + sign * slow.mu_macro_error) for sign in (-1, 1))
         assert low <= float(still.mu_macro + still.mu_macro_error)
         assert high >= float(edge.mu_macro) - 1e-12
@@ -218,7 +218,7 @@ def test_below_the_map_friction_lies_between_the_static_limit_and_the_edge_at_an
 @pytest.mark.parametrize("poisson", [0.25, 0.5])
 def test_the_static_limit_at_any_poissons_ratio_holds_what_the_solver_computes(poisson):
     for amplitude in (0.3, 0.75, 0.9, 0.97):
-        still = over_poisson((0.0, 0.5)).friction.at(0.0, amplitude, poisson=poisson)
+        still = over_poisson((0.0, 0.5)).microslip.at(0.0, amplitude, poisson=poisson)
         truth = microslip.solve("transverse", 0.0, amplitude, poisson=poisson, tolerance=1e-3)
         off = abs(float(still.mu_macro) - truth.mu_macro)
         assert off <= float(still.mu_macro_error) + truth.mu_macro_error
@@ -245,7 +245,7 @@ PARTS = {
 @pytest.mark.parametrize("part", PARTS)
 def test_a_part_of_a_dataset_answers_as_the_whole(part):
     whole = made_up(error=1e-4, tolerance=1e-3)
-    known, answer = (data.friction.at(0.15, 1.3) for data in (whole, PARTS[part](whole)))
+    known, answer = (data.microslip.at(0.15, 1.3) for data in (whole, PARTS[part](whole)))
     assert float(answer.mu_macro) == pytest.approx(float(known.mu_macro), abs=1e-12)
     # the largest miss around a cell is the same, unless nodes beside it were cut away
     assert float(answer.mu_macro_error) == pytest.approx(float(known.mu_macro_error), rel=1e-9)
@@ -255,59 +255,59 @@ def test_a_part_that_was_saved_answers_as_the_whole(tmp_path):
     whole = made_up(error=1e-4, tolerance=1e-3)
     whole.isel(velocity=slice(2, None)).to_netcdf(tmp_path / "part.nc")
     with xr.open_dataset(tmp_path / "part.nc") as part:
-        xr.testing.assert_allclose(part.friction.at(0.15, 1.3), whole.friction.at(0.15, 1.3))
+        xr.testing.assert_allclose(part.microslip.at(0.15, 1.3), whole.microslip.at(0.15, 1.3))
 
 
 def test_one_column_of_a_map_knows_its_own_velocity():
     whole = made_up(error=1e-4)
-    answer = whole.isel(velocity=6).friction.at(float(VELOCITY[6]), 1.3)
-    known = whole.friction.at(float(VELOCITY[6]), 1.3)
+    answer = whole.isel(velocity=6).microslip.at(float(VELOCITY[6]), 1.3)
+    known = whole.microslip.at(float(VELOCITY[6]), 1.3)
     assert float(answer.mu_macro) == pytest.approx(float(known.mu_macro), abs=1e-12)
-    assert SOURCES[int(whole.isel(velocity=6).friction.at(1.0, 1.3).source)] != "map"
+    assert SOURCES[int(whole.isel(velocity=6).microslip.at(1.0, 1.3).source)] != "map"
 
 
 @pytest.mark.parametrize(
     ("broken", "message"),
     [
-        (lambda data: data[["mu_macro"]], "mu_macro_error = None: friction.at needs it"),
-        (lambda data: data[["mu_macro_error"]], "mu_macro = None: friction.at needs it"),
-        (lambda data: data.drop_vars("converged"), "converged = None: friction.at needs it"),
-        (lambda data: data.drop_vars("poisson"), "poisson = None: friction.at needs it"),
-        (lambda data: data.isel(amplitude=3, drop=True), "amplitude = None: friction.at needs it"),
-        (lambda data: data.isel(velocity=[]), "velocity = 'no entry': friction.at needs one"),
+        (lambda data: data[["mu_macro"]], "mu_macro_error = None: microslip.at needs it"),
+        (lambda data: data[["mu_macro_error"]], "mu_macro = None: microslip.at needs it"),
+        (lambda data: data.drop_vars("converged"), "converged = None: microslip.at needs it"),
+        (lambda data: data.drop_vars("poisson"), "poisson = None: microslip.at needs it"),
+        (lambda data: data.isel(amplitude=3, drop=True), "amplitude = None: microslip.at needs it"),
+        (lambda data: data.isel(velocity=[]), "velocity = 'no entry': microslip.at needs one"),
         (
             lambda data: xr.concat([data, data], "made"),
-            "made = '2 entries': friction.at needs one of them: select it",
+            "made = '2 entries': microslip.at needs one of them: select it",
         ),
     ],
 )
 def test_what_a_dataset_has_lost_is_named(broken, message):
     with pytest.raises(InputError, match=message):
-        broken(made_up()).friction.at(0.1, 1)
+        broken(made_up()).microslip.at(0.1, 1)
 
 
 def test_without_converged_the_tolerance_says_what_is_known():
     dataset = made_up(error=1e-4, tolerance=1e-3)
     dataset["mu_macro_error"][6, 6] = 2e-3
     near = float(VELOCITY[6]) * 1.1, float(AMPLITUDE[6]) * 1.05
-    answer = dataset.drop_vars("converged").friction.at(*near)
+    answer = dataset.drop_vars("converged").microslip.at(*near)
     assert np.isnan(answer.mu_macro) and np.isinf(answer.mu_macro_error)
 
 
 def test_what_is_changed_in_place_counts():
     dataset = made_up()
     v, a = float(VELOCITY[6]), float(AMPLITUDE[6])
-    before = dataset.friction.at(v, a)
+    before = dataset.microslip.at(v, a)
     dataset["converged"][6, 6] = False
-    assert np.isfinite(before.mu_macro) and np.isnan(dataset.friction.at(v, a).mu_macro)
+    assert np.isfinite(before.mu_macro) and np.isnan(dataset.microslip.at(v, a).mu_macro)
 
 
 def test_nodes_that_a_join_has_filled_in_are_not_known():
     wide = made_up(amplitude=np.linspace(0, 6, 25)).assign_coords(poisson=0.5)
     both = xr.concat([made_up(), wide], "poisson", join="outer")
-    answer = both.friction.at(0.1, 5.0, poisson=0.25)
+    answer = both.microslip.at(0.1, 5.0, poisson=0.25)
     assert np.isnan(answer.mu_macro) and np.isinf(answer.mu_macro_error)
-    assert np.isfinite(both.friction.at(0.1, 5.0, poisson=0.5).mu_macro)
+    assert np.isfinite(both.microslip.at(0.1, 5.0, poisson=0.5).mu_macro)
 
 
 # Contacts that are pulled, or several on one body
@@ -321,10 +321,10 @@ ANTIPHASE = {"contacts": "load=1;load=1,phase=180"}
 def test_what_is_proved_of_one_contact_at_a_velocity_is_not_said_of_others(attributes):
     dataset = made_up().assign_attrs(attributes)
     v, a = float(VELOCITY[6]), float(AMPLITUDE[6])
-    assert float(dataset.friction.at(v, a).mu_macro) == float(dataset.mu_macro[6, 6])
+    assert float(dataset.microslip.at(v, a).mu_macro) == float(dataset.mu_macro[6, 6])
     for place in ((1e-6, a), (1e3, a), (v, 50.0)):
         with pytest.raises(ValueError, match="under a spring or of several contacts"):
-            dataset.friction.at(*place)
+            dataset.microslip.at(*place)
 
 
 def test_the_solver_is_asked_for_the_drive_and_the_contacts_of_the_dataset(tmp_path, monkeypatch):
@@ -333,17 +333,17 @@ def test_the_solver_is_asked_for_the_drive_and_the_contacts_of_the_dataset(tmp_p
     spring = made_up().assign_attrs(SPRING).assign_coords(given)
     both = made_up().assign_attrs(ANTIPHASE)
     for dataset, more in ((spring, given), (both, ANTIPHASE)):
-        answer = dataset.friction.at(0.3, 50.0, tolerance=1e-2)
+        answer = dataset.microslip.at(0.3, 50.0, tolerance=1e-2)
         truth = microslip.solve("transverse", 0.3, 50.0, tolerance=1e-2, **more)
         assert SOURCES[int(answer.source)] == "solver"
         assert float(answer.mu_macro) == truth.mu_macro
     with pytest.raises(InputError, match="mass"):
-        spring.drop_vars("mass").friction.at(0.3, 50.0, tolerance=1e-2)
+        spring.drop_vars("mass").microslip.at(0.3, 50.0, tolerance=1e-2)
 
 
 def test_a_force_is_friction_and_no_map_of_it():
     with pytest.raises(ValueError, match="pulled by a force"):
-        made_up().assign_attrs(drive="force").friction.at(0.1, 1.0)
+        made_up().assign_attrs(drive="force").microslip.at(0.1, 1.0)
 
 
 @pytest.mark.parametrize(
@@ -390,11 +390,11 @@ def test_what_is_known_without_a_map(friction):
 )
 def test_the_error_does_not_jump_at_the_edge_of_a_map(motion, velocity, amplitude, side):
     data = made_up(amplitude=AMPLITUDE[1:], error=1e-3, motion=motion)
-    edge = data.friction.at(velocity, amplitude)
+    edge = data.microslip.at(velocity, amplitude)
     for step in (1e-6, 1e-3):
         out = {"large amplitude": 1 + step, "no vibration": 1 - step}.get(side, 1.0)
         along = {"fast sliding": 1 + step, "static limit": 1 - step}.get(side, 1.0)
-        answer = data.friction.at(velocity * along, amplitude * out)
+        answer = data.microslip.at(velocity * along, amplitude * out)
         assert side in SOURCES[int(answer.source)]
         # No power law changes by more than four times the relative step.
         assert float(answer.mu_macro_error - edge.mu_macro_error) <= 5 * step
@@ -402,8 +402,8 @@ def test_the_error_does_not_jump_at_the_edge_of_a_map(motion, velocity, amplitud
 
 def test_a_wide_error_outside_the_map_names_the_remedy():
     data = made_up(error=1e-3, tolerance=2e-3)
-    assert "note" not in data.friction.at([0.1, 1.0], 1.0).attrs
-    answer = data.friction.at([0.1, 1.0], 20.0)
+    assert "note" not in data.microslip.at([0.1, 1.0], 1.0).attrs
+    answer = data.microslip.at([0.1, 1.0], 20.0)
     largest = float(answer.mu_macro_error.max())
     assert answer.attrs["note"].startswith("2 of 2 points outside the tabulated range")
     assert f"up to {largest:.2g}: friction.at(..., tolerance=1e-3)" in answer.attrs["note"]
@@ -428,7 +428,7 @@ def test_brackets_hold_what_the_solver_says(tmp_path, motion):
     }
     for source, points in places.items():
         for v, a in points:
-            answer = dataset.friction.at(v, a)
+            answer = dataset.microslip.at(v, a)
             truth = microslip.solve(motion, v, a, tolerance=5e-3)
             off = abs(float(answer.mu_macro) - truth.mu_macro)
             assert off <= float(answer.mu_macro_error) + truth.mu_macro_error, (v, a)
@@ -441,7 +441,7 @@ def test_no_error_is_larger_than_the_energy_balance_allows():
     rng = np.random.default_rng(5)
     v = xr.DataArray(10 ** rng.uniform(-1, 3, 300), dims="n")
     a = xr.DataArray(10 ** rng.uniform(-1, 2, 300), dims="n")
-    answer = made_up(error=0.01).friction.at(v, a)
+    answer = made_up(error=0.01).microslip.at(v, a)
     drop = 1 / ((v / a) ** 2 + 0.5)
     assert (answer.mu_macro_error <= np.minimum(drop, 1.0) + 1e-9).all()
     assert (answer.mu_macro >= 1 - drop - 1e-9).all()
@@ -469,11 +469,11 @@ def test_the_steady_bore_is_a_closed_form_beyond_its_axis():
         {"motion": "continuous-bore"},
     )
     for v, source in ((0.0, "closed form"), (0.5, "map"), (40.0, "closed form")):
-        answer = dataset.friction.at(v)
+        answer = dataset.microslip.at(v)
         assert abs(float(answer.mu_macro) - paper.bore_forward(v)) <= answer.mu_macro_error
         assert SOURCES[int(answer.source)] == source
     with pytest.raises(ValueError, match="amplitude = 1"):
-        dataset.friction.at(0.5, 1)
+        dataset.microslip.at(0.5, 1)
 
 
 # Files
@@ -494,14 +494,14 @@ def test_open_map_is_plain_xarray(results):
     assert found.mu_macro.chunks is not None
     row = found.mu_macro.sel(amplitude=1.5)
     assert float(row.interp(velocity=0.1)) == pytest.approx(
-        float(found.friction.at(0.1, 1.5).mu_macro), abs=0.02
+        float(found.microslip.at(0.1, 1.5).mu_macro), abs=0.02
     )
 
 
 def test_a_tolerance_asks_the_solver_and_keeps_its_answer(results):
     found = open_map("transverse", results)
-    plain = found.friction.at(0.0123, 0.777)
-    exact = found.friction.at(0.0123, 0.777, tolerance=1e-3)
+    plain = found.microslip.at(0.0123, 0.777)
+    exact = found.microslip.at(0.0123, 0.777, tolerance=1e-3)
     assert float(plain.mu_macro_error) > 1e-3 >= float(exact.mu_macro_error)
     assert SOURCES[int(exact.source)] == "solver"
     truth = microslip.solve("transverse", 0.0123, 0.777)
@@ -521,9 +521,9 @@ def test_where_nothing_can_be_written_the_solver_still_answers(results, monkeypa
 
     monkeypatch.setattr(sealed_files, "check_room", read_only)
     before = sorted(results.rglob("*"))
-    assert np.isfinite(found.friction.at(0.0123, 0.777).mu_macro)
+    assert np.isfinite(found.microslip.at(0.0123, 0.777).mu_macro)
     with pytest.warns(UserWarning, match="answers are not kept: .*Read-only file system"):
-        exact = found.friction.at(0.0123, 0.777, tolerance=1e-3)
+        exact = found.microslip.at(0.0123, 0.777, tolerance=1e-3)
     assert float(exact.mu_macro) == microslip.solve("transverse", 0.0123, 0.777).mu_macro
     assert sorted(results.rglob("*")) == before
 

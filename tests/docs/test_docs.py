@@ -194,7 +194,7 @@ def computed(tmp_path_factory):
     found = certified_stub.played(map_, lambda request: batches.answer(request, store)[0])
     certified_map.write(folder / f"{map_.name}.nc", certified_map.build(map_, *found))
     # made up, so that it takes nothing
-    certified_map.write(folder / "certified_creep_transverse.nc", certified_stub.creeping())
+    certified_map.write(folder / "certified_drift_transverse.nc", certified_stub.drifting())
     return folder
 
 

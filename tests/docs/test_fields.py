@@ -11,7 +11,7 @@ from stubs.sweep_stub import Solver
 import microslip
 from microslip.config import load
 from microslip.datasets import certified_map, sweep_dataset
-from microslip.datasets.query.creep import Creep
+from microslip.datasets.query.drift import Drift
 from microslip.si.predict import Prediction
 from microslip.studies import registry
 from microslip.sweeps import batches, map_rounds
@@ -93,11 +93,11 @@ def test_every_variable_of_a_certified_map_is_in_its_table_and_no_other():
     assert set(section("A certified map")) == set(map(str, data.variables))
 
 
-def test_every_variable_of_a_map_of_creep_and_of_its_answers_is_in_its_table_and_no_other():
-    data = certified_stub.creeping()
-    answer = Creep(data).at(0.5, 1.0)
+def test_every_variable_of_a_map_of_drift_and_of_its_answers_is_in_its_table_and_no_other():
+    data = certified_stub.drifting()
+    answer = Drift(data).at(0.5, 1.0)
     known = set(data.variables) | set(answer.variables)
-    assert set(section("A certified map of creep")) == set(map(str, known))
+    assert set(section("A certified map of drift")) == set(map(str, known))
 
 
 STUDIES = {

@@ -40,9 +40,9 @@ def test_half_a_period_later_a_motion_is_its_own_mirror_image(name):
 
 
 @pytest.mark.parametrize("motion", PERIODIC, ids=lambda motion: motion.name)
-def test_a_creep_slower_than_the_rounding_of_the_oscillation_is_told_exactly(motion):
-    creep = motion.drift(1.0, 0.7, 0.2)
-    assert motion.drift(1e-99, 0.7, 0.2) == pytest.approx(1e-99 * creep, rel=1e-12, abs=0.0)
+def test_a_drift_slower_than_the_rounding_of_the_oscillation_is_told_exactly(motion):
+    drift = motion.drift(1.0, 0.7, 0.2)
+    assert motion.drift(1e-99, 0.7, 0.2) == pytest.approx(1e-99 * drift, rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize("motion", PERIODIC, ids=lambda motion: motion.name)

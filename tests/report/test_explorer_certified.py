@@ -1,4 +1,4 @@
-"""Certified maps in the browser's language: the same answers and refusals as friction.at."""
+"""Certified maps in the browser's language: the same answers and refusals as microslip.at."""
 
 from types import SimpleNamespace
 
@@ -55,12 +55,12 @@ def given(request):
 
 
 def asked(dataset, velocity, amplitude, poisson=None):
-    """What the page says of points, and what friction.at says."""
+    """What the page says of points, and what microslip.at says."""
     nu = poisson or 0.0
     calls = [[float(v), float(a), nu] for v, a in zip(velocity, amplitude, strict=True)]
     said = answers(SCRIPTS, "frictionAt", certified.packed(dataset), calls)
     velocity, amplitude = (xr.DataArray(part, dims="n") for part in (velocity, amplitude))
-    return said, dataset.friction.at(velocity, amplitude, poisson=poisson)
+    return said, dataset.microslip.at(velocity, amplitude, poisson=poisson)
 
 
 def compare(said, truth):
@@ -147,7 +147,7 @@ def test_both_refuse_the_same_with_the_same_words(given):
     said = answers(SCRIPTS, "frictionAt", packed, questions)
     for (velocity, amplitude, poisson), one in zip(questions, said, strict=True):
         with pytest.raises(InputError) as error:
-            given.dataset.friction.at(velocity, amplitude, poisson=poisson)
+            given.dataset.microslip.at(velocity, amplitude, poisson=poisson)
         refused, allowed = one["refused"].split(": ", 1)
         assert refused.split(" = ")[0] == error.value.argument
         assert error.value.allowed.startswith(allowed)
@@ -165,7 +165,7 @@ def test_other_motions_are_refused_beyond_their_maps_as_by_friction_at():
     said = answers(SCRIPTS, "frictionAt", packed, [[*place, 0.0] for place in questions])
     for place, one in zip(questions, said, strict=True):
         with pytest.raises(ValueError) as error:
-            dataset.friction.at(*place)
+            dataset.microslip.at(*place)
         assert one["refused"] == str(error.value)
 
 
@@ -185,7 +185,7 @@ def test_maps_over_poissons_ratio_answer_as_friction_at(motion):
         places = zip(velocity.tolist(), amplitude.tolist(), strict=True)
         said = answers(SCRIPTS, "frictionAt", packed, [[*one, poisson] for one in places])
         at = (xr.DataArray(part, dims="n") for part in (velocity, amplitude))
-        compare(said, dataset.friction.at(*at, poisson=poisson))
+        compare(said, dataset.microslip.at(*at, poisson=poisson))
     (apart,) = answers(SCRIPTS, "frictionAt", packed, [[1.0, 1.0, 0.6]])
     assert apart["refused"] == "poisson = 0.6: allowed is 0 to 0.5; microslip.solve computes any"
 

@@ -31,7 +31,7 @@ def configured():
         },
     }
     drives = {
-        "creep": {"motion": "transverse", "force": [0.2, 0.4, 0.8], "amplitude": [0.5, 1]},
+        "drift": {"motion": "transverse", "force": [0.2, 0.4, 0.8], "amplitude": [0.5, 1]},
         "body": {
             "motion": "transverse",
             "velocity": [0.1],
@@ -78,7 +78,7 @@ def entries(content, kind, name):
 def test_every_sweep_is_a_map_or_lines_at_every_poissons_ratio(made):
     datasets, content = made
     maps = {"transverse": 3, "bore": 1, "along": 1, "ratios": 3}
-    lines = {"continuous_bore": 1, "still": 1, "creep": 1, "body": 1}
+    lines = {"continuous_bore": 1, "still": 1, "drift": 1, "body": 1}
     for kind, wanted in (("maps", maps), ("lines", lines)):
         assert {one["name"]: len(entries(content, kind, one["name"])) for one in content[kind]} == (
             wanted
@@ -118,12 +118,12 @@ def test_lines_run_over_the_longest_axis(made):
 
 def test_what_is_pulled_is_lines_of_what_comes_out(made):
     datasets, content = made
-    (creep,), (body,) = (entries(content, "lines", one) for one in ("creep", "body"))
-    assert creep["y"]["label"] == "mean velocity"
-    assert creep["x"]["values"] == [0.2, 0.4, 0.8]
-    for one, amplitude in zip(creep["series"], (0.5, 1), strict=True):
+    (drift,), (body,) = (entries(content, "lines", one) for one in ("drift", "body"))
+    assert drift["y"]["label"] == "mean velocity"
+    assert drift["x"]["values"] == [0.2, 0.4, 0.8]
+    for one, amplitude in zip(drift["series"], (0.5, 1), strict=True):
         assert one["label"] == f"amplitude {amplitude:g}"
-        assert one["values"] == datasets["creep"].velocity.sel(amplitude=amplitude).values.tolist()
+        assert one["values"] == datasets["drift"].velocity.sel(amplitude=amplitude).values.tolist()
     assert body["x"]["values"] == [0.1, 1, 10]
     for one, stiffness in zip(body["series"], (0.1, 1), strict=True):
         part = datasets["body"].mu_macro.sel(stiffness=stiffness).transpose("mass", ...)
@@ -164,7 +164,7 @@ def test_buttons_and_the_list_offer_all_sweeps(made):
     )
     assert tabs == "Transverse oscillation Oscillating bore Continuous bore"
     # a group has its title in a label, which is no text
-    assert others == "other sweeps to and fro ratios still creep body"
+    assert others == "other sweeps to and fro ratios still drift body"
     assert ready == "yes"
 
 

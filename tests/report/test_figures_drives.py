@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from stubs.drives_stub import FORCES, creep, pairs, pulled
+from stubs.drives_stub import FORCES, drift, pairs, pulled
 
 from microslip.report.figures import drawing
 
@@ -13,9 +13,9 @@ def by_gid(axes, gid):
     return [artist for artist in axes.get_children() if artist.get_gid() == gid]
 
 
-def test_maps_of_creep_show_threshold_rest_and_the_rigid_contact():
-    datasets = {"creep_transverse": creep("transverse"), "creep_bore": creep("bore")}
-    figure = drawing.draw("creep_maps", datasets)
+def test_maps_of_drift_show_threshold_rest_and_the_rigid_contact():
+    datasets = {"drift_transverse": drift("transverse"), "drift_bore": drift("bore")}
+    figure = drawing.draw("drift_maps", datasets)
     for axes, dataset in zip(figure.axes, datasets.values(), strict=False):
         (line,) = by_gid(axes, "mu_static")
         held, across = line.get_data()
@@ -31,10 +31,10 @@ def test_maps_of_creep_show_threshold_rest_and_the_rigid_contact():
 
 @pytest.mark.parametrize("panel", [0, 1])
 def test_points_of_a_map_that_did_not_converge_are_marked(panel):
-    datasets = {"creep_transverse": creep("transverse"), "creep_bore": creep("bore")}
+    datasets = {"drift_transverse": drift("transverse"), "drift_bore": drift("bore")}
     broken = list(datasets.values())[panel]
     broken["converged"][2, 3] = 0
-    figure = drawing.draw("creep_maps", datasets)
+    figure = drawing.draw("drift_maps", datasets)
     marks = [by_gid(axes, "unconverged")[0].get_xydata() for axes in figure.axes[:2]]
     plain, marked = marks[1 - panel], marks[panel]
     assert len(plain) == 0
@@ -72,9 +72,9 @@ def test_a_pair_is_drawn_beside_one_contact_and_its_closed_form():
     assert force.get_xdata() == pytest.approx(1.1 * on_the_line)
 
 
-@pytest.mark.parametrize("name", ["creep_maps", "drives", "pairs"])
+@pytest.mark.parametrize("name", ["drift_maps", "drives", "pairs"])
 def test_what_is_missing_is_named(name):
-    datasets = {"creep_transverse": creep("transverse"), "creep_bore": creep("bore")} | pulled()
+    datasets = {"drift_transverse": drift("transverse"), "drift_bore": drift("bore")} | pulled()
     datasets |= pairs()
     last = drawing.FIGURES[name][-1]
     lacking = datasets | {last: datasets[last].drop_vars("converged")}

@@ -34,8 +34,8 @@ def given() -> dict[str, tuple[str, dict]]:
     motions |= {"continuous_bore": test_figures.fake_continuous_bore()} | of_studies.few()
     found = {name: (name, motions) for name in drawing.FIGURES} | {"poisson": ("poisson", two)}
     found |= {f"two {name}": (name, two) for name in ("fig2_transverse_map", "fig6_bore_map")}
-    maps = {f"creep_{motion}": drives_stub.creep(motion) for motion in ("transverse", "bore")}
-    found |= {"creep_maps": ("creep_maps", maps), "drives": ("drives", drives_stub.pulled())}
+    maps = {f"drift_{motion}": drives_stub.drift(motion) for motion in ("transverse", "bore")}
+    found |= {"drift_maps": ("drift_maps", maps), "drives": ("drives", drives_stub.pulled())}
     found["pairs"] = "pairs", drives_stub.pairs()
     answer, _ = studies_stub.answered(propulsion_stub.propulsion_result)
     propulsion = registry.build("propulsion", propulsion_stub.configured(), answer)
@@ -44,7 +44,7 @@ def given() -> dict[str, tuple[str, dict]]:
     found["certified"] = "certified_bore", {"certified_bore": certified_stub.bore()}
     found["deep"] = "certified_bore", {"certified_bore": certified_stub.bore(poisson=[0.1, 0.4])}
     static = certified_stub.bore(velocity=[0], poisson=[0.1, 0.4])
-    found["certified creep"] = "certified_weights", {"certified_weights": certified_stub.creeping()}
+    found["certified drift"] = "certified_weights", {"certified_weights": certified_stub.drifting()}
     found["certified static"] = "certified_bore", {"certified_bore": static}
     found["maps"] = "extended_motions", groups.motions(3)
     found["lines"] = "extended_static", {"a": groups.static("a"), "b": groups.static("b")}

@@ -29,9 +29,9 @@ def test_drag_and_vibration_are_what_slip_dissipates(motion):
     slipped = period.traction_forward * period.slip_forward
     slipped = slipped + period.traction_lateral * period.slip_lateral
     dissipated = float(np.sum(slipped[1:] @ period.area)) / (2.0 * math.pi)
-    creep = (period.forward[-1] - period.forward[0]) / (2.0 * math.pi)
+    drift = (period.forward[-1] - period.forward[0]) / (2.0 * math.pi)
     # The period is of one resolution, whose error is of the order of 1e-3 of mu F_z times the path.
-    put_in = power.value + found.mu_macro * creep
+    put_in = power.value + found.mu_macro * drift
     assert put_in == pytest.approx(dissipated, abs=3e-3 * (amplitude + velocity))
 
 

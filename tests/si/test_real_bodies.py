@@ -13,7 +13,7 @@ from microslip.si.dimensionless import RealDrive
 from microslip.si.materials import RIGID, Material
 from microslip.si.several import read_carriers
 from microslip.si.shapes import of_size
-from microslip.theory.creep import antiphase_creep
+from microslip.theory.drift import antiphase_drift
 
 BALL = {"radius": "5 mm", "mu": 0.3, "young": "210 GPa", "nu": 0.0, "frequency": "20 kHz"}
 OMEGA = 2.0 * math.pi * 20e3
@@ -81,7 +81,7 @@ def test_two_feet_that_work_against_each_other_walk_as_fast_as_the_closed_form()
     unit = one_of(10.0).u_lim
     given = BALL | {"load": 20.0, "contacts": AGAINST}
     found = microslip.predict("longitudinal", amplitude=unit, force=1.8, **given)
-    expected = float(antiphase_creep(0.3, 1.0)) * OMEGA * unit
+    expected = float(antiphase_drift(0.3, 1.0)) * OMEGA * unit
     assert found.outcome == "moves" and found.converged
     assert abs(found.speed_m_s - expected) <= found.speed_error_m_s
     # the threshold of each: (1 - A)^(3/2) of mu times its load

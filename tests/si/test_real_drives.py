@@ -121,7 +121,7 @@ def test_answers_know_no_units(pulls):
         (3.0, 0.30, 0.438, 4e-3),
     ],
 )
-def test_creep_under_a_force_is_that_of_a_second_program(amplitude, force, velocity, digits):
+def test_drift_under_a_force_is_that_of_a_second_program(amplitude, force, velocity, digits):
     """Numbers of a prototype on some twenty rings by backward Euler, which are coarse."""
     found = microslip.predict(
         "transverse", amplitude=stroke(amplitude), force=force * STILL, **SIDEWAYS
@@ -137,8 +137,8 @@ def test_creep_under_a_force_is_that_of_a_second_program(amplitude, force, veloc
 
 
 @pytest.mark.slow
-def test_at_a_large_stroke_the_contact_creeps_as_a_rigid_one():
-    """(2/pi) A P / sqrt(1 - P^2) in closed form; elastic contacts creep less, by about 1/A."""
+def test_at_a_large_stroke_the_contact_drifts_as_a_rigid_one():
+    """(2/pi) A P / sqrt(1 - P^2) in closed form; elastic contacts drift less, by about 1/A."""
     found = microslip.predict("transverse", amplitude=stroke(100.0), force=0.6 * STILL, **SIDEWAYS)
     rigid = 2.0 / math.pi * 100.0 * 0.6 / 0.8 * 2.0 * math.pi * 20e3 * CONTACT.u_lim
     assert 0.97 * rigid < found.speed_m_s < rigid
@@ -187,7 +187,7 @@ def test_all_of_friction_and_more_runs_away(force):
 
 @pytest.mark.slow
 def test_at_the_threshold_the_error_leaves_open_whether_it_moves():
-    """A force that is above the threshold by less than the creep can be told: it says so."""
+    """A force that is above the threshold by less than the drift can be told: it says so."""
     contact = SIDEWAYS | {"amplitude": stroke(0.5), "tolerance": 0.05}
     held = microslip.predict("transverse", speed=0.0, **contact)
     found = microslip.predict("transverse", force=1.0001 * held.force_threshold_N, **contact)

@@ -46,7 +46,7 @@ OTHERS = [
     ("elliptic:forward=0.5,phase=0", "hertz", 1e-3, 0.5, "radial"),  # this is a line, too
     ("bore", "hertz", 1e-3, 0.5, "polar"),
     ("bore", "punch", 1e-3, 0.5, "cartesian"),  # has no rings
-    ("bore", "punch", 0.1, 0.5, "polar"),  # creep reaches everywhere
+    ("bore", "punch", 0.1, 0.5, "polar"),  # drift reaches everywhere
     ("transverse-bore", "punch", 1e-3, 0.5, "polar"),  # what sticks is not round
     ("transverse", RING, 0.0, 1.5, "radial"),  # nothing sticks
     ("continuous-bore", "punch", 1e-3, None, "polar"),  # nothing oscillates

@@ -7,10 +7,10 @@ from microslip.config import load
 from microslip.datasets import certified_map
 from microslip.sweeps import evaluate, map_rounds
 from microslip.sweeps.batches import key_of
-from microslip.theory.creep_threshold import threshold
+from microslip.theory.drift_threshold import threshold
 
 PAPER = {"transverse": {"velocity": [1], "amplitude": [1]}}
-CREEP = {"motion": "transverse", "force": [0.05, 0.95], "amplitude": [0, 3]}
+DRIFT = {"motion": "transverse", "force": [0.05, 0.95], "amplitude": [0, 3]}
 
 
 def configured(motion, **given):
@@ -43,7 +43,7 @@ def bore(**given) -> xr.Dataset:
     return certified_map.build(map_, *played(map_, answer))
 
 
-def creep(force, amplitude):
+def drift(force, amplitude):
     """A velocity under a force, made up: 0 up to the threshold, from there on like its power 3/2,
     and infinite at 1."""
     least = threshold("transverse", amplitude)
@@ -51,19 +51,19 @@ def creep(force, amplitude):
     return amplitude * share**1.5 / np.sqrt(1.0 - share)
 
 
-def creeping(*, fails=lambda force, amplitude: False, **given) -> xr.Dataset:
+def drifting(*, fails=lambda force, amplitude: False, **given) -> xr.Dataset:
     """The dataset of a map of that; fails: at which places no velocity is found."""
 
     def answer(request):
         place = [float(request[name]) for name in ("force", "amplitude")]
-        velocity = float(creep(*place))
+        velocity = float(drift(*place))
         error = {"mu_macro_error": 0.0, "velocity_error": 1e-4 * max(1.0, velocity)}
         result = {"mu_macro": place[0], "velocity": velocity, "converged": True} | error
         if fails(*place):
             result = {"converged": False}
         return {"key": key_of(request), "request": request, "result": result, "versions": {}}
 
-    drives = {"weights": CREEP | {"adaptive": {"error": 1e-2}} | given}
+    drives = {"weights": DRIFT | {"adaptive": {"error": 1e-2}} | given}
     (map_,) = load.from_mapping({"sweeps": PAPER, "drives": drives}).certified.values()
     return certified_map.build(map_, *played(map_, answer))
 

@@ -3,17 +3,17 @@
 import numpy as np
 import xarray as xr
 
-from microslip.theory.catalogue import CREEP_FORMS, FORMS
-from microslip.theory.creep import antiphase_creep
+from microslip.theory.catalogue import DRIFT_FORMS, FORMS
+from microslip.theory.drift import antiphase_drift
 
 FORCES = np.linspace(0.1, 0.9, 9)
 
 
-def creep(motion):
+def drift(motion):
     """A map of the velocity that a rigid contact has above the threshold, 0 below it."""
     amplitude = np.linspace(0.25, 3.0, 6)
     force, across = np.meshgrid(FORCES, amplitude)
-    rigid = CREEP_FORMS[motion].function(force, across)
+    rigid = DRIFT_FORMS[motion].function(force, across)
     held = FORMS[motion]["mu_static"].function(amplitude)
     fine = np.linspace(0.25, 3.0, 50)
     moves = force > held[:, None]
@@ -79,7 +79,7 @@ def pairs():
         coords = amplitude | {"stiffness": stiffness, "velocity": velocity, "poisson": 0.0}
         return xr.Dataset({"mu_macro": (dims, values)} | every, coords)
 
-    walked = 1.1 * antiphase_creep(FORCES, 1.0)[None]
+    walked = 1.1 * antiphase_drift(FORCES, 1.0)[None]
     pulled = {
         "velocity": (("amplitude", "force"), walked),
         "velocity_error": (("amplitude", "force"), np.full(walked.shape, 1e-3)),

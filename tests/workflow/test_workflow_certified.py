@@ -42,7 +42,7 @@ def test_one_command_makes_a_map_whose_error_holds_everywhere(finished):
     assert figure.read_bytes().startswith(b"\x89PNG")
     page = finished.folder / "results" / "summaries" / "certified_transverse.html"
     assert f"{data.points} points, all converged" in page.read_text()
-    answer = data.friction.at(velocity=0.7, amplitude=1.9)
+    answer = data.microslip.at(velocity=0.7, amplitude=1.9)
     rigid = microslip.solve("transverse", 0.7, 1.9, model="rigid", tolerance=0.01)
     assert abs(float(answer.mu_macro) - rigid.mu_macro) <= float(answer.mu_macro_error)
 
@@ -99,7 +99,7 @@ def test_nothing_of_a_map_is_left_over(finished):
     assert sorted(path.name for path in left[leftovers.KINDS[2]]) == made
 
 
-def test_a_sweep_of_forces_makes_a_map_of_creep(tmp_path):
+def test_a_sweep_of_forces_makes_a_map_of_drift(tmp_path):
     weights = {"motion": "transverse", "force": [0.1, 0.8], "amplitude": [0.5, 1.5]}
     weights |= {"adaptive": {"error": 0.1}}
     given = {"sweeps": {"transverse": AXES}, "drives": {"weights": weights}}
@@ -113,7 +113,7 @@ def test_a_sweep_of_forces_makes_a_map_of_creep(tmp_path):
     assert f"{data.points} points, all converged; within" in page
     assert "sqrt(1 + v^2) everywhere" in page
     assert (results / "figures" / "certified_weights.png").read_bytes().startswith(b"\x89PNG")
-    answer = data.creep.at(0.6, 1.2)
+    answer = data.microslip.at(0.6, 1.2)
     asked = microslip.solve("transverse", amplitude=1.2, force=0.6, tolerance=1e-2)
     off = abs(float(answer.velocity) - asked.velocity)
     assert off <= float(answer.velocity_error) + asked.velocity_error

@@ -1,10 +1,10 @@
 # Certified maps: rounds of points, each chosen by the answers of those before it.
 
 CERTIFIED = CONFIGURATION.certified
-# Maps of creep are made with the sweeps of drives, whose kernels they need.
-CREEP = [name for name, map_ in CERTIFIED.items() if map_.force is not None]
-CERTIFIED_AT_VELOCITIES = [name for name in CERTIFIED if name not in CREEP]
-DRIVEN = [*CONFIGURATION.drives, *CREEP]
+# Maps of drift are made with the sweeps of drives, whose kernels they need.
+DRIFT = [name for name, map_ in CERTIFIED.items() if map_.force is not None]
+CERTIFIED_AT_VELOCITIES = [name for name in CERTIFIED if name not in DRIFT]
+DRIVEN = [*CONFIGURATION.drives, *DRIFT]
 ROUNDS = f"{RESULTS}/rounds/{{certified}}/{{chosen}}"
 
 

@@ -149,15 +149,15 @@ class _Contact:
         self.speed = float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
 
     @property
-    def creep(self):
-        """Creep in a radian at the velocity 1."""
+    def drift(self):
+        """Drift in a radian at the velocity 1."""
         problem = self.request.problem
         return problem.unit_drift
 
     @property
     def first(self):
         """Velocity as fast as the oscillation, where a search may begin."""
-        return self.speed / self.creep
+        return self.speed / self.drift
 
     def reversed(self):
         """The mirror image, which moves forward where this one moves back."""
@@ -270,8 +270,8 @@ def _record(contact, stall, found, velocity, verdict):
     power = [contact.power(v) for v in velocity]
     force, error = (np.array([known[k] for known in friction]) for k in (0, 1))
     power_in, power_in_error = (np.array([known[k] for known in power]) for k in (0, 1))
-    force, power_out = -force, -force * velocity * contact.creep
-    power_out_error = error * velocity * contact.creep
+    force, power_out = -force, -force * velocity * contact.drift
+    power_out_error = error * velocity * contact.drift
     efficiency = power_out / power_in
     least = np.maximum(power_in - power_in_error, np.finfo(float).tiny)
     efficiency_error = (power_out_error + np.abs(efficiency) * power_in_error) / least

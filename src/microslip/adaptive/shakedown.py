@@ -197,7 +197,7 @@ def _answer(request, force):
     if not away and force >= threshold - error:
         away = f"the error of the threshold, {error:.1e}, does not tell whether the force is below"
         if force > threshold + error:
-            away = f"creeps on for ever: the force is above the threshold, {threshold:.4g}"
+            away = f"drifts on for ever: the force is above the threshold, {threshold:.4g}"
     if away:
         endless = {"displacement": math.inf, "displacement_error": math.inf}
         endless |= {"converged": False, "reason": away, "solve_time_s": request.seconds}

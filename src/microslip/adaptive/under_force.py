@@ -28,9 +28,9 @@ solved up to 0.9998, where a period already takes the contact 200 amplitudes fur
 CLOSEST_STEADY_FORCE = 1.0 - 1e-7
 """Largest force on a steady rotation: rounding of its friction, 1.1e-16, moves the velocity by
 1.1e-16 / (2 (1 - force)) of itself, which reaches the stated error (1e-9) here."""
-FIRST_CREEP, FACTOR = 0.1, 4.0
+FIRST_DRIFT, FACTOR = 0.1, 4.0
 SLOWEST, FASTEST = 1e-6, 1e6
-"""Creep in a radian at which the search for a velocity begins, what it is multiplied by from one
+"""Drift in a radian at which the search for a velocity begins, what it is multiplied by from one
 run to the next, and where it ends."""
 FLATTEST = 1e-6
 """Least rise of friction that a pair of runs may tell, over the relative rise of the velocity."""
@@ -182,10 +182,10 @@ def velocity_near(problem: Problem, force: float, friction_at: Callable[[float],
     unit = problem.unit_drift
 
     @cache
-    def at(creep):
-        return friction_at(creep / unit)
+    def at(drift):
+        return friction_at(drift / unit)
 
-    low, high = FIRST_CREEP / FACTOR, FIRST_CREEP
+    low, high = FIRST_DRIFT / FACTOR, FIRST_DRIFT
     while high < FASTEST and at(high) < force:
         low, high = high, FACTOR * high
     while low > SLOWEST and at(low) > force:

@@ -4,7 +4,7 @@ from microslip.config.records import CertifiedMap, ConfigError, Sweep
 from microslip.foundation.canonical import number
 
 EXACT_MODELS = ("auto", "radial", "polar", "cartesian")
-"""Models whose contact is the half-space, of which thresholds of creep are known."""
+"""Models whose contact is the half-space, of which thresholds of drift are known."""
 SHARE_OF_POINTS = 0.3
 """Of the error of a map: what is left to its points unless told otherwise."""
 LOOSEST_POINTS = 1e-2
@@ -53,30 +53,30 @@ def _tolerance(given: float | None, error: float, where: str) -> float:
 
 
 def refuse_unsolvable(given: dict[str, CertifiedMap], where: str) -> None:
-    """Raise ConfigError for a map of creep where the force that it begins at is not known.
+    """Raise ConfigError for a map of drift where the force that it begins at is not known.
 
     given: maps by name; where: how messages begin.  It takes a while to load.
     """
     from microslip.config.extended import solver_names
-    from microslip.theory import creep_threshold
+    from microslip.theory import drift_threshold
 
     for map_ in given.values():
         if map_.force is None:
             continue
         sweep, at = map_.sweep, f"{where}.{map_.sweep.name}.adaptive"
         motion, pressure = solver_names(sweep)
-        if not creep_threshold.is_known(motion, pressure, sweep.poisson[0]):
+        if not drift_threshold.is_known(motion, pressure, sweep.poisson[0]):
             raise ConfigError(
                 f"{at}: is not allowed for {motion} under {pressure} at Poisson's ratio "
                 f"{sweep.poisson[0]:g}, whose threshold is not known exactly; allowed: "
-                f"{', '.join(creep_threshold.KNOWN)} under hertz, at Poisson's ratio 0 but for bore"
+                f"{', '.join(drift_threshold.KNOWN)} under hertz, at Poisson's ratio 0 but for bore"
             )
         if sweep.model not in EXACT_MODELS:
             raise ConfigError(
                 f"{at}: is not allowed with model {sweep.model}, whose threshold is another one; "
                 f"allowed: {', '.join(EXACT_MODELS)}"
             )
-        least = float(creep_threshold.threshold(motion, map_.amplitude[1]))
+        least = float(drift_threshold.threshold(motion, map_.amplitude[1]))
         if least >= map_.force:
             raise ConfigError(
                 f"{at}: is not allowed where nothing moves; allowed: a force above the threshold "
@@ -86,7 +86,7 @@ def refuse_unsolvable(given: dict[str, CertifiedMap], where: str) -> None:
 
 def _refuse_mismatch(sweep: Sweep, where: str) -> None:
     if sweep.drives:
-        _refuse_no_creep(sweep, where)
+        _refuse_no_drift(sweep, where)
     is_static = len(sweep.amplitude or ()) > 1 and 0.0 in sweep.velocity
     if not (sweep.spans_a_map or is_static or sweep.drives):
         raise ConfigError(
@@ -100,7 +100,7 @@ def _refuse_mismatch(sweep: Sweep, where: str) -> None:
         )
 
 
-def _refuse_no_creep(sweep: Sweep, where: str) -> None:
+def _refuse_no_drift(sweep: Sweep, where: str) -> None:
     """Raise ConfigError for what is pulled but by a force alone, over which it is to be a map."""
     (name, values, _), *others = sweep.drives
     if others or name != "force" or sweep.contacts is not None:

@@ -144,9 +144,9 @@ def from_mapping(
         extended.refuse_unsolvable(list(others.values()), f"{source}: extended")
         extended.refuse_unsolvable(list(pulled.values()), f"{source}: drives")
     extended.refuse_mixtures(list(others.values()), f"{source}: extended")
-    creeping = certified.maps(pulled, filled["drives"], f"{source}: drives")
-    if ask_solver and creeping:
-        certified.refuse_unsolvable(creeping, f"{source}: drives")
+    drifting = certified.maps(pulled, filled["drives"], f"{source}: drives")
+    if ask_solver and drifting:
+        certified.refuse_unsolvable(drifting, f"{source}: drives")
     given = filled["sweeps"] | filled["extended"] | filled["drives"]
     return Configuration(
         results=filled["results"],
@@ -164,7 +164,7 @@ def from_mapping(
         propulsion=propulsion.study(filled["propulsion"], f"{source}: propulsion", ask_solver),
         certified=certified.maps(sweeps, filled["sweeps"], f"{source}: sweeps")
         | certified.maps(others, filled["extended"], f"{source}: extended")
-        | creeping,
+        | drifting,
     )
 
 

@@ -4,8 +4,8 @@
 
 A cell is a box in the coordinates of sweeps.map_coordinates, and friction in it the polynomial
 through its points, 5 along the velocity and the amplitude and 3 along Poisson's ratio where that is
-a direction, too; cell_error is the bound of the error everywhere in it.  A map of creep is over
-force and amplitude, in the coordinates of sweeps.creep_coordinates, and what its cells interpolate
+a direction, too; cell_error is the bound of the error everywhere in it.  A map of drift is over
+force and amplitude, in the coordinates of sweeps.drift_coordinates, and what its cells interpolate
 is asinh(velocity).  The same answers give the same bytes.
 """
 
@@ -24,7 +24,7 @@ from microslip.config.records import CertifiedMap
 from microslip.datasets import netcdf, sweep_dataset
 from microslip.foundation.canonical import canonical_json
 from microslip.sweeps import map_rounds
-from microslip.sweeps.creep_coordinates import CreepCoordinates, velocity_of
+from microslip.sweeps.drift_coordinates import DriftCoordinates, velocity_of
 from microslip.sweeps.map_cells import Cell
 from microslip.sweeps.map_coordinates import MapCoordinates
 from microslip.sweeps.sealed_files import writing_beside
@@ -95,7 +95,7 @@ def build(map_: CertifiedMap, rounds: Sequence[dict], records: Iterable[dict]) -
     sweep_dataset.describe_axes(dataset, map_.sweep)
     motion, pressure = solver_names(map_.sweep)
     versions = {canonical_json(record["versions"]) for record in records}
-    quantity = "friction" if map_.force is None else "creep"
+    quantity = "friction" if map_.force is None else "drift"
     about = sweep_dataset.provenance(
         f"Certified {quantity} of a vibrated contact, motion {motion}",
         map_.settings,
@@ -121,9 +121,9 @@ def write(path: str | os.PathLike, dataset: xr.Dataset) -> None:
 
 def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
     """Lines of text: how many points there are, what holds everywhere, and where it does not."""
-    creeps = is_of_creep(dataset)
-    values, errors = dataset["velocity" if creeps else "mu_macro"], dataset["cell_error"].values
-    failed, scale = int(values.isnull().sum()), " sqrt(1 + v^2)" if creeps else ""
+    drifts = is_of_drift(dataset)
+    values, errors = dataset["velocity" if drifts else "mu_macro"], dataset["cell_error"].values
+    failed, scale = int(values.isnull().sum()), " sqrt(1 + v^2)" if drifts else ""
     yield (
         f"{name}: {dataset.points} points, {failed or 'none'} not converged; within "
         f"{errors.max():.1e}{scale} everywhere"
@@ -133,14 +133,14 @@ def report(dataset: xr.Dataset, name: str) -> Iterator[str]:
         yield f"  {over} of {len(errors)} cells are not within {dataset.error:g}"
 
 
-def is_of_creep(dataset: xr.Dataset) -> bool:
+def is_of_drift(dataset: xr.Dataset) -> bool:
     """Whether a dataset is a certified map of the velocity under a force."""
     return COORDINATES in dataset.attrs and "force" in dataset.attrs.get("directions", "").split()
 
 
-def coordinates_in(dataset: xr.Dataset) -> MapCoordinates | CreepCoordinates:
+def coordinates_in(dataset: xr.Dataset) -> MapCoordinates | DriftCoordinates:
     """How the map of a dataset is cut; raises KeyError and ValueError for one that does not say."""
-    kind = CreepCoordinates if is_of_creep(dataset) else MapCoordinates
+    kind = DriftCoordinates if is_of_drift(dataset) else MapCoordinates
     return kind.from_json(dataset.attrs[COORDINATES])
 
 
@@ -164,7 +164,7 @@ def _bound_of(map_: CertifiedMap) -> str:
     return "bound of the error of asinh(velocity) in the cell"
 
 
-def _borders(coordinates: MapCoordinates | CreepCoordinates, cells: Sequence[Cell]) -> dict:
+def _borders(coordinates: MapCoordinates | DriftCoordinates, cells: Sequence[Cell]) -> dict:
     """Variables that say where the cells begin and end."""
     found, borders = {}, np.array(cells)  # (cell, beginning or end, direction)
     for i, direction in enumerate(coordinates.directions):

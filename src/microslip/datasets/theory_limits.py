@@ -35,10 +35,10 @@ def _forms(sweep: Sweep) -> dict[str, ClosedForm]:
     return found
 
 
-def _creep_forms(sweep: Sweep) -> dict[str, ClosedForm]:
+def _drift_forms(sweep: Sweep) -> dict[str, ClosedForm]:
     """Those of the velocity under a force, where one pulls."""
     motion, pressure = solver_names(sweep)
-    form = catalogue.CREEP_FORMS.get(motion)
+    form = catalogue.DRIFT_FORMS.get(motion)
     if sweep.contacts is not None:
         return {}
     is_map = [(name, is_axis) for name, _, is_axis in sweep.drives] == [("force", True)]
@@ -55,7 +55,7 @@ def _axis(sweep: Sweep, dim: str) -> np.ndarray:
 def variables(sweep: Sweep) -> dict:
     """Variables on the axes of a records.Sweep: name -> (dims, values, attributes)."""
     found = {}
-    for name, form in (_forms(sweep) | _creep_forms(sweep)).items():
+    for name, form in (_forms(sweep) | _drift_forms(sweep)).items():
         axes = [_axis(sweep, dim) for dim in form.arguments]
         # meshgrid puts the first coordinate last, as the datasets do
         values = form.function(*np.meshgrid(*axes))

@@ -75,18 +75,18 @@ def theta_method(theta: float) -> Integrator:
 
 
 STRONGEST_GRADING = 0.8
-GRADED_CREEP = 0.02
+GRADED_DRIFT = 0.02
 GRADED_STROKE = 2.0
 
 
-def turning_point_grading(creep: float, stroke: float) -> float:
+def turning_point_grading(drift: float, stroke: float) -> float:
     """How much shorter steps are at the turning points than in the mean, 0 to 0.8 of it.
 
-    creep: forward displacement in a radian of phase; stroke: amplitude of the oscillation, both in
+    drift: forward displacement in a radian of phase; stroke: amplitude of the oscillation, both in
     u_lim.  Where both are small, the forward slip of a whole half period happens next to the
     turning points; where the stroke is long, the contact slides fully and forgets them soon.
     """
-    slow = 1.0 / (1.0 + creep / GRADED_CREEP)
+    slow = 1.0 / (1.0 + drift / GRADED_DRIFT)
     short = 1.0 / (1.0 + (stroke / GRADED_STROKE) ** 2)
     return STRONGEST_GRADING * slow * short
 

@@ -1,7 +1,7 @@
 """One (half) period as a map of the tractions at its beginning, and the verdict on a fixed point.
 
 The verdict is always that of the plain map: its residual, the distance to the fixed point that the
-last correction measured, and what the residual means at the creep rate of the motion: close to the
+last correction measured, and what the residual means at the drift rate of the motion: close to the
 static limit a state changes so little in a period that a small residual proves nothing.
 """
 
@@ -78,7 +78,7 @@ class PeriodicState:
 
 
 @dataclass(frozen=True)
-class CreepRate:
+class DriftRate:
     """How slowly a state can go wrong.
 
     A state whose plain map still changes a share of the gain moves forward at a velocity wrong by
@@ -145,16 +145,16 @@ class PeriodMap:
     path : path.Path
         Half a period, from turning point to turning point, whose second half is its lateral mirror
         image, or without `mirror` a whole one.
-    creep_rate : CreepRate or None
+    drift_rate : DriftRate or None
         Given where the motion may be slow.
     mirror : bool
         See `path`.
     """
 
     def __init__(
-        self, contact: Contact, path: Path, creep_rate: CreepRate | None = None, mirror: bool = True
+        self, contact: Contact, path: Path, drift_rate: DriftRate | None = None, mirror: bool = True
     ):
-        self.contact, self.path, self.creep_rate, self.mirror = contact, path, creep_rate, mirror
+        self.contact, self.path, self.drift_rate, self.mirror = contact, path, drift_rate, mirror
         self.marches = self.iterations = self.solves = 0
         self._march = None
         self.share = np.diff(path.phase) / (path.phase[-1] - path.phase[0])  # of each step
@@ -208,10 +208,10 @@ class PeriodMap:
     def distance(self, interval: MarchInterval, proposal: np.ndarray) -> float:
         """Estimated distance of an interval's state from the fixed point, given a better state."""
         distance = max(self.size(proposal - interval.state), interval.residual)
-        if self.creep_rate is not None:
+        if self.drift_rate is not None:
             force = interval.march.forces[:, 0]
             mean = 0.5 * float(self.share @ force[1:] + self.share @ force[:-1])
-            distance = max(distance, self.creep_rate.force_error(interval.residual, mean))
+            distance = max(distance, self.drift_rate.force_error(interval.residual, mean))
         return distance
 
     def result(

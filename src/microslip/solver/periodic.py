@@ -41,7 +41,7 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
     """
     if not period_map.contact.compiled:
         return anderson.search(period_map, start, goal)
-    contact, path, rate = period_map.contact, period_map.path, period_map.creep_rate
+    contact, path, rate = period_map.contact, period_map.path, period_map.drift_rate
     target = search.Goal(
         float(goal.tolerance),
         float(goal.step_tolerance),

@@ -22,7 +22,7 @@ from microslip.models.contact import FORWARD, StepFailure, energy_norm, forces
 from microslip.models.path import Path
 from microslip.models.pull import Body
 from microslip.models.system_contact import SystemContact
-from microslip.solver.period_map import CreepRate, MarchInterval, PeriodicState, PeriodMap
+from microslip.solver.period_map import DriftRate, MarchInterval, PeriodicState, PeriodMap
 from microslip.states.search import Inertia
 
 CAUTION = 0.3
@@ -40,7 +40,7 @@ class PulledMap(PeriodMap):
         From which the body may stay behind or run ahead.
     body : pull.Body
         What is pulled, and by what.
-    creep_rate : period_map.CreepRate or None
+    drift_rate : period_map.DriftRate or None
         Given where the motion may be slow and its velocity is known.
     mirror : bool
         Whether the second half of the period is the mirror image of the path.
@@ -53,11 +53,11 @@ class PulledMap(PeriodMap):
         contact: SystemContact,
         path: Path,
         body: Body,
-        creep_rate: CreepRate | None = None,
+        drift_rate: DriftRate | None = None,
         mirror: bool = True,
         slope: float = np.inf,
     ):
-        super().__init__(contact, path, creep_rate, mirror)
+        super().__init__(contact, path, drift_rate, mirror)
         self.body = body
         self._shape = (2, *np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape))
         self._points = int(np.prod(self._shape))
@@ -142,13 +142,13 @@ class PulledMap(PeriodMap):
     def distance(self, interval: MarchInterval, proposal: np.ndarray) -> float:
         """Estimated distance of an interval's state from the fixed point, given a better state."""
         distance = max(self.size(proposal - interval.state), interval.residual)
-        if self.creep_rate is None:
+        if self.drift_rate is None:
             return distance
         march, tractions = interval.march, self.parts(interval.state)[0]
         gained = float(abs(march.body[-1, 0] - march.body[0, 0])) * self.contact.stiffness
         gained += energy_norm(self.contact, self.image(march.state) - tractions)
         force = self.path.mean(march.forces[:, FORWARD])
-        return max(distance, self.creep_rate.force_error(gained, force))
+        return max(distance, self.drift_rate.force_error(gained, force))
 
     def admissible(self, state: np.ndarray) -> np.ndarray:
         """The state, its tractions projected on the friction bound."""

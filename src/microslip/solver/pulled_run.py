@@ -18,7 +18,7 @@ from microslip.models.pull import Body
 from microslip.motions.problem import Problem
 from microslip.solver.body_run import simulate_each
 from microslip.solver.discretise import Resolution, path_of
-from microslip.solver.period_map import MOST_MARCHES, CreepRate, Goal
+from microslip.solver.period_map import MOST_MARCHES, DriftRate, Goal
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.pulled_map import PulledMap
 from microslip.solver.run import Run, Settings, failed_run, unsolved
@@ -141,13 +141,13 @@ class _Pulled:
         return self._summary(done, static_force, step_tolerance)
 
     def _map(self, static_force, rate, mu):
-        creep_rate, slope, full = None, np.inf, self.problem.mean_load
+        drift_rate, slope, full = None, np.inf, self.problem.mean_load
         if self.drive.force is None:
-            creep_rate = CreepRate(static_force, full, rate * self.interval)
+            drift_rate = DriftRate(static_force, full, rate * self.interval)
             # 1 - mu falls at most as 1 / velocity^2, the law of large velocities
             slope = 2.0 * (1.0 - mu) * full / (self.problem.drift * self.interval)
         mirror = self.problem.half_period_mirror
-        return PulledMap(self.contact, self.path, self.body, creep_rate, mirror, slope)
+        return PulledMap(self.contact, self.path, self.body, drift_rate, mirror, slope)
 
     def _fits(self, start, period_map):
         return start.shape == period_map.state(forward_slip(self.contact), np.zeros(2)).shape

@@ -29,9 +29,9 @@ STEP_SHARE = 1e-4
 """Of that tolerance, as a force over mu F_z: what a step may leave unsolved."""
 SLOWEST_RATIO = 0.9
 """Of distances gone while the number of periods doubles: a larger ratio tells of no end."""
-LONG, CREEPING = 200, 1.8
+LONG, DRIFTING = 200, 1.8
 """(Half) periods from which on such a ratio, of 2 if it never slowed down, tells that the contact
-creeps: the threshold of so coarse a contact is another."""
+drifts: the threshold of so coarse a contact is another."""
 MOST_SHARE = 0.9
 """Of the way that the oscillation adds, after which `most_after` looks."""
 
@@ -120,7 +120,7 @@ class _Walk:
             self.residual += interval.march.residual
             if turn + 1 == look:
                 left = self._left()
-                if left <= tolerance or self._creeps():
+                if left <= tolerance or self._drifts():
                     break
                 look = round(look * LOOKS[look % 3 == 0])
         solves = self.solves + self.map.solves
@@ -166,10 +166,10 @@ class _Walk:
         self.solves += march.solves
         return march.state, float(march.body[-1, 0] - march.body[0, 0])
 
-    def _creeps(self):
+    def _drifts(self):
         """Whether the contact goes on as fast as it did long before."""
         before, last = self._last_two()
-        return len(self.gone) >= LONG and last > CREEPING * before
+        return len(self.gone) >= LONG and last > DRIFTING * before
 
     def _left(self):
         """How much of the way may be left: the series of distances that are gone while the number

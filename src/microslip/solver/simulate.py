@@ -11,7 +11,7 @@ from microslip.models.contact import FORWARD, Contact, StepFailure, forces, forw
 from microslip.models.path import Path
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
-from microslip.solver.period_map import MOST_MARCHES, CreepRate, Goal, PeriodMap
+from microslip.solver.period_map import MOST_MARCHES, DriftRate, Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.power import oscillation_power
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run, unsolved
@@ -29,7 +29,7 @@ MARCH_SHARE = 0.16
 
 SLOW_EXCESS, LARGEST_EXCESS = 4.0, 0.6
 """Forward traction added to the static limit's, as a share of the bound, for a start: it grows as
-the friction itself does with the creep in a radian, so that every point slips forward too much.
+the friction itself does with the drift in a radian, so that every point slips forward too much.
 From there an accelerated search finds its way down; below, points would only drift."""
 
 MARCHES_FROM_COARSER = 50
@@ -137,7 +137,7 @@ class _Search:
         # a search that is prepared finds the limit of a line, and none that of a loop
         limit = 0.0 if problem.straight or not contact.sticks else np.nan
         gain = contact.stiffness * problem.drift * interval
-        self.creep_rate = CreepRate(limit, problem.mean_load, gain)
+        self.drift_rate = DriftRate(limit, problem.mean_load, gain)
         self.path = path_of(problem, contact, steps, method.integrator)
         self.done = []
 
@@ -145,7 +145,7 @@ class _Search:
         """The Run; guess: see simulate."""
         found, start = None, self._start_from(guess)
         if start is not None:
-            self.creep_rate = replace(self.creep_rate, static_force=guess.static_force)
+            self.drift_rate = replace(self.drift_rate, static_force=guess.static_force)
             found = self._find(start, near=start is not guess.state)
         if found is None or not found.converged:
             found = self._search_afresh()
@@ -172,20 +172,20 @@ class _Search:
 
     def _start_near_the_limit(self, slipping):
         """The static limit with all points pushed forward; also takes note of its force."""
-        contact, creep = self.contact, self.problem.drift
+        contact, drift = self.contact, self.problem.drift
         if not (contact.sticks and self.problem.straight):
             return slipping
         limit = static_state(contact, self.problem.oscillation, self.step_tolerance)
         if not unsolved(limit.solver_residual, limit.solves, self.step_tolerance):
             force = float(forces(contact, limit.residual)[FORWARD])
-            self.creep_rate = replace(self.creep_rate, static_force=force)
-        excess = min(SLOW_EXCESS * creep ** (2.0 / 3.0), LARGEST_EXCESS)
+            self.drift_rate = replace(self.drift_rate, static_force=force)
+        excess = min(SLOW_EXCESS * drift ** (2.0 / 3.0), LARGEST_EXCESS)
         start = limit.residual + limit.oscillating + excess * slipping
         return project(start, contact.bound)
 
     def _find(self, start, near=False):
         period_map = PeriodMap(
-            self.contact, self.path, self.creep_rate, self.problem.half_period_mirror
+            self.contact, self.path, self.drift_rate, self.problem.half_period_mirror
         )
         most = MARCHES_FROM_COARSER if near else MOST_MARCHES
         goal = Goal(self.tolerance, self.step_tolerance, most, near)
@@ -214,7 +214,7 @@ class _Search:
             converged=not reason,
             reason=reason,
             state=found.start,
-            static_force=self.creep_rate.static_force,
+            static_force=self.drift_rate.static_force,
             power=oscillation_power(self.problem, self.path, found.forces),
         )
 

@@ -1,9 +1,9 @@
 """The static limit: what resists a forward motion infinitely slower than the oscillation.
 
 Let +-q_osc be the tractions at the two turning points of the oscillation alone, their mean removed.
-As the forward velocity vanishes, every point that still sticks at times has to creep forward by a
+As the forward velocity vanishes, every point that still sticks at times has to drift forward by a
 little in each period, at instants when |R + q_osc| reaches the bound, R being the constant part of
-its traction.  Creep so slow does not change q_osc, and the flow rule makes R the best there is:
+its traction.  Drift so slow does not change q_osc, and the flow rule makes R the best there is:
 
     maximise  R . e_forward   subject to   |R + q_osc| <= g  and  |R - q_osc| <= g   at every point,
 

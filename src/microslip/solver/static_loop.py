@@ -3,7 +3,7 @@
 static_limit.py says why the limit is a problem of its own at every point.  On a line two instants
 count; here the whole period does.  Let q(t) be the tractions that the oscillation alone settles
 into, g(t) the friction bound.  A constant traction s may be added wherever it leaves |q + s| <= g
-at all times, and where a point creeps forward s is the best there is:
+at all times, and where a point drifts forward s is the best there is:
 
     mu F_z mu_static = Integral { mean of q_forward
                                   + max s_forward : |q(t) + s| <= g(t) for all t } dA.

@@ -20,7 +20,7 @@ from microslip.solver.static_limit import at_turning_points
 from microslip.solver.static_run import gathered_on_a_line, gathered_on_a_loop
 
 SLOW_LOOP, SLOW_LINE = 0.02, 0.01
-"""Creep in a radian, in u_lim, below which what never slips in the limit decides a motion."""
+"""Drift in a radian, in u_lim, below which what never slips in the limit decides a motion."""
 TELLING_LOOP, TELLING_SWEPT, TOLD = Resolution(24, 4, 32), Resolution(24, 4, 96), 1e-3
 """Resolution and tolerance at which its edge is found on a loop, and where the load oscillates:
 there the edge of the contact sweeps over the rings, which asks for more steps."""

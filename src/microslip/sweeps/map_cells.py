@@ -23,7 +23,7 @@ import numpy as np
 from microslip.sweeps.map_coordinates import MapCoordinates
 
 if TYPE_CHECKING:
-    from microslip.sweeps.creep_coordinates import CreepCoordinates
+    from microslip.sweeps.drift_coordinates import DriftCoordinates
 
 SHARE = 0.1
 """Of the surplus of a cell: what the polynomial may miss.  Measured by benchmarks/certified.py."""
@@ -87,19 +87,19 @@ class Refinement:
     missing: tuple[Node, ...]
 
 
-def first_cells(coordinates: MapCoordinates | CreepCoordinates) -> list[Cell]:
+def first_cells(coordinates: MapCoordinates | DriftCoordinates) -> list[Cell]:
     """A cell for each patch of a map."""
     return [Cell(*patch) for patch in coordinates.patches]
 
 
 def refined(
-    coordinates: MapCoordinates | CreepCoordinates, known: Answers, error: float
+    coordinates: MapCoordinates | DriftCoordinates, known: Answers, error: float
 ) -> Refinement:
     """Cells that the answers so far lead to, and what has to be asked next.
 
     Parameters
     ----------
-    coordinates : MapCoordinates or CreepCoordinates
+    coordinates : MapCoordinates or DriftCoordinates
         Of the map.
     known : mapping of Node to (float, float)
         All answers so far.

@@ -17,7 +17,7 @@ from microslip.config.records import CertifiedMap
 from microslip.foundation.canonical import canonical_json
 from microslip.sweeps import batch_files
 from microslip.sweeps.batches import PointRequests, key_of
-from microslip.sweeps.creep_coordinates import CreepCoordinates, scaled_velocity
+from microslip.sweeps.drift_coordinates import DriftCoordinates, scaled_velocity
 from microslip.sweeps.map_cells import Answers, Refinement, refined
 from microslip.sweeps.map_coordinates import MapCoordinates
 from microslip.sweeps.sealed_files import CacheError, advice
@@ -33,11 +33,11 @@ MOST_ROUNDS = 64
 """More than halving all cells to the smallest takes."""
 
 
-def coordinates_of(map_: CertifiedMap) -> MapCoordinates | CreepCoordinates:
+def coordinates_of(map_: CertifiedMap) -> MapCoordinates | DriftCoordinates:
     """The coordinates that a certified map is cut in."""
     motion, pressure = solver_names(map_.sweep)
     if map_.force is not None:
-        return CreepCoordinates(motion, map_.force, map_.amplitude)
+        return DriftCoordinates(motion, map_.force, map_.amplitude)
     kinks = kinks_of(motion, pressure)
     return MapCoordinates(map_.velocity, map_.amplitude, kinks, map_.poisson)
 
@@ -59,7 +59,7 @@ def next_round(map_: CertifiedMap, known: Answers, points_per_job: int) -> dict:
 
 
 def _request(
-    map_: CertifiedMap, coordinates: MapCoordinates | CreepCoordinates, node: tuple[float, ...]
+    map_: CertifiedMap, coordinates: MapCoordinates | DriftCoordinates, node: tuple[float, ...]
 ) -> dict:
     """The request for a node, as of a sweep that has it."""
     place = dict(zip(coordinates.directions, coordinates.place(node), strict=True))

@@ -1,8 +1,8 @@
 """How far vibration can lower the friction at most: brackets that need no simulation.
 
 Over a period the work of the contact forces is dissipated; elastic energy returns.  Every point
-slips forward by the creep, and no detour makes a slip path shorter, so the dissipation is at least
-creep x period.  With F the force (|F| <= 1) and d = 1 - mu:
+slips forward by the drift, and no detour makes a slip path shorter, so the dissipation is at least
+drift x period.  With F the force (|F| <= 1) and d = 1 - mu:
 
 - transverse (forward v t, lateral y sin t): v mu + y <F_lateral cos t> >= v, where by Schwarz and
   Jensen <F_lateral cos t>^2 <= (1 - mu^2) / 2 = d (1 - d/2).  Hence d <= 1 / ((v/y)^2 + 1/2).

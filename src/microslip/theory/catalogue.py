@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from microslip.theory import creep, masing, paper
+from microslip.theory import drift, masing, paper
 from microslip.theory.exact import STATIC_LIMITS
 
 ANYWHERE, LARGE, SLOW = "anywhere", "amplitude to infinity", "velocity to 0"
@@ -133,7 +133,7 @@ for _motion, _limit in STATIC_LIMITS.items():
     )
 
 
-CREEP_FORMS = {
+DRIFT_FORMS = {
     motion: ClosedForm(
         *(motion, "velocity_large_amplitude", function, ("force", "amplitude"), LARGE),
         *("", "rigid", "mean velocity under a force, rigid contact"),
@@ -141,6 +141,6 @@ CREEP_FORMS = {
         any_poisson=True,
         any_pressure=motion == "transverse",
     )
-    for motion, function in (("transverse", creep.transverse_creep), ("bore", creep.bore_creep))
+    for motion, function in (("transverse", drift.transverse_drift), ("bore", drift.bore_drift))
 }
 """Forms of the velocity under a force, by motion."""

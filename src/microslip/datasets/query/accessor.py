@@ -1,4 +1,4 @@
-"""`dataset.friction.at(...)`: certified answers from the dataset of a sweep."""
+"""`dataset.microslip.at(...)`: certified answers from the dataset of a sweep."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Friction(Inverse):
         if "force" in dataset.attrs.get("drive", ""):
             raise ValueError(
                 "the contact of this dataset is pulled by a force, which is friction itself: "
-                "allowed is one that is moved at a velocity or by a spring; here creep.at of a "
+                "allowed is one that is moved at a velocity or by a spring; here microslip.at of a "
                 "certified map, and sel and interp"
             )
         self._dataset = dataset
@@ -134,7 +134,7 @@ class Friction(Inverse):
         if not self._limits_known or cells.is_static(self._dataset):
             answer = self._map_alone(nodes, flat_velocity, flat_amplitude, nu, tolerance)
         elif (table := self._table(nodes, nu)) is None:
-            raise InputError("velocity", 0.0, "friction.at needs nodes above 0 in the dataset")
+            raise InputError("velocity", 0.0, "microslip.at needs nodes above 0 in the dataset")
         elif amplitudes is None:
             answer = self._steady(table, flat_velocity)
         else:
@@ -240,7 +240,7 @@ class Friction(Inverse):
         count = f"{wide.sum()} of {len(wide)} points" if len(wide) > 1 else "the point"
         return {
             "note": f"{count} outside the tabulated range, error estimate up to "
-            f"{error[wide].max():.2g}: friction.at(..., tolerance=1e-3) computes them"
+            f"{error[wide].max():.2g}: microslip.at(..., tolerance=1e-3) computes them"
         }
 
     # Steady motion

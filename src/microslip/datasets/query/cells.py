@@ -12,7 +12,7 @@ import xarray as xr
 from microslip.datasets import certified_map
 from microslip.datasets.query.interpolation import Axis, Table
 from microslip.foundation.errors import InputError
-from microslip.sweeps.creep_coordinates import CreepCoordinates
+from microslip.sweeps.drift_coordinates import DriftCoordinates
 from microslip.sweeps.map_coordinates import MapCoordinates
 
 EDGE = 97
@@ -35,19 +35,19 @@ class CellTable:
 
     Attributes
     ----------
-    coordinates : MapCoordinates or CreepCoordinates
+    coordinates : MapCoordinates or DriftCoordinates
     borders : numpy.ndarray, shape (k, directions, 2)
         Where cells begin and end, scaled.
     nodes : numpy.ndarray, shape (k, 5, 5) or (k, 5, 5, 3)
         Friction at their nodes, over velocity, amplitude and perhaps Poisson's ratio; asinh of the
-        velocity of creep.
+        velocity of drift.
     bounds : numpy.ndarray, shape (k,)
         Of the error in each.
     poisson : float, optional
         At which a map over Poisson's ratio is asked.
     """
 
-    coordinates: MapCoordinates | CreepCoordinates
+    coordinates: MapCoordinates | DriftCoordinates
     borders: np.ndarray
     nodes: np.ndarray
     bounds: np.ndarray
@@ -60,7 +60,7 @@ class CellTable:
 
     @property
     def _velocity(self) -> tuple[float, ...]:
-        """The range of the velocity; () for a map of the static limit or of creep."""
+        """The range of the velocity; () for a map of the static limit or of drift."""
         coordinates = self.coordinates
         return coordinates.velocity if isinstance(coordinates, MapCoordinates) else ()
 
@@ -178,20 +178,19 @@ def cells_of(dataset: xr.Dataset) -> CellNodes:
     """The map in the dataset of a certified map; raises InputError for what it has lost."""
     coordinates = _coordinates_in(dataset)
     names = [certified_map.BORDERS[direction] for direction in coordinates.directions]
-    creeps = certified_map.is_of_creep(dataset)
-    solved = ("velocity", "velocity_error") if creeps else ("mu_macro", "mu_macro_error")
+    drifts = certified_map.is_of_drift(dataset)
+    solved = ("velocity", "velocity_error") if drifts else ("mu_macro", "mu_macro_error")
     wanted = (*solved, "poisson", "cell_node", "cell_error")
     for name in (*wanted, *sum(names, ())):
         if name not in dataset.variables:
-            question = "creep.at" if creeps else "friction.at"
-            allowed = f"{question} needs it, and the dataset has lost it: keep it"
+            allowed = "microslip.at needs it, and the dataset has lost it: keep it"
             raise InputError(name, None, allowed)
     values, errors = (dataset[name].values for name in solved)
     picked = dataset["cell_node"].values.astype(int)
     if picked.max() >= len(values):
         raise InputError("point", len(values), "an answer needs all points of the dataset")
     borders = np.stack([[dataset[name].values for name in pair] for pair in names])
-    interpolated = np.arcsinh(values) if creeps else values
+    interpolated = np.arcsinh(values) if drifts else values
     nodes = interpolated[picked].reshape(-1, *(n + 1 for n in coordinates.degrees))
     bounds = dataset["cell_error"].values
     cells = CellTable(coordinates, borders.transpose(2, 0, 1), nodes, bounds)
@@ -199,7 +198,7 @@ def cells_of(dataset: xr.Dataset) -> CellNodes:
     return CellNodes(np.array(poisson), values, errors, cells)
 
 
-def _coordinates_in(dataset: xr.Dataset) -> MapCoordinates | CreepCoordinates:
+def _coordinates_in(dataset: xr.Dataset) -> MapCoordinates | DriftCoordinates:
     try:
         return certified_map.coordinates_in(dataset)
     except (KeyError, TypeError, ValueError):

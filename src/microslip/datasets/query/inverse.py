@@ -1,4 +1,4 @@
-"""Where a map has a wanted friction: `dataset.friction.solve_for(...)`.
+"""Where a map has a wanted friction: `dataset.microslip.solve_for(...)`.
 
 A map is known to within its error, so what it answers is an interval: all places whose friction may
 be the wanted one, and in it the place where the map's own value is.  Friction may be the same at

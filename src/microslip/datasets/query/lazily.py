@@ -24,7 +24,7 @@ def answered(
     Parameters
     ----------
     at : callable
-        Friction.at or Creep.at, for what is in memory.
+        Friction.at or Drift.at, for what is in memory.
     dataset : xarray.Dataset
         Which it is asked of.
     asked : dict of xarray.DataArray

@@ -102,27 +102,29 @@ def nodes_of(dataset: xr.Dataset, *, periodic: bool, poisson: float | None = Non
     for name in ("mu_macro", "mu_macro_error", *axes):
         if name not in dataset.variables:
             raise InputError(
-                name, None, "friction.at needs it, and the dataset has lost it: keep it"
+                name, None, "microslip.at needs it, and the dataset has lost it: keep it"
             )
     _refuse_no_numbers(dataset, ("mu_macro", "mu_macro_error", *axes))
     if dataset["poisson"].ndim and dataset["poisson"].dims != ("poisson",):
         raise InputError(
             "poisson",
             f"over {dataset['poisson'].dims}",
-            "friction.at needs one, or an axis of them",
+            "microslip.at needs one, or an axis of them",
         )
     chosen = dataset[["mu_macro", "mu_macro_error"]].assign(known=_known(dataset))
     chosen = chosen.compute()
     for extra in set(chosen.dims) - set(axes):
         raise InputError(
-            str(extra), f"{chosen.sizes[extra]} entries", "friction.at needs one of them: select it"
+            str(extra),
+            f"{chosen.sizes[extra]} entries",
+            "microslip.at needs one of them: select it",
         )
     for dim in axes:
         if dim not in chosen.dims:
             chosen = chosen.expand_dims(dim)
         if not chosen.sizes[dim]:
             raise InputError(
-                dim, "no entry", "friction.at needs one at least, and none is selected"
+                dim, "no entry", "microslip.at needs one at least, and none is selected"
             )
     _refuse_contradictions(chosen, axes)
     chosen = chosen.drop_duplicates(list(axes)).sortby(list(axes)).transpose(*axes)
@@ -143,7 +145,7 @@ def _refuse_no_numbers(dataset: xr.Dataset, names: tuple[str, ...]) -> None:
     for name in names:
         kind = dataset[name].dtype
         if kind.kind not in "iuf":
-            raise InputError(name, f"of type {kind}", "friction.at needs numbers there")
+            raise InputError(name, f"of type {kind}", "microslip.at needs numbers there")
 
 
 def _refuse_contradictions(chosen: xr.Dataset, axes: tuple[str, ...]) -> None:
@@ -201,14 +203,14 @@ def _known(dataset: xr.Dataset) -> xr.DataArray:
         return dataset["converged"] == 1  # not what a join has filled in
     if "tolerance" not in dataset.attrs:
         raise InputError(
-            "converged", None, "friction.at needs it, and the dataset has lost it: keep it"
+            "converged", None, "microslip.at needs it, and the dataset has lost it: keep it"
         )
     tolerance = dataset.attrs["tolerance"]
     try:
         return dataset["mu_macro_error"] <= float(tolerance)
     except (TypeError, ValueError):
         raise InputError(
-            "tolerance", tolerance, "friction.at needs a number there, or the variable converged"
+            "tolerance", tolerance, "microslip.at needs a number there, or the variable converged"
         ) from None
 
 

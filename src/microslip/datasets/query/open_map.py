@@ -2,7 +2,7 @@
 
     friction = microslip.open_map("transverse")
     friction.mu_macro.sel(velocity=0.1, method="nearest")     # plain xarray
-    friction.friction.at(velocity=0.05, amplitude=0.8)        # a value and a bound of its error
+    friction.microslip.at(velocity=0.05, amplitude=0.8)       # a value and a bound of its error
     microslip.open_map("transverse", group="history")         # what has axes of its own
 
 `interpolation` holds the rule and its error, `beyond` what is known where a map ends, `accessor`
@@ -19,14 +19,22 @@ from typing import Any
 import xarray as xr
 
 from microslip.config.records import MOTION_OF_SWEEP
+from microslip.datasets.certified_map import is_of_drift
 from microslip.datasets.netcdf import group_names, refuse_oversized
 from microslip.datasets.query.accessor import Friction
 from microslip.datasets.query.answers import SOURCES
-from microslip.datasets.query.creep import Creep
+from microslip.datasets.query.drift import Drift
 from microslip.foundation.errors import InputError
 from microslip.sweeps.sealed_files import CacheError, is_damaged, refuse_no_folder
 
-__all__ = ["SOURCES", "Creep", "Friction", "open_map"]
+__all__ = ["SOURCES", "Drift", "Friction", "open_map"]
+
+
+@xr.register_dataset_accessor("microslip")
+def accessor(dataset: xr.Dataset) -> Friction | Drift:
+    """The accessor `dataset.microslip`: Drift for certified maps over forces, else Friction."""
+    return Drift(dataset) if is_of_drift(dataset) else Friction(dataset)
+
 
 SOLVED = {"mu_macro", "velocity_error"}
 """Variables of which the dataset of a sweep has one at least."""
@@ -39,7 +47,7 @@ def open_map(
     *,
     group: str | None = None,
 ) -> xr.Dataset:
-    """Open the dataset of a sweep, with the accessors `friction` and `creep` for certified answers.
+    """Open the dataset of a sweep, with the accessor `microslip` for certified answers.
 
     Parameters
     ----------

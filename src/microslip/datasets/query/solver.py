@@ -32,7 +32,7 @@ def pulled_by(dataset: xr.Dataset) -> dict[str, object]:
     names = [name for name in dataset.attrs.get("drive", "").split(", ") if name]
     for name in names:
         if name not in dataset.coords or dataset[name].ndim:
-            allowed = "friction.at needs one to ask the solver: keep it as a coordinate"
+            allowed = "microslip.at needs one to ask the solver: keep it as a coordinate"
             raise InputError(name, None, allowed)
     contacts = {"contacts": dataset.attrs["contacts"]} if "contacts" in dataset.attrs else {}
     return {name: float(dataset[name]) for name in names} | contacts

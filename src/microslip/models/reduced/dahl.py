@@ -1,4 +1,4 @@
-"""The Dahl model in two directions (Tsai and Tseng 2005): a bristle that creeps under any load.
+"""The Dahl model in two directions (Tsai and Tseng 2005): a bristle that drifts under any load.
 
     dF/dt = k (dw/dt - |dw/dt| F),        |F| <= 1,
 

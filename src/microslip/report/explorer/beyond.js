@@ -1,6 +1,6 @@
 // Friction at any velocity and amplitude: a certified map, and the proved limits where it ends.
 //
-// It says what friction.at says in Python; datasets/query/beyond.py tells why.
+// It says what microslip.at says in Python; datasets/query/beyond.py tells why.
 
 const ROUNDING = 1e-12;
 const SLOW_EXPONENT = 2 / 3; // power of the velocity with which friction approaches its static limit

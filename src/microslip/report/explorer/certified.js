@@ -1,6 +1,6 @@
 // A certified map: friction and the bound of its error at any place of its range.
 //
-// Nothing here knows the page, so that node can run it. It says what friction.at says in Python:
+// Nothing here knows the page, so that node can run it. It says what microslip.at says in Python:
 // datasets/query/cells.py and sweeps/map_coordinates.py tell why.
 
 const SAME_POISSON = 1e-12; // ratios that differ by less are one

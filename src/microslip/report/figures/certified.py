@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from microslip.datasets import certified_map
 from microslip.datasets.query.accessor import Friction
 from microslip.datasets.query.cells import is_static
-from microslip.datasets.query.creep import Creep
+from microslip.datasets.query.drift import Drift
 from microslip.report.figures import style as look
 from microslip.report.figures.data import require
 from microslip.report.figures.formulas import mathtext
@@ -27,9 +27,9 @@ NODES, LINE = 97, 201
 SIDE = np.linspace(0.0, 1.0, 17)
 """Places along a side of a cell, which is no straight line on the map."""
 VARIABLES = ("mu_macro", "cell_error", "cell_node", "velocity", "amplitude", "poisson")
-OF_CREEP = ("velocity", "cell_error", "cell_node", "force", "amplitude", "poisson")
+OF_DRIFT = ("velocity", "cell_error", "cell_node", "force", "amplitude", "poisson")
 DECADES = np.linspace(-3.0, 1.0, 17)
-"""Decimal logarithms of the velocities of creep that bands begin at."""
+"""Decimal logarithms of the velocities of drift that bands begin at."""
 STAYS = {"facecolor": look.PALE, "edgecolor": "none"}
 
 
@@ -39,9 +39,9 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     Of a map over Poisson's ratio, too, the part at the smallest one is shown; one of the static
     limit is a line.
     """
-    if certified_map.is_of_creep(dataset):
-        require(name, name, dataset, OF_CREEP)
-        return _creep(dataset)
+    if certified_map.is_of_drift(dataset):
+        require(name, name, dataset, OF_DRIFT)
+        return _drift(dataset)
     require(name, name, dataset, VARIABLES)
     if is_static(dataset):
         return _lines(dataset)
@@ -66,13 +66,13 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     return figure
 
 
-def _creep(dataset: xr.Dataset) -> Figure:
+def _drift(dataset: xr.Dataset) -> Figure:
     """The velocity over force and amplitude, grey where the contact stays, and the bounds."""
     figure = look.new_figure(look.DOUBLE, 3.1)
     left, right = figure.subplots(1, 2, sharex=True, sharey=True)
     coordinates = certified_map.coordinates_in(dataset)
     force = np.linspace(0.0, coordinates.force, NODES)
-    grid = Creep(dataset).on_grid(force, NODES)
+    grid = Drift(dataset).on_grid(force, NODES)
     slowest, fastest = 10.0 ** DECADES[[0, -1]]
     shown = np.log10(np.clip(grid["velocity"].values, slowest, fastest))
     amplitude = grid["amplitude"].values

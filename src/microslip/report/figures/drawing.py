@@ -34,7 +34,7 @@ _DRAWN: dict[str, tuple[str, ...]] = {
     "fig5_transients": ("transients", "continuous_bore"),
     "fig6_bore_map": ("maps", "bore"),
     "poisson": ("poisson", "transverse", "bore"),
-    "creep_maps": ("creep", "creep_transverse", "creep_bore"),
+    "drift_maps": ("drift", "drift_transverse", "drift_bore"),
     "drives": ("drives", "transverse", "drive_force", "drive_spring", "drive_body"),
     "pairs": ("pairs", "one_spring", "pair_spring", "pair_force"),
     "accuracy_profile": ("profile", "accuracy_cost"),

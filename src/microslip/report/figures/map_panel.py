@@ -28,7 +28,7 @@ def fill(
     labelled: np.ndarray = LINE_LEVELS,
     size: float = 7.5,
 ) -> tuple[ContourSet, int]:
-    """Fill a panel with `mu_macro` over velocity and amplitude, interpolated as `friction.at` does.
+    """Fill a panel with `mu_macro` over velocity and amplitude, as `microslip.at` interpolates it.
 
     Contours end where the points do not support them. Then the points are drawn, and where they are
     few.

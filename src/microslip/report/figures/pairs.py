@@ -13,7 +13,7 @@ from microslip.report.figures import ticks
 from microslip.report.figures.cuts import computed
 from microslip.report.figures.data import at_one_poisson, require
 from microslip.report.figures.drives import SPRINGS
-from microslip.theory.creep import antiphase_creep
+from microslip.theory.drift import antiphase_drift
 
 NEEDED = {
     "one_spring": ("velocity", "stiffness", "mu_macro", "mu_macro_error", "converged"),
@@ -75,7 +75,7 @@ def _force(axes: Axes, dataset: xr.Dataset) -> None:
     columns = pulled["velocity"].values, pulled["force"].values, errors, pulled["converged"].values
     computed(axes, *columns, "constant force", color=look.VERMILLION)
     forces = np.linspace(0.0, 1.0, 200, endpoint=False)
-    velocity = antiphase_creep(forces, float(dataset["amplitude"]))
+    velocity = antiphase_drift(forces, float(dataset["amplitude"]))
     axes.plot(
         *(velocity, forces),
         color=look.VERMILLION,

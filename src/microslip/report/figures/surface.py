@@ -1,4 +1,4 @@
-"""The surface between the points of a map: that of `friction.at`, on a grid fine enough to draw.
+"""The surface between the points of a map: that of `microslip.at`, on a grid fine enough to draw.
 
 Datasets hold what was computed and nothing between it, so that no interpolation can be taken for a
 result. What a figure shows between the points is asked here of `query.interpolation`, whose error

@@ -110,7 +110,7 @@ class MapFriction:
 
         velocity, amplitude = (DataArray(part, dims="row") for part in points)
         try:
-            found = self._dataset.friction.at(velocity, amplitude, poisson=self._poisson)
+            found = self._dataset.microslip.at(velocity, amplitude, poisson=self._poisson)
         except InputError as error:
             if error.argument == "poisson":
                 raise error.renamed("nu") from None

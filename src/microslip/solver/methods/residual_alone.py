@@ -1,6 +1,6 @@
 """Anderson acceleration from full slip, which believes a small residual of the plain map.
 
-Where the creep is slow a state changes so little in a period that a small residual proves nothing.
+Where the drift is slow a state changes so little in a period that a small residual proves nothing.
 """
 
 from __future__ import annotations

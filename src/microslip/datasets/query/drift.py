@@ -1,4 +1,4 @@
-"""`dataset.creep.at(...)`: how fast a force moves a contact, from the certified map of a sweep."""
+"""Mean velocity under a force, from the certified map of a sweep over forces."""
 
 from __future__ import annotations
 
@@ -11,28 +11,27 @@ from microslip.datasets.query.cells import cells_of
 from microslip.datasets.query.coordinates import labelled
 from microslip.datasets.query.grid import axes_of_grid
 from microslip.foundation.errors import InputError
-from microslip.sweeps.creep_coordinates import CreepCoordinates, velocity_of
-from microslip.theory.creep_threshold import threshold
+from microslip.sweeps.drift_coordinates import DriftCoordinates, velocity_of
+from microslip.theory.drift_threshold import threshold
 
-STATES = ("stays", "creeps", "undecided", "runs away")
+STATES = ("stays", "drifts", "undecided", "runs away")
 """What becomes of a contact, by its code in the variable `state`; undecided: the force is that of
 the threshold, to within the error of this."""
-(STAYS, CREEPS, UNDECIDED, RUNS_AWAY) = range(len(STATES))
+(STAYS, DRIFTS, UNDECIDED, RUNS_AWAY) = range(len(STATES))
 THRESHOLD_ERROR = 1e-12
 """Of the closed forms that thresholds are known by."""
 
 
-@xr.register_dataset_accessor("creep")
-class Creep:
-    """How fast a force moves a contact, from the certified map of a sweep under forces.
+class Drift:
+    """Mean velocity under a force, from the certified map of a sweep over forces.
 
     Raises ValueError for another dataset.
     """
 
     def __init__(self, dataset: xr.Dataset):
-        if not certified_map.is_of_creep(dataset):
+        if not certified_map.is_of_drift(dataset):
             raise ValueError(
-                "no certified map of creep: allowed is certified_NAME of a sweep over forces that "
+                "no certified map of drift: allowed is certified_NAME of a sweep over forces that "
                 "says adaptive"
             )
         self._dataset = dataset
@@ -40,7 +39,7 @@ class Creep:
     def at(self, force: object, amplitude: object) -> xr.Dataset:
         """Mean velocity under a force and a bound of its error.
 
-        The map answers where the contact creeps.  Below the threshold it stays where it is, and
+        The map answers where the contact drifts.  Below the threshold it stays where it is, and
         from the force 1 on it runs away, whatever the map.
 
         Parameters
@@ -59,7 +58,7 @@ class Creep:
         ------
         InputError
             Naming the argument, for what is no such number, for what the dataset has lost, and for
-            what creeps beyond the largest force or the amplitudes of the map.
+            what drifts beyond the largest force or the amplitudes of the map.
         """
         if lazily.is_lazy(force, amplitude):
             asked = {"amplitude": labelled("amplitude", amplitude)}
@@ -72,13 +71,13 @@ class Creep:
         rows = amplitudes.values.ravel().astype(float)
         flat = forces.values.ravel().astype(float)
         coordinates = found.cells.coordinates
-        assert isinstance(coordinates, CreepCoordinates)  # as __init__ demands
+        assert isinstance(coordinates, DriftCoordinates)  # as __init__ demands
         least = np.asarray(threshold(coordinates.motion, rows), float)
-        state = np.full(len(flat), CREEPS, np.int8)
+        state = np.full(len(flat), DRIFTS, np.int8)
         state[flat <= least + THRESHOLD_ERROR] = UNDECIDED
         state[(flat < least - THRESHOLD_ERROR) | (flat == 0.0)] = STAYS
         state[flat >= 1.0] = RUNS_AWAY
-        moves = (state == CREEPS) | (state == UNDECIDED)
+        moves = (state == DRIFTS) | (state == UNDECIDED)
         _refuse_beyond(coordinates, flat[moves], rows[moves])
         velocity, error = np.zeros((2, len(flat)))
         velocity[state == RUNS_AWAY] = np.inf
@@ -130,8 +129,8 @@ class Creep:
         )
 
 
-def _refuse_beyond(coordinates: CreepCoordinates, force: np.ndarray, amplitude: np.ndarray) -> None:
-    """Raise InputError, naming the argument, for the first place beyond the map that creeps."""
+def _refuse_beyond(coordinates: DriftCoordinates, force: np.ndarray, amplitude: np.ndarray) -> None:
+    """Raise InputError, naming the argument, for the first place beyond the map that drifts."""
     low, high = coordinates.amplitude
     for name, values, ends in (
         ("force", force, (0.0, coordinates.force)),
@@ -142,6 +141,6 @@ def _refuse_beyond(coordinates: CreepCoordinates, force: np.ndarray, amplitude: 
             raise InputError(
                 name,
                 float(beyond[0]),
-                f"allowed is {ends[0]:g} to {ends[1]:g} where the contact creeps: the map ends "
+                f"allowed is {ends[0]:g} to {ends[1]:g} where the contact drifts: the map ends "
                 "there, and microslip.solve goes on",
             )

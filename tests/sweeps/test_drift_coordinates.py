@@ -1,14 +1,14 @@
-"""Coordinates of maps of creep: where they begin, where they are cut, and what they interpolate."""
+"""Coordinates of maps of drift: where they begin, where they are cut, and what they interpolate."""
 
 import numpy as np
 import pytest
 
-from microslip.sweeps.creep_coordinates import CreepCoordinates, scaled_velocity, velocity_of
+from microslip.sweeps.drift_coordinates import DriftCoordinates, scaled_velocity, velocity_of
 from microslip.theory import paper
-from microslip.theory.creep_threshold import first_amplitude, is_known, threshold
+from microslip.theory.drift_threshold import first_amplitude, is_known, threshold
 
-SIDEWAYS = CreepCoordinates("transverse", 0.9, (0.0, 3.0))
-TURNING = CreepCoordinates("bore", 0.95, (0.5, 5.0))
+SIDEWAYS = DriftCoordinates("transverse", 0.9, (0.0, 3.0))
+TURNING = DriftCoordinates("bore", 0.95, (0.5, 5.0))
 
 
 @pytest.mark.parametrize("coordinates", [SIDEWAYS, TURNING])
@@ -41,7 +41,7 @@ def test_it_begins_where_the_threshold_is_the_largest_force_and_is_cut_where_it_
     assert TURNING.place((0.0, 0.0))[1] == 0.5
 
 
-def test_near_the_threshold_creep_as_the_power_3_2_is_smooth():
+def test_near_the_threshold_drift_as_the_power_3_2_is_smooth():
     """(P - threshold)^(3/2) is the third power of the scaled force, whatever the amplitude."""
     shares = np.array([0.02, 0.04])
     for row in (0.5, 1.3):
@@ -51,7 +51,7 @@ def test_near_the_threshold_creep_as_the_power_3_2_is_smooth():
 
 
 def test_as_json_it_is_the_same():
-    assert CreepCoordinates.from_json(SIDEWAYS.to_json()) == SIDEWAYS
+    assert DriftCoordinates.from_json(SIDEWAYS.to_json()) == SIDEWAYS
 
 
 def test_errors_are_absolute_where_it_is_slow_and_relative_where_it_is_fast():

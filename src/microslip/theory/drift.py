@@ -18,7 +18,7 @@ _FASTEST = 1e6
 so that rounding of the force (1e-16) already moves the velocity by 1e-3 of itself."""
 
 
-def transverse_creep(
+def transverse_drift(
     force: np.ndarray | float, amplitude: np.ndarray | float
 ) -> np.ndarray | float:
     """Mean velocity under sideways oscillation, (2/pi) A P / sqrt(1 - P^2).
@@ -47,10 +47,10 @@ def transverse_creep(
         return 2.0 / np.pi * amplitude * np.where(force < 1.0, force / held, np.inf)[()]
 
 
-def bore_creep(force: np.ndarray | float, amplitude: np.ndarray | float) -> np.ndarray | float:
+def bore_drift(force: np.ndarray | float, amplitude: np.ndarray | float) -> np.ndarray | float:
     """Mean velocity under oscillating bore, (2/pi) E^-1(P) with the friction E of Eq 21.
 
-    Arguments and errors are those of `transverse_creep`; forces between 1 - 1e-13 and 1 are
+    Arguments and errors are those of `transverse_drift`; forces between 1 - 1e-13 and 1 are
     refused, too.  The velocity is in the unit of that motion, which is proportional to the
     amplitude, so that it does not depend on the amplitude.
     """
@@ -68,7 +68,7 @@ def _steady_bore(force: float) -> float:
     return brentq(lambda velocity: float(bore_forward(velocity)) - force, 0.0, _FASTEST, xtol=1e-14)
 
 
-def antiphase_creep(force: np.ndarray | float, amplitude: np.ndarray | float) -> np.ndarray | float:
+def antiphase_drift(force: np.ndarray | float, amplitude: np.ndarray | float) -> np.ndarray | float:
     """Mean velocity of two spheres on one body that oscillate along its way against each other,
     (2/pi) (A - 1 + P^(2/3)) where that is above 0.
 
@@ -80,7 +80,7 @@ def antiphase_creep(force: np.ndarray | float, amplitude: np.ndarray | float) ->
     is the way of the body.  It moves from P = (1 - A)^(3/2) on, the static limit of each alone, and
     a rigid one at (2/pi) A under any force.
 
-    Arguments, result and errors as `transverse_creep`; at P = 0 it is the limit of a small force.
+    Arguments, result and errors as `transverse_drift`; at P = 0 it is the limit of a small force.
     """
     force, amplitude = checked("force", force), checked("amplitude", amplitude)
     moved = np.maximum(amplitude - 1.0 + force ** (2.0 / 3.0), 0.0)

@@ -1,4 +1,4 @@
-"""The force above which a vibrated contact creeps, where it is known exactly.
+"""The force above which a vibrated contact drifts, where it is known exactly.
 
 It is the static limit: a constant force keeps the forward force of the contact constant, as does a
 velocity that vanishes.  The contact must not oscillate along the force.

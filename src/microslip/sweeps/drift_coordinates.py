@@ -1,7 +1,7 @@
 """Coordinates in which the velocity under a force is even: from the threshold to the largest force.
 
 Below the static limit of its amplitude a contact stays where it is, which needs no map.  From there
-on it creeps, about as the power 3/2 of what the force is above that threshold, as friction comes
+on it drifts, about as the power 3/2 of what the force is above that threshold, as friction comes
 close to its static limit about as the power 2/3 of the velocity, and at the force 1 it runs away,
 as the power -1/2 of what the force is below 1 if it is rigid.  So forces are even in t, where
 tanh(t)^2 is their share of the way from the threshold to 1, and amplitudes gather where the
@@ -19,12 +19,12 @@ import numpy as np
 
 from microslip.foundation.canonical import canonical_json
 from microslip.sweeps.map_coordinates import Box, MapCoordinates, rounded
-from microslip.theory.creep_threshold import first_amplitude, threshold
+from microslip.theory.drift_threshold import first_amplitude, threshold
 from microslip.theory.kinks import Kinks, kinks_of
 
 
-class CreepCoordinates(NamedTuple):
-    """The range of a map of creep, and where it is cut; all dimensionless.
+class DriftCoordinates(NamedTuple):
+    """The range of a map of drift, and where it is cut; all dimensionless.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class CreepCoordinates(NamedTuple):
         return [((0.0, *low), (1.0, *high)) for low, high in self._rows.patches]
 
     @classmethod
-    def from_json(cls, text: str) -> CreepCoordinates:
+    def from_json(cls, text: str) -> DriftCoordinates:
         """What `to_json` made a text of."""
         given = json.loads(text)
         return cls(given["motion"], given["force"], tuple(given["amplitude"]))
@@ -73,7 +73,7 @@ class CreepCoordinates(NamedTuple):
     def scaled(
         self, force: np.ndarray, amplitude: np.ndarray, least: np.ndarray | None = None
     ) -> np.ndarray:
-        """Scaled coordinates, shape (n, 2), of places that creep, in the range, shape (n,) each.
+        """Scaled coordinates, shape (n, 2), of places that drift, in the range, shape (n,) each.
 
         least: the threshold at these amplitudes, where it is known already; it takes a while.
         """
@@ -109,7 +109,7 @@ def _stretched(force: np.ndarray | float, least: np.ndarray | float) -> np.ndarr
 
 
 def scaled_velocity(velocity: float, error: float) -> tuple[float, float]:
-    """What a map of creep interpolates, of a velocity and the bound of its error."""
+    """What a map of drift interpolates, of a velocity and the bound of its error."""
     low, middle, high = np.arcsinh([velocity - error, velocity, velocity + error]).tolist()
     return middle, max(high - middle, middle - low)
 

@@ -1,4 +1,4 @@
-"""Certified maps of creep: from what a configuration asks to the velocity under any force."""
+"""Certified maps of drift: from what a configuration asks to the velocity under any force."""
 
 import numpy as np
 import pytest
@@ -9,26 +9,27 @@ import microslip
 from microslip.config import load
 from microslip.config.records import ConfigError
 from microslip.datasets import certified_map
-from microslip.datasets.query.creep import STATES
+from microslip.datasets.query.drift import STATES
+from microslip.datasets.query.open_map import Drift, Friction
 from microslip.foundation.errors import InputError
 from microslip.sweeps import map_rounds
-from microslip.theory.creep_threshold import threshold
+from microslip.theory.drift_threshold import threshold
 
 ERROR = 5e-3
-CREEP = certified_stub.CREEP | {"adaptive": {"error": ERROR}}
+DRIFT = certified_stub.DRIFT | {"adaptive": {"error": ERROR}}
 
 
 @pytest.fixture(scope="module")
 def dataset(tmp_path_factory):
-    """A map of a creep that is made up, through a file."""
-    path = tmp_path_factory.mktemp("creep") / "certified_weights.nc"
-    certified_map.write(path, certified_stub.creeping(adaptive={"error": ERROR}))
+    """A map of a drift that is made up, through a file."""
+    path = tmp_path_factory.mktemp("drift") / "certified_weights.nc"
+    certified_map.write(path, certified_stub.drifting(adaptive={"error": ERROR}))
     with microslip.open_map("certified_weights", path.parent) as opened:
         return opened.load()
 
 
 def configured(**given):
-    drives = {"weights": CREEP | given}
+    drives = {"weights": DRIFT | given}
     return load.from_mapping({"sweeps": certified_stub.PAPER, "drives": drives})
 
 
@@ -42,69 +43,71 @@ def places(count, seed=8):
 
 
 def truth(force, amplitude):
-    velocity = certified_stub.creep(force.values, amplitude.values)
+    velocity = certified_stub.drift(force.values, amplitude.values)
     return xr.DataArray(velocity, dims="n")
 
 
 def test_answers_are_within_their_errors_and_these_within_what_was_asked(dataset):
     force, amplitude = places(2000)
-    answer, exact = dataset.creep.at(force, amplitude), truth(force, amplitude)
+    answer, exact = dataset.microslip.at(force, amplitude), truth(force, amplitude)
     covered = abs(answer.velocity - exact) <= answer.velocity_error
     assert float(covered.mean()) >= 0.999
     assert bool((answer.velocity_error <= 1.01 * ERROR * np.sqrt(1 + answer.velocity**2)).all())
-    moves = answer.state.values == STATES.index("creeps")
+    moves = answer.state.values == STATES.index("drifts")
     assert 0.5 < moves.mean() < 0.95
     assert np.array_equal(moves, exact.values > 0.0)
 
 
 def test_below_the_threshold_a_contact_stays_and_from_1_on_it_runs_away(dataset):
     least = float(threshold("transverse", 0.5))
-    answer = dataset.creep.at([0.0, 0.99 * least, least, 1.01 * least, 1.0, 2.0], 0.5)
+    answer = dataset.microslip.at([0.0, 0.99 * least, least, 1.01 * least, 1.0, 2.0], 0.5)
     states = [STATES[code] for code in answer.state.values]
-    assert states == ["stays", "stays", "undecided", "creeps", "runs away", "runs away"]
+    assert states == ["stays", "stays", "undecided", "drifts", "runs away", "runs away"]
     assert not answer.velocity.values[:2].any() and not answer.velocity_error.values[:2].any()
     assert np.isinf(answer.velocity.values[4:]).all()
     assert answer.threshold.values == pytest.approx(least)
-    still = dataset.creep.at([0.0, 0.5, 0.99], 0.0)  # nothing oscillates
+    still = dataset.microslip.at([0.0, 0.5, 0.99], 0.0)  # nothing oscillates
     assert set(still.state.values) == {STATES.index("stays")}
     # a threshold of 0 is none: no force moves nothing
-    assert STATES[int(dataset.creep.at(0.0, 2.0).state)] == "stays"
+    assert STATES[int(dataset.microslip.at(0.0, 2.0).state)] == "stays"
 
 
-def test_what_creeps_beyond_the_map_is_refused(dataset):
+def test_what_drifts_beyond_the_map_is_refused(dataset):
     with pytest.raises(InputError, match="force = 0.97: allowed is 0 to 0.95"):
-        dataset.creep.at(0.97, 1.0)
+        dataset.microslip.at(0.97, 1.0)
     with pytest.raises(InputError, match="amplitude = 4.0: allowed is 0 to 3"):
-        dataset.creep.at(0.5, 4.0)
+        dataset.microslip.at(0.5, 4.0)
     with pytest.raises(InputError, match="force = -0.5: allowed is a finite number"):
-        dataset.creep.at(-0.5, 1.0)
+        dataset.microslip.at(-0.5, 1.0)
 
 
 def test_in_chunks_the_answer_is_the_same_and_waits(dataset):
     force, amplitude = places(500)
-    lazy = dataset.creep.at(force.chunk(n=150), amplitude.chunk(n=150))
+    lazy = dataset.microslip.at(force.chunk(n=150), amplitude.chunk(n=150))
     assert lazy.velocity.chunks == ((150, 150, 150, 50),)
-    xr.testing.assert_identical(lazy.compute(), dataset.creep.at(force, amplitude))
+    xr.testing.assert_identical(lazy.compute(), dataset.microslip.at(force, amplitude))
 
 
 def test_a_grid_answers_as_points_do(dataset):
-    grid = dataset.creep.on_grid(force=[0.2, 0.8], amplitude=[0.5, 1.0, 2.0])
+    grid = dataset.microslip.on_grid(force=[0.2, 0.8], amplitude=[0.5, 1.0, 2.0])
     assert grid.velocity.dims == ("amplitude", "force")
-    assert float(grid.velocity[1, 0]) == float(dataset.creep.at(0.2, 1.0).velocity)
+    assert float(grid.velocity[1, 0]) == float(dataset.microslip.at(0.2, 1.0).velocity)
 
 
 def test_each_accessor_refuses_what_is_not_its_own(dataset):
-    with pytest.raises(ValueError, match="creep.at of a certified map"):
+    with pytest.raises(ValueError, match="microslip.at of a certified map"):
         dataset.friction  # noqa: B018
-    with pytest.raises(ValueError, match="no certified map of creep"):
-        certified_stub.bore().creep  # noqa: B018
-    with pytest.raises(InputError, match="velocity_error = None: creep.at needs it"):
-        dataset.drop_vars("velocity_error").creep.at(0.5, 1.0)
+    with pytest.raises(ValueError, match="no certified map of drift"):
+        Drift(certified_stub.bore())
+    assert isinstance(dataset.microslip, Drift)
+    assert isinstance(certified_stub.bore().microslip, Friction)
+    with pytest.raises(InputError, match="velocity_error = None: microslip.at needs it"):
+        dataset.drop_vars("velocity_error").microslip.at(0.5, 1.0)
 
 
 def test_a_point_that_failed_leaves_its_cell_unanswered():
-    data = certified_stub.creeping(fails=lambda force, amplitude: force == 0.95 and amplitude > 2.9)
-    answer = data.creep.at(0.94, 2.99)
+    data = certified_stub.drifting(fails=lambda force, amplitude: force == 0.95 and amplitude > 2.9)
+    answer = data.microslip.at(0.94, 2.99)
     assert np.isnan(answer.velocity) and np.isinf(answer.velocity_error)
     assert "1 not converged" in next(certified_map.report(data, "weights"))
 
@@ -136,7 +139,7 @@ BAD = [
 
 @pytest.mark.parametrize(("given", "said"), BAD, ids=[said for _, said in BAD])
 def test_what_has_no_such_map_is_refused_in_a_line(given, said):
-    given = {name: value for name, value in (CREEP | given).items() if value is not None}
+    given = {name: value for name, value in (DRIFT | given).items() if value is not None}
     with pytest.raises(ConfigError) as refused:
         load.from_mapping({"sweeps": certified_stub.PAPER, "drives": {"weights": given}})
     line = str(refused.value)
@@ -145,7 +148,7 @@ def test_what_has_no_such_map_is_refused_in_a_line(given, said):
 
 
 def test_a_name_that_a_certified_map_takes_is_refused():
-    drives = {"weights": CREEP, "certified_weights": certified_stub.CREEP}
+    drives = {"weights": DRIFT, "certified_weights": certified_stub.DRIFT}
     with pytest.raises(ConfigError, match="certified_weights: another result has this name"):
         load.from_mapping({"sweeps": certified_stub.PAPER, "drives": drives})
 
@@ -158,6 +161,6 @@ def test_the_solver_agrees_at_places_that_no_map_has_used():
     for amplitude in rng.uniform(0.3, 2.0, 6):
         force = rng.uniform(float(threshold("transverse", amplitude)), 0.95)
         found = microslip.solve("transverse", None, amplitude, force=force, tolerance=3e-3)
-        answer = data.creep.at(force, amplitude)
+        answer = data.microslip.at(force, amplitude)
         off = abs(float(answer.velocity) - found.velocity)
         assert off <= float(answer.velocity_error) + found.velocity_error

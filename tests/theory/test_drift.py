@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import brentq
 
 from microslip.foundation.errors import InputError
-from microslip.theory.creep import antiphase_creep, bore_creep, transverse_creep
+from microslip.theory.drift import antiphase_drift, bore_drift, transverse_drift
 from microslip.theory.hertz import mindlin_force
 from microslip.theory.paper import bore_forward
 
@@ -17,45 +17,45 @@ def test_a_rigid_contact_feels_the_force_at_every_instant_sideways(force):
     """Moving in proportion to the vibration, with the mean that the closed form tells."""
     amplitude = 3.0
     vibration = amplitude * np.abs(np.cos(PHASES))
-    velocity = transverse_creep(force, amplitude) * vibration / vibration.mean()
+    velocity = transverse_drift(force, amplitude) * vibration / vibration.mean()
     assert velocity / np.hypot(velocity, vibration) == pytest.approx(force, rel=1e-6)
 
 
 @pytest.mark.parametrize("force", [0.01, 0.3, 0.6, 0.95])
 def test_a_rigid_contact_feels_the_force_at_every_instant_boring(force):
     rotation = np.abs(np.cos(PHASES))  # over its largest
-    velocity = bore_creep(force, 1.0) * rotation / rotation.mean()
+    velocity = bore_drift(force, 1.0) * rotation / rotation.mean()
     assert bore_forward(velocity / rotation) == pytest.approx(force, rel=1e-6)
 
 
 def test_amplitudes_and_forces_broadcast():
     forces, amplitudes = np.array([0.2, 0.5]), np.array([[1.0], [2.0]])
-    sideways, boring = transverse_creep(forces, amplitudes), bore_creep(forces, amplitudes)
+    sideways, boring = transverse_drift(forces, amplitudes), bore_drift(forces, amplitudes)
     assert sideways.shape == boring.shape == (2, 2)
     assert sideways[1] == pytest.approx(2.0 * sideways[0])
     assert np.array_equal(boring[0], boring[1])  # in the unit of that motion
 
 
-@pytest.mark.parametrize("creep", [transverse_creep, bore_creep])
-def test_ends(creep):
-    assert creep(0.0, 1.0) == 0.0
-    assert np.isinf(creep(1.0, 1.0)) and np.isinf(creep(1.5, 1.0))
+@pytest.mark.parametrize("drift", [transverse_drift, bore_drift])
+def test_ends(drift):
+    assert drift(0.0, 1.0) == 0.0
+    assert np.isinf(drift(1.0, 1.0)) and np.isinf(drift(1.5, 1.0))
     with pytest.raises(ValueError, match="force = -0.1"):
-        creep(-0.1, 1.0)
+        drift(-0.1, 1.0)
 
 
 def test_a_force_that_rounding_does_not_tell_from_full_friction_is_refused():
     with pytest.raises(InputError, match="force = 0.99999999999999: allowed are forces up to"):
-        bore_creep(1.0 - 1e-14, 1.0)
+        bore_drift(1.0 - 1e-14, 1.0)
 
 
 @pytest.mark.parametrize("force", [0.02, 0.3, 0.8])
 def test_two_spheres_that_work_against_each_other_move_from_their_static_limit_on(force):
     """The limit is 1 - force, loaded to: x with 1 - (1 - x)^(3/2), the force of a first loading."""
     limit = brentq(lambda amplitude: 1.0 - float(mindlin_force(amplitude)) - force, 0.0, 1.0)
-    assert antiphase_creep(force, limit) == pytest.approx(0.0, abs=1e-12)
-    assert antiphase_creep(force, 0.99 * limit) == 0.0
+    assert antiphase_drift(force, limit) == pytest.approx(0.0, abs=1e-12)
+    assert antiphase_drift(force, 0.99 * limit) == 0.0
     # from there on all of the stroke is way: 4 amplitudes in a period for one sphere and the other
-    grown = antiphase_creep(force, limit + 1.0) - antiphase_creep(force, limit)
+    grown = antiphase_drift(force, limit + 1.0) - antiphase_drift(force, limit)
     assert 2.0 * np.pi * grown == pytest.approx(4.0)
-    assert np.isinf(antiphase_creep(1.0, 1.0))
+    assert np.isinf(antiphase_drift(1.0, 1.0))
