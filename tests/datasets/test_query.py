@@ -406,7 +406,7 @@ def test_a_wide_error_outside_the_map_names_the_remedy():
     answer = data.microslip.at([0.1, 1.0], 20.0)
     largest = float(answer.mu_macro_error.max())
     assert answer.attrs["note"].startswith("2 of 2 points outside the tabulated range")
-    assert f"up to {largest:.2g}: friction.at(..., tolerance=1e-3)" in answer.attrs["note"]
+    assert f"up to {largest:.2g}: microslip.at(..., tolerance=1e-3)" in answer.attrs["note"]
 
 
 @pytest.mark.long
