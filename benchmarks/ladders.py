@@ -1,12 +1,13 @@
 """How coarse may the levels of the error estimate be?  Its rule, replayed on stored runs.
 
-    python benchmarks/ladders.py [--points N] [--tolerances 1e-2,1e-3] [--start F] [--safety S]
-                                 [--smallest F] [--seed S] [--store FILE] [--markdown FILE]
+    python benchmarks/ladders.py [--points N] [--skip M] [--tolerances 1e-2,1e-3] [--start F]
+                                 [--safety S] [--smallest F] [--seed S] [--store FILE]
+                                 [--markdown FILE]
 
 The points are those with a reference in docs/measured/references-SEED.csv, up to N of a stratum at
-a tolerance, without closed forms.  Every run is done once and stored by point and resolution, so
-that other starts (times F), safety factors and floors (shares of the tolerance) cost no runs but
-those at new resolutions.  An interrupted run goes on where it stopped.
+a tolerance after the first M of them, without closed forms.  Every run is done once and stored by
+point and resolution, so that other starts (times F), safety factors and floors (shares of the
+tolerance) cost no runs but those at new resolutions.  An interrupted run goes on where it stopped.
 
 A point fails if the error of its value is above the estimate by more than the uncertainty of the
 reference.
@@ -66,20 +67,21 @@ class Store:
         return pickle.loads(found[0]), found[1]
 
 
-def sample(references: dict, seed: int, most: int, tolerances: list[float]):
-    """(k, point, Problem) of up to `most` points of each stratum at each tolerance."""
+def sample(references: dict, seed: int, numbers: range, tolerances: list[float]):
+    """(k, point, Problem) of the points with these numbers in each stratum at each tolerance."""
     count = Counter()
     for k in sorted(references):
         point = blind_points.point(seed, k)
         kind = point["stratum"], point["tolerance"]
-        if point["tolerance"] not in tolerances or count[kind] == most:
+        if point["tolerance"] not in tolerances or count[kind] == numbers.stop:
             continue
         place = (point["velocity"], point["amplitude"], point["poisson"])
         pressure = pressure_named(point["pressure"])
         problem = Problem(motion_named(point["motion"]), *place, pressure)
         if closed_form(problem, point["tolerance"]) is None:
             count[kind] += 1
-            yield k, point, problem
+            if count[kind] > numbers.start:
+                yield k, point, problem
 
 
 def examine(store: Store, k: int, point: dict, problem: Problem, start: float) -> dict:
@@ -128,6 +130,7 @@ def row(stratum: str, tolerance: float, lines: list[dict]) -> dict:
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--points", type=int, default=300)
+    parser.add_argument("--skip", type=int, default=0, help="of these, from the first one on")
     parser.add_argument("--tolerances", default="1e-2,1e-3")
     parser.add_argument("--start", type=float, default=1.0)
     parser.add_argument("--safety", type=float, default=richardson.SAFETY)
@@ -142,7 +145,8 @@ def main():
     references = known_references.read(DOCS / f"references-{options.seed}.csv", options.seed)
     tolerances = [float(one) for one in options.tolerances.split(",")]
     lines, failed = {}, []
-    for k, point, problem in sample(references, options.seed, options.points, tolerances):
+    numbers = range(options.skip, options.points)
+    for k, point, problem in sample(references, options.seed, numbers, tolerances):
         line = examine(store, k, point, problem, options.start)
         found, known = line["found"], references[k]
         off = abs(found.value - known["reference"])
