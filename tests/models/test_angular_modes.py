@@ -1,19 +1,15 @@
 """The operator on rings x angles against a plain sum over modes; steps against plain descent."""
 
+import numba
 import numpy as np
 import pytest
 from reference_march import solved_stage
 
+from microslip.contacts.operators import multiply
+from microslip.contacts.splitting import PENALTIES
 from microslip.models.contact import energy_norm
 from microslip.models.path import EULER, SDIRK2, make_path
-from microslip.models.polar import angular_modes
-from microslip.models.polar.angular_modes import (
-    apply_sectors,
-    influence_sectors,
-    quickest,
-)
 from microslip.models.polar.contact import PolarContact
-from microslip.models.polar.folding import fold, unfold
 from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import make_rings
 
@@ -79,16 +75,19 @@ def plain_displacement(state, cells, angles, rotates, nu, focus):
     return np.stack([u.imag, u.real])
 
 
-def operator_on(operator):
-    """The operator as a function of states (2, M, N)."""
+@numba.njit
+def apply_here(operators, number, field, image):
+    multiply(operators, number, field, image)
+
+
+def operator_of(contact, number=0):
+    """An operator of a contact as a function of states (2, M, N)."""
 
     def apply(state):
-        folded = np.empty((4, state.shape[1] // 2, state.shape[2]))
-        image, out = np.empty_like(folded), np.empty_like(state)
-        fold(np.ascontiguousarray(state), folded)
-        apply_sectors(operator, folded, image)
-        unfold(image, out)
-        return out
+        field = contact.layout.pack(state)
+        image = np.empty_like(field)
+        apply_here(contact.system().operators, number, field, image)
+        return contact.layout.unpack(image)
 
     return apply
 
@@ -106,25 +105,25 @@ def rng():
 
 @cases
 def test_operator_is_the_plain_sum_over_modes(cells, angles, rotates, nu, focus, rng):
-    operator, compliance = influence_sectors(cells, angles, rotates, nu, focus)
-    apply = operator_on(operator)
+    contact = PolarContact(cells, angles, rotates, nu, focus)
     for _ in range(3):
         state = rng.normal(size=(2, angles, cells))
         expected = plain_displacement(state, cells, angles, rotates, nu, focus)
-        assert apply(state) == pytest.approx(expected[:, :angles], abs=1e-12)
+        moved = contact.displacement(state)
+        assert moved == pytest.approx(expected[:, :angles], abs=1e-12)
         # the other half of the disc moves as the symmetry says
         other = whole_disc(expected[:, :angles], rotates)[angles:]
         found = expected[1, angles:] + 1j * expected[0, angles:]
         assert found == pytest.approx(other, abs=1e-12)
     near, _ = ring_modes(cells, angles, nu, focus)
-    assert compliance == pytest.approx(np.diag(near(0)), rel=1e-12)
+    assert contact.compliance == pytest.approx(np.diag(near(0)), rel=1e-12)
 
 
 @pytest.mark.slow
 @cases
 def test_operator_is_symmetric_and_positive_in_the_energy(cells, angles, rotates, nu, focus):
-    operator, _ = influence_sectors(cells, angles, rotates, nu, focus)
-    matrix = matrix_of(operator_on(operator), angles, cells)
+    contact = PolarContact(cells, angles, rotates, nu, focus)
+    matrix = matrix_of(contact.displacement, angles, cells)
     area = np.tile(make_rings(cells, focus).area, 2 * angles)
     energy = area[:, None] * matrix
     assert energy == pytest.approx(energy.T, abs=1e-13 * np.abs(energy).max())
@@ -132,52 +131,20 @@ def test_operator_is_symmetric_and_positive_in_the_energy(cells, angles, rotates
 
 
 @cases
-def test_shifted_inverse_undoes_the_shifted_operator(cells, angles, rotates, nu, focus, rng):
-    operator, _ = influence_sectors(cells, angles, rotates, nu, focus)
-    for shift in (rng.uniform(0.1, 2.0, cells), np.zeros(cells)):
-        inverse = operator_on(angular_modes.shifted_inverse(operator, shift))
-        apply = operator_on(operator)
+def test_resolvents_undo_the_shifted_operator(cells, angles, rotates, nu, focus, rng):
+    contact = PolarContact(cells, angles, rotates, nu, focus)
+    apply = operator_of(contact)
+    for number, factor in enumerate(PENALTIES, start=1):
+        inverse, shift = operator_of(contact, number), factor * contact_penalty(contact)
         state = rng.normal(size=(2, angles, cells))
         assert inverse(apply(state) + shift * state) == pytest.approx(state, abs=1e-10)
         back = inverse(state)
         assert apply(back) + shift * back == pytest.approx(state, abs=1e-10)
 
 
-@cases
-def test_dense_and_modal_forms_agree(cells, angles, rotates, nu, focus, rng, monkeypatch):
-    operator, compliance = influence_sectors(cells, angles, rotates, nu, focus)
-    for each in (operator, angular_modes.shifted_inverse(operator, compliance)):
-        monkeypatch.setattr(angular_modes, "LARGEST_DENSE", 0)
-        assert quickest(each).dense.size == 0
-        monkeypatch.setattr(angular_modes, "LARGEST_DENSE", 10**6)
-        dense = quickest(each)
-        # all four parts are separate at nu = 0, two and two together otherwise
-        count, parts = (2, 2) if nu > 0.0 else (4, 1)
-        size = parts * angles * cells // 2
-        assert dense.dense.shape == (count, size, size)
-        state = rng.normal(size=(2, angles, cells))
-        assert operator_on(dense)(state) == pytest.approx(operator_on(each)(state), abs=1e-12)
-
-
-@pytest.mark.parametrize(("largest", "dense"), [(23, False), (24, True)])
-def test_dense_form_is_taken_up_to_the_largest_size(largest, dense, monkeypatch):
-    operator, _ = influence_sectors(6, 4, True, 0.3, None)  # two sectors of 24 unknowns
-    monkeypatch.setattr(angular_modes, "LARGEST_DENSE", largest)
-    assert (quickest(operator).dense.size > 0) == dense
-
-
-@pytest.mark.parametrize("shape", [(2, 2, 3), (2, 4, 1), (2, 10, 7)])
-def test_folding_takes_even_and_odd_parts(shape, rng):
-    state = rng.normal(size=shape)
-    folded, back = np.empty((4, shape[1] // 2, shape[2])), np.empty(shape)
-    fold(state, folded)
-    mirror = state[:, ::-1]
-    forward, lateral = range(2)
-    even, odd = (0.5 * (state + sign * mirror)[:, : shape[1] // 2] for sign in (1, -1))
-    expected = [even[forward], odd[lateral], odd[forward], even[lateral]]
-    assert folded == pytest.approx(np.stack(expected), abs=1e-15)
-    unfold(folded, back)
-    assert back == pytest.approx(state, abs=1e-15)
+def contact_penalty(contact):
+    """Penalty of the solver at every point of a state."""
+    return contact.layout.unpack(contact.system().solver.penalty)
 
 
 # Steps

@@ -111,12 +111,14 @@ def solve_here(system, step, fields):
 
 def solved(contact, b, start, tolerance, patience=None):
     """(tractions, slip, residual, iterations) of one step."""
-    system, scratch = contact.system(), tuple(np.empty_like(b) for _ in range(3))
+    system, shape = contact.system(), b.shape
+    b, start, bound = (field.reshape(*field.shape[:-2], -1) for field in (b, start, contact.bound))
+    scratch = tuple(np.empty_like(b) for _ in range(3))
     if patience is not None:
         system = system._replace(solver=system.solver._replace(patience=patience))
     fields = Fields(start.copy(), np.empty_like(b), np.empty_like(b), scratch)
-    iterations, residual, _ = solve_here(system, Step(b, contact.bound, tolerance), fields)
-    return fields.q, fields.slip, residual, iterations
+    iterations, residual, _ = solve_here(system, Step(b, bound, tolerance), fields)
+    return fields.q.reshape(shape), fields.slip.reshape(shape), residual, iterations
 
 
 @pytest.mark.parametrize("nu", NUS)

@@ -8,11 +8,11 @@ from microslip.models.contact import LATERAL, TORQUE, energy_norm, forces, forwa
 from microslip.models.path import make_path
 from microslip.models.pull import Body
 from microslip.models.registry import MODELS
+from microslip.models.side_by_side import SideBySide
 from microslip.models.squares import contact as squares_contact
 from microslip.models.squares.contact import CartesianContact
 from microslip.models.squares.convolution import convolve, square_convolution, workspace
 from microslip.models.squares.half import MIRROR, TURN
-from microslip.models.squares.side_by_side import SquaresSideBySide
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.pressures.by_name import pressure_named
@@ -123,7 +123,7 @@ def test_squares_count_for_their_images(kind, rng):
     energies = energy_norm(every, full), energy_norm(fewer, state)
     assert energies[1] == pytest.approx(energies[0], rel=1e-13)
     assert np.array_equal(whole(kind, fewer.mirrored(state)), every.mirrored(full))
-    rooms = [workspace(contact.operator)[0].nbytes for contact in (every, fewer)]
+    rooms = [workspace(contact.operators.convolution)[0].nbytes for contact in (every, fewer)]
     assert rooms[1] <= 0.6 * rooms[0]
 
 
@@ -159,7 +159,7 @@ def test_a_pulled_march_is_that_of_all_squares(kind):
 def test_they_stand_side_by_side(kind, rng):
     """Displacements and mirror images of two contacts on one body."""
     shares, extents = (0.7, 0.3), (1.25, 0.71)
-    one, other = (SquaresSideBySide([c, c], shares, extents) for c in both(kind, 6))
+    one, other = (SideBySide([c, c], shares, extents) for c in both(kind, 6))
     states = [some_state(kind, 6, rng) for _ in range(2)]
     joined = np.concatenate(states, axis=-1)
     full = np.concatenate([whole(kind, state) for state in states], axis=-1)

@@ -10,6 +10,7 @@ does not fall with d, and rises by the stiffness of the contact at most.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +19,14 @@ from microslip.contacts.coulomb import shrink
 from microslip.contacts.interrupts import BETWEEN_LOOKS, interrupted
 from microslip.contacts.operators import multiply
 from microslip.contacts.step import Balance, Fields, Step, step_solver
-from microslip.contacts.system import System, copy, forward_force, move_forward, project
+from microslip.contacts.system import (
+    COMPLIANCE,
+    System,
+    copy,
+    forward_force,
+    move_forward,
+    project,
+)
 from microslip.foundation.compiled import kernel
 
 MOST_ITERATIONS = 5000
@@ -54,23 +62,34 @@ class Descent(NamedTuple):
     length: np.ndarray
     sums: np.ndarray
 
+    def own(self) -> Descent:
+        """The same with scratch of its own."""
+        return self._replace(length=self.length.copy(), sums=np.empty_like(self.sums))
+
+    @staticmethod
+    def joined(each: Sequence[Descent], extents: np.ndarray, weight: np.ndarray) -> Descent:
+        """The solver of several equal contacts on one body, see models/side_by_side.py."""
+        first, largest = each[0], float(extents.max())
+        length, sums = first.length / largest, np.empty_like(first.sums)
+        return first._replace(largest=first.largest * largest, length=length, sums=sums)
+
 
 @kernel
-def _respond(system, fields, response):
+def _respond(system, fields, response, slope):
     """No response is known; the slope is at most the stiffness."""
-    return system.stiffness
+    slope[0] = system.stiffness
 
 
 @step_solver(Descent, _respond)
 @kernel
 def descend(
-    system: System, balance: Balance | None, step: Step, fields: Fields
+    system: System, balance: Balance, step: Step, fields: Fields
 ) -> tuple[int, float, float]:
     """Solve a Coulomb step from fields.y on; see step.solve_step."""
     copy(fields.q, fields.y)
     project(fields.q, step.bound)
     displacement = 0.0
-    if balance is None:
+    if len(balance.slope) == 0:
         count, residual = _descend(system, step, fields)
     else:
         count, residual, displacement = _balanced(system, balance, step, fields)
@@ -81,7 +100,7 @@ def descend(
 @kernel
 def _balanced(system, balance, step, fields):
     """Iterations, residual and displacement of a driven step."""
-    steepest = balance.stiffness + balance.slope
+    steepest = balance.stiffness + balance.slope[0]
     b, place, slope = step.imposed.copy(), 0.0, steepest
     inner = Step(b, step.bound, INNER * step.tolerance)
     low, high, before, last_gap = -np.inf, np.inf, np.nan, np.nan
@@ -120,7 +139,7 @@ def _descend(system, step, fields):
     between = int(BETWEEN_LOOKS / (100.0 * q.size)) + 1
     best, best_at, residual = np.inf, 0, np.inf
     for iteration in range(MOST_ITERATIONS):
-        multiply(system.compliance, trial, elastic)
+        multiply(system.operators, COMPLIANCE, trial, elastic)
         dd, ds, ss = _replace(system, step, fields, trial, elastic)
         if iteration == 0:
             length = solver.length[0]  # of the last step
@@ -145,21 +164,18 @@ def _descend(system, step, fields):
 def _projected_step(system, step, fields, length, trial):
     """trial = P(q + length slip); returns the residual as coulomb.coulomb_residual."""
     q, slip, sums = fields.q, fields.slip, system.solver.sums[0]
-    scale, bound, weight = system.scale, step.bound, system.weight
-    last = len(bound) - 1
+    scale, bound, weight, columns = system.scale, step.bound, system.weight, len(sums)
     sums[:] = 0.0
-    for i in range(q.shape[1]):
-        row = min(i, last)
-        for j in range(q.shape[2]):
-            forward = q[0, i, j] + length * slip[0, i, j]
-            lateral = q[1, i, j] + length * slip[1, i, j]
-            f = shrink(forward, lateral, bound[row, j])
-            trial[0, i, j], trial[1, i, j] = f * forward, f * lateral
-            forward = q[0, i, j] + slip[0, i, j] / scale[j]
-            lateral = q[1, i, j] + slip[1, i, j] / scale[j]
-            f = shrink(forward, lateral, bound[row, j])
-            forward, lateral = f * forward - q[0, i, j], f * lateral - q[1, i, j]
-            sums[j] += weight[j] * np.sqrt(forward * forward + lateral * lateral)
+    for first in range(0, q.shape[1], columns):
+        for j in range(columns):
+            i = first + j
+            forward, lateral = q[0, i] + length * slip[0, i], q[1, i] + length * slip[1, i]
+            f = shrink(forward, lateral, bound[i])
+            trial[0, i], trial[1, i] = f * forward, f * lateral
+            forward, lateral = q[0, i] + slip[0, i] / scale[i], q[1, i] + slip[1, i] / scale[i]
+            f = shrink(forward, lateral, bound[i])
+            forward, lateral = f * forward - q[0, i], f * lateral - q[1, i]
+            sums[j] += weight[i] * np.sqrt(forward * forward + lateral * lateral)
     return sums.sum()
 
 
@@ -168,17 +184,17 @@ def _replace(system, step, fields, trial, elastic):
     """q = trial, slip = b - A q; returns <dq, dq>, -<dq, ds> and <ds, ds> of the change, weighted
     with the areas."""
     q, slip, sums, b, bound = fields.q, fields.slip, system.solver.sums, step.imposed, step.bound
-    weight, last = system.weight, len(bound) - 1
+    weight, columns = system.weight, sums.shape[1]
     sums[:] = 0.0
     for c in range(2):
-        for i in range(q.shape[1]):
-            row = min(i, last)
-            for j in range(q.shape[2]):
-                dq = trial[c, i, j] - q[c, i, j]
-                now = b[c, i, j] - elastic[c, i, j]
-                ds = slip[c, i, j] - now if bound[row, j] > 0.0 else 0.0
-                sums[0, j] += weight[j] * dq * dq
-                sums[1, j] += weight[j] * dq * ds
-                sums[2, j] += weight[j] * ds * ds
-                q[c, i, j], slip[c, i, j] = trial[c, i, j], now
+        for first in range(0, q.shape[1], columns):
+            for j in range(columns):
+                i = first + j
+                dq = trial[c, i] - q[c, i]
+                now = b[c, i] - elastic[c, i]
+                ds = slip[c, i] - now if bound[i] > 0.0 else 0.0
+                sums[0, j] += weight[i] * dq * dq
+                sums[1, j] += weight[i] * dq * ds
+                sums[2, j] += weight[i] * ds * ds
+                q[c, i], slip[c, i] = trial[c, i], now
     return sums[0].sum(), sums[1].sum(), sums[2].sum()

@@ -17,8 +17,17 @@ from microslip.contacts.coulomb import extended
 from microslip.contacts.drive import Drive, stage_balance, starting_place
 from microslip.contacts.interrupts import BETWEEN_LOOKS, interrupted
 from microslip.contacts.operators import multiply
-from microslip.contacts.step import Balance, Fields, Step, response_to_drive, solve_step
+from microslip.contacts.step import (
+    LEVELS,
+    QUICK,
+    Balance,
+    Fields,
+    Step,
+    response_to_drive,
+    solve_step,
+)
 from microslip.contacts.system import (
+    COMPLIANCE,
     System,
     add,
     add_displacement,
@@ -36,7 +45,7 @@ class Loading(NamedTuple):
     ----------
     motion : np.ndarray, shape (1 + steps stages, contacts, 3)
         Forward, lateral and angular displacement at the start and at every stage.
-    bound : np.ndarray, shape (1 + steps stages or 1, rows or 1, columns)
+    bound : np.ndarray, shape (1 + steps stages or 1, points)
         Friction bound at the start and at every stage; one where the normal load is constant.
     carry : np.ndarray, shape (stages, stages)
         Slips that a stage carries from earlier ones, a_ij / gamma.
@@ -81,7 +90,7 @@ class Trace(NamedTuple):
     broken: bool
 
 
-@kernel
+@kernel(**QUICK)
 def march(
     system: System,
     loading: Loading,
@@ -119,13 +128,14 @@ def march(
     history = np.empty((1 + steps * stages,) + shape)
     forces, body = np.zeros((steps + 1, 3)), np.zeros((steps + 1, 2))
     advances, gains = np.zeros(stages), np.zeros(stages)
-    multiply(system.compliance, state, z)
+    multiply(system.operators, COMPLIANCE, state, z)
     add_displacement(system, -1.0, loading.motion[0], z)
     sum_forces(system, state, forces[0])
     copy(history[0], y)
-    response, slope = np.empty_like(state), 0.0
+    levels = 0 if drive is None else LEVELS
+    response, slope = np.empty((levels,) + shape), np.zeros(levels)
     if drive is not None:
-        slope = response_to_drive(system, Fields(y, q, slips[0], scratch), response)
+        response_to_drive(system, Fields(y, q, slips[0], scratch), response, slope)
         body[0, 0], body[0, 1] = starting_place(drive, forces[0, 0]), drive.start[1]
         move_forward(-body[0, 0], z)
     total, spent, iterations = 0.0, 0.0, 0
@@ -144,26 +154,25 @@ def march(
                     add(y, 1.0, guess[at])
                     add(y, -1.0, guess[at - 1])
             elif k > 1:
+                last, earlier = history[at - stages], history[at - 2 * stages]
                 for c in range(2):
-                    for j in range(shape[1]):
-                        for i in range(shape[2]):
-                            last, earlier = at - stages, at - 2 * stages
-                            y[c, j, i] = 2.0 * history[last, c, j, i] - history[earlier, c, j, i]
+                    for i in range(shape[1]):
+                        y[c, i] = 2.0 * last[c, i] - earlier[c, i]
             step = Step(b, loading.bound[min(at, len(loading.bound) - 1)], tolerance)
             fields = Fields(y, q, slips[s], scratch)
-            if drive is None:
-                count, residual, _ = solve_step(system, None, step, fields)
-            else:
+            stiffness = load = 0.0
+            if drive is not None:
                 past_place, past_rate = body[k, 0], body[k, 1]
                 for j in range(s):
                     past_place += carry[s, j] * advances[j]
                     past_rate += carry[s, j] * gains[j]
                 move_forward(past_place, b)
                 stiffness, load = stage_balance(drive, k, past_place, past_rate)
-                balance = Balance(stiffness, load, response, slope)
-                count, residual, advances[s] = solve_step(system, balance, step, fields)
+            balance = Balance(stiffness, load, response, slope)
+            count, residual, advances[s] = solve_step(system, balance, step, fields)
+            if drive is not None:
                 gains[s] = advances[s] / drive.lengths[k] - past_rate
-            spent += count * 8.0 * q.size * shape[2]
+            spent += count * 100.0 * q.size
             if count < 0 or (spent > BETWEEN_LOOKS and interrupted()):
                 return Trace(at_end, history, forces, body, total, iterations, True)
             spent = 0.0 if spent > BETWEEN_LOOKS else spent
@@ -177,9 +186,8 @@ def march(
             body[k + 1, 0] = past_place + advances[stages - 1]
             body[k + 1, 1] = advances[stages - 1] / drive.lengths[k]
         for c in range(2):
-            for j in range(shape[1]):
-                for i in range(shape[2]):
-                    z[c, j, i] = extended(z[c, j, i], b[c, j, i], loading.end)
-                    at_end[c, j, i] = extended(at_end[c, j, i], q[c, j, i], loading.end)
+            for i in range(shape[1]):
+                z[c, i] = extended(z[c, i], b[c, i], loading.end)
+                at_end[c, i] = extended(at_end[c, i], q[c, i], loading.end)
         sum_forces(system, at_end, forces[k + 1])
     return Trace(at_end, history, forces, body, total, iterations, False)

@@ -1,26 +1,28 @@
 """Linear operators on the fields of a contact, for compiled code.
 
-A field has the shape (2, rows, columns): forward and lateral component at the points of a contact.
-An operator is an object of a class that a module registers with `operator`.  `Matrix` is the one
-of rings: it acts on each row of each component alike.
+A field has the shape (2, points): forward and lateral component.  An object of a class that a
+module registers with `operator` holds several operators: number 0 is A, from tractions to
+displacements, the others, if there are any, are what a step solver needs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numba.extending import overload
 
-from microslip.foundation.compiled import OPTIONS, kernel
+from microslip.contacts.lanes import LANES, NOTHING, four, plus, put
+from microslip.foundation.compiled import kernel
 
 _KERNELS = {}
-"""Class of an operator -> kernel(operator, field, image)."""
+"""Class of operators -> kernel(operators, number, field, image)."""
 
 
 def operator(of: type) -> Callable:
-    """Decorator of the kernel(operator, field, image) that applies operators of a NamedTuple."""
+    """Decorator of the kernel(operators, number, field, image) that applies an operator of a
+    NamedTuple."""
 
     def register(function):
         _KERNELS[of] = function
@@ -29,68 +31,84 @@ def operator(of: type) -> Callable:
     return register
 
 
-def multiply(operator: object, field: np.ndarray, image: np.ndarray) -> None:
-    """image = operator field, in compiled code; both (2, rows, columns)."""
+def multiply(operators: object, number: int, field: np.ndarray, image: np.ndarray) -> None:
+    """image = operator field, in compiled code; both (2, points)."""
     raise NotImplementedError("multiply is for compiled code")
 
 
-@overload(multiply, jit_options=OPTIONS | {"cache": False})
-def _multiply(operator, field, image):
-    apply = _KERNELS[operator.instance_class]
-    return lambda operator, field, image: apply(operator, field, image)
+@overload(multiply, inline="always")
+def _multiply(operators, number, field, image):
+    apply = _KERNELS[operators.instance_class]
+    return lambda operators, number, field, image: apply(operators, number, field, image)
 
 
-class Matrix(NamedTuple):
-    """A matrix on the columns of a field.
+class Matrices(NamedTuple):
+    """Matrices on the rows of a field that is cut into rows of equal width.
 
     Attributes
     ----------
-    blocks : np.ndarray, shape (ceil(n / 4), n, 4)
-        blocks[h, j, k] = matrix[4 h + k, j], zero beyond the last row: four rows are one vector.
+    blocks : np.ndarray, shape (operators, rows, chunks, columns, LANES)
+        blocks[number, row, h, k] are rows of a matrix in column k, from row `start(h, width)` on.
     """
 
     blocks: np.ndarray
 
+    def own(self) -> Matrices:
+        """The same: it has no scratch."""
+        return self
 
-def matrix_operator(matrix: np.ndarray) -> Matrix:
-    """The Matrix of an array of shape (n, n)."""
-    n = len(matrix)
-    padded = np.zeros((-(-n // 4) * 4, n))
-    padded[:n] = matrix
-    return Matrix(np.ascontiguousarray(padded.reshape(-1, 4, n).transpose(0, 2, 1)))
+    @staticmethod
+    def joined(each: Sequence[Matrices], extents: np.ndarray) -> Matrices:
+        """The matrices of several contacts on one body, see `scaled`."""
+        parts = [scaled(one.blocks, extent) for one, extent in zip(each, extents, strict=True)]
+        return Matrices(np.concatenate(parts, axis=1))
 
 
-@operator(Matrix)
+def scaled(blocks: np.ndarray, factor: float) -> np.ndarray:
+    """Blocks (operators, ...) of a contact whose A is larger by a factor: its resolvents are
+    smaller by that."""
+    factors = np.full(len(blocks), 1.0 / factor)
+    factors[0] = factor
+    return blocks * factors.reshape(-1, *(1,) * (blocks.ndim - 1))
+
+
+@kernel(inline="always")
+def start(chunk: int, width: int) -> int:
+    """First of the rows of a chunk: the last chunk overlaps the one before."""
+    return min(LANES * chunk, width - LANES)
+
+
+def packed(matrices: np.ndarray, width: int) -> np.ndarray:
+    """Matrices (..., n, n) as Matrices.blocks, for rows of a width of at least LANES."""
+    *shape, n, _ = matrices.shape
+    padded = np.zeros((*shape, width, n))
+    padded[..., :n, :] = matrices
+    firsts = [min(first, width - LANES) for first in range(0, width, LANES)]
+    chunks = [np.moveaxis(padded[..., first : first + LANES, :], -2, -1) for first in firsts]
+    return np.ascontiguousarray(np.stack(chunks, axis=-3))
+
+
+@operator(Matrices)
 @kernel(fastmath={"contract"})
-def multiply_matrix(operator: Matrix, field: np.ndarray, image: np.ndarray) -> None:
-    """image[c, j] = matrix field[c, j]."""
-    blocks, n = operator.blocks, field.shape[2]
-    for j in range(field.shape[1]):
-        for h in range(n // 4):
-            a0 = a1 = a2 = a3 = b0 = b1 = b2 = b3 = 0.0
-            for k in range(n):
-                x, y = field[0, j, k], field[1, j, k]
-                a0 += blocks[h, k, 0] * x
-                a1 += blocks[h, k, 1] * x
-                a2 += blocks[h, k, 2] * x
-                a3 += blocks[h, k, 3] * x
-                b0 += blocks[h, k, 0] * y
-                b1 += blocks[h, k, 1] * y
-                b2 += blocks[h, k, 2] * y
-                b3 += blocks[h, k, 3] * y
-            i = 4 * h
-            image[0, j, i] = a0
-            image[0, j, i + 1] = a1
-            image[0, j, i + 2] = a2
-            image[0, j, i + 3] = a3
-            image[1, j, i] = b0
-            image[1, j, i + 1] = b1
-            image[1, j, i + 2] = b2
-            image[1, j, i + 3] = b3
-        h = n // 4
-        for i in range(4 * h, n):
-            x = y = 0.0
-            for k in range(n):
-                x += blocks[h, k, i - 4 * h] * field[0, j, k]
-                y += blocks[h, k, i - 4 * h] * field[1, j, k]
-            image[0, j, i], image[1, j, i] = x, y
+def multiply_rows(operators: Matrices, number: int, field: np.ndarray, image: np.ndarray) -> None:
+    """image[c, row] = matrix[row] field[c, row]."""
+    _, rows, chunks, columns, _ = operators.blocks.shape
+    width = field.shape[1] // rows
+    for row in range(rows):
+        blocks, at = operators.blocks[number, row], row * width
+        forward, lateral = field[0, at:], field[1, at:]
+        for chunk in range(chunks):
+            a = b = c = d = e = f = g = h = NOTHING
+            for k in range(columns):
+                x, y = forward[k], lateral[k]
+                m = four(blocks[chunk, k], 0)
+                a, e = plus(a, m, x), plus(e, m, y)
+                m = four(blocks[chunk, k], 4)
+                b, f = plus(b, m, x), plus(f, m, y)
+                m = four(blocks[chunk, k], 8)
+                c, g = plus(c, m, x), plus(g, m, y)
+                m = four(blocks[chunk, k], 12)
+                d, h = plus(d, m, x), plus(h, m, y)
+            first = at + start(chunk, width)
+            put(image[0, first : first + LANES], a, b, c, d)
+            put(image[1, first : first + LANES], e, f, g, h)

@@ -15,6 +15,12 @@ from numba.extending import overload
 
 from microslip.foundation.compiled import OPTIONS
 
+QUICK = {"fastmath": {"contract", "nsz", "arcp"}}
+"""Fused multiply-add, reciprocals in place of divisions, no signed zeros: sums keep their order."""
+
+LEVELS = 4
+"""Number of penalties for which the resolvent is known."""
+
 
 class Step(NamedTuple):
     """A Coulomb step to be solved.
@@ -23,7 +29,7 @@ class Step(NamedTuple):
     ----------
     imposed : np.ndarray, field
         Displacement b, at d = 0.
-    bound : np.ndarray, shape (1 or rows, columns)
+    bound : np.ndarray, shape (points,)
         Friction bound g.
     tolerance : float
         Force over mu F_z.
@@ -41,16 +47,16 @@ class Balance(NamedTuple):
     ----------
     stiffness, load : float
         stiffness d + forward force = load.
-    response : np.ndarray, field
-        Tractions that the resolvent gives for d = 1.
-    slope : float
-        Their forward force; without a resolvent the stiffness of the contact.
+    response : np.ndarray, shape (levels, *field)
+        Tractions that the resolvent of each penalty gives for d = 1.
+    slope : np.ndarray, shape (levels,)
+        Their forward force; without a resolvent the stiffness of the contact; empty without a body.
     """
 
     stiffness: float
     load: float
     response: np.ndarray
-    slope: float
+    slope: np.ndarray
 
 
 class Fields(NamedTuple):
@@ -93,7 +99,7 @@ def step_solver(of: type, respond: Callable) -> Callable:
 
 
 def solve_step(
-    system: NamedTuple, balance: Balance | None, step: Step, fields: Fields
+    system: NamedTuple, balance: Balance, step: Step, fields: Fields
 ) -> tuple[int, float, float]:
     """Solve a Coulomb step in compiled code, by the solver of the system.
 
@@ -109,18 +115,20 @@ def solve_step(
     raise NotImplementedError("solve_step is for compiled code")
 
 
-def response_to_drive(system: NamedTuple, fields: Fields, response: np.ndarray) -> float:
-    """Fill `response` and return the slope of a Balance, in compiled code."""
+def response_to_drive(
+    system: NamedTuple, fields: Fields, response: np.ndarray, slope: np.ndarray
+) -> None:
+    """Fill the response and the slope of a Balance, in compiled code."""
     raise NotImplementedError("response_to_drive is for compiled code")
 
 
-@overload(solve_step, jit_options=OPTIONS | {"cache": False})
+@overload(solve_step, inline="always")
 def _solve_step(system, balance, step, fields):
     solve, _ = _SOLVERS[system.types[SOLVER].instance_class]
     return lambda system, balance, step, fields: solve(system, balance, step, fields)
 
 
 @overload(response_to_drive, jit_options=OPTIONS | {"cache": False})
-def _response_to_drive(system, fields, response):
+def _response_to_drive(system, fields, response, slope):
     _, respond = _SOLVERS[system.types[SOLVER].instance_class]
-    return lambda system, fields, response: respond(system, fields, response)
+    return lambda system, fields, response, slope: respond(system, fields, response, slope)

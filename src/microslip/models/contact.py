@@ -129,12 +129,13 @@ def full_slip(contact: Contact, forward: np.ndarray, lateral: np.ndarray) -> np.
 
 def forward_slip(contact: Contact) -> np.ndarray:
     """Every point on its bound, forward: the state of a contact that only ever slid forward."""
-    ones = np.ones_like(contact.forward_position)
-    return full_slip(contact, ones, 0.0 * ones)
+    out = np.zeros((2, *contact.forward_position.shape))
+    out[FORWARD] = contact.bound
+    return out
 
 
 def forces(contact: Contact, state: np.ndarray) -> np.ndarray:
     """Forward force, lateral force (mu F_z) and torque (mu F_z a) of tractions, shape (3,)."""
-    forward, lateral = contact.weight * state
-    torque = contact.lateral_position * forward - contact.forward_position * lateral
-    return np.array([forward.sum(), lateral.sum(), torque.sum()])
+    forward, lateral = loads = contact.weight * state
+    torque = np.vdot(contact.lateral_position, forward) - np.vdot(contact.forward_position, lateral)
+    return np.array([*loads.sum(axis=(1, 2)), torque])

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -123,13 +124,19 @@ class Path:
     def steps(self) -> int:
         return len(self.phase) - 1
 
+    @cached_property
     def motion(self) -> np.ndarray:
         """Displacement at the start and at every stage, (1 + steps stages, contacts, 3)."""
         return np.concatenate([self.positions[:1], self.stages.reshape(-1, 3)])[:, None]
 
+    @cached_property
+    def share(self) -> np.ndarray:
+        """Duration of each step over that of the path, (steps,)."""
+        return np.diff(self.phase) / (self.phase[-1] - self.phase[0])
+
     def mean(self, values: np.ndarray) -> np.ndarray:
         """Time average of values at the phases (first axis), by the trapezoidal rule."""
-        return np.trapezoid(values, self.phase, axis=0) / (self.phase[-1] - self.phase[0])
+        return 0.5 * (self.share @ values[1:] + self.share @ values[:-1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,9 +152,11 @@ class BodyPath(Path):
 
     each: tuple[Path, ...] = ()
 
+    @cached_property
     def motion(self) -> np.ndarray:
         """Displacement of every contact at the start and at every stage, as Path.motion."""
-        return super().motion() + np.concatenate([one.motion() for one in self.each], axis=1)
+        of_body = np.concatenate([self.positions[:1], self.stages.reshape(-1, 3)])[:, None]
+        return of_body + np.concatenate([one.motion for one in self.each], axis=1)
 
 
 def make_path(

@@ -144,24 +144,12 @@ def _radial(problem, cells, angles, focus):
     return RadialContact.resolved(cells, focus, problem.pressure)
 
 
-def _rings_side_by_side(contacts, shares, extents):
-    from microslip.models.rings.side_by_side import RingsSideBySide
-
-    return RingsSideBySide(contacts, shares, extents)
-
-
 def _polar(problem, cells, angles, focus):
     from microslip.models.polar.contact import PolarContact
 
     motion, whole = problem.motion, not problem.motion.half_disc
     place = (problem.poisson, focus, problem.pressure)
-    return PolarContact(cells, angles, motion.rotates, *place, whole=whole)
-
-
-def _polar_side_by_side(contacts, shares, extents):
-    from microslip.models.polar.side_by_side import PolarSideBySide
-
-    return PolarSideBySide(contacts, shares, extents)
+    return PolarContact.resolved(cells, angles, motion.rotates, *place, whole=whole)
 
 
 def _cartesian(problem, cells, angles, focus):
@@ -174,10 +162,10 @@ def _cartesian(problem, cells, angles, focus):
     return CartesianContact(cells, problem.poisson, problem.pressure, symmetry)
 
 
-def _squares_side_by_side(contacts, shares, extents):
-    from microslip.models.squares.side_by_side import SquaresSideBySide
+def _side_by_side(contacts, shares, extents):
+    from microslip.models.side_by_side import SideBySide
 
-    return SquaresSideBySide(contacts, shares, extents)
+    return SideBySide(contacts, shares, extents)
 
 
 MODELS = {
@@ -192,26 +180,26 @@ MODELS = {
         _NO_ROTATION,
         exact=_never,
         axes=lambda problem: (),
-        side_by_side=_rings_side_by_side,
+        side_by_side=_side_by_side,
     ),
     "dahl": Model(_dahl, _NO_ROTATION, exact=_never, axes=lambda problem: ()),
     "mdr": Model(
         _mdr,
         _any_of(_refuse_other_loads, _refuse_springs),
         exact=_never,
-        side_by_side=_rings_side_by_side,
+        side_by_side=_side_by_side,
     ),
     "radial": Model(
         _radial,
         _any_of(_refuse_other_loads, _refuse_rings),
-        side_by_side=_rings_side_by_side,
+        side_by_side=_side_by_side,
     ),
     "polar": Model(
         _polar,
         _any_of(_refuse_other_loads, _refuse_angles),
         axes=lambda problem: ("cells", "angles"),
-        side_by_side=_polar_side_by_side,
+        side_by_side=_side_by_side,
     ),
-    "cartesian": Model(_cartesian, _refuse_pulsation, side_by_side=_squares_side_by_side),
+    "cartesian": Model(_cartesian, _refuse_pulsation, side_by_side=_side_by_side),
 }
 """Models by name."""

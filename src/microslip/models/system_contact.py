@@ -3,26 +3,85 @@
 from __future__ import annotations
 
 import signal
-from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from copy import copy
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from microslip.contacts.drive import Drive
 from microslip.contacts.march import Loading, Trace, march
-from microslip.contacts.system import System
+from microslip.contacts.operators import multiply
+from microslip.contacts.splitting import best_penalty, resolvent
+from microslip.contacts.system import COMPLIANCE, System
+from microslip.foundation.compiled import kernel
 from microslip.models.contact import MIRROR, March
-from microslip.models.path import BodyPath, Path
+from microslip.models.path import Path
 from microslip.models.pull import Body, PulledMarch
 
 
-class SystemContact(ABC):
+class Layout(NamedTuple):
+    """Where the points of states, (2, rows, columns), are in the fields of compiled code.
+
+    States have the contacts of a body side by side, fields one after the other.
+
+    Attributes
+    ----------
+    contacts, rows, columns : int
+        Number of contacts, and rows and columns of each.
+    width : int
+        Columns of each in a field; those added have neither area nor bound.
+    """
+
+    contacts: int
+    rows: int
+    columns: int
+    width: int
+
+    def pack(self, values: np.ndarray, fill: float = 0.0) -> np.ndarray:
+        """Values of shape (..., rows or 1, columns of all) as (..., points); fill: of points
+        added."""
+        contacts, rows, columns, width = self
+        *shape, given, _ = values.shape
+        out = np.full((*shape, contacts, rows, width), fill, dtype=values.dtype)
+        if contacts > 1:
+            values = np.moveaxis(values.reshape(*shape, given, contacts, columns), -2, -3)
+        else:
+            values = values.reshape(*shape, 1, given, columns)
+        out[..., :columns] = values
+        return out.reshape(*shape, contacts * rows * width)
+
+    def unpack(self, field: np.ndarray) -> np.ndarray:
+        """Fields (..., points) as states (..., rows, columns of all)."""
+        contacts, rows, columns, width = self
+        shape = field.shape[:-1]
+        if contacts == 1:
+            return field.reshape(*shape, rows, width)[..., :columns]
+        values = field.reshape(*shape, contacts, rows, width)[..., :columns]
+        return np.moveaxis(values, -3, -2).reshape(*shape, rows, contacts * columns)
+
+    def images(self, mirror: np.ndarray) -> np.ndarray:
+        """Points of a field in a mirror, from those of a state, flat indices both."""
+        place = self.pack(np.arange(mirror.size).reshape(self.rows, -1), -1)
+        point = np.argsort(place, kind="stable")[np.count_nonzero(place < 0) :]
+        return np.where(place < 0, np.arange(place.size), point[mirror[place]])
+
+
+class SystemContact:
     """A contact that is a system.System for compiled code (see models.contact.Contact).
 
     Attributes
     ----------
     compiled : bool
         True: the search for the periodic state runs in compiled code, too.
+    layout : Layout
+        Where points of a state are in a field.
+    mirror : np.ndarray of int
+        The point of a state across the mirror lateral -> -lateral of each point, flat indices.
+    operators : NamedTuple
+        A and the resolvents, see contacts/operators.py.
+    resultants : np.ndarray, shape (3,)
+        See system.System.
     """
 
     compiled = True
@@ -30,23 +89,59 @@ class SystemContact(ABC):
     radius = 1.0
     grading = None
     edges = None
+    layout: Layout
+    mirror: np.ndarray
 
-    @abstractmethod
+    operators: NamedTuple
+    resultants: np.ndarray
+
     def system(self) -> System:
-        """The System, for one thread at a time."""
+        """The System, with scratch of its own: for one thread at a time."""
+        system = self._prepared
+        return system._replace(operators=system.operators.own(), solver=system.solver.own())
 
-    @abstractmethod
-    def displacement(self, state: np.ndarray) -> np.ndarray:
-        """A q; both fields."""
+    @cached_property
+    def _prepared(self):
+        layout = self.layout
+        weight = layout.pack(np.atleast_2d(self.weight))
+        points = len(weight) // layout.contacts
+        return System(
+            operators=self.operators,
+            solver=self.solver(weight),
+            scale=layout.pack(np.atleast_2d(self.compliance), 1.0),
+            weight=weight,
+            positions=layout.pack(np.stack([self.forward_position, self.lateral_position])),
+            first=points * np.arange(layout.contacts + 1),
+            mirror=layout.images(self.mirror),
+            resultants=self.resultants,
+            stiffness=float(self.stiffness),
+        )
+
+    def unprepared(self) -> SystemContact:
+        """A copy whose attributes may be changed."""
+        out = copy(self)
+        for name in ("_prepared", "_constant_bound"):
+            vars(out).pop(name, None)
+        return out
+
+    def solver(self, weight: np.ndarray) -> NamedTuple:
+        """The solver of a step, of points with these areas: that of rings with resolvents."""
+        penalty = best_penalty(self.compliance, self.layout.columns)
+        return resolvent(self.layout.pack(np.atleast_2d(penalty), 1.0), weight)
 
     def field_bounds(self, path: Path) -> np.ndarray:
         """Friction bounds along a path as march.Loading has them."""
-        bounds = self.bound[None] if path.depth is None else self.bounds_along(path)
-        return np.ascontiguousarray(bounds if bounds.ndim == 3 else bounds[:, None])
+        if path.depth is None:
+            return self._constant_bound
+        return self.layout.pack(self.bounds_along(path)[:, None])
+
+    @cached_property
+    def _constant_bound(self):
+        return self.layout.pack(np.atleast_2d(self.bound))[None]
 
     def loading(self, path: Path) -> Loading:
         """What a path imposes on the contact."""
-        return Loading(path.motion(), self.field_bounds(path), path.carry, float(path.end))
+        return Loading(path.motion, self.field_bounds(path), path.carry, float(path.end))
 
     def prolonged(self, state: np.ndarray) -> np.ndarray | None:
         """Tractions of a coarser contact at the points of this one; None if there is no way."""
@@ -60,17 +155,23 @@ class SystemContact(ABC):
         """Count the marches of compiled code, where there is a budget."""
         return
 
+    def displacement(self, state: np.ndarray) -> np.ndarray:
+        """A q; shapes of a state."""
+        system, field = self.system(), self.layout.pack(np.asarray(state, dtype=float))
+        image = np.empty_like(field)
+        _displace(system, field, image)
+        return self.layout.unpack(image)
+
     def mirrored(self, state: np.ndarray) -> np.ndarray:
         """The state after lateral -> -lateral (lateral traction negated)."""
-        points = state.reshape(2, -1)[:, self.system().mirror]
-        return points.reshape(state.shape) * MIRROR
+        return state.reshape(2, -1)[:, self.mirror].reshape(state.shape) * MIRROR
 
     def march(
         self, path: Path, state: np.ndarray, tolerance: float, previous: March | None = None
     ) -> March:
         """March along a path; see models.contact.Contact."""
         trace = self._trace(path, None, state, tolerance, previous)
-        return March(**_record(trace))
+        return March(**self._record(trace))
 
     def pulled_march(
         self,
@@ -83,7 +184,7 @@ class SystemContact(ABC):
     ) -> PulledMarch:
         """March of a driven body that is at `start` (x, x') at first; see models.pull."""
         trace = self._trace(path, body.along(path, start), state, tolerance, previous)
-        return PulledMarch(**_record(trace), body=trace.body)
+        return PulledMarch(**self._record(trace), body=trace.body)
 
     def _trace(
         self,
@@ -93,27 +194,30 @@ class SystemContact(ABC):
         tolerance: float,
         previous: March | None,
     ) -> Trace:
-        loading = self.loading(path)
+        loading, pack = self.loading(path), self.layout.pack
         guess = None if previous is None else previous.fields
         if guess is None or guess.shape != (len(loading.motion), *state.shape):
             guess = np.empty((0, *state.shape))
-        state = np.ascontiguousarray(state, dtype=float)
+        state, guess = pack(np.asarray(state, dtype=float)), pack(guess)
         while True:
             trace = march(self.system(), loading, drive, state, guess, float(tolerance))
             if not trace.broken:
                 return trace
             signal.raise_signal(signal.SIGINT)
 
+    def _record(self, trace: Trace) -> dict:
+        """Arguments of a March."""
+        unpack = self.layout.unpack
+        return {
+            "state": unpack(trace.state),
+            "forces": trace.forces,
+            "residual": trace.residual,
+            "iterations": trace.iterations,
+            "solves": len(trace.fields) - 1,
+            "fields": unpack(trace.fields),
+        }
 
-def _record(trace: Trace) -> dict:
-    """Arguments of a March."""
-    names = ("state", "forces", "residual", "iterations", "fields")
-    return {name: getattr(trace, name) for name in names} | {"solves": len(trace.fields) - 1}
 
-
-def bounds_of_each(contacts: Sequence[SystemContact], path: BodyPath) -> np.ndarray:
-    """Friction bounds of contacts side by side, as march.Loading has them."""
-    each = zip(contacts, path.each, strict=True)
-    return np.ascontiguousarray(
-        np.concatenate([one.field_bounds(own) for one, own in each], axis=-1)
-    )
+@kernel
+def _displace(system, field, image):
+    multiply(system.operators, COMPLIANCE, field, image)

@@ -63,6 +63,8 @@ class PeriodicState:
         Whether the distance is within the tolerance.
     body : np.ndarray or None, shape (steps + 1, 2)
         Of a contact that is pulled, over the last (half) period, see pull.PulledMarch.
+    fields : np.ndarray or None
+        contact.March.fields of the last (half) period: the initial guess of a march from `start`.
     """
 
     forces: np.ndarray
@@ -75,6 +77,7 @@ class PeriodicState:
     solves: int
     converged: bool
     body: np.ndarray | None = None
+    fields: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -157,7 +160,6 @@ class PeriodMap:
         self.contact, self.path, self.drift_rate, self.mirror = contact, path, drift_rate, mirror
         self.marches = self.iterations = self.solves = 0
         self._march = None
-        self.share = np.diff(path.phase) / (path.phase[-1] - path.phase[0])  # of each step
 
     def __call__(self, state, step_tolerance):
         """March once from `state`; steps are solved to `step_tolerance`.
@@ -209,8 +211,7 @@ class PeriodMap:
         """Estimated distance of an interval's state from the fixed point, given a better state."""
         distance = max(self.size(proposal - interval.state), interval.residual)
         if self.drift_rate is not None:
-            force = interval.march.forces[:, 0]
-            mean = 0.5 * float(self.share @ force[1:] + self.share @ force[:-1])
+            mean = float(self.path.mean(interval.march.forces[:, 0]))
             distance = max(distance, self.drift_rate.force_error(interval.residual, mean))
         return distance
 

@@ -47,12 +47,13 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
         float(goal.step_tolerance),
         bool(period_map.mirror),
         bool(goal.near),
-        period_map.share,
+        path.share,
         *(map(float, (rate.static_force, rate.full, rate.gain)) if rate else (0.0, 0.0, np.inf)),
     )
     tractions, place = period_map.parts(start)
     stages = path.stages.shape[1]
-    memory = search.memory_of(tractions, place, stages, path.steps, target)
+    layout = contact.layout
+    memory = search.memory_of(layout.pack(tractions), place, stages, path.steps, target)
     system, loading, inertia = contact.system(), contact.loading(path), period_map.inertia()
     done, most = False, goal.most_marches - period_map.marches
     while not done and memory.counts[0] < most:
@@ -70,6 +71,7 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
     period_map.iterations += int(memory.counts[1])
     period_map.solves = period_map.marches * path.steps * stages
     state, forces, body, numbers = memory.best
+    state = layout.unpack(state)
     distance, residual, solver_residual, converged = map(float, numbers)
     if np.isnan(distance):
         raise StepFailure("diverged: tractions are not finite")
@@ -84,4 +86,5 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
         solves=period_map.solves,
         converged=bool(converged),
         body=body,
+        fields=layout.unpack(memory.guess),
     )

@@ -118,7 +118,7 @@ class PulledMap(PeriodMap):
         return Inertia(
             self.body.along(self.path, np.zeros(2)),
             *map(float, (*self._haste, self._held, self._mass)),
-            np.ascontiguousarray(self._spread),
+            self.contact.layout.pack(self._spread),
         )
 
     @property

@@ -31,6 +31,9 @@ LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
 NOISE = 1e-2
 """Largest share of the force gained by the drift that the steps of a march may leave unsolved: what
 a state has lost it regains at the rate of the drift alone."""
+DRIFTING = 0.5
+"""Share of the force gained by the drift that a march must keep for a state to count as stuck: its
+points drift and do not slip, so that its changes tell nothing about the periodic state."""
 FORGETFUL = 0.2
 """Contraction of the plain map since the start below which it needs no acceleration."""
 
@@ -77,8 +80,8 @@ class Inertia(NamedTuple):
         Factors of the changes of x and x'.
     held, mass : float
         Weights of their squares in the norm of a state, a stiffness and a mass.
-    spread : np.ndarray, shape (rows, columns)
-        Tractions of a unit forward force, in the shape of the bound.
+    spread : np.ndarray, shape (points,)
+        Tractions of a unit forward force.
     """
 
     drive: Drive
@@ -102,6 +105,8 @@ class Memory(NamedTuple):
         march.Trace.fields of the last march.
     pairs : np.ndarray, shape (2, DEPTH + 1, state.size + 2)
         See anderson.remember.
+    above : np.ndarray, field
+        The last state that was not stuck below the static limit; at first the start.
     counts : np.ndarray of int, shape (4,)
         Marches, iterations, pairs, and whether the plain map still contracts fast (0 or 1).
     numbers : np.ndarray, shape (2,)
@@ -115,6 +120,7 @@ class Memory(NamedTuple):
     place: np.ndarray
     guess: np.ndarray
     pairs: np.ndarray
+    above: np.ndarray
     counts: np.ndarray
     numbers: np.ndarray
     best: tuple
@@ -130,6 +136,7 @@ def memory_of(state: np.ndarray, place: np.ndarray, stages: int, steps: int, goa
         np.array(place, dtype=float),
         np.empty((1 + stages * steps, *state.shape)),
         np.empty((2, DEPTH + 1, state.size + 2)),
+        state.copy(),
         np.array([0, 0, 0, 1]),
         np.array([inner, np.inf]),
         (
@@ -181,16 +188,13 @@ def search(
     broken : bool
         Whether it was interrupted: call again.
     """
-    state, place, guess, pairs, counts, numbers, best = memory
+    state, place, guess, pairs, above, counts, numbers, best = memory
     n, steps, bound = state.size, len(goal.share), loading.bound[0]
     image, change, scratch = np.empty_like(state), np.empty_like(state), np.empty_like(state)
     new_image, new_change, scale = np.zeros(n + 2), np.zeros(n + 2), np.empty(n + 2)
     proposal, moved = np.empty(n + 2), np.zeros(2)
-    at = 0
-    for _ in range(2 * state.shape[1]):
-        for i in range(state.shape[2]):
-            scale[at] = np.sqrt(system.weight[i] * system.scale[i])
-            at += 1
+    for i in range(state.shape[1]):
+        scale[i] = scale[i + n // 2] = np.sqrt(system.weight[i] * system.scale[i])
     scale[n] = scale[n + 1] = 0.0
     if inertia is not None:
         scale[n], scale[n + 1] = np.sqrt(inertia.held), np.sqrt(inertia.mass)
@@ -230,9 +234,8 @@ def search(
                     # by the motion of the body, for the force is known to the steps' tolerance
                     force = trace.forces[0, 0] - inertia.place * d.stiffness * advance
                     force -= trace.forces[last, 0]
-                    for j in range(image.shape[1]):
-                        for i in range(image.shape[2]):
-                            image[0, j, i] += force * inertia.spread[j, i]
+                    for i in range(image.shape[1]):
+                        image[0, i] += force * inertia.spread[i]
         image_row, state_row, change_row = image.ravel(), state.ravel(), change.ravel()
         for i in range(n):
             change_row[i] = image_row[i] - state_row[i]
@@ -248,8 +251,19 @@ def search(
         if not residual <= FORGETFUL * numbers[1]:
             counts[3] = 0
         numbers[1] = residual
-        counts[2] = remember(pairs, counts[2], new_image, new_change)
-        if counts[3]:
+        mean = 0.0
+        for k in range(steps):
+            mean += 0.5 * goal.share[k] * (trace.forces[k, 0] + trace.forces[k + 1, 0])
+        kept = DRIFTING * goal.gain
+        stuck = counts[0] > 1 and mean < goal.static_force and residual > kept
+        if not stuck:
+            counts[2] = remember(pairs, counts[2], new_image, new_change)
+            copy(above, state)
+        if stuck and inertia is None:  # halfway back
+            counts[2], above_row = 0, above.ravel()
+            for i in range(n):
+                proposal[i] = 0.5 * (state_row[i] + above_row[i])
+        elif counts[3]:
             for i in range(n + 2):
                 proposal[i] = new_image[i]
         else:
@@ -262,9 +276,6 @@ def search(
             change_row[i] = image_row[i] - state_row[i]
         for i in range(2):
             moved[i] = proposal[n + i] - place[i]
-        mean = 0.0
-        for k in range(steps):
-            mean += 0.5 * goal.share[k] * (trace.forces[k, 0] + trace.forces[k + 1, 0])
         distance = max(state_norm(system, inertia, change, moved, scratch), residual)
         if goal.gain < np.inf:
             excess = abs(mean - goal.static_force)
@@ -272,7 +283,10 @@ def search(
                 excess = max(abs(mean), abs(goal.full - mean))
             gained = residual if inertia is None else gained
             distance = max(distance, excess * gained / goal.gain)
-        converged = solved and distance <= goal.tolerance
+        near_enough = distance <= goal.tolerance
+        converged = solved and near_enough
+        if near_enough:  # what is left to show is that the steps are solved
+            numbers[0] = goal.step_tolerance
         if converged or distance < best[3][0]:
             copy(best[0], state)
             for k in range(steps + 1):

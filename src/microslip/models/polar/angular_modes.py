@@ -1,177 +1,221 @@
-"""The influence operator on rings x angles, cut into the pieces that symmetry keeps apart.
+"""The influence operator on rings x angles, by the angular modes that it keeps apart.
 
-Points sit on half the disc at theta_j = (j + 1/2) pi / M.  The mirror theta -> pi - theta maps them
-onto themselves and commutes with the operator, so *folded* tractions, the parts that are even and
-odd under it on the first M/2 angles, split into sectors that do not see each other: even forward
-with odd lateral and the reverse, and at nu = 0 all four by themselves.  Each sector is applied as
-one dense matrix while that is small, through its angular modes otherwise.
+Points sit on half the disc at theta_j = (j + 1/2) pi / M, or on the whole disc.  At nu = 0 forward
+and lateral tractions of a mode act on displacements of their own kind alone, by one matrix of rings
+for both.  At nu > 0 the complex waves e^{i m theta} of forward - i lateral go together in pairs, m
+with 2 - m, see rings/influence.py.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
-from microslip.contacts.operators import operator
+from microslip.contacts.lanes import LANES, NOTHING, four, plus, put
+from microslip.contacts.operators import Matrices, multiply_rows, operator, packed, scaled, start
+from microslip.contacts.splitting import PENALTIES, best_penalty
 from microslip.foundation.compiled import kernel
-from microslip.models.polar.folding import fold, unfold
-from microslip.models.polar.symmetry import waves
 from microslip.models.rings.influence import ring_influence
-from microslip.models.rings.mesh import Focus, make_rings
-from microslip.pressures.hertz import HERTZ
-from microslip.pressures.pressure import Pressure
+from microslip.models.rings.mesh import Rings
 
 FUSED = {"fastmath": {"contract"}}
 """Allows fused multiply-add, which keeps the order of operations."""
-LARGEST_DENSE = 96
-"""Unknowns in a sector up to which its dense matrix is faster than its modes."""
-
 SHARED_MODES = (9, 17, 33)
 """Modes that kernels are averaged for together, so that runs at 4, 6 and 8 angles share them."""
 
 
-class Sectors(NamedTuple):
-    """An operator on folded tractions (4, M/2, N), or (8, M/2, N), for compiled code.
+class Modes(NamedTuple):
+    """Operators on fields of rings x angles, contact after contact, rows of equal width.
+
+    At nu = 0 there are two sectors, forward and lateral; at nu > 0 there is one.
 
     Attributes
     ----------
-    dense : np.ndarray, shape (sectors, n, n)
-        Transposed sector matrices, or no sectors where the modes are used.
-    to_modes, to_points : np.ndarray, shape (sectors, Z, Z)
-        Between the folded angles of a sector and its modes.
-    members : np.ndarray, shape (sectors, blocks, 2)
-        Modes that a block couples; second -1 if single, first -1 if there is no such block.
-    blocks : np.ndarray, shape (sectors, blocks, b N, b N)
-        Transposed.
-    """
-
-    dense: np.ndarray
-    to_modes: np.ndarray
-    to_points: np.ndarray
-    members: np.ndarray
-    blocks: np.ndarray
-
-
-@kernel(**FUSED)
-def _add_columns(matrix, given, result):
-    """result += matrix^T given, eight columns at a time (which the compiler vectorises)."""
-    n = len(given)
-    for j in range(0, n - 7, 8):
-        a, b, c, d = given[j], given[j + 1], given[j + 2], given[j + 3]
-        e, f, g, h = given[j + 4], given[j + 5], given[j + 6], given[j + 7]
-        m = matrix[j : j + 8]
-        for i in range(len(result)):
-            one = m[0, i] * a + m[1, i] * b + m[2, i] * c + m[3, i] * d
-            two = m[4, i] * e + m[5, i] * f + m[6, i] * g + m[7, i] * h
-            result[i] += one + two
-    for j in range(n - n % 8, n):
-        a = given[j]
-        for i in range(len(result)):
-            result[i] += matrix[j, i] * a
-
-
-@kernel(**FUSED)
-def _transform(matrix, x, out):
-    """out = matrix x for short rows of x; x, out: (Z, N)."""
-    out[:] = 0.0
-    for k in range(matrix.shape[0]):
-        for j in range(matrix.shape[1]):
-            a, source, target = matrix[k, j], x[j], out[k]
-            for i in range(len(target)):
-                target[i] += a * source[i]
-
-
-@kernel(**FUSED)
-def apply_sectors(sectors: Sectors, x: np.ndarray, out: np.ndarray) -> None:
-    """Apply an operator to folded tractions x, all (4, M/2, N) or (8, M/2, N)."""
-    dense, to_modes, to_points, members, blocks = sectors
-    n = x.shape[2]
-    out[:] = 0.0
-    if dense.shape[0] > 0:
-        given = x.reshape(dense.shape[0], dense.shape[1])
-        result = out.reshape(dense.shape[0], dense.shape[1])
-        for s in range(dense.shape[0]):
-            _add_columns(dense[s], given[s], result[s])
-        return
-    count, z = to_modes.shape[0], to_modes.shape[1]
-    given, result = x.reshape(count, z, n), out.reshape(count, z, n)
-    modes, images = np.empty((z, n)), np.empty((z, n))
-    for s in range(count):
-        _transform(to_modes[s], given[s], modes)
-        images[:] = 0.0
-        if blocks.shape[2] == n:
-            for k in range(z):
-                _add_columns(blocks[s, k], modes[k], images[k])
-        else:
-            _add_pairs(members[s], blocks[s], modes, images)
-        _transform(to_points[s], images, result[s])
-
-
-class Folded(NamedTuple):
-    """An operator on fields, (2, M, N) or (2, 2 M, N) on a whole disc, by its sectors.
-
-    Attributes
-    ----------
-    sectors : Sectors
-        On folded tractions.
-    folded, image : np.ndarray, shape (4, M/2, N) or (8, M/2, N)
+    to_modes : np.ndarray, shape (sectors, waves, rows of points)
+        Amplitudes of the waves.
+    to_points : np.ndarray, shape (sectors, rows of points, waves)
+        Values of the waves.
+    blocks : np.ndarray, shape (operators, contacts waves, chunks, columns, LANES)
+        Matrices.blocks of each wave; at nu > 0 of each pair of neighbouring waves, which are one
+        row of twice the width.
+    points, waves : np.ndarray of int, shape (sectors contacts, ...)
+        Rows of a field, and of `amplitudes`, that belong to a sector of a contact.
+    amplitudes, images : np.ndarray, shape (sectors, contacts waves width)
         Scratch.
     """
 
-    sectors: Sectors
-    folded: np.ndarray
-    image: np.ndarray
+    to_modes: np.ndarray
+    to_points: np.ndarray
+    blocks: np.ndarray
+    points: np.ndarray
+    waves: np.ndarray
+    amplitudes: np.ndarray
+    images: np.ndarray
+
+    def own(self) -> Modes:
+        """The same with scratch of its own."""
+        return self._replace(
+            amplitudes=np.empty_like(self.amplitudes), images=np.empty_like(self.images)
+        )
+
+    @staticmethod
+    def joined(each: Sequence[Modes], extents: np.ndarray) -> Modes:
+        """The operators of several contacts on one body, see models/side_by_side.py."""
+        parts = [scaled(one.blocks, extent) for one, extent in zip(each, extents, strict=True)]
+        blocks, width = np.concatenate(parts, axis=1), each[0].amplitudes.shape[1]
+        to_modes, to_points = each[0].to_modes, each[0].to_points
+        return modes_of(to_modes, to_points, blocks, len(each), width // to_modes.shape[1])
 
 
-@operator(Folded)
-@kernel
-def apply_folded(folded: Folded, field: np.ndarray, image: np.ndarray) -> None:
+def modes_of(
+    to_modes: np.ndarray, to_points: np.ndarray, blocks: np.ndarray, contacts: int, width: int
+) -> Modes:
+    """The Modes of so many contacts, with scratch."""
+    sectors, waves, rows = to_modes.shape
+    points = np.arange(2 * contacts * (rows * sectors // 2)).reshape(2, contacts, -1)
+    if sectors == 1:
+        points = np.moveaxis(points, 0, 1)
+    scratch = np.empty((2, sectors, contacts * waves * width))
+    return Modes(
+        np.ascontiguousarray(to_modes),
+        np.ascontiguousarray(to_points),
+        blocks,
+        np.ascontiguousarray(points.reshape(sectors * contacts, rows)),
+        np.arange(sectors * contacts * waves).reshape(sectors * contacts, waves),
+        scratch[0],
+        scratch[1],
+    )
+
+
+@operator(Modes)
+@kernel(**FUSED)
+def apply_modes(modes: Modes, number: int, field: np.ndarray, image: np.ndarray) -> None:
     """image = operator field."""
-    fold(field, folded.folded)
-    apply_sectors(folded.sectors, folded.folded, folded.image)
-    unfold(folded.image, image)
+    sectors, waves, _ = modes.to_modes.shape
+    contacts, amplitudes, images = len(modes.points) // sectors, modes.amplitudes, modes.images
+    width = amplitudes.shape[1] // (contacts * waves)
+    source, target = field.reshape(-1, width), image.reshape(-1, width)
+    between, beyond = amplitudes.reshape(-1, width), images.reshape(-1, width)
+    for part in range(sectors * contacts):
+        matrix = modes.to_modes[part // contacts]
+        combine(matrix, source, modes.points[part], between, modes.waves[part])
+    if sectors == 2:
+        multiply_rows(Matrices(modes.blocks), number, amplitudes, images)
+    else:
+        multiply_pairs(Matrices(modes.blocks), number, amplitudes, images)
+    for part in range(sectors * contacts):
+        matrix = modes.to_points[part // contacts]
+        combine(matrix, beyond, modes.waves[part], target, modes.points[part])
 
 
-@kernel
-def _add_pairs(members, blocks, modes, images):
-    """Apply the blocks of coupled modes."""
-    n = modes.shape[1]
-    pair, image = np.zeros(2 * n), np.empty(2 * n)
-    for k in range(members.shape[0]):
-        first, second = members[k]
-        if first < 0:
-            continue
-        for i in range(n):
-            pair[i] = modes[first, i]
-            pair[n + i] = modes[second, i] if second >= 0 else 0.0
-        image[:] = 0.0
-        _add_columns(blocks[k], pair, image)
-        for i in range(n):
-            images[first, i] += image[i]
-            if second >= 0:
-                images[second, i] += image[n + i]
+@kernel(**FUSED)
+def combine(
+    matrix: np.ndarray,
+    source: np.ndarray,
+    columns: np.ndarray,
+    target: np.ndarray,
+    rows: np.ndarray,
+) -> None:
+    """target[rows] = matrix source[columns]; source, target: (..., width)."""
+    width = source.shape[1]
+    for after in range(0, len(rows), 2):
+        one = min(after, len(rows) - 2)  # two rows at a time, the last ones once more
+        first, second = matrix[one], matrix[one + 1]
+        for chunk in range(-(-width // LANES)):
+            at = start(chunk, width)
+            a = b = c = d = e = f = g = h = NOTHING
+            for k in range(len(columns)):
+                x, y, values = first[k], second[k], source[columns[k], at : at + LANES]
+                m = four(values, 0)
+                a, e = plus(a, m, x), plus(e, m, y)
+                m = four(values, 4)
+                b, f = plus(b, m, x), plus(f, m, y)
+                m = four(values, 8)
+                c, g = plus(c, m, x), plus(g, m, y)
+                m = four(values, 12)
+                d, h = plus(d, m, x), plus(h, m, y)
+            put(target[rows[one], at : at + LANES], a, b, c, d)
+            put(target[rows[one + 1], at : at + LANES], e, f, g, h)
 
 
-def _mode_blocks(keys, near, far, kappa, ratio):
-    """Members and influence blocks of the modes `keys` (nu > 0: m and 2 - m together)."""
-    index = {key: k for k, key in enumerate(keys)}
-    members, blocks = [], []
-    for k, (m, part) in enumerate(keys):
-        partner = index.get((2 - m, part)) if kappa != 0.0 and part < 2 else None
-        sign = -kappa if part == 0 else kappa
-        if partner is None:
-            members.append((k, -1))
-            blocks.append(near[abs(m)])
-        elif partner == k:
-            members.append((k, -1))
-            blocks.append(near[1] + 0.5 * sign * (far[0] + far[0].T * ratio.T))
-        elif m > 2 - m:
-            members.append((k, partner))
-            cross = sign * far[m - 1]
-            blocks.append(np.block([[near[m], cross], [cross.T * ratio.T, near[abs(2 - m)]]]))
-    return members, blocks
+@kernel(**FUSED)
+def multiply_pairs(operators: Matrices, number: int, field: np.ndarray, image: np.ndarray) -> None:
+    """image[0, row] = matrix[row] field[0, row]; as operators.multiply_rows, of one component."""
+    _, rows, chunks, columns, _ = operators.blocks.shape
+    width = field.shape[1] // rows
+    for row in range(rows):
+        blocks, at = operators.blocks[number, row], row * width
+        values = field[0, at:]
+        for chunk in range(chunks):
+            a = b = c = d = NOTHING
+            for k in range(columns):
+                x, m = values[k], blocks[chunk, k]
+                a, b = plus(a, four(m, 0), x), plus(b, four(m, 4), x)
+                c, d = plus(c, four(m, 8), x), plus(d, four(m, 12), x)
+            first = at + start(chunk, width)
+            put(image[0, first : first + LANES], a, b, c, d)
+
+
+WHOLE, ROTATION, TRANSLATION = "whole disc", "mirror image", "half turn"
+"""Points: all, or half of them, whose tractions tell the others by this symmetry."""
+
+
+def _single_waves(theta, angles, symmetry):
+    """At nu = 0: numbers m of the waves, and their forward and lateral values, (waves, points).
+
+    Forward tractions of a rotation are cosines and lateral ones sines; a translation has both of
+    each, of even numbers.
+    """
+    numbers = np.arange(angles + 1)
+    cosines, sines = np.cos(np.outer(numbers, theta)), np.sin(np.outer(numbers, theta))
+    cosines[angles] = 0.0  # at the points, but for rounding
+    if symmetry == ROTATION:
+        return numbers, cosines, sines
+    step = 2 if symmetry == TRANSLATION else 1
+    numbers = np.concatenate([numbers[:angles:step], numbers[step::step]])
+    waves = np.concatenate([cosines[:angles:step], sines[step::step]])
+    return numbers, waves, waves
+
+
+def _pairs(angles, symmetry):
+    """At nu > 0: pairs of waves (m, part), and whether the two act on each other.
+
+    Part 0 is e^{i m theta}, part 1 i times that.  The shortest waves of a disc, or of a rotation,
+    act on themselves alone, since the points hold no cosine of them.
+    """
+    step = 2 if symmetry == TRANSLATION else 1
+    parts = (0,) if symmetry == ROTATION else (0, 1)
+    highest = angles if symmetry == TRANSLATION else angles - 1
+    numbers = range(2 - angles if symmetry == TRANSLATION else 1 - angles, angles + 1, step)
+    coupled, single = [], []
+    for part in parts:
+        for m in numbers:
+            if m > highest or 2 - m not in numbers or 2 - m > highest or m == 1:
+                single.append((m, part))
+            elif m > 1:
+                coupled.append(((m, part), (2 - m, part)))
+    return coupled, list(zip(single[::2], single[1::2], strict=True))
+
+
+def _coupled_matrices(pairs, single, influence, ratio, kappa):
+    """Matrices (pairs, 2, n, 2, n) of coupled pairs and of single waves."""
+    near, far = influence
+    n = near.shape[1]
+    out = np.zeros((len(pairs) + len(single), 2, n, 2, n))
+    for block, ((m, part), (other, _)) in zip(out, pairs, strict=False):
+        cross = (kappa if part else -kappa) * far[m - 1]
+        block[0, :, 0], block[1, :, 1] = near[m], near[abs(other)]
+        block[0, :, 1], block[1, :, 0] = cross, cross.T * ratio.T
+    for block, waves in zip(out[len(pairs) :], single, strict=True):
+        for k, (m, part) in enumerate(waves):
+            block[k, :, k] = near[abs(m)]
+            if m == 1:
+                sign = kappa if part else -kappa
+                block[k, :, k] += 0.5 * sign * (far[0] + far[0].T * ratio.T)
+    return out
 
 
 def _modes_to_know(angles):
@@ -185,97 +229,42 @@ def _shared_influence(psi, n_modes, coupled, modulus):
     return ring_influence(np.array(psi), n_modes, coupled, modulus=modulus)
 
 
-@lru_cache
-def _transforms(angles, rotates, coupled):
-    """Keys of the modes of every sector, and their values at the points and the inverse of these,
-    (sectors, Z, Z) each."""
-    groups = waves(angles, rotates, coupled)
-    z = len(groups[0])
-    to_points = np.zeros((len(groups), z, z))
-    for s, group in enumerate(groups):
-        rows = [part for part in range(4) if any(wave[part].any() for _, wave in group)]
-        to_points[s] = np.stack([wave[rows].ravel() for _, wave in group], axis=1)
-    keys = [[key for key, _ in group] for group in groups]
-    return keys, to_points, np.linalg.inv(to_points)
+def influence_modes(
+    rings: Rings, angles: int, symmetry: str, poisson: float, modulus: float, width: int
+) -> tuple[Modes, np.ndarray]:
+    """A and its resolvents on rings times angles, and the self-influence of each ring, (N,).
 
-
-@lru_cache(maxsize=32)
-def influence_sectors(
-    cells: int,
-    angles: int,
-    rotates: bool,
-    poisson: float,
-    focus: Focus | float | None,
-    pressure: Pressure = HERTZ,
-    *,
-    whole: bool = False,
-) -> tuple[Sectors, np.ndarray]:
-    """The operator (a Sectors that keeps its modes) and the self-influence of each ring (N,).
-
-    whole: on a whole disc, of twice as many angles.
+    angles: points on half of a ring; width: columns of a field.
     """
-    kappa = poisson / (2.0 - poisson)
-    rings = make_rings(cells, focus, pressure)
-    near, far = _shared_influence(
-        tuple(rings.psi), _modes_to_know(angles), poisson > 0.0, pressure.G_star
+    kappa, n = poisson / (2.0 - poisson), len(rings.bound)
+    influence = near, _ = _shared_influence(
+        tuple(rings.psi), _modes_to_know(angles), poisson > 0.0, modulus
     )
-    ratio = rings.area[:, None] / rings.area[None, :]  # the transpose in the area-weighted product
-    groups, to_points, to_modes = _transforms(angles, rotates or whole, poisson > 0.0)
-    found = [_mode_blocks(keys, near, far, kappa, ratio) for keys in groups]
-    if whole:
-        found += [_mode_blocks(keys, near, far, -kappa, ratio) for keys in groups]
-        groups = 2 * groups
-        to_points, to_modes = (np.tile(one, (2, 1, 1)) for one in (to_points, to_modes))
-    most = max(len(members) for members, _ in found)
-    size = max(len(block) for _, blocks in found for block in blocks)
-    members = np.full((len(groups), most, 2), -1)
-    packed = np.zeros((len(groups), most, size, size))
-    for s, (pairs, blocks) in enumerate(found):
-        members[s, : len(pairs)] = pairs
-        for k, block in enumerate(blocks):
-            packed[s, k, : len(block), : len(block)] = block.T
-    none = np.zeros((0, 0, 0))
-    return Sectors(none, to_modes, to_points, members, packed), np.ascontiguousarray(
-        np.diag(near[0])
-    )
-
-
-def shifted_inverse(operator: Sectors, shift: np.ndarray) -> Sectors:
-    """(A + shift)^-1 of an operator that keeps its modes; shift: one number for each ring, (N,)."""
-    blocks, n = np.zeros_like(operator.blocks), len(shift)
-    for s, pairs in enumerate(operator.members):
-        for k, (first, second) in enumerate(pairs):
-            size = 0 if first < 0 else n if second < 0 else 2 * n
-            added = np.diag(np.tile(shift, size // n))
-            blocks[s, k, :size, :size] = np.linalg.inv(operator.blocks[s, k, :size, :size] + added)
-    return operator._replace(blocks=blocks)
-
-
-def scaled(operator: Sectors, factor: float) -> Sectors:
-    """The operator times a number."""
-    return operator._replace(dense=operator.dense * factor, blocks=operator.blocks * factor)
-
-
-def quickest(operator: Sectors) -> Sectors:
-    """The same operator in the form that is applied fastest at its size."""
-    sectors, z = operator.to_modes.shape[:2]
-    rings = operator.blocks.shape[2] // (1 if (operator.members[:, :, 1] < 0).all() else 2)
-    if z * rings > LARGEST_DENSE:
-        return operator
-    dense = np.empty((sectors, z * rings, z * rings))
-    _columns(operator, np.zeros((4, sectors * z // 4, rings)), dense)
-    return operator._replace(dense=dense)
-
-
-@kernel
-def _columns(operator, unit, dense):
-    """Fill dense, (sectors, n, n), with the images of unit tractions; unit: zeros, folded."""
-    image = np.empty_like(unit)
-    flat, images = unit.reshape(dense.shape[:2]), image.reshape(dense.shape[:2])
-    for s in range(dense.shape[0]):
-        for j in range(dense.shape[1]):
-            flat[s, j] = 1.0
-            apply_sectors(operator, unit, image)
-            flat[s, j] = 0.0
-            for i in range(dense.shape[2]):  # an assignment of rows takes seconds to compile
-                dense[s, j, i] = images[s, i]
+    scale = np.ascontiguousarray(np.diag(near[0]))
+    points = 2 * angles if symmetry == WHOLE else angles
+    theta = (np.arange(points) + 0.5) * np.pi / angles
+    shifts = PENALTIES[:, None] * best_penalty(scale, n)
+    if kappa == 0.0:
+        numbers, forward, lateral = _single_waves(theta, angles, symmetry)
+        to_points = np.stack([forward.T, lateral.T])
+        matrices, columns = near[numbers], width
+    else:
+        pairs, single = _pairs(angles, symmetry)
+        ratio = rings.area[:, None] / rings.area[None, :]  # the transpose, weighted with the areas
+        matrices = _coupled_matrices(pairs, single, influence, ratio, kappa)
+        matrices = matrices.reshape(-1, 2 * n, 2 * n)
+        waves = [wave for pair in (*pairs, *single) for wave in pair]
+        values = np.array([1j**part * np.exp(1j * m * theta) for m, part in waves])
+        values.real[
+            np.array([m == angles and symmetry != TRANSLATION and part == 0 for m, part in waves])
+        ] = 0.0
+        to_points = np.concatenate([values.real, -values.imag], axis=1).T[None]
+        shifts, columns = np.tile(shifts, 2), 2 * width
+    diagonals = shifts[:, None, :, None] * np.eye(shifts.shape[1])
+    stacked = np.concatenate([matrices[None], np.linalg.inv(matrices + diagonals)])
+    if kappa != 0.0:
+        padded = np.zeros((*stacked.shape[:2], 2, width, 2, width))
+        padded[:, :, :, :n, :, :n] = stacked.reshape(*stacked.shape[:2], 2, n, 2, n)
+        stacked = padded.reshape(*stacked.shape[:2], columns, columns)
+    to_modes = np.linalg.pinv(to_points)
+    return modes_of(to_modes, to_points, packed(stacked, columns), 1, width), scale

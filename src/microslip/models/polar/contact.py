@@ -9,32 +9,21 @@ half of the disc follows from symmetry:
 A motion that does both has neither symmetry, and the points of the other half are resolved, too.
 
 Coulomb's law is asked for at the points; the elastic operator is block-diagonal in the angular
-modes, one small ring matrix each (two modes m and 2 - m together where nu > 0).  A step is solved
-by ADMM: the quadratic part through the blocks factorised once, the friction bound point by point.
+modes, one small ring matrix each (two modes m and 2 - m together where nu > 0).
 """
 
 from __future__ import annotations
 
-from copy import copy
 from functools import lru_cache
 
 import numpy as np
 
-from microslip.contacts.splitting import best_penalty, resolvent
-from microslip.contacts.system import System
 from microslip.models import contact
 from microslip.models.path import Path
-from microslip.models.polar.angular_modes import (
-    Folded,
-    apply_folded,
-    influence_sectors,
-    quickest,
-    scaled,
-    shifted_inverse,
-)
-from microslip.models.rings.contact import RadialContact
+from microslip.models.polar.angular_modes import ROTATION, TRANSLATION, WHOLE, influence_modes
+from microslip.models.rings.contact import RadialContact, width_of
 from microslip.models.rings.mesh import Focus, make_rings
-from microslip.models.system_contact import SystemContact
+from microslip.models.system_contact import Layout, SystemContact
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
@@ -82,32 +71,52 @@ class PolarContact(SystemContact):
     ):
         if angles < 2 or angles % 2:
             raise ValueError(f"angles = {angles}: allowed is an even number of at least 2")
-        self.rings = make_rings(cells, focus, pressure)
-        self.rotates, self.stiffness = rotates, pressure.stiffness
-        self.edges = np.sin(self.rings.psi)
-        self.whole, self._half, self.angles = whole, angles, 2 * angles if whole else angles
-        self._theta = theta = (np.arange(self.angles) + 0.5) * np.pi / angles
-        self.lateral_position = np.cos(theta)[:, None] * self.rings.radius
-        self.forward_position = np.sin(theta)[:, None] * self.rings.radius
-        self.bound = self.rings.bound
-        self.weight = self.rings.area / self.angles
-        key = (cells, angles, rotates, poisson, focus, pressure)
-        self.influence, self.inverse, self.compliance = _prepared(*key, whole=whole)
-        self.penalty = best_penalty(self.compliance, cells)
+        self.rings = rings = make_rings(cells, focus, pressure)
+        self.rotates, self.whole, self.stiffness = rotates, whole, pressure.stiffness
+        self.edges = np.sin(rings.psi)
+        self.angles = rows = 2 * angles if whole else angles
+        self._theta = theta = (np.arange(rows) + 0.5) * np.pi / angles
+        self.lateral_position = np.cos(theta)[:, None] * rings.radius
+        self.forward_position = np.sin(theta)[:, None] * rings.radius
+        self.bound, self.weight = rings.bound, rings.area / rows
+        self.layout = Layout(1, rows, cells, width_of(cells))
+        mirror = np.arange(rows * cells).reshape(rows, cells)[::-1]
+        self.mirror = np.roll(mirror, angles if whole else 0, axis=0).ravel()
+        symmetry = WHOLE if whole else ROTATION if rotates else TRANSLATION
+        self.operators, self.compliance = influence_modes(
+            rings, angles, symmetry, poisson, pressure.G_star, self.layout.width
+        )
+        self.resultants = np.ones(3)
+        if not whole:  # what the half disc that is not resolved cancels
+            self.resultants[contact.LATERAL if rotates else contact.TORQUE] = 0.0
         self._made_of = cells, focus, pressure
+
+    @staticmethod
+    @lru_cache(maxsize=32)
+    def resolved(
+        cells: int,
+        angles: int,
+        rotates: bool,
+        poisson: float,
+        focus: Focus | float | None,
+        pressure: Pressure,
+        *,
+        whole: bool,
+    ) -> PolarContact:
+        """The contact with these arguments, which runs that differ in their motion share."""
+        return PolarContact(cells, angles, rotates, poisson, focus, pressure, whole=whole)
 
     def at_indentation(self, deepest: float, start: float) -> PolarContact:
         """The same points spread over the contact at its `deepest`, with the bound at `start`;
         see RadialContact.at_indentation."""
-        out = copy(self)
+        out = self.unprepared()
         out.loaded = RadialContact.resolved(*self._made_of).at_indentation(deepest, start)
         out.radius = radius = out.loaded.radius
         out.forward_position = self.forward_position * radius
         out.lateral_position = self.lateral_position * radius
         out.bound, out.weight = out.loaded.bound, self.weight * radius**2
-        out.influence = scaled(self.influence, radius)
-        out.inverse = scaled(self.inverse, 1.0 / radius)
-        out.compliance, out.penalty = self.compliance * radius, self.penalty * radius
+        out.operators = self.operators.joined([self.operators], np.array([radius]))
+        out.compliance = self.compliance * radius
         out.stiffness = self.stiffness * radius
         return out
 
@@ -118,12 +127,6 @@ class PolarContact(SystemContact):
     def bounds_along(self, path: Path) -> np.ndarray:
         """Bounds at the start and at every stage of a path, (1 + steps stages, cells)."""
         return self.loaded.bounds_along(path)
-
-    def displacement(self, state: np.ndarray) -> np.ndarray:
-        """A q; shapes (2, angles, cells)."""
-        out = np.empty(state.shape)
-        apply_folded(self.system().compliance, np.ascontiguousarray(state), out)
-        return out
 
     def prolonged(self, state: np.ndarray) -> np.ndarray | None:
         """Tractions of the same contact on other rings and angles, (2, angles, cells) of these,
@@ -145,37 +148,7 @@ class PolarContact(SystemContact):
         share = _interpolated(wanted, given, share, axis=1)
         return _interpolated(self.rings.radius, rings.radius, share, axis=2) * self.bound
 
-    def system(self) -> System:
-        """The System of the points."""
-        rows, n = self.forward_position.shape
-        mirror = np.arange(rows * n).reshape(rows, n)[::-1]
-        folded = np.empty((8 if self.whole else 4, self._half // 2, n))
-        scratch = folded, np.empty_like(folded)
-        resultants = np.ones(3)
-        if not self.whole:  # what the half disc that is not resolved cancels
-            resultants[contact.LATERAL if self.rotates else contact.TORQUE] = 0.0
-        return System(
-            compliance=Folded(self.influence, *scratch),
-            solver=resolvent(Folded(self.inverse, *scratch), self.penalty, self.weight, rows),
-            scale=self.compliance,
-            weight=self.weight,
-            positions=(self.forward_position, self.lateral_position),
-            first=np.array([0, n]),
-            mirror=np.roll(mirror, self._half if self.whole else 0, axis=0).ravel(),
-            resultants=resultants,
-            stiffness=float(self.stiffness),
-        )
-
 
 def _interpolated(wanted, given, values, axis):
     """Linear between the given places along an axis, constant beyond them."""
     return np.apply_along_axis(lambda line: np.interp(wanted, given, line), axis, values)
-
-
-@lru_cache(maxsize=32)
-def _prepared(cells, angles, rotates, poisson, focus, pressure, *, whole):
-    """The operator, (A + penalty)^-1, and the self-influence of each ring."""
-    key = (cells, angles, rotates, poisson, focus, pressure)
-    operator, compliance = influence_sectors(*key, whole=whole)
-    inverse = shifted_inverse(operator, best_penalty(compliance, cells))
-    return quickest(operator), quickest(inverse), compliance

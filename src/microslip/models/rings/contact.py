@@ -6,13 +6,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from microslip.contacts.operators import matrix_operator
-from microslip.contacts.splitting import best_penalty, resolvent
-from microslip.contacts.system import System
+from microslip.contacts.lanes import LANES
+from microslip.contacts.operators import Matrices, packed
+from microslip.contacts.splitting import PENALTIES, best_penalty
 from microslip.models.path import Path
 from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import Focus, make_rings
-from microslip.models.system_contact import SystemContact
+from microslip.models.system_contact import Layout, SystemContact
 from microslip.models.varying_load import Growth, load_on_rings
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
@@ -63,30 +63,18 @@ class RadialContact(SystemContact):
         if stiffness is None:  # the force that moves all points by one
             stiffness = weight @ np.linalg.solve(self._weighted, weight)
         self.stiffness = float(stiffness)
-        self.rings_of_a_contact = len(bound)
-        self._operators = None
+        self.layout = Layout(1, 1, len(bound), width_of(len(bound)))
+        self.mirror = np.arange(len(bound))
+        self.operators = Matrices(packed(self._matrices(), self.layout.width))
+        self.resultants = np.array([1.0, 1.0, 0.0])
 
-    def system(self) -> System:
-        """The System of the rings, with scratch of its own."""
-        if self._operators is None:
-            weight = np.ascontiguousarray(self.weight, dtype=float)
-            penalty = best_penalty(self.compliance, self.rings_of_a_contact)
-            inverse = np.linalg.inv(self._weighted + np.diag(weight * penalty)) * weight
-            compliance = self._weighted / weight[:, None]
-            operators = matrix_operator(compliance), matrix_operator(inverse)
-            self._operators = (*operators, penalty, weight)
-        compliance, inverse, penalty, weight = self._operators
-        return System(
-            compliance=compliance,
-            solver=resolvent(inverse, penalty, weight, 1),
-            scale=np.ascontiguousarray(self.compliance),
-            weight=weight,
-            positions=(self.forward_position, self.lateral_position),
-            first=np.array([0, len(weight)]),
-            mirror=np.arange(len(weight)),
-            resultants=np.array([1.0, 1.0, 0.0]),
-            stiffness=self.stiffness,
-        )
+    def _matrices(self):
+        """A and its resolvents, (operators, 1, cells, cells)."""
+        weight = self.weight
+        penalty = best_penalty(self.compliance, len(weight))
+        shifts = PENALTIES[:, None, None] * np.diag(weight * penalty)
+        resolvents = np.linalg.inv(self._weighted + shifts) * weight
+        return np.concatenate([self._weighted[None] / weight[:, None], resolvents])[:, None]
 
     @staticmethod
     def resolved(
@@ -156,9 +144,10 @@ class RadialContact(SystemContact):
         edge[:, -1] = seen[1:]
         return self.bounds(path.depth, np.append(seen[:1], edge))
 
-    def displacement(self, state: np.ndarray) -> np.ndarray:
-        """A q; shapes (2, 1, cells)."""
-        return state @ self.influence.T
+
+def width_of(rings: int) -> int:
+    """Columns of a field of so many rings: whole vectors, see lanes.py."""
+    return max(-(-rings // 4) * 4, LANES)
 
 
 @lru_cache(maxsize=32)

@@ -10,16 +10,10 @@ from __future__ import annotations
 import numpy as np
 
 from microslip.contacts.descent import PATIENCE, Descent
-from microslip.contacts.system import System
 from microslip.models import contact
 from microslip.models.squares import half
-from microslip.models.squares.convolution import (
-    Convolved,
-    apply_convolution,
-    square_convolution,
-    workspace,
-)
-from microslip.models.system_contact import SystemContact
+from microslip.models.squares.convolution import convolved, square_convolution
+from microslip.models.system_contact import Layout, SystemContact
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
@@ -79,41 +73,26 @@ class CartesianContact(SystemContact):
         self.bound = _mean_of_images(self.bound, self.images, symmetry)
         self.forward_position, self.lateral_position = np.meshgrid(rows, columns, indexing="ij")
         self.area = self.images * self.size**2
-        self._cancelled = contact.LATERAL if symmetry == half.MIRROR else contact.TORQUE
         self.weight = np.full(self.bound.shape, self.area)
         self.stiffness = pressure.stiffness
-        self.operator, self.scale, self.largest = square_convolution(
+        convolution, self.scale, self.largest = square_convolution(
             cells, poisson, pressure.G_star, self.images, symmetry
         )
         self.compliance = np.full(self.bound.shape, self.scale)
-
-    def system(self) -> System:
-        """The System of the squares."""
         rows, columns = self.bound.shape
+        self.layout = Layout(1, rows, columns, columns)
         points = np.arange(rows * columns)
         mirror = points if self.images == 4 else points.reshape(rows, columns)[:, ::-1].ravel()
-        resultants = np.ones(3)
+        self.mirror = mirror
+        self.operators = convolved(convolution, rows, columns)
+        self.resultants = np.ones(3)
         if self.images > 1:  # what the images of the squares cancel
-            resultants[self._cancelled] = 0.0
-        return System(
-            compliance=Convolved(self.operator, *workspace(self.operator)),
-            solver=Descent(
-                self.largest, PATIENCE, np.array([1.0 / self.scale]), np.empty((3, columns))
-            ),
-            scale=self.compliance[0],
-            weight=self.weight[0],
-            positions=(self.forward_position, self.lateral_position),
-            first=np.array([0, columns]),
-            mirror=mirror,
-            resultants=resultants,
-            stiffness=float(self.stiffness),
-        )
+            self.resultants[contact.LATERAL if symmetry == half.MIRROR else contact.TORQUE] = 0.0
 
-    def displacement(self, state: np.ndarray) -> np.ndarray:
-        """A q; shapes of a state."""
-        out = np.empty(state.shape)
-        apply_convolution(self.system().compliance, np.ascontiguousarray(state), out)
-        return out
+    def solver(self, weight: np.ndarray) -> Descent:
+        """The solver of a step."""
+        length = np.array([1.0 / self.scale])
+        return Descent(self.largest, PATIENCE, length, np.empty((3, self.layout.columns)))
 
 
 def _images(loads, symmetry, poisson):

@@ -12,13 +12,13 @@ a half if they are their own image under a half turn, or in a mirror (half.py).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from microslip.contacts.operators import operator
-from microslip.contacts.system import copy
 from microslip.foundation.compiled import kernel
 from microslip.models.squares import half, quarter
 from microslip.models.squares.transform import backward, forward
@@ -189,18 +189,63 @@ def convolve(operator: Convolution, scratch: tuple, q: np.ndarray, out: np.ndarr
 
 
 class Convolved(NamedTuple):
-    """The operator on fields of squares: a Convolution with its scratch."""
+    """A on fields of squares, contact after contact, of equal shape.
+
+    Attributes
+    ----------
+    convolution : Convolution
+        Of each.
+    extents : np.ndarray, shape (contacts,)
+        u_lim of each over that of the body.
+    first, second : np.ndarray
+        Scratch, see `workspace`.
+    traction, displacement : np.ndarray, shape (2, rows, columns)
+        Scratch.
+    """
 
     convolution: Convolution
+    extents: np.ndarray
     first: np.ndarray
     second: np.ndarray
+    traction: np.ndarray
+    displacement: np.ndarray
+
+    def own(self) -> Convolved:
+        """The same with scratch of its own."""
+        return convolved(self.convolution, *self.traction.shape[1:])._replace(extents=self.extents)
+
+    @staticmethod
+    def joined(each: Sequence[Convolved], extents: np.ndarray) -> Convolved:
+        """The operator of several equal contacts on one body, see models/side_by_side.py."""
+        return each[0]._replace(extents=extents)
+
+
+def convolved(convolution: Convolution, rows: int, columns: int) -> Convolved:
+    """The operator of one contact on fields of so many rows and columns, with scratch."""
+    scratch = np.empty((2, 2, rows, columns))
+    return Convolved(convolution, np.ones(1), *workspace(convolution), scratch[0], scratch[1])
 
 
 @operator(Convolved)
 @kernel
-def apply_convolution(convolved: Convolved, field: np.ndarray, image: np.ndarray) -> None:
+def apply_convolution(
+    convolved: Convolved, number: int, field: np.ndarray, image: np.ndarray
+) -> None:
     """image = A field."""
-    convolve(convolved.convolution, (convolved.first, convolved.second), field, image)
+    scratch = (convolved.first, convolved.second)
+    traction, displacement = convolved.traction, convolved.displacement
+    points = traction[0].size
+    for contact in range(len(convolved.extents)):
+        first, extent = contact * points, convolved.extents[contact]
+        for c in range(2):
+            squares = traction[c].ravel()
+            for i in range(points):
+                squares[i] = field[c, first + i]
+        convolve(convolved.convolution, scratch, traction, displacement)
+        for c in range(2):
+            squares = displacement[c].ravel()
+            for i in range(points):
+                image[c, first + i] = extent * squares[i]
 
 
 @kernel
@@ -247,7 +292,9 @@ def _multiply(operator, first, second):
                 for k in range(second.shape[2]):
                     second[part, i, k] *= operator.kernel[i, k]
     elif operator.images == 1:
-        copy(first, second)
+        given, values = first.ravel(), second.ravel()
+        for i in range(values.size):
+            given[i] = values[i]
         _multiply_coupled(operator, first, second)
     elif operator.halving.sign < 0.0:
         half.multiply_mirrored(operator.kernel, operator.cross, operator.opposite, second)
