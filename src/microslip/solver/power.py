@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from microslip.models.contact import FORWARD
 from microslip.models.path import Path
 from microslip.motions.problem import Problem
 
@@ -28,6 +29,7 @@ def oscillation_power(problem: Problem, path: Path, forces: np.ndarray) -> float
     float
         Over mu times the mean normal load and u_lim.
     """
-    moved = np.diff(np.stack(problem.oscillation(path.phase), axis=-1), axis=0)
-    work = np.sum(0.5 * (forces[1:] + forces[:-1]) * moved)
-    return float(work) / float(path.phase[-1] - path.phase[0]) / problem.mean_load
+    moved = np.diff(path.positions, axis=0)
+    work = 0.5 * np.vdot(forces[1:] + forces[:-1], moved)
+    advance = problem.creep * float(path.mean(forces)[FORWARD])
+    return float(work / (path.phase[-1] - path.phase[0]) - advance) / problem.mean_load

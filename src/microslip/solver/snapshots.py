@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.contacts.coulomb import project
-from microslip.models.contact import Contact
+from microslip.models.contact import Contact, March
 from microslip.models.path import Path
 
 
@@ -33,7 +33,13 @@ class Frames(NamedTuple):
     solves: int
 
 
-def frames(contact: Contact, path: Path, state: np.ndarray, tolerance: float) -> Frames:
+def frames(
+    contact: Contact,
+    path: Path,
+    state: np.ndarray,
+    tolerance: float,
+    previous: March | None = None,
+) -> Frames:
     """Tractions and forces at every phase of a path.
 
     Parameters
@@ -46,14 +52,16 @@ def frames(contact: Contact, path: Path, state: np.ndarray, tolerance: float) ->
         Tractions at the first phase.
     tolerance : float
         Of a step, a force over mu F_z.
+    previous : contact.March or None
+        See contact.Contact.march.
 
     Returns
     -------
     Frames
         What the march leaves at these phases.
     """
-    if path.depth is not None:  # bounds belong to the path as a whole
-        march = contact.march(path, state, tolerance)
+    if contact.compiled and path.end == 1.0:
+        march = contact.march(path, state, tolerance, previous)
         stages = np.moveaxis(march.fields[:: path.stages.shape[1]], 1, 0)
         tractions = np.moveaxis(project(stages, bounds_at_phases(contact, path)), 1, 0)
         return Frames(tractions, march.forces, march.residual, march.solves)

@@ -15,6 +15,7 @@ a loop, and a load that oscillates, are in static_loop.py.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -67,9 +68,14 @@ def oscillating_part(contact: Contact, oscillation: Callable, step_tolerance: fl
 
 def _quarter_march(contact, oscillation, step_tolerance):
     """The March from a stress-free start to the second turning point."""
-    shape = np.broadcast_shapes(contact.bound.shape, contact.lateral_position.shape)
-    quarter = make_path(oscillation, np.linspace(0.0, np.pi / 2, STEPS // 2 + 1), EULER)
-    return contact.march(quarter, np.zeros((2, *shape)), step_tolerance)
+    start = np.zeros((2, *contact.lateral_position.shape))
+    return contact.march(_quarter(oscillation), start, step_tolerance)
+
+
+@lru_cache(maxsize=32)
+def _quarter(oscillation):
+    """The path from the mean position to the second turning point."""
+    return make_path(oscillation, np.linspace(0.0, np.pi / 2, STEPS // 2 + 1), EULER)
 
 
 def residual_part(oscillating: np.ndarray, bound: np.ndarray) -> np.ndarray:

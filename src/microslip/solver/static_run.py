@@ -204,7 +204,7 @@ def _on_these_points(contact, problem, resolution, tolerance, settings):
     force, left = mean_forces(contact, problem, path, found.forces)[FORWARD], None
     residual, solves = found.solver_residual, stages_of(path)
     if contact.sticks:
-        tractions, _, again, solved_again = frames(contact, path, found.start, inner)
+        tractions, _, again, solved_again = frames(contact, path, found.start, inner, found)
         residual, solves = residual + again, solves + solved_again
         bounds = np.broadcast_to(bounds_at_phases(contact, path), tractions[:, 0].shape)
         if mirror:
