@@ -9,6 +9,8 @@ periodic state, on few and on many rings, in bores, and on squares.
 import numpy as np
 
 from microslip.contacts import splitting
+from microslip.models.polar import angular_modes
+from microslip.models.polar.contact import PolarContact
 from microslip.models.rings import contact as rings
 from microslip.models.squares import contact as squares
 from microslip.motions.by_name import motion_named
@@ -37,11 +39,11 @@ def iterations(motion, model, resolution):
 
 
 def table(name, values, set_value, contacts):
-    """Print the iterations at each value of a constant; compiled code is compiled again."""
+    """Print the iterations at each value of a constant."""
     print(f"{name:20s}" + "".join(f"{contact:>16s}" for contact in contacts))
     for value in values:
         set_value(value)
-        for cached in (rings._resolved,):
+        for cached in (rings._resolved, PolarContact.resolved):
             cached.cache_clear()
         counts = [iterations(*CONTACTS[contact]) for contact in contacts]
         print(f"{value:<20g}" + "".join(f"{count:16.1f}" for count in counts))
@@ -53,8 +55,17 @@ def main():
     def balanced(value):
         splitting.BALANCED_RINGS = value
 
-    table("BALANCED_RINGS", (3, 6, 12, 24, 48), balanced, contacts[:3])
+    table("BALANCED_RINGS", (3, 6, 12, 24, 48), balanced, contacts)
     balanced(12)
+
+    def ratio(value):
+        """Penalties of which each is so many times the one before; 1: one penalty for all steps."""
+        penalties = value ** (np.arange(4) - 1.5)
+        for module in (splitting, rings, angular_modes):
+            module.PENALTIES = penalties
+
+    table("ratio of penalties", (1.0, 1.5, 2.0, 3.0), ratio, contacts)
+    ratio(2.0)
 
     def patience(value):
         squares.PATIENCE = value

@@ -186,7 +186,8 @@ def test_slider_has_the_static_friction_of_eq_7(amplitude):
 def test_a_slow_slider_is_found_from_above_its_static_limit(tolerance):
     """Below the limit a state only drifts, by 3e-5 in a march here; a search that stays there would
     take thousands of them."""
-    run = simulate(Problem(TRANSVERSE, 1e-5, 0.3, 0.0), "slider", Resolution(1, 1, 192), tolerance)
+    problem = Problem(Transverse(), 1e-5, 0.3, 0.0)
+    run = simulate(problem, "slider", Resolution(1, 1, 192), tolerance)
     assert run.converged
     assert run.periods < 10
     assert run.mu == pytest.approx(paper.static_slider(0.3), abs=5e-5)

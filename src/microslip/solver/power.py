@@ -31,5 +31,5 @@ def oscillation_power(problem: Problem, path: Path, forces: np.ndarray) -> float
     """
     moved = np.diff(path.positions, axis=0)
     work = 0.5 * np.vdot(forces[1:] + forces[:-1], moved)
-    advance = problem.creep * float(path.mean(forces)[FORWARD])
+    advance = problem.drift * float(path.mean(forces)[FORWARD])
     return float(work / (path.phase[-1] - path.phase[0]) - advance) / problem.mean_load

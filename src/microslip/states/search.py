@@ -31,9 +31,10 @@ LOOSEST, LOOSEST_NEAR = 1e-4, 1e-5
 NOISE = 1e-2
 """Largest share of the force gained by the drift that the steps of a march may leave unsolved: what
 a state has lost it regains at the rate of the drift alone."""
-DRIFTING = 0.5
-"""Share of the force gained by the drift that a march must keep for a state to count as stuck: its
-points drift and do not slip, so that its changes tell nothing about the periodic state."""
+DRIFTING, MOST_RETURNS = 0.5, 3
+"""Share of the force gained by the drift that a march must change for a state below the static
+limit to count as stuck, and how often in a row the search then goes halfway back: such a state
+drifts and does not slip, so that its changes tell little about the periodic state."""
 FORGETFUL = 0.2
 """Contraction of the plain map since the start below which it needs no acceleration."""
 
@@ -107,8 +108,9 @@ class Memory(NamedTuple):
         See anderson.remember.
     above : np.ndarray, field
         The last state that was not stuck below the static limit; at first the start.
-    counts : np.ndarray of int, shape (4,)
-        Marches, iterations, pairs, and whether the plain map still contracts fast (0 or 1).
+    counts : np.ndarray of int, shape (5,)
+        Marches, iterations, pairs, whether the plain map still contracts fast (0 or 1), and how
+        often in a row the search went back.
     numbers : np.ndarray, shape (2,)
         Tolerance of the next march's steps, residual of the last one.
     best : tuple of np.ndarray
@@ -137,7 +139,7 @@ def memory_of(state: np.ndarray, place: np.ndarray, stages: int, steps: int, goa
         np.empty((1 + stages * steps, *state.shape)),
         np.empty((2, DEPTH + 1, state.size + 2)),
         state.copy(),
-        np.array([0, 0, 0, 1]),
+        np.array([0, 0, 0, 1, 0]),
         np.array([inner, np.inf]),
         (
             state.copy(),
@@ -254,12 +256,14 @@ def search(
         mean = 0.0
         for k in range(steps):
             mean += 0.5 * goal.share[k] * (trace.forces[k, 0] + trace.forces[k + 1, 0])
-        kept = DRIFTING * goal.gain
-        stuck = counts[0] > 1 and mean < goal.static_force and residual > kept
+        stuck = counts[0] > 1 and mean < goal.static_force and residual > DRIFTING * goal.gain
+        back = stuck and inertia is None and counts[4] < MOST_RETURNS
         if not stuck:
-            counts[2] = remember(pairs, counts[2], new_image, new_change)
             copy(above, state)
-        if stuck and inertia is None:  # halfway back
+        counts[4] = counts[4] + 1 if back else 0 if not stuck else counts[4]
+        if not back:
+            counts[2] = remember(pairs, counts[2], new_image, new_change)
+        if back:  # halfway
             counts[2], above_row = 0, above.ravel()
             for i in range(n):
                 proposal[i] = 0.5 * (state_row[i] + above_row[i])
