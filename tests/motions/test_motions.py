@@ -1,6 +1,7 @@
 """Motions: what their displacement promises, and the zigzag against closed forms."""
 
 import json
+import math
 import os
 import shutil
 import subprocess
@@ -235,3 +236,17 @@ def test_a_drive_has_no_default_for_the_number_that_it_is_named_by(kind):
     with pytest.raises(TypeError, match="missing 1 required"):
         kind()
     assert kind(0.5).damping == 0.0
+
+
+@pytest.mark.parametrize(
+    ("drive", "numbers", "argument"),
+    [
+        (Force, {"force": math.nan}, "force"),
+        (Force, {"force": 0.5, "mass": -1.0}, "mass"),
+        (Spring, {"stiffness": -1.0}, "stiffness"),
+    ],
+)
+def test_a_drive_refuses_impossible_numbers(drive, numbers, argument):
+    with pytest.raises(microslip.InputError) as caught:
+        drive(**numbers)
+    assert caught.value.argument == argument

@@ -9,9 +9,11 @@ contact; all over mu F_z, u_lim and the time 1 / omega.  Here F_z is the load wi
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from microslip.foundation import spec
+from microslip.foundation.arguments import real
 
 
 class Drive:
@@ -44,6 +46,11 @@ class Force(Drive):
         Over mu times the mean normal load.
     mass : float
         Over mu F_z / (u_lim omega^2).
+
+    Raises
+    ------
+    InputError
+        For a force that is no finite number, or a mass below 0.
     """
 
     force: float
@@ -51,6 +58,10 @@ class Force(Drive):
 
     stiffness = 0.0
     damping = 0.0
+
+    def __post_init__(self) -> None:
+        real("force", self.force, -math.inf)
+        real("mass", self.mass, 0.0)
 
 
 @dataclass(frozen=True)
@@ -65,6 +76,11 @@ class Spring(Drive):
         Over mu F_z / (u_lim omega^2).
     damping : float
         Of a dashpot beside the spring, over mu F_z / (u_lim omega).
+
+    Raises
+    ------
+    InputError
+        For numbers that are not finite or below 0.
     """
 
     stiffness: float
@@ -72,3 +88,7 @@ class Spring(Drive):
     damping: float = 0.0
 
     force = None
+
+    def __post_init__(self) -> None:
+        for name in ("stiffness", "mass", "damping"):
+            real(name, getattr(self, name), 0.0)
