@@ -45,6 +45,9 @@ from microslip.solver.stick_edge import found_focus
 
 TOLERANCE = 1e-2
 """Of the displacement, in u_lim, unless told otherwise."""
+RUN_SHARE = 0.2
+"""Tolerance of a run over that of a periodic state: what its steps leave unsolved adds up over all
+periods, up to some hundreds near the static limit (tests/adaptive/test_shakedown.py)."""
 PLANNED_VELOCITY = 0.1
 """For which the steps are planned: near the static limit there would be none."""
 
@@ -224,7 +227,10 @@ def _certified(request, force):
         found_focus(planned, request.model, request.budget, request.progress)
     except Spent as spent:
         return _fields(request, unknown(f"{spent}: no error is known yet"), Ladder(1, 0, 0), None)
-    ladder, left = ladder_for(planned, request.model), run_tolerance(request.tolerance)
+    ladder = ladder_for(planned, request.model)
+    # the coarsest run, too, must hold the force
+    ladder = replace(ladder, start=2 * ladder.start)
+    left = RUN_SHARE * run_tolerance(request.tolerance)
     settings, finest = Settings(request.how, budget=request.budget), {}
 
     def run(resolution, guess):

@@ -98,7 +98,7 @@ TRANSLATION = Ladder(start=24, angles=0.25, steps=2)
 sliding agree by chance, see tests/adaptive/test_near_full_sliding.py."""
 LOOP = replace(TRANSLATION, start=32)
 """Slow motion whose halves are no mirror images, so that slip fronts differ between them."""
-COUPLED = replace(LOOP, steps=4)
+COUPLED = replace(LOOP, start=64, steps=4)
 """Several contacts that work against each other: which one slides changes within a step."""
 ROTATION = Ladder(start=24, angles=0.5, steps=1, least_angles=4)
 WHOLE_DISC = replace(ROTATION, start=32)
