@@ -8,7 +8,7 @@ from scipy.integrate import dblquad
 
 from microslip.contacts.coulomb import coulomb_residual, project
 from microslip.contacts.descent import MOST_ITERATIONS
-from microslip.contacts.step import Fields, Step, solve_step
+from microslip.contacts.step import Balance, Fields, Step, solve_step
 from microslip.models.contact import forward_slip
 from microslip.models.path import EULER, SDIRK2, half_period_phases, make_path
 from microslip.models.squares.contact import CartesianContact
@@ -104,9 +104,12 @@ def plain_step(contact, nu, b):
     return solved_stage(matrix, b, contact.bound, np.zeros_like(b))
 
 
+NO_BODY = Balance(0.0, 0.0, np.empty((0, 2, 0)), np.empty(0))
+
+
 @numba.njit
-def solve_here(system, step, fields):
-    return solve_step(system, None, step, fields)
+def solve_here(system, balance, step, fields):
+    return solve_step(system, balance, step, fields)
 
 
 def solved(contact, b, start, tolerance, patience=None):
@@ -117,7 +120,7 @@ def solved(contact, b, start, tolerance, patience=None):
     if patience is not None:
         system = system._replace(solver=system.solver._replace(patience=patience))
     fields = Fields(start.copy(), np.empty_like(b), np.empty_like(b), scratch)
-    iterations, residual, _ = solve_here(system, Step(b, bound, tolerance), fields)
+    iterations, residual, _ = solve_here(system, NO_BODY, Step(b, bound, tolerance), fields)
     return fields.q.reshape(shape), fields.slip.reshape(shape), residual, iterations
 
 
