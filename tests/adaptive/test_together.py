@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 
 import microslip
-from microslip.contacts import splitting
 from microslip.models.contact import forward_slip, full_slip
-from microslip.models.polar import contact as polar
 from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, contact_of
@@ -56,15 +54,3 @@ def test_a_run_from_a_coarser_one_ends_where_it_would_by_itself():
     alone, led = (simulate(BORE, "polar", fine, 1e-6, guess) for guess in (None, coarse))
     assert alone.converged and led.converged and led.iterations < alone.iterations
     assert led.mu == pytest.approx(alone.mu, abs=2e-6)
-
-
-@pytest.mark.parametrize("factor", [1 / 16, 16])
-def test_the_penalty_takes_fewer_iterations_than_others(monkeypatch, factor):
-    def iterations(rings):
-        polar._prepared.cache_clear()
-        monkeypatch.setattr(splitting, "BALANCED_RINGS", rings)
-        return simulate(BORE, "polar", Resolution(48, 4, 12), 1e-5).iterations
-
-    shipped, other = iterations(splitting.BALANCED_RINGS), iterations(12 * factor)
-    polar._prepared.cache_clear()
-    assert shipped < 0.95 * other

@@ -23,7 +23,7 @@ from microslip.solver.simulate import simulate
 from microslip.solver.snapshots import bounds_at_phases, frames
 
 PERIOD_CELLS, PERIOD_STEPS = 16, 64
-PERIOD_TOLERANCE = 1e-4
+PERIOD_TOLERANCE = 3e-5
 ON_BOUND = 1.0 - 1e-4
 """Share of the friction bound from which on a traction along the slip counts as slipping."""
 MOST_ANGLES = 1000

@@ -75,10 +75,11 @@ class Ladder:
     def resolution(self, level: int) -> Resolution:
         """Resolution at a level."""
         angles = 2 * math.ceil(0.5 * self.angles * level)
+        fewest = 1 if self.imposed and self.steps else 4  # halves of imposed steps must differ
         return Resolution(
             cells=max(round(self.cells * level), 2) if self.cells else 1,
             angles=max(angles, self.least_angles) if self.angles else 1,
-            steps=max(round(self.steps * level), 4),
+            steps=max(round(self.steps * level), fewest),
         )
 
     def levels(self, tolerance: float) -> tuple[int, ...]:
