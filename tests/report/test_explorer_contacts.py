@@ -104,14 +104,14 @@ def made_up(request):
     return record(request, {"mu_macro": rises(*place), "mu_macro_error": 1e-4, "converged": True})
 
 
-@pytest.fixture(scope="module", params=si_form.MOTIONS)
+@pytest.fixture(scope="module", params=si_form.CHOICES)
 def coarse(request):
     """A certified map of a made-up friction, for Poisson's ratio 0."""
     axes = {"velocity": [0.001, 100], "amplitude": [0, 10], "adaptive": {"error": 5e-2}}
     return made(certified_stub.configured(request.param, **axes), made_up)
 
 
-@pytest.fixture(scope="module", params=si_form.MOTIONS)
+@pytest.fixture(scope="module", params=si_form.CHOICES)
 def over_ratios(request):
     """The same for every Poisson's ratio."""
     axes = {"velocity": [1e-5, 1e2], "amplitude": [0, 10], "poisson": [0, 0.5]}

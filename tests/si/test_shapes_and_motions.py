@@ -301,29 +301,39 @@ def test_an_unknown_pressure_is_refused():
 
 # Motions of one's own
 
-LOPSIDED = '''
-from dataclasses import replace
+OWN = {
+    "sine_cubed": """from dataclasses import dataclass
+
 import numpy as np
-from microslip.motions import bore, transverse
 
-def displacement(phase, velocity, amplitude, poisson):
-    """Lateral y~ sin^3 t."""
-    return velocity * phase, amplitude * np.sin(phase) ** 3, np.zeros_like(phase)
+from microslip.motions.transverse import Transverse
 
-MOTION = replace({motion}.MOTION, name="{name}", summary="moving as it likes"{more})
-'''
+
+@dataclass(frozen=True)
+class SineCubed(Transverse):
+    summary = "moving as it likes"
+
+    def displacement(self, phase, velocity, amplitude, poisson):
+        return velocity * phase, amplitude * np.sin(phase) ** 3, np.zeros_like(phase)
+""",
+    "own_bore": """from dataclasses import dataclass
+
+from microslip.motions.bore import Bore
+
+
+@dataclass(frozen=True)
+class OwnBore(Bore):
+    summary = "moving as it likes"
+""",
+}
 
 
 @pytest.fixture
 def own(tmp_path):
     """Two motions in files of one's own: a translation of another shape, and the bore once more."""
     known, path = dict(by_name.MOTIONS), list(motions.__path__)
-    for name, motion, more in (
-        ("sine-cubed", "transverse", ", displacement=displacement"),
-        ("own-bore", "bore", ""),
-    ):
-        file = tmp_path / f"{name.replace('-', '_')}.py"
-        file.write_text(LOPSIDED.format(name=name, motion=motion, more=more))
+    for name, text in OWN.items():
+        (tmp_path / f"{name}.py").write_text(text)
     by_name.find(tmp_path)
     yield
     by_name.MOTIONS.clear()
