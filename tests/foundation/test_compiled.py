@@ -164,3 +164,38 @@ print(scipy.linalg.cython_blas.__name__, scipy.linalg.inv(np.diag([2.0, 4.0]))[1
 def test_kernels_load_no_linear_algebra_and_leave_it_to_others():
     said = run(BESIDE_LINEAR_ALGEBRA, PACKAGE).stdout.split()
     assert said == ["False", "18.0", "6.0", "scipy.linalg.cython_blas", "0.25"]
+
+
+ANSWERS = """
+import sys, microslip
+QUESTIONS = [
+    ("transverse", 3.0, 0.2, {"stiffness": 1e-5, "tolerance": 2e-4}),
+    ("transverse", 0.1, 1.0, {"stiffness": 0.1}),
+    ("transverse", 0.1, 0.7, {"poisson": 0.3}),
+    ("bore", 0.1, 1.0, {}),
+    ("normal:lateral=0.5", 0.2, 0.4, {}),
+    ("transverse", 0.1, 0.8, {"model": "cartesian", "tolerance": 1e-2}),
+]
+found = [
+    (question[:3], microslip.solve(*question[:3], **question[3], most_work=1e8))
+    for question in QUESTIONS[:: int(sys.argv[1])]
+]
+for question, one in found[:: int(sys.argv[1])]:
+    print(question, one.mu_macro.hex(), one.iterations)
+"""
+
+
+@pytest.mark.long
+def test_equal_inputs_give_equal_bits_whatever_was_compiled_before(tmp_path):
+    """Kernels are compiled while they are needed, read from disk, and needed in another order."""
+    program = [sys.executable, "-c", ANSWERS]
+
+    def answers(place, order):
+        environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / place)}
+        command = [*program, order]
+        return subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+
+    compiled = answers("one", "1").stdout
+    assert compiled.count("\n") == 6
+    assert answers("one", "1").stdout == compiled
+    assert answers("other", "-1").stdout == compiled

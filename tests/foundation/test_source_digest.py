@@ -246,6 +246,7 @@ BY_LISTING = {
     "theory/indenter_pressure.py",
     "theory/masing.py",
     "theory/oscillating_load.py",
+    "theory/paper.py",
     "foundation/csv_text.py",
     "foundation/named_files.py",
     *source_digest.NAMES_ONLY,

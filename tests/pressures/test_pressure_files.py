@@ -89,9 +89,11 @@ def test_friction_of_a_uniform_square_does_not_depend_on_its_grid(tmp_path, moti
         found.append(microslip.solve(motion, 0.5, 0.5, pressure=name, tolerance=1e-2))
     one, other = found
     assert one.converged and other.converged
-    # a thousandth of the tolerance that periodic states are found to
-    assert max(one.error_model, other.error_model) < 1e-5
-    assert one.mu_macro == pytest.approx(other.mu_macro, abs=1e-5)
+    # the grid itself changes nothing: what differs is what the iterations leave
+    left = max(each.error_periodicity + each.error_solver for each in found)
+    assert left < 1e-3
+    assert max(one.error_model, other.error_model) < left
+    assert one.mu_macro == pytest.approx(other.mu_macro, abs=left)
 
 
 def test_cells_are_even_up_to_half_a_step_beyond_the_points():

@@ -11,6 +11,7 @@ from scipy.signal import fftconvolve
 
 import microslip
 from microslip import pressures
+from microslip.foundation.errors import InputError
 from microslip.models.contact import forward_slip
 from microslip.models.path import EULER, make_path
 from microslip.models.registry import MODELS
@@ -19,7 +20,9 @@ from microslip.motions.by_name import motion_named
 from microslip.motions.problem import Problem
 from microslip.pressures import by_name
 from microslip.pressures.by_name import PRESSURES, pressure_named
+from microslip.pressures.ellipse import Ellipse
 from microslip.pressures.hertz import HERTZ
+from microslip.pressures.pressure import Pressure
 from microslip.theory import hertz, indenters, paper
 
 INDENTERS = ["power", "power:exponent=1", "power:exponent=8", "punch", "punch:flat=0.5"]
@@ -420,3 +423,38 @@ def test_a_broken_file_is_an_error_of_its_pressure_alone(tmp_path, monkeypatch):
         microslip.solve("longitudinal", 0.1, 0.5, pressure="unfinished:share=1")
     assert caught.value.argument == "pressure" and str(file) in str(caught.value)
     assert microslip.solve("longitudinal", 0.1, 0.5, pressure="power:exponent=1").converged
+
+
+def test_an_array_is_read_as_the_pressure_that_it_samples():
+    """An elliptic Hertz contact on cells: its shear stiffness is that of the closed form."""
+    x, y = np.linspace(-1, 1, 201), np.linspace(-0.5, 0.5, 101)
+    values = np.sqrt(np.maximum(0.0, 1.0 - x[:, None] ** 2 - (y / 0.5) ** 2))
+    read = Pressure.from_array(x, y, values)
+    assert read.G_star == pytest.approx(Ellipse(ratio=0.5).G_star, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("argument", "arrays"),
+    [
+        ("pressure", ([0, 1], [0, 1], "ab")),
+        ("pressure", ([0, 1], [0, 1], [[1, 2], [3]])),
+        ("pressure", ([0, 1], [0, 1], [[1, 2, 3], [1, 2, 3]])),
+        ("forward", ("ab", [0, 1], np.ones((2, 2)))),
+        ("lateral", ([0, 1], [0, "b"], np.ones((2, 2)))),
+    ],
+)
+def test_what_is_no_array_of_numbers_is_refused_by_the_name_of_the_argument(argument, arrays):
+    with pytest.raises(InputError) as raised:
+        Pressure.from_array(*arrays)
+    assert raised.value.argument == argument
+    assert "\n" not in str(raised.value)
+
+
+def test_a_word_that_a_name_has_to_follow_is_no_pressure():
+    with pytest.raises(InputError, match="file:NAME"):
+        pressure_named("file")
+
+
+def test_numbers_of_a_pressure_have_to_be_finite():
+    with pytest.raises(InputError, match="ratio"):
+        Ellipse(ratio=float("nan"))

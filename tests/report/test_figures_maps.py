@@ -230,6 +230,18 @@ def test_numbers_are_inside_the_frame_and_off_other_lines(velocities, amplitudes
     assert found >= least
 
 
+def test_a_number_stands_on_the_contour_of_its_level():
+    """On lines of many points, too."""
+    axes, lines = drawn(mapped(25, 25))
+    axes.figure.draw_without_rendering()
+    numbers = [text for text in axes.texts if re.fullmatch(r"-?\d\.\d", text.get_text())]
+    assert len(numbers) >= 3
+    for text in numbers:
+        velocity, amplitude = text.get_position()
+        there = float(paper.large_amplitude_transverse(velocity, amplitude))
+        assert there == pytest.approx(float(text.get_text()), abs=0.01)
+
+
 def test_lines_stand_out_from_their_bands():
     for levels in (map_panel.FILL_LEVELS, small_maps.levels_of([groups.spanning(shift=-0.9)])[0]):
         lines = np.arange(levels[0] + 0.1, 0.95, 0.1)

@@ -24,6 +24,8 @@ from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 
 SMALLEST_TOLERANCE = 1e-6
+DRIVE = ("force", "stiffness", "mass", "damping")
+"""Numbers of a drive."""
 LARGEST_FORCE = 1e6
 """Over mu times the mean normal load: it runs away from 1 on, which is an answer."""
 
@@ -35,45 +37,101 @@ def checked_problem(
     *,
     pressure: str | Pressure = HERTZ,
     poisson: float = 0.0,
-    contacts: str | None = None,
-    drive: Drive | None = None,
-    backward: bool = False,
 ) -> Problem:
-    """The problem of the arguments of a question, whose texts are read here.
+    """The problem of one contact at a prescribed velocity; texts are parsed here.
 
     Parameters
     ----------
     motion : str, Motion or Problem
         A Problem takes the place of all other arguments.
-    velocity, amplitude, pressure, poisson, contacts, drive
-        As for `microslip.solve` and Problem.
-    backward : bool
-        Whether the velocity may be below 0, for self-propelled motions.
+    velocity, amplitude, pressure, poisson
+        As for `microslip.solve`.
+
+    Raises
+    ------
+    InputError
+        For an argument out of range, others beside a Problem, and a Problem with a drive or
+        several contacts; it names the argument.
+    """
+    problem = _problem(motion, (velocity, amplitude, poisson), pressure)
+    if problem.drive is not None:
+        allowed = "allowed is none here: the velocity is prescribed"
+        raise InputError("drive", str(problem.drive), allowed)
+    if problem.contacts:
+        text = contacts_text(problem.contacts)
+        raise InputError("contacts", text, "allowed is none here: there is one contact")
+    return problem
+
+
+def checked_driven_problem(
+    motion: str | Motion | Problem,
+    velocity: float | None,
+    amplitude: float | None,
+    *,
+    pressure: str | Pressure = HERTZ,
+    poisson: float = 0.0,
+    contacts: str | None = None,
+    **drive: float | None,
+) -> Problem:
+    """The problem of one contact or several, with any drive; texts are parsed here.
+
+    Parameters
+    ----------
+    motion, velocity, amplitude, pressure, poisson, contacts
+        As for `microslip.solve`.  The velocity may be below 0 for self-propelled motions.
+    **drive : float or None
+        force, stiffness, mass and damping, as for `microslip.solve`.
 
     Raises
     ------
     InputError
         For an argument out of range, and others beside a Problem; it names the argument.
     """
+    place = (velocity, amplitude, poisson)
     if isinstance(motion, Problem):
-        others = {"velocity": velocity, "amplitude": amplitude, "contacts": contacts}
-        others |= {"pressure": None if pressure == HERTZ else pressure, "poisson": poisson or None}
-        for name, value in others.items():
-            if value is not None:
-                raise InputError(name, value, "allowed is none beside a Problem, which has its own")
-        problem = motion
-        place = (problem.velocity, problem.amplitude, problem.poisson)
-        _place(problem.motion, problem.pressure, place, backward)
+        _refuse_beside_problem(contacts=contacts, **drive)
+        problem = _problem(motion, place, pressure, backward=True)
+        if problem.drive is not None:
+            _refuse_drive(problem)
     else:
-        motion = motion if isinstance(motion, Motion) else motion_named(motion)
-        pressure = pressure if isinstance(pressure, Pressure) else pressure_named(pressure)
+        checked = checked_drive(velocity, **dict.fromkeys(DRIVE) | drive)
+        problem = _problem(motion, place, pressure, backward=True)
         several = () if contacts is None else contacts_of(contacts)
-        place = _place(motion, pressure, (velocity, amplitude, poisson), backward)
-        problem = Problem(motion, *place, pressure, drive, several)
+        problem = replace(problem, drive=checked, contacts=several)
     refusal = contacts_refusal(problem) if problem.contacts else ""
     if refusal:
         raise InputError("contacts", contacts or contacts_text(problem.contacts), refusal)
     return problem
+
+
+def _problem(motion, place, pressure, backward=False):
+    """The Problem of a motion at (velocity, amplitude, poisson), or a Problem in their place."""
+    if isinstance(motion, Problem):
+        velocity, amplitude, poisson = place
+        changed = {"pressure": None if pressure == HERTZ else pressure, "poisson": poisson or None}
+        _refuse_beside_problem(velocity=velocity, amplitude=amplitude, **changed)
+        place = (motion.velocity, motion.amplitude, motion.poisson)
+        _place(motion.motion, motion.pressure, place, backward)
+        return motion
+    motion = motion if isinstance(motion, Motion) else motion_named(motion)
+    pressure = pressure if isinstance(pressure, Pressure) else pressure_named(pressure)
+    return Problem(motion, *_place(motion, pressure, place, backward), pressure)
+
+
+def _refuse_drive(problem):
+    """Raise InputError for a drive of a Problem outside the range of the solver."""
+    drive = problem.drive
+    body = {"mass": drive.mass or None, "damping": drive.damping or None}
+    if drive.force is None:
+        checked_drive(problem.velocity, None, drive.stiffness, **body)
+    else:
+        checked_drive(None, drive.force, None, **body)
+
+
+def _refuse_beside_problem(**given: object) -> None:
+    for name, value in given.items():
+        if value is not None:
+            raise InputError(name, value, "allowed is none beside a Problem, which has its own")
 
 
 def _place(motion, pressure, place, backward):
@@ -99,6 +157,8 @@ def checked_propulsion(
 ) -> Problem:
     """The problem of a self-propelled motion at velocity 0; see `checked_problem`."""
     problem = checked_problem(motion, None, amplitude, pressure=pressure, poisson=poisson)
+    if problem.velocity != 0.0:
+        raise InputError("velocity", problem.velocity, "allowed is 0: the answer is a line of them")
     if not problem.propels:
         allowed = (
             "allowed is a self-propelled motion, such as elliptic:forward_cycles=2,phase=0 or "
@@ -109,7 +169,7 @@ def checked_propulsion(
         raise InputError("pressure", problem.pressure.name, allowed)
     if problem.amplitude == 0.0:
         raise InputError("amplitude", problem.amplitude, "allowed is a number above 0")
-    return replace(problem, velocity=0.0)
+    return problem
 
 
 def checked_drive(
@@ -119,7 +179,7 @@ def checked_drive(
     mass: float | None,
     damping: float | None,
 ) -> Drive | None:
-    """What pulls, None where the velocity alone does; raises InputError naming the argument."""
+    """The drive, None for a prescribed velocity; raises InputError naming the argument."""
     if velocity is None and force is None:
         raise InputError("velocity", None, "allowed is a number, or a force in its place")
     if velocity is not None and force is not None:
@@ -145,13 +205,6 @@ def checked_drive(
         allowed += f"{SMALLEST_STIFFNESS:g} and at most {LARGEST_BODY:g}"
         raise InputError("stiffness", stiffness, allowed)
     return Spring(body["stiffness"], body["mass"] or 0.0, body["damping"] or 0.0)
-
-
-def refuse_drive_arguments(**given: float | None) -> None:
-    """Raise InputError for an argument of the drive beside a Problem."""
-    for name, value in given.items():
-        if value is not None:
-            raise InputError(name, value, "allowed is none beside a Problem, which has its own")
 
 
 def checked_request(

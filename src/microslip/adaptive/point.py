@@ -1,4 +1,4 @@
-"""The public question and answer: one point, certified."""
+"""solve(): the friction, or the velocity under a force, at one point with its error estimate."""
 
 from __future__ import annotations
 
@@ -7,11 +7,9 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from microslip.adaptive.checks import (
-    checked_drive,
-    checked_problem,
+    checked_driven_problem,
     checked_request,
     refuse_bounds,
-    refuse_drive_arguments,
     refuse_progress,
 )
 from microslip.adaptive.choice import choose_model, method_refusal
@@ -56,24 +54,24 @@ def solve(
         "elliptic:forward=0.5".  A Problem takes the place of all arguments of the problem, up to
         `poisson`.
     velocity : float or None
-        The paper's dimensionless group, in units of the pressure's own u_lim; 0: the limit v -> 0;
-        None: what is asked for, under a force.  Below 0, for a contact that is pushed back, where
-        the motion drives: else friction at -v is that at v with the other sign.
+        The paper's dimensionless group, in units of u_lim of the pressure; 0: the limit v -> 0.
+        None under a prescribed force, where it is the answer.  Values below 0, a contact that is
+        pushed back, are allowed for self-propelled motions; otherwise the friction at -v is that at
+        v with the opposite sign.
     amplitude : float or None
-        The paper's dimensionless group likewise; None for continuous-bore.
+        The paper's dimensionless group, in the same units; None for steady motions.
     force : float or None
-        Prescribed forward force divided by mu times the mean normal load, as mu_macro is.  Give
-        either this or the velocity.
+        Prescribed forward force divided by mu times the mean normal load.  Give either this or
+        `velocity`.
     stiffness, mass, damping : float or None
-        A spring pulls with the velocity at its far end, over mu F_z / u_lim, a body of a mass, over
-        mu F_z / (u_lim omega^2), which a dashpot holds, over mu F_z / (u_lim omega).  Here F_z is
-        the reference load, which is the load without oscillation.  A mass may be under a force,
-        too.
+        Spring that pulls the body, its far end at the velocity, over mu F_z / u_lim; mass of the
+        body, over mu F_z / (u_lim omega^2); dashpot beside the spring, over mu F_z / (u_lim omega).
+        F_z is the normal load without oscillation.  A mass is allowed under a force, too.
     contacts : str or None
-        Of a body that several contacts carry, such as "phase=0;phase=180": the load of each, over
-        that of another, its phase in degrees, and its share of the amplitude, all 1, 0 and 1 if not
-        given.  Velocity and amplitude are in units of u_lim of the contact with the mean load, and
-        forces over mu times the load of all.
+        Contacts that the body rests on, such as "phase=0;phase=180".  Each has a load relative to
+        the others (1), a phase in degrees (0) and a fraction of the amplitude (1).  Velocity and
+        amplitude are in units of u_lim of the contact with the mean load; forces are divided by mu
+        times the load of all contacts.
     pressure : str or Pressure
         "hertz", "power:exponent=1", "file:measured.csv", see microslip.pressures.by_name.
     poisson : float
@@ -81,47 +79,42 @@ def solve(
     model : str
         "auto" or a name in models.registry.MODELS.
     tolerance : float or None
-        Absolute, on mu_macro; under a force on the velocity, and relative where that is above 1;
-        None where cells and steps are imposed and the error is only to be
-        told.
+        Absolute, on mu_macro; under a force on the velocity, and relative where that is above 1.
+        None, with imposed cells and steps: any error is accepted.
     cells, steps : int or None
         Impose a resolution instead of letting the tolerance choose; steps in a full period.
     method : str
         One of solver.method_names.names(), to be compared with what ships.
     most_work : float or None
-        Step solves x unknowns, over all runs, beyond which a point is given up; None: MOST_WORK.
+        Largest number of step solves times unknowns, over all runs; None: MOST_WORK.
     time_limit : float or None
-        Seconds by the wall clock after which it is given up, looked at between marches; None:
-        never.
+        Largest time in seconds by the wall clock, compared between marches; None: no limit.
     progress : callable or None
         Called with the Resolution of every run before it starts.
 
     Returns
     -------
     Result
-        `converged` is False, with the reason, where the tolerance was not met, be it that of an
-        imposed resolution.  Without a tolerance it says that every run found its periodic state,
-        searched for as strictly as at the tolerance 1e-3.
+        `converged` is False, with the reason, if the error estimate exceeds the tolerance, also at
+        an imposed resolution.  Without a tolerance it is True if every run found its periodic
+        state, to the accuracy of the tolerance 1e-3.
 
     Raises
     ------
     InputError
         For input out of range or a model that does not apply; it names the argument.
     """
-    if isinstance(motion, Problem):
-        refuse_drive_arguments(force=force, stiffness=stiffness, mass=mass, damping=damping)
-        drive = motion.drive
-    else:
-        drive = checked_drive(velocity, force, stiffness, mass, damping)
-    problem = checked_problem(
+    problem = checked_driven_problem(
         motion,
         velocity,
         amplitude,
         pressure=pressure,
         poisson=poisson,
         contacts=contacts,
-        drive=drive,
-        backward=True,
+        force=force,
+        stiffness=stiffness,
+        mass=mass,
+        damping=damping,
     )
     tolerance, cells, steps = checked_request(tolerance, cells, steps)
     refuse_bounds(most_work=most_work, time_limit=time_limit)

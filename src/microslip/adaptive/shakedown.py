@@ -155,11 +155,11 @@ def shakedown(
         For bad input, and for motions of which no force is known to be held: it names the argument.
     """
     started = time.perf_counter()
+    if isinstance(motion, Problem) and isinstance(motion.drive, Force) and force is None:
+        force, motion = motion.drive.force, replace(motion, drive=None)
     problem = checked_problem(motion, None, amplitude, pressure=pressure, poisson=poisson)
     if not problem.motion.periodic:
         raise InputError("motion", problem.motion.name, "allowed is a motion that oscillates")
-    if isinstance(motion, Problem) and force is None and problem.drive is not None:
-        force = problem.drive.force
     force = real("force", force, 0.0)
     if tolerance is None:
         raise InputError("tolerance", tolerance, "allowed is a number")

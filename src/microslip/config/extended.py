@@ -17,7 +17,6 @@ from microslip.foundation import named_files
 from microslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
-    from microslip.motions.drive import Drive
     from microslip.motions.problem import Problem
 
 MOST_PANELS = 12
@@ -178,24 +177,23 @@ def _ask_solver(sweep: Sweep, where: str) -> None:
         _ask_of_drive(sweep)
 
 
-def _problem(sweep: Sweep, velocity: float | None, end: int, drive: Drive | None = None) -> Problem:
+def _problem(sweep: Sweep, velocity: float | None, end: int, **drive: float | None) -> Problem:
     """The problem of a Sweep at a velocity and one end of its amplitudes; raises InputError."""
-    from microslip.adaptive.checks import checked_problem
+    from microslip.adaptive.checks import checked_driven_problem
 
-    return checked_problem(
+    return checked_driven_problem(
         sweep.motion,
         velocity,
         None if sweep.amplitude is None else sweep.amplitude[end],
         pressure=sweep.pressure,
         poisson=sweep.poisson[-1],
         contacts=sweep.contacts,
-        drive=drive,
+        **drive,
     )
 
 
 def _ask_of_drive(sweep: Sweep) -> None:
     """Raise InputError for what does not go together, or with the motion, at any point."""
-    from microslip.adaptive.checks import checked_drive
     from microslip.adaptive.choice import choose_model
     from microslip.adaptive.pulled import refuse_drive
 
@@ -203,7 +201,7 @@ def _ask_of_drive(sweep: Sweep) -> None:
     for end in (0, -1):
         given = {name: drives[name][end] if name in drives else None for name in axes.DRIVES}
         velocity = sweep.velocity[end] if sweep.velocity else None
-        problem = _problem(sweep, velocity, -1, checked_drive(velocity, **given))
+        problem = _problem(sweep, velocity, -1, **given)
         refuse_drive(problem, choose_model(problem, sweep.model))
 
 

@@ -1,12 +1,17 @@
-"""Sixteen neighbouring numbers, as four vectors of four, in compiled code.
+"""Vectors of four neighbouring numbers, in compiled code.
 
-The compiler makes vector instructions of tuples of four numbers, as long as it knows that indices
-are not negative: they count from the beginning of an array.
+The compiler makes vector instructions of tuples of four numbers, as long as it knows that their
+indices are not negative.  No kernel allows it to reorder or to fuse operations (fastmath), for then
+the bits of a result depend on the kernels that were compiled before.
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numba import types
+from numba.extending import intrinsic
 
 from microslip.foundation.compiled import kernel
 
@@ -17,18 +22,55 @@ NOTHING = (0.0, 0.0, 0.0, 0.0)
 
 @kernel(inline="always")
 def four(values: np.ndarray, first: int) -> tuple:
-    """Four numbers of a row."""
-    return values[first], values[first + 1], values[first + 2], values[first + 3]
+    """Four numbers of a row, from the index `first` >= 0 on."""
+    i = np.uint64(first)
+    return values[i], values[i + np.uint64(1)], values[i + np.uint64(2)], values[i + np.uint64(3)]
 
 
-@kernel(fastmath={"contract"})
+@intrinsic
+def fused(typing: Any, a: Any, b: Any, c: Any) -> Any:
+    """a b + c of floats, rounded once."""
+    if (a, b, c) != (types.float64,) * 3:
+        return None
+
+    def generate(context, builder, signature, arguments):
+        return builder.fma(*arguments)
+
+    return types.float64(a, b, c), generate
+
+
+@kernel(inline="always")
+def added(a: tuple, b: tuple) -> tuple:
+    """a + b."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]
+
+
+@kernel(inline="always")
+def minus(a: tuple, b: tuple) -> tuple:
+    """a - b."""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]
+
+
+@kernel(inline="always")
+def product(a: tuple, b: tuple) -> tuple:
+    """a b."""
+    return a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]
+
+
+@kernel(inline="always")
+def total_of(a: tuple) -> float:
+    """Sum of the four."""
+    return (a[0] + a[1]) + (a[2] + a[3])
+
+
+@kernel(inline="always")
 def plus(total: tuple, numbers: tuple, factor: float) -> tuple:
     """total + factor numbers."""
     return (
-        total[0] + numbers[0] * factor,
-        total[1] + numbers[1] * factor,
-        total[2] + numbers[2] * factor,
-        total[3] + numbers[3] * factor,
+        fused(numbers[0], factor, total[0]),
+        fused(numbers[1], factor, total[1]),
+        fused(numbers[2], factor, total[2]),
+        fused(numbers[3], factor, total[3]),
     )
 
 

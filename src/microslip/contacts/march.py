@@ -19,7 +19,6 @@ from microslip.contacts.interrupts import BETWEEN_LOOKS, interrupted
 from microslip.contacts.operators import multiply
 from microslip.contacts.step import (
     LEVELS,
-    QUICK,
     Balance,
     Fields,
     Step,
@@ -90,7 +89,7 @@ class Trace(NamedTuple):
     broken: bool
 
 
-@kernel(**QUICK)
+@kernel
 def march(
     system: System,
     loading: Loading,

@@ -89,7 +89,7 @@ def packed(matrices: np.ndarray, width: int) -> np.ndarray:
 
 
 @operator(Matrices)
-@kernel(fastmath={"contract"})
+@kernel
 def multiply_rows(operators: Matrices, number: int, field: np.ndarray, image: np.ndarray) -> None:
     """image[c, row] = matrix[row] field[c, row]."""
     _, rows, chunks, columns, _ = operators.blocks.shape

@@ -24,8 +24,9 @@ import numpy as np
 
 from microslip.contacts.coulomb import shrink
 from microslip.contacts.interrupts import BETWEEN_LOOKS, interrupted
+from microslip.contacts.lanes import NOTHING, added, four, minus, product, total_of
 from microslip.contacts.operators import multiply
-from microslip.contacts.step import LEVELS, QUICK, Balance, Fields, Step, step_solver
+from microslip.contacts.step import LEVELS, Balance, Fields, Step, step_solver
 from microslip.contacts.system import System, add, forward_force
 from microslip.foundation.compiled import kernel
 
@@ -37,9 +38,6 @@ BALANCED_RINGS = 12
 calibrated by benchmarks/splitting.py."""
 PENALTIES = 2.0 ** (np.arange(LEVELS) - 0.5 * (LEVELS - 1))
 """Penalties that a step picks from, over `best_penalty`: 1/sqrt(8) to sqrt(8)."""
-
-SUMS = {"fastmath": QUICK["fastmath"] | {"reassoc"}}
-"""Sums in the order of the processor's vectors, where they decide when to stop."""
 
 
 class Resolvent(NamedTuple):
@@ -91,24 +89,33 @@ def best_penalty(scale: np.ndarray, rings: int) -> np.ndarray:
     return scale * np.sqrt(rings / BALANCED_RINGS)
 
 
-@kernel(**SUMS)
+@kernel
 def squared_distance(weight: np.ndarray, a: np.ndarray, b: np.ndarray) -> float:
     """Sum weight |a - b|^2 of two fields."""
-    total = 0.0
-    for i in range(len(weight)):
+    totals, points = NOTHING, len(weight)
+    forward, lateral, other_forward, other_lateral = a[0], a[1], b[0], b[1]
+    for quarter in range(points // 4):
+        at = 4 * quarter
+        ahead = minus(four(forward, at), four(other_forward, at))
+        aside = minus(four(lateral, at), four(other_lateral, at))
+        squares = added(product(ahead, ahead), product(aside, aside))
+        totals = added(totals, product(four(weight, at), squares))
+    total = total_of(totals)
+    for i in range(points - points % 4, points):
         ahead, aside = a[0, i] - b[0, i], a[1, i] - b[1, i]
         total += weight[i] * (ahead * ahead + aside * aside)
     return total
 
 
-@kernel(**SUMS)
-def stuck_share(y: np.ndarray, bound: np.ndarray, q: np.ndarray) -> float:
+@kernel
+def stuck_share(y: np.ndarray, bound: np.ndarray, q: np.ndarray, factors: np.ndarray) -> float:
     """Fill q = P(y) and return the sum over the points of the mean derivative of P."""
-    share = 0.0
     for i in range(len(bound)):
         f = shrink(y[0, i], y[1, i], bound[i])
-        q[0, i], q[1, i] = f * y[0, i], f * y[1, i]
-        share += f if f == 1.0 else 0.5 * f
+        q[0, i], q[1, i], factors[i] = f * y[0, i], f * y[1, i], f
+    share = 0.0
+    for i in range(len(bound)):
+        share += factors[i] if factors[i] == 1.0 else 0.5 * factors[i]
     return share
 
 
@@ -133,7 +140,7 @@ def _respond(system, fields, response, slope):
 
 
 @step_solver(Resolvent, _respond)
-@kernel(**QUICK, inline="always")
+@kernel(inline="always")
 def split(system: System, balance: Balance, step: Step, fields: Fields) -> tuple[int, float, float]:
     """Solve a Coulomb step from fields.y on; see step.solve_step.
 
@@ -142,7 +149,7 @@ def split(system: System, balance: Balance, step: Step, fields: Fields) -> tuple
     guess, q, slip, b, bound = fields.y, fields.q, fields.slip, step.imposed, step.bound
     right, v, y = fields.scratch
     solver, weight, points = system.solver, system.weight, len(bound)
-    level = level_of(solver, stuck_share(guess, bound, q))
+    level = level_of(solver, stuck_share(guess, bound, q, right[0]))
     factor = solver.factors[level]
     inverse = 1.0 / factor
     for c in range(2):

@@ -15,9 +15,6 @@ from numba.extending import overload
 
 from microslip.foundation.compiled import OPTIONS
 
-QUICK = {"fastmath": {"contract", "nsz", "arcp"}}
-"""Fused multiply-add, reciprocals in place of divisions, no signed zeros: sums keep their order."""
-
 LEVELS = 4
 """Number of penalties for which the resolvent is known."""
 

@@ -158,6 +158,10 @@ class Registry(Generic[T]):
         reason = self.broken.get(text.partition(":")[0].strip().replace("-", "_"))
         if reason:
             raise InputError(self.argument, text, reason)
+        if text in self.others:
+            raise InputError(
+                self.argument, text, f"allowed after it is a colon and a name: {text}:NAME"
+            )
         name, numbers = spec.split(text, self.argument, known)
         cls: Any = self.classes[name]
         spec.refuse_unknown(text, self.argument, numbers, [field.name for field in fields(cls)])

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from typing import Any
 
+from microslip.foundation.arguments import is_real
 from microslip.foundation.errors import InputError
 
 NUMBER = re.compile(
@@ -98,6 +99,15 @@ def refuse_unknown(text: str, what: str, numbers: dict[str, float], known: Itera
     if strange:
         allowed = ", ".join(known) or "none"
         raise InputError(what, text, f"unknown number {strange[0]}; allowed: {allowed}")
+
+
+def refuse_strange(record: Any, what: str) -> None:
+    """Raise InputError about `what` for a field of a dataclass whose default is a number, if it is
+    not a finite number."""
+    for field in fields(record):
+        value = getattr(record, field.name)
+        if isinstance(field.default, int | float) and not (is_real(value) and math.isfinite(value)):
+            raise InputError(what, value, f"allowed for {field.name} is a finite number")
 
 
 def refuse_outside(

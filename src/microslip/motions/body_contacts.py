@@ -6,13 +6,13 @@ all of them go forward with the one body that they carry.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import asdict, dataclass
 
 from microslip.foundation import spec
+from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
 
-USUAL = {"load": 1.0, "phase": 0.0, "amplitude": 1.0}
-"""A contact of which nothing is said."""
 EXAMPLE = "phase=0;phase=180"
 MEANT = "loads and amplitudes are shares without a unit, phases are in degrees"
 MOST_CONTACTS = 8
@@ -26,19 +26,30 @@ LARGEST_SHARE = 1e3
 class BodyContact:
     """One of the contacts of a body.
 
-    Attributes
+    Parameters
     ----------
     load : float
-        Normal load, over the mean of all contacts of the body.
+        Normal load, over the mean load of the contacts, above 0.
     phase : float
-        By how much its oscillation is ahead of the phase of the body, degrees from 0 to below 360.
+        Phase by which its oscillation leads, degrees.
     amplitude : float
-        How far it oscillates, over the amplitude of the body.
+        Its amplitude over that of the body, at least 0.
+
+    Raises
+    ------
+    InputError
+        For numbers out of range.
     """
 
-    load: float
-    phase: float
-    amplitude: float
+    load: float = 1.0
+    phase: float = 0.0
+    amplitude: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name, low in (("load", 0.0), ("phase", -math.inf), ("amplitude", 0.0)):
+            real(name, getattr(self, name), low)
+        if self.load == 0.0:
+            raise InputError("load", self.load, "allowed is a number above 0")
 
 
 def contacts_of(text: str) -> tuple[BodyContact, ...]:
@@ -72,8 +83,8 @@ def _numbers(number: int, part: str, text: str) -> dict[str, float]:
     """What is said of a contact; what is wrong is told with its number."""
     try:
         given = spec.numbers_in(part, text, "contacts", EXAMPLE)
-        spec.refuse_unknown(text, "contacts", given, USUAL)
-        numbers = USUAL | given
+        spec.refuse_unknown(text, "contacts", given, asdict(BodyContact()))
+        numbers = asdict(BodyContact()) | given
         spec.refuse_outside(text, "contacts", "load", numbers["load"], (LIGHTEST, HEAVIEST))
         limits = (0.0, LARGEST_SHARE)
         spec.refuse_outside(text, "contacts", "amplitude", numbers["amplitude"], limits)

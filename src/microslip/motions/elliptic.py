@@ -55,6 +55,7 @@ class Elliptic(Motion):
     amplitude_label = "A / u_lim"
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         shares = {"forward": self.forward, "lateral": self.lateral}
         spec.refuse_shares(self.name, "motion", shares)
         if max(shares.values()) == 0.0:

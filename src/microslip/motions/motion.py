@@ -97,6 +97,9 @@ class Motion:
     def half_disc(self) -> bool:
         return True
 
+    def __post_init__(self) -> None:
+        spec.refuse_strange(self, "motion")
+
     @property
     def name(self) -> str:
         """Name with the numbers that differ from their defaults."""

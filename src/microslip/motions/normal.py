@@ -69,6 +69,7 @@ class Normal(Motion):
     loads = True
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         in_plane = {"lateral": self.lateral, "forward": self.forward, "angle": self.angle}
         normal = {"load": self.load, "indentation": self.indentation}
         spec.refuse_shares(self.name, "motion", normal | in_plane)

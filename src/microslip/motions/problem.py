@@ -29,6 +29,8 @@ from microslip.pressures.pressure import Pressure
 
 RETURNED = 1e-12
 """Share of the amplitude below which an oscillation is rounding."""
+ROUNDING = 1e-9
+"""Largest deviation of the mean load of several contacts from 1: their texts have 12 digits."""
 
 
 @dataclass(frozen=True)
@@ -83,6 +85,12 @@ class Problem:
                 raise InputError(name, getattr(self, name), allowed)
         if self.drive is not None and not isinstance(self.drive, Drive):
             raise InputError("drive", self.drive, "allowed is a Force or a Spring")
+        if not all(isinstance(one, BodyContact) for one in self.contacts):
+            raise InputError("contacts", self.contacts, "allowed is a tuple of BodyContact")
+        load = sum(one.load for one in self.contacts) / max(len(self.contacts), 1)
+        if self.contacts and abs(load - 1.0) > ROUNDING:
+            allowed = "allowed are loads over their mean: this mean of them has to be 1"
+            raise InputError("contacts", load, allowed)
         numbers = {"velocity": self.velocity, "poisson": self.poisson}
         if self.motion.periodic:
             if self.amplitude is None:

@@ -48,6 +48,7 @@ class TransverseBore(Motion):
     half_period_mirror = True
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         spec.refuse_shares(self.name, "motion", {"lateral": self.lateral, "angle": self.angle})
         if max(self.lateral, self.angle) == 0.0:
             raise InputError("motion", self.name, "allowed is lateral or angle above 0")

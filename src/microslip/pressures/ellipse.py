@@ -43,6 +43,7 @@ class Ellipse(Pressure):
     hertzian = True
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         limits = (SMALLEST_RATIO, 1.0)
         spec.refuse_outside(self.name, "pressure", "ratio", self.ratio, limits)
         if self.across not in (0, 1):

@@ -31,6 +31,7 @@ class Power(Indenter):
     exponent: float = 2.0
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         spec.refuse_outside(self.name, "pressure", "exponent", self.exponent, LIMITS)
 
     @property

@@ -81,6 +81,9 @@ class Pressure:
     """loading(u): tangential force over mu F_z after a displacement u_lim >= 0 in one direction
     from rest, nu = 0, of any shape; of axisymmetric indenters and elliptic Hertz contacts."""
 
+    def __post_init__(self) -> None:
+        spec.refuse_strange(self, "pressure")
+
     @staticmethod
     def from_array(
         forward: np.ndarray, lateral: np.ndarray, pressure: np.ndarray, *, grid: str = "cells"
@@ -103,11 +106,15 @@ class Pressure:
         Raises
         ------
         InputError
-            For coordinates that are not regular, values below 0 or not finite, a load that is 0.
+            For what is no array of numbers, coordinates that are not regular, values below 0 or not
+            finite, a load that is 0.
         """
         if grid not in READINGS:
             raise InputError("grid", grid, f"allowed is one of {', '.join(READINGS)}")
-        x, y, values = (np.ascontiguousarray(one, float) for one in (forward, lateral, pressure))
+        x, y, values = (
+            _numbers(name, one)
+            for name, one in (("forward", forward), ("lateral", lateral), ("pressure", pressure))
+        )
         if values.shape != (x.size, y.size):
             allowed = f"allowed is the shape of the coordinates, {(x.size, y.size)}"
             raise InputError("pressure", values.shape, allowed)
@@ -180,6 +187,14 @@ class Pressure:
         if displacement >= 1.0:
             return 0.0
         return float(self.radius(1.0 - displacement))
+
+
+def _numbers(name: str, values: Any) -> np.ndarray:
+    """The argument of this name as an array of floats."""
+    try:
+        return np.ascontiguousarray(values, float)
+    except (TypeError, ValueError):
+        raise InputError(name, values, "allowed is an array of numbers") from None
 
 
 @dataclass(frozen=True, eq=False)

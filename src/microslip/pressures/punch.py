@@ -35,6 +35,7 @@ class Punch(Indenter):
     flat: float = 0.8
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         kind, limits = "a share of the contact radius", (0.0, LARGEST_FLAT)
         spec.refuse_outside(self.name, "pressure", "flat", self.flat, limits, kind=kind)
 

@@ -37,6 +37,7 @@ class Ring(Pressure):
     inner: float = 0.5
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         kind = "a share of the outer radius"
         spec.refuse_outside(self.name, "pressure", "inner", self.inner, LIMITS, kind=kind)
 

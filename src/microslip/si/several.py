@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from microslip.adaptive.checks import checked_problem
+from microslip.adaptive.checks import checked_driven_problem
 from microslip.foundation.errors import InputError
 from microslip.motions.body_contacts import contacts_of, contacts_text
 from microslip.motions.problem import Problem
@@ -65,7 +65,7 @@ class Carriers:
         _, size = groups(motion, contact)
         settings = {"pressure": contact.pressure, "poisson": contact.poisson}
         name = solver_motion(motion, contact)
-        return checked_problem(name, None, size, **settings, contacts=self.text)
+        return checked_driven_problem(name, 0.0, size, **settings, contacts=self.text)
 
 
 def read_carriers(contacts: object, **alone: object) -> tuple[Carriers, dict[str, str]]:

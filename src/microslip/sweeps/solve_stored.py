@@ -10,8 +10,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 
 from microslip.adaptive.checks import (
-    checked_drive,
-    checked_problem,
+    checked_driven_problem,
     checked_request,
     refuse_bounds,
 )
@@ -22,6 +21,7 @@ from microslip.adaptive.result import Result
 from microslip.config.axes import DRIVES
 from microslip.config.records import Sweep
 from microslip.foundation.errors import InputError
+from microslip.motions.problem import Problem
 from microslip.sweeps import batches
 from microslip.sweeps.cache import Store
 from microslip.sweeps.sealed_files import refuse_no_folder, refuse_unusable
@@ -70,23 +70,24 @@ def solve_stored(
         If the folder cannot be used.
     """
     started = time.perf_counter()
+    if isinstance(motion, Problem):
+        raise InputError("motion", str(motion), "allowed is a text, by which results are named")
     if not isinstance(results, str | os.PathLike):
         raise InputError("results", results, "is not allowed; allowed: the name of a folder")
-    drive = checked_drive(velocity, force, stiffness, mass, damping)
-    problem = checked_problem(
+    drive = {"force": force, "stiffness": stiffness, "mass": mass, "damping": damping}
+    problem = checked_driven_problem(
         motion,
         velocity,
         amplitude,
         pressure=pressure,
         poisson=poisson,
         contacts=contacts,
-        drive=drive,
-        backward=True,
+        **drive,
     )
     tolerance, cells, steps = checked_request(tolerance, cells, steps)
     refuse_bounds(time_limit=time_limit)
     chosen = choose_model(problem, model)
-    if drive is not None:
+    if problem.drive is not None:
         refuse_drive(problem, chosen)
     if tolerance is None:
         from microslip.adaptive.moved import refuse_choice  # only now: it loads compiled code
@@ -107,7 +108,7 @@ def solve_stored(
         steps=steps,
         pressure=pressure,
         contacts=contacts,
-        drives=_drives(force=force, stiffness=stiffness, mass=mass, damping=damping),
+        drives=_drives(**drive),
     )
     (request,) = batches.PointRequests(grid)
     refuse_no_folder(results)

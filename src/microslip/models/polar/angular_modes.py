@@ -21,8 +21,6 @@ from microslip.foundation.compiled import kernel
 from microslip.models.rings.influence import ring_influence
 from microslip.models.rings.mesh import Rings
 
-FUSED = {"fastmath": {"contract"}}
-"""Allows fused multiply-add, which keeps the order of operations."""
 SHARED_MODES = (9, 17, 33)
 """Modes that kernels are averaged for together, so that runs at 4, 6 and 8 angles share them."""
 
@@ -91,7 +89,7 @@ def modes_of(
 
 
 @operator(Modes)
-@kernel(**FUSED)
+@kernel
 def apply_modes(modes: Modes, number: int, field: np.ndarray, image: np.ndarray) -> None:
     """image = operator field."""
     sectors, waves, _ = modes.to_modes.shape
@@ -111,7 +109,7 @@ def apply_modes(modes: Modes, number: int, field: np.ndarray, image: np.ndarray)
         combine(matrix, beyond, modes.waves[part], target, modes.points[part])
 
 
-@kernel(**FUSED)
+@kernel
 def combine(
     matrix: np.ndarray,
     source: np.ndarray,
@@ -141,7 +139,7 @@ def combine(
             put(target[rows[one + 1], at : at + LANES], e, f, g, h)
 
 
-@kernel(**FUSED)
+@kernel
 def multiply_pairs(operators: Matrices, number: int, field: np.ndarray, image: np.ndarray) -> None:
     """image[0, row] = matrix[row] field[0, row]; as operators.multiply_rows, of one component."""
     _, rows, chunks, columns, _ = operators.blocks.shape

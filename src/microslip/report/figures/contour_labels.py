@@ -50,10 +50,10 @@ def label(axes: Axes, contours: ContourSet, levels: Iterable[float], size: float
 
 def _lines(axes: Axes, contours: ContourSet, index: int) -> list[np.ndarray]:
     """The lines of a level in pixels, with points closer than a number is high."""
-    path = contours.get_paths()[index]
+    # In pixels already, since polygons lack the points that hardly bend a line in its own units.
+    path = axes.transData.transform_path(contours.get_paths()[index])
     lines = []
-    for part in path.to_polygons(closed_only=False):
-        pixels = axes.transData.transform(part)
+    for pixels in path.to_polygons(closed_only=False):
         way = np.append(0.0, np.cumsum(np.hypot(*np.diff(pixels, axis=0).T)))
         if way[-1] > 0:
             even = np.linspace(0.0, way[-1], max(2, int(way[-1]) + 1))
