@@ -35,7 +35,7 @@ def iterations(motion, model, resolution):
         simulate(Problem(motion_named(motion), *point, 0.0), model, resolution, 1e-5)
         for point in POINTS
     ]
-    return np.mean([run.iterations / run.solves for run in runs])
+    return np.mean([run.effort.iterations / run.effort.solves for run in runs])
 
 
 def table(name, values, set_value, contacts):

@@ -116,7 +116,7 @@ def test_the_steady_bore_is_eqs_21_and_22_which_the_resolved_contact_confirms(ve
     assert exact.mu_macro == paper.bore_forward(velocity)
     resolved = microslip.solve("continuous-bore", velocity, poisson=0.3, model="polar")
     assert abs(exact.mu_macro - resolved.mu_macro) <= resolved.mu_macro_error
-    assert abs(exact.mu_torque - resolved.mu_torque) <= resolved.mu_torque_error
+    assert abs(exact.mu_torque - resolved.mu_torque) <= resolved.torque.error
     imposed = microslip.solve("continuous-bore", velocity, cells=8)
     assert imposed.model == "polar" and imposed.cells == 8
 

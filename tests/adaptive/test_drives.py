@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 
 import microslip
 from microslip.adaptive import pulled as adaptive_pulled
+from microslip.estimate.estimate import Estimate
 from microslip.estimate.ladder import Ladder
 from microslip.estimate.refine import unknown
 from microslip.foundation.arguments import SMALLEST_STIFFNESS
@@ -181,7 +182,8 @@ def test_a_limit_that_leaves_no_force_to_march_at_gives_no_velocity():
 
 def test_a_velocity_with_an_unsolved_step_and_a_larger_error_is_no_number(monkeypatch):
     def unsolved(asked, accuracy):
-        refined = replace(unknown("a step was left unsolved"), value=5.4, errors={"solver": 1e9})
+        refined = unknown("a step was left unsolved")
+        refined = replace(refined, value=Estimate(5.4, {"solver": 1e9}))
         return refined, Ladder(1, 0, 0)
 
     monkeypatch.setattr(adaptive_pulled, "_refined", unsolved)

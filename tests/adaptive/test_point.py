@@ -68,8 +68,7 @@ def test_certificate_covers_a_much_finer_reference(motion, velocity, amplitude, 
     expected, allowance = reference(motion, velocity, amplitude, nu)
     assert allowance < 6e-4
     assert abs(result.mu_macro - expected) <= result.mu_macro_error + allowance
-    sources = ("resolution", "periodicity", "solver", "model")
-    shares = [getattr(result, f"error_{source}") for source in sources]
+    shares = result.friction.by_source.values()
     assert result.mu_macro_error == pytest.approx(sum(shares), rel=1e-12)
     assert min(shares) >= 0.0
 
@@ -294,15 +293,18 @@ def test_imposed_resolution_is_what_runs(motion, model, nu, cells, steps):
         slack = 0.05 * result.tolerance
         assert result.mu_macro == pytest.approx(fine, abs=slack)
         expected = max(abs(fine - middle), abs(middle - coarse) / 4.0)
-        assert result.error_resolution == pytest.approx(expected, abs=2 * slack)
+        assert result.friction.by_source["resolution"] == pytest.approx(expected, abs=2 * slack)
 
 
 def test_imposing_one_number_leaves_the_other_to_the_tolerance():
     result = microslip.solve("transverse", 0.3, 1.2, cells=32)
     assert result.periodic and result.cells == 32
-    assert result.error_resolution <= 1e-3
+    assert result.friction.by_source["resolution"] <= 1e-3
     coarse = microslip.solve("transverse", 0.3, 1.2, cells=4)
-    assert coarse.cells == 4 and coarse.error_resolution > 3 * result.error_resolution
+    assert (
+        coarse.cells == 4
+        and coarse.friction.by_source["resolution"] > 3 * result.friction.by_source["resolution"]
+    )
     assert coarse.steps_per_period > 8 * coarse.cells
 
 
@@ -457,7 +459,7 @@ def test_periods_are_full_ones_whatever_a_lap_is():
     for motion, steps, lap in (("transverse", 16, 0.5), ("elliptic:forward=0.5,phase=30", 32, 1.0)):
         problem = Problem(motion_named(motion), 0.3, 1.0, 0.0)
         run = simulate(problem, "radial", Resolution(8, 1, 16), 1e-5)
-        assert run.periods == run.solves / (2 * steps) * lap  # two stages a step
+        assert run.periods == run.effort.solves / (2 * steps) * lap  # two stages a step
     half = microslip.solve("transverse", 0.3, 1.0)
     assert isinstance(half.periods, float) and (2 * half.periods).is_integer()
 

@@ -9,6 +9,7 @@ import pytest
 import microslip
 from microslip.adaptive import continuation, moved
 from microslip.solver import simulate
+from microslip.solver.effort import Effort
 
 
 @dataclass(frozen=True)
@@ -17,10 +18,7 @@ class FakeRun:
     mu: float
     reason: str = ""
     iterations: int = 1
-    solves: int = 1
-    work: int = 10
-    effort: int = 5
-    retried: int = 0
+    effort: Effort = Effort.of(solves=2, iterations=1, unknowns=5)
 
 
 class Stubborn:
@@ -45,15 +43,15 @@ def test_what_converges_is_run_once():
 def test_tighter_steps_come_first():
     run_at = Stubborn(easy=0.5, reach=1.0, careless=False)
     found = continuation.run_safely(run_at, 1.0, None)
-    assert (found.converged, found.retried, found.work) == (True, 1, 20)
+    assert (found.converged, found.effort.retried, found.effort.work) == (True, 1, 20)
 
 
 @pytest.mark.parametrize("reach", [8.0, 3.0, 1.5, 1.2])
 def test_the_velocity_is_lowered_in_steps_that_succeed(reach):
     run_at = Stubborn(easy=100.0, reach=reach)
     found = continuation.run_safely(run_at, 1.0, None)
-    assert found.converged and found.mu == 1.0 and found.retried == 1
-    assert found.work == 10 * len(run_at.asked)
+    assert found.converged and found.mu == 1.0 and found.effort.retried == 1
+    assert found.effort.work == 10 * len(run_at.asked)
     assert run_at.asked[-1] == 1.0
 
 
@@ -62,7 +60,7 @@ def test_a_failure_is_told_as_the_first_attempt_tells_it():
         found = continuation.run_safely(run_at, 1.0, None)
         assert not found.converged
         assert found.reason == "failed at 1"
-        assert found.effort == 5 * len(run_at.asked) < 5 * 100
+        assert found.effort.updates == 5 * len(run_at.asked) < 5 * 100
 
 
 # Points that the first attempt fails at, each in a way of its own.
@@ -101,14 +99,14 @@ def test_slowest_motions_get_their_answer_in_a_second_attempt(
 @pytest.mark.long
 def test_these_points_need_it(monkeypatch):
     """Without the second attempt they are not converged; with it they say that there was one."""
-    motion, poisson, velocity, amplitude, tolerance = HARD[2]
+    motion, poisson, velocity, amplitude, tolerance = HARD[3]
     settings = {"poisson": poisson, "tolerance": tolerance}
-    assert answered(*HARD[2]).retried > 0
+    assert answered(*HARD[3]).effort.retried > 0
     monkeypatch.setattr(moved, "run_safely", lambda run_at, v, guess: run_at(v, guess))
     answer = microslip.solve(motion, velocity, amplitude, **settings)
     assert not answer.converged
     assert "no periodic state" in answer.reason
-    assert answer.retried == 0
+    assert answer.effort.retried == 0
 
 
 @pytest.mark.parametrize("error", [TypeError, ZeroDivisionError, np.linalg.LinAlgError])

@@ -52,5 +52,5 @@ def test_a_run_from_a_coarser_one_ends_where_it_would_by_itself():
     fine = Resolution(24, 8, 16)
     coarse = simulate(BORE, "polar", Resolution(8, 6, 12), 1e-6)
     alone, led = (simulate(BORE, "polar", fine, 1e-6, guess) for guess in (None, coarse))
-    assert alone.converged and led.converged and led.iterations < alone.iterations
+    assert alone.converged and led.converged and led.effort.iterations < alone.effort.iterations
     assert led.mu == pytest.approx(alone.mu, abs=2e-6)

@@ -38,7 +38,6 @@ def section(title):
 
 
 RECORDS = {
-    "One point": microslip.Result,
     "A real contact": Prediction,
     "A fit": microslip.Fit,
     "Forces from a start": microslip.History,
@@ -52,6 +51,17 @@ RECORDS = {
 @pytest.mark.parametrize("title", RECORDS)
 def test_every_field_of_a_record_is_in_its_table_and_no_other(title):
     assert set(section(title)) == {field.name for field in fields(RECORDS[title])}
+
+
+def test_every_name_of_a_point_is_in_its_table_and_no_other():
+    contacts = "phase=0;phase=180"
+    asked = ({"force": 0.5, "mass": 0.1, "contacts": contacts}, {"stiffness": 1.0, "damping": 0.1})
+    points = [
+        microslip.solve("transverse", None if "force" in one else 0.5, 0.5, tolerance=1e-2, **one)
+        for one in asked
+    ]
+    points.append(microslip.solve("continuous-bore", 1.0, model="polar", tolerance=1e-2))
+    assert set(section("One point")) == set().union(*(one.to_dict() for one in points))
 
 
 def all_names(data):

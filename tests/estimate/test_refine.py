@@ -17,6 +17,7 @@ from microslip.estimate.refine import (
 )
 from microslip.estimate.richardson import SAFETY
 from microslip.solver.budget import Spent
+from microslip.solver.effort import Effort
 from microslip.solver.run import Run
 
 EXACT, EXACT_TORQUE = 0.4, 0.7
@@ -42,7 +43,7 @@ class FakeRun:
         self.guesses.append(guess)
         mu, torque = EXACT + excess, EXACT_TORQUE - 2.0 * excess
         left = 1e-9 / number, 1e-10 * number
-        self.runs.append(Run(mu, torque, *left, number, 10, 1, 100, 20, True, ""))
+        self.runs.append(Run(mu, torque, *left, number, Effort(1, 10, 100, 20), True, ""))
         return self.runs[-1]
 
 
@@ -52,28 +53,30 @@ def test_three_levels_are_run_each_from_the_one_before():
     assert found.converged and found.reason == "" and found.periodic
     assert fake.asked == [LADDER.resolution(level) for level in (4, 8, 16)]
     assert fake.guesses == [None, *fake.runs[:2]]
-    assert found.value == pytest.approx(EXACT, abs=1e-14)
-    assert found.torque == pytest.approx(EXACT_TORQUE, abs=1e-14)
+    assert found.value.value == pytest.approx(EXACT, abs=1e-14)
+    assert found.torque.value == pytest.approx(EXACT_TORQUE, abs=1e-14)
     assert found.order == pytest.approx(2.0) and found.finest == fake.asked[-1]
-    assert (found.periods, found.iterations, found.work, found.effort) == (3, 30, 300, 60)
+    assert (found.periods, found.effort) == (3, Effort(3, 30, 300, 60))
 
 
 def test_the_error_is_the_sum_of_its_sources():
     found = refine(FakeRun(0.14), LADDER, 1e-3)
-    assert found.errors.keys() == {"resolution", "periodicity", "solver"}
-    assert found.error == sum(found.errors.values())
-    assert found.errors["resolution"] == pytest.approx(SAFETY * 0.14 / found.finest.cells**2)
+    assert found.value.by_source.keys() == {"resolution", "periodicity", "solver"}
+    assert found.value.error == sum(found.value.by_source.values())
+    assert found.value.by_source["resolution"] == pytest.approx(
+        SAFETY * 0.14 / found.finest.cells**2
+    )
 
 
 def test_no_error_is_estimated_below_a_share_of_the_tolerance():
     found = refine(FakeRun(0.0), LADDER, 1e-3)
-    assert found.errors["resolution"] == SMALLEST_SHARE * 1e-3 == found.torque_error
+    assert found.value.by_source["resolution"] == SMALLEST_SHARE * 1e-3
 
 
 def test_levels_are_added_until_the_error_is_within_the_tolerance():
     fake = FakeRun(3.0)
     found = refine(fake, LADDER, 1e-3)
-    assert found.converged and found.error <= 1e-3
+    assert found.converged and found.value.error <= 1e-3
     cells = [resolution.cells for resolution in fake.asked]
     assert len(set(cells)) == len(cells) and max(cells) > 64
     # each starts from the run at half its level, where there is one
@@ -95,12 +98,12 @@ def test_distances_and_residuals_are_weighted_as_the_runs_enter_the_value():
             one = again(at, guess)
             return replace(one, mu=one.mu + step) if at == resolution else one
 
-        return abs(refine(run, LADDER, 1e-3).value - found.value) / step
+        return abs(refine(run, LADDER, 1e-3).value.value - found.value.value) / step
 
     weights = np.array([response(resolution) for resolution in fake.asked])
     for source, name in (("periodicity", "distance"), ("solver", "solver_residual")):
         expected = weights @ [getattr(run, name) for run in fake.runs]
-        assert found.errors[source] == pytest.approx(expected, rel=1e-6)
+        assert found.value.by_source[source] == pytest.approx(expected, rel=1e-6)
 
 
 def test_runs_that_keep_to_their_tolerance_take_a_twelfth_of_it():
@@ -110,7 +113,7 @@ def test_runs_that_keep_to_their_tolerance_take_a_twelfth_of_it():
         return replace(fake(resolution, guess), distance=run_tolerance(1e-3))
 
     found = refine(run, LADDER, 1e-3)
-    assert found.converged and found.errors["periodicity"] == pytest.approx(1e-3 / 12.0)
+    assert found.converged and found.value.by_source["periodicity"] == pytest.approx(1e-3 / 12.0)
     assert run_tolerance(1e-3) == RUN_SHARE * 1e-3
 
 
@@ -123,9 +126,9 @@ def test_runs_that_keep_to_their_tolerance_take_a_twelfth_of_it():
 )
 def test_smooth_errors_are_covered(size, sign, power, tolerance):
     found = refine(FakeRun(sign * size, power), LADDER, tolerance)
-    assert not found.converged or found.error <= tolerance
-    assert abs(found.value - EXACT) <= found.error
-    assert abs(found.torque - EXACT_TORQUE) <= 2.0 * found.error
+    assert not found.converged or found.value.error <= tolerance
+    assert abs(found.value.value - EXACT) <= found.value.error
+    assert abs(found.torque.value - EXACT_TORQUE) <= 2.0 * found.value.error
 
 
 def test_scattered_errors_are_covered_nearly_always():
@@ -133,7 +136,7 @@ def test_scattered_errors_are_covered_nearly_always():
     for seed in range(300):
         size, tolerance = 10 ** draw.uniform(-2.0, 0.5), 10 ** draw.uniform(-4.0, -2.0)
         found = refine(FakeRun(size, scatter=0.3, seed=seed), LADDER, tolerance)
-        held.append(abs(found.value - EXACT) <= found.error)
+        held.append(abs(found.value.value - EXACT) <= found.value.error)
     assert np.mean(held) > 0.99
 
 
@@ -144,17 +147,17 @@ def test_an_imposed_resolution_is_the_answer_and_not_its_limit():
     fake = FakeRun(3.0)
     ladder = Ladder(16, angles=0, steps=1, cells=12 / 16, imposed=True)
     found = refine(fake, ladder, 1e-3)
-    assert found.value == fake.runs[-1].mu == EXACT + 3.0 / 144
+    assert found.value.value == fake.runs[-1].mu == EXACT + 3.0 / 144
     assert found.finest.cells == 12 and len(fake.asked) == 3
-    assert found.errors["resolution"] == pytest.approx(3.0 / 36 - 3.0 / 144)
-    assert found.errors["periodicity"] == pytest.approx(fake.runs[-1].distance)
+    assert found.value.by_source["resolution"] == pytest.approx(3.0 / 36 - 3.0 / 144)
+    assert found.value.by_source["periodicity"] == pytest.approx(fake.runs[-1].distance)
     assert found.converged and found.reason == ""
 
 
 @pytest.mark.parametrize("power", [1.0, 1.5, 2.0, 3.0])
 def test_the_error_of_an_imposed_resolution_is_covered(power):
     found = refine(FakeRun(0.3, power), replace(LADDER, imposed=True), 1e-3)
-    assert abs(found.value - EXACT) <= found.error
+    assert abs(found.value.value - EXACT) <= found.value.error
 
 
 # What ends it
@@ -174,15 +177,15 @@ def test_a_run_that_does_not_converge_ends_it(cells):
     assert not found.converged and not found.periodic and found.reason == "lost its way"
     assert len(fake.asked) == 3
     # a run without weight in the value has none in its error
-    assert np.isfinite(found.error) == (cells == 4)
+    assert np.isfinite(found.value.error) == (cells == 4)
 
 
 def test_the_finest_level_is_named():
     fake = FakeRun(1e3)
     found = refine(fake, LADDER, 1e-4)
     assert not found.converged and found.periodic and fake.asked[-1].cells == 12 * 16
-    assert found.reason == f"the error is still {found.error:.1e} with 192 cells"
-    assert abs(found.value - EXACT) <= found.error
+    assert found.reason == f"the error is still {found.value.error:.1e} with 192 cells"
+    assert abs(found.value.value - EXACT) <= found.value.error
 
 
 def test_errors_that_no_finer_level_cures_are_reported():
@@ -193,20 +196,20 @@ def test_errors_that_no_finer_level_cures_are_reported():
             return replace(fake(resolution, guess), **spoilt)
 
         found = refine(run, LADDER, 1e-3)
-        assert found.error > 1e-3 and found.converged and len(fake.asked) == 3
+        assert found.value.error > 1e-3 and found.converged and len(fake.asked) == 3
 
 
 def test_what_was_known_before_the_budget_was_spent_is_the_answer():
     enough = refine(FakeRun(3.0), LADDER, 0.01)
     found = refine(FakeRun(3.0, most=4), LADDER, 1e-3)
     assert not found.converged and found.finest.cells == 16
-    assert found.reason == f"all is spent: the error is still {found.error:.1e}"
-    assert abs(found.value - EXACT) <= found.error and enough.converged
+    assert found.reason == f"all is spent: the error is still {found.value.error:.1e}"
+    assert abs(found.value.value - EXACT) <= found.value.error and enough.converged
 
 
 def test_nothing_is_known_of_a_budget_that_is_spent_at_once():
     found = refine(FakeRun(most=2), LADDER, 1e-3)
-    assert not found.converged and np.isnan(found.value) and found.error == np.inf
+    assert not found.converged and np.isnan(found.value.value) and found.value.error == np.inf
     assert found.reason == "all is spent: no error is known yet"
 
 
@@ -220,16 +223,16 @@ def shifted(fake, by):
 def test_readings_are_run_at_the_finest_level_and_their_differences_are_an_error():
     fake, other = FakeRun(), FakeRun()
     found = refine(fake, LADDER, 1e-3, [shifted(other, 4e-5), shifted(other, -3e-5)])
-    assert found.errors["model"] == pytest.approx(READING_SAFETY * 7e-5)
+    assert found.value.by_source["model"] == pytest.approx(READING_SAFETY * 7e-5)
     assert other.asked == 2 * [fake.asked[-1]] and other.guesses == 2 * [fake.runs[-1]]
-    assert found.converged and found.error <= 1e-3
+    assert found.converged and found.value.error <= 1e-3
 
 
 def test_finer_runs_make_room_for_readings_that_are_apart():
     found = refine(FakeRun(), LADDER, 1e-3, [shifted(FakeRun(), 1.6e-4)])
-    assert found.converged and found.error <= 1e-3 and found.finest.cells == 24
+    assert found.converged and found.value.error <= 1e-3 and found.finest.cells == 24
 
 
 def test_readings_that_are_too_far_apart_end_it():
     found = refine(FakeRun(), LADDER, 1e-3, [shifted(FakeRun(), 3e-4)])
-    assert found.error > 1e-3 and found.finest.cells == 16
+    assert found.value.error > 1e-3 and found.finest.cells == 16

@@ -181,7 +181,7 @@ found = [
     for question in QUESTIONS[:: int(sys.argv[1])]
 ]
 for question, one in found[:: int(sys.argv[1])]:
-    print(question, one.mu_macro.hex(), one.iterations)
+    print(question, one.mu_macro.hex(), one.effort.iterations)
 """
 
 

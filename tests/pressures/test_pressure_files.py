@@ -90,9 +90,11 @@ def test_friction_of_a_uniform_square_does_not_depend_on_its_grid(tmp_path, moti
     one, other = found
     assert one.converged and other.converged
     # the grid itself changes nothing: what differs is what the iterations leave
-    left = max(each.error_periodicity + each.error_solver for each in found)
+    left = max(
+        each.friction.by_source["periodicity"] + each.friction.by_source["solver"] for each in found
+    )
     assert left < 1e-3
-    assert max(one.error_model, other.error_model) < left
+    assert max(one.friction.by_source["model"], other.friction.by_source["model"]) < left
     assert one.mu_macro == pytest.approx(other.mu_macro, abs=left)
 
 
@@ -183,7 +185,7 @@ def test_the_error_holds_what_the_resolution_of_a_file_leaves_open(
         "transverse", 0.1, 0.5, pressure=f"{file},grid={reading}", tolerance=2e-2
     )
     assert truth.model == "radial"
-    assert found.error_model > 0.0
+    assert found.friction.by_source["model"] > 0.0
     assert abs(found.mu_macro - truth.mu_macro) <= found.mu_macro_error + truth.mu_macro_error
     assert found.converged == (found.mu_macro_error <= 2e-2)
 
@@ -207,7 +209,10 @@ def test_a_file_too_coarse_for_the_tolerance_is_not_converged(tmp_path):
     found = microslip.solve("transverse", 0.1, 0.5, pressure=file, tolerance=1e-2)
     assert not found.converged
     assert found.mu_macro_error > 1e-2
-    assert f"the file's own resolution leaves {found.error_model:.1e} open" in found.reason
+    assert (
+        f"the file's own resolution leaves {found.friction.by_source['model']:.1e} open"
+        in found.reason
+    )
 
 
 def test_sliding_fast_needs_no_resolution(tmp_path):

@@ -11,6 +11,7 @@ from bad_input_tables.odd_quantities import Q
 
 import microslip
 from microslip.app import cli
+from microslip.estimate.estimate import Estimate
 from microslip.si.materials import Material
 from microslip.si.motions import MOTIONS
 
@@ -172,7 +173,9 @@ def test_an_answer_that_is_no_number_says_why(monkeypatch, capsys):
 
     def lost(*given, **settings):
         found = microslip.solve(*given, **settings)
-        return replace(found, mu_macro=math.nan, converged=False, reason="lost on the way")
+        return replace(
+            found, friction=Estimate(math.nan), converged=False, reason="lost on the way"
+        )
 
     monkeypatch.setattr(static_limit, "solve", lost)
     monkeypatch.setattr(reduction, "solve", lost)

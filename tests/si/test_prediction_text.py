@@ -1,6 +1,5 @@
 """A prediction in words: print() and the command line show the same, each number with its error."""
 
-import math
 import re
 from dataclasses import replace
 
@@ -8,6 +7,7 @@ import pytest
 
 import microslip
 from microslip.app import cli, predict_command
+from microslip.estimate.refine import UNKNOWN
 from microslip.si import pulled, static_limit
 
 BALL = {"material": "steel", "radius": "5 mm", "load": "10 N", "mu": "0.3", "frequency": "20 kHz"}
@@ -72,8 +72,8 @@ def test_longitudinal_says_why_the_threshold_is_not_the_static_friction(capsys):
 
 def failed(*given, **settings):
     found = microslip.solve(*given, **settings)
-    lost = {"mu_macro_error": 0.26, "converged": False, "reason": "lost on the way"}
-    return replace(found, **lost)
+    friction = replace(found.friction, by_source={"resolution": 0.26})
+    return replace(found, friction=friction, converged=False, reason="lost on the way")
 
 
 def test_the_exit_code_follows_the_requested_quantity(monkeypatch, capsys):
@@ -89,7 +89,7 @@ def test_the_exit_code_follows_the_requested_quantity(monkeypatch, capsys):
 def test_a_line_names_the_quantity_that_is_not_converged(monkeypatch, capsys):
     def lost(*given, **settings):
         found = microslip.solve(*given, **settings | {"force": 0.1})
-        unknown = {"velocity": math.nan, "velocity_error": math.inf, "converged": False}
+        unknown = {"mean_velocity": UNKNOWN, "converged": False}
         return replace(found, **unknown, reason="lost on the way")
 
     monkeypatch.setattr(pulled, "solve", lost)

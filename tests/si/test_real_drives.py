@@ -9,6 +9,7 @@ import pytest
 
 import microslip
 from microslip.app import cli
+from microslip.estimate.refine import UNKNOWN
 from microslip.foundation.arguments import LARGEST_BODY
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Spring
@@ -200,7 +201,7 @@ def test_at_the_threshold_the_error_leaves_open_whether_it_moves():
 def test_a_force_that_the_solver_gives_up_on_says_why(monkeypatch, capsys):
     def given_up(*given, **settings):
         found = microslip.solve(*given, **settings | {"force": 0.1})
-        lost = {"velocity": math.nan, "velocity_error": math.inf, "converged": False}
+        lost = {"mean_velocity": UNKNOWN, "converged": False}
         return replace(found, **lost, reason="lost on the way")
 
     monkeypatch.setattr(pulled, "solve", given_up)

@@ -41,8 +41,8 @@ def test_the_state_is_the_same_and_takes_less(name, monkeypatch):
     answers = [run.mu if drive.force is None else run.velocity for run in runs]
     assert abs(answers[0] - answers[1]) <= 2.0 * accuracy.tolerance
     # counted as are those of the run with fewer steps
-    assert ahead.solves < 0.8 * plain.solves
-    assert ahead.iterations < 0.8 * plain.iterations
+    assert ahead.effort.solves < 0.8 * plain.effort.solves
+    assert ahead.effort.iterations < 0.8 * plain.effort.iterations
 
 
 def test_a_search_goes_on_without_one_that_failed(monkeypatch):

@@ -173,7 +173,7 @@ def test_an_unsolved_normal_contact_is_no_answer(monkeypatch, within):
 def test_failed_steps_are_counted_and_no_answer(monkeypatch, within):
     run, _, _ = marched(monkeypatch, 1e-3, bad=(1, 5))
     assert not run.converged
-    assert run.reason == f"2 of {run.solves} steps failed"
+    assert run.reason == f"2 of {run.effort.solves} steps failed"
 
 
 def test_slow_motions_do_not_become_periodic(monkeypatch, within):

@@ -217,9 +217,9 @@ def test_a_wild_guess_costs_effort_only():
 def test_all_effort_is_counted(steps):
     """Two stages a step, two tractions a ring, two marches a period."""
     run = radial_run(0.01, 0.5, 8, steps)
-    assert run.solves == 2 * run.periods * 2 * steps
-    assert run.work == 16 * run.solves
-    assert run.effort == 16 * run.iterations >= run.work
+    assert run.effort.solves == 2 * run.periods * 2 * steps
+    assert run.effort.work == 16 * run.effort.solves
+    assert run.effort.updates == 16 * run.effort.iterations >= run.effort.work
 
 
 def test_equal_runs_give_equal_bits():

@@ -45,7 +45,7 @@ def test_solve_agrees_with_eqs_21_and_22(velocity, nu):
     assert result.converged and result.mu_macro_error <= result.tolerance == 1e-3
     assert result.mu_macro == pytest.approx(paper.bore_forward(velocity), abs=1e-3)
     assert result.mu_torque == pytest.approx(
-        paper.bore_torque(velocity), abs=max(result.mu_torque_error, 1e-4)
+        paper.bore_torque(velocity), abs=max(result.torque.error, 1e-4)
     )
 
 

@@ -217,7 +217,7 @@ def test_the_limit_on_a_loop_looks_for_the_edge_once(motion, amplitude):
     told = simulate_static(problem, "radial", resolution, 1e-5, Settings(focus=focus))
     assert focus.radii == pytest.approx(radii, abs=5e-3)
     assert told.mu == pytest.approx(by_itself[-1].mu, abs=5e-4)
-    assert len(by_itself) > 1 and told.solves < sum(run.solves for run in by_itself)
+    assert len(by_itself) > 1 and told.effort.solves < sum(run.effort.solves for run in by_itself)
 
 
 @pytest.mark.slow
@@ -276,11 +276,11 @@ def test_the_work_of_a_search_counts_whether_it_was_done_before_or_not():
     problem = Problem(motion_named("elliptic"), 0.0, 0.4321, 0.0)
     first, later, seen = Budget(), Budget(), []
     focus = found_focus(problem, "radial", first, seen.append)
-    assert len(seen) >= 1 and first.work > 0
+    assert len(seen) >= 1 and first.taken.work > 0
     assert found_focus(problem, "radial", later, seen.append) == focus
-    assert later.counts() == first.counts()
+    assert later.taken == first.taken
     with pytest.raises(Spent, match="the work that the point may take"):
-        found_focus(problem, "radial", Budget(most_work=first.work - 1))
+        found_focus(problem, "radial", Budget(most_work=first.taken.work - 1))
 
 
 @pytest.mark.slow

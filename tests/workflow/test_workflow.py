@@ -144,11 +144,12 @@ def test_a_job_that_fails_does_not_hide_what_the_others_say(project):
 STALLING = """
 
 from dataclasses import replace
+from microslip.estimate.estimate import Estimate
 _solve = solve
 
 def solve(motion, velocity, amplitude=None, **settings):
     result = _solve(motion, velocity, amplitude, **settings)
-    return replace(result, mu_macro=float("nan"), converged=False, reason="stalled")
+    return replace(result, friction=Estimate(float("nan")), converged=False, reason="stalled")
 """
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from microslip.solver.effort import Effort
 from microslip.solver.run import Run
 
 FACTOR, SMALLEST_FACTOR = 4.0, 1.15
@@ -35,7 +36,7 @@ def run_safely(run_at: Callable, velocity: float, guess: Run | None) -> Run:
     Returns
     -------
     run.Run
-        It counts the effort of all that was tried; `retried` is 1 if there was more than one.
+        It counts the effort of all that was tried; its `retried` is 1 if there was more than one.
     """
     first = run_at(velocity, guess, False)
     if first.converged:
@@ -49,10 +50,7 @@ def run_safely(run_at: Callable, velocity: float, guess: Run | None) -> Run:
     found = _from_above(run, velocity)
     # a failure is best explained by the first one
     shown = first if found is None else found
-    counts = ("iterations", "solves", "work", "effort")
-    return replace(
-        shown, retried=1, **{name: sum(getattr(one, name) for one in tried) for name in counts}
-    )
+    return replace(shown, effort=sum((one.effort for one in tried), Effort(retried=1)))
 
 
 def _from_above(run, velocity):

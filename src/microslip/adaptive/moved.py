@@ -97,10 +97,8 @@ def solve_moved(request: Request) -> Result:
     return Result(
         **request.point,
         model=request.model,
-        mu_macro=_within(problem, refined.value),
-        mu_macro_error=refined.error,
-        mu_torque=refined.torque if steady else None,
-        mu_torque_error=refined.torque_error + refined.errors["periodicity"] if steady else None,
+        friction=replace(refined.value, value=_within(problem, refined.value.value)),
+        torque=refined.torque if steady else None,
         **verdict(request, refined, ladder, request.tolerance),
     )
 

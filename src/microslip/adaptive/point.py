@@ -152,7 +152,7 @@ def _answer_backward(request):
     problem = request.problem
     behind = replace(problem, velocity=-problem.velocity, backward=not problem.backward)
     answer = _answer(replace(request, problem=behind))
-    return replace(answer, velocity=problem.velocity, mu_macro=-answer.mu_macro)
+    return replace(answer, mean_velocity=-answer.mean_velocity, friction=-answer.friction)
 
 
 def _refuse_method(problem, model, method, how):

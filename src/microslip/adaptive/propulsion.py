@@ -182,12 +182,12 @@ class _Contact:
                 run = self._power_as_force(run)
                 readings = [self._power_as_force(other) for other in readings]
             found = refine(run, ladder, self.request.tolerance, readings)
-            reason = found.reason
-            if found.converged and found.error > self.request.tolerance:
-                reason = f"the estimated error of its {quantity} is {found.error:.1e}"
+            reason, estimate = found.reason, found.value
+            if found.converged and estimate.error > self.request.tolerance:
+                reason = f"the estimated error of its {quantity} is {estimate.error:.1e}"
             if reason:
                 reason = f"velocity = {self.sign * velocity:g}: {reason}"
-            self.done[velocity, quantity] = Known(float(found.value), float(found.error), reason)
+            self.done[velocity, quantity] = Known(estimate.value, estimate.error, reason)
         return self.done[velocity, quantity]
 
     def _marched(self, velocity):

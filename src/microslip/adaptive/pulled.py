@@ -21,8 +21,9 @@ from microslip.adaptive.under_force import (
     velocity_near,
     without_forward_motion,
 )
+from microslip.estimate.estimate import Estimate
 from microslip.estimate.ladder import Ladder, ladder_for, refuse_free, with_mass
-from microslip.estimate.refine import refine, run_tolerance, unknown
+from microslip.estimate.refine import UNKNOWN, refine, run_tolerance, unknown
 from microslip.foundation.errors import InputError
 from microslip.models.registry import MODELS
 from microslip.motions.problem import Problem
@@ -104,12 +105,12 @@ def solve_pulled(request: Request) -> Result:
         point = request.point | {"model": CLOSED_FORM}
         return replace(of_closed_form(point, bracket, request.seconds), **body)
     refined, ladder = _refined(request, Accuracy(request.accuracy))
+    least = -1.0 if problem.propels else 0.0
     return Result(
         **request.point,
         **body,
         model=request.model,
-        mu_macro=_between(refined.value, -1.0 if problem.propels else 0.0, 1.0),
-        mu_macro_error=refined.error,
+        friction=replace(refined.value, value=_between(refined.value.value, least, 1.0)),
         **verdict(request, refined, ladder, request.tolerance),
     )
 
@@ -153,7 +154,9 @@ def _under_force(request):
     problem, force = request.problem, drive.force
     if force < 0.0 and not problem.propels:  # a pull back is a pull forward, seen from behind
         ahead = _under_force(_driven(request, force=-force))
-        return replace(ahead, force=force, mu_macro=-ahead.mu_macro, velocity=-ahead.velocity)
+        return replace(
+            ahead, force=force, friction=-ahead.friction, mean_velocity=-ahead.mean_velocity
+        )
     away = runs_away(problem)
     if away:
         return _known(request, math.nan, math.inf, away)
@@ -223,12 +226,10 @@ def _known(request, velocity, error, reason=""):
     """The Result where nothing has to be marched."""
     drive = request.problem.drive
     return Result(
-        **request.point | {"velocity": velocity},
+        **request.point | {"mean_velocity": Estimate(velocity, {"model": error})},
         **_pulling(drive),
         model=CLOSED_FORM if request.chosen else request.model,
-        mu_macro=math.copysign(1.0, drive.force) if reason else drive.force,
-        mu_macro_error=0.0,
-        velocity_error=error,
+        friction=Estimate(math.copysign(1.0, drive.force) if reason else drive.force),
         converged=not reason and _good_enough(error, velocity, request.tolerance),
         periodic=not reason,
         reason=reason,
@@ -260,22 +261,22 @@ def _moving(request, marched):
     request = replace(request, problem=replace(request.problem, velocity=near.velocity))
     accuracy = Accuracy(request.accuracy * max(1.0, SCALE_SHARE * near.velocity), near.slope)
     refined, ladder = _refined(request, accuracy)
-    velocity, error = float(refined.value), float(refined.error)
+    found = refined.value
     if not request.problem.propels:
-        velocity = max(velocity, 0.0)  # what lies below is rounding and error
-    if not refined.converged and not error < abs(velocity):  # not even its order of magnitude
-        velocity, error = math.nan, math.inf
+        found = replace(found, value=max(found.value, 0.0))  # below are rounding and error
+    if not refined.converged and not found.error < abs(found.value):
+        found = UNKNOWN  # not even its order of magnitude
     elif marched > drive.force:
-        velocity, error = 0.5 * velocity, 0.5 * velocity + error
-        refined = replace(refined, errors=refined.errors | {"model": 0.5 * refined.value})
-    largest = None if request.tolerance is None else request.tolerance * max(1.0, abs(velocity))
+        half = 0.5 * found.value
+        found = Estimate(half, {**found.by_source, "model": half})
+    refined = replace(refined, value=found)
+    tolerance = request.tolerance
+    largest = None if tolerance is None else tolerance * max(1.0, abs(found.value))
     return Result(
-        **request.point | {"velocity": velocity},
+        **request.point | {"mean_velocity": found},
         **_pulling(drive),
         model=request.model,
-        mu_macro=drive.force,
-        mu_macro_error=0.0,
-        velocity_error=error,
+        friction=Estimate(drive.force),
         **verdict(request, refined, ladder, largest),
     )
 
@@ -316,9 +317,9 @@ def _given_up(request, reason):
     unknown = replace(_known(request, math.nan, math.inf, reason), model=request.model)
     return replace(
         unknown,
-        mu_macro=request.problem.drive.force,
+        friction=Estimate(request.problem.drive.force),
         exhausted=request.budget.exhausted,
-        **request.budget.counts(),
+        effort=request.budget.taken,
     )
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from microslip.estimate.estimate import Estimate
 from microslip.motions.body_contacts import contacts_text
 from microslip.motions.problem import Problem
 from microslip.solver import method_names
@@ -79,7 +80,7 @@ class Request:
         return several | {
             "motion": problem.motion.name,
             "pressure": problem.pressure.name,
-            "velocity": problem.velocity,
+            "mean_velocity": Estimate(problem.velocity),
             "amplitude": problem.amplitude,
             "poisson": problem.poisson,
             "tolerance": self.tolerance,
@@ -107,18 +108,18 @@ def verdict(request: Request, refined: Refined, ladder: Ladder, largest: float |
     largest: error that is accepted, None: any.
     """
     if request.budget.exhausted:
-        refined = replace(refined, **request.budget.counts())
-    within = largest is None or refined.error <= largest
+        refined = replace(refined, effort=request.budget.taken)
+    error, by_source = refined.value.error, refined.value.by_source
+    within = largest is None or error <= largest
     reason = refined.reason
     if refined.converged and not within:
         where = "at the imposed resolution the error" if ladder.imposed else "the estimated error"
-        reason = f"{where} is {refined.error:.1e}, above the tolerance of {largest:g}"
+        reason = f"{where} is {error:.1e}, above the tolerance of {largest:g}"
         read = request.problem.pressure.readings
-        left_open = refined.errors.get("model", 0.0) if read else 0.0
-        if left_open > 0.5 * refined.error:
+        left_open = by_source.get("model", 0.0) if read else 0.0
+        if left_open > 0.5 * error:
             reason += f": the file's own resolution leaves {left_open:.1e} open"
     return {
-        **{f"error_{source}": error for source, error in refined.errors.items()},
         "converged": bool(refined.converged and within),
         "periodic": refined.periodic,
         "reason": reason,
@@ -127,10 +128,7 @@ def verdict(request: Request, refined: Refined, ladder: Ladder, largest: float |
         "steps_per_period": 2 * refined.finest.steps if ladder.steps else 0,
         "observed_order": refined.order if math.isfinite(refined.order) else None,
         "periods": refined.periods,
-        "iterations": refined.iterations,
-        "work": refined.work,
         "effort": refined.effort,
-        "retried": refined.retried,
         "exhausted": request.budget.exhausted,
         "solve_time_s": request.seconds,
     }

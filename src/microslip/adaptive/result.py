@@ -1,61 +1,66 @@
-"""The answer for one point: friction, its error by source, and what it took."""
+"""The answer for one point: friction, or the velocity under a force, with its error estimate."""
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any
+
+from microslip.estimate.estimate import SOURCES, Estimate
+from microslip.solver.effort import Effort
+
+QUANTITIES = {"friction": "mu_macro", "mean_velocity": "velocity", "torque": "mu_torque"}
+"""Estimates of a Result, and their names in JSON and datasets."""
+ERRORS = {source: f"error_{source}" for source in SOURCES}
+"""Sources of the error of the answer, and their names there."""
+EFFORT = {"iterations": "iterations", "work": "work", "updates": "effort", "retried": "retried"}
+"""Fields of an Effort, and their names there."""
+LEFT_OUT = {"velocity_error", "mu_torque", "mu_torque_error", "amplitude", "observed_order"} | {
+    *("force", "stiffness", "mass", "damping", "contacts")
+}
+"""Names that are left out there where they do not apply."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Result:
-    """Friction at one point, and how far to trust it.
+    """Friction at one point, or the velocity under a force, with its error estimate.
 
-    All numbers are dimensionless but the time.  A count is 0 where it does not apply: in a closed
-    form nothing is marched, in a steady motion there are no periods.
+    All numbers are dimensionless, except the time.  A count is 0 where it does not apply: a closed
+    form takes no marches, a steady motion has no periods.
 
     Attributes
     ----------
-    motion : str
-        What moves, with the numbers that its name takes.
-    pressure : str
-        How the load is spread over the contact, likewise.
-    velocity, amplitude : float
-        The dimensionless groups of the motion; amplitude: None where the motion is steady.  Under a
-        force the mean velocity that comes out, NaN where it runs away.
-    velocity_error : float or None
-        Largest error that it may have then, by estimate; None where the velocity was given.
-    force, stiffness, mass, damping : float or None
-        What pulls, see motions.drive.Drive; None: not that.
-    contacts : str or None
-        Those that the body is on, see motions.body_contacts; None: one.
+    motion, pressure : str
+        The motion and the pressure, with their numbers.
+    mean_velocity : Estimate
+        Forward velocity, the dimensionless group of the motion.  Its error is 0 where the velocity
+        is prescribed; NaN where the contact runs away.
+    amplitude : float or None
+        The dimensionless group of the motion; None for steady motions.
     poisson : float
         Poisson's ratio.
+    force, stiffness, mass, damping : float or None
+        The drive, see motions.drive; None where it has no such part.
+    contacts : str or None
+        Contacts of the body, see motions.body_contacts; None: one.
     model : str
         Contact model that was used, or "closed-form".
     tolerance : float or None
-        Largest accepted error of mu_macro; under a force of the velocity, times the velocity where
-        that is above 1; None: none was meant.
+        Largest accepted error of the answer; for a velocity above 1 relative to it.  None: any
+        error is accepted.
     method : str
-        How it was computed: "shipped", or another to be compared with that.
-    mu_macro : float
-        Mean forward friction force over mu F_z, a ratio: 1 means that the vibration does nothing.
-    mu_macro_error : float
-        Largest error that mu_macro may have, by estimate: the sum of the next four.  Under a force
-        these are of the velocity, and mu_macro is the force.
-    error_resolution : float
-        Part of it from the rings or squares, the angles and the time steps.
-    error_periodicity, error_solver : float
-        ... from the distance to the periodic state, and from what the steps left unsolved.
-    error_model : float
-        ... from a closed form in place of a run, else 0.
-    mu_torque, mu_torque_error : float or None
-        Torque over its value at zero forward velocity, and its error; None where the motion
-        oscillates.
+        "shipped", or another method to be compared with that.
+    friction : Estimate
+        Mean forward friction force over mu F_z; 1: the vibration does nothing.  Its error is 0
+        where the force is prescribed.
+    torque : Estimate or None
+        Torque over its value at zero forward velocity; None for oscillating motions.
     converged : bool
-        The error is within the tolerance, and every run found its state; without a tolerance
-        the second alone.
+        Whether the error is within the tolerance and every run found its periodic state; without a
+        tolerance, whether every run found it.
     periodic : bool
-        Every run found the state that repeats itself, so that what is wrong with mu_macro is that
-        of the resolution.
+        Whether every run found its periodic state.
     reason : str
         Why it is not converged, in a line; else empty.
     cells : int
@@ -68,26 +73,20 @@ class Result:
         Observed order of convergence of the last three levels; None where it is not known.  2 is
         expected; far below 1 the runs are too coarse for the error estimate.
     periods : float
-        Full periods marched in search of the periodic state in the longest run: 2.5 are five half
+        Full periods marched in search of the periodic state in the longest run; 2.5 are five half
         ones.
-    iterations : int
-        Iterations of the step solver, over all runs.
-    work : int
-        Step solves times unknowns, over all runs.
-    effort : int
-        Iterations of the step solver times unknowns, over all runs.
-    retried : int
-        Runs that found no periodic state at first, and were done again by safer steps.
+    effort : Effort
+        Effort of all runs.
     exhausted : str
-        What ran out before it was done: "work", or "time", with which another machine may get
-        further; else empty.
+        The bound that ended the search: "work", or "time", which depends on the machine; else
+        empty.
     solve_time_s : float
-        Seconds by the wall clock.
+        Wall-clock time in seconds.
     """
 
     motion: str
     pressure: str
-    velocity: float
+    mean_velocity: Estimate
     amplitude: float | None
     poisson: float
     model: str
@@ -97,16 +96,9 @@ class Result:
     stiffness: float | None = None
     mass: float | None = None
     damping: float | None = None
-    velocity_error: float | None = None
     contacts: str | None = None
-    mu_macro: float
-    mu_macro_error: float
-    error_resolution: float = 0.0
-    error_periodicity: float = 0.0
-    error_solver: float = 0.0
-    error_model: float = 0.0
-    mu_torque: float | None = None
-    mu_torque_error: float | None = None
+    friction: Estimate
+    torque: Estimate | None = None
     converged: bool
     periodic: bool
     reason: str = ""
@@ -115,17 +107,76 @@ class Result:
     steps_per_period: int = 0
     observed_order: float | None = None
     periods: float = 0.0
-    iterations: int = 0
-    work: int = 0
-    effort: int = 0
-    retried: int = 0
+    effort: Effort = Effort()
     exhausted: str = ""
     solve_time_s: float
 
+    @property
+    def answer(self) -> Estimate:
+        """The quantity asked for: the velocity under a force, else the friction."""
+        return self.friction if self.force is None else self.mean_velocity
+
+    @property
+    def mu_macro(self) -> float:
+        """Value of `friction`."""
+        return self.friction.value
+
+    @property
+    def mu_macro_error(self) -> float:
+        """Error of `friction`."""
+        return self.friction.error
+
+    @property
+    def velocity(self) -> float:
+        """Value of `mean_velocity`."""
+        return self.mean_velocity.value
+
+    @property
+    def velocity_error(self) -> float | None:
+        """Error of `mean_velocity`; None where the velocity is prescribed."""
+        return None if self.force is None else self.mean_velocity.error
+
+    @property
+    def mu_torque(self) -> float | None:
+        """Value of `torque`; None for oscillating motions."""
+        return None if self.torque is None else self.torque.value
+
     def to_dict(self) -> dict:
-        """Fields as a plain dict, without those that the motion does not have."""
-        fields = asdict(self)
-        return {k: v for k, v in fields.items() if v is not None or k == "tolerance"}
+        """Plain dict by the names of JSON and datasets, without what does not apply."""
+        inside = {*QUANTITIES, "effort"}
+        plain = {one.name: getattr(self, one.name) for one in fields(self)}
+        flat = {name: value for name, value in plain.items() if name not in inside}
+        for field, name in QUANTITIES.items():
+            estimate = plain[field]
+            flat[name] = None if estimate is None else estimate.value
+            flat[f"{name}_error"] = None if estimate is None else estimate.error
+        flat["velocity_error"] = self.velocity_error
+        flat |= {name: self.answer.by_source.get(source, 0.0) for source, name in ERRORS.items()}
+        flat |= {name: getattr(self.effort, field) for field, name in EFFORT.items()}
+        return {k: v for k, v in flat.items() if v is not None or k not in LEFT_OUT}
+
+    @staticmethod
+    def from_dict(flat: Mapping[str, Any]) -> Result:
+        """The Result of what `to_dict` returned; what is missing is NaN, 0 or empty."""
+        errors = {source: _number(flat.get(name)) for source, name in ERRORS.items()}
+        known: dict[str, Any] = {"converged": False, "periodic": False, "solve_time_s": 0.0}
+        known |= {"amplitude": None, "tolerance": None, "model": "", "method": ""}
+        names = {one.name for one in fields(Result)} - {*QUANTITIES, "effort"}
+        known |= {name: flat[name] for name in names if flat.get(name) is not None}
+        torque, driven = flat.get("mu_torque"), flat.get("force") is not None
+        torque_error = {"resolution": _number(flat.get("mu_torque_error"))}
+        return Result(
+            **known,
+            friction=Estimate(_number(flat.get("mu_macro")), {} if driven else errors),
+            mean_velocity=Estimate(_number(flat.get("velocity")), errors if driven else {}),
+            torque=None if torque is None else Estimate(torque, torque_error),
+            effort=Effort(**{field: flat.get(name) or 0 for field, name in EFFORT.items()}),
+        )
+
+
+def _number(value: float | None) -> float:
+    """A number of a plain dict, in which None stands for NaN."""
+    return math.nan if value is None else value
 
 
 def of_closed_form(point: dict, values: tuple, seconds: float) -> Result:
@@ -134,11 +185,8 @@ def of_closed_form(point: dict, values: tuple, seconds: float) -> Result:
     within = tolerance is None or error <= tolerance
     return Result(
         **point,
-        mu_macro=mu,
-        mu_macro_error=error,
-        error_model=error,
-        mu_torque=torque,
-        mu_torque_error=None if torque is None else error,
+        friction=Estimate(mu, {"model": error}),
+        torque=None if torque is None else Estimate(torque, {"model": error}),
         converged=within,
         periodic=True,
         reason="" if within else f"the error is {error:.1e}, above the tolerance of {tolerance:g}",

@@ -7,6 +7,8 @@ from dataclasses import replace
 from microslip.adaptive.closed_forms import CLOSED_FORM, known_exactly
 from microslip.adaptive.request import Request
 from microslip.adaptive.result import Result
+from microslip.estimate.estimate import Estimate
+from microslip.solver.effort import Effort
 
 
 def solve_each(request: Request) -> Result:
@@ -20,26 +22,22 @@ def solve_each(request: Request) -> Result:
             alone[part.problem] = _solve(replace(request, problem=part.problem))
     results = list(alone.values())
 
-    def weighted(name):
-        each = zip(problem.shares, problem.parts, strict=True)
-        return sum(share * getattr(alone[part.problem], name) for share, part in each)
+    each = zip(problem.shares, problem.parts, strict=True)
+    means = [share * alone[part.problem].friction for share, part in each]
 
     def most(name):
         return max(getattr(result, name) for result in results)
 
     marched = [result for result in results if result.model != CLOSED_FORM]
-    summed = ("iterations", "work", "effort", "retried")
-    means = ("mu_macro", "mu_macro_error", "error_resolution")
-    means += ("error_periodicity", "error_solver", "error_model")
     return Result(
         **request.point,
         model=marched[0].model if marched else results[0].model,
-        **{name: float(weighted(name)) for name in means},
+        friction=sum(means, Estimate(0.0)),
         converged=all(result.converged for result in results),
         periodic=all(result.periodic for result in results),
         reason=next((result.reason for result in results if result.reason), ""),
         **{name: most(name) for name in ("cells", "angles", "steps_per_period", "periods")},
-        **{name: sum(getattr(result, name) for result in results) for name in summed},
+        effort=sum((result.effort for result in results), Effort()),
         exhausted=request.budget.exhausted,
         solve_time_s=request.seconds,
     )

@@ -22,6 +22,7 @@ from microslip.adaptive.checks import (
 from microslip.adaptive.choice import choose_model
 from microslip.adaptive.pulled import refuse_drive
 from microslip.adaptive.request import Request, budget_for, verdict
+from microslip.adaptive.result import ERRORS
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
     is_even,
@@ -250,9 +251,12 @@ def _fields(request, refined, ladder, last):
     """Fields of a Shakedown from its Refined and its finest ShakedownRun, if there is one."""
     said = verdict(request, refined, ladder, request.tolerance)
     taken = {field.name for field in fields(Shakedown)}
+    errors = {ERRORS[source]: error for source, error in refined.value.by_source.items()}
     return {name: value for name, value in said.items() if name in taken} | {
-        "displacement": float(refined.value),
-        "displacement_error": float(refined.error),
+        **errors,
+        "work": refined.effort.work,
+        "displacement": refined.value.value,
+        "displacement_error": refined.value.error,
         "pushed": math.nan if last is None else last.pushed,
         "most_after": math.nan if last is None else last.most_after,
     }

@@ -89,17 +89,18 @@ def run_trial(
     problem = Problem(motion_named(motion), velocity, amplitude, poisson, pressure_named(pressure))
     settings = Settings(method_named(method))
     run = simulate(problem, model, resolution, tolerance, settings=settings)
-    unknowns = run.work // run.solves if run.solves else 0
+    effort = run.effort
+    unknowns = effort.work // effort.solves if effort.solves else 0
     return {
         "mu_macro": float(run.mu),
         "converged": bool(run.converged),
         "reason": run.reason,
         "periods": run.periods,
-        "iterations": run.iterations,
-        "solves": run.solves,
+        "iterations": effort.iterations,
+        "solves": effort.solves,
         "unknowns": unknowns,
-        "work": run.work,
-        "effort": run.effort,
+        "work": effort.work,
+        "effort": effort.updates,
     }
 
 

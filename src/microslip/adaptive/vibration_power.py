@@ -97,7 +97,7 @@ def vibration_power(
     plan = marched(request)
     readings = [power_as_force(one) for one in plan.readings]
     found = refine(power_as_force(plan.run), plan.ladder, tolerance, readings)
-    reason = found.reason
-    if found.converged and found.error > tolerance:
-        reason = f"the estimated error of the power is {found.error * speed:.1e}"
-    return VibrationPower(float(speed * found.value), float(speed * found.error), reason)
+    reason, power = found.reason, speed * found.value
+    if found.converged and found.value.error > tolerance:
+        reason = f"the estimated error of the power is {power.error:.1e}"
+    return VibrationPower(power.value, power.error, reason)

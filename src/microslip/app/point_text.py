@@ -25,8 +25,8 @@ def as_text(result: Result) -> str:
     else:
         ratio = number_text(result.mu_macro, result.mu_macro_error, digits=DIGITS)
         lines = [f"mu_macro = {ratio}", RATIO]
-    if result.mu_torque is not None:
-        torque = number_text(result.mu_torque, result.mu_torque_error, digits=DIGITS)
+    if result.torque is not None:
+        torque = number_text(result.torque.value, result.torque.error, digits=DIGITS)
         lines.append(f"mu_torque = {torque}")
     resolved = f"{result.cells} cells"
     if result.angles > 1:

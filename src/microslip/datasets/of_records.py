@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import is_dataclass
 
 import numpy as np
 import xarray as xr
 
+from microslip.adaptive.result import Result
 from microslip.foundation.errors import InputError
 
 AXES = {
@@ -47,8 +48,8 @@ def to_xarray(record: object) -> xr.Dataset:
     axes = AXES[kind]
     variables: dict[str, tuple] = {}
     about = {"record": kind}
-    for name in (field.name for field in fields(record)):
-        value = getattr(record, name)
+    plain = record.to_dict() if isinstance(record, Result) else vars(record)
+    for name, value in plain.items():
         if isinstance(value, np.ndarray):
             variables[name] = _axes_of(name, value, axes), value
         elif isinstance(value, bool | int | float | np.number):

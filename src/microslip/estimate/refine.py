@@ -17,10 +17,12 @@ from operator import attrgetter
 
 import numpy as np
 
+from microslip.estimate.estimate import Estimate
 from microslip.estimate.ladder import LOOSEST, Ladder
 from microslip.estimate.richardson import WEIGHTS, extrapolate
 from microslip.solver.budget import Spent
 from microslip.solver.discretise import Resolution
+from microslip.solver.effort import Effort
 from microslip.solver.run import Run
 
 RUN_SHARE = 0.05
@@ -42,21 +44,18 @@ class Refined:
 
     Attributes
     ----------
-    value, torque : float
-        Extrapolated; `value` is the quantity asked for.
-    errors : dict of float
-        Errors of the value by source: resolution, periodicity, solver; model, where there are
-        readings.
-    torque_error : float
-        Error of the torque by resolution and model.
+    value : Estimate
+        The quantity asked for, extrapolated.
+    torque : Estimate
+        Likewise.
     order : float
         Observed order of convergence, NaN where it is not known.
     finest : discretise.Resolution
         Resolution of the finest run.
     periods : float
         Periods of the longest run.
-    iterations, work, effort, retried : int
-        Sums over all runs.
+    effort : Effort
+        Sum over all runs.
     converged : bool
         Whether every run found its periodic state and nothing ended the refinement early.
     reason : str
@@ -65,34 +64,24 @@ class Refined:
         Whether every run found its periodic state.
     """
 
-    value: float
-    torque: float
-    errors: dict
-    torque_error: float
+    value: Estimate
+    torque: Estimate
     order: float
     finest: Resolution
     periods: float
-    iterations: int
-    work: int
-    effort: int
-    retried: int
+    effort: Effort
     converged: bool
     reason: str
     periodic: bool
 
-    @property
-    def error(self) -> float:
-        """Sum of the errors of all sources."""
-        return sum(self.errors.values())
+
+UNKNOWN = Estimate(np.nan, dict.fromkeys(("resolution", "periodicity", "solver"), np.inf))
 
 
 def unknown(reason: str) -> Refined:
     """Result of a problem whose budget ended before the first estimate."""
-    errors = dict.fromkeys(("resolution", "periodicity", "solver"), np.inf)
     none = Resolution(0, 0, 0)
-    return Refined(
-        np.nan, np.nan, errors, np.inf, np.nan, none, 0.0, 0, 0, 0, 0, False, reason, False
-    )
+    return Refined(UNKNOWN, UNKNOWN, np.nan, none, 0.0, Effort(), False, reason, False)
 
 
 def run_tolerance(tolerance: float) -> float:
@@ -135,8 +124,9 @@ def refine(
             if level < ladder.levels(goal)[0]:
                 continue
             refined = levels.estimate(level, goal)
-            rest = refined.error - refined.errors["resolution"]
-            if refined.error <= tolerance or rest > LARGEST_REST * tolerance:
+            error = refined.value.error
+            rest = error - refined.value.by_source["resolution"]
+            if error <= tolerance or rest > LARGEST_REST * tolerance:
                 return refined
             if ladder.imposed or not refined.converged:
                 return refined
@@ -144,9 +134,9 @@ def refine(
     except Spent as spent:
         if refined is None:
             return unknown(f"{spent}: no error is known yet")
-        reason = f"{spent}: the error is still {refined.error:.1e}"
+        reason = f"{spent}: the error is still {refined.value.error:.1e}"
         return replace(refined, converged=False, reason=reason)
-    reason = f"the error is still {refined.error:.1e} with {refined.finest.cells} cells"
+    reason = f"the error is still {refined.value.error:.1e} with {refined.finest.cells} cells"
     return replace(refined, converged=False, reason=reason)
 
 
@@ -180,22 +170,19 @@ class _Levels:
         value, errors, order = self._of(self.read, goal, three, others)
         torque, torque_errors, _ = self._of(attrgetter("torque"), goal, three, others)
         weights = (0.0, 0.0, 1.0) if self.ladder.imposed else np.abs(WEIGHTS)
-        errors["periodicity"] = _weighted(weights, [one.distance for one in three])
-        errors["solver"] = _weighted(weights, [one.solver_residual for one in three])
+        common = {
+            "periodicity": _weighted(weights, [one.distance for one in three]),
+            "solver": _weighted(weights, [one.solver_residual for one in three]),
+        }
         done = [*self.runs.values(), *self.other_runs.values()]
         reason = next((one.reason for one in done if not one.converged), "")
         return Refined(
-            value=value,
-            torque=torque,
-            errors=errors,
-            torque_error=sum(torque_errors.values()),
+            value=Estimate(value, errors | common),
+            torque=Estimate(torque, torque_errors | common),
             order=order,
             finest=self.ladder.resolution(level),
             periods=max(one.periods for one in done),
-            iterations=sum(one.iterations for one in done),
-            work=sum(one.work for one in done),
-            effort=sum(one.effort for one in done),
-            retried=sum(one.retried for one in done),
+            effort=sum((one.effort for one in done), Effort()),
             converged=not reason,
             reason=reason,
             periodic=not reason,

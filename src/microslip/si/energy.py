@@ -31,15 +31,15 @@ def energy_fields(
     drag = still * answer.mu_macro * motion.speed
     drag_error = still * (answer.mu_macro_error * motion.speed + answer.mu_macro * speed_error)
     found = {"drag_power_W": drag, "drag_power_error_W": drag_error}
-    if answer.mu_torque is None:
+    if answer.torque is None:
         return found
     unit = still * contact.contact_radius * pressure_named(contact.pressure).torque
-    torque = unit * answer.mu_torque
-    spin, spin_error = torque * motion.rotation, unit * answer.mu_torque_error * motion.rotation
+    torque = unit * answer.torque.value
+    spin, spin_error = torque * motion.rotation, unit * answer.torque.error * motion.rotation
     turn = 2.0 * math.pi / motion.rotation
     return found | {
         "torque_N_m": torque,
-        "torque_error_N_m": unit * answer.mu_torque_error,
+        "torque_error_N_m": unit * answer.torque.error,
         "vibration_power_W": spin,
         "vibration_power_error_W": spin_error,
         "dissipated_power_W": drag + spin,

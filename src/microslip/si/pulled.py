@@ -8,6 +8,7 @@ from dataclasses import replace
 from microslip.adaptive.checks import LARGEST_FORCE, SMALLEST_TOLERANCE
 from microslip.adaptive.point import Result, solve
 from microslip.adaptive.shakedown import shakedown
+from microslip.estimate.estimate import Estimate
 from microslip.foundation.arguments import LARGEST, LARGEST_BODY, SMALLEST_STIFFNESS
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Spring
@@ -101,9 +102,7 @@ def answer_at_rest(
         return None
     if force >= largest_force(carried[0], motion, carried[1], mass):
         return None
-    without_error = {"mu_macro_error": 0.0, "velocity_error": 0.0}
-    without_error |= dict.fromkeys((name for name in vars(limit) if name.startswith("error_")), 0.0)
-    return replace(limit, velocity=0.0, mu_macro=force, **pulling, **without_error)
+    return replace(limit, mean_velocity=Estimate(0.0), friction=Estimate(force), **pulling)
 
 
 def within_range(pulling: dict[str, float]) -> dict[str, float]:

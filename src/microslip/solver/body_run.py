@@ -7,6 +7,7 @@ import numpy as np
 from microslip.models.path import make_path
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution
+from microslip.solver.effort import Effort
 from microslip.solver.run import AS_SHIPPED, Run, Settings
 from microslip.solver.simulate import simulate
 
@@ -56,15 +57,11 @@ def simulate_each(
         distance=max(run.distance for run in runs),
         solver_residual=max(run.solver_residual for run in runs),
         periods=max(run.periods for run in runs),
-        iterations=sum(run.iterations for run in runs),
-        solves=sum(run.solves for run in runs),
-        work=sum(run.work for run in runs),
-        effort=sum(run.effort for run in runs),
+        effort=sum((run.effort for run in runs), Effort()),
         converged=all(run.converged for run in runs),
         reason=next((run.reason for run in runs if run.reason), ""),
         state=state,
         static_force=weighted("static_force"),
-        retried=sum(run.retried for run in runs),
     )
 
 

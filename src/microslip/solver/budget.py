@@ -12,6 +12,7 @@ import time
 
 from microslip.foundation.errors import SolverError
 from microslip.models.contact import Contact
+from microslip.solver.effort import Effort
 
 
 class Spent(SolverError):
@@ -30,15 +31,15 @@ class Budget:
 
     Attributes
     ----------
-    iterations, work, effort : int
-        Step-solver iterations, step solves times unknowns, iterations times unknowns so far.
+    taken : Effort
+        Effort so far.
     exhausted : str
         The bound that was crossed: "work" or "time", empty as long as none is.
     """
 
     def __init__(self, most_work: float = math.inf, time_limit: float = math.inf):
         self.most_work, self.time_limit = most_work, time_limit
-        self.iterations = self.work = self.effort = 0
+        self.taken = Effort()
         self.exhausted = ""
         self._began = time.monotonic()
 
@@ -62,19 +63,13 @@ class Budget:
         unknowns : int
             Of each step.
         """
-        self.iterations += iterations
-        self.work += solves * unknowns
-        self.effort += iterations * unknowns
-        if self.work > self.most_work:
+        self.taken += Effort.of(solves, iterations, unknowns)
+        if self.taken.work > self.most_work:
             self.exhausted = "work"
             raise Spent(f"the work that the point may take, {self.most_work:.3g}, is spent")
         if time.monotonic() - self._began > self.time_limit:
             self.exhausted = "time"
             raise Spent(f"the time limit of {self.time_limit:g} s is over")
-
-    def counts(self) -> dict:
-        """What was taken, by the names of run.Run, a dict."""
-        return {name: getattr(self, name) for name in ("iterations", "work", "effort")}
 
 
 class _Metered:
@@ -97,7 +92,7 @@ class _Metered:
         budget = self._budget
         if budget.time_limit < math.inf:
             return 1
-        return max((budget.most_work - budget.work) // work + 1, 1)
+        return max((budget.most_work - budget.taken.work) // work + 1, 1)
 
     def take(self, solves: int, iterations: int, unknowns: int) -> None:
         """Count marches that compiled code has done."""

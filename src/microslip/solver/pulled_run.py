@@ -18,6 +18,7 @@ from microslip.models.pull import Body
 from microslip.motions.problem import Problem
 from microslip.solver.body_run import simulate_each
 from microslip.solver.discretise import Resolution, path_of
+from microslip.solver.effort import Effort
 from microslip.solver.period_map import MOST_MARCHES, DriftRate, Goal
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.pulled_map import PulledMap
@@ -203,24 +204,18 @@ class _Pulled:
             reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
         ahead = float(found.body[-1, 0] - found.body[0, 0]) / self.interval
         drift = problem.unit_drift
+        solves, iterations = (sum(getattr(m, n) for m in done) for n in ("solves", "iterations"))
+        effort = Effort.of(solves, iterations, found.start.size)
         return Run(
             mu=float(forward) / problem.mean_load,
             torque=float(torque) / problem.pressure.torque,
             distance=found.distance / unit,
             solver_residual=found.solver_residual / unit,
-            periods=periods + self._spent("periods"),
-            iterations=sum(one.iterations for one in done) + self._spent("iterations"),
-            solves=sum(one.solves for one in done) + self._spent("solves"),
-            work=sum(one.solves for one in done) * found.start.size + self._spent("work"),
-            effort=sum(one.iterations for one in done) * found.start.size + self._spent("effort"),
+            periods=periods + sum(run.periods for run in self.before),
+            effort=sum((run.effort for run in self.before), effort),
             converged=not reason,
             reason=reason,
             state=found.start,
             static_force=static_force,
             velocity=problem.velocity + ahead / drift,
-            retried=max((run.retried for run in self.before), default=0),
         )
-
-    def _spent(self, name):
-        """What the runs before this one took."""
-        return sum(getattr(run, name) for run in self.before)

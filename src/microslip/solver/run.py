@@ -9,6 +9,7 @@ import numpy as np
 
 from microslip.models.contact import Contact
 from microslip.solver.budget import Budget
+from microslip.solver.effort import Effort
 from microslip.solver.method import SHIPPED, Method
 
 if TYPE_CHECKING:
@@ -65,10 +66,8 @@ class Run:
         Summed over the last period, a force over mu F_z.
     periods : float
         Full ones that were marched in search of a state that repeats itself, 0 for a steady motion.
-    iterations, solves : int
-        Of all searches together.
-    work, effort : int
-        Step solves x unknowns, iterations x unknowns.
+    effort : Effort
+        Effort of all searches together.
     converged : bool
         Whether the state repeats itself and every step was solved.
     reason : str
@@ -82,8 +81,6 @@ class Run:
     power : float
         Mean work of the oscillation in a radian, over u_lim, see power.oscillation_power; NaN where
         that is not told.
-    retried : int
-        1 if the run is a second attempt, see continuation.run_safely.
     """
 
     mu: float
@@ -91,17 +88,13 @@ class Run:
     distance: float
     solver_residual: float
     periods: float
-    iterations: int
-    solves: int
-    work: int
-    effort: int
+    effort: Effort
     converged: bool
     reason: str
     state: np.ndarray | None = None
     static_force: float = np.nan
     velocity: float = np.nan
     power: float = np.nan
-    retried: int = 0
 
 
 def unsolved(residual: float, solves: int, step_tolerance: float) -> str:
@@ -123,4 +116,4 @@ def unsolved(residual: float, solves: int, step_tolerance: float) -> str:
 
 def failed_run(reason: str) -> Run:
     """The Run of a march that could not go on: no number, and why."""
-    return Run(np.nan, np.nan, np.inf, np.inf, 0.0, 0, 0, 0, 0, False, reason)
+    return Run(np.nan, np.nan, np.inf, np.inf, 0.0, Effort(), False, reason)

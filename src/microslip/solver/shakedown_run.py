@@ -18,6 +18,7 @@ from microslip.models.pull import Body
 from microslip.motions.motion import HALF_PERIOD
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
+from microslip.solver.effort import Effort
 from microslip.solver.pulled_map import PulledMap
 from microslip.solver.run import Run, Settings, failed_run, unsolved
 
@@ -202,10 +203,7 @@ class _Walk:
             distance=0.5 * left,
             solver_residual=self.residual / self.contact.stiffness,
             periods=self._periods,
-            iterations=iterations,
-            solves=solves,
-            work=solves * state.size,
-            effort=iterations * state.size,
+            effort=Effort.of(solves, iterations, state.size),
             converged=not reason,
             reason=reason,
             state=state,

@@ -11,6 +11,7 @@ from microslip.models.contact import FORWARD, Contact, StepFailure, forces, forw
 from microslip.models.path import Path
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
+from microslip.solver.effort import Effort
 from microslip.solver.period_map import MOST_MARCHES, DriftRate, Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.power import oscillation_power
@@ -118,9 +119,6 @@ def _extrapolated(fine, coarse):
         distance=2.0 * fine.distance + coarse.distance,
         solver_residual=2.0 * fine.solver_residual + coarse.solver_residual,
         periods=fine.periods + coarse.periods,
-        iterations=fine.iterations + coarse.iterations,
-        solves=fine.solves + coarse.solves,
-        work=fine.work + coarse.work,
         effort=fine.effort + coarse.effort,
         converged=coarse.converged,
         reason=coarse.reason,
@@ -197,6 +195,7 @@ class _Search:
         full = self.problem.mean_load
         forward, _, torque = mean_forces(self.contact, self.problem, self.path, found.forces)
         solves = sum(one.solves for one in self.done)
+        iterations = sum(one.iterations for one in self.done)
         periods = periods_of(sum(one.marches for one in self.done), self.problem)
         reason = unsolved(found.solver_residual, stages_of(self.path), self.step_tolerance)
         if not found.converged:
@@ -207,10 +206,7 @@ class _Search:
             distance=found.distance / full,
             solver_residual=found.solver_residual / full,
             periods=periods,
-            iterations=sum(one.iterations for one in self.done),
-            solves=solves,
-            work=solves * found.start.size,
-            effort=sum(one.iterations for one in self.done) * found.start.size,
+            effort=Effort.of(solves, iterations, found.start.size),
             converged=not reason,
             reason=reason,
             state=found.start,
@@ -249,10 +245,7 @@ def _steady_run(contact, problem, tolerance, step_tolerance):
         distance=found.distance,
         solver_residual=found.solver_residual,
         periods=0.0,
-        iterations=found.iterations,
-        solves=found.solves,
-        work=found.solves * found.state.size,
-        effort=found.iterations * found.state.size,
+        effort=Effort.of(found.solves, found.iterations, found.state.size),
         converged=found.converged,
         reason="" if found.converged else f"no steady state: {found.distance:.1e} left",
     )

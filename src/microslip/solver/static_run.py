@@ -11,6 +11,7 @@ from microslip.models.contact import FORWARD, StepFailure, forces
 from microslip.models.rings.mesh import Focus
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import STRONGEST_FOCUS, Resolution, path_of
+from microslip.solver.effort import Effort
 from microslip.solver.period_map import Goal, PeriodMap
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.power import oscillation_power
@@ -74,10 +75,7 @@ def _on_a_line(contact, problem, tolerance):
         distance=0.0,
         solver_residual=left / problem.mean_load,
         periods=0.0,  # a quarter of one tells the limit, and nothing is searched for
-        iterations=0,
-        solves=solves,
-        work=solves * 2 * contact.forward_position.size,
-        effort=0,
+        effort=Effort.of(solves, 0, 2 * contact.forward_position.size),
         converged=not reason,
         reason=reason,
     )
@@ -88,8 +86,8 @@ def _on_a_loop(problem, model, resolution, tolerance, settings):
         contact = settings.contact(problem, model, resolution)
         return _on_these_points(contact, problem, resolution, tolerance, settings)[0]
     done, _ = gathered_on_a_loop(problem, model, resolution, tolerance, settings)
-    spent = ("periods", "iterations", "solves", "work", "effort")
-    return replace(done[-1], **{name: sum(getattr(one, name) for one in done) for name in spent})
+    effort = sum((one.effort for one in done), Effort())
+    return replace(done[-1], periods=sum(one.periods for one in done), effort=effort)
 
 
 def gathered_on_a_loop(
@@ -223,10 +221,7 @@ def _on_these_points(contact, problem, resolution, tolerance, settings):
         distance=FELT * found.distance / problem.mean_load,
         solver_residual=residual / problem.mean_load,
         periods=periods,
-        iterations=found.iterations,
-        solves=found.solves,
-        work=found.solves * found.start.size,
-        effort=found.iterations * found.start.size,
+        effort=Effort.of(found.solves, found.iterations, found.start.size),
         converged=not reason,
         reason=reason,
         # a constant traction does no work on a motion that returns

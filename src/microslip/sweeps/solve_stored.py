@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import os
 import time
 import warnings
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 
 from microslip.adaptive.checks import (
@@ -123,23 +122,10 @@ def solve_stored(
     given = {"pressure": pressure} | request | record["result"]
     numbers = ("velocity", "amplitude", "poisson", "tolerance", *DRIVES)
     given |= {k: float(given[k]) for k in numbers if given.get(k) is not None}
-    return _result(given | {"solve_time_s": time.perf_counter() - started})
+    return Result.from_dict(given | {"solve_time_s": time.perf_counter() - started})
 
 
 def _drives(**given: float | None) -> tuple:
     """What pulls as a Sweep has it."""
     values = ((name, given[name]) for name in DRIVES)
     return tuple((name, (float(value),), False) for name, value in values if value is not None)
-
-
-def _result(given: dict) -> Result:
-    """The Result with these fields; what a failed solver or JSON left out is NaN, 0 or empty."""
-    left_out = {"float": math.nan, "int": 0, "str": "", "bool": False}
-    values: dict = {"periods": 0.0}
-    for field in fields(Result):
-        value = given.get(field.name)
-        if value is not None:
-            values[field.name] = value
-        else:
-            values.setdefault(field.name, left_out.get(str(field.type)))
-    return Result(**values)

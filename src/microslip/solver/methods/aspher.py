@@ -27,6 +27,7 @@ from microslip.contacts.coulomb import project
 from microslip.models.path import EULER, Path
 from microslip.models.squares.convolution import square_convolution
 from microslip.solver.discretise import path_of
+from microslip.solver.effort import Effort
 from microslip.solver.method import Method
 from microslip.solver.run import Run, failed_run
 from microslip.theory.hertz import G_STAR
@@ -109,10 +110,7 @@ def _run(problem, model, resolution, tolerance):
         distance=change,
         solver_residual=sum(residuals[-2:]),
         periods=0.5 * len(means),
-        iterations=solver.iterations,
-        solves=solver.solves,
-        work=solver.solves * solver.unknowns,
-        effort=solver.iterations * solver.unknowns,
+        effort=Effort.of(solver.solves, solver.iterations, solver.unknowns),
         converged=solver.failed == 0 and change <= tolerance,
         reason=_reason(solver, 0.5 * len(means), change, tolerance),
     )

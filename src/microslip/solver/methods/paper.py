@@ -13,6 +13,7 @@ from microslip.models.contact import FORWARD, March, forward_slip
 from microslip.models.path import EULER, Path, make_path
 from microslip.models.squares.contact import CartesianContact
 from microslip.motions.problem import Problem
+from microslip.solver.effort import Effort
 from microslip.solver.method import Method
 from microslip.solver.run import Run
 
@@ -44,10 +45,7 @@ def _run(problem, model, resolution, tolerance):
         distance=abs(mean - before),
         solver_residual=march.residual,
         periods=STEPS / STEPS_PER_PERIOD,
-        iterations=march.iterations,
-        solves=march.solves,
-        work=march.solves * march.state.size,
-        effort=march.iterations * march.state.size,
+        effort=Effort.of(march.solves, march.iterations, march.state.size),
         converged=True,
         reason="",
     )

@@ -1,0 +1,45 @@
+"""A quantity with its error estimate."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+SOURCES = ("resolution", "periodicity", "solver", "model")
+"""Sources of error, see refine.py."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A quantity with its error estimate.
+
+    Estimates add up, and are multiplied by numbers: the errors of a sum are those of its terms.
+
+    Attributes
+    ----------
+    value : float
+        The quantity, in a unit of its own.
+    by_source : mapping of float
+        Its error estimate by source, one of SOURCES, in the same unit; a source that is left out
+        adds nothing.
+    """
+
+    value: float
+    by_source: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def error(self) -> float:
+        """Sum of the errors of all sources."""
+        return float(sum(self.by_source.values()))
+
+    def __add__(self, other: Estimate) -> Estimate:
+        sources = [name for name in SOURCES if name in self.by_source or name in other.by_source]
+        errors = {n: self.by_source.get(n, 0.0) + other.by_source.get(n, 0.0) for n in sources}
+        return Estimate(self.value + other.value, errors)
+
+    def __rmul__(self, factor: float) -> Estimate:
+        errors = {name: abs(factor) * error for name, error in self.by_source.items()}
+        return Estimate(factor * self.value, errors)
+
+    def __neg__(self) -> Estimate:
+        return Estimate(-self.value, self.by_source)
