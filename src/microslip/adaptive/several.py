@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from microslip.adaptive.closed_forms import CLOSED_FORM, known_exactly
 from microslip.adaptive.request import Request
@@ -20,32 +21,34 @@ def solve_each(request: Request) -> Result:
             alone[part.problem] = _solve(replace(request, problem=part.problem))
     results = list(alone.values())
 
-    def weighted(name):
+    def weighted(name: str) -> float:
         each = zip(problem.shares, problem.parts, strict=True)
         return sum(share * getattr(alone[part.problem], name) for share, part in each)
 
-    def most(name):
+    def most(name: str) -> Any:
         return max(getattr(result, name) for result in results)
 
     marched = [result for result in results if result.model != CLOSED_FORM]
     summed = ("iterations", "work", "effort", "retried")
-    means = ("mu_macro", "mu_macro_error", "error_resolution")
+    means: tuple[str, ...] = ("mu_macro", "mu_macro_error", "error_resolution")
     means += ("error_periodicity", "error_solver", "error_model")
+    taken = ("cells", "angles", "steps_per_period", "periods")
+    numbers: dict[str, Any] = {name: float(weighted(name)) for name in means}
+    numbers |= {name: most(name) for name in taken}
+    numbers |= {name: sum(getattr(result, name) for result in results) for name in summed}
     return Result(
         **request.point,
         model=marched[0].model if marched else results[0].model,
-        **{name: float(weighted(name)) for name in means},
+        **numbers,
         converged=all(result.converged for result in results),
         periodic=all(result.periodic for result in results),
         reason=next((result.reason for result in results if result.reason), ""),
-        **{name: most(name) for name in ("cells", "angles", "steps_per_period", "periods")},
-        **{name: sum(getattr(result, name) for result in results) for name in summed},
         exhausted=request.budget.exhausted,
         solve_time_s=request.seconds,
     )
 
 
-def _solve(request):
+def _solve(request: Request) -> Result:
     """The certified friction of one contact."""
     exact = known_exactly(request)
     if exact is not None:
