@@ -6,6 +6,7 @@ that importing the package costs next to nothing.
 """
 
 from importlib import import_module as _import_module
+from typing import Any as _Any
 
 from microslip.foundation import source_digest as _source_digest  # noqa: F401  reads what will be loaded
 
@@ -57,12 +58,12 @@ __all__ = sorted(_WHERE)
 __version__ = "0.1.0"
 
 
-def __dir__():
+def __dir__() -> list[str]:
     """Names for completion: those that are imported when they are first asked for, too."""
     return sorted({*globals(), *_WHERE})
 
 
-def __getattr__(name):
+def __getattr__(name: str) -> _Any:
     if name in _WHERE:
         return getattr(_import_module(_WHERE[name]), name)
     raise AttributeError(f"module 'microslip' has no attribute {name!r}")

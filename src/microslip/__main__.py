@@ -29,7 +29,7 @@ def main() -> int:
     return code
 
 
-def _command():
+def _command() -> int:
     from microslip.app import cli
 
     return cli.main(sys.argv[1:])

@@ -104,7 +104,12 @@ def checked_driven_problem(
     return problem
 
 
-def _problem(motion, place, pressure, backward=False):
+def _problem(
+    motion: str | Motion | Problem,
+    place: tuple[float | None, float | None, float],
+    pressure: str | Pressure,
+    backward: bool = False,
+) -> Problem:
     """The Problem of a motion at (velocity, amplitude, poisson), or a Problem in their place."""
     if isinstance(motion, Problem):
         velocity, amplitude, poisson = place
@@ -118,9 +123,10 @@ def _problem(motion, place, pressure, backward=False):
     return Problem(motion, *_place(motion, pressure, place, backward), pressure)
 
 
-def _refuse_drive(problem):
+def _refuse_drive(problem: Problem) -> None:
     """Raise InputError for a drive of a Problem outside the range of the solver."""
     drive = problem.drive
+    assert drive is not None  # as the caller looks
     body = {"mass": drive.mass or None, "damping": drive.damping or None}
     if drive.force is None:
         checked_drive(problem.velocity, None, drive.stiffness, **body)
@@ -134,7 +140,12 @@ def _refuse_beside_problem(**given: object) -> None:
             raise InputError(name, value, "allowed is none beside a Problem, which has its own")
 
 
-def _place(motion, pressure, place, backward):
+def _place(
+    motion: Motion,
+    pressure: Pressure,
+    place: tuple[float | None, float | None, float],
+    backward: bool,
+) -> tuple[float, float | None, float]:
     """Velocity, amplitude and Poisson's ratio, checked to be within the range of the solver."""
     velocity, amplitude, poisson = place
     slowest = -LARGEST["velocity"] if backward and motion.propels else 0.0
@@ -194,17 +205,18 @@ def checked_drive(
                 allowed = "allowed is none beside a force, which does not pull through a spring"
                 raise InputError(name, body[name], allowed)
         return Force(real("force", force, -LARGEST_FORCE, LARGEST_FORCE), body["mass"] or 0.0)
-    if stiffness is None:
+    stiff = body["stiffness"]
+    if stiff is None:
         for name in ("mass", "damping"):
             if body[name] is not None:
                 allowed = "allowed beside a stiffness alone, for a velocity moves any body"
                 raise InputError(name, body[name], allowed)
         return None
-    if body["stiffness"] < SMALLEST_STIFFNESS:
+    if stiff < SMALLEST_STIFFNESS:
         allowed = "allowed is a number above 0, at least "
         allowed += f"{SMALLEST_STIFFNESS:g} and at most {LARGEST_BODY:g}"
         raise InputError("stiffness", stiffness, allowed)
-    return Spring(body["stiffness"], body["mass"] or 0.0, body["damping"] or 0.0)
+    return Spring(stiff, body["mass"] or 0.0, body["damping"] or 0.0)
 
 
 def checked_request(
@@ -230,5 +242,5 @@ def refuse_progress(progress: Callable | None) -> None:
         raise InputError("progress", progress, "allowed is a function of one argument")
 
 
-def _count(name, value, low):
+def _count(name: str, value: int | None, low: int) -> int | None:
     return None if value is None else count(name, value, low, most=LARGEST[name], even=True)

@@ -49,7 +49,7 @@ def choose_model(problem: Problem, model: str = "auto") -> str:
             why = f"only {name} could resolve it, and {refusal}"
             if problem.pressure == HERTZ and problem.poisson == 0.0:
                 raise InputError("motion", motion.name, why)
-            given = ("poisson", problem.poisson)
+            given: tuple[str, object] = ("poisson", problem.poisson)
             if problem.pressure != HERTZ:
                 given = ("pressure", problem.pressure.name)
             raise InputError(*given, f"does not go with {motion.name}: {why}")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from microslip.adaptive.request import Request
 from microslip.adaptive.result import Result, of_closed_form
 from microslip.motions.problem import Problem
@@ -66,7 +68,7 @@ def closed_form(problem: Problem, tolerance: float) -> tuple | None:
     tuple or None
         mu, torque (None where there is none to tell) and the error.
     """
-    motion, velocity, amplitude = problem.motion, problem.velocity, problem.amplitude
+    motion, velocity, amplitude = problem.motion, problem.velocity, problem.size
     if not motion.periodic:
         return _steady_bore(problem) if motion.name == "continuous-bore" else None
     transformed = problem.follows or problem.backward
@@ -88,7 +90,7 @@ def closed_form(problem: Problem, tolerance: float) -> tuple | None:
     return None
 
 
-def _steady_bore(problem):
+def _steady_bore(problem: Problem) -> tuple | None:
     """Eqs 17 and 18; 21 and 22 for a sphere."""
     velocity = problem.velocity
     if problem.pressure == HERTZ:
@@ -102,9 +104,9 @@ def _steady_bore(problem):
     return float(forward), float(torque), QUADRATURE
 
 
-def _static(problem, of_sphere):
+def _static(problem: Problem, of_sphere: Callable) -> tuple | None:
     """The limit of vanishing velocity, if it has a closed form under this pressure."""
-    motion, pressure, amplitude = problem.motion, problem.pressure, problem.amplitude
+    motion, pressure, amplitude = problem.motion, problem.pressure, problem.size
     if pressure == HERTZ or (pressure.hertzian and not motion.rotates):
         return float(of_sphere(amplitude)), None, ROUNDING
     if not pressure.is_indenter:

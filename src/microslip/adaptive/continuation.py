@@ -43,7 +43,7 @@ def run_safely(run_at: Callable, velocity: float, guess: Run | None) -> Run:
         return first
     tried = [first]
 
-    def run(velocity, guess):
+    def run(velocity: float, guess: Run | None) -> Run:
         tried.append(run_at(velocity, guess, True))
         return tried[-1]
 
@@ -53,7 +53,7 @@ def run_safely(run_at: Callable, velocity: float, guess: Run | None) -> Run:
     return replace(shown, effort=sum((one.effort for one in tried), Effort(retried=1)))
 
 
-def _from_above(run, velocity):
+def _from_above(run: Callable[[float, Run | None], Run], velocity: float) -> Run | None:
     """The Run at a velocity, if need be by way of higher ones; None if it is not to be had."""
     higher = (velocity * FACTOR**step for step in range(MOST_STEPS + 1))
     above, at = next(

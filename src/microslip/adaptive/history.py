@@ -11,8 +11,9 @@ from microslip.adaptive.choice import choose_model
 from microslip.adaptive.whole_disc import points_of, whole_disc
 from microslip.foundation.arguments import LARGEST, count, real
 from microslip.foundation.errors import InputError
-from microslip.models.contact import StepFailure, forward_slip, full_slip
+from microslip.models.contact import Contact, StepFailure, forward_slip, full_slip
 from microslip.models.path import make_path
+from microslip.models.polar.contact import PolarContact
 from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
@@ -178,6 +179,7 @@ def traction_field(
     if cells is not None:
         count("cells", cells, 2, most=LARGEST["cells"])
     contact = _contact(problem, "polar", cells)
+    assert isinstance(contact, PolarContact)
     found = steady_state(contact, problem.displacement, velocity, 1e-6, STEP_TOLERANCE)
     if not found.converged:
         failure = (
@@ -196,12 +198,12 @@ def traction_field(
     }
 
 
-def _contact(problem, model, cells):
+def _contact(problem: Problem, model: str, cells: int | None) -> Contact:
     name = choose_model(problem, model)
     return build_contact(problem, name, Resolution(cells or CELLS, ANGLES, steps=0))
 
 
-def _start(contact, start):
+def _start(contact: Contact, start: str) -> np.ndarray:
     if start == "stress-free":
         return 0.0 * forward_slip(contact)
     if start == "full-slip":

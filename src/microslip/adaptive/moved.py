@@ -17,8 +17,9 @@ from microslip.estimate.ladder import Ladder, ladder_for, refuse_free
 from microslip.estimate.refine import refine, run_tolerance
 from microslip.motions.problem import Problem
 from microslip.solver.budget import Spent
+from microslip.solver.discretise import Resolution
 from microslip.solver.method_names import SHIPPED
-from microslip.solver.run import Settings
+from microslip.solver.run import Run, Settings
 from microslip.solver.simulate import simulate
 from microslip.solver.static_run import simulate_static
 from microslip.solver.stick_edge import found_focus
@@ -58,13 +59,13 @@ def marched(request: Request) -> Marched:
     share = run_tolerance(tolerance)
     settings = Settings(request.how, budget=request.budget, focus=focus)
 
-    def run(resolution, guess, problem=problem):
+    def run(resolution: Resolution, guess: Run | None, problem: Problem = problem) -> Run:
         if request.progress is not None:
             request.progress(resolution)
         if problem.velocity == 0.0 and motion.periodic:
             return simulate_static(problem, request.model, resolution, share, settings)
 
-        def run_at(velocity, guess, tighter=False):
+        def run_at(velocity: float, guess: Run | None, tighter: bool = False) -> Run:
             there = replace(problem, velocity=velocity)
             how_so = replace(settings, tighter=tighter)
             return simulate(there, request.model, resolution, share, guess, how_so)
@@ -73,17 +74,17 @@ def marched(request: Request) -> Marched:
             return run_at(problem.velocity, guess)
         return run_safely(run_at, problem.velocity, guess)
 
-    readings = [
+    readings: list[Callable] = [
         partial(run, problem=replace(problem, pressure=other))
         for other in problem.pressure.readings
     ]
     return Marched(run, ladder, readings)
 
 
-def _nothing_to_run(spent):
+def _nothing_to_run(spent: Spent) -> Marched:
     """The Marched of a point whose budget was spent before its first run."""
 
-    def run(resolution, guess):
+    def run(resolution: Resolution, guess: Run | None) -> Run:
         raise spent
 
     return Marched(run, Ladder(1, 0, 0), [])
@@ -103,7 +104,7 @@ def solve_moved(request: Request) -> Result:
     )
 
 
-def _within(problem, mu):
+def _within(problem: Problem, mu: float) -> float:
     """A mean force brought to where it can be: what lies beyond is rounding and error."""
     least = -1.0 if problem.propels else 0.0
     return min(max(mu, least), 1.0) if math.isfinite(mu) else math.nan

@@ -59,12 +59,14 @@ def no_load(friction: Callable, first: float) -> NoLoad:
             return NoLoad(math.nan, math.inf, reason)
     below = _certain(friction, velocity, -1.0, slope)
     above = _certain(friction, velocity, 1.0, slope)
-    if above is None:
+    if above is None or below is None:
         return NoLoad(velocity, math.inf, "no velocity is known at which it resists for certain")
     return NoLoad(velocity, max(above - velocity, velocity - below), "")
 
 
-def _root(friction, low, high):
+def _root(
+    friction: Callable, low: tuple[float, float], high: tuple[float, float]
+) -> tuple[float, float, str]:
     """A velocity at which friction is 0 within its error, the slope there, and why there is none.
 
     low, high: velocity and friction on both sides.  Chords and halvings take turns.
@@ -86,7 +88,7 @@ def _root(friction, low, high):
     return middle, slope, ""
 
 
-def _certain(friction, velocity, sign, slope):
+def _certain(friction: Callable, velocity: float, sign: float, slope: float) -> float | None:
     """The velocity next to another at which the sign of friction is certain; 0 below the lowest
     such one, None above the highest."""
     step = WIDENING * friction(velocity).error / slope
@@ -100,4 +102,4 @@ def _certain(friction, velocity, sign, slope):
         if sign * found.value > found.error:
             return place
         step *= 2.0
-    return None
+    return 0.0 if sign < 0.0 else None

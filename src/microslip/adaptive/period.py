@@ -13,6 +13,8 @@ from microslip.adaptive.whole_disc import points_of, whole_disc
 from microslip.foundation.arguments import LARGEST, count
 from microslip.foundation.errors import InputError, SolverError
 from microslip.models.contact import FORWARD, LATERAL, TORQUE
+from microslip.models.path import Path
+from microslip.models.polar.contact import PolarContact
 from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
@@ -132,7 +134,7 @@ def period(
         Where the march broke off.
     """
     problem = checked_problem(motion, velocity, amplitude, pressure=pressure, poisson=poisson)
-    velocity, amplitude = problem.velocity, problem.amplitude
+    velocity, amplitude = problem.velocity, problem.size
     if not problem.motion.periodic:
         raise InputError("motion", problem.motion.name, "allowed is one that oscillates")
     for name, value in (("velocity", velocity), ("amplitude", amplitude)):
@@ -150,6 +152,7 @@ def period(
     if run.state is None:
         raise NoPeriodicState(f"velocity = {velocity!r}: {run.reason}")
     contact = build_contact(problem, "polar", resolution)
+    assert isinstance(contact, PolarContact)
     path = path_of(problem, contact, steps // 2)
     tractions, forces, residual, solves = frames(contact, path, run.state, STEP_TOLERANCE)
     reason = run.reason or unsolved(residual, solves, STEP_TOLERANCE)
@@ -169,9 +172,12 @@ def period(
     if not contact.whole:
         bound = np.tile(bound, 2)  # the other half has the same
     along = forward * slip_forward + lateral * slip_lateral > 0.0
+    moved = [np.array(part) for part in problem.displacement(phase)]
     return Period(
         phase,
-        *(np.array(part) for part in problem.displacement(phase)),
+        moved[0],
+        moved[1],
+        moved[2],
         forces[:, FORWARD],
         forces[:, LATERAL],
         forces[:, TORQUE] / problem.pressure.torque,
@@ -190,7 +196,7 @@ def period(
     )
 
 
-def _slip(contact, path, tractions):
+def _slip(contact: PolarContact, path: Path, tractions: np.ndarray) -> np.ndarray:
     """Rigid motion in every step less what the material follows, (steps, 2, M, N)."""
     elastic = np.array([contact.displacement(change) for change in np.diff(tractions, axis=0)])
     forward, lateral, angle = np.diff(path.positions, axis=0).T[..., None, None]

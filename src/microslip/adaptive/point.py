@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 from microslip.adaptive.checks import (
     checked_driven_problem,
@@ -21,6 +22,7 @@ from microslip.motions.motion import Motion
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
+from microslip.solver.method import Method
 from microslip.solver.method_names import SHIPPED, method_named, refuse_missing
 
 
@@ -138,7 +140,7 @@ def solve(
     return _answer(request) if problem.velocity >= 0.0 else _answer_backward(request)
 
 
-def _answer(request):
+def _answer(request: Request) -> Result:
     if request.problem.drive is None:
         return solve_each(request)
     from microslip.adaptive.pulled import refuse_pull, solve_pulled  # only now: it takes a while
@@ -147,7 +149,7 @@ def _answer(request):
     return solve_pulled(request)
 
 
-def _answer_backward(request):
+def _answer_backward(request: Request) -> Result:
     """The answer at a velocity below 0: that of the mirror image at the opposite one."""
     problem = request.problem
     behind = replace(problem, velocity=-problem.velocity, backward=not problem.backward)
@@ -155,7 +157,7 @@ def _answer_backward(request):
     return replace(answer, mean_velocity=-answer.mean_velocity, friction=-answer.friction)
 
 
-def _refuse_method(problem, model, method, how):
+def _refuse_method(problem: Problem, model: str, method: str, how: Method) -> None:
     """Raise InputError where a method, by name and as a method.Method, has no part in a solve."""
     refuse_missing(method)
     refusal = method_refusal(problem, model, how)
@@ -166,7 +168,7 @@ def _refuse_method(problem, model, method, how):
         raise InputError("method", method, f"does not apply to {name}, model {model}: {refusal}")
 
 
-KERNELS = {
+KERNELS: dict[str, tuple[dict[str, Any], ...]] = {
     "rings": ({"motion": "transverse"},),
     "angles": (
         {"motion": "transverse", "poisson": 0.3},
@@ -201,4 +203,5 @@ def warm_up(*kernels: str) -> None:
             raise InputError("kernels", name, f"may be {', '.join(KERNELS)}")
     for name in kernels:
         for case in KERNELS[name]:
-            solve(**{"velocity": 0.5, "amplitude": 0.5, "tolerance": 1e-2, **case})
+            point = {"velocity": 0.5, "amplitude": 0.5, "tolerance": 1e-2}
+            solve(**point | case)

@@ -29,7 +29,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -40,7 +40,7 @@ from microslip.adaptive.checks import (
     refuse_progress,
 )
 from microslip.adaptive.choice import choose_model
-from microslip.adaptive.moved import marched
+from microslip.adaptive.moved import Marched, marched
 from microslip.adaptive.no_load import NoLoad, no_load
 from microslip.adaptive.propulsion_line import PropulsionLine
 from microslip.adaptive.request import TOLERANCE, Request, budget_for
@@ -52,6 +52,8 @@ from microslip.motions.motion import LOOP, Motion
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
+from microslip.solver.discretise import Resolution
+from microslip.solver.run import Run
 
 POINTS, MOST_POINTS = 9, 1000
 PROPELS_NOTHING = "propels nothing: friction holds a body at rest against forces from {} to {}"
@@ -108,7 +110,7 @@ def propulsion(
     problem = checked_propulsion(motion, amplitude, pressure=pressure, poisson=poisson)
     if tolerance is None:
         raise InputError("tolerance", tolerance, "allowed is a number")
-    tolerance, _, _ = checked_request(tolerance, None, None)
+    accuracy, _, _ = checked_request(tolerance, None, None)
     points = count("points", points, 2, most=MOST_POINTS)
     refuse_bounds(most_work=most_work, time_limit=time_limit)
     refuse_progress(progress)
@@ -116,7 +118,7 @@ def propulsion(
     request = Request(
         problem=problem,
         model=name,
-        tolerance=tolerance,
+        tolerance=accuracy,
         budget=budget_for(name, most_work, time_limit),
         progress=progress,
         started=started,
@@ -143,23 +145,24 @@ class Known(NamedTuple):
 class _Contact:
     """Friction and power of a motion at any velocity of at least 0; no run is done twice."""
 
-    def __init__(self, request):
-        self.request, self.done, self.sign = request, {}, 1
+    def __init__(self, request: Request):
+        self.request, self.sign = request, 1
+        self.done: dict[object, Any] = {}
         moves = np.diff(np.stack(request.problem.oscillation(LOOP)), axis=1)
         self.speed = float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
 
     @property
-    def drift(self):
+    def drift(self) -> float:
         """Drift in a radian at the velocity 1."""
         problem = self.request.problem
         return problem.unit_drift
 
     @property
-    def first(self):
+    def first(self) -> float:
         """Velocity as fast as the oscillation, where a search may begin."""
         return self.speed / self.drift
 
-    def reversed(self):
+    def reversed(self) -> _Contact:
         """The mirror image, which moves forward where this one moves back."""
         problem = self.request.problem
         behind = replace(problem, backward=not problem.backward)
@@ -167,30 +170,30 @@ class _Contact:
         image.sign = -self.sign
         return image
 
-    def friction(self, velocity):
+    def friction(self, velocity: float) -> Known:
         return self._certified(velocity, "mu")
 
-    def power(self, velocity):
+    def power(self, velocity: float) -> Known:
         """Mean work of the oscillation: its error is that of a force times the mean speed."""
         found = self._certified(velocity, "power")
         return Known(self.speed * found.value, self.speed * found.error, found.reason)
 
-    def _certified(self, velocity, quantity):
+    def _certified(self, velocity: float, quantity: str) -> Known:
         if (velocity, quantity) not in self.done:
             run, ladder, readings = self._marched(velocity)
             if quantity == "power":
                 run = self._power_as_force(run)
                 readings = [self._power_as_force(other) for other in readings]
-            found = refine(run, ladder, self.request.tolerance, readings)
+            found = refine(run, ladder, self.request.accuracy, readings)
             reason, estimate = found.reason, found.value
-            if found.converged and estimate.error > self.request.tolerance:
+            if found.converged and estimate.error > self.request.accuracy:
                 reason = f"the estimated error of its {quantity} is {estimate.error:.1e}"
             if reason:
                 reason = f"velocity = {self.sign * velocity:g}: {reason}"
             self.done[velocity, quantity] = Known(estimate.value, estimate.error, reason)
         return self.done[velocity, quantity]
 
-    def _marched(self, velocity):
+    def _marched(self, velocity: float) -> Marched:
         if velocity not in self.done:
             there = replace(
                 self.request,
@@ -202,19 +205,19 @@ class _Contact:
             self.done[velocity] = plan._replace(run=_remembered(plan.run), readings=readings)
         return self.done[velocity]
 
-    def _power_as_force(self, run):
+    def _power_as_force(self, run: Callable[..., Run]) -> Callable[..., Run]:
         return lambda *arguments: _with_power(run(*arguments), self.speed)
 
 
-def _with_power(run, speed):
+def _with_power(run: Run, speed: float) -> Run:
     return replace(run, mu=run.power / speed)
 
 
-def _remembered(run):
+def _remembered(run: Callable[..., Run]) -> Callable[..., Run]:
     """The same runs, each done once: what one quantity needs is there for the other."""
     done = {}
 
-    def again(resolution, guess):
+    def again(resolution: Resolution, guess: Run | None) -> Run:
         if resolution not in done:
             done[resolution] = run(resolution, guess)
         return done[resolution]
@@ -222,7 +225,7 @@ def _remembered(run):
     return again
 
 
-def _line(contact, points):
+def _line(contact: _Contact, points: int) -> PropulsionLine:
     """The PropulsionLine of the motion, forward or back."""
     ahead = contact.friction(0.0)
     if ahead.value < 0.0 or not math.isfinite(ahead.value):
@@ -233,7 +236,7 @@ def _line(contact, points):
         return _moving(behind, points)
     reason = ahead.reason or back.reason
     converged = not reason
-    holding = {
+    holding: dict[str, Any] = {
         "holding_force_low": -back.value + 0.0,
         "holding_force_low_error": back.error,
         "holding_force_high": ahead.value,
@@ -251,7 +254,7 @@ def _line(contact, points):
     return replace(line, **holding)
 
 
-def _moving(contact, points):
+def _moving(contact: _Contact, points: int) -> PropulsionLine:
     """The PropulsionLine of a motion that drives in its own forward direction."""
     stall, found = contact.friction(0.0), NoLoad(math.nan, math.inf, "")
     velocity = np.zeros(0)
@@ -263,7 +266,9 @@ def _moving(contact, points):
     return _record(contact, stall, found, velocity, (not reason, reason))
 
 
-def _record(contact, stall, found, velocity, verdict):
+def _record(
+    contact: _Contact, stall: Known, found: NoLoad, velocity: np.ndarray, verdict: tuple[bool, str]
+) -> PropulsionLine:
     request, sign = contact.request, contact.sign
     problem, (converged, reason) = request.problem, verdict
     friction = [contact.friction(v) for v in velocity]
@@ -280,9 +285,9 @@ def _record(contact, stall, found, velocity, verdict):
         motion=problem.motion.name,
         pressure=problem.pressure.name,
         model=request.model,
-        amplitude=problem.amplitude,
+        amplitude=problem.size,
         poisson=problem.poisson,
-        tolerance=request.tolerance,
+        tolerance=request.accuracy,
         stall_force=sign * -stall.value + 0.0,
         stall_force_error=stall.error,
         no_load_velocity=sign * found.velocity,

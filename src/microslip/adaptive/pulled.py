@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 from microslip.adaptive.closed_forms import CLOSED_FORM, ROUNDING
 from microslip.adaptive.request import Request, verdict
@@ -12,6 +13,9 @@ from microslip.adaptive.result import Result, of_closed_form
 from microslip.adaptive.several import solve_each
 from microslip.adaptive.under_force import (
     CLOSEST_FORCE,
+    Near,
+    drive_of,
+    force_of,
     is_even,
     oscillates,
     refuse_nearly_full,
@@ -23,9 +27,10 @@ from microslip.adaptive.under_force import (
 )
 from microslip.estimate.estimate import Estimate
 from microslip.estimate.ladder import Ladder, ladder_for, refuse_free, with_mass
-from microslip.estimate.refine import UNKNOWN, refine, run_tolerance, unknown
+from microslip.estimate.refine import UNKNOWN, Refined, refine, run_tolerance, unknown
 from microslip.foundation.errors import InputError
 from microslip.models.registry import MODELS
+from microslip.motions.drive import Drive, Force
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.solver.body_run import simulate_each
@@ -33,7 +38,7 @@ from microslip.solver.budget import Spent
 from microslip.solver.discretise import Resolution, contact_of
 from microslip.solver.method_names import SHIPPED
 from microslip.solver.pulled_run import Accuracy, simulate_pulled
-from microslip.solver.run import Settings
+from microslip.solver.run import Run, Settings
 from microslip.solver.stick_edge import found_focus
 from microslip.theory.exact import LARGEST_DROPS
 
@@ -61,7 +66,7 @@ GAP_MARGIN = 2.0
 
 def refuse_drive(problem: Problem, model: str) -> None:
     """Raise InputError where a model, by name, or a motion does not go with a drive."""
-    motion, drive = problem.motion, problem.drive
+    motion, drive = problem.motion, drive_of(problem)
     pulls = "stiffness" if drive.force is None else "force"
     if drive.force is not None and drive.force < 0.0 and not problem.propels:
         allowed = f"allowed is a number of at least 0: {motion.name} propels nothing"
@@ -79,7 +84,7 @@ def refuse_drive(problem: Problem, model: str) -> None:
 
 def refuse_pull(request: Request) -> None:
     """Raise InputError where what is asked does not go with a drive."""
-    drive = request.problem.drive
+    drive = drive_of(request.problem)
     refuse_drive(request.problem, request.model)
     if request.method != SHIPPED:
         pulls = "stiffness" if drive.force is None else "force"
@@ -92,10 +97,14 @@ def solve_pulled(request: Request) -> Result:
 
     It is for the caller to `refuse_pull` before.
     """
-    drive = request.problem.drive
+    drive = drive_of(request.problem)
     if drive.force is not None:
         return _under_force(request)
-    body = {"stiffness": drive.stiffness, "mass": drive.mass, "damping": drive.damping}
+    body: dict[str, Any] = {
+        "stiffness": drive.stiffness,
+        "mass": drive.mass,
+        "damping": drive.damping,
+    }
     problem = request.problem
     if not problem.motion.periodic or problem.velocity == 0.0 or not oscillates(problem):
         # what is steady stretches the spring to one length, whatever it is
@@ -115,7 +124,7 @@ def solve_pulled(request: Request) -> Result:
     )
 
 
-def _bracket(request):
+def _bracket(request: Request) -> tuple[float, None, float] | None:
     """(mu, torque, error) by the energy bound of theory/bounds.py, or None where its error is above
     the tolerance.
 
@@ -130,28 +139,30 @@ def _bracket(request):
         motion.rotates and request.problem.pressure != HERTZ
     ):
         return None
-    drop = LARGEST_DROPS[motion.name](request.problem.velocity, request.problem.amplitude)
+    drop = LARGEST_DROPS[motion.name](request.problem.velocity, request.problem.size)
     error = 0.5 * drop + ROUNDING
     return (1.0 - 0.5 * drop, None, error) if error <= request.tolerance else None
 
 
-def _prescribed(request):
+def _prescribed(request: Request) -> Request:
     """The request at the prescribed velocity of the problem, without its drive."""
     return replace(request, problem=replace(request.problem, drive=None))
 
 
-def _driven(request, **drive):
+def _driven(request: Request, **drive: float) -> Request:
     """The request with a changed drive."""
     problem = request.problem
-    return replace(request, problem=replace(problem, drive=replace(problem.drive, **drive)))
+    changed = problem.drive
+    assert isinstance(changed, Force)
+    return replace(request, problem=replace(problem, drive=replace(changed, **drive)))
 
 
-def _under_force(request):
+def _under_force(request: Request) -> Result:
     """The velocity under a force."""
-    drive = request.problem.drive
+    drive = drive_of(request.problem)
     if drive.mass == 0.0 and request.problem.motion.periodic:
         request = replace(request, problem=without_forward_motion(request.problem))
-    problem, force = request.problem, drive.force
+    problem, force = request.problem, force_of(request.problem)
     if force < 0.0 and not problem.propels:  # a pull back is a pull forward, seen from behind
         ahead = _under_force(_driven(request, force=-force))
         return replace(
@@ -191,23 +202,23 @@ def _under_force(request):
     return _moving(request, max(force, least))
 
 
-def _is_below(force, static):
+def _is_below(force: float, static: Result) -> bool:
     """Whether a force is below the static limit by its error or more."""
     return force <= static.mu_macro - static.mu_macro_error
 
 
-def _is_close(force, static):
+def _is_close(force: float, static: Result) -> bool:
     """Whether the error of the static limit leaves open on which side of it a force is."""
     low, high = (static.mu_macro + sign * static.mu_macro_error for sign in (-1, 1))
     return low < force <= high
 
 
-def _surely_moving(static):
+def _surely_moving(static: Result) -> float:
     """A force at which the contact moves, by the error estimate of the static limit."""
     return static.mu_macro + GAP_MARGIN * static.mu_macro_error
 
 
-def _static(request, force):
+def _static(request: Request, force: float) -> Result:
     """The Result of the static limit, no more exactly than the force needs to be told from it."""
     if request.tolerance is not None and request.tolerance < ROUGH_TOLERANCE:
         rough = _at_rest(request, ROUGH_TOLERANCE)
@@ -216,20 +227,20 @@ def _static(request, force):
     return _at_rest(request, request.tolerance)
 
 
-def _at_rest(request, tolerance):
+def _at_rest(request: Request, tolerance: float | None) -> Result:
     """The Result of the static limit, to a tolerance."""
     problem = replace(request.problem, velocity=0.0, drive=None)
     return solve_each(replace(request, problem=problem, tolerance=tolerance))
 
 
-def _known(request, velocity, error, reason=""):
+def _known(request: Request, velocity: float, error: float, reason: str = "") -> Result:
     """The Result where nothing has to be marched."""
-    drive = request.problem.drive
+    drive, force = drive_of(request.problem), force_of(request.problem)
     return Result(
         **request.point | {"mean_velocity": Estimate(velocity, {"model": error})},
         **_pulling(drive),
         model=CLOSED_FORM if request.chosen else request.model,
-        friction=Estimate(math.copysign(1.0, drive.force) if reason else drive.force),
+        friction=Estimate(math.copysign(1.0, force) if reason else force),
         converged=not reason and _good_enough(error, velocity, request.tolerance),
         periodic=not reason,
         reason=reason,
@@ -237,22 +248,22 @@ def _known(request, velocity, error, reason=""):
     )
 
 
-def _good_enough(error, velocity, tolerance):
+def _good_enough(error: float, velocity: float, tolerance: float | None) -> bool:
     return tolerance is None or error <= tolerance * max(1.0, abs(velocity))
 
 
-def _pulling(drive):
+def _pulling(drive: Drive) -> dict[str, Any]:
     """Fields that say how a force pulls."""
     return {"force": drive.force} | ({"mass": drive.mass} if drive.mass > 0.0 else {})
 
 
-def _moving(request, marched):
+def _moving(request: Request, marched: float) -> Result:
     """The Result of a contact that moves, marched under a force that it moves under for certain.
 
     Where the static limit is not known well enough to tell whether it moves under the force that
     was asked for, its velocity is between 0 and that one.
     """
-    drive, original = request.problem.drive, request
+    drive, force, original = drive_of(request.problem), force_of(request.problem), request
     request = _driven(request, force=marched)
     try:
         near = _near(request)
@@ -266,7 +277,7 @@ def _moving(request, marched):
         found = replace(found, value=max(found.value, 0.0))  # below are rounding and error
     if not refined.converged and not found.error < abs(found.value):
         found = UNKNOWN  # not even its order of magnitude
-    elif marched > drive.force:
+    elif marched > force:
         half = 0.5 * found.value
         found = Estimate(half, {**found.by_source, "model": half})
     refined = replace(refined, value=found)
@@ -276,19 +287,19 @@ def _moving(request, marched):
         **request.point | {"mean_velocity": found},
         **_pulling(drive),
         model=request.model,
-        friction=Estimate(drive.force),
+        friction=Estimate(force),
         **verdict(request, refined, ladder, largest),
     )
 
 
-def _near(request):
+def _near(request: Request) -> Near:
     """The under_force.Near of what the force makes of the contact, by coarse runs.
 
     Friction of the contact that is moved tells about where it is, and one run under the force more
     exactly, unless it is so slow that this would take finer ones.
     """
     moving = replace(request.problem, velocity=FIRST_VELOCITY)
-    force = request.problem.drive.force
+    force = force_of(request.problem)
     # the plan depends on where slip starts, and finds it again by itself
     found_focus(moving, request.model, request.budget, request.progress)
     ladder = ladder_for(moving, request.model, COARSE_TOLERANCE, request.cells, request.steps)
@@ -299,7 +310,7 @@ def _near(request):
     if request.progress is not None:
         request.progress(coarse)
 
-    def friction_at(velocity):
+    def friction_at(velocity: float) -> float:
         there = replace(moving, velocity=velocity)
         return simulate_each(there, request.model, coarse, COARSE_TOLERANCE, settings).mu
 
@@ -312,21 +323,21 @@ def _near(request):
     return near
 
 
-def _given_up(request, reason):
+def _given_up(request: Request, reason: str) -> Result:
     """The Result of a point of which nothing is known yet."""
     unknown = replace(_known(request, math.nan, math.inf, reason), model=request.model)
     return replace(
         unknown,
-        friction=Estimate(request.problem.drive.force),
+        friction=Estimate(force_of(request.problem)),
         exhausted=request.budget.exhausted,
         effort=request.budget.taken,
     )
 
 
-def _refined(request, accuracy):
+def _refined(request: Request, accuracy: Accuracy) -> tuple[Refined, Ladder]:
     """The refine.Refined to an accuracy, and its ladder."""
     problem, tolerance = request.problem, accuracy.tolerance
-    drive = problem.drive
+    drive = drive_of(problem)
     try:
         found_focus(problem, request.model, request.budget, request.progress)
     except Spent as spent:
@@ -339,7 +350,7 @@ def _refined(request, accuracy):
         refuse_free(ladder, request.cells, request.steps)
     settings = Settings(request.how, budget=request.budget)
 
-    def run(resolution, guess, problem=problem):
+    def run(resolution: Resolution, guess: Run | None, problem: Problem = problem) -> Run:
         if request.progress is not None:
             request.progress(resolution)
         return simulate_pulled(problem, request.model, resolution, share, settings, guess=guess)
@@ -355,5 +366,5 @@ def _refined(request, accuracy):
     return refined, ladder
 
 
-def _between(value, least, most):
+def _between(value: float, least: float, most: float) -> float:
     return min(max(value, least), most) if math.isfinite(value) else math.nan

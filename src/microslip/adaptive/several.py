@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from microslip.adaptive.closed_forms import CLOSED_FORM, known_exactly
 from microslip.adaptive.request import Request
@@ -25,7 +26,7 @@ def solve_each(request: Request) -> Result:
     each = zip(problem.shares, problem.parts, strict=True)
     means = [share * alone[part.problem].friction for share, part in each]
 
-    def most(name):
+    def most(name: str) -> Any:
         return max(getattr(result, name) for result in results)
 
     marched = [result for result in results if result.model != CLOSED_FORM]
@@ -43,7 +44,7 @@ def solve_each(request: Request) -> Result:
     )
 
 
-def _solve(request):
+def _solve(request: Request) -> Result:
     """The certified friction of one contact."""
     exact = known_exactly(request)
     if exact is not None:

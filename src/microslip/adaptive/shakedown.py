@@ -12,6 +12,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields, replace
+from typing import Any
 
 from microslip.adaptive.checks import (
     checked_problem,
@@ -31,7 +32,7 @@ from microslip.adaptive.under_force import (
     without_forward_motion,
 )
 from microslip.estimate.ladder import Ladder, ladder_for
-from microslip.estimate.refine import refine, run_tolerance, unknown
+from microslip.estimate.refine import Refined, refine, run_tolerance, unknown
 from microslip.foundation.arguments import real
 from microslip.foundation.errors import InputError
 from microslip.motions.drive import Force
@@ -40,8 +41,9 @@ from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
 from microslip.solver.budget import Spent
-from microslip.solver.run import Settings
-from microslip.solver.shakedown_run import run_to_rest
+from microslip.solver.discretise import Resolution
+from microslip.solver.run import Run, Settings
+from microslip.solver.shakedown_run import ShakedownRun, run_to_rest
 from microslip.solver.stick_edge import found_focus
 
 TOLERANCE = 1e-2
@@ -164,7 +166,7 @@ def shakedown(
     force = real("force", force, 0.0)
     if tolerance is None:
         raise InputError("tolerance", tolerance, "allowed is a number")
-    tolerance, _, _ = checked_request(tolerance, None, None)
+    accuracy, _, _ = checked_request(tolerance, None, None)
     refuse_bounds(most_work=most_work, time_limit=time_limit)
     refuse_progress(progress)
     problem = without_forward_motion(replace(problem, velocity=0.0, drive=Force(force)))
@@ -176,7 +178,7 @@ def shakedown(
     request = Request(
         problem=problem,
         model=name,
-        tolerance=tolerance,
+        tolerance=accuracy,
         budget=budget_for(name, most_work, time_limit),
         progress=progress,
         started=started,
@@ -184,10 +186,10 @@ def shakedown(
     return _answer(request, force)
 
 
-def _answer(request, force):
+def _answer(request: Request, force: float) -> Shakedown:
     """The Shakedown under a force."""
     threshold, error, away = _threshold(request, force)
-    known = {
+    known: dict[str, Any] = {
         "motion": request.problem.motion.name,
         "pressure": request.problem.pressure.name,
         "model": request.model,
@@ -203,13 +205,13 @@ def _answer(request, force):
         if force > threshold + error:
             away = f"drifts on for ever: the force is above the threshold, {threshold:.4g}"
     if away:
-        endless = {"displacement": math.inf, "displacement_error": math.inf}
+        endless: dict[str, Any] = {"displacement": math.inf, "displacement_error": math.inf}
         endless |= {"converged": False, "reason": away, "solve_time_s": request.seconds}
         return Shakedown(**known, **endless)
     return Shakedown(**known, **_certified(request, force))
 
 
-def _threshold(request, force):
+def _threshold(request: Request, force: float) -> tuple[float, float, str]:
     """The static limit, its error, and why the contact does not even come near it, or ""."""
     problem = request.problem
     away = runs_away(problem)
@@ -221,7 +223,7 @@ def _threshold(request, force):
     return static.mu_macro, static.mu_macro_error, ""
 
 
-def _certified(request, force):
+def _certified(request: Request, force: float) -> dict[str, Any]:
     """Fields of a Shakedown that comes of runs."""
     planned = replace(request.problem, velocity=PLANNED_VELOCITY)
     try:  # the plan depends on where slip starts, and finds it again by itself
@@ -231,10 +233,11 @@ def _certified(request, force):
     ladder = ladder_for(planned, request.model)
     # the coarsest run, too, must hold the force
     ladder = replace(ladder, start=2 * ladder.start)
-    left = RUN_SHARE * run_tolerance(request.tolerance)
-    settings, finest = Settings(request.how, budget=request.budget), {}
+    left = RUN_SHARE * run_tolerance(request.accuracy)
+    settings = Settings(request.how, budget=request.budget)
+    finest: dict[Resolution, ShakedownRun] = {}
 
-    def run(resolution, guess):
+    def run(resolution: Resolution, guess: Run | None) -> ShakedownRun:
         if request.progress is not None:
             request.progress(resolution)
         finest[resolution] = run_to_rest(
@@ -242,12 +245,14 @@ def _certified(request, force):
         )
         return finest[resolution]
 
-    refined = refine(run, ladder, request.tolerance, (), "displacement")
+    refined = refine(run, ladder, request.accuracy, (), "displacement")
     last = finest[max(finest, key=lambda one: (one.cells, one.steps))] if finest else None
     return _fields(request, refined, ladder, last)
 
 
-def _fields(request, refined, ladder, last):
+def _fields(
+    request: Request, refined: Refined, ladder: Ladder, last: ShakedownRun | None
+) -> dict[str, Any]:
     """Fields of a Shakedown from its Refined and its finest ShakedownRun, if there is one."""
     said = verdict(request, refined, ladder, request.tolerance)
     taken = {field.name for field in fields(Shakedown)}

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from microslip.foundation.errors import InputError
+from microslip.motions.drive import Drive
 from microslip.motions.motion import LOOP
 from microslip.motions.problem import Problem
 from microslip.theory import paper
@@ -38,6 +39,19 @@ HALVINGS = 2
 """Of the last such interval, by its logarithm."""
 
 
+def drive_of(problem: Problem) -> Drive:
+    """The drive of a problem that has one."""
+    assert problem.drive is not None
+    return problem.drive
+
+
+def force_of(problem: Problem) -> float:
+    """The force of a problem that is under one."""
+    force = drive_of(problem).force
+    assert force is not None
+    return force
+
+
 def without_forward_motion(problem: Problem) -> Problem:
     """The problem, its contact not oscillating along the direction of the force.
 
@@ -52,7 +66,7 @@ def oscillates_forward(problem: Problem) -> bool:
     if problem.parts:
         return any(oscillates_forward(part.problem) for part in problem.parts)
     forward = problem.oscillation(LOOP)[0]
-    return float(np.ptp(forward)) > RETURNED * max(problem.amplitude, 1.0)
+    return float(np.ptp(forward)) > RETURNED * max(problem.size, 1.0)
 
 
 def oscillates(problem: Problem) -> bool:
@@ -60,8 +74,8 @@ def oscillates(problem: Problem) -> bool:
     if problem.parts:
         return any(oscillates(part.problem) for part in problem.parts)
     parts = problem.oscillation(LOOP)
-    moves = max(float(np.ptp(part)) for part in parts) > RETURNED * max(problem.amplitude, 1.0)
-    return moves or (problem.depth is not None and problem.amplitude > 0.0)
+    moves = max(float(np.ptp(part)) for part in parts) > RETURNED * max(problem.size, 1.0)
+    return moves or (problem.depth is not None and problem.size > 0.0)
 
 
 def is_even(problem: Problem) -> bool:
@@ -93,11 +107,11 @@ def least_load(problem: Problem) -> float:
 
 def runs_away(problem: Problem) -> str:
     """Why there is no mean velocity, as one line; "" if there is one."""
-    drive = problem.drive
-    if abs(drive.force) >= 1.0:
-        return f"runs away: the force {drive.force:g} is all that friction can hold, or more"
+    force = force_of(problem)
+    if abs(force) >= 1.0:
+        return f"runs away: the force {force:g} is all that friction can hold, or more"
     least = least_load(problem)
-    if drive.mass == 0.0 and drive.force >= least:
+    if drive_of(problem).mass == 0.0 and force >= least:
         return (
             f"runs away: without mass it slides off where the normal load is least, {least:.3g} of "
             "its mean, and friction holds no more than that"
@@ -107,11 +121,12 @@ def runs_away(problem: Problem) -> str:
 
 def refuse_nearly_full(problem: Problem) -> None:
     """Raise InputError for a force so close to full friction that no velocity can be computed."""
-    steady, drive = not problem.motion.periodic, problem.drive
+    steady, force = not problem.motion.periodic, force_of(problem)
     closest = CLOSEST_STEADY_FORCE if steady else CLOSEST_FORCE
-    if not closest <= abs(drive.force) < 1.0 or runs_away(problem):
+    if not closest <= abs(force) < 1.0 or runs_away(problem):
         return
-    if not steady and not oscillates(problem if drive.mass else without_forward_motion(problem)):
+    held = problem if drive_of(problem).mass else without_forward_motion(problem)
+    if not steady and not oscillates(held):
         return
     allowed = (
         f"allowed is a force below {closest:.9g} (of mu times the mean normal load), or from 1 "
@@ -119,13 +134,13 @@ def refuse_nearly_full(problem: Problem) -> None:
     allowed += (
         "on, where the contact runs away; in between the velocity is too large to be computed"
     )
-    raise InputError("force", drive.force, allowed)
+    raise InputError("force", force, allowed)
 
 
 def refuse_steady(problem: Problem) -> None:
     """Raise InputError where the velocity of a steady motion under a force has no closed form."""
     if problem.motion.name != "continuous-bore" or not problem.pressure.is_round:
-        force, place = problem.drive.force, f"{problem.motion.name} under {problem.pressure.name}"
+        force, place = force_of(problem), f"{problem.motion.name} under {problem.pressure.name}"
         raise InputError("force", force, f"allowed is none for {place}, which has no closed form")
 
 
@@ -136,9 +151,9 @@ def steady_velocity(problem: Problem) -> float:
 
     from microslip.theory import axisymmetric
 
-    pressure, force = problem.pressure, problem.drive.force
+    pressure, force = problem.pressure, force_of(problem)
 
-    def left(velocity):
+    def left(velocity: float) -> float:
         if pressure.hertzian:
             return float(paper.bore_forward(velocity)) - force
         return float(axisymmetric.bore_of(pressure.bound, velocity)[0]) - force
@@ -182,7 +197,7 @@ def velocity_near(problem: Problem, force: float, friction_at: Callable[[float],
     unit = problem.unit_drift
 
     @cache
-    def at(drift):
+    def at(drift: float) -> float:
         return friction_at(drift / unit)
 
     low, high = FIRST_DRIFT / FACTOR, FIRST_DRIFT

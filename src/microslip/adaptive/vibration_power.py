@@ -7,8 +7,9 @@ both together are what friction dissipates.
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from microslip.motions.motion import LOOP, Motion
 from microslip.motions.problem import Problem
 from microslip.pressures.hertz import HERTZ
 from microslip.pressures.pressure import Pressure
+from microslip.solver.run import Run
 
 
 class VibrationPower(NamedTuple):
@@ -73,22 +75,24 @@ def vibration_power(
     for name, value in (("velocity", problem.velocity), ("amplitude", problem.amplitude)):
         if not value:
             raise InputError(name, value, "allowed is a number above 0, for work to be done")
-    tolerance, _, _ = checked_request(tolerance, None, None)
+    if tolerance is None:
+        raise InputError("tolerance", tolerance, "allowed is a number")
+    accuracy, _, _ = checked_request(tolerance, None, None)
     name = choose_model(problem)
     request = Request(
         problem=problem,
         model=name,
-        tolerance=tolerance,
+        tolerance=accuracy,
         budget=budget_for(name),
         started=time.perf_counter(),
     )
     moves = np.diff(np.stack(problem.oscillation(LOOP)), axis=1)
     speed = float(np.sqrt(np.sum(moves**2, axis=0)).sum()) / (2.0 * np.pi)
 
-    def power_as_force(run):
+    def power_as_force(run: Callable[..., Run]) -> Callable[..., Run]:
         """Runs whose friction is their power over the mean speed: what is certified is that."""
 
-        def of_resolution(*resolution):
+        def of_resolution(*resolution: Any) -> Run:
             found = run(*resolution)
             return replace(found, mu=found.power / speed)
 
@@ -96,8 +100,8 @@ def vibration_power(
 
     plan = marched(request)
     readings = [power_as_force(one) for one in plan.readings]
-    found = refine(power_as_force(plan.run), plan.ladder, tolerance, readings)
+    found = refine(power_as_force(plan.run), plan.ladder, request.accuracy, readings)
     reason, power = found.reason, speed * found.value
-    if found.converged and found.value.error > tolerance:
+    if found.converged and found.value.error > request.accuracy:
         reason = f"the estimated error of the power is {power.error:.1e}"
     return VibrationPower(power.value, power.error, reason)

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import argparse
 import contextlib
 import json
 import sys
+from collections.abc import Callable
 from dataclasses import fields
 from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
 from microslip import __version__
 from microslip.app import option_parser, terminal
 from microslip.foundation import spec
 from microslip.foundation.errors import CacheError, InputError
+
+if TYPE_CHECKING:
+    from microslip.adaptive.result import Result
+    from microslip.solver.discretise import Resolution
 
 COMMANDS = {
     "predict": "friction of a real contact, in SI units",
@@ -58,11 +66,11 @@ def build_parser(asked: str | None = None) -> option_parser.OneLineParser:
     return parser
 
 
-def _module_of(command):
+def _module_of(command: str) -> ModuleType:
     return import_module(f"microslip.app.{command}_command")
 
 
-def _add_motions(parser):
+def _add_motions(parser: argparse.ArgumentParser) -> None:
     """A parser for each motion; what they are is asked of the solver, so only where it counts."""
     from microslip.motions.by_name import MOTIONS
 
@@ -146,7 +154,7 @@ REALS = ("velocity", "amplitude", "poisson", "tolerance", *DRIVE)
 OTHER_NAMES = {"poisson": ("--nu",)}
 
 
-def _add_options(parser):
+def _add_options(parser: argparse.ArgumentParser) -> None:
     for name, (metavar, text) in OPTIONS.items():
         parser.add_argument(
             *(f"--{name}", *OTHER_NAMES.get(name, ())),
@@ -222,7 +230,7 @@ def main(arguments: list[str] | None = None) -> int:
     return 0 if result.converged else 1
 
 
-def _problem_of_motion(words):
+def _problem_of_motion(words: list[str]) -> InputError | None:
     """The InputError of a motion whose file cannot be used; None for all other words."""
     from microslip.motions.by_name import BROKEN
 
@@ -231,7 +239,7 @@ def _problem_of_motion(words):
     return None if reason is None else InputError("MOTION", words[0], reason)
 
 
-def _split_motion(words):
+def _split_motion(words: list[str]) -> tuple[list[str], str]:
     """Words of `point` with the bare name of its motion, for which there is a parser, and the
     motion with its numbers, such as elliptic:forward=0.5; other words and "" unchanged."""
     if words[:1] != ["point"] or len(words) < 2:
@@ -242,7 +250,7 @@ def _split_motion(words):
     return ["point", name if name in MOTIONS else words[1], *words[2:]], words[1]
 
 
-def _as_given(options, argument):
+def _as_given(options: argparse.Namespace, argument: str) -> tuple[str, object]:
     """Name of the option for an argument of `solve`, and its value on the command line."""
     if argument == "motion":
         return "MOTION", options.motion
@@ -250,11 +258,13 @@ def _as_given(options, argument):
     return option, getattr(options, argument, None)
 
 
-def _answer(options, progress):
+def _answer(options: argparse.Namespace, progress: Callable[[Resolution], None] | None) -> Result:
     """What the options ask for; raises InputError and CacheError as microslip.solve_stored."""
-    given = {name: getattr(options, name, None) for name in REALS}
-    given = {name: text for name, text in given.items() if text is not None}
-    numbers = {name: spec.read(name, text) for name, text in given.items() if text != "none"}
+    typed = {name: getattr(options, name, None) for name in REALS}
+    given = {name: text for name, text in typed.items() if text is not None}
+    numbers: dict[str, Any] = {
+        name: spec.read(name, text) for name, text in given.items() if text != "none"
+    }
     numbers.setdefault("tolerance", None)
     if options.time_limit is not None:
         numbers["time_limit"] = spec.read("time_limit", options.time_limit)
@@ -276,7 +286,7 @@ def _answer(options, progress):
     return microslip.solve_stored(**settings, results=options.results)
 
 
-def _bar():
+def _bar() -> contextlib.AbstractContextManager[Any]:
     """A line on standard error that counts the runs; None unless that is a terminal."""
     if not sys.stderr.isatty():
         return contextlib.nullcontext()
@@ -285,7 +295,7 @@ def _bar():
     return tqdm(unit=" runs", leave=False, delay=0.1)
 
 
-def _show(bar, resolution):
+def _show(bar: Any, resolution: Resolution) -> None:
     cells, angles, steps = resolution.cells, resolution.angles, resolution.steps
     bar.set_description(f"{cells} cells, {angles} angles, {steps} steps")
     bar.update()

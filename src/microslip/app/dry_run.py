@@ -58,7 +58,8 @@ def summary(
         Whether the run refines a certified map.
     """
     store, times, number = Store(folder), _Times(Path(folder)), Counter(points=0)
-    seconds, unknown = [], Counter()
+    seconds: list[float] = []
+    unknown: Counter[str] = Counter()
     for group, requests in jobs:
         job = START
         for request in requests:
@@ -97,10 +98,12 @@ def summary(
 class _Times:
     """CPU seconds of requests: the mean of their group in the logs, else a typical value."""
 
-    def __init__(self, folder):
-        self.folder, self.recorded, self.used = folder, {}, set()
+    def __init__(self, folder: Path):
+        self.folder = folder
+        self.recorded: dict[str, float | None] = {}
+        self.used: set[str] = set()
 
-    def of(self, group, request):
+    def of(self, group: str, request: dict) -> float | None:
         """CPU seconds, None if they are not known."""
         if group not in self.recorded:
             self.recorded[group] = self._in_logs(group)
@@ -113,10 +116,10 @@ class _Times:
             self.used.add("typical values at a tolerance of 1e-3 (benchmarks/sweep_cost.py)")
         return found
 
-    def sources(self):
+    def sources(self) -> str:
         return " and ".join(sorted(self.used))
 
-    def _in_logs(self, group):
+    def _in_logs(self, group: str) -> float | None:
         points, seconds = 0, 0.0
         for path in (self.folder / "logs" / "solve_batch" / group).glob("*.log"):
             for count, took in SOLVED.findall(path.read_text("utf-8", errors="replace")):
@@ -124,11 +127,11 @@ class _Times:
         return seconds / points if points else None
 
 
-def _noun(plural, count):
+def _noun(plural: str, count: int) -> str:
     return plural.removesuffix("s") if count == 1 else plural
 
 
-def _words(seconds):
+def _words(seconds: float) -> str:
     """A duration in one or two significant digits: "40 seconds", "3 minutes", "2.5 hours"."""
     if seconds < 90.0:
         return f"{max(10 * math.ceil(seconds / 10.0), 10)} seconds"

@@ -5,12 +5,18 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from microslip.app.option_parser import Said, format_as_options
 from microslip.app.terminal import complain
-from microslip.foundation.errors import shown
+from microslip.foundation.errors import InputError, shown
 from microslip.si.motions import UNIT_OF_AMPLITUDE
 from microslip.si.printed_lines import force_unit, in_unit, line
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from microslip.si.fitting.fitted import Fit
 
 OPTIONS = {
     "speed": ("V", "forward speed of all rows, such as '1 mm/s', if it is no column"),
@@ -82,7 +88,7 @@ def run(options: argparse.Namespace) -> int:
     return 0 if len(found.told) == 2 and not found.left_out else 1
 
 
-def _opened(path):
+def _opened(path: str) -> xr.Dataset:
     from microslip.datasets.query.open_map import open_map
     from microslip.foundation.errors import CacheError, InputError
 
@@ -94,7 +100,7 @@ def _opened(path):
         raise CacheError(f"--map: {error}") from None
 
 
-def _refuse_endings(options):
+def _refuse_endings(options: argparse.Namespace) -> None:
     """Before the answer is computed, and not after."""
     from microslip.foundation.errors import InputError
 
@@ -105,8 +111,10 @@ def _refuse_endings(options):
             raise InputError(name, path, allowed)
 
 
-def _write(found, options):
-    dataset = found.to_xarray() if options.figure or options.output else None
+def _write(found: Fit, options: argparse.Namespace) -> None:
+    if not (options.figure or options.output):
+        return
+    dataset = found.to_xarray()
     if options.output:
         from microslip.sweeps.sealed_files import writing_beside
 
@@ -118,7 +126,7 @@ def _write(found, options):
         save(draw("fit", {"fit": dataset}), options.figure)
 
 
-def _complaint(error, typed, options):
+def _complaint(error: InputError, typed: dict[str, str], options: argparse.Namespace) -> str:
     """The option, its value as it was given, and what is allowed, in one line."""
     words = {"motion": ("MOTION", options.motion), "measured": ("CSV", options.measured)}
     option, value = words.get(error.argument, (typed.get(error.argument), error.value))
@@ -127,7 +135,7 @@ def _complaint(error, typed, options):
     return " ".join(f"{option}{given}: {format_as_options(error.allowed)}".split())
 
 
-def _as_text(found):
+def _as_text(found: Fit) -> str:
     rows = len(found.measured)
     lines = [line(name.replace("_", " "), text) for name, text in found.understood.items()]
     lines += [
@@ -136,9 +144,10 @@ def _as_text(found):
         line("mu", _interval(found.mu, found.mu_low, found.mu_high, "")),
     ]
     for name, field, unit in (("u_lim", "u_lim", "m"), ("shear modulus", "shear_modulus", "Pa")):
-        value, *ends = (getattr(found, f"{field}{part}_{unit}") for part in ("", "_low", "_high"))
+        parts = (getattr(found, f"{field}{part}_{unit}") for part in ("", "_low", "_high"))
+        value, low, high = parts
         if value is not None:
-            lines.append(line(name, _interval(value, *ends, unit)))
+            lines.append(line(name, _interval(value, low, high, unit)))
     share = 100.0 * found.confidence
     of_model = f"of mu {_per_cent(found.mu_model_share)}"
     if len(found.told) == 2:
@@ -156,17 +165,17 @@ def _as_text(found):
     return "\n".join(lines + [f"warning: {text}" for text in found.warnings])
 
 
-def _of_what(found):
+def _of_what(found: Fit) -> str:
     name = "the friction force" if found.quantity == "friction" else "the coefficient of friction"
     load = in_unit(found.load_N, 0.0, force_unit(found.load_N))
     return f"{name}; mean load {load}"
 
 
-def _interval(value, low, high, unit):
+def _interval(value: float, low: float | None, high: float | None, unit: str) -> str:
     return f"{_scaled(value, unit)}, from {_scaled(low, unit)} to {_scaled(high, unit)}"
 
 
-def _scaled(value, unit):
+def _scaled(value: float | None, unit: str) -> str:
     """A value in the unit that suits it."""
     if not unit or not value:
         return f"{_digits(value, 4)} {unit}".strip()
@@ -174,10 +183,10 @@ def _scaled(value, unit):
     return f"{_digits(value / factor, 4)} {prefix}{unit}"
 
 
-def _per_cent(share):
+def _per_cent(share: float) -> str:
     return f"{_digits(100.0 * share, 2)} %"
 
 
-def _digits(value, count):
+def _digits(value: float | None, count: int) -> str:
     """A number with so many significant digits, zeros at its end included."""
     return f"{value:#.{count}g}".rstrip(".") if value else "0"

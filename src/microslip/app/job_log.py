@@ -16,14 +16,14 @@ from microslip.sweeps.sealed_files import NO_WRITING, CacheError, advice
 class _LogFile(logging.FileHandler):
     """A log that keeps what the system has against writing it, and raises nothing."""
 
-    problem = None
+    problem: OSError | None = None
 
-    def handleError(self, record):
+    def handleError(self, record: logging.LogRecord) -> None:
         # What could not be written is tried again with the next message, and on closing.
         if not isinstance(sys.exc_info()[1], OSError):
             super().handleError(record)
 
-    def close(self):
+    def close(self) -> None:
         try:
             super().close()
         except OSError as error:
@@ -38,7 +38,8 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
     one that the user can mend ends the process with its message alone.
     """
     try:
-        handlers = [_LogFile(path, mode="w", encoding="utf-8"), logging.StreamHandler()]
+        file = _LogFile(path, mode="w", encoding="utf-8")
+        handlers: list[logging.Handler] = [file, logging.StreamHandler()]
     except OSError as error:
         sys.exit(f"Error: {advice('write', path, error)}")
     log = logging.getLogger("microslip")
@@ -55,7 +56,9 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
         log.error("Error: %s", error)
     except Exception as error:
         if getattr(error, "errno", None) in NO_WRITING:
-            log.error("Error: %s", advice("write", error.filename or "a file", error))
+            log.error(
+                "Error: %s", advice("write", getattr(error, "filename", None) or "a file", error)
+            )
         else:
             log.exception("The job failed:")
     finally:
@@ -68,8 +71,8 @@ def job_log(path: str | Path, shown: int = logging.WARNING) -> Iterator[logging.
     if failed:
         sys.exit(1)
     # A log that is cut short would leave out points that did not converge.
-    if handlers[0].problem is not None:
-        sys.exit(f"Error: {advice('write', path, handlers[0].problem)}")
+    if file.problem is not None:
+        sys.exit(f"Error: {advice('write', path, file.problem)}")
 
 
 REFUSED = re.compile(r"^\w+: \[Errno (\d+)\] ([^:\n]+)(?:: '(.+)')?\s*\Z", re.MULTILINE)
@@ -81,7 +84,7 @@ def plain_words(folder: str | Path) -> Callable[[logging.LogRecord], bool]:
     It comes in the place of a traceback. folder: named where the system names no file.
     """
 
-    def say_plainly(record):
+    def say_plainly(record: logging.LogRecord) -> bool:
         refused = REFUSED.search(str(record.msg))
         if refused and "Traceback" in record.msg and int(refused[1]) in (*NO_WRITING, errno.EACCES):
             error = OSError(int(refused[1]), refused[2])

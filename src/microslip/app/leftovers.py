@@ -18,7 +18,7 @@ from microslip.app.plan import Plan
 from microslip.app.terminal import complain
 from microslip.config import load
 from microslip.config.extended import solver_names
-from microslip.config.records import ConfigError, Configuration
+from microslip.config.records import CertifiedMap, ConfigError, Configuration
 from microslip.sweeps import batch_plans, batches, cache, map_rounds, sealed_files
 
 RECORD = re.compile(r"[0-9a-f]{64}\.json")
@@ -50,7 +50,7 @@ def asked_for(plans: Iterable[Plan], folder: Path = Path()) -> set[str]:
     return found
 
 
-def _points_of(path, map_, folder):
+def _points_of(path: Path, map_: CertifiedMap, folder: Path) -> set[str]:
     """Paths of the points of a round; of all points of the motion if its file is damaged."""
     try:
         round_ = map_rounds.read_round(path)
@@ -61,7 +61,7 @@ def _points_of(path, map_, folder):
     return {_path_of(request) for request in round_["requests"]}
 
 
-def _path_of(request):
+def _path_of(request: dict) -> str:
     key = batches.key_of(request)
     return cache.Store(".").path(batches.group(request), key).as_posix()
 
@@ -77,7 +77,7 @@ def there(folder: Path) -> Iterator[tuple[str, Path]]:
             yield kind, path
 
 
-def _above(path, folder):
+def _above(path: Path, folder: Path) -> Iterator[Path]:
     """Folders that a path lies in, below a folder of results, the innermost first."""
     for parent in path.parents:
         if parent == folder:
@@ -85,7 +85,7 @@ def _above(path, folder):
         yield parent
 
 
-def _named(folder):
+def _named(folder: Path) -> Iterator[tuple[str, Path]]:
     for group in sorted(set(batches.FOLDERS.values())):
         for path in sorted((folder / group).rglob("*.json")):
             if RECORD.fullmatch(path.name):
@@ -105,7 +105,7 @@ def _named(folder):
 def left_over(folder: Path, plans: Iterable[Plan]) -> dict[str, list[Path]]:
     """Files in a folder of results that none of the plans asks for, by their kind."""
     wanted = asked_for(plans, folder)
-    found = {kind: [] for kind in KINDS}
+    found: dict[str, list[Path]] = {kind: [] for kind in KINDS}
     for kind, path in there(folder):
         if path.relative_to(folder).as_posix() not in wanted:
             found[kind].append(path)
@@ -169,7 +169,7 @@ def _folder(configurations: list[Configuration]) -> Path:
     return next(iter(folders.values()))
 
 
-def _say(found, folder, deletes, lists):
+def _say(found: dict[str, list[Path]], folder: Path, deletes: bool, lists: bool) -> None:
     for kind, paths in found.items():
         size = sum(path.stat().st_size for path in paths) / 1e6
         print(f"{folder}: {len(paths)} {kind} that nothing asks for, {size:.1f} MB")
@@ -179,7 +179,7 @@ def _say(found, folder, deletes, lists):
         print("removed" if deletes else "nothing is removed without --delete")
 
 
-def _parser():
+def _parser() -> OneLineParser:
     parser = OneLineParser(
         prog="microslip gc",
         description="List points, batches, datasets and figures in a folder of results that none "

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import difflib
 import re
+import sys
 from collections.abc import Iterable, Sequence
 from typing import NoReturn
 
@@ -31,17 +32,18 @@ class OneLineParser(argparse.ArgumentParser):
         complain(f"{self.prog}: {message} (see {self.prog} --help)")
         raise SystemExit(2)
 
-    def parse_known_args(
+    def parse_known_args(  # type: ignore[override]  # which has an overload for every namespace
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
     ) -> tuple:
+        args = sys.argv[1:] if args is None else args
         self._refuse_strange_words(args)
         return super().parse_known_args(args, namespace)
 
-    def _refuse_strange_words(self, words):
+    def _refuse_strange_words(self, words: Sequence[str]) -> None:
         """Before argparse does, which would rather say that the right one is missing."""
         known = self._option_string_actions
         commands = [a for a in self._actions if a.nargs == argparse.PARSER]
-        named = {}
+        named: dict[str, list[str]] = {}
         for word in words:
             if commands and not word.startswith("-"):
                 return self._refuse_command(word, commands[0])
@@ -53,9 +55,9 @@ class OneLineParser(argparse.ArgumentParser):
                 self._refuse_second(name, named.setdefault(known[name].dest, []))
         if commands and not {"-h", "--help", "--version"} & set(words):
             (command,) = commands
-            self.error(f"{command.metavar} is missing; allowed: {', '.join(command.choices)}")
+            self.error(f"{command.metavar} is missing; allowed: {', '.join(command.choices or ())}")
 
-    def _refuse_second(self, name, names):
+    def _refuse_second(self, name: str, names: list[str]) -> None:
         """argparse would take the last of two values; names: those that an option has had so far.
 
         A flag says the same twice, and what appends has a use for each.
@@ -66,21 +68,22 @@ class OneLineParser(argparse.ArgumentParser):
             same = "" if names[0] == name else f", as {names[0]} the first time"
             self.error(f"{name} is given twice{same}; allowed: once")
 
-    def _refuse_command(self, word, command):
-        if word not in command.choices:
-            allowed = f"allowed is one of {', '.join(command.choices)}"
-            self.error(f"{command.metavar} = {word!r}: {_hint(word, command.choices)}{allowed}")
+    def _refuse_command(self, word: str, command: argparse.Action) -> None:
+        choices = list(command.choices or ())
+        if word not in choices:
+            allowed = f"allowed is one of {', '.join(choices)}"
+            self.error(f"{command.metavar} = {word!r}: {_hint(word, choices)}{allowed}")
 
-    def _refuse_option(self, name, known):
+    def _refuse_option(self, name: str, known: list[str]) -> None:
         hint = _hint(f"--{name.lstrip('-')}", known)
         first = [action.metavar for action in self._actions if action.nargs == argparse.PARSER]
         allowed = ", ".join([*known, *(f"{command} before other options" for command in first)])
         self.error(f"unknown option {name}; {hint}allowed: {allowed}")
 
 
-def _hint(given, known):
+def _hint(given: str, known: Iterable[str]) -> str:
     """'did you mean this? ' if one of the known names is like what is given, else ''."""
-    synonym = [name for name in [SYNONYMS.get(given)] if name in known]
+    synonym = [name for name in [SYNONYMS.get(given)] if name is not None and name in known]
     near = synonym or difflib.get_close_matches(given, known, n=1)
     return f"did you mean {near[0]}? " if near else ""
 
@@ -106,7 +109,13 @@ def format_as_options(text: str, arguments: Iterable[str] = ()) -> str:
 class Said(argparse.Action):
     """Keeps a value, and by which of its names the option was called."""
 
-    def __call__(self, parser, namespace, value, option_string=None):
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        value: object,
+        option_string: str | None = None,
+    ) -> None:
         setattr(namespace, self.dest, value)
         namespace.said = getattr(namespace, "said", {}) | {self.dest: option_string}
 
@@ -114,7 +123,7 @@ class Said(argparse.Action):
 def joined(arguments: list[str]) -> list[str]:
     """Options and negative numbers, with a unit or not, as one word: argparse takes -1e-3 for an
     option."""
-    out = []
+    out: list[str] = []
     for word in arguments:
         if NEGATIVE.match(word) and out and out[-1].startswith("--") and "=" not in out[-1]:
             out[-1] += f"={word}"

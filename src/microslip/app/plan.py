@@ -7,7 +7,7 @@ workflow is parsed by every job.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache, cached_property
 from pathlib import PurePosixPath
 
@@ -49,10 +49,11 @@ class Plan:
         self.studies = {dataset: study for study, dataset in registry.DATASETS.items()}
         self.explored = explorer.maps_of(configuration)
         self.figures = dict(_figures(configuration, self.studies))
-        self._new_plans = {}
-        self.batches_in = cache(self.batches_in)
-        self.points_of = cache(self.points_of)
-        self.fingerprint_of = cache(self.fingerprint_of)
+        self._new_plans: dict[str, dict] = {}
+        # each plan remembers its own answers
+        self.batches_in = cache(self.batches_in)  # type: ignore[method-assign]
+        self.points_of = cache(self.points_of)  # type: ignore[method-assign]
+        self.fingerprint_of = cache(self.fingerprint_of)  # type: ignore[method-assign]
 
     # Batches
 
@@ -74,7 +75,7 @@ class Plan:
             *self.configuration.drives,
         ]
 
-    def batches_in(self, group: str) -> dict[str, list]:
+    def batches_in(self, group: str) -> dict[str, Sequence[dict]]:
         """Requests of the batches of a group by name.
 
         Those of `extended` are made when they are asked for: names of motions with numbers are read
@@ -92,7 +93,7 @@ class Plan:
         cuts = (sweep.batches(cut, len(cut)) for cut in (first if beside == "first" else rest))
         return {name: cut for batch in cuts for name, cut in batch.items()}
 
-    def _growing(self, group):
+    def _growing(self, group: str) -> tuple[Sequence[dict], int] | None:
         """Requests of a group to which others may be added, and how many go into a batch; None for
         groups whose batches follow from what they are for."""
         configuration = self.configuration
@@ -104,7 +105,7 @@ class Plan:
             return explorer.period_requests(configuration, name), explorer.PERIODS_PER_JOB
         return None
 
-    def _kept(self, group, requests, size):
+    def _kept(self, group: str, requests: Sequence[dict], size: int) -> dict[str, Sequence[dict]]:
         """Batches that were planned before, and new ones for what is in none of them."""
         if self.earlier is None or not len(requests):
             return batch_plans.cut(requests, size, {})
@@ -119,13 +120,13 @@ class Plan:
             self._new_plans[file] = planned | found
         return found
 
-    def requests_of(self, group: str, batch: str) -> list[dict] | None:
+    def requests_of(self, group: str, batch: str) -> Sequence[dict] | None:
         """Requests of one batch, from what was planned before if it is there; None if it is not.
 
         A job asks this, and plans nothing that is not its own.
         """
-        growing = self.earlier and self._growing(group)
-        if growing and len(growing[0]):
+        growing = None if self.earlier is None else self._growing(group)
+        if self.earlier is not None and growing is not None and len(growing[0]):
             content = self.earlier.read(batch_plans.file_of(group, growing[0]))
             requests = batch_plans.requests_of(content, batch)
             if requests is not None:
@@ -134,6 +135,8 @@ class Plan:
 
     def keep_planned(self) -> None:
         """Note the new batches of all groups that were asked for, so that they stay as they are."""
+        if self.earlier is None:
+            return  # and nothing is new
         for file, planned in self._new_plans.items():
             self.earlier.write(file, batch_plans.text_of(planned))
 
@@ -248,6 +251,8 @@ class Plan:
     def fingerprint_of(self, file: str) -> str:
         """What a file in `made_files` is made of, as a short text: settings, code, points."""
         path, code = PurePosixPath(file), self.code_of(file)
+        names: Sequence[str]
+        groups: Sequence[str]
         if file in explorer.PAGES:
             names = explorer.datasets_of(self.configuration, file)
             groups = [f"{name}_periods" for name in self.explored]
@@ -262,7 +267,9 @@ class Plan:
         return fingerprint(code, path.stem, datasets, [*map(self.points_of, groups)])
 
 
-def _figures(configuration, of_studies):
+def _figures(
+    configuration: Configuration, of_studies: dict[str, str]
+) -> Iterator[tuple[str, tuple[str, ...]]]:
     """(name, names of its datasets) of the figures that there is data for."""
     for figure, names in drawing.FIGURES.items():
         sources = (configuration.sweeps, configuration.drives, of_studies)
@@ -274,7 +281,7 @@ def _figures(configuration, of_studies):
     yield from ((name, (name,)) for name in configuration.certified)
 
 
-def _is_drawable(figure, names, configuration):
+def _is_drawable(figure: str, names: tuple[str, ...], configuration: Configuration) -> bool:
     """Whether there is enough of a map for the figures that show maps, and whether what is compared
     is of the same amplitude and velocity."""
     if figure == "drives":
@@ -294,6 +301,8 @@ def _is_drawable(figure, names, configuration):
     return few or figure != "poisson"
 
 
-def _has(axis, wanted):
+def _has(axis: Sequence[float] | None, wanted: Sequence[float] | None) -> bool:
     """Whether one value is wanted, and an axis has it but for rounding."""
+    if axis is None or wanted is None:
+        return False
     return len(wanted) == 1 and any(math.isclose(value, wanted[0]) for value in axis)

@@ -21,6 +21,7 @@ DIGITS = 6
 def as_text(result: Result) -> str:
     """Lines on standard output for a Result."""
     if result.force is not None:
+        assert result.velocity_error is not None  # as under all forces
         lines = [f"velocity = {number_text(result.velocity, result.velocity_error, digits=DIGITS)}"]
     else:
         ratio = number_text(result.mu_macro, result.mu_macro_error, digits=DIGITS)
@@ -42,7 +43,7 @@ def as_text(result: Result) -> str:
     return "\n".join(lines)
 
 
-def _leaves_something_out(result):
+def _leaves_something_out(result: Result) -> bool:
     """Whether no refinement of the model would find what the contact does."""
     if result.model not in MODELS:
         return False  # a closed form, whose error is known

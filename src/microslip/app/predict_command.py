@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 from microslip.app import predicted_propulsion, predicted_table
 from microslip.app.option_parser import Said, format_as_options, option
@@ -12,6 +14,10 @@ from microslip.app.terminal import complain
 from microslip.foundation.errors import InputError, shown
 from microslip.si.materials import MATERIALS
 from microslip.si.motions import MOTIONS
+from microslip.si.prediction import Prediction
+
+if TYPE_CHECKING:
+    from microslip.si.propulsion import RealPropulsionLine
 
 OPTIONS = {
     "young": ("E", "Young's modulus of the body, such as '210 GPa'"),
@@ -165,7 +171,7 @@ def run(options: argparse.Namespace) -> int:
     return 0 if converged else 1
 
 
-def _found(options, given):
+def _found(options: argparse.Namespace, given: dict[str, Any]) -> Prediction | RealPropulsionLine:
     """The answer to the options that were given, a dict; raises InputError."""
     from microslip import predict
     from microslip.app.progress import Elapsed
@@ -181,7 +187,7 @@ def _found(options, given):
         return predict(options.motion, **{"mu": None} | given, power=options.power)
 
 
-def _complaint(error, typed):
+def _complaint(error: InputError, typed: Mapping[str, str]) -> str:
     """The option, its value as it was given, and what is allowed, in one line."""
     name = "MOTION" if error.argument == "motion" else option(error.argument)
     flag = error.value is True or error.value is None

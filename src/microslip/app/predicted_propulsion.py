@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from microslip.foundation.errors import InputError
 from microslip.foundation.spec import read
+
+if TYPE_CHECKING:
+    from microslip.si.propulsion import RealPropulsionLine
 
 REFUSED = dict.fromkeys(
     ("speed", "force", "reduction", "drive_stiffness", "mass", "damping"),
@@ -20,7 +25,7 @@ REFUSED |= dict.fromkeys(
 """Options of predict that --propulsion refuses, and why."""
 
 
-def ask(motion: str, given: dict) -> object:
+def ask(motion: str, given: dict) -> RealPropulsionLine:
     """The si.propulsion.RealPropulsionLine; given: options by name.  Raises InputError."""
     from microslip.si.propulsion import predict_propulsion
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import argparse
 import json
 import os
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from inspect import signature
 from pathlib import Path
+from typing import Any
 
 from microslip.app.option_parser import format_as_options, option
 from microslip.app.terminal import complain
@@ -95,7 +96,7 @@ def answer(
     refuse_output(options.output, options.table)
     names = [name.replace("-", "_") for name in columns]
     shared = {name: value for name, value in given.items() if name not in FORMAT}
-    format = {name: given[name] for name in FORMAT if name in given}
+    format: dict[str, Any] = {name: given[name] for name in FORMAT if name in given}
     names = [name for name in names if name not in ("points", *FORMAT)]
     answered = ask(
         options.motion, options.table, shared | {"power": options.power}, names, **format
@@ -137,7 +138,7 @@ def ask(
     return Answered(motion, read.columns, read.lines, answers)
 
 
-def _problem(error, columns):
+def _problem(error: InputError | str, columns: Collection[str]) -> str:
     """What is wrong with a line, with the names of columns and options in place of arguments.
 
     error: InputError, without a value where the cell is empty or has no column; or a text.
@@ -222,7 +223,7 @@ class _Quantity:
     sought: str | None = None
 
 
-def _columns(found):
+def _columns(found: Sequence[Prediction]) -> dict[_Quantity, tuple[str, str, str]]:
     """Headings of the columns of value, error and spread, empty where there is no column, by the
     quantity in them."""
     spread = any(one.mu_apparent_spread is not None for one in found)
@@ -248,7 +249,7 @@ def _columns(found):
     return columns
 
 
-def _cells(one, quantity, headings):
+def _cells(one: Prediction, quantity: _Quantity, headings: tuple[str, str, str]) -> list[str]:
     """Texts of the columns of one quantity: to the digits that its error allows."""
     value = getattr(one, quantity.value)
     accelerates = one.outcome == "runs away" and quantity.value in STEADY
@@ -264,7 +265,7 @@ def _cells(one, quantity, headings):
     return [text for text, heading in zip(texts, headings, strict=True) if heading]
 
 
-def _verdict_headings(found):
+def _verdict_headings(found: Sequence[Prediction]) -> list[str]:
     """Headings of the outcome under a force and of its probabilities, which follow it."""
     if all(one.force_N is None for one in found):
         return []
@@ -272,14 +273,14 @@ def _verdict_headings(found):
     return ["outcome", *PROBABILITIES, "+- %"] if uncertain else ["outcome"]
 
 
-def _verdict_cells(one):
+def _verdict_cells(one: Prediction) -> list[str]:
     """Outcome, the probability of each outcome, and the error of these probabilities."""
     error = one.probability_error
     chances = [getattr(one, field) for field in PROBABILITIES.values()]
-    texts = ["" if chance is None else _percent(chance, error) for chance in chances]
+    texts = ["" if chance is None else _percent(chance, error or 0.0) for chance in chances]
     return [one.outcome or "", *texts, "" if error is None else error_text(100.0 * error)]
 
 
-def _percent(chance, error):
+def _percent(chance: float, error: float) -> str:
     text = probability_text(chance, error).removesuffix(" %").partition(SEPARATOR)[0]
     return text.replace("below", "<").replace("above", ">")

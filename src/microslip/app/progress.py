@@ -4,6 +4,8 @@ Every job adds a byte to a file for each point that it is done with; what the fi
 what has been done, by whichever process and on whichever machine that sees the same folder.
 """
 
+from __future__ import annotations
+
 import atexit
 import sys
 import threading
@@ -36,7 +38,8 @@ class Watch:
 
     def __init__(self, path: str | Path):
         """path: of the file that jobs add to; it is emptied by `start`."""
-        self.path, self.stopped, self.thread = Path(path), threading.Event(), None
+        self.path, self.stopped = Path(path), threading.Event()
+        self.thread: threading.Thread | None = None
 
     def start(self, total: int | None) -> None:
         """Begin to show progress.
@@ -68,7 +71,7 @@ class Watch:
         except OSError:
             return 0
 
-    def _show(self, total):
+    def _show(self, total: int | None) -> None:
         # A terminal gets a moving line, a file a line now and then.
         pause = 0.5 if sys.stderr.isatty() else 15.0
         with tqdm(desc="points", total=total, unit="point", mininterval=0.0) as bar:
@@ -85,20 +88,21 @@ class Elapsed:
 
     def __init__(self, title: str):
         """title: name of the calculation, before the time."""
-        self.title, self.stopped, self.thread = title, threading.Event(), None
+        self.title, self.stopped = title, threading.Event()
+        self.thread: threading.Thread | None = None
 
-    def __enter__(self):
+    def __enter__(self) -> Elapsed:
         if sys.stderr.isatty():
             self.thread = threading.Thread(target=self._show, args=[time.monotonic()], daemon=True)
             self.thread.start()
         return self
 
-    def __exit__(self, *exception):
+    def __exit__(self, *exception: object) -> None:
         if self.thread is not None:
             self.stopped.set()
             self.thread.join()
 
-    def _show(self, started):
+    def _show(self, started: float) -> None:
         text, pause = "", FIRST_LINE
         try:
             while not self.stopped.wait(pause):

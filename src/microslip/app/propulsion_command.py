@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 from microslip.app.option_parser import Said
 from microslip.app.terminal import complain
 from microslip.foundation.number_text import aligned, number_text
+
+if TYPE_CHECKING:
+    from microslip.adaptive.propulsion_line import PropulsionLine
 
 OPTIONS = {
     "amplitude": ("A", "of the oscillation, in the motion's own unit, as for point"),
@@ -78,14 +83,16 @@ def run(options: argparse.Namespace) -> int:
     return 0 if line.converged else 1
 
 
-def _as_given(options, said, argument):
+def _as_given(
+    options: argparse.Namespace, said: Mapping[str, str], argument: str
+) -> tuple[str, object]:
     """Name of the option for an argument of `drive`, and its value on the command line."""
     if argument == "motion":
         return "MOTION", options.motion
     return said.get(argument, f"--{argument.replace('_', '-')}"), getattr(options, argument, None)
 
 
-def _as_text(line):
+def _as_text(line: PropulsionLine) -> str:
     stall = number_text(line.stall_force, line.stall_force_error)
     no_load = number_text(line.no_load_velocity, line.no_load_velocity_error)
     lines = [f"stall_force = {stall}", f"no_load_velocity = {no_load}"]

@@ -91,7 +91,7 @@ def main(arguments: list[str]) -> int:
                 pass  # Snakemake got it too: it tidies up and ends
 
 
-def _hang_up(running):
+def _hang_up(running: subprocess.Popen) -> None:
     """End Snakemake and its jobs, the terminal of which was closed.
 
     Of a terminal's processes only the first one is told, and a shell tells the whole group; where

@@ -7,6 +7,7 @@ which knows profiles and abbreviations, is asked first, and the configuration is
 
 from __future__ import annotations
 
+import argparse
 import atexit
 import io
 import os
@@ -48,7 +49,7 @@ def main(arguments: list[str]) -> int:
     return 0
 
 
-def _spare_cache():
+def _spare_cache() -> None:
     """Have Snakemake keep its own files in a temporary folder where the home takes none.
 
     It makes a folder there whenever it starts, and ends with a traceback where it cannot.
@@ -66,7 +67,7 @@ def _spare_cache():
     complain(f"microslip sweep: {home} cannot be written to: Snakemake's own files are in {spare}")
 
 
-def _check(arguments):
+def _check(arguments: list[str]) -> None:
     """Raise InputError or ConfigError for what Snakemake would be slow, or long, to refuse."""
     options = _parsed(arguments)
     if options is None:
@@ -92,7 +93,7 @@ def _check(arguments):
     _check_configuration(options)
 
 
-def _check_configuration(options):
+def _check_configuration(options: argparse.Namespace) -> None:
     """Raise ConfigError for the configuration that the Snakefile would read and refuse."""
     from snakemake.cli import parse_config
     from snakemake.utils import update_config
@@ -102,7 +103,7 @@ def _check_configuration(options):
         places = (Path(options.directory or "."), snakefile().parent)
         defaults = [os.path.relpath(place / "config" / "config.yaml") for place in places]
         files = [next(filter(os.path.lexists, defaults), defaults[-1])]
-    mapping = {}
+    mapping: dict = {}
     for file in files:
         update_config(mapping, load.read_yaml(file))
     update_config(mapping, parse_config(options.config))
@@ -116,7 +117,7 @@ def _check_configuration(options):
         raise load.ConfigError(f"{source}: results: {error}") from None
 
 
-def _may_be_made(target):
+def _may_be_made(target: str) -> bool:
     """Whether a target is a file, a target of the workflow or the name of a figure.
 
     The configuration decides which figures of groups and of certified maps there are.
@@ -127,7 +128,7 @@ def _may_be_made(target):
     return is_file or of_configuration or target in (*TARGETS, *RULES, *figures)
 
 
-def _parsed(arguments):
+def _parsed(arguments: list[str]) -> argparse.Namespace | None:
     """What Snakemake's parser makes of the arguments; None where it says something by itself."""
     from snakemake.cli import parse_args
 

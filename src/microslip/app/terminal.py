@@ -13,6 +13,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from typing import Any, NoReturn
 
 CANNOT_WRITE = 74
 """Exit code where the answer could not be written: EX_IOERR of the BSD's sysexits.h."""
@@ -65,7 +66,7 @@ def complain(text: str) -> None:
         sys.stderr = open(os.devnull, "w")  # noqa: SIM115 - it stays open until the end
 
 
-def _code_of(command):
+def _code_of(command: Callable[[], int]) -> int:
     try:
         return command()
     except SystemExit as error:  # how argparse ends
@@ -75,7 +76,7 @@ def _code_of(command):
 # Streams
 
 
-def _open_closed_streams():
+def _open_closed_streams() -> None:
     """Give this process the three streams, whichever of them it was started without.
 
     A file opened later would otherwise get their place, and be written to as if it were a stream.
@@ -94,19 +95,21 @@ def _open_closed_streams():
     if sys.stderr is None:
         sys.stderr = open(2, "w", errors="backslashreplace", closefd=False)  # noqa: SIM115
     encoding = "utf-8" if missing else sys.stdout.encoding
-    sys.stdout = io.TextIOWrapper(
+    kept: Any = io.TextIOWrapper(
         io.BytesIO(), encoding, errors="backslashreplace", write_through=True
     )
-    sys.stdout.lost = missing
+    kept.lost = missing
+    sys.stdout = kept
 
 
-def _written(code):
+def _written(code: int) -> int:
     """Write the answer; returns the exit code, changed where it could not be written."""
-    answer = sys.stdout.buffer.getvalue()
+    kept: Any = sys.stdout  # as _open_closed_streams makes it
+    answer = kept.buffer.getvalue()
     if not answer:
         return code
     try:
-        if sys.stdout.lost:
+        if kept.lost:
             raise OSError(None, "it is closed")
         while answer:
             answer = answer[os.write(1, answer) :]
@@ -135,8 +138,9 @@ class _Stop:
         What ended the command; None until then.
     """
 
-    def __init__(self):
-        self.signal, self._ending = None, threading.Lock()
+    def __init__(self) -> None:
+        self.signal: signal.Signals | None = None
+        self._ending = threading.Lock()
         heard, told = socket.socketpair()  # not a pipe, which Windows does not take here
         told.setblocking(False)
         signal.set_wakeup_fd(told.fileno(), warn_on_full_buffer=False)
@@ -152,13 +156,13 @@ class _Stop:
         for number in self._numbers:
             signal.signal(number, self._interrupt)
 
-    def _interrupt(self, number, frame):
+    def _interrupt(self, number: int, frame: object) -> None:
         """What Python calls in the main thread, as soon as it can."""
         if self.signal is None:  # a second one would end the tidying up
             self.signal = signal.Signals(number)
             raise KeyboardInterrupt
 
-    def _listen(self, heard):
+    def _listen(self, heard: socket.socket) -> None:
         number = 0
         while number not in self._numbers:
             (number,) = heard.recv(1)
@@ -166,20 +170,22 @@ class _Stop:
         self.signal = self.signal or signal.Signals(number)
         self.end()
 
-    def _unraisable(self, problem):
+    def _unraisable(self, problem: sys.UnraisableHookArgs) -> None:
         if self.signal is None:
             sys.__unraisablehook__(problem)
 
-    def end(self):
+    def end(self) -> NoReturn:
         """End this process with one line and the exit code of the signal."""
+        ended = self.signal
+        assert ended is not None  # as whoever calls this has seen
         self._ending.acquire()  # for good: one of the two threads says it
         try:
             own_line = "\n" if sys.stderr.isatty() else ""  # after ^C, or a line of progress
-            os.write(2, f"{own_line}microslip: {STOPPED_BY[self.signal.name]}\n".encode())
+            os.write(2, f"{own_line}microslip: {STOPPED_BY[ended.name]}\n".encode())
         finally:
-            os._exit(OF_SIGNAL + self.signal)
+            os._exit(OF_SIGNAL + ended)
 
-    def ignore(self):
+    def ignore(self) -> None:
         """From now on signals change nothing: the answer is there."""
         for number in self._numbers:
             signal.signal(number, signal.SIG_IGN)

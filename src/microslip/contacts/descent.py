@@ -75,7 +75,7 @@ class Descent(NamedTuple):
 
 
 @kernel
-def _respond(system, fields, response, slope):
+def _respond(system: System, fields: Fields, response: np.ndarray, slope: np.ndarray) -> None:
     """No response is known; the slope is at most the stiffness."""
     slope[0] = system.stiffness
 
@@ -98,7 +98,9 @@ def descend(
 
 
 @kernel
-def _balanced(system, balance, step, fields):
+def _balanced(
+    system: System, balance: Balance, step: Step, fields: Fields
+) -> tuple[int, float, float]:
     """Iterations, residual and displacement of a driven step."""
     steepest = balance.stiffness + balance.slope[0]
     b, place, slope = step.imposed.copy(), 0.0, steepest
@@ -131,7 +133,7 @@ def _balanced(system, balance, step, fields):
 
 
 @kernel
-def _descend(system, step, fields):
+def _descend(system: System, step: Step, fields: Fields) -> tuple[int, float]:
     """Iterations (-1: interrupted) and residual of a step at a displacement."""
     q, solver = fields.q, system.solver
     trial, elastic = fields.scratch[0], fields.scratch[1]
@@ -161,7 +163,9 @@ def _descend(system, step, fields):
 
 
 @kernel
-def _projected_step(system, step, fields, length, trial):
+def _projected_step(
+    system: System, step: Step, fields: Fields, length: float, trial: np.ndarray
+) -> float:
     """trial = P(q + length slip); returns the residual as coulomb.coulomb_residual."""
     q, slip, sums = fields.q, fields.slip, system.solver.sums[0]
     scale, bound, weight, columns = system.scale, step.bound, system.weight, len(sums)
@@ -180,7 +184,9 @@ def _projected_step(system, step, fields, length, trial):
 
 
 @kernel
-def _replace(system, step, fields, trial, elastic):
+def _replace(
+    system: System, step: Step, fields: Fields, trial: np.ndarray, elastic: np.ndarray
+) -> tuple[float, float, float]:
     """q = trial, slip = b - A q; returns <dq, dq>, -<dq, ds> and <ds, ds> of the change, weighted
     with the areas."""
     q, slip, sums, b, bound = fields.q, fields.slip, system.solver.sums, step.imposed, step.bound

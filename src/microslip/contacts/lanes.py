@@ -33,7 +33,7 @@ def fused(typing: Any, a: Any, b: Any, c: Any) -> Any:
     if (a, b, c) != (types.float64,) * 3:
         return None
 
-    def generate(context, builder, signature, arguments):
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.fma(*arguments)
 
     return types.float64(a, b, c), generate

@@ -16,7 +16,7 @@ from numba.extending import overload
 from microslip.contacts.lanes import LANES, NOTHING, four, plus, put
 from microslip.foundation.compiled import kernel
 
-_KERNELS = {}
+_KERNELS: dict[type, Callable] = {}
 """Class of operators -> kernel(operators, number, field, image)."""
 
 
@@ -24,7 +24,7 @@ def operator(of: type) -> Callable:
     """Decorator of the kernel(operators, number, field, image) that applies an operator of a
     NamedTuple."""
 
-    def register(function):
+    def register(function: Callable) -> Callable:
         _KERNELS[of] = function
         return function
 
@@ -36,8 +36,9 @@ def multiply(operators: object, number: int, field: np.ndarray, image: np.ndarra
     raise NotImplementedError("multiply is for compiled code")
 
 
+# Numba compares the signature with that of the lambda: it may have no hints
 @overload(multiply, inline="always")
-def _multiply(operators, number, field, image):
+def _multiply(operators, number, field, image):  # type: ignore[no-untyped-def]
     apply = _KERNELS[operators.instance_class]
     return lambda operators, number, field, image: apply(operators, number, field, image)
 

@@ -60,7 +60,7 @@ class Resolvent(NamedTuple):
     penalty: np.ndarray
     factors: np.ndarray
     area: float
-    count: float
+    count: float  # type: ignore[assignment]  # hides a method of tuples that nobody needs
 
     def own(self) -> Resolvent:
         """The same: it has no scratch."""
@@ -129,7 +129,7 @@ def level_of(solver: Resolvent, stuck: float) -> int:
 
 
 @kernel
-def _respond(system, fields, response, slope):
+def _respond(system: System, fields: Fields, response: np.ndarray, slope: np.ndarray) -> None:
     """Tractions v that answer to d = 1, and their force, for each penalty."""
     unit = fields.scratch[0]
     for i in range(unit.shape[1]):

@@ -80,7 +80,7 @@ class Fields(NamedTuple):
 SOLVER = 1
 """Place of the solver in a system.System."""
 
-_SOLVERS = {}
+_SOLVERS: dict[type, tuple[Callable, Callable]] = {}
 """Class of a solver -> its kernels (solve, respond)."""
 
 
@@ -88,7 +88,7 @@ def step_solver(of: type, respond: Callable) -> Callable:
     """Decorator of the kernel that solves steps with a solver of a NamedTuple, see `solve_step`;
     respond: the kernel behind `response_to_drive`."""
 
-    def register(function):
+    def register(function: Callable) -> Callable:
         _SOLVERS[of] = function, respond
         return function
 
@@ -119,13 +119,15 @@ def response_to_drive(
     raise NotImplementedError("response_to_drive is for compiled code")
 
 
+# Numba compares the signature with that of the lambda: it may have no hints
 @overload(solve_step, inline="always")
-def _solve_step(system, balance, step, fields):
+def _solve_step(system, balance, step, fields):  # type: ignore[no-untyped-def]
     solve, _ = _SOLVERS[system.types[SOLVER].instance_class]
     return lambda system, balance, step, fields: solve(system, balance, step, fields)
 
 
+# Numba compares the signature with that of the lambda: it may have no hints
 @overload(response_to_drive, jit_options=OPTIONS | {"cache": False})
-def _response_to_drive(system, fields, response, slope):
+def _response_to_drive(system, fields, response, slope):  # type: ignore[no-untyped-def]
     _, respond = _SOLVERS[system.types[SOLVER].instance_class]
     return lambda system, fields, response, slope: respond(system, fields, response, slope)

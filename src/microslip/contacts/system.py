@@ -6,7 +6,7 @@ contact.  Points may be added that have no area and a friction bound of zero.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -44,8 +44,8 @@ class System(NamedTuple):
         Force over mu F_z per uniform displacement u_lim without slip, at least.
     """
 
-    operators: NamedTuple
-    solver: NamedTuple
+    operators: Any  # of a class that operators.operator knows
+    solver: Any  # of a class that step.step_solver knows
     scale: np.ndarray
     weight: np.ndarray
     positions: np.ndarray

@@ -145,9 +145,9 @@ def _create(
     box: Box | None,
 ) -> None:
     """An empty variable; box: one of those that its chunks are to be, None for a single one."""
-    stored = {bool: np.int8, str: "S1"}.get(kind, kind)
+    stored: Any = {bool: np.int8, str: "S1"}.get(kind, kind)
     chunks = None if box is None else tuple(part.stop - part.start for part in box)
-    more = {}
+    more: dict[str, Any] = {}
     if kind is str:
         width = WIDTHS[name]
         file.createDimension(characters_of(name), width)

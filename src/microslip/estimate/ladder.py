@@ -145,7 +145,7 @@ def ladder_for(
     return _imposing(ladder, tolerance, cells, steps)
 
 
-def _kind(problem, model):
+def _kind(problem: Problem, model: str) -> Ladder:
     """The Ladder of problems of this kind."""
     motion = problem.motion
     on_a_line = at_turning_points(problem)
@@ -164,7 +164,7 @@ def _kind(problem, model):
     return LOOP if slow and not mirrored else TRANSLATION
 
 
-def _imposing(ladder, tolerance, cells, steps):
+def _imposing(ladder: Ladder, tolerance: float, cells: int | None, steps: int | None) -> Ladder:
     """The ladder whose start is an imposed resolution; a number that is not imposed is as fine as
     the tolerance or the imposed cells need."""
     cells, steps = cells if ladder.cells else None, steps if ladder.steps else None

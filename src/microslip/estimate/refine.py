@@ -11,7 +11,7 @@ The error estimate has four sources:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter
 
@@ -136,6 +136,7 @@ def refine(
             return unknown(f"{spent}: no error is known yet")
         reason = f"{spent}: the error is still {refined.value.error:.1e}"
         return replace(refined, converged=False, reason=reason)
+    assert refined is not None  # as no ladder is without levels
     reason = f"the error is still {refined.value.error:.1e} with {refined.finest.cells} cells"
     return replace(refined, converged=False, reason=reason)
 
@@ -143,19 +144,26 @@ def refine(
 class _Levels:
     """Runs by level, each done once."""
 
-    def __init__(self, run, ladder, readings, quantity):
+    def __init__(
+        self,
+        run: Callable[[Resolution, Run | None], Run],
+        ladder: Ladder,
+        readings: Sequence[Callable],
+        quantity: str,
+    ):
         self.run, self.ladder, self.readings = run, ladder, readings
         self.read = attrgetter(quantity)
-        self.runs, self.other_runs = {}, {}
+        self.runs: dict[int, Run] = {}
+        self.other_runs: dict[tuple[int, int], Run] = {}
 
-    def at(self, level):
+    def at(self, level: int) -> Run:
         """Run at a level, started from the one at half the level."""
         if level not in self.runs:
             guess = self.runs.get(level // 2)
             self.runs[level] = self.run(self.ladder.resolution(level), guess)
         return self.runs[level]
 
-    def under_other_readings(self, level):
+    def under_other_readings(self, level: int) -> list[Run]:
         """Runs at a level under the other readings of the pressure."""
         for number, run in enumerate(self.readings):
             if (number, level) not in self.other_runs:
@@ -163,7 +171,7 @@ class _Levels:
                 self.other_runs[number, level] = run(finest, self.runs[level])
         return [self.other_runs[number, level] for number in range(len(self.readings))]
 
-    def estimate(self, level, goal):
+    def estimate(self, level: int, goal: float) -> Refined:
         """The Refined with the given finest level, for a resolution error up to the goal."""
         three = [self.at(level // 4), self.at(level // 2), self.at(level)]
         others = self.under_other_readings(level)
@@ -188,7 +196,9 @@ class _Levels:
             periodic=not reason,
         )
 
-    def _of(self, read, goal, three, others):
+    def _of(
+        self, read: Callable[[Run], float], goal: float, three: Sequence[Run], others: Sequence[Run]
+    ) -> tuple[float, dict[str, float], float]:
         """Value of a quantity, its errors by resolution and model, and its observed order."""
         values = [float(read(one)) for one in three]
         limit = extrapolate(values)
@@ -203,7 +213,7 @@ class _Levels:
         return value, errors, limit.order
 
 
-def _weighted(weights, errors):
+def _weighted(weights: Iterable[float], errors: Iterable[float]) -> float:
     """Sum of errors times weights; a run without weight does not count, even if its error is
     infinite."""
     return float(sum(w * e for w, e in zip(weights, errors, strict=True) if w))

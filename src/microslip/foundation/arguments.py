@@ -45,7 +45,7 @@ def real(name: str, value: object, low: float, high: float = math.inf) -> float:
     return number
 
 
-def count(name: str, value: object, low: int, *, most: int, even: bool = False) -> int:
+def count(name: str, value: object, low: int, *, most: float, even: bool = False) -> int:
     """A whole number from low to most, as an int; raises InputError for anything else."""
     if not is_whole(value) or not low <= value <= most:
         kind = "an even whole number" if even else "a whole number"

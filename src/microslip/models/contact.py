@@ -44,6 +44,14 @@ class March:
     fields: np.ndarray | None = None
 
 
+class Guess(Protocol):
+    """What a march takes its first guesses from: a March, or what has the fields of one."""
+
+    @property
+    def fields(self) -> np.ndarray | None:
+        """See March."""
+
+
 class StepFailure(SolverError):
     """A march cannot go on: tractions are not finite, or a step stays unsolved.  The message is the
     reason that a result gives."""
@@ -58,6 +66,8 @@ class Contact(Protocol):
 
     Attributes
     ----------
+    angles : int
+        Angular points of a ring; 1 for contacts without them.
     bound, weight : np.ndarray
         Friction bound and area of each point, broadcast to state[0].
     compliance : np.ndarray
@@ -79,6 +89,7 @@ class Contact(Protocol):
         it is not there, and `bound` is that at the start of a period then.
     """
 
+    angles: int
     bound: np.ndarray
     weight: np.ndarray
     compliance: np.ndarray
@@ -95,6 +106,7 @@ class Contact(Protocol):
 
     def prolonged(self, state: np.ndarray) -> np.ndarray | None:
         """Tractions of a coarser contact at the points of this one; None if there is no way."""
+        return None
 
     def mirrored(self, state: np.ndarray) -> np.ndarray:
         """The state after lateral -> -lateral (lateral traction negated)."""
@@ -104,12 +116,22 @@ class Contact(Protocol):
         path: Path,
         state: np.ndarray,
         tolerance: float,
-        previous: March | None = None,
+        previous: Guess | None = None,
     ) -> March:
         """March along a path from a state; every stage is solved to `tolerance` (a force).
 
         previous: a March of the same path from a start near by, whose tractions are first guesses.
         """
+
+
+class GrowingContact(Contact, Protocol):
+    """A contact whose normal load may change."""
+
+    def bounds(self, depths: np.ndarray) -> np.ndarray:
+        """Friction bounds at each depth, one a row."""
+
+    def bounds_along(self, path: Path) -> np.ndarray:
+        """Friction bounds at the start and at every stage of a path, one a row."""
 
 
 def energy_norm(contact: Contact, change: np.ndarray) -> float:

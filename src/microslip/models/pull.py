@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -38,7 +38,10 @@ class Body:
         share = 1.0 / (1.0 + path.carry[-1].sum())  # a stiffly accurate method carries the rest
         lengths = share * np.diff(path.phase)
         return Drive(
-            *map(float, (self.stiffness, self.damping, self.mass, self.load)),
+            float(self.stiffness),
+            float(self.damping),
+            float(self.mass),
+            float(self.load),
             lengths,
             np.array(start, dtype=float),
         )
@@ -54,4 +57,4 @@ class PulledMarch(March):
         x and x' at every phase.
     """
 
-    body: np.ndarray = None
+    body: np.ndarray = field(kw_only=True)

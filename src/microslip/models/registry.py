@@ -24,8 +24,15 @@ compiled code takes a while to load and closed forms do without it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from microslip.models.contact import Contact
+    from microslip.models.rings.mesh import Focus
+    from microslip.models.system_contact import SystemContact
+    from microslip.motions.problem import Problem
 
 
 @dataclass(frozen=True)
@@ -59,29 +66,29 @@ class Model:
         return self.side_by_side is not None
 
 
-def _never(problem):
+def _never(problem: Problem) -> bool:
     return False
 
 
 LOAD_CHANGES = "it knows a constant normal load alone"
 
 
-def _refuse_pulsation(problem):
+def _refuse_pulsation(problem: Problem) -> str:
     return LOAD_CHANGES if problem.motion.loads else ""
 
 
-def _refuse_other_loads(problem):
+def _refuse_other_loads(problem: Problem) -> str:
     if not problem.motion.loads or problem.pressure.is_indenter:
         return ""
     return f"the load of axisymmetric indenters may change, not that of {problem.pressure.name}"
 
 
-def _any_of(*refusals):
+def _any_of(*refusals: Callable[[Problem], str]) -> Callable[[Problem], str]:
     """What the first refusal says that says something."""
     return lambda problem: next(filter(None, (refuse(problem) for refuse in refusals)), "")
 
 
-def _refuse_rings(problem):
+def _refuse_rings(problem: Problem) -> str:
     if not problem.pressure.is_round:
         return f"rings cannot resolve the pressure {problem.pressure.name}"
     if problem.motion.rotates:
@@ -89,23 +96,23 @@ def _refuse_rings(problem):
     return "rings alone cannot resolve nu > 0" if problem.poisson > 0.0 else ""
 
 
-def _refuse_rotation(problem):
+def _refuse_rotation(problem: Problem) -> str:
     return "it has no extension that could turn" if problem.motion.rotates else ""
 
 
-def _refuse_springs(problem):
+def _refuse_springs(problem: Problem) -> str:
     if not problem.pressure.is_indenter:
         return f"it is known for axisymmetric indenters only, not for {problem.pressure.name}"
     return _refuse_rotation(problem)
 
 
-def _refuse_angles(problem):
+def _refuse_angles(problem: Problem) -> str:
     if problem.pressure.is_round:
         return ""
     return f"rings cannot resolve the pressure {problem.pressure.name}"
 
 
-def _refuse_rigid(problem):
+def _refuse_rigid(problem: Problem) -> str:
     if problem.motion.rotates and not problem.motion.half_disc:
         return "half of the contact does not tell the other half"
     return _refuse_angles(problem) if problem.motion.rotates else ""
@@ -114,37 +121,37 @@ def _refuse_rigid(problem):
 _NO_ROTATION = _any_of(_refuse_rotation, _refuse_pulsation)
 
 
-def _rigid(problem, cells, angles, focus):
+def _rigid(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
     from microslip.models.reduced.rigid import RigidContact
 
     return RigidContact(cells, angles, problem.motion.rotates, problem.pressure)
 
 
-def _slider(problem, cells, angles, focus):
+def _slider(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
     from microslip.models.reduced.slider import slider_contact
 
     return slider_contact()
 
 
-def _dahl(problem, cells, angles, focus):
+def _dahl(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
     from microslip.models.reduced.dahl import DahlContact
 
     return DahlContact(problem.pressure.stiffness)
 
 
-def _mdr(problem, cells, angles, focus):
+def _mdr(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
     from microslip.models.reduced.mdr import mdr_contact
 
     return mdr_contact(cells, focus, problem.pressure)
 
 
-def _radial(problem, cells, angles, focus):
+def _radial(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
     from microslip.models.rings.contact import RadialContact
 
     return RadialContact.resolved(cells, focus, problem.pressure)
 
 
-def _polar(problem, cells, angles, focus):
+def _polar(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
     from microslip.models.polar.contact import PolarContact
 
     motion, whole = problem.motion, not problem.motion.half_disc
@@ -152,7 +159,7 @@ def _polar(problem, cells, angles, focus):
     return PolarContact.resolved(cells, angles, motion.rotates, *place, whole=whole)
 
 
-def _cartesian(problem, cells, angles, focus):
+def _cartesian(problem: Problem, cells: int, angles: int, focus: Focus | float | None) -> Contact:
     from microslip.models.squares import half
     from microslip.models.squares.contact import CartesianContact
 
@@ -162,7 +169,9 @@ def _cartesian(problem, cells, angles, focus):
     return CartesianContact(cells, problem.poisson, problem.pressure, symmetry)
 
 
-def _side_by_side(contacts, shares, extents):
+def _side_by_side(
+    contacts: Sequence[SystemContact], shares: Sequence[float], extents: Sequence[float]
+) -> Contact:
     from microslip.models.side_by_side import SideBySide
 
     return SideBySide(contacts, shares, extents)

@@ -12,12 +12,12 @@ contact moves its points by extent times as much.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 
-from microslip.models.path import BodyPath
+from microslip.models.path import BodyPath, Path
 from microslip.models.system_contact import SystemContact
 
 
@@ -41,7 +41,7 @@ class SideBySide(SystemContact):
         first, self._contacts, self._extents = contacts[0], contacts, np.array(extents, dtype=float)
         each = list(zip(contacts, shares, extents, strict=True))
 
-        def joined(fields):
+        def joined(fields: Iterable[np.ndarray]) -> np.ndarray:
             return np.concatenate(list(fields), axis=-1)
 
         self.angles = first.angles
@@ -61,7 +61,7 @@ class SideBySide(SystemContact):
         self.operators = operators[0].joined(operators, self._extents)
         self.resultants = first.resultants
 
-    def solver(self, weight: np.ndarray) -> NamedTuple:
+    def solver(self, weight: np.ndarray) -> Any:
         """The solver of a step, of points with these areas."""
         each = [one.system().solver for one in self._contacts]
         return each[0].joined(each, self._extents, weight)
@@ -71,7 +71,8 @@ class SideBySide(SystemContact):
         each = zip(self._contacts, depths, strict=True)
         return np.concatenate([one.bounds(own) for one, own in each], axis=1)
 
-    def field_bounds(self, path: BodyPath) -> np.ndarray:
+    def field_bounds(self, path: Path) -> np.ndarray:
         """Friction bounds along a path, see SystemContact.field_bounds."""
+        assert isinstance(path, BodyPath)  # as that of a body is
         each = zip(self._contacts, path.each, strict=True)
         return np.concatenate([one.field_bounds(own) for one, own in each], axis=-1)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import signal
+from collections.abc import Callable
 from copy import copy
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from microslip.contacts.operators import multiply
 from microslip.contacts.splitting import best_penalty, resolvent
 from microslip.contacts.system import COMPLIANCE, System
 from microslip.foundation.compiled import kernel
-from microslip.models.contact import MIRROR, March
+from microslip.models.contact import MIRROR, Guess, March
 from microslip.models.path import Path
 from microslip.models.pull import Body, PulledMarch
 
@@ -87,12 +88,22 @@ class SystemContact:
     compiled = True
     sticks = True
     radius = 1.0
-    grading = None
-    edges = None
+    grading: float | None = None
+    edges: np.ndarray | None = None
     layout: Layout
     mirror: np.ndarray
 
-    operators: NamedTuple
+    angles: int
+    bound: np.ndarray
+    weight: np.ndarray
+    compliance: np.ndarray
+    forward_position: np.ndarray
+    lateral_position: np.ndarray
+    stiffness: float
+    bounds: Callable[..., np.ndarray]
+    bounds_along: Callable[[Path], np.ndarray]
+
+    operators: Any
     resultants: np.ndarray
 
     def system(self) -> System:
@@ -101,7 +112,7 @@ class SystemContact:
         return system._replace(operators=system.operators.own(), solver=system.solver.own())
 
     @cached_property
-    def _prepared(self):
+    def _prepared(self) -> System:
         layout = self.layout
         weight = layout.pack(np.atleast_2d(self.weight))
         points = len(weight) // layout.contacts
@@ -117,14 +128,14 @@ class SystemContact:
             stiffness=float(self.stiffness),
         )
 
-    def unprepared(self) -> SystemContact:
+    def unprepared(self) -> Self:
         """A copy whose attributes may be changed."""
         out = copy(self)
         for name in ("_prepared", "_constant_bound"):
             vars(out).pop(name, None)
         return out
 
-    def solver(self, weight: np.ndarray) -> NamedTuple:
+    def solver(self, weight: np.ndarray) -> Any:
         """The solver of a step, of points with these areas: that of rings with resolvents."""
         penalty = best_penalty(self.compliance, self.layout.columns)
         return resolvent(self.layout.pack(np.atleast_2d(penalty), 1.0), weight)
@@ -136,7 +147,7 @@ class SystemContact:
         return self.layout.pack(self.bounds_along(path)[:, None])
 
     @cached_property
-    def _constant_bound(self):
+    def _constant_bound(self) -> np.ndarray:
         return self.layout.pack(np.atleast_2d(self.bound))[None]
 
     def loading(self, path: Path) -> Loading:
@@ -167,7 +178,7 @@ class SystemContact:
         return state.reshape(2, -1)[:, self.mirror].reshape(state.shape) * MIRROR
 
     def march(
-        self, path: Path, state: np.ndarray, tolerance: float, previous: March | None = None
+        self, path: Path, state: np.ndarray, tolerance: float, previous: Guess | None = None
     ) -> March:
         """March along a path; see models.contact.Contact."""
         trace = self._trace(path, None, state, tolerance, previous)
@@ -192,7 +203,7 @@ class SystemContact:
         drive: Drive | None,
         state: np.ndarray,
         tolerance: float,
-        previous: March | None,
+        previous: Guess | None,
     ) -> Trace:
         loading, pack = self.loading(path), self.layout.pack
         guess = None if previous is None else previous.fields
@@ -219,5 +230,5 @@ class SystemContact:
 
 
 @kernel
-def _displace(system, field, image):
+def _displace(system: System, field: np.ndarray, image: np.ndarray) -> None:
     multiply(system.operators, COMPLIANCE, field, image)

@@ -3,8 +3,11 @@
 One HTML file that needs nothing beside it. All that it says is in the dataset.
 """
 
+from __future__ import annotations
+
 import json
 import os
+from collections.abc import Iterable
 from html import escape
 
 import numpy as np
@@ -60,7 +63,7 @@ def page(dataset: xr.Dataset, lines: list[str]) -> str:
     return "\n".join(parts)
 
 
-def _table(head, rows):
+def _table(head: Iterable[str], rows: Iterable[Iterable[tuple[str, str]]]) -> str:
     """An HTML table; cells: (text that is HTML already, class)."""
     cells = "".join(f"<th>{name}</th>" for name in head)
     body = "".join(
@@ -70,15 +73,15 @@ def _table(head, rows):
     return f"<table><tr>{cells}</tr>\n{body}</table>"
 
 
-def _verdict(index):
+def _verdict(index: int) -> tuple[str, str]:
     return WORDS[int(index)], f"v{int(index)}"
 
 
-def _number(value, digits=4):
+def _number(value: float, digits: int = 4) -> str:
     return "" if not np.isfinite(value) else f"{value:.{digits}g}"
 
 
-def _with_error(value, error):
+def _with_error(value: float, error: float) -> str:
     """A number and its error, written to the digits that the error leaves."""
     if not np.isfinite(value):
         return "none"
@@ -89,7 +92,7 @@ def _with_error(value, error):
     return f"{rounded if float(rounded) else _number(value)} &plusmn; {error:.2g}"
 
 
-def _summary(data):
+def _summary(data: dict[str, np.ndarray]) -> str:
     rows = []
     for i, claim in enumerate(data["claim"]):
         words, kind = _verdict(data["verdict"][i])
@@ -97,7 +100,7 @@ def _summary(data):
         shown = [
             _link(_row_of(data, data["check_run"][chosen]))
             for k in np.flatnonzero((data["part_claim"] == claim) & data["part_counts"])
-            if (chosen := _decisive(data, k)) is not None
+            if (chosen := _decisive(data, int(k))) is not None
         ]
         runs = ", ".join(dict.fromkeys(shown))
         statement = escape(str(data["statement"][i]))
@@ -105,7 +108,7 @@ def _summary(data):
     return _table(("", "what the paper says", "verdict", "shown by"), rows)
 
 
-def _claim(data, index):
+def _claim(data: dict[str, np.ndarray], index: int) -> str:
     number = data["claim"][index]
     words, kind = _verdict(data["verdict"][index])
     rows, listed = [], []
@@ -121,10 +124,10 @@ def _claim(data, index):
                 (verdict, its_kind),
                 (counts, ""),
                 (escape(str(data["part_where"][k])), ""),
-                (_shown(data, k), ""),
+                (_shown(data, int(k)), ""),
             ]
         )
-        listed.append(_checks(data, k))
+        listed.append(_checks(data, int(k)))
     head = ("what is asked", "outcome", "checks", "where", "shown by")
     return (
         f'<h2 id="claim{number}">{number}. <span class="{kind}">{words}</span></h2>\n'
@@ -133,7 +136,7 @@ def _claim(data, index):
     )
 
 
-def _shown(data, part):
+def _shown(data: dict[str, np.ndarray], part: int) -> str:
     """The check that shows a part best, with its run and how to repeat it."""
     chosen = _decisive(data, part)
     if chosen is None:
@@ -148,7 +151,7 @@ def _shown(data, part):
     return f"{_place(data, run)}: {numbers}; {_link(run)}<br><code>{_command(data, run)}</code>"
 
 
-def _decisive(data, part):
+def _decisive(data: dict[str, np.ndarray], part: int) -> int | None:
     """Index of the check: the clearest against the part, else the closest for it."""
     own = data["check_part"] == data["part"][part]
     margin = np.asarray(data["check_margin"], float)
@@ -159,7 +162,7 @@ def _decisive(data, part):
     return int(holds[np.argmin(margin[holds])]) if holds.size else None
 
 
-def _checks(data, part):
+def _checks(data: dict[str, np.ndarray], part: int) -> str:
     rows = []
     for k in np.flatnonzero(data["check_part"] == data["part"][part]):
         runs = [data["check_run"][k], data["check_other_run"][k]]
@@ -177,7 +180,7 @@ def _checks(data, part):
     return f"<p>{escape(str(data['part_text'][part]))}</p>{_table(head, rows)}"
 
 
-def _static(data, motion):
+def _static(data: dict[str, np.ndarray], motion: str) -> str:
     """A table over the amplitudes, and where the paper's formulas are off most."""
     names = {name: FORMS[motion][form].equation for name, (form, _) in FORMULAS[motion].items()}
     slow, slowest = (float(data[f"claims_{n}"]) for n in ("paper_velocity", "slowest"))
@@ -216,19 +219,19 @@ def _static(data, motion):
 # Runs
 
 
-def _row_of(data, key):
+def _row_of(data: dict[str, np.ndarray], key: str) -> int:
     return int(np.flatnonzero(data["run"] == key)[0])
 
 
-def _link(row):
+def _link(row: int) -> str:
     return f'<a href="#run{row + 1}">run {row + 1}</a>'
 
 
-def _command(data, row):
+def _command(data: dict[str, np.ndarray], row: int) -> str:
     return escape(str(data["run_command"][row]))
 
 
-def _place(data, row):
+def _place(data: dict[str, np.ndarray], row: int) -> str:
     """Motion, velocity, amplitude, nu, model and resolution of a run, as text."""
     words = [str(data["run_motion"][row]), f"v {data['run_velocity'][row]:g}"]
     if np.isfinite(data["run_amplitude"][row]):
@@ -237,14 +240,14 @@ def _place(data, row):
     return escape(", ".join(word for word in words if word))
 
 
-def _size(data, row):
+def _size(data: dict[str, np.ndarray], row: int) -> str:
     cells, angles, steps = (int(data[f"run_{n}"][row]) for n in ("cells", "angles", "steps"))
     text = f"{cells} cells" if cells else ""
     text += f" x {angles} angles" if angles > 1 else ""
     return text + (f", {steps} steps" if steps else "")
 
 
-def _runs(data):
+def _runs(data: dict[str, np.ndarray]) -> str:
     rows = []
     for k, key in enumerate(data["run"]):
         tolerance = _number(data["run_tolerance"][k])
@@ -261,7 +264,7 @@ def _runs(data):
     return _table(head, rows)
 
 
-def _made_by(dataset, lines):
+def _made_by(dataset: xr.Dataset, lines: list[str]) -> str:
     attributes = dict(dataset.attrs)
     configuration = json.loads(attributes.pop("configuration", "{}"))
     left_out = ("title", "comment")

@@ -1,7 +1,10 @@
 """A page about a dataset: what it holds, and what made it."""
 
+from __future__ import annotations
+
 import json
 import os
+from collections.abc import Iterator
 from html import escape
 
 import xarray as xr
@@ -41,7 +44,7 @@ def page(dataset: xr.Dataset, lines: list[str]) -> str:
     return "\n".join([*parts, yaml.safe_dump(configuration, default_flow_style=None, width=100)])
 
 
-def _ranges(dataset):
+def _ranges(dataset: xr.Dataset) -> Iterator[str]:
     for name in RANGES:
         if name in dataset:
             values = dataset[name]

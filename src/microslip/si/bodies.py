@@ -46,7 +46,7 @@ class TwoBodies:
     pressure = "hertz"
     """How the load is spread, as microslip.solve takes it."""
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name in ("radius", "load", "mu"):
             checked(name, getattr(self, name), low_open=True)
         if self.first.rigid and self.second.rigid:

@@ -47,6 +47,20 @@ class RealMotion:
         along = math.hypot(self.amplitude or 0.0, self.forward_amplitude or 0.0)
         return along, self.rotation_amplitude or 0.0
 
+    @property
+    def turn(self) -> float:
+        """Angular frequency of the oscillation, or angular speed of what is steady, rad/s."""
+        if self.frequency is not None:
+            return 2.0 * math.pi * self.frequency
+        assert self.rotation is not None  # as of all that is steady
+        return self.rotation
+
+    @property
+    def known_speed(self) -> float:
+        """The speed, m/s, of a motion whose speed is known."""
+        assert self.speed is not None
+        return self.speed
+
 
 def parts(motion: RealMotion, contact: TwoBodies) -> dict[str, float]:
     """Amplitudes of a motion that oscillates in several ways, in the solver's groups, by the names
@@ -87,32 +101,39 @@ def groups(motion: RealMotion, contact: TwoBodies) -> tuple[float | None, float 
     return velocity, _size(motion, contact)
 
 
-def _size(motion, contact):
+def _size(motion: RealMotion, contact: TwoBodies) -> float | None:
     """The amplitude as microslip.solve takes it; None for a steady motion."""
     if motion.steady:
         return None
     if motion.name in COMBINED:
         return max(parts(motion, contact).values())
+    assert motion.amplitude is not None  # as of all that oscillate in one way
     if not motion.spins:
         return motion.amplitude / contact.u_lim
     angle = motion.amplitude * contact.contact_radius / contact.u_lim
     return float(hertz.bore_amplitude(angle, contact.poisson)) if angle else 0.0
 
 
+def _known_size(motion: RealMotion, contact: TwoBodies) -> float:
+    size = _size(motion, contact)
+    assert size is not None  # as of all that oscillate
+    return size
+
+
 def speed_unit(motion: RealMotion, contact: TwoBodies) -> float:
     """Forward speed whose group is 1, m/s; it may be rounded to nothing."""
     if motion.steady:
-        return motion.rotation * contact.contact_radius
-    omega = 2.0 * math.pi * motion.frequency
+        return motion.turn * contact.contact_radius
+    omega = motion.turn
     if motion.name == "bore":
-        return omega * motion.amplitude * contact.contact_radius
+        return omega * motion.swing[1] * contact.contact_radius
     if motion.name in MOTIONS:
         return omega * contact.u_lim
-    record, size = motion_named(motion.name), _size(motion, contact)
+    record, size = motion_named(motion.name), _known_size(motion, contact)
     return omega * contact.u_lim * record.drift(1.0, size, contact.poisson)
 
 
-def _over(speed, unit):
+def _over(speed: float, unit: float) -> float:
     """A speed over another one that may have been rounded to nothing."""
     if speed == 0.0:
         return 0.0
@@ -127,7 +148,7 @@ def mean_load(motion: RealMotion, contact: TwoBodies) -> float:
         motion_named(solver_motion(motion, contact)),
         pressure_named(contact.pressure),
     )
-    return contact.load * float(record.mean_load(_size(motion, contact), pressure))
+    return contact.load * float(record.mean_load(_known_size(motion, contact), pressure))
 
 
 def full_friction(motion: RealMotion, contact: TwoBodies) -> float:
@@ -163,9 +184,7 @@ def drive_groups(drive: RealDrive, motion: RealMotion, contact: TwoBodies) -> di
     """
     still = contact.mu * contact.load
     stiffness = still / contact.u_lim
-    omega = motion.rotation
-    if motion.frequency is not None:
-        omega = 2.0 * math.pi * motion.frequency
+    omega = motion.turn
     found = {
         "force": (drive.force, 1.0 / full_friction(motion, contact)),
         "stiffness": (drive.stiffness, 1.0 / stiffness),
@@ -180,8 +199,8 @@ def largest_slip_speed(motion: RealMotion, contact: TwoBodies) -> float:
 
     NaN where the contact runs away.
     """
-    edge, speed = contact.contact_radius, motion.speed
+    edge, speed = contact.contact_radius, motion.known_speed
     if motion.steady:
-        return math.hypot(speed, motion.rotation * edge)
+        return math.hypot(speed, motion.turn * edge)
     along, turned = motion.swing
-    return speed + 2.0 * math.pi * motion.frequency * (along + edge * turned)
+    return speed + motion.turn * (along + edge * turned)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 from microslip.foundation.errors import InputError
 from microslip.si.bodies import TwoBodies
@@ -52,7 +53,7 @@ def read_drive(
     return _read(given | {"force": force})
 
 
-def _read(given):
+def _read(given: Mapping[str, object]) -> tuple[RealDrive, dict[str, str]]:
     units = {
         "force": ("force", "N", True),
         "drive_stiffness": ("stiffness", "N/m", True),
@@ -68,7 +69,7 @@ def _read(given):
 
 
 def checked_drive_groups(
-    drive: RealDrive, motion: RealMotion, contact: TwoBodies, given: dict
+    drive: RealDrive, motion: RealMotion, contact: TwoBodies, given: Mapping[str, object]
 ) -> dict:
     """drive_groups of a drive; raises InputError, with the value as it was given, for one that is
     beyond floating-point numbers.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from microslip.adaptive.point import Result
 from microslip.adaptive.vibration_power import vibration_power
@@ -27,16 +28,19 @@ def energy_fields(
     still = full_friction(motion, contact) * contacts
     speed_error = 0.0
     if answer.force is not None:
+        assert answer.velocity_error is not None  # as under all forces
         speed_error = answer.velocity_error * speed_unit(motion, contact)
-    drag = still * answer.mu_macro * motion.speed
-    drag_error = still * (answer.mu_macro_error * motion.speed + answer.mu_macro * speed_error)
+    drag = still * answer.mu_macro * motion.known_speed
+    drag_error = still * (
+        answer.mu_macro_error * motion.known_speed + answer.mu_macro * speed_error
+    )
     found = {"drag_power_W": drag, "drag_power_error_W": drag_error}
     if answer.torque is None:
         return found
     unit = still * contact.contact_radius * pressure_named(contact.pressure).torque
     torque = unit * answer.torque.value
-    spin, spin_error = torque * motion.rotation, unit * answer.torque.error * motion.rotation
-    turn = 2.0 * math.pi / motion.rotation
+    spin, spin_error = torque * motion.turn, unit * answer.torque.error * motion.turn
+    turn = 2.0 * math.pi / motion.turn
     return found | {
         "torque_N_m": torque,
         "torque_error_N_m": unit * answer.torque.error,
@@ -61,23 +65,29 @@ def vibration_fields(
     if answer.force is not None or answer.stiffness is not None:
         raise InputError("power", True, "allowed where a speed alone pulls")
     velocity, size = groups(motion, contact)
-    for name, value in (("speed", velocity), ("amplitude", size)):
-        if not value:
-            raise InputError(name, 0.0, "allowed is more than 0 where the power is asked for")
+    if not velocity or not size:
+        name = "amplitude" if velocity else "speed"
+        raise InputError(name, 0.0, "allowed is more than 0 where the power is asked for")
     point = min(velocity, LARGEST["velocity"]), size
-    settings = {"poisson": contact.poisson, "pressure": contact.pressure, "tolerance": tolerance}
+    settings: dict[str, Any] = {
+        "poisson": contact.poisson,
+        "pressure": contact.pressure,
+        "tolerance": tolerance,
+    }
     found = vibration_power(solver_motion(motion, contact), *point, **settings)
     still = full_friction(motion, contact)
-    unit = still * contact.u_lim * 2.0 * math.pi * motion.frequency
-    drag = still * answer.mu_macro * motion.speed
+    frequency = motion.frequency
+    assert frequency is not None  # as of all that oscillate
+    unit = still * contact.u_lim * 2.0 * math.pi * frequency
+    drag = still * answer.mu_macro * motion.known_speed
     total = drag + unit * found.value
-    error = still * answer.mu_macro_error * motion.speed + unit * found.error
+    error = still * answer.mu_macro_error * motion.known_speed + unit * found.error
     return {
         "vibration_power_W": unit * found.value,
         "vibration_power_error_W": unit * found.error,
         "vibration_power_reason": found.reason,
         "dissipated_power_W": total,
         "dissipated_power_error_W": error,
-        "energy_per_cycle_J": total / motion.frequency,
-        "energy_per_cycle_error_J": error / motion.frequency,
+        "energy_per_cycle_J": total / frequency,
+        "energy_per_cycle_error_J": error / frequency,
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
 import numpy as np
 
@@ -28,7 +29,7 @@ _SCALE = re.compile(r"(.*?)\s*(HV|HRC)", re.S)
 _OTHER_SCALE = re.compile(r"(.*?)\s*(HBW?|HBS|HR[ABD-Z]|HK|HS|Shore.*|Mohs)", re.S)
 
 
-def read_hardness(name: str, value: object) -> Given:
+def read_hardness(name: str, value: Any) -> Given:
     """Mean pressure under a hardness indent, Pa; raises InputError.
 
     name: of the argument.  value: a pressure, or a text such as "200 HV" or "60 HRC".
@@ -50,7 +51,7 @@ def read_hardness(name: str, value: object) -> Given:
     return Given(pressure, f"{' '.join(value.split())} = {pressure / 1e9:.3g} GPa")
 
 
-def _refuse_other_scale(name, value):
+def _refuse_other_scale(name: str, value: object) -> None:
     """Raise InputError for a hardness on another scale."""
     scale = _OTHER_SCALE.fullmatch(value.strip()) if isinstance(value, str) else None
     if scale is None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 from microslip.foundation.errors import InputError
 from microslip.si import motions
@@ -12,7 +13,7 @@ from microslip.si.dimensionless import RealMotion
 from microslip.si.hardness import read_hardness
 from microslip.si.materials import RIGID, Material, material_named
 from microslip.si.motions import COMBINED, PARTS, TAKES
-from microslip.si.quantities import read
+from microslip.si.quantities import Given, read
 from microslip.si.shapes import elliptic, of_size
 from microslip.si.validity import SENSELESS
 
@@ -56,16 +57,17 @@ class Body:
                 allowed = "allowed for an elastic body, not a rigid one"
                 raise InputError(f"{side}{name}", value, allowed)
             given = read_as(f"{side}{name}", value)
-            material = replace(body.material, **{name: given.si})
+            number: dict[str, Any] = {name: given.si}
+            material = replace(body.material, **number)
             body = Body(material, f"{body.text}, {name} {given.text}")
         return body
 
 
-def _read_density(name, value):
+def _read_density(name: str, value: object) -> Given:
     return read(name, value, "kg/m^3")
 
 
-def read_body(young: object, nu: object, material: object) -> Body:
+def read_body(young: object, nu: object, material: Any) -> Body:
     """The body by numbers or by a material; raises InputError."""
     if material is None:
         for name, value in (("young", young), ("nu", nu)):
@@ -83,7 +85,7 @@ def read_body(young: object, nu: object, material: object) -> Body:
         raise InputError("material", material, f"{error.allowed}, or a Material") from None
 
 
-def read_counterbody(given: object) -> Body:
+def read_counterbody(given: Any) -> Body:
     """The body opposite: a Material, a name, "E, nu", a pair (E, nu), or None, which is rigid.
 
     Raises InputError.
@@ -113,20 +115,20 @@ def read_counterbody(given: object) -> Body:
         raise InputError("counterbody", given, problem) from None
 
 
-def _read_poisson(name, value):
+def _read_poisson(name: str, value: object) -> Given:
     return read(name, value, "", low_open=False, high=0.5)
 
 
-def _elastic(young, nu):
+def _elastic(young: Given, nu: Given) -> Body:
     return Body(Material(young.si, nu.si), f"E = {young.text}, nu = {nu.text}")
 
 
-def _named(name):
+def _named(name: Any) -> Body:
     body = material_named(name)
     return Body(body, name if body.rigid else f"{name} ({_numbers(body)})")
 
 
-def _numbers(body):
+def _numbers(body: Material) -> str:
     """A Material in one line."""
     if body.rigid:
         return "rigid"
@@ -166,7 +168,9 @@ def read_contact(
     return contact, texts
 
 
-def _of_size(body, other, carried, mu, shape):
+def _of_size(
+    body: Body, other: Body, carried: tuple[object, int], mu: object, shape: dict[str, Any]
+) -> tuple[TwoBodies, dict[str, str]]:
     """A contact whose size is given, and not the shape of the bodies; carried: the load, and by how
     many contacts."""
     load, contacts = carried
@@ -199,13 +203,15 @@ def _of_size(body, other, carried, mu, shape):
     return contact, texts
 
 
-def _refuse_rigid(body, other):
+def _refuse_rigid(body: Body, other: Body) -> None:
     if body.material.rigid and other.material.rigid:
         allowed = "allowed is an elastic body where the counterbody is rigid"
         raise InputError("material", "rigid", allowed)
 
 
-def _of_spheres(body, other, carried, mu, shape):
+def _of_spheres(
+    body: Body, other: Body, carried: tuple[object, int], mu: object, shape: dict[str, Any]
+) -> tuple[TwoBodies, dict[str, str]]:
     """Hertz's contact of a sphere with a flat or a second sphere; carried: as for _of_size."""
     load, contacts = carried
     radius, counter_radius = shape["radius"], shape["counter_radius"]
@@ -221,8 +227,9 @@ def _of_spheres(body, other, carried, mu, shape):
         texts["counter_radius"] = f"{second.text}, hollow" if second.si < 0.0 else second.text
     curvature = sum(1.0 / r for r in radii)
     if math.isinf(curvature):
-        first = math.isinf(1.0 / radii[0])
-        which = ("radius", radius) if first else ("counter_radius", counter_radius)
+        which = (
+            ("radius", radius) if math.isinf(1.0 / radii[0]) else ("counter_radius", counter_radius)
+        )
         raise InputError(*which, OUT_OF_RANGE)
     if not curvature > 0.0:
         allowed = "allowed is a hollow wider than the sphere"
@@ -235,7 +242,9 @@ def _of_spheres(body, other, carried, mu, shape):
     return contact, bodies | texts | {name: one.text for name, one in given.items()}
 
 
-def _refuse_senseless(contact, radius, counter_radius, load):
+def _refuse_senseless(
+    contact: TwoBodies, radius: object, counter_radius: object, load: object
+) -> None:
     """Raise InputError where Hertz's theory is no description of these bodies."""
     try:
         a, smallest = contact.contact_radius, contact.smallest_radius

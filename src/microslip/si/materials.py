@@ -41,7 +41,7 @@ class Material:
     hardness: float | None = None
     source: str = "given"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not (isinstance(self.young, float) and self.young == math.inf):
             self._keep("young", si_value("young", self.young, "Pa"))
         self._keep("poisson", si_value("poisson", self.poisson, "", low_open=False, high=0.5))
@@ -51,7 +51,7 @@ class Material:
         if not isinstance(self.source, str):
             raise InputError("source", self.source, "allowed is a text")
 
-    def _keep(self, name, value):
+    def _keep(self, name: str, value: float) -> None:
         object.__setattr__(self, name, value)  # the record is frozen for everybody else
 
     @property

@@ -7,7 +7,7 @@ where they only rotate, as the bore does.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -89,13 +89,13 @@ def description(motion: str) -> str:
     return MOTIONS.get(motion) or f"is {_record(motion).summary}"
 
 
-def _record(motion) -> Motion:
+def _record(motion: Any) -> Motion:
     from microslip.motions.by_name import motion_named
 
     return motion_named(motion)
 
 
-def _oscillation(motion):
+def _oscillation(motion: Motion) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Forward, lateral and angle through a period at the amplitude 1."""
     from microslip.motions.motion import LOOP
 

@@ -12,9 +12,10 @@ load, force or coefficient of friction by 0, a Poisson's ratio above 0.5 by 0.5.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -64,7 +65,7 @@ class _State:
 
     still: float
     largest: float
-    amplitude: float
+    amplitude: float | None
     mu: float
     poisson: float
     force: float | None
@@ -76,7 +77,7 @@ def with_outcomes(
     inputs: list[UncertainInput],
     question_at: Callable[[Mapping[str, float]], Question],
     ends: Mapping[str, tuple[Prediction | None, Prediction | None]],
-) -> dict[str, float]:
+) -> dict[str, Any]:
     """Fields of a Prediction for the uncertainty of its static limit and the outcome.
 
     Parameters
@@ -102,7 +103,7 @@ def with_outcomes(
         static = None
     else:
         static = _static_of(found, question, table, ends, draws)
-    fields = {}
+    fields: dict[str, Any] = {}
     if static is not None:
         value, error = static
         solved = table.one_shape or not table.centre.amplitude
@@ -110,12 +111,13 @@ def with_outcomes(
         fields |= _distribution("mu_static", value)
         fields |= _distribution("mu_static_apparent", table.mu * value)
     if share is True:
+        assert static is not None  # as of all that oscillate
         value, error = static
     elif share is not None:
         value, error = np.full(DRAWS, share), np.zeros(DRAWS)
     if share is not None:
         fields |= _distribution("force_threshold", table.still * value, "_N")
-    if question.drive.force is None:
+    if question.drive.force is None or table.force is None:
         return fields
     away = table.force >= table.largest
     fields["probability_runs_away"] = float(np.mean(away))
@@ -137,17 +139,19 @@ def with_outcomes(
     return fields
 
 
-def _error_of_draws(outcome):
+def _error_of_draws(outcome: np.ndarray) -> float:
     """Error estimate of a probability: the difference of the shares in both halves of the draws,
     and at least log(DRAWS) / DRAWS, the order of the discrepancy of the sequence."""
     halves = [float(np.mean(outcome[first::2])) for first in (0, 1)]
     return max(abs(halves[0] - halves[1]), math.log(DRAWS) / DRAWS)
 
 
-def _normal_intervals(found, ends):
+def _normal_intervals(
+    found: Prediction, ends: Iterable[tuple[Prediction | None, Prediction | None]]
+) -> dict[str, Any]:
     """Fields of the uncertainty where a draw would be a search for an amplitude, a speed or a load:
     to first order, from half the difference of the predictions at the ends of each input."""
-    fields = {"interval_method": FIRST_ORDER}
+    fields: dict[str, Any] = {"interval_method": FIRST_ORDER}
     for name, unit in (("mu_static", ""), ("mu_static_apparent", ""), ("force_threshold", "_N")):
         value = getattr(found, name + unit)
         if value is None:
@@ -165,13 +169,13 @@ def _normal_intervals(found, ends):
     return fields
 
 
-def _ratio(threshold, force):
+def _ratio(threshold: np.ndarray, force: np.ndarray) -> np.ndarray:
     """Threshold over force: infinite without a force, and 0 where the threshold is 0, too."""
     without = np.where(threshold > 0.0, math.inf, 0.0)
     return np.divide(threshold, force, out=without, where=force > 0.0)
 
 
-def _distribution(name, draws, unit=""):
+def _distribution(name: str, draws: np.ndarray, unit: str = "") -> dict[str, Any]:
     """Standard deviation and interval of a quantity, some draws of which may be infinite."""
     low, high = np.quantile(draws, INTERVAL, method="nearest")
     return {
@@ -181,7 +185,7 @@ def _distribution(name, draws, unit=""):
     }
 
 
-def _draws(count):
+def _draws(count: int) -> np.ndarray:
     """Independent standard normal numbers, shape (DRAWS, count): a Kronecker sequence whose
     irrational numbers are powers of the root of x^(count + 1) = x + 1."""
     from scipy.special import ndtri
@@ -193,12 +197,12 @@ def _draws(count):
     return ndtri(np.mod(0.5 + np.arange(1.0, DRAWS + 1.0)[:, None] * steps, 1.0))
 
 
-def _state(question):
+def _state(question: Question) -> _State:
     contact, motion, carriers = question.contact, question.motion, question.carriers
     _, amplitude = groups(motion, contact)
     still = full_friction(motion, contact) * carriers.count
     largest = still * largest_force(contact, motion, carriers, question.drive.mass)
-    shape = (contact.pressure,)
+    shape: tuple[object, ...] = (contact.pressure,)
     if amplitude and motion.name in COMBINED:
         shape += tuple(
             round(one / amplitude, SAME_SHARE) for one in parts(motion, contact).values()
@@ -211,7 +215,13 @@ class _Table:
     """Closed forms at all draws, from those along each input alone: mu, forces in N, the logarithm
     of the amplitude, Poisson's ratio."""
 
-    def __init__(self, centre, inputs, question_at, draws):
+    def __init__(
+        self,
+        centre: _State,
+        inputs: list[UncertainInput],
+        question_at: Callable[[Mapping[str, float]], Question],
+        draws: np.ndarray,
+    ):
         self.centre = centre
         self.one_shape = True
         logarithms = {name: math.log(getattr(centre, name)) for name in ("still", "mu")}
@@ -247,11 +257,13 @@ SMALLEST_LOGARITHM = -700.0
 """Logarithm of the smallest number near 1e-304; that of 0 is replaced by it."""
 
 
-def _log(value):
+def _log(value: float) -> float:
     return math.log(value) if value > 0.0 else SMALLEST_LOGARITHM
 
 
-def _along(one, question_at):
+def _along(
+    one: UncertainInput, question_at: Callable[[Mapping[str, float]], Question]
+) -> tuple[np.ndarray, list[_State]]:
     """Logarithms of the size of an input, ascending, and the states there.
 
     Where predict refuses a value, the last one is at the end of the values that it accepts.
@@ -264,13 +276,13 @@ def _along(one, question_at):
         count = math.ceil(math.log(within[0] / least) / math.log(TOWARDS_ZERO)) + 1
         within = np.concatenate([np.geomspace(least, within[0], count + 1)[:-1], within])
 
-    def state_at(size):
+    def state_at(size: float) -> _State | None:
         try:
             return _state(question_at({one.name: sign * float(size)}))
         except InputError:
             return None
 
-    def last_accepted(size, refused):
+    def last_accepted(size: float, refused: float) -> float:
         for _ in range(BISECTIONS):
             middle = 0.5 * (size + refused)
             size, refused = (size, middle) if state_at(middle) is None else (middle, refused)
@@ -283,26 +295,37 @@ def _along(one, question_at):
             end = last_accepted(*pair)
             states[end] = state_at(end)
     accepted = sorted(size for size, state in states.items() if state is not None)
-    return np.log(accepted), [states[size] for size in accepted]
+    return np.log(accepted), [state for size in accepted if (state := states[size]) is not None]
 
 
-def _static_of(found, question, table, ends, draws):
+def _static_of(
+    found: Prediction,
+    question: Question,
+    table: _Table,
+    ends: Mapping[str, tuple[Prediction | None, Prediction | None]],
+    draws: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
     """mu_static of all draws and its error."""
-    if not math.isfinite(found.mu_static):
+    static, static_error = found.mu_static, found.mu_static_error
+    assert static is not None and static_error is not None  # as of all that oscillate
+    if not math.isfinite(static):
         return np.full(DRAWS, np.nan), np.full(DRAWS, np.inf)
     if not table.centre.amplitude:
-        return np.full(DRAWS, found.mu_static), np.full(DRAWS, found.mu_static_error)
+        return np.full(DRAWS, static), np.full(DRAWS, static_error)
     if table.one_shape:
         centre = (
             table.centre.amplitude,
             table.centre.poisson,
-            found.mu_static,
-            found.mu_static_error,
+            static,
+            static_error,
         )
         forces = None if table.force is None else (table.still, table.force)
         return static_limits(question, centre, table.amplitude, table.poisson, forces)
-    value = np.full(DRAWS, found.mu_static)
+    value = np.full(DRAWS, static)
     for column, (low, high) in zip(draws.T, ends.values(), strict=True):
-        changes = [0.0 if one is None else one.mu_static - found.mu_static for one in (low, high)]
+        changes = [
+            0.0 if one is None or one.mu_static is None else one.mu_static - static
+            for one in (low, high)
+        ]
         value += np.where(column < 0.0, -column * changes[0], column * changes[1])
-    return np.clip(value, 0.0, 1.0), np.full(DRAWS, found.mu_static_error)
+    return np.clip(value, 0.0, 1.0), np.full(DRAWS, static_error)

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
+from microslip.adaptive.result import Result
 from microslip.foundation.errors import InputError, shown
-from microslip.si.dimensionless import full_friction
+from microslip.si.bodies import TwoBodies
+from microslip.si.dimensionless import RealMotion, full_friction
 from microslip.si.drives import checked_drive_groups
 from microslip.si.energy import energy_fields, vibration_fields
 from microslip.si.prediction import Prediction
@@ -156,19 +160,19 @@ def predict(
     return _answered(asked(given.pop("motion"), given))
 
 
-def _answered(question):
+def _answered(question: Question) -> Prediction:
     """The Prediction of a Question."""
     contact, motion, given = question.contact, question.motion, question.given
     carriers, drive = question.carriers, question.drive
-    pulled = {"contacts": carriers.text}
+    pulled: dict[str, Any] = {"contacts": carriers.text}
     if question.sought is not None:
-        settings = {"share": question.share, "tolerance": question.tolerance}
+        settings: dict[str, Any] = {"share": question.share, "tolerance": question.tolerance}
         settings["given"] = given["reduction"]
-        found = with_reduction(contact, motion, question.sought, **settings)
-        motion = found.motion
-        pulled |= {"sought": question.sought, "sought_error": found.error}
+        reduced = with_reduction(contact, motion, question.sought, **settings)
+        motion = reduced.motion
+        pulled |= {"sought": question.sought, "sought_error": reduced.error}
         if question.sought == "load":
-            contact = question.under(found.contact.load)
+            contact = question.under(reduced.contact.load)
     velocity, _ = checked_groups(contact, motion, given)
     pulling = checked_drive_groups(carriers.share_of(drive), motion, contact, given)
     limit = static_limit(
@@ -196,7 +200,7 @@ def _answered(question):
     return replace(found, **pulled)
 
 
-def _in_si(error, given):
+def _in_si(error: InputError, given: Mapping[str, object]) -> InputError:
     """An InputError about an argument of the solver, with the argument of predict and its value."""
     name = ARGUMENTS.get(error.argument)
     if name is None or given[name] is None:
@@ -222,12 +226,23 @@ def unattained(question: Question, reason: str) -> Prediction:
     contact = question.contact
     moved = question.motion, contact.mu * contact.load, ((), ())
     found = _prediction(contact, moved, math.nan, (_NoAnswer(reason), None), question.about)
+    assert question.sought is not None  # as of all that can fail so
     unknown = UNKNOWN_WITHOUT[question.sought]
-    settings = {"sought": question.sought, "sought_error": math.nan, "load_N": contact.load}
+    settings: dict[str, Any] = {
+        "sought": question.sought,
+        "sought_error": math.nan,
+        "load_N": contact.load,
+    }
     return replace(found, **settings | dict.fromkeys(unknown, math.nan))
 
 
-def _prediction(contact, moved, velocity, answers, understood):
+def _prediction(
+    contact: TwoBodies,
+    moved: tuple[RealMotion, float, tuple[tuple, tuple]],
+    velocity: float | None,
+    answers: tuple[Result | _NoAnswer, Result | None],
+    understood: dict,
+) -> Prediction:
     """moved: the motion, the force that it takes without vibration, warnings and what was not
     looked at.  answers: Results at the speed, and at a vanishing one or None."""
     (motion, still, (warnings, not_checked)), (answer, limit) = moved, answers
@@ -238,7 +253,7 @@ def _prediction(contact, moved, velocity, answers, understood):
         u_lim_m=contact.u_lim,
         largest_pressure_Pa=contact.largest_pressure,
         poisson=contact.poisson,
-        speed_m_s=motion.speed,
+        speed_m_s=math.nan if motion.speed is None else motion.speed,
         amplitude_si=motion.amplitude,
         forward_amplitude_m=motion.forward_amplitude,
         rotation_amplitude_rad=motion.rotation_amplitude,

@@ -252,6 +252,7 @@ class Prediction:
     @property
     def sought_value(self) -> float | None:
         """What was looked for, in its SI unit; NaN where there is none, None where nothing was."""
+        fields: dict[str | None, float | None]
         fields = {"amplitude": self.amplitude_si, "speed": self.speed_m_s, "load": self.load_N}
         return fields.get(self.sought)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from microslip.foundation.number_text import ROUNDING, number_text
 from microslip.si.motions import COMBINED, is_along_the_pull, unit_of_amplitude
@@ -29,7 +30,14 @@ from microslip.si.printed_lines import (
 )
 from microslip.si.regimes import REGIMES
 
-UNDERSTOOD = ("motion", "body", "counterbody", "radius", "counter_radius", "radius_across")
+UNDERSTOOD: tuple[str, ...] = (
+    "motion",
+    "body",
+    "counterbody",
+    "radius",
+    "counter_radius",
+    "radius_across",
+)
 UNDERSTOOD += ("contact_radius", "pressure", "load", "contacts", "mu", "speed")
 UNDERSTOOD += ("force", "drive_stiffness", "mass", "damping")
 UNDERSTOOD += ("amplitude", "forward_amplitude", "rotation_amplitude", "load_amplitude", "phase")
@@ -41,7 +49,7 @@ ADDED = {"bore": "spin", "continuous-bore": "spin", "transverse-bore": "vibratio
 """The added motion in words, where it is more than vibration."""
 
 
-def prediction_text(found: object) -> str:
+def prediction_text(found: Any) -> str:
     """All lines of a prediction.Prediction."""
     return _Text(found).whole()
 
@@ -49,7 +57,7 @@ def prediction_text(found: object) -> str:
 class _Text:
     """A Prediction with the units in which its quantities are shown."""
 
-    def __init__(self, found):
+    def __init__(self, found: Any):
         self.found = found
         self.length = length_unit(found.u_lim_m)
         self.speed = f"{self.length[0]}/s", self.length[1]
@@ -57,7 +65,7 @@ class _Text:
         powers = [found.drag_power_W, found.vibration_power_W]
         self.power = prefixed(max((abs(one) for one in powers if one), default=1.0), "W")
 
-    def whole(self):
+    def whole(self) -> str:
         found = self.found
         lines = [
             line(name.replace("_", " "), found.understood[name])
@@ -71,7 +79,7 @@ class _Text:
         lines += [f"not checked: {text}" for text in found.not_checked]
         return "\n".join(lines)
 
-    def contact(self):
+    def contact(self) -> list[str]:
         found = self.found
         unit = self.length
         if found.contact_radius_m >= LARGEST_NUMBER * unit[1]:
@@ -88,7 +96,7 @@ class _Text:
             lines.append(line("velocity", f"dimensionless {number_text(found.velocity)}"))
         return lines
 
-    def amplitude(self):
+    def amplitude(self) -> str:
         """The amplitude with its unit and a comma; several share the largest group."""
         found = self.found
         if found.motion in COMBINED:
@@ -96,13 +104,13 @@ class _Text:
         unit = ("rad", 1.0) if unit_of_amplitude(found.motion) == "rad" else self.length
         return f"{in_unit(found.amplitude_si, 0.0, unit)}, "
 
-    def unit_of_sought(self):
+    def unit_of_sought(self) -> tuple[str, float]:
         found = self.found
         if found.sought == "amplitude":
             return ("rad", 1.0) if unit_of_amplitude(found.motion) == "rad" else self.length
         return self.speed if found.sought == "speed" else force_unit(found.load_N)
 
-    def sought(self):
+    def sought(self) -> list[str]:
         """The line of the quantity with the wanted reduction."""
         found = self.found
         if found.sought is None:
@@ -112,7 +120,7 @@ class _Text:
         share = f"takes {found.understood['reduction']} away"
         return [line("found", f"{found.sought} {value}, {end} {share}")]
 
-    def groups_of_drive(self):
+    def groups_of_drive(self) -> list[str]:
         """Lines of the groups of the drive, and of its regime."""
         found = self.found
         names = [
@@ -131,7 +139,7 @@ class _Text:
             lines.append(line("natural frequency", f"{text}, of the mass on a contact that sticks"))
         return lines
 
-    def friction(self):
+    def friction(self) -> list[str]:
         """Lines of the friction at a given speed: which number is a ratio, which a coefficient."""
         found, added = self.found, ADDED.get(self.found.motion, "vibration")
         ratio = number_text(found.mu_macro, found.mu_macro_error)
@@ -150,7 +158,7 @@ class _Text:
         ]
         return lines + self.static_friction() + self.threshold()
 
-    def static_friction(self):
+    def static_friction(self) -> list[str]:
         found = self.found
         if found.mu_static is None:
             return []
@@ -165,7 +173,7 @@ class _Text:
             lines.append(line("", ALONG_THE_PULL))
         return lines
 
-    def moves_at_static_friction(self):
+    def moves_at_static_friction(self) -> bool:
         """Whether the force threshold is the static friction."""
         found = self.found
         still = found.friction_force_still_N
@@ -173,12 +181,14 @@ class _Text:
             found.force_threshold_N, still * found.mu_static, abs_tol=0.0
         )
 
-    def interval_of_threshold(self, ends, error, unit):
+    def interval_of_threshold(
+        self, ends: tuple[float | None, float | None], error: float, unit: tuple[str, float]
+    ) -> list[str]:
         """The line of the interval of the threshold, or of the safety factor."""
         method = self.found.interval_method if self.moves_at_static_friction() else None
         return interval_lines(ends, error, method, unit)
 
-    def threshold(self):
+    def threshold(self) -> list[str]:
         """Lines of the force that moves the contact, if it is known."""
         found = self.found
         value, error = found.force_threshold_N, found.force_threshold_error_N
@@ -194,7 +204,7 @@ class _Text:
         ends = (found.force_threshold_low_N, found.force_threshold_high_N)
         return lines + self.interval_of_threshold(ends, error, self.force)
 
-    def walk(self):
+    def walk(self) -> list[str]:
         """Lines of the motion under a force."""
         found, lines = self.found, self.threshold()
         factor = found.safety_factor
@@ -205,7 +215,7 @@ class _Text:
             lines += self.interval_of_threshold(ends, found.safety_factor_error, ("", 1.0))
         return lines + self.outcome()
 
-    def outcome(self):
+    def outcome(self) -> list[str]:
         found = self.found
         if found.outcome is None:
             return self.probability()
@@ -219,7 +229,7 @@ class _Text:
             verdict = f"with the central values {verdict}"
         return [line("outcome", verdict), *self.probability(), *further]
 
-    def probability(self):
+    def probability(self) -> list[str]:
         """The line of the probabilities of each outcome."""
         found, error = self.found, self.found.probability_error or 0.0
         shares = [
@@ -233,7 +243,7 @@ class _Text:
         ]
         return [line("probability", ", ".join(shares))] if shares else []
 
-    def moves(self):
+    def moves(self) -> list[str]:
         found = self.found
         lines = [
             "it moves, cycle by cycle",
@@ -254,7 +264,7 @@ class _Text:
         )
         return [*lines, line("walks", f"1 mm in {short}, the contact radius of {radius} in {long}")]
 
-    def stays(self):
+    def stays(self) -> list[str]:
         found, lines = self.found, ["it stays: the force is below the threshold"]
         if found.displacement_m is not None:
             way = in_unit(found.displacement_m, found.displacement_error_m, self.length)
@@ -267,15 +277,15 @@ class _Text:
             lines.append(line("displacement", f"not known: {found.displacement_reason}"))
         return lines
 
-    def accelerates(self):
+    def accelerates(self) -> list[str]:
         return [runs_away(self.found)]
 
-    def undecided(self):
+    def undecided(self) -> list[str]:
         most = self.found.speed_m_s + self.found.speed_error_m_s
         text = in_unit(most, 0.0, self.speed)
         return [f"the error does not tell whether it moves: by {text} at most"]
 
-    def spread(self):
+    def spread(self) -> list[str]:
         """The line of the standard uncertainties that follow from those of the inputs."""
         found = self.found
         if found.mu_apparent_spread is None:
@@ -297,11 +307,11 @@ class _Text:
         text = "standard uncertainties that follow from those of the inputs"
         return [line("spread", f"{', '.join(shares)}: {text}")]
 
-    def in_two_digits(self, value, unit):
+    def in_two_digits(self, value: float, unit: tuple[str, float]) -> str:
         name, size = unit
         return number_text(value / size, unit=name, digits=2)
 
-    def energy(self):
+    def energy(self) -> list[str]:
         """Lines of torque and power, where they are known and more than the force tells."""
         found = self.found
         if found.vibration_power_W is None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from decimal import Decimal
+from typing import Any
 
 from microslip.foundation.number_text import error_text, interval_text, number_text
 from microslip.si.motions import unit_of_amplitude
@@ -111,14 +112,14 @@ def length_unit(u_lim: float) -> tuple[str, float]:
     return unit_for(u_lim, LENGTHS, LEAST_LENGTH)
 
 
-def unit_of_sought(found: object) -> str:
+def unit_of_sought(found: Any) -> str:
     """SI unit of the quantity that a reduction looks for."""
     if found.sought == "amplitude" and unit_of_amplitude(found.motion) == "rad":
         return "rad"
     return {"amplitude": "m", "speed": "m/s", "load": "N"}[found.sought]
 
 
-def requested_quantity(found: object) -> str:
+def requested_quantity(found: Any) -> str:
     """Name of the quantity that `converged` and `reason` are about."""
     if found.vibration_power_reason:
         return "vibration power"
@@ -127,7 +128,7 @@ def requested_quantity(found: object) -> str:
     return "mu_macro" if found.force_N is None else "speed"
 
 
-def not_converged(found: object) -> list[str]:
+def not_converged(found: Any) -> list[str]:
     """Lines for every quantity whose error is larger than its tolerance."""
     lines = []
     if not found.converged and found.outcome != "runs away":
@@ -138,7 +139,7 @@ def not_converged(found: object) -> list[str]:
     return lines
 
 
-def runs_away(found: object) -> str:
+def runs_away(found: Any) -> str:
     """Sentence about a contact that accelerates without end."""
     if found.force is not None and found.force < 1.0:
         return f"it {found.reason}"
@@ -158,7 +159,7 @@ def interval_lines(
     ends, error: ends of the interval and their error estimate in SI units; method: see Prediction.
     """
     low, high = ends
-    if low is None:
+    if low is None or high is None:
         return []
     name, size = unit
     text = interval_text(low / size, high / size, name, error=error / size)

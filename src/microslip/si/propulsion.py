@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from microslip.adaptive.checks import checked_propulsion
 from microslip.adaptive.propulsion import POINTS, PROPELS_NOTHING, propulsion
+from microslip.adaptive.propulsion_line import PropulsionLine
 from microslip.foundation.arguments import LARGEST
 from microslip.foundation.errors import InputError
 from microslip.si.dimensionless import RealMotion
@@ -208,9 +210,9 @@ def predict_propulsion(
     )
 
 
-def _holding_forces(line, newtons):
+def _holding_forces(line: PropulsionLine, newtons: float) -> tuple[dict[str, Any], str]:
     """Fields of the holding forces, and the reason of a line; newtons: the unit of its forces."""
-    fields = {}
+    fields: dict[str, Any] = {}
     for name in ("low", "low_error", "high", "high_error"):
         value = getattr(line, f"holding_force_{name}")
         fields[f"holding_force_{name}_N"] = None if value is None else newtons * value

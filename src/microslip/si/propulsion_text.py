@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from microslip.si.printed_lines import (
 )
 
 
-def propulsion_text(found: object) -> str:
+def propulsion_text(found: Any) -> str:
     """All lines of a propulsion.RealPropulsionLine."""
     unit = length_unit(found.u_lim_m)
     force = force_unit(found.stall_force_N)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 from microslip.adaptive.checks import LARGEST_FORCE, SMALLEST_TOLERANCE
 from microslip.adaptive.point import Result, solve
@@ -60,16 +61,19 @@ def answer_of(
     if velocity is not None:
         velocity = min(velocity, LARGEST["velocity"])
 
-    def found(tolerance):
-        settings = {"poisson": contact.poisson, "tolerance": tolerance}
+    limits: dict[str, Any] = within_range(pulling)
+
+    def found(tolerance: float) -> Result:
+        settings: dict[str, Any] = {"poisson": contact.poisson, "tolerance": tolerance}
         settings |= {"pressure": contact.pressure} | carriers.settings
         name = solver_motion(motion, contact)
-        return solve(name, velocity, size, **settings, **within_range(pulling))
+        return solve(name, velocity, size, **settings, **limits)
 
     answer = found(tolerance)
     if "force" not in pulling or not answer.converged:
         return answer
     accepted = tolerance * max(answer.velocity, SLOWEST)
+    assert answer.velocity_error is not None  # as under all forces
     if answer.velocity_error <= accepted:
         return answer
     return found(max(MARGIN * accepted, SMALLEST_TOLERANCE))
@@ -102,7 +106,8 @@ def answer_at_rest(
         return None
     if force >= largest_force(carried[0], motion, carried[1], mass):
         return None
-    return replace(limit, mean_velocity=Estimate(0.0), friction=Estimate(force), **pulling)
+    driven: dict[str, Any] = {**pulling}
+    return replace(limit, mean_velocity=Estimate(0.0), friction=Estimate(force), **driven)
 
 
 def within_range(pulling: dict[str, float]) -> dict[str, float]:
@@ -138,21 +143,22 @@ def about_drive(
     """
     (contact, carriers), (drive, pulling) = carried, pulls
     still = full_friction(motion, contact) * carriers.count
-    share, error = _threshold(motion, carried, pulling, limit)
-    fields = {
+    threshold = _threshold(motion, carried, pulling, limit)
+    fields: dict[str, Any] = {
         "force_N": drive.force,
         "drive_stiffness_N_m": drive.stiffness,
         "mass_kg": drive.mass,
         "damping_N_s_m": drive.damping,
-        "force_threshold_N": None if share is None else still * share,
-        "force_threshold_error_N": None if share is None else still * error,
+        "force_threshold_N": None if threshold is None else still * threshold[0],
+        "force_threshold_error_N": None if threshold is None else still * threshold[1],
         **pulling,
     }
     if motion.speed is not None and motion.frequency is not None:
         fields["displacement_per_cycle_m"] = motion.speed / motion.frequency
         fields["displacement_per_cycle_error_m"] = 0.0
     if drive.force is not None:
-        if share is not None:
+        if threshold is not None:
+            share, error = threshold
             fields["safety_factor"] = still * share / drive.force
             fields["safety_factor_error"] = still * error / drive.force
         fields |= _walk(contact, motion, pulling["force"], answer)
@@ -161,27 +167,38 @@ def about_drive(
     body = {name: value for name, value in pulling.items() if name != "force"}
     if body:
         working = Spring(**{"stiffness": 0.0} | body)  # a body under a force has none
+        assert answer.amplitude is not None  # as of all that a spring pulls or that has a mass
         widest = answer.amplitude * max(carriers.widest, 1.0)
         fields["regime"] = regime(motion.name, widest, working)
         fields["natural_frequency"] = natural_frequency(working)
     return fields
 
 
-def _threshold(motion, carried, pulling, limit):
+def _threshold(
+    motion: RealMotion,
+    carried: tuple[TwoBodies, Carriers],
+    pulling: dict[str, float],
+    limit: Result | None,
+) -> tuple[float, float] | None:
     """Force over mu F_z from which on a constant force moves the contact, and its error; None
     where it is not known."""
     share = equals_static_limit(carried[0], motion, carried[1], pulling.get("mass"))
     if share is True:
+        assert limit is not None  # as of all that oscillate
         return limit.mu_macro, limit.mu_macro_error
-    return (None, None) if share is None else (share, 0.0)
+    return None if share is None else (share, 0.0)
 
 
-def _walk(contact, motion, force, answer):
+def _walk(contact: TwoBodies, motion: RealMotion, force: float, answer: Result) -> dict[str, Any]:
     """What a force makes of the contact."""
     unit = speed_unit(motion, contact)
     velocity, error = answer.velocity, answer.velocity_error
+    assert error is not None  # as under all forces
     speed = velocity * unit
-    fields = {"velocity_error": error, "speed_error_m_s": error * unit if unit else 0.0}
+    fields: dict[str, Any] = {
+        "velocity_error": error,
+        "speed_error_m_s": error * unit if unit else 0.0,
+    }
     fields["outcome"] = _outcome(force, answer)
     if motion.frequency is not None:
         fields["displacement_per_cycle_m"] = speed / motion.frequency
@@ -194,7 +211,9 @@ def _walk(contact, motion, force, answer):
     return fields
 
 
-def _way_to_rest(carried, motion, pulling):
+def _way_to_rest(
+    carried: tuple[TwoBodies, Carriers], motion: RealMotion, pulling: dict[str, float]
+) -> dict[str, Any]:
     """Fields of the displacement of a contact that comes to rest, or of the reason why it is not
     known.  A contact that is not round would take minutes."""
     contact, carriers = carried
@@ -204,7 +223,7 @@ def _way_to_rest(carried, motion, pulling):
         return {"displacement_reason": "computed for a round contact only"}
     force = pulling["force"]
     _, size = groups(motion, contact)
-    settings = {"pressure": contact.pressure, "poisson": contact.poisson}
+    settings: dict[str, Any] = {"pressure": contact.pressure, "poisson": contact.poisson}
     try:
         found = shakedown(solver_motion(motion, contact), size, force, **settings)
     except InputError as error:  # a motion that exerts a forward force by itself
@@ -219,8 +238,9 @@ def _way_to_rest(carried, motion, pulling):
     }
 
 
-def _outcome(force, answer):
+def _outcome(force: float, answer: Result) -> str | None:
     velocity, error = answer.velocity, answer.velocity_error
+    assert error is not None  # as under all forces
     if force >= 1.0 or answer.reason.startswith(RUNS_AWAY):
         return RUNS_AWAY
     if not math.isfinite(velocity):

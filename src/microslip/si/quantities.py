@@ -12,6 +12,7 @@ import sys
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 from numbers import Real
+from typing import Any
 
 import numpy as np
 
@@ -132,12 +133,12 @@ def read(
     return given
 
 
-def _bounds(low, low_open, high):
+def _bounds(low: float, low_open: bool, high: float) -> str:
     below = f"{'above' if low_open else 'at least'} {low:g}"
     return below if high == math.inf else f"{below} and at most {high:g}"
 
 
-def _described(unit):
+def _described(unit: str) -> str:
     example = EXAMPLES[unit]
     if unit == "":
         return "a number, or per cent of one,"
@@ -149,7 +150,7 @@ def _described(unit):
 # Texts
 
 
-def _from_text(text, unit):
+def _from_text(text: str, unit: str) -> Given:
     digits, rest = split_number(text)
     try:
         zero = Decimal(digits) == 0
@@ -171,7 +172,7 @@ def _from_text(text, unit):
     return Given(value, f"{' '.join(text.split())}{shown}")
 
 
-def _with_unit(digits, rest, unit):
+def _with_unit(digits: str, rest: str, unit: str) -> tuple[float, str]:
     """Value of a number with the text of its unit, and what there is to say of it."""
     if not rest and Decimal(digits) == 0:  # 0 is the same in all units
         return 0.0, f" {unit}"
@@ -188,7 +189,7 @@ def _with_unit(digits, rest, unit):
     return value, _si_beside(found, unit, value)
 
 
-def _ratio(found: Unit, unit):
+def _ratio(found: Unit, unit: str) -> tuple[Decimal, Decimal]:
     """The unit that was found over the SI one, as two decimals: numerator and denominator."""
     wanted, turn = si_unit(unit), Decimal(1)
     if unit in RATES:
@@ -205,7 +206,7 @@ def _ratio(found: Unit, unit):
     return found.factor, wanted.factor
 
 
-def _turns(found: Unit):
+def _turns(found: Unit) -> bool:
     """Whether a rate is one of angles rather than of periods; raises UnitError if it is neither."""
     if found.root == TURN_RATE:
         _refuse_periods(found)
@@ -218,18 +219,18 @@ def _turns(found: Unit):
     raise UnitError(f"the unit is {_named(found)}")
 
 
-def _refuse_periods(found):
+def _refuse_periods(found: Unit) -> None:
     if found.mixes_periods:
         raise UnitError(f"{_named(found)} leaves open whether 2 pi belongs to the hertz")
 
 
-def _named(found):
+def _named(found: Unit) -> str:
     if not found.names:
         return "that of a pure number"
     return "*".join(name if n == 1 else f"{name}^{n:g}" for name, n in found.names.items())
 
 
-def _si_beside(found, unit, value):
+def _si_beside(found: Unit, unit: str, value: float) -> str:
     """The text " = 62.83 rad/s" where a rate or an angle was given by another kind of measure."""
     (first, *others) = found.names
     same = {
@@ -243,7 +244,7 @@ def _si_beside(found, unit, value):
 # Objects
 
 
-def _from_object(value, unit):
+def _from_object(value: object, unit: str) -> Given:
     pint = sys.modules.get("pint")  # whoever hands in a quantity of it has imported it
     if pint is not None and isinstance(value, pint.Quantity):
         return _from_pint(value, unit)
@@ -251,7 +252,7 @@ def _from_object(value, unit):
     return Given(number, f"{number:.12g} {unit}".strip())
 
 
-def _plain_number(value):
+def _plain_number(value: object) -> float:
     """A real number as a float; raises UnitError for everything else, by its type."""
     if type(value) is np.ndarray and value.ndim == 0:  # its subclasses may carry units
         value = value[()]
@@ -272,7 +273,7 @@ def _plain_number(value):
     return number
 
 
-def _from_pint(value, unit):
+def _from_pint(value: Any, unit: str) -> Given:
     """A pint quantity of any registry: its own factors, the rules of this module."""
     number = Decimal(repr(_plain_number(value.magnitude)))
     zero, one = (type(value)(size, value.units).to_root_units() for size in (0, 1))

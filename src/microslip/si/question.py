@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from microslip.adaptive.checks import SMALLEST_TOLERANCE
 from microslip.foundation.arguments import LARGEST
@@ -20,7 +21,7 @@ from microslip.si.inputs import (
     read_counterbody,
     read_motion,
 )
-from microslip.si.quantities import read
+from microslip.si.quantities import Given, read
 from microslip.si.reduction import sought_by
 from microslip.si.several import Carriers, read_carriers
 
@@ -30,7 +31,13 @@ TOLERANCE, TOLERANCE_OF_SPEED = 1e-3, 1e-2
 """Unless told otherwise: of mu_macro, and under a force of the speed."""
 ANY_LOAD = 1e-12
 """N; stands for a load that is looked for, small enough for Hertz's theory of all bodies."""
-MOVED = ("amplitude", "frequency", "rotation", "forward_amplitude", "rotation_amplitude")
+MOVED: tuple[str, ...] = (
+    "amplitude",
+    "frequency",
+    "rotation",
+    "forward_amplitude",
+    "rotation_amplitude",
+)
 MOVED += ("load_amplitude", "phase")
 """Arguments of predict that tell the motion, besides the speed."""
 PULLED = ("speed", "force", "drive_stiffness", "mass", "damping")
@@ -72,7 +79,7 @@ class Question:
 
     def under(self, load: float) -> TwoBodies:
         """The contact under a load that was found, N; raises InputError where it is none."""
-        shape = {name: self.given[name] for name in (*SHAPES, "mu")}
+        shape: dict[str, Any] = {name: self.given[name] for name in (*SHAPES, "mu")}
         try:
             return read_contact(*self.bodies, load=load, **shape)[0]
         except InputError as error:
@@ -113,14 +120,15 @@ def asked(motion: str, given: Mapping[str, object]) -> Question:
         other.completed("counter_", given["counter_hardness"], given["counter_density"]),
     )
     carriers, several = read_carriers(given["contacts"], reduction=reduction, power=given["power"])
-    shape = {name: given[name] for name in (*SHAPES, "mu")}
+    shape: dict[str, Any] = {name: given[name] for name in (*SHAPES, "mu")}
     load = ANY_LOAD if sought == "load" else given["load"]
     contact, touched = read_contact(*bodies, load=load, contacts=carriers.count, **shape)
     loaded = real.load_amplitude
     if several and loaded is not None and loaded * carriers.widest > contact.load:
         allowed = "allowed is at most the load beside contacts: beyond it the bodies part"
         raise InputError("load_amplitude", given["load_amplitude"], allowed)
-    about, share = touched | moved | pulls | several, None
+    about = touched | moved | pulls | several
+    share: Given | None = None
     if sought is None:
         checked_groups(contact, real, given)
         checked_drive_groups(carriers.share_of(drive), real, contact, given)
@@ -130,11 +138,12 @@ def asked(motion: str, given: Mapping[str, object]) -> Question:
         share = _share(reduction, pulls)
         about["reduction"] = share.text
         about = {name: text for name, text in about.items() if name != sought}
-    settings = (sought, share and share.si, accepted.si, about)
+    taken = None if share is None else share.si
+    settings = (sought, taken, accepted.si, about)
     return Question(given, contact, real, drive, bodies, carriers, *settings)
 
 
-def _is_sequence(value):
+def _is_sequence(value: object) -> bool:
     """Whether a value is an array, a list or a column of a table, with a unit or without."""
     values = getattr(value, "magnitude", value)  # of a pint quantity
     if isinstance(values, str | bytes | Mapping):
@@ -142,7 +151,7 @@ def _is_sequence(value):
     return hasattr(values, "__len__") and getattr(values, "ndim", 1) > 0
 
 
-def _share(reduction, pulls):
+def _share(reduction: object, pulls: dict) -> Given:
     """What is to be taken away; raises InputError."""
     if pulls:
         allowed = "allowed where a speed alone pulls: without a force and a drive_stiffness"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 from microslip.adaptive.point import Result, solve
 from microslip.foundation.arguments import LARGEST
@@ -75,12 +76,17 @@ class _NoAnswerError(Exception):
 
 
 def friction_of(
-    contact: TwoBodies, motion: RealMotion, tolerance: float, **contacts: str
+    contact: TwoBodies, motion: RealMotion, tolerance: float, **contacts: Any
 ) -> Result:
     """What microslip.solve says of a motion; contacts: what it is told of several, if anything."""
     velocity, size = groups(motion, contact)
+    assert velocity is not None  # as of all that have a speed
     fast = min(velocity, LARGEST["velocity"])  # beyond, the vibration does nothing
-    settings = {"poisson": contact.poisson, "pressure": contact.pressure, "tolerance": tolerance}
+    settings: dict[str, Any] = {
+        "poisson": contact.poisson,
+        "pressure": contact.pressure,
+        "tolerance": tolerance,
+    }
     return solve(solver_motion(motion, contact), fast, size, **settings, **contacts)
 
 
@@ -154,7 +160,7 @@ def with_reduction(
     line = _LINES[sought](contact, motion, share)
     last, error, seen = (contact, motion), 0.0, []
 
-    def missing(place):
+    def missing(place: float) -> float:
         nonlocal last, error
         last = line.at(place)
         answer = friction_of(*last, tolerance)
@@ -189,7 +195,7 @@ def with_reduction(
     return Found(*line.at(place), line.rate * line.size(place) * wrong)
 
 
-def _amplitudes(contact, motion, _share):
+def _amplitudes(contact: TwoBodies, motion: RealMotion, _share: float) -> _Line:
     """Places are logarithms of amplitudes."""
     unit = contact.u_lim / (contact.contact_radius if motion.spins else 1.0)
     slides = "the one that lets the contact slide"
@@ -204,12 +210,12 @@ def _amplitudes(contact, motion, _share):
     )
 
 
-def _speeds(contact, motion, _share):
+def _speeds(contact: TwoBodies, motion: RealMotion, _share: float) -> _Line:
     """Places are logarithms of speeds, the fastest first."""
     motion = replace(motion, speed=0.0)
     _, size = groups(motion, contact)
     unit = speed_unit(motion, contact)
-    if not motion.spins and not motion.steady:
+    if not motion.spins and size is not None:
         unit *= max(1.0, size)  # a rigid contact compares the speed with that of the vibration
     slowest, fastest = SPEEDS
     return _Line(
@@ -224,18 +230,20 @@ def _speeds(contact, motion, _share):
     )
 
 
-def _loads(contact, motion, share):
+def _loads(contact: TwoBodies, motion: RealMotion, share: float) -> _Line:
     """Places are logarithms of the dimensionless amplitude, which falls by a power of the load."""
 
-    def size_at(load):
-        return groups(motion, contact.with_load(load))[1]
+    def size_at(load: float) -> float:
+        size = groups(motion, contact.with_load(load))[1]
+        assert size is not None  # as of all that oscillate
+        return size
 
     here = contact.load
     if not size_at(here) > 0.0:
         raise InputError("amplitude", motion.amplitude, "allowed is above 0 with a reduction")
     power = math.log(size_at(here) / size_at(8.0 * here)) / math.log(8.0)
 
-    def load_at(place):
+    def load_at(place: float) -> float:
         return here * (size_at(here) / math.exp(place)) ** (1.0 / power)
 
     # Under a large load nothing slips, and under a small one a bore is fast: what vibration takes

@@ -8,6 +8,7 @@ number.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 from microslip.adaptive.checks import checked_driven_problem
 from microslip.foundation.errors import InputError
@@ -52,23 +53,23 @@ class Carriers:
         """The contact that carries most, of the one that carries the mean."""
         if self.heaviest == 1.0:
             return contact
-        other = replace(contact, load=contact.load * self.heaviest)
-        if isinstance(contact, ShapedContact):
-            pressure = pressure_named(contact.pressure)
-            grown = float(pressure.radius(float(pressure.of_load(self.heaviest))))
-            other = replace(other, size=contact.size * grown)
-        return other
+        load = contact.load * self.heaviest
+        if not isinstance(contact, ShapedContact):
+            return replace(contact, load=load)
+        pressure = pressure_named(contact.pressure)
+        grown = float(pressure.radius(float(pressure.of_load(self.heaviest))))
+        return replace(contact, load=load, size=contact.size * grown)
 
     def problem(self, motion: RealMotion, contact: TwoBodies) -> Problem:
         """What the solver makes of a motion at a vanishing speed; raises InputError about
         `contacts` where these do not go with the motion or the pressure."""
         _, size = groups(motion, contact)
-        settings = {"pressure": contact.pressure, "poisson": contact.poisson}
+        settings: dict[str, Any] = {"pressure": contact.pressure, "poisson": contact.poisson}
         name = solver_motion(motion, contact)
         return checked_driven_problem(name, 0.0, size, **settings, contacts=self.text)
 
 
-def read_carriers(contacts: object, **alone: object) -> tuple[Carriers, dict[str, str]]:
+def read_carriers(contacts: Any, **alone: object) -> tuple[Carriers, dict[str, str]]:
     """The Carriers, and a dict of texts of what was understood; raises InputError.
 
     alone: values, as they were given, of arguments that go with one contact only.

@@ -9,6 +9,7 @@ from functools import cached_property
 from microslip.foundation.errors import InputError
 from microslip.pressures.by_name import pressure_named
 from microslip.pressures.ellipse import SMALLEST_RATIO
+from microslip.pressures.pressure import Pressure
 from microslip.si.bodies import TwoBodies
 
 ROUND = 1e-6
@@ -43,7 +44,7 @@ class ShapedContact(TwoBodies):
         return self.size
 
     @cached_property
-    def _record(self):
+    def _record(self) -> Pressure:
         return pressure_named(self.pressure)
 
     @property
@@ -85,7 +86,7 @@ def ellipse_of_radii(forward: float, lateral: float) -> tuple[float, float]:
     if long - short <= ROUND * long:
         return 1.0, 1.0
 
-    def curvatures(ratio):
+    def curvatures(ratio: float) -> float:
         """That along the long axis over that along the short one."""
         m = 1.0 - ratio**2
         return ratio**2 * (ellipk(m) - ellipe(m)) / (ellipe(m) - ratio**2 * ellipk(m))

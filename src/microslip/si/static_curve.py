@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from functools import cache
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -56,11 +57,11 @@ def static_limits(
     amplitude, ratio, *solved = centre
     # The interpolation variable A / (A + centre) is proportional to small amplitudes A, and its
     # distance from 1 to 1 / A at large ones: the static limit varies smoothly with it at both ends.
-    known = {0.5: tuple(solved)}
+    known: dict[float, tuple[float, float]] = {0.5: (solved[0], solved[1])}
     where = np.minimum(amplitudes, LARGEST["amplitude"])
     where = where / (where + amplitude)
 
-    def solve_at(place):
+    def solve_at(place: float) -> None:
         if place <= 0.0:
             known[0.0] = 1.0, 0.0  # friction without vibration
             return
@@ -68,10 +69,11 @@ def static_limits(
         if answer is not None:
             known[place] = answer
 
-    def interpolated():
+    def interpolated() -> tuple[np.ndarray, np.ndarray]:
         places = np.array(sorted(known))
         if places.size == 1:
-            return tuple(np.full(where.shape, part) for part in known[places[0]])
+            value, error = known[places[0]]
+            return np.full(where.shape, value), np.full(where.shape, error)
         within = np.clip(where, places[0], places[-1])
         values, errors = np.array([known[place] for place in places]).T
         return PchipInterpolator(places, values)(within), np.interp(within, places, errors)
@@ -86,7 +88,9 @@ def static_limits(
         ]
         if ends:
             solve_at(0.5 * sum(ends[-1]))
-    for _ in range(REFINEMENTS if len(known) > 1 and forces is not None else 0):
+    for _ in range(REFINEMENTS if len(known) > 1 else 0):
+        if forces is None:
+            break
         value, _ = interpolated()
         count = where.size // CLOSEST
         closest = np.argpartition(np.abs(forces[0] * value - forces[1]), count)[:count]
@@ -96,7 +100,7 @@ def static_limits(
     return np.clip(value + change, 0.0, 1.0), error
 
 
-def _above_zero(limit):
+def _above_zero(limit: tuple[float, float]) -> bool:
     value, error = limit
     return value > error
 
@@ -112,14 +116,14 @@ def _slope(limit: Callable, amplitude: float, ratio: float, deviation: float) ->
     return (high[0] - low[0]) / (ends[1] - ends[0])
 
 
-def _limits_of(question):
+def _limits_of(question: Question) -> Callable[[float, float], tuple[float, float] | None]:
     """limit(amplitude, poisson) -> (mu_static, error), or None where the solver has no answer."""
     motion = solver_motion(question.motion, question.contact)
-    settings = {"pressure": question.contact.pressure} | question.carriers.settings
+    settings: dict[str, Any] = {"pressure": question.contact.pressure} | question.carriers.settings
     settings["tolerance"] = tolerance_of(question.motion, TOLERANCE)
 
     @cache
-    def limit(amplitude, poisson):
+    def limit(amplitude: float, poisson: float) -> tuple[float, float] | None:
         answer = solve(motion, 0.0, amplitude, poisson=poisson, **settings)
         finite = math.isfinite(answer.mu_macro) and math.isfinite(answer.mu_macro_error)
         return (answer.mu_macro, answer.mu_macro_error) if finite else None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from microslip.adaptive.point import Result, solve
 from microslip.adaptive.under_force import (
     is_even,
@@ -46,7 +48,10 @@ def static_limit(
         return None
     if under_force:
         tolerance = min(tolerance, TOLERANCE)
-    settings = {"poisson": contact.poisson, "pressure": contact.pressure} | carriers.settings
+    settings: dict[str, Any] = {
+        "poisson": contact.poisson,
+        "pressure": contact.pressure,
+    } | carriers.settings
     return solve(
         solver_motion(motion, contact),
         0.0,

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
 from inspect import signature
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from microslip.foundation.errors import InputError
 from microslip.si.motions import unit_of_amplitude
 from microslip.si.predict import predict, unattained
 from microslip.si.prediction import NoPrediction, Prediction
-from microslip.si.question import asked
+from microslip.si.question import Question, asked
 from microslip.si.reduction import NotAttainedError
 from microslip.si.table_csv import cases_of_file
 from microslip.si.uncertain import without_spreads
@@ -24,7 +24,12 @@ if TYPE_CHECKING:
     import xarray as xr
 
 MOST_CASES = 100_000
-UNITS = (("_N_m", "N m"), ("_N_s_m", "N s m-1"), ("_m_s", "m s-1"), ("_rad_s", "rad s-1"))
+UNITS: tuple[tuple[str, str], ...] = (
+    ("_N_m", "N m"),
+    ("_N_s_m", "N s m-1"),
+    ("_m_s", "m s-1"),
+    ("_rad_s", "rad s-1"),
+)
 UNITS += (("_Pa", "Pa"), ("_Hz", "Hz"), ("_kg", "kg"), ("_rad", "rad"), ("_W", "W"), ("_J", "J"))
 UNITS += (("_N", "N"), ("_m", "m"), ("_s", "s"))
 """Ends of names of fields, and the units that they stand for; the first that fits counts."""
@@ -83,7 +88,7 @@ def predict_table(
 
 def predictions(
     motion: str,
-    cases: Mapping[str, object],
+    cases: Mapping[str, Any],
     shared: Mapping[str, object],
     names: Sequence[str] | None = None,
     errors: Mapping[int, str] | None = None,
@@ -107,31 +112,33 @@ def predictions(
     InputError
         As predict_table does.
     """
-    count, errors = number_of(cases, shared), dict(errors or {})
+    count = number_of(cases, shared)
+    wrong: dict[int, str | InputError] = dict(errors or {})
     names = names or [f"case {case}" for case in range(count)]
     arguments = {name: values for name, values in cases.items() if name not in csv_text.LABELS}
     several = [
-        shared | {name: values[case] for name, values in arguments.items()} for case in range(count)
+        {**shared, **{name: values[case] for name, values in arguments.items()}}
+        for case in range(count)
     ]
     for case, given in enumerate(several):
-        if case not in errors:
+        if case not in wrong:
             try:
                 _question(motion, **given)
             except InputError as error:
-                errors[case] = error
-    if len(errors) == count:
-        first = next((one for one in errors.values() if isinstance(one, InputError)), None)
+                wrong[case] = error
+    if len(wrong) == count:
+        first = next((one for one in wrong.values() if isinstance(one, InputError)), None)
         if first is None:
-            raise InputError("cases", None, errors[0])
-        where = names[next(case for case, one in errors.items() if one is first)]
+            raise InputError("cases", None, str(wrong[0]))
+        where = names[next(case for case, one in wrong.items() if one is first)]
         raise InputError(first.argument, first.value, f"in {where}: {first.allowed}")
     return (
-        NoPrediction(errors[case]) if case in errors else _prediction(motion, given)
+        NoPrediction(wrong[case]) if case in wrong else _prediction(motion, given)
         for case, given in enumerate(several)
     )
 
 
-def _prediction(motion, given):
+def _prediction(motion: str, given: Mapping[str, object]) -> Prediction | NoPrediction:
     try:
         return predict(motion, **given)
     except NotAttainedError as error:
@@ -140,7 +147,7 @@ def _prediction(motion, given):
         return NoPrediction(error)
 
 
-def _question(motion, **given):
+def _question(motion: str, **given: Any) -> Question:
     """What is asked; raises what predict would raise before it solves anything."""
     plain, _ = without_spreads(motion, given)
     every = dict.fromkeys(signature(predict).parameters) | {"power": False}
@@ -151,7 +158,7 @@ def _question(motion, **given):
     return asked(motion, every | plain)
 
 
-def number_of(cases: Mapping[str, object], shared: Mapping[str, object]) -> int:
+def number_of(cases: Mapping[str, Any], shared: Mapping[str, object]) -> int:
     """How many cases there are; raises InputError for a table that is none."""
     if not isinstance(cases, Mapping) or not cases:
         raise InputError("cases", cases, "allowed is a mapping of names to sequences")
@@ -172,14 +179,16 @@ def number_of(cases: Mapping[str, object], shared: Mapping[str, object]) -> int:
 
 
 def as_dataset(
-    motion: str, cases: Mapping[str, object], found: Sequence[Prediction | NoPrediction]
+    motion: str, cases: Mapping[str, Any], found: Sequence[Prediction | NoPrediction]
 ) -> xr.Dataset:
     """What predict_table returns, of the predictions of all cases."""
     import xarray as xr
 
-    variables = {}
+    variables: dict[str, tuple] = {}
+    column: Any
+    about: dict[str, str]
     for field in fields(Prediction):
-        values = [getattr(one, field.name, None) for one in found]
+        values: list[Any] = [getattr(one, field.name, None) for one in found]
         if field.name in ("motion", "understood"):
             continue
         if field.name in TEXTS:
@@ -204,7 +213,7 @@ def as_dataset(
     units = {"amplitude": amplitude, "speed": "m s-1", "load": "N"}
     errors = [str(getattr(one, "error", "")) for one in found]
     variables["error"] = "case", errors, {"long_name": "what is wrong with the case"}
-    sought = {getattr(one, "sought", None) for one in found} - {None}
+    sought: set[Any] = {getattr(one, "sought", None) for one in found} - {None}
     if sought:  # one for all cases, or another for some, which `sought` tells
         for name in ("sought_error", "sought_spread"):
             unit = units[next(iter(sought))] if len(sought) == 1 else "SI unit of what is sought"
@@ -212,7 +221,7 @@ def as_dataset(
     return xr.Dataset(variables, {"case": np.arange(len(found))}, {"motion": motion})
 
 
-def _unit(name):
+def _unit(name: str) -> str:
     """Of a field, in the SI; "1" for what has none, and for errors that of what they are of."""
     if name in OTHER_UNITS:
         return OTHER_UNITS[name]

@@ -114,7 +114,7 @@ def read_cases(
     return cases
 
 
-def _text(where, name, cell, unit, decimal):
+def _text(where: int, name: str, cell: str, unit: str | None, decimal: str) -> str | None:
     """A cell as predict takes it."""
     if not cell:
         return None

@@ -13,10 +13,12 @@ import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Any
 
 from microslip.foundation.errors import InputError
 from microslip.si.motions import unit_of_amplitude
 from microslip.si.outcomes import UncertainInput, with_outcomes
+from microslip.si.prediction import Prediction
 from microslip.si.printed_lines import EXCLUDED
 from microslip.si.quantities import read
 from microslip.si.question import asked as question_of
@@ -60,14 +62,17 @@ def with_spreads(predict: Callable) -> Callable:
     """predict, of which arguments in UNITS may be texts with a spread."""
 
     @functools.wraps(predict)
-    def asked(motion, **arguments):
+    def asked(motion: str, **arguments: Any) -> Prediction:
         plain, spread = without_spreads(motion, arguments)
         found = predict(motion, **plain)
         if not spread:
             return found
         ends = {
-            name: tuple(_predicted(predict, motion, plain, name, end) for end in pair)
-            for name, pair in spread.items()
+            name: (
+                _predicted(predict, motion, plain, name, low),
+                _predicted(predict, motion, plain, name, high),
+            )
+            for name, (low, high) in spread.items()
         }
         squares = {name: 0.0 for name in FIELDS if getattr(found, name) is not None}
         for low, high in ends.values():
@@ -107,13 +112,13 @@ def without_spreads(motion: object, arguments: Mapping[str, object]) -> tuple[di
     return plain, ends
 
 
-def _parts(value):
+def _parts(value: object) -> tuple[str, str] | None:
     """Texts of a value and of its spread; None where there is no spread."""
     match = _SPREAD.fullmatch(value) if isinstance(value, str) else None
-    return None if match is None else match.groups()
+    return None if match is None else (match[1], match[2])
 
 
-def _ends(name, given, parts, unit):
+def _ends(name: str, given: object, parts: tuple[str, str], unit: str) -> tuple[float, float]:
     """Both ends of a quantity in the SI; raises InputError for a spread that is none."""
     text, spread = parts
     low = -math.inf if name == "counter_radius" else 0.0
@@ -131,7 +136,7 @@ def _ends(name, given, parts, unit):
     return value - size, value + size
 
 
-def _half_of_difference(low, high, field):
+def _half_of_difference(low: Prediction | None, high: Prediction | None, field: str) -> float:
     """Half the difference of a field of both; infinite where one of them has no value, because
     nothing has the wanted reduction, or the contact runs away."""
     if low is None or high is None:
@@ -140,7 +145,9 @@ def _half_of_difference(low, high, field):
     return math.inf if math.isnan(half) else half
 
 
-def _predicted(predict, motion, plain, name, end):
+def _predicted(
+    predict: Callable, motion: str, plain: dict, name: str, end: float
+) -> Prediction | None:
     try:
         return predict(motion, **plain | {name: end})
     except NotAttainedError:

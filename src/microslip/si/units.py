@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 from decimal import Context, Decimal, localcontext
 from functools import cache
+from typing import Any
 
 METRIC = frozenset(
     {
@@ -93,7 +94,7 @@ class Unit:
         return len(self.names) == 1 and self.root.get("second") == -1 and self._has_cyclic
 
     @property
-    def _has_cyclic(self):
+    def _has_cyclic(self) -> bool:
         return any(name.endswith(CYCLIC) for name in self.names)
 
     @property
@@ -103,7 +104,7 @@ class Unit:
 
 
 @cache
-def registry() -> object:
+def registry() -> Any:
     """The pint.UnitRegistry in use; loading it takes most of a second.
 
     It computes in decimals, so that "1 um", "1e-3 mm" and "0.000001 m" are one number, to the last
@@ -154,7 +155,7 @@ def read_unit(text: str) -> Unit:
     return Unit(_exponents(parsed), _exponents(root), Decimal(factor))
 
 
-def _refuse_strange(name):
+def _refuse_strange(name: str) -> None:
     """Raise UnitError unless a name is one of those in the lists above, with a prefix or not."""
     readings = registry().parse_unit_name(name)
     prefix, base = readings[0][:2] if readings else ("", "")
@@ -169,7 +170,7 @@ def _refuse_strange(name):
     )
 
 
-def _in_other_capitals(name):
+def _in_other_capitals(name: str) -> list[str]:
     """Symbols of units that differ from a name by capitals alone, such as MPa and mPa for Mpa."""
     units = registry()
     prefixes = {units.get_symbol(f"{prefix}meter").removesuffix("m") for prefix in PREFIXES}
@@ -178,13 +179,13 @@ def _in_other_capitals(name):
     return sorted(symbol for symbol in symbols if symbol.lower() == name.lower())
 
 
-def _is_plural_symbol(name, base):
+def _is_plural_symbol(name: str, base: str) -> bool:
     """Whether a name is the symbol of a unit, by pint's name for it, with an s behind it."""
     symbol = registry().get_symbol(base)
     return symbol not in {base, *PLURALS} and name.endswith(f"{symbol}s")
 
 
-def _exponents(unit):
+def _exponents(unit: Any) -> dict[str, Any]:
     """Names and exponents of a pint.Unit."""
     return dict((1 * unit).unit_items())
 
@@ -230,6 +231,6 @@ def stopped(read_so_far: str, rest: str) -> str:
     return f"read {read_so_far} and stopped at {rest!r}{hint or _of_other_digits(rest)}"
 
 
-def _of_other_digits(text):
+def _of_other_digits(text: str) -> str:
     """A hint if a text begins with a digit of another script than Latin."""
     return ", since numbers have the digits 0 to 9" if re.match(r"(?![0-9])\d", text) else ""

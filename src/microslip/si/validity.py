@@ -60,7 +60,7 @@ class Rule(NamedTuple):
     text: str
 
 
-def _too_hard(side):
+def _too_hard(side: str) -> Rule:
     return Rule(
         (("largest_pressure", YIELDS_AT * HARDEST, f"{side}_young"),),
         f"the largest pressure, {{largest_pressure:.2g}} Pa, is {{{side}_pressure:.2g}} of Young's "
@@ -68,7 +68,7 @@ def _too_hard(side):
     )
 
 
-def _steep(radius, whose):
+def _steep(radius: str, whose: str) -> Rule:
     return Rule(
         (("contact_radius", STEEP, radius),),
         f"the contact radius is {{over_{radius}:.2g}} of the {whose}: the bodies are no "
@@ -76,7 +76,7 @@ def _steep(radius, whose):
     )
 
 
-def _adhesive(theory, *where):
+def _adhesive(theory: str, *where: tuple) -> Rule:
     return Rule(
         (("pull_off", SMALL, "load"), *where),
         "clean smooth surfaces adhere with about {pull_off:.2g} N, {pull_off_share:.2g} of the "
@@ -84,7 +84,7 @@ def _adhesive(theory, *where):
     )
 
 
-def _atomic(measure, name):
+def _atomic(measure: str, name: str) -> Rule:
     return Rule(
         ((measure, 1.0, 0.0), (RANGE, 1.0, measure)),
         f"{name} is {{{measure}:.2g}} m, less than the distance of atoms: the surfaces are no "
@@ -179,8 +179,8 @@ def broken_assumptions(contact: TwoBodies, motion: RealMotion) -> list[str]:
     return [rule.text.format(**known) for rule in found if rule is not None]
 
 
-def _holds(rule, known):
-    def value(side):
+def _holds(rule: Rule, known: dict[str, float | None]) -> bool:
+    def value(side: float | str) -> float | None:
         return known[side] if isinstance(side, str) else side
 
     return all(
@@ -204,7 +204,7 @@ def measures(contact: TwoBodies, motion: RealMotion) -> dict[str, float | None]:
     return _of_bodies(contact) | _of_adhesion(contact) | _of_motion(contact, motion)
 
 
-def _of_bodies(contact):
+def _of_bodies(contact: TwoBodies) -> dict[str, float | None]:
     a, pressure = contact.contact_radius, contact.largest_pressure
     hard = [body.hardness for body in contact.bodies if body.hardness is not None]
     found = {
@@ -230,7 +230,7 @@ def _of_bodies(contact):
     return found
 
 
-def _of_adhesion(contact):
+def _of_adhesion(contact: TwoBodies) -> dict[str, float | None]:
     strength = ADHESION**2 * contact.radius / (contact.E_star**2 * RANGE**3)
     tabor = strength ** (1.0 / 3.0)
     share = 1.5 if tabor > SHORT else 2.0
@@ -243,17 +243,21 @@ def _of_adhesion(contact):
     }
 
 
-def _of_motion(contact, motion):
+def _of_motion(contact: TwoBodies, motion: RealMotion) -> dict[str, float | None]:
     """What the motion is beside the contact, and beside waves where a density is known."""
     steady, along = motion.frequency is None, motion.swing[0]
+    found: dict[str, float | None]
     found = {"amplitude": along, "stroke": None if steady else along / contact.contact_radius}
     found["mean_load"] = mean_load(motion, contact)
-    known = [b for b in contact.bodies if b.density is not None and not b.rigid]
+    known = [
+        (b.shear_modulus, b.density)
+        for b in contact.bodies
+        if b.density is not None and not b.rigid
+    ]
     if not known:
         return found | {"crossing": None, "slip_speed": None}
-    wave = min(math.sqrt(body.shear_modulus / body.density) for body in known)
-    turn = motion.rotation if steady else 2.0 * math.pi * motion.frequency
+    wave = min(math.sqrt(shear / density) for shear, density in known)
     return found | {
-        "crossing": turn * contact.contact_radius / wave,
+        "crossing": motion.turn * contact.contact_radius / wave,
         "slip_speed": largest_slip_speed(motion, contact) / wave,
     }

@@ -82,9 +82,10 @@ class Anderson:
     def __init__(self, metric: np.ndarray, depth: int):
         self.scale = np.sqrt(metric)
         self.depth = depth
-        self.images, self.changes = [], []
+        self.images: list[np.ndarray] = []
+        self.changes: list[np.ndarray] = []
 
-    def __call__(self, state, image):
+    def __call__(self, state: np.ndarray, image: np.ndarray) -> np.ndarray:
         """Next state from the pairs (state, image) seen so far."""
         self.images.append(image)
         self.changes.append(image - state)

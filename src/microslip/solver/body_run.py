@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from microslip.models.path import make_path
-from microslip.motions.problem import Problem
+from microslip.motions.problem import Part, Problem
 from microslip.solver.discretise import Resolution
 from microslip.solver.effort import Effort
 from microslip.solver.run import AS_SHIPPED, Run, Settings
@@ -47,7 +49,7 @@ def simulate_each(
         ]
         state = np.concatenate(states, axis=-1)
 
-    def weighted(name, shares=shares):
+    def weighted(name: str, shares: Sequence[float] = shares) -> float:
         values = [getattr(alone[part.problem], name) for part in problem.parts]
         return float(np.dot(shares, values))
 
@@ -65,7 +67,9 @@ def simulate_each(
     )
 
 
-def _led(problem, part, model, resolution, found):
+def _led(
+    problem: Problem, part: Part, model: str, resolution: Resolution, found: tuple[Run, Settings]
+) -> np.ndarray:
     """Tractions of a contact where the path of the body begins, from its own periodic state."""
     run, settings = found
     alone = part.problem
@@ -75,6 +79,7 @@ def _led(problem, part, model, resolution, found):
     interval = np.pi if alone.half_period_mirror else 2.0 * np.pi
     times, left = divmod(ahead, interval)
     state = run.state
+    assert state is not None  # as simulate_each looks first
     if left > 0.0:
         phases = first + np.linspace(0.0, left, LEAD_STEPS + 1)
         path = make_path(alone.displacement, phases, depth=alone.depth)

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import math
 import time
+from typing import Any
 
 from microslip.foundation.errors import SolverError
-from microslip.models.contact import Contact
+from microslip.models.contact import Contact, March
 from microslip.solver.effort import Effort
 
 
@@ -75,16 +76,17 @@ class Budget:
 class _Metered:
     """A contact (see models.contact.Contact) that counts its marches."""
 
-    def __init__(self, contact, budget):
-        self._contact, self._budget = contact, budget
+    def __init__(self, contact: Contact, budget: Budget):
+        self._contact: Any = contact  # which may have methods that not all have
+        self._budget = budget
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> Any:
         return getattr(self._contact, name)
 
-    def march(self, *path, **settings):
+    def march(self, *path: Any, **settings: Any) -> March:
         return self._taken(self._contact.march(*path, **settings))
 
-    def pulled_march(self, *path, **settings):
+    def pulled_march(self, *path: Any, **settings: Any) -> March:
         return self._taken(self._contact.pulled_march(*path, **settings))
 
     def affordable(self, work: float) -> float:
@@ -98,6 +100,6 @@ class _Metered:
         """Count marches that compiled code has done."""
         self._budget.take(solves, iterations, unknowns)
 
-    def _taken(self, march):
+    def _taken(self, march: March) -> March:
         self._budget.take(march.solves, march.iterations, march.state.size)
         return march

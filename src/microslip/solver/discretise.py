@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 
@@ -69,7 +70,9 @@ def contact_of(
     if not problem.contacts:
         return build_contact(problem, model, resolution, focus)
     parts, start = problem.parts, problem.start
-    return MODELS[model].side_by_side(
+    beside = MODELS[model].side_by_side
+    assert beside is not None  # else the drive of several contacts is refused
+    return beside(
         [
             build_contact(part.problem, model, resolution, focus, start + part.lead)
             for part in parts
@@ -79,7 +82,7 @@ def contact_of(
     )
 
 
-def _focus(problem):
+def _focus(problem: Problem) -> Focus | float | None:
     """Radius where the slip starts, with the grading towards it."""
     radius = problem.focus
     if radius is None or not problem.motion.periodic:
@@ -109,17 +112,23 @@ def build_contact(
     start : float or None
         Phase at which a period starts; None: the first turning point.
     """
-    focus = focus or _focus(problem)
-    contact = MODELS[model].build(problem, resolution.cells, resolution.angles, focus)
+    place = focus or _focus(problem)
+    contact = MODELS[model].build(problem, resolution.cells, resolution.angles, place)
     if problem.depth is None:
         return contact
     start = problem.start if start is None else start
     return contact.at_indentation(problem.deepest, float(problem.depth(np.array(start))))
 
 
-def path_of(
-    problem: Problem, contact: Contact, steps: int, integrator: Integrator = SDIRK2
-) -> Path:
+class Graded(Protocol):
+    """What tells how steps are graded: a contact, or what stands for one."""
+
+    @property
+    def grading(self) -> float | None:
+        """See Contact."""
+
+
+def path_of(problem: Problem, contact: Graded, steps: int, integrator: Integrator = SDIRK2) -> Path:
     """The path of a problem from turning point to turning point.
 
     It is half a period if the second half is the mirror image of the first, else a whole one.  Of
@@ -143,13 +152,13 @@ def path_of(
 
 
 @lru_cache(maxsize=32)
-def _path(problem, steps, grading, integrator):
+def _path(problem: Problem, steps: int, grading: float, integrator: Integrator) -> Path:
     if not problem.contacts:
         phases = phases_between(problem.turns, steps, grading)
         return make_path(problem.displacement, phases, integrator, problem.depth)
     phases, drift = _body_phases(problem, steps, grading), problem.drift
 
-    def forward(phase):
+    def forward(phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         return drift * phase, np.zeros_like(phase), np.zeros_like(phase)
 
     each = (
@@ -162,7 +171,7 @@ def _path(problem, steps, grading, integrator):
 def _beside(problem: Problem, part: Part) -> Callable:
     """Displacement of a contact beyond that of the body."""
 
-    def displacement(phase):
+    def displacement(phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         forward, lateral, angle = part.oscillation(phase)
         if problem.follows:
             forward = forward - _mean_oscillation(problem, phase)
@@ -171,14 +180,14 @@ def _beside(problem: Problem, part: Part) -> Callable:
     return displacement
 
 
-def _mean_oscillation(problem, phase):
+def _mean_oscillation(problem: Problem, phase: np.ndarray) -> np.ndarray:
     """Mean forward oscillation of the contacts, weighted by their stiffness."""
     stiff = np.array([part.share / part.extent for part in problem.parts])
     ahead = np.array([part.oscillation(phase)[0] for part in problem.parts])
     return np.tensordot(stiff / stiff.sum(), ahead, axes=1)
 
 
-def _body_phases(problem, steps, grading):
+def _body_phases(problem: Problem, steps: int, grading: float) -> np.ndarray:
     """From the first turning point of the first contact over half a period, or a whole one, in
     pieces from turning point to turning point of any contact."""
     interval = np.pi if problem.half_period_mirror else 2.0 * np.pi

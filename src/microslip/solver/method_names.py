@@ -16,11 +16,15 @@ from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from microslip.foundation import spec
 from microslip.foundation.errors import InputError
 from microslip.foundation.families import described
 from microslip.solver import methods
+
+if TYPE_CHECKING:
+    from microslip.solver.method import Method
 
 SHIPPED = "shipped"
 METHODS = Path(methods.__file__).parent
@@ -36,7 +40,7 @@ def names() -> tuple[str, ...]:
 
 
 @cache
-def _parsed(name):
+def _parsed(name: str) -> ast.Module | str | None:
     """The syntax tree of a method's file; a text that says what is wrong with it; None if it is
     not there."""
     file = METHODS / f"{name.replace('-', '_')}.py"
@@ -94,7 +98,7 @@ def refuse_missing(text: str) -> None:
         raise InputError("method", text, f"needs the package {package}, which is not installed")
 
 
-def method_named(text: str) -> object:  # of a module that is not imported here
+def method_named(text: str) -> Method:
     """The method.Method that a text names; raises InputError, with what is allowed, if none."""
     check(text)
     from dataclasses import replace
@@ -112,20 +116,23 @@ def method_named(text: str) -> object:  # of a module that is not imported here
     return replace(method, parameters={**method.parameters, **numbers})
 
 
-def _parameters(name):
+def _parameters(name: str) -> tuple[str, ...]:
     """Names of the numbers that a method takes."""
     return tuple(declared(name, "parameters") or ())
 
 
 @cache
-def declared(name: str, field: str) -> object:
+def declared(name: str, field: str) -> Any:
     """What a method's file gives for a field of METHOD, read without running it; None: nothing.
 
     name: without numbers; the value has to be a literal.
     """
     if name == SHIPPED:
         return None
-    for node in ast.walk(_parsed(name)):
+    tree = _parsed(name)
+    if not isinstance(tree, ast.Module):
+        return None
+    for node in ast.walk(tree):
         if isinstance(node, ast.keyword) and node.arg == field:
             return ast.literal_eval(node.value)
     return None

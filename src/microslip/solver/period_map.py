@@ -8,13 +8,16 @@ static limit a state changes so little in a period that a small residual proves 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from microslip.contacts.coulomb import project
 from microslip.models.contact import Contact, March, StepFailure, energy_norm
 from microslip.models.path import Path
+
+if TYPE_CHECKING:
+    from microslip.states.search import Inertia
 
 MOST_MARCHES = 200
 """Of a search, unless told otherwise."""
@@ -159,9 +162,9 @@ class PeriodMap:
     ):
         self.contact, self.path, self.drift_rate, self.mirror = contact, path, drift_rate, mirror
         self.marches = self.iterations = self.solves = 0
-        self._march = None
+        self._march: March | None = None
 
-    def __call__(self, state, step_tolerance):
+    def __call__(self, state: np.ndarray, step_tolerance: float) -> MarchInterval:
         """March once from `state`; steps are solved to `step_tolerance`.
 
         Raises StepFailure where the tractions blow up.
@@ -186,7 +189,7 @@ class PeriodMap:
         """The state of tractions, and of x and x' of a driven body."""
         return tractions
 
-    def inertia(self) -> None:
+    def inertia(self) -> Inertia | None:
         """No body is driven."""
         return None
 

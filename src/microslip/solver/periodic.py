@@ -8,6 +8,7 @@ tractions over one period is solved for its fixed point by Anderson acceleration
 from __future__ import annotations
 
 import signal
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from microslip.models.contact import StepFailure
 from microslip.solver import anderson
 from microslip.solver.period_map import Goal, PeriodicState, PeriodMap
 from microslip.states import search
+
+if TYPE_CHECKING:
+    from microslip.models.system_contact import SystemContact
 
 
 def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) -> PeriodicState:
@@ -41,14 +45,19 @@ def find_periodic_state(period_map: PeriodMap, start: np.ndarray, goal: Goal) ->
     """
     if not period_map.contact.compiled:
         return anderson.search(period_map, start, goal)
-    contact, path, rate = period_map.contact, period_map.path, period_map.drift_rate
+    contact = cast("SystemContact", period_map.contact)  # or one that counts its marches
+    path, rate = period_map.path, period_map.drift_rate
+    slow = (rate.static_force, rate.full, rate.gain) if rate else (0.0, 0.0, np.inf)
+    static_force, full, gain = map(float, slow)
     target = search.Goal(
         float(goal.tolerance),
         float(goal.step_tolerance),
         bool(period_map.mirror),
         bool(goal.near),
         path.share,
-        *(map(float, (rate.static_force, rate.full, rate.gain)) if rate else (0.0, 0.0, np.inf)),
+        static_force,
+        full,
+        gain,
     )
     tractions, place = period_map.parts(start)
     stages = path.stages.shape[1]

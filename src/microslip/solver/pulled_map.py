@@ -20,7 +20,7 @@ import numpy as np
 from microslip.contacts.coulomb import project
 from microslip.models.contact import FORWARD, StepFailure, energy_norm, forces
 from microslip.models.path import Path
-from microslip.models.pull import Body
+from microslip.models.pull import Body, PulledMarch
 from microslip.models.system_contact import SystemContact
 from microslip.solver.period_map import DriftRate, MarchInterval, PeriodicState, PeriodMap
 from microslip.states.search import Inertia
@@ -47,6 +47,9 @@ class PulledMap(PeriodMap):
     slope : float
         Largest rise of the mean forward force for a body that gains a unit of x in the interval.
     """
+
+    contact: SystemContact
+    _march: PulledMarch | None
 
     def __init__(
         self,
@@ -76,7 +79,7 @@ class PulledMap(PeriodMap):
         if body.mass > 0.0:
             self._haste[1] = max(1.0, body.mass / (self._mass * slow))
 
-    def __call__(self, state, step_tolerance):
+    def __call__(self, state: np.ndarray, step_tolerance: float) -> MarchInterval:
         """March once from `state`; steps are solved to `step_tolerance`.
 
         Raises StepFailure where the tractions blow up.
@@ -94,7 +97,7 @@ class PulledMap(PeriodMap):
             raise StepFailure("diverged: tractions are not finite")
         return MarchInterval(state, image, change, self.size(change), march)
 
-    def _hastened(self, tractions, start, march):
+    def _hastened(self, tractions: np.ndarray, start: np.ndarray, march: PulledMarch) -> np.ndarray:
         """The state that the next interval begins with."""
         image = self.image(march.state)
         if not self.body.remembers and self._haste[0] > 1.0:
@@ -117,7 +120,10 @@ class PulledMap(PeriodMap):
         """The same for compiled code."""
         return Inertia(
             self.body.along(self.path, np.zeros(2)),
-            *map(float, (*self._haste, self._held, self._mass)),
+            float(self._haste[0]),
+            float(self._haste[1]),
+            float(self._held),
+            float(self._mass),
             self.contact.layout.pack(self._spread),
         )
 
@@ -145,9 +151,10 @@ class PulledMap(PeriodMap):
         if self.drift_rate is None:
             return distance
         march, tractions = interval.march, self.parts(interval.state)[0]
+        assert isinstance(march, PulledMarch)  # as __call__ marches
         gained = float(abs(march.body[-1, 0] - march.body[0, 0])) * self.contact.stiffness
         gained += energy_norm(self.contact, self.image(march.state) - tractions)
-        force = self.path.mean(march.forces[:, FORWARD])
+        force = float(self.path.mean(march.forces[:, FORWARD]))
         return max(distance, self.drift_rate.force_error(gained, force))
 
     def admissible(self, state: np.ndarray) -> np.ndarray:
@@ -162,4 +169,5 @@ class PulledMap(PeriodMap):
         converged: bool,
     ) -> PeriodicState:
         found = super().result(interval, distance, converged)
+        assert isinstance(interval.march, PulledMarch)  # as __call__ marches
         return replace(found, body=interval.march.body)

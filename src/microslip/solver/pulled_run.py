@@ -7,19 +7,21 @@ search takes as many periods with few steps as with many, so that many steps beg
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
 from microslip.contacts.coulomb import project
 from microslip.models.contact import FORWARD, StepFailure, forces, forward_slip
 from microslip.models.pull import Body
+from microslip.models.system_contact import SystemContact
 from microslip.motions.problem import Problem
 from microslip.solver.body_run import simulate_each
 from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.effort import Effort
-from microslip.solver.period_map import MOST_MARCHES, DriftRate, Goal
+from microslip.solver.period_map import MOST_MARCHES, DriftRate, Goal, PeriodicState
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.pulled_map import PulledMap
 from microslip.solver.run import Run, Settings, failed_run, unsolved
@@ -100,21 +102,24 @@ def simulate_pulled(
 class _Pulled:
     """The search for the periodic state of one run."""
 
-    def __init__(self, problem, model, resolution, settings):
+    def __init__(self, problem: Problem, model: str, resolution: Resolution, settings: Settings):
         drive = problem.drive
+        assert drive is not None  # as simulate_pulled demands
         self.problem, self.drive, self.model = problem, drive, model
         self.resolution, self.settings = resolution, settings
-        self.contact = settings.contact(problem, model, resolution)
+        # or one that counts its marches
+        self.contact = cast(SystemContact, settings.contact(problem, model, resolution))
         self.path = path_of(problem, self.contact, resolution.steps, settings.method.integrator)
         self.interval = self.path.phase[-1] - self.path.phase[0]
         load = -drive.damping * problem.drift
         if drive.force is not None:
             load += drive.force * problem.mean_load
         self.body = Body(drive.stiffness, drive.damping, drive.mass, load)
-        self.slope, self.before = np.inf, []
+        self.slope = np.inf
+        self.before: list[Run] = []
 
     @property
-    def force_of_answer(self):
+    def force_of_answer(self) -> float:
         """Force over mu F_z that stands for a unit of the answer, to judge states by.
 
         A state that is wrong by a force is wrong by that over the stiffness in its displacement,
@@ -127,7 +132,7 @@ class _Pulled:
         stuck = self.contact.stiffness * self.interval * unit
         return min(stuck, self.slope * self.problem.mean_load)
 
-    def run(self, tolerance, guess=None):
+    def run(self, tolerance: float, guess: Run | None = None) -> Run:
         """The Run, to a tolerance that is a force over mu F_z; guess: see simulate_pulled."""
         rate = self.contact.stiffness * self.problem.drift
         step_tolerance = tolerance * step_share(rate, self.resolution.steps, False)
@@ -141,7 +146,7 @@ class _Pulled:
                 break
         return self._summary(done, static_force, step_tolerance)
 
-    def _map(self, static_force, rate, mu):
+    def _map(self, static_force: float, rate: float, mu: float) -> PulledMap:
         drift_rate, slope, full = None, np.inf, self.problem.mean_load
         if self.drive.force is None:
             drift_rate = DriftRate(static_force, full, rate * self.interval)
@@ -150,17 +155,19 @@ class _Pulled:
         mirror = self.problem.half_period_mirror
         return PulledMap(self.contact, self.path, self.body, drift_rate, mirror, slope)
 
-    def _fits(self, start, period_map):
+    def _fits(self, start: np.ndarray, period_map: PulledMap) -> bool:
         return start.shape == period_map.state(forward_slip(self.contact), np.zeros(2)).shape
 
-    def _starts(self, tolerance, guess):
+    def _starts(
+        self, tolerance: float, guess: Run | None
+    ) -> Iterator[tuple[np.ndarray, float, float]]:
         """States to begin with, the nearest one first, each with the force of the static limit and
         the friction near by."""
-        if guess is not None and guess.converged:
+        if guess is not None and guess.state is not None and guess.converged:
             yield guess.state, guess.static_force, guess.mu
         if self.resolution.steps >= PREPARED_FROM:
             coarser = self._coarser(tolerance)
-            if coarser.converged:
+            if coarser.state is not None and coarser.converged:
                 yield coarser.state, coarser.static_force, coarser.mu
         moved = self._moved(tolerance)
         self.before.append(moved)
@@ -171,7 +178,7 @@ class _Pulled:
         full = float(forces(self.contact, slipping)[FORWARD])
         yield self._state(slipping, full), moved.static_force, moved.mu
 
-    def _coarser(self, tolerance):
+    def _coarser(self, tolerance: float) -> Run:
         """The Run with fewer steps."""
         fewer = replace(self.resolution, steps=self.resolution.steps // COARSENING)
         accuracy = Accuracy(tolerance / self.force_of_answer, self.slope)
@@ -179,12 +186,12 @@ class _Pulled:
         self.before.append(found)
         return found
 
-    def _moved(self, tolerance):
+    def _moved(self, tolerance: float) -> Run:
         """The Run at a velocity that is given."""
         share = max(tolerance, LOOSEST_MOVED) / self.problem.mean_load
         return simulate_each(self.problem, self.model, self.resolution, share, self.settings)
 
-    def _state(self, tractions, mean):
+    def _state(self, tractions: np.ndarray, mean: float) -> np.ndarray:
         """State near tractions whose mean force in a period is about `mean`."""
         if self.drive.force is not None:
             wanted = self.drive.force * self.problem.mean_load
@@ -195,13 +202,16 @@ class _Pulled:
         moved = np.array([place, 0.0]) if self.body.remembers else np.zeros(0)
         return np.append(tractions.ravel(), moved)
 
-    def _summary(self, done, static_force, step_tolerance):
+    def _summary(
+        self, done: list[PeriodicState], static_force: float, step_tolerance: float
+    ) -> Run:
         problem, unit, found = self.problem, self.force_of_answer, done[-1]
         forward, _, torque = mean_forces(self.contact, problem, self.path, found.forces)
         periods = periods_of(sum(one.marches for one in done), problem)
         reason = unsolved(found.solver_residual, stages_of(self.path), step_tolerance)
         if not found.converged:
             reason = f"no periodic state within {periods:g} periods: {found.distance:.1e} left"
+        assert found.body is not None  # as of all contacts that are pulled
         ahead = float(found.body[-1, 0] - found.body[0, 0]) / self.interval
         drift = problem.unit_drift
         solves, iterations = (sum(getattr(m, n) for m in done) for n in ("solves", "iterations"))

@@ -9,12 +9,14 @@ that number doubles fall at least as a geometric series does.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 
 from microslip.models.contact import StepFailure, forward_slip
-from microslip.models.path import EULER, make_path
-from microslip.models.pull import Body
+from microslip.models.path import EULER, Path, make_path
+from microslip.models.pull import Body, PulledMarch
+from microslip.models.system_contact import SystemContact
 from microslip.motions.motion import HALF_PERIOD
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
@@ -86,7 +88,8 @@ def run_to_rest(
     ShakedownRun
         Not converged where the contact does not come to rest, or a step failed.
     """
-    contact = settings.contact(problem, model, resolution)
+    # or one that counts its marches
+    contact = cast(SystemContact, settings.contact(problem, model, resolution))
     body = Body(0.0, 0.0, 0.0, force * problem.mean_load)
     try:
         return _Walk(problem, contact, resolution.steps, body).to_rest(tolerance)
@@ -97,14 +100,15 @@ def run_to_rest(
 class _Walk:
     """A contact on its way."""
 
-    def __init__(self, problem, contact, steps, body):
+    def __init__(self, problem: Problem, contact: SystemContact, steps: int, body: Body):
         self.problem, self.contact, self.steps, self.body = problem, contact, steps, body
         path = path_of(problem, contact, steps)
         self.map = PulledMap(contact, path, body, mirror=problem.half_period_mirror)
         self.interval = path.phase[-1] - path.phase[0]
-        self.gone, self.residual, self.iterations, self.solves = [], 0.0, 0, 0
+        self.gone: list[float] = []
+        self.residual, self.iterations, self.solves = 0.0, 0, 0
 
-    def to_rest(self, tolerance):
+    def to_rest(self, tolerance: float) -> ShakedownRun:
         """The ShakedownRun; tolerance: of what may be left of the way."""
         step_tolerance = STEP_SHARE * tolerance
         state = 0.0 * forward_slip(self.contact)
@@ -117,6 +121,7 @@ class _Walk:
         for turn in range(MOST_INTERVALS):
             interval = self.map(state, step_tolerance)
             state = interval.image
+            assert isinstance(interval.march, PulledMarch)  # as the map marches
             self.gone.append(float(interval.march.body[-1, 0] - interval.march.body[0, 0]))
             self.residual += interval.march.residual
             if turn + 1 == look:
@@ -132,24 +137,24 @@ class _Walk:
         return self._summary((pushed, begun), left, reason, state)
 
     @property
-    def _periods(self):
+    def _periods(self) -> float:
         """Full periods marched so far."""
         return float(self.map.marches * self.interval / (2.0 * np.pi))
 
-    def _still(self):
+    def _still(self) -> Path:
         """The path on which the force alone grows: one step, since slip only grows with it."""
-        problem, depth = self.problem, None
-        if problem.depth is not None:
+        of_phase, depth = self.problem.depth, None
+        if of_phase is not None:
 
-            def depth(phase):
-                return problem.depth(0.0 * phase)
+            def depth(phase: np.ndarray) -> np.ndarray:
+                return of_phase(0.0 * phase)
 
-        def displacement(phase):
-            return tuple(0.0 * phase for _ in range(3))
+        def displacement(phase: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+            return 0.0 * phase, 0.0 * phase, 0.0 * phase
 
         return make_path(displacement, np.array([0.0, 1.0]), EULER, depth)
 
-    def _first_part(self):
+    def _first_part(self) -> tuple[Path, int]:
         """The path from the mean position to where an interval of the map ends, and of how many
         such intervals that is the image of the beginning."""
         end, images = self.map.path.phase[0], 0
@@ -159,7 +164,9 @@ class _Walk:
         phases = np.linspace(0.0, end, steps + 1)
         return make_path(self.problem.displacement, phases, depth=self.problem.depth), images
 
-    def _along(self, path, state, step_tolerance):
+    def _along(
+        self, path: Path, state: np.ndarray, step_tolerance: float
+    ) -> tuple[np.ndarray, float]:
         """State at the end of a path, and how far the contact went."""
         march = self.contact.pulled_march(path, state, step_tolerance, self.body, np.zeros(2))
         self.residual += march.residual
@@ -167,12 +174,12 @@ class _Walk:
         self.solves += march.solves
         return march.state, float(march.body[-1, 0] - march.body[0, 0])
 
-    def _drifts(self):
+    def _drifts(self) -> bool:
         """Whether the contact goes on as fast as it did long before."""
         before, last = self._last_two()
         return len(self.gone) >= LONG and last > DRIFTING * before
 
-    def _left(self):
+    def _left(self) -> float:
         """How much of the way may be left: the series of distances that are gone while the number
         of intervals doubles, if it went on as it did last; infinite if that does not end."""
         before, last = self._last_two()
@@ -181,13 +188,15 @@ class _Walk:
         ratio = last / before if before > 0.0 else np.inf
         return last * ratio / (1.0 - ratio) if ratio < SLOWEST_RATIO else np.inf
 
-    def _last_two(self):
+    def _last_two(self) -> tuple[float, float]:
         """Distances gone while the number of intervals doubled to half of what it is, and to it."""
         count = len(self.gone)
         before, last = sum(self.gone[count // 4 : count // 2]), sum(self.gone[count // 2 :])
         return max(before, 0.0), max(last, 0.0)
 
-    def _summary(self, parts, left, reason, state):
+    def _summary(
+        self, parts: tuple[float, float], left: float, reason: str, state: np.ndarray
+    ) -> ShakedownRun:
         pushed, begun = parts
         marched = np.cumsum([begun, *self.gone])
         added = marched[-1] + (0.5 * left if np.isfinite(left) else 0.0)

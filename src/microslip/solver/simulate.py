@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 
 from microslip.contacts.coulomb import project
-from microslip.models.contact import FORWARD, Contact, StepFailure, forces, forward_slip
+from microslip.models.contact import (
+    FORWARD,
+    Contact,
+    GrowingContact,
+    StepFailure,
+    forces,
+    forward_slip,
+)
 from microslip.models.path import Path
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.effort import Effort
-from microslip.solver.period_map import MOST_MARCHES, DriftRate, Goal, PeriodMap
+from microslip.solver.method import Method
+from microslip.solver.period_map import MOST_MARCHES, DriftRate, Goal, PeriodicState, PeriodMap
 from microslip.solver.periodic import find_periodic_state
 from microslip.solver.power import oscillation_power
 from microslip.solver.run import AS_SHIPPED, Run, Settings, failed_run, unsolved
@@ -88,7 +97,14 @@ def simulate(
     return run
 
 
-def _run(problem, model, resolution, tolerance, guess, settings):
+def _run(
+    problem: Problem,
+    model: str,
+    resolution: Resolution,
+    tolerance: float,
+    guess: Run | None,
+    settings: Settings,
+) -> Run:
     """As `simulate`, but that the tolerance is that of a force over mu F_z, and failures raise."""
     contact = settings.contact(problem, model, resolution)
     if not problem.motion.periodic:
@@ -109,7 +125,7 @@ def step_share(force_rate: float, steps: int, tighter: bool) -> float:
     return min(max(slow_share, floor), STEP_SHARE, MARCH_SHARE / steps)
 
 
-def _extrapolated(fine, coarse):
+def _extrapolated(fine: Run, coarse: Run) -> Run:
     """The Run that two of first order amount to, one with half as many steps as the other."""
     return replace(
         fine,
@@ -128,7 +144,15 @@ def _extrapolated(fine, coarse):
 class _Search:
     """The search for the periodic state of one run, from one start after the other."""
 
-    def __init__(self, contact, problem, method, steps, tolerance, step_tolerance):
+    def __init__(
+        self,
+        contact: Contact,
+        problem: Problem,
+        method: Method,
+        steps: int,
+        tolerance: float,
+        step_tolerance: float,
+    ):
         self.contact, self.problem, self.method, self.steps = contact, problem, method, steps
         self.tolerance, self.step_tolerance = tolerance, step_tolerance
         interval = np.pi if problem.half_period_mirror else 2.0 * np.pi
@@ -137,28 +161,28 @@ class _Search:
         gain = contact.stiffness * problem.drift * interval
         self.drift_rate = DriftRate(limit, problem.mean_load, gain)
         self.path = path_of(problem, contact, steps, method.integrator)
-        self.done = []
+        self.done: list[PeriodicState] = []
 
-    def run(self, guess=None):
+    def run(self, guess: Run | None = None) -> Run:
         """The Run; guess: see simulate."""
         found, start = None, self._start_from(guess)
-        if start is not None:
+        if guess is not None and start is not None:
             self.drift_rate = replace(self.drift_rate, static_force=guess.static_force)
             found = self._find(start, near=start is not guess.state)
         if found is None or not found.converged:
             found = self._search_afresh()
         return self._summary(found)
 
-    def _start_from(self, guess):
+    def _start_from(self, guess: Run | None) -> np.ndarray | None:
         """Tractions of a guess on the points of this contact; None: it is of no use here."""
-        if guess is None or not guess.converged:
+        if guess is None or guess.state is None or not guess.converged:
             return None
         if guess.state.shape == (2, *self.contact.forward_position.shape):
             return guess.state
         start = self.contact.prolonged(guess.state)
         return None if start is None else project(start, self.contact.bound)
 
-    def _search_afresh(self):
+    def _search_afresh(self) -> PeriodicState:
         slipping = forward_slip(self.contact)
         if not self.method.prepared:
             return self._find(slipping)
@@ -168,7 +192,7 @@ class _Search:
                 break
         return found
 
-    def _start_near_the_limit(self, slipping):
+    def _start_near_the_limit(self, slipping: np.ndarray) -> np.ndarray:
         """The static limit with all points pushed forward; also takes note of its force."""
         contact, drift = self.contact, self.problem.drift
         if not (contact.sticks and self.problem.straight):
@@ -181,7 +205,7 @@ class _Search:
         start = limit.residual + limit.oscillating + excess * slipping
         return project(start, contact.bound)
 
-    def _find(self, start, near=False):
+    def _find(self, start: np.ndarray, near: bool = False) -> PeriodicState:
         period_map = PeriodMap(
             self.contact, self.path, self.drift_rate, self.problem.half_period_mirror
         )
@@ -191,7 +215,7 @@ class _Search:
         self.done.append(search(period_map, start, goal))
         return self.done[-1]
 
-    def _summary(self, found):
+    def _summary(self, found: PeriodicState) -> Run:
         full = self.problem.mean_load
         forward, _, torque = mean_forces(self.contact, self.problem, self.path, found.forces)
         solves = sum(one.solves for one in self.done)
@@ -227,7 +251,8 @@ def mean_forces(contact: Contact, problem: Problem, path: Path, forces: np.ndarr
         return path.mean(forces)
     # by what they lack of full slip, whose mean is known: less is left to the trapezoidal rule,
     # and to how the rings in contact follow its edge
-    bounds = contact.bounds(problem.depth(path.phase))
+    growing = cast(GrowingContact, contact)  # as its load changes
+    bounds = growing.bounds(problem.depth(path.phase))
     full = contact.angles * (bounds @ contact.weight)[:, None] * [1.0, 0.0, 0.0]
     return [problem.mean_load, 0.0, 0.0] - path.mean(full - forces)
 
@@ -237,7 +262,7 @@ def stages_of(path: Path) -> int:
     return path.stages.shape[0] * path.stages.shape[1]
 
 
-def _steady_run(contact, problem, tolerance, step_tolerance):
+def _steady_run(contact: Contact, problem: Problem, tolerance: float, step_tolerance: float) -> Run:
     found = steady_state(contact, problem.displacement, problem.velocity, tolerance, step_tolerance)
     return Run(
         mu=float(found.forces[0]),

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
 from microslip.contacts.coulomb import project
-from microslip.models.contact import Contact, March
+from microslip.models.contact import Contact, GrowingContact, Guess
 from microslip.models.path import Path
 
 
@@ -38,7 +38,7 @@ def frames(
     path: Path,
     state: np.ndarray,
     tolerance: float,
-    previous: March | None = None,
+    previous: Guess | None = None,
 ) -> Frames:
     """Tractions and forces at every phase of a path.
 
@@ -62,10 +62,12 @@ def frames(
     """
     if contact.compiled and path.end == 1.0:
         march = contact.march(path, state, tolerance, previous)
+        assert march.fields is not None  # as of all compiled contacts
         stages = np.moveaxis(march.fields[:: path.stages.shape[1]], 1, 0)
-        tractions = np.moveaxis(project(stages, bounds_at_phases(contact, path)), 1, 0)
-        return Frames(tractions, march.forces, march.residual, march.solves)
-    tractions, forces, residual, solves = [state], [], 0.0, 0
+        at_phases = np.moveaxis(project(stages, bounds_at_phases(contact, path)), 1, 0)
+        return Frames(at_phases, march.forces, march.residual, march.solves)
+    tractions, residual, solves = [state], 0.0, 0
+    forces: list[np.ndarray] = []
     for k in range(path.steps):
         step = replace(
             path,
@@ -85,4 +87,5 @@ def bounds_at_phases(contact: Contact, path: Path) -> np.ndarray:
     """Friction bounds at every phase, (steps + 1, 1, n), or those that stay, (1, ...)."""
     if path.depth is None:
         return contact.bound[None]
-    return contact.bounds_along(path)[:: path.stages.shape[1], None]
+    growing = cast(GrowingContact, contact)  # as the depth of the path tells
+    return growing.bounds_along(path)[:: path.stages.shape[1], None]

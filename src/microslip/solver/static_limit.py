@@ -20,8 +20,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from microslip.models.contact import Contact
-from microslip.models.path import EULER, make_path
+from microslip.models.contact import Contact, March
+from microslip.models.path import EULER, Path, make_path
 from microslip.motions.problem import Problem
 
 STEPS = 4
@@ -66,14 +66,14 @@ def oscillating_part(contact: Contact, oscillation: Callable, step_tolerance: fl
     return -_quarter_march(contact, oscillation, step_tolerance).state
 
 
-def _quarter_march(contact, oscillation, step_tolerance):
+def _quarter_march(contact: Contact, oscillation: Callable, step_tolerance: float) -> March:
     """The March from a stress-free start to the second turning point."""
     start = np.zeros((2, *contact.lateral_position.shape))
     return contact.march(_quarter(oscillation), start, step_tolerance)
 
 
 @lru_cache(maxsize=32)
-def _quarter(oscillation):
+def _quarter(oscillation: Callable) -> Path:
     """The path from the mean position to the second turning point."""
     return make_path(oscillation, np.linspace(0.0, np.pi / 2, STEPS // 2 + 1), EULER)
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from microslip.models.contact import FORWARD, StepFailure, forces
+from microslip.models.contact import FORWARD, Contact, StepFailure, forces
 from microslip.models.rings.mesh import Focus
 from microslip.motions.problem import Problem
 from microslip.solver.discretise import STRONGEST_FOCUS, Resolution, path_of
@@ -62,7 +62,7 @@ def simulate_static(
         return failed_run(str(failure))
 
 
-def _on_a_line(contact, problem, tolerance):
+def _on_a_line(contact: Contact, problem: Problem, tolerance: float) -> Run:
     force, solves, left, step_tolerance = 0.0, 0, 0.0, STEP_SHARE * tolerance
     if contact.sticks:
         limit = static_state(contact, problem.displacement, step_tolerance)
@@ -81,7 +81,9 @@ def _on_a_line(contact, problem, tolerance):
     )
 
 
-def _on_a_loop(problem, model, resolution, tolerance, settings):
+def _on_a_loop(
+    problem: Problem, model: str, resolution: Resolution, tolerance: float, settings: Settings
+) -> Run:
     if settings.focus is not None:  # the edges are known
         contact = settings.contact(problem, model, resolution)
         return _on_these_points(contact, problem, resolution, tolerance, settings)[0]
@@ -106,12 +108,12 @@ def gathered_on_a_loop(
     sticks, or everything, or the contact tells no radii.
     """
 
-    def run_on(contact):
+    def run_on(contact: Contact) -> np.ndarray | None:
         run, left = _on_these_points(contact, problem, resolution, tolerance, settings)
         done.append(run)
         return left if run.converged else None
 
-    done = []
+    done: list[Run] = []
     radii = _gathered(_contacts(problem, model, resolution, settings, progress), run_on)
     return done, radii
 
@@ -129,7 +131,7 @@ def gathered_on_a_line(
     """Radii of the edges of what never slips, as for `gathered_on_a_loop`, where the turning points
     tell; near: what they are about, where that is known."""
 
-    def run_on(contact):
+    def run_on(contact: Contact) -> np.ndarray | None:
         limit = static_state(contact, problem.displacement, STEP_SHARE * tolerance)
         if unsolved(limit.solver_residual, limit.solves, STEP_SHARE * tolerance):
             return None
@@ -139,10 +141,16 @@ def gathered_on_a_line(
     return _gathered(_contacts(problem, model, resolution, settings, progress), run_on, near)
 
 
-def _contacts(problem, model, resolution, settings, progress):
+def _contacts(
+    problem: Problem,
+    model: str,
+    resolution: Resolution,
+    settings: Settings,
+    progress: Callable[[Resolution], object] | None,
+) -> Callable[[Focus | None], Contact]:
     """contact(focus) -> the contact of a run that is about to start."""
 
-    def contact(focus):
+    def contact(focus: Focus | None) -> Contact:
         if progress is not None:
             progress(resolution)
         return settings.contact(problem, model, resolution, focus)
@@ -150,10 +158,15 @@ def _contacts(problem, model, resolution, settings, progress):
     return contact
 
 
-def _gathered(contact_at, run_on, near=()):
+def _gathered(
+    contact_at: Callable[[Focus | None], Contact],
+    run_on: Callable[[Contact], np.ndarray | None],
+    near: tuple[float, ...] = (),
+) -> tuple[float, ...]:
     """Radii that stay where they are once rings gather there, or the last ones; run_on(contact) ->
     which points have something left to resist with, or None."""
-    focus, radii = Focus(near, STRONGEST_FOCUS) if near else None, ()
+    focus = Focus(near, STRONGEST_FOCUS) if near else None
+    radii: tuple[float, ...] = ()
     for _ in range(MOST_PASSES):
         contact = contact_at(focus)
         radii = _stick_radii(contact, run_on(contact))
@@ -163,7 +176,7 @@ def _gathered(contact_at, run_on, near=()):
     return radii
 
 
-def _stick_radii(contact, left):
+def _stick_radii(contact: Contact, left: np.ndarray | None) -> tuple[float, ...]:
     """Radii between rings of which more than half has something `left` and others, the outermost
     alone where there are too many; none where these are not known."""
     edges = contact.edges
@@ -174,7 +187,7 @@ def _stick_radii(contact, left):
     return tuple(radii if len(radii) <= MOST_EDGES else radii[-1:])
 
 
-def _without_slivers(radii):
+def _without_slivers(radii: list[float]) -> list[float]:
     """Ascending radii without pairs that lie within a SLIVER of each other, the closest first."""
     while len(radii) > 1:
         closest = int(np.argmin(np.diff(radii)))
@@ -184,7 +197,9 @@ def _without_slivers(radii):
     return radii
 
 
-def _on_these_points(contact, problem, resolution, tolerance, settings):
+def _on_these_points(
+    contact: Contact, problem: Problem, resolution: Resolution, tolerance: float, settings: Settings
+) -> tuple[Run, np.ndarray | None]:
     """The Run on one contact, and which points have something left to resist with, if any has."""
     path = path_of(problem, contact, resolution.steps, settings.method.integrator)
     mirror = problem.half_period_mirror

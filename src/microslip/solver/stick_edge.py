@@ -91,10 +91,12 @@ class _EdgeSearch:
     depend on what was asked before.
     """
 
-    def __init__(self, locate):
-        self.locate, self.radii, self.marches = locate, None, []
+    def __init__(self, locate: Callable[[Settings, Callable | None], tuple[float, ...]]):
+        self.locate = locate
+        self.radii: tuple[float, ...] | None = None
+        self.marches: list[tuple[int, int, int]] = []
 
-    def within(self, budget, progress):
+    def within(self, budget: Budget, progress: Callable | None) -> tuple[float, ...]:
         """The radii; raises Spent where the budget is."""
         if self.radii is None:
             metered = _Recorder(budget)
@@ -109,16 +111,17 @@ class _EdgeSearch:
 class _Recorder(Budget):
     """A budget that remembers what each march took from another one."""
 
-    def __init__(self, budget):
+    def __init__(self, budget: Budget):
         super().__init__()
-        self.budget, self.marches = budget, []
+        self.budget = budget
+        self.marches: list[tuple[int, int, int]] = []
 
-    def take(self, solves, iterations, unknowns):
+    def take(self, solves: int, iterations: int, unknowns: int) -> None:
         self.budget.take(solves, iterations, unknowns)
         self.marches.append((solves, iterations, unknowns))
 
 
-def _limit(problem):
+def _limit(problem: Problem) -> Problem:
     """The static limit at nu = 0: Poisson's ratio moves the edges little."""
     return Problem(
         problem.motion,
@@ -131,11 +134,11 @@ def _limit(problem):
 
 
 @lru_cache(maxsize=64)
-def _on_a_line(limit):
+def _on_a_line(limit: Problem) -> _EdgeSearch:
     """The _EdgeSearch of a motion on a line."""
     rotates = limit.motion.rotates
 
-    def locate(settings, progress):
+    def locate(settings: Settings, progress: Callable | None) -> tuple[float, ...]:
         if limit.focus is not None and not rotates:
             return ()  # ... of an indenter, by its profile
         model = "polar" if rotates else "radial"
@@ -152,13 +155,13 @@ def _on_a_line(limit):
 
 
 @lru_cache(maxsize=64)
-def _on_a_loop(limit):
+def _on_a_loop(limit: Problem) -> _EdgeSearch:
     """The _EdgeSearch of a motion on a loop."""
     motion = limit.motion
     telling = TELLING_SWEPT if motion.loads else TELLING_LOOP
     telling = replace(telling, steps=telling.steps * motion.cycles)
 
-    def locate(settings, progress):
+    def locate(settings: Settings, progress: Callable | None) -> tuple[float, ...]:
         model = "polar" if motion.rotates else "radial"
         try:
             return gathered_on_a_loop(limit, model, telling, TOLD, settings, progress)[1]

@@ -19,7 +19,7 @@ class Level(NamedTuple):
     steps: int
 
 
-def _doubled(cells, angles, steps, count):
+def _doubled(cells: int, angles: int, steps: int, count: int) -> tuple[Level, ...]:
     """Levels from the first one on; what is 1 stays 1, the rest doubles."""
     return tuple(
         Level(*(1 if n == 1 else n * 2**k for n in (cells, angles, steps))) for k in range(count)

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import asdict
 from importlib import import_module
+from types import ModuleType
 from typing import TYPE_CHECKING
 
 from microslip.config.records import Configuration
@@ -68,5 +69,5 @@ def report(study: str, dataset: xr.Dataset) -> Iterator[str]:
     return _dataset_of(study).report(dataset)
 
 
-def _dataset_of(study):
+def _dataset_of(study: str) -> ModuleType:
     return import_module(f"microslip.studies.{study}.dataset")

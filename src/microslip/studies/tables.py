@@ -1,12 +1,18 @@
 """Records to columns: what the datasets of the studies share."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
+from typing import Any, TypeVar, overload
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from microslip.datasets import point_variables, sweep_dataset
 from microslip.foundation.canonical import canonical_json, sha256
+
+Kind = TypeVar("Kind")
 
 
 class Answers:
@@ -17,9 +23,12 @@ class Answers:
     """
 
     def __init__(self, answer: Callable):
-        self.answer, self.keys, self.versions, self.machines = answer, set(), set(), []
+        self.answer = answer
+        self.keys: set[str] = set()
+        self.versions: set[str] = set()
+        self.machines: list[dict] = []
 
-    def __call__(self, request):
+    def __call__(self, request: dict) -> Any:  # a result; a Run of runs.Runs
         record = self.answer(request)
         self.keys.add(record["key"])
         self.versions.add(canonical_json(record["versions"]))
@@ -29,7 +38,15 @@ class Answers:
         return record["result"]
 
 
-def value_of(result: dict, name: str, kind: type = float) -> object:
+@overload
+def value_of(result: dict, name: str) -> float: ...
+
+
+@overload
+def value_of(result: dict, name: str, kind: type[Kind]) -> Kind: ...
+
+
+def value_of(result: dict, name: str, kind: type = float) -> Any:
     """A value of a result as `kind`; for what is not there NaN, 0, False or empty text."""
     value = result.get(name)
     if value is None:
@@ -38,14 +55,14 @@ def value_of(result: dict, name: str, kind: type = float) -> object:
 
 
 def variable(
-    dims: str | tuple, values: np.ndarray, long_name: str, kind: type = float, units: str = "1"
+    dims: str | tuple, values: ArrayLike, long_name: str, kind: type = float, units: str = "1"
 ) -> tuple:
     """A variable of a dataset with its attributes; kind: type of its values."""
     values = np.asarray(values).astype(object if kind is str else kind)
     return dims, values, point_variables.attributes(kind, long_name, units)
 
 
-def flags(dims: str | tuple, values: np.ndarray, long_name: str, meanings: tuple) -> tuple:
+def flags(dims: str | tuple, values: ArrayLike, long_name: str, meanings: tuple) -> tuple:
     """A variable of small numbers that stand for words."""
     dims, values, about = variable(dims, values, long_name, np.int8)
     del about["units"]

@@ -25,6 +25,10 @@ SHARED_MODES = (9, 17, 33)
 """Modes that kernels are averaged for together, so that runs at 4, 6 and 8 angles share them."""
 
 
+Wave = tuple[int, int]
+"""Number m and part of a wave, see `_pairs`."""
+
+
 class Modes(NamedTuple):
     """Operators on fields of rings x angles, contact after contact, rows of equal width.
 
@@ -161,7 +165,9 @@ WHOLE, ROTATION, TRANSLATION = "whole disc", "mirror image", "half turn"
 """Points: all, or half of them, whose tractions tell the others by this symmetry."""
 
 
-def _single_waves(theta, angles, symmetry):
+def _single_waves(
+    theta: np.ndarray, angles: int, symmetry: str
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """At nu = 0: numbers m of the waves, and their forward and lateral values, (waves, points).
 
     Forward tractions of a rotation are cosines and lateral ones sines; a translation has both of
@@ -178,7 +184,7 @@ def _single_waves(theta, angles, symmetry):
     return numbers, waves, waves
 
 
-def _pairs(angles, symmetry):
+def _pairs(angles: int, symmetry: str) -> tuple[list[tuple[Wave, Wave]], list[tuple[Wave, Wave]]]:
     """At nu > 0: pairs of waves (m, part), and whether the two act on each other.
 
     Part 0 is e^{i m theta}, part 1 i times that.  The shortest waves of a disc, or of a rotation,
@@ -198,7 +204,13 @@ def _pairs(angles, symmetry):
     return coupled, list(zip(single[::2], single[1::2], strict=True))
 
 
-def _coupled_matrices(pairs, single, influence, ratio, kappa):
+def _coupled_matrices(
+    pairs: Sequence[tuple[Wave, Wave]],
+    single: Sequence[tuple[Wave, Wave]],
+    influence: tuple[np.ndarray, np.ndarray],
+    ratio: np.ndarray,
+    kappa: float,
+) -> np.ndarray:
     """Matrices (pairs, 2, n, 2, n) of coupled pairs and of single waves."""
     near, far = influence
     n = near.shape[1]
@@ -216,13 +228,15 @@ def _coupled_matrices(pairs, single, influence, ratio, kappa):
     return out
 
 
-def _modes_to_know(angles):
+def _modes_to_know(angles: int) -> int:
     """Modes to average the kernels for: those of more angles too, as runs differ in these alone."""
     return next((most for most in SHARED_MODES if angles < most), angles + 1)
 
 
 @lru_cache(maxsize=4)
-def _shared_influence(psi, n_modes, coupled, modulus):
+def _shared_influence(
+    psi: tuple[float, ...], n_modes: int, coupled: bool, modulus: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Mode matrices of rings with the edges `psi`, see ring_influence."""
     return ring_influence(np.array(psi), n_modes, coupled, modulus=modulus)
 

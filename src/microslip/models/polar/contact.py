@@ -55,7 +55,7 @@ class PolarContact(SystemContact):
         Where the half disc cannot be filled.
     """
 
-    loaded = None
+    loaded: RadialContact | None = None
     """Rings that know the bounds while the normal load changes, a RadialContact."""
 
     def __init__(
@@ -110,11 +110,11 @@ class PolarContact(SystemContact):
         """The same points spread over the contact at its `deepest`, with the bound at `start`;
         see RadialContact.at_indentation."""
         out = self.unprepared()
-        out.loaded = RadialContact.resolved(*self._made_of).at_indentation(deepest, start)
-        out.radius = radius = out.loaded.radius
+        out.loaded = loaded = RadialContact.resolved(*self._made_of).at_indentation(deepest, start)
+        out.radius = radius = loaded.radius
         out.forward_position = self.forward_position * radius
         out.lateral_position = self.lateral_position * radius
-        out.bound, out.weight = out.loaded.bound, self.weight * radius**2
+        out.bound, out.weight = loaded.bound, self.weight * radius**2
         out.operators = self.operators.joined([self.operators], np.array([radius]))
         out.compliance = self.compliance * radius
         out.stiffness = self.stiffness * radius
@@ -122,10 +122,12 @@ class PolarContact(SystemContact):
 
     def bounds(self, depths: np.ndarray) -> np.ndarray:
         """Mean friction bound of each ring at each depth, shape (len(depths), cells)."""
+        assert self.loaded is not None  # as at_indentation makes it
         return self.loaded.bounds(depths)
 
     def bounds_along(self, path: Path) -> np.ndarray:
         """Bounds at the start and at every stage of a path, (1 + steps stages, cells)."""
+        assert self.loaded is not None  # as at_indentation makes it
         return self.loaded.bounds_along(path)
 
     def prolonged(self, state: np.ndarray) -> np.ndarray | None:
@@ -149,6 +151,8 @@ class PolarContact(SystemContact):
         return _interpolated(self.rings.radius, rings.radius, share, axis=2) * self.bound
 
 
-def _interpolated(wanted, given, values, axis):
+def _interpolated(
+    wanted: np.ndarray, given: np.ndarray, values: np.ndarray, axis: int
+) -> np.ndarray:
     """Linear between the given places along an axis, constant beyond them."""
     return np.apply_along_axis(lambda line: np.interp(wanted, given, line), axis, values)

@@ -42,7 +42,7 @@ class DahlContact(contact.Contact):
         path: Path,
         state: np.ndarray,
         tolerance: float,
-        previous: contact.March | None = None,
+        previous: contact.Guess | None = None,
     ) -> contact.March:
         """Solve along `path`, straight from phase to phase (translations only)."""
         moves = np.diff(path.positions[:, :2], axis=0)

@@ -52,7 +52,7 @@ class RigidContact(contact.Contact):
         path: Path,
         state: np.ndarray,
         tolerance: float,
-        previous: contact.March | None = None,
+        previous: contact.Guess | None = None,
     ) -> contact.March:
         """Forces of full slip along the velocity at each phase of the path."""
         velocity = np.gradient(path.positions, path.phase, axis=0, edge_order=2)

@@ -42,7 +42,8 @@ class RadialContact(SystemContact):
     """
 
     angles = 1
-    edges = None
+    edges: np.ndarray | None = None
+    _joins: np.ndarray
 
     def __init__(
         self,
@@ -61,14 +62,14 @@ class RadialContact(SystemContact):
         weighted = weight[:, None] * self.influence
         self._weighted = 0.5 * (weighted + weighted.T)
         if stiffness is None:  # the force that moves all points by one
-            stiffness = weight @ np.linalg.solve(self._weighted, weight)
+            stiffness = float(weight @ np.linalg.solve(self._weighted, weight))
         self.stiffness = float(stiffness)
         self.layout = Layout(1, 1, len(bound), width_of(len(bound)))
         self.mirror = np.arange(len(bound))
         self.operators = Matrices(packed(self._matrices(), self.layout.width))
         self.resultants = np.array([1.0, 1.0, 0.0])
 
-    def _matrices(self):
+    def _matrices(self) -> np.ndarray:
         """A and its resolvents, (operators, 1, cells, cells)."""
         weight = self.weight
         penalty = best_penalty(self.compliance, len(weight))
@@ -83,12 +84,18 @@ class RadialContact(SystemContact):
         """The half-space on `cells` rings refined around the radius `focus`."""
         return _resolved(cells, focus, pressure)
 
+    @property
+    def _known_growth(self) -> Growth:
+        assert self.growth is not None  # else the normal load cannot change
+        return self.growth
+
     def at_indentation(self, deepest: float, start: float) -> RadialContact:
         """The same rings spread over the contact at its `deepest`, with the bound at `start`.
 
         Both are depths (see varying_load.py), deepest > 0.
         """
-        growth, radius = self.growth, float(self.growth.pressure.radius(deepest))
+        growth = self._known_growth
+        radius = float(growth.pressure.radius(deepest))
         out = RadialContact(
             self.influence * radius**growth.influence_power,
             self.bound,
@@ -102,7 +109,7 @@ class RadialContact(SystemContact):
         out.bound = out.bounds(np.array([start]))[0]
         return out
 
-    def _effective_radii(self):
+    def _effective_radii(self) -> np.ndarray:
         """Radius of the contact that is as stiff as the first k rings, stuck together, for k from 0
         to all; shape (cells + 1,).
 
@@ -121,8 +128,9 @@ class RadialContact(SystemContact):
         edge: radii (len(depths),) that say which rings are in contact, by default those of the
         contact.  What is outside of these rings counts for the last of them.
         """
-        load_within = self.growth.load_within(self.growth.pressure, self.growth.edges, depths)
-        edge = self.growth.pressure.radius(depths) if edge is None else edge
+        growth = self._known_growth
+        load_within = growth.load_within(growth.pressure, growth.edges, depths)
+        edge = growth.pressure.radius(depths) if edge is None else edge
         outside, most = edge[:, None] <= self._joins, load_within[:, -1:]
         load_within[:, 1:-1] = np.where(outside, most, load_within[:, 1:-1])
         return np.maximum(np.diff(load_within, axis=1), 0.0) / self.weight
@@ -135,8 +143,9 @@ class RadialContact(SystemContact):
         for the share 1 / (1 + carried) of the step, where it should be half of it in the mean: the
         edge of the contact is seen as early as makes up for it.
         """
+        assert path.depth is not None  # else the bounds stay what they are
         stages = path.stages.shape[1]
-        ends = self.growth.pressure.radius(path.depth[::stages])
+        ends = self._known_growth.pressure.radius(path.depth[::stages])
         shift = 0.5 - 1.0 / (1.0 + path.carry[-1].sum())
         seen = ends.copy()
         seen[:-1] += shift * np.diff(ends)  # the last as it is: there the next march begins
@@ -151,7 +160,7 @@ def width_of(rings: int) -> int:
 
 
 @lru_cache(maxsize=32)
-def _resolved(cells, focus, pressure):
+def _resolved(cells: int, focus: Focus | float | None, pressure: Pressure) -> RadialContact:
     """Shared by runs that differ in their motion only: a contact never changes."""
     rings = make_rings(cells, focus, pressure)
     near, _ = ring_influence(rings.psi, 1, False, modulus=pressure.G_star)

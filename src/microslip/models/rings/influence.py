@@ -63,7 +63,7 @@ class Averaging(NamedTuple):
 
 
 @kernel
-def _close_pair(averaging, i, j, near, far):
+def _close_pair(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.ndarray) -> None:
     """Average kernels over ring i (outer rule) and ring j (inner rule).
 
     Adds to near[:, i, j] and far[:, i, j] the averages of G_m and C_{m+1} weighted with the ring
@@ -102,7 +102,7 @@ def _close_pair(averaging, i, j, near, far):
 
 
 @kernel
-def _pair_apart(averaging, i, j, near, far):
+def _pair_apart(averaging: Averaging, i: int, j: int, near: np.ndarray, far: np.ndarray) -> None:
     """As `_close_pair` for rings with a gap between them, and also adds to far[:, j, i]: the
     kernels are smooth there."""
     psi, hertz, coupled = averaging.psi, averaging.hertz, averaging.coupled
@@ -130,14 +130,14 @@ def _pair_apart(averaging, i, j, near, far):
 
 
 @kernel
-def _weight(psi, hertz):
+def _weight(psi: float, hertz: bool) -> float:
     """Shape times r dr/dpsi on r = sin psi: uniform traction, or one shaped like the bound."""
     c = np.cos(psi)
     return np.sin(psi) * c * (c if hertz else 1.0)
 
 
 @kernel
-def _weight_integral(b0, b1, hertz):
+def _weight_integral(b0: float, b1: float, hertz: bool) -> float:
     """Exact integral of _weight from b0 to b1."""
     c0, c1 = np.cos(b0), np.cos(b1)
     if hertz:
@@ -146,7 +146,7 @@ def _weight_integral(b0, b1, hertz):
 
 
 @kernel
-def _all_pairs(averaging, near, far):
+def _all_pairs(averaging: Averaging, near: np.ndarray, far: np.ndarray) -> None:
     """Fill near and far, (n_modes, rings, rings), which are zero before."""
     psi = averaging.psi
     for i in range(len(psi) - 1):
@@ -163,7 +163,7 @@ def _all_pairs(averaging, near, far):
 
 
 @lru_cache
-def _unit_gauss(n, power):
+def _unit_gauss(n: int, power: int) -> tuple[np.ndarray, np.ndarray]:
     """Gauss-Legendre rule on [0, 1], clustered at 0 by t -> t^power."""
     x, w = np.polynomial.legendre.leggauss(n)
     t, w = 0.5 * (x + 1.0), 0.5 * w
@@ -171,7 +171,7 @@ def _unit_gauss(n, power):
 
 
 @lru_cache
-def _smooth_ends_gauss(n):
+def _smooth_ends_gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
     """Gauss-Legendre rule on [0, 1], clustered at both ends (t -> 3 t^2 - 2 t^3)."""
     x, w = np.polynomial.legendre.leggauss(n)
     t, w = 0.5 * (x + 1.0), 0.5 * w

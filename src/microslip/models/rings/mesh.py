@@ -6,6 +6,7 @@ is refined, where pressures of smooth bodies fall like a square root, and the ed
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -89,7 +90,7 @@ def make_rings(count: int, focus: Focus | float | None = None, pressure: Pressur
     return _of_edges(_focused(count, places, strength), pressure)
 
 
-def _of_edges(psi, pressure):
+def _of_edges(psi: np.ndarray, pressure: Pressure) -> Rings:
     """The Rings between edges that are those of a contact without a hole, at first."""
     if pressure.inner > 0.0:
         hole = pressure.inner**2
@@ -97,7 +98,7 @@ def _of_edges(psi, pressure):
     return Rings(psi, np.pi * np.diff(np.sin(psi) ** 2), *pressure.ring_means(psi))
 
 
-def _as_focus(focus):
+def _as_focus(focus: Focus | float) -> Focus:
     focus = focus if isinstance(focus, Focus) else Focus((focus,))
     radii = focus.radii
     ordered = radii and all(one < other for one, other in zip(radii, radii[1:], strict=False))
@@ -108,14 +109,14 @@ def _as_focus(focus):
     return focus
 
 
-def _focused(count, places, strength):
+def _focused(count: int, places: np.ndarray, strength: float) -> np.ndarray:
     """Edges in psi with one on each of the places and widths that grow away from it on both sides.
 
     Halfway between two places the one gives way to the other.
     """
     edge = np.pi / 2
 
-    def spread(t):
+    def spread(t: np.ndarray) -> np.ndarray:
         return (1 - strength) * t + strength * t * t
 
     if len(places) == 1 and places[0] in (0.0, edge):
@@ -136,7 +137,7 @@ def _focused(count, places, strength):
     return np.array(psi)
 
 
-def _shared_out(count, ends):
+def _shared_out(count: int, ends: Sequence[float]) -> list[int]:
     """How many of the rings lie before each of the ends: as their widths would have it, but some on
     both sides of each place."""
     least = max(count // (2 * len(ends) - 2), 1)

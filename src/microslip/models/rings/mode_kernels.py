@@ -11,7 +11,7 @@ MOST_GROWTH = 2.5
 
 
 @kernel
-def _elliptic_ke(kc):
+def _elliptic_ke(kc: float) -> tuple[float, float]:
     """Complete elliptic integrals (K, E) for the complementary modulus kc, by the AGM."""
     a, b = 1.0, kc
     c2 = 1.0 - kc * kc

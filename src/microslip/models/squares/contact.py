@@ -95,7 +95,7 @@ class CartesianContact(SystemContact):
         return Descent(self.largest, PATIENCE, length, np.empty((3, self.layout.columns)))
 
 
-def _images(loads, symmetry, poisson):
+def _images(loads: np.ndarray, symmetry: str, poisson: float) -> int:
     """Squares that one stands for.
 
     Translations move all points alike, and a half turn takes that to its opposite; so do rotations
@@ -112,12 +112,12 @@ def _images(loads, symmetry, poisson):
     return 2 if _is_like(loads, loads[::-1, ::-1]) else 1
 
 
-def _is_like(loads, image):
+def _is_like(loads: np.ndarray, image: np.ndarray) -> bool:
     """Whether two fields are the same but for rounding."""
     return bool(np.abs(image - loads).max() <= ROUNDED * loads.max())
 
 
-def _mean_of_images(loads, images, symmetry):
+def _mean_of_images(loads: np.ndarray, images: int, symmetry: str) -> np.ndarray:
     """Loads of the squares that are left, without what rounding makes of images."""
     if images == 1:
         return loads

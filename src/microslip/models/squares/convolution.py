@@ -121,7 +121,7 @@ def influence(
     size = 2.0 / cells
     offsets = np.fft.fftfreq(padded, 1.0 / padded) * size
     y, x = np.meshgrid(offsets, offsets, indexing="ij")
-    single, squares, product = 0.0, 0.0, 0.0
+    single, squares, product = np.zeros((3, *x.shape))
     for sx in (1, -1):
         for sy in (1, -1):
             u, v = x + sx * size / 2, y + sy * size / 2
@@ -136,7 +136,7 @@ def influence(
     return scale * single, scale * kappa * (squares + 2j * product)
 
 
-def _padded(cells):
+def _padded(cells: int) -> int:
     """Smallest P >= 2 cells - 1 with factors 2 and 3 only."""
     padded = 2 * cells - 1
     while padded != 2 ** _power(padded, 2) * 3 ** _power(padded, 3):
@@ -144,7 +144,7 @@ def _padded(cells):
     return padded
 
 
-def _power(number, prime):
+def _power(number: int, prime: int) -> int:
     count = 0
     while number % prime == 0:
         number //= prime
@@ -152,13 +152,13 @@ def _power(number, prime):
     return count
 
 
-def _radices(padded):
+def _radices(padded: int) -> np.ndarray:
     twos = _power(padded, 2)
     radices = [4] * (twos // 2) + [2] * (twos % 2) + [3] * _power(padded, 3)
     return np.array(radices, dtype=np.int64)  # also those of a single cell, which are none
 
 
-def _order(radices):
+def _order(radices: list[int]) -> np.ndarray:
     """Frequency in each row after the transform."""
     if not radices:
         return np.zeros(1, dtype=np.int64)
@@ -249,7 +249,7 @@ def apply_convolution(
 
 
 @kernel
-def _spread(operator, q, first):
+def _spread(operator: Convolution, q: np.ndarray, first: np.ndarray) -> None:
     """Tractions to the rows where the transform wants them, and zeros to the others."""
     if operator.images == 4:
         quarter.spread(operator.folding, q, first)
@@ -264,7 +264,7 @@ def _spread(operator, q, first):
 
 
 @kernel
-def _turn_over(operator, columns, first, second):
+def _turn_over(operator: Convolution, columns: int, first: np.ndarray, second: np.ndarray) -> None:
     """Columns to rows, for the transform along the other axis."""
     if operator.images == 4:
         quarter.fold(operator.folding, columns, first, second)
@@ -282,7 +282,7 @@ def _turn_over(operator, columns, first, second):
 
 
 @kernel
-def _multiply(operator, first, second):
+def _multiply(operator: Convolution, first: np.ndarray, second: np.ndarray) -> None:
     """The transform times those of the influence coefficients; first: scratch."""
     if operator.images == 4:
         quarter.apply_filter(operator.folding, operator.kernel, second)
@@ -303,7 +303,7 @@ def _multiply(operator, first, second):
 
 
 @kernel
-def _turn_back(operator, columns, second, first):
+def _turn_back(operator: Convolution, columns: int, second: np.ndarray, first: np.ndarray) -> None:
     """Undo `_turn_over`."""
     if operator.images == 4:
         quarter.unfold(operator.folding, columns, second, first)
@@ -317,7 +317,7 @@ def _turn_back(operator, columns, second, first):
 
 
 @kernel
-def _gather(operator, first, out):
+def _gather(operator: Convolution, first: np.ndarray, out: np.ndarray) -> None:
     """Undo `_spread`."""
     if operator.images == 4:
         quarter.gather(operator.folding, first, out)
@@ -331,7 +331,7 @@ def _gather(operator, first, out):
 
 
 @kernel
-def _multiply_coupled(operator, given, out):
+def _multiply_coupled(operator: Convolution, given: np.ndarray, out: np.ndarray) -> None:
     """Kernel times transform, plus cross kernel times the transform of the conjugate traction."""
     padded = given.shape[1]
     for i in range(padded):

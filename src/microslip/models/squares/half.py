@@ -68,7 +68,7 @@ def halved_filter(
     return direct, cross * forward[:, None] * (-1.0 if symmetry == MIRROR else lateral)
 
 
-def _turn(frequencies, cells, padded):
+def _turn(frequencies: np.ndarray, cells: int, padded: int) -> np.ndarray:
     return np.exp(-2j * np.pi * ((cells - 1) * frequencies % padded) / padded)
 
 

@@ -11,6 +11,9 @@ import numpy as np
 
 from microslip.foundation.compiled import kernel
 
+Parts = tuple[np.ndarray, np.ndarray]
+"""Real and imaginary parts."""
+
 
 @kernel
 def forward(
@@ -53,7 +56,7 @@ def backward(
 
 
 @kernel(inline="always")
-def _forward_2(values, columns, a, part, roots, w):
+def _forward_2(values: Parts, columns: int, a: int, part: int, roots: np.ndarray, w: int) -> None:
     re, im = values
     c1, s1 = roots[0, w], -roots[1, w]
     b = a + part
@@ -65,7 +68,7 @@ def _forward_2(values, columns, a, part, roots, w):
 
 
 @kernel(inline="always")
-def _backward_2(values, columns, a, part, roots, w):
+def _backward_2(values: Parts, columns: int, a: int, part: int, roots: np.ndarray, w: int) -> None:
     re, im = values
     c1, s1 = roots[0, w], roots[1, w]
     b = a + part
@@ -80,7 +83,7 @@ _SIN_60 = np.sqrt(0.75)
 
 
 @kernel(inline="always")
-def _forward_3(values, columns, a, part, roots, w):
+def _forward_3(values: Parts, columns: int, a: int, part: int, roots: np.ndarray, w: int) -> None:
     re, im = values
     c1, s1, c2, s2 = roots[0, w], -roots[1, w], roots[0, 2 * w], -roots[1, 2 * w]
     b, c = a + part, a + 2 * part
@@ -97,7 +100,7 @@ def _forward_3(values, columns, a, part, roots, w):
 
 
 @kernel(inline="always")
-def _backward_3(values, columns, a, part, roots, w):
+def _backward_3(values: Parts, columns: int, a: int, part: int, roots: np.ndarray, w: int) -> None:
     re, im = values
     c1, s1, c2, s2 = roots[0, w], roots[1, w], roots[0, 2 * w], roots[1, 2 * w]
     b, c = a + part, a + 2 * part
@@ -113,7 +116,7 @@ def _backward_3(values, columns, a, part, roots, w):
 
 
 @kernel(inline="always")
-def _forward_4(values, columns, a, part, roots, w):
+def _forward_4(values: Parts, columns: int, a: int, part: int, roots: np.ndarray, w: int) -> None:
     re, im = values
     c1, s1, c2, s2 = roots[0, w], -roots[1, w], roots[0, 2 * w], -roots[1, 2 * w]
     c3, s3 = roots[0, 3 * w], -roots[1, 3 * w]
@@ -133,7 +136,7 @@ def _forward_4(values, columns, a, part, roots, w):
 
 
 @kernel(inline="always")
-def _backward_4(values, columns, a, part, roots, w):
+def _backward_4(values: Parts, columns: int, a: int, part: int, roots: np.ndarray, w: int) -> None:
     re, im = values
     c1, s1, c2, s2 = roots[0, w], roots[1, w], roots[0, 2 * w], roots[1, 2 * w]
     c3, s3 = roots[0, 3 * w], roots[1, 3 * w]

@@ -42,7 +42,7 @@ def maps(name: str, dataset: xr.Dataset) -> list[dict]:
     return [_map(name, part) for part in at_each_poisson(dataset)]
 
 
-def _map(name, dataset):
+def _map(name: str, dataset: xr.Dataset) -> dict:
     shown, poisson = sweep(dataset, ("amplitude", "velocity"))
     shown = shown.transpose("amplitude", "velocity", ...)
     return about(name, dataset, poisson) | {
@@ -60,7 +60,7 @@ def lines(name: str, dataset: xr.Dataset) -> list[dict]:
     return [_lines(name, part) for part in at_each_poisson(dataset)]
 
 
-def _lines(name, dataset):
+def _lines(name: str, dataset: xr.Dataset) -> dict:
     pulled = "force" in dataset.attrs.get(DRIVE, "").split(", ")
     value = "velocity" if pulled else "mu_macro"
     require("explorer", name, dataset, [value, f"{value}_error", "converged"])
@@ -102,7 +102,7 @@ def _lines(name, dataset):
     }
 
 
-def _torque(shown, along):
+def _torque(shown: xr.Dataset, along: str) -> list[dict]:
     """The torque of a steady bore, which its chart does not draw: its values and closed form."""
     if "mu_torque" not in shown or shown["mu_torque"].dims != (along,):
         return []

@@ -36,6 +36,7 @@ def packed(dataset: xr.Dataset) -> dict:
     """
     found = cells_of(dataset)
     table, coordinates = found.cells, found.cells.coordinates
+    assert isinstance(coordinates, map_coordinates.MapCoordinates)  # as of all maps of friction
     motion, pressure = dataset.attrs["motion"], dataset.attrs.get("pressure", "hertz")
     return {
         "motion": motion,

@@ -40,7 +40,14 @@ __all__ = [
 ]
 __all__ += ["maps_of", "period_requests", "refusal", "report", "sweeps_of"]
 
-ASSETS = ("page.html", "style.css", "certified.js", "elliptic.js", "limits.js", "beyond.js")
+ASSETS: tuple[str, ...] = (
+    "page.html",
+    "style.css",
+    "certified.js",
+    "elliptic.js",
+    "limits.js",
+    "beyond.js",
+)
 ASSETS += (
     "contact.js",
     "data.js",

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import xarray as xr
 
 from microslip.report.figures import maps, style
 from microslip.report.figures.data import limit
 from microslip.sweeps.evaluate import plain
-from microslip.theory.catalogue import FORMS
+from microslip.theory.catalogue import FORMS, ClosedForm
 
 FIGURES = {"transverse": "fig2_transverse_map", "bore": "fig6_bore_map"}
 SPARE_COLOURS = (style.SKY, style.GREY)
@@ -33,7 +35,7 @@ def limits_of(dataset: xr.Dataset, poisson: float) -> list[dict]:
     return [_limit(dataset, motion, own.get(key, NAMES[key]), poisson) for key in known]
 
 
-def _limit(dataset, motion, form, poisson):
+def _limit(dataset: xr.Dataset, motion: str, form: ClosedForm, poisson: float) -> dict:
     key = form.name
     looks = {}
     if motion in FIGURES:
@@ -57,5 +59,5 @@ def _limit(dataset, motion, form, poisson):
     return found
 
 
-def _dash(linestyle):
+def _dash(linestyle: Any) -> str:
     return ",".join(f"{2 * length:g}px" for length in linestyle[1])

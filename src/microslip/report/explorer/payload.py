@@ -12,6 +12,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
 
 from microslip.foundation.canonical import number
 from microslip.report.explorer import brief, si_form
@@ -69,7 +71,7 @@ def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
     ValueError
         Where a dataset lacks what the page shows, or a period belongs to no point of its map.
     """
-    found = {"maps": [], "lines": []}
+    found: dict[str, list[dict]] = {"maps": [], "lines": []}
     for name, dataset in datasets.items():
         if name in periods:
             found["maps"] += _maps(name, dataset, periods[name])
@@ -87,7 +89,7 @@ def build(datasets: dict, periods: dict, certified: Sequence = ()) -> dict:
     }
 
 
-def _maps(name, dataset, records):
+def _maps(name: str, dataset: xr.Dataset, records: list[dict]) -> list[dict]:
     """Maps at all of Poisson's ratios; that next to 0 has the periods and all of the errors."""
     require("explorer", name, dataset, ["amplitude", "velocity", *POINTS, *FORMS[name]])
     shown, poisson = sweep(dataset, ("amplitude", "velocity"))
@@ -105,12 +107,13 @@ def _maps(name, dataset, records):
     return [first, *(one for one in found if one is not first)]
 
 
-def _periods(dataset, records, force):
+def _periods(dataset: xr.Dataset, records: list[dict], force: str) -> dict:
     """Periods of the points of a map, one after another in the order of `index`."""
     rows = {number(value): i for i, value in enumerate(dataset["amplitude"].values)}
     columns = {number(value): j for j, value in enumerate(dataset["velocity"].values)}
     index = np.full((len(rows), len(columns)), -1)
-    failed, kept = [], []
+    failed: list[list] = []
+    kept: list[dict] = []
     for record in records:
         request, result = record["request"], record["result"]
         try:
@@ -125,7 +128,7 @@ def _periods(dataset, records, force):
     return {"index": plain(index), "failed": failed} | _packed(kept, force)
 
 
-def _packed(results, force):
+def _packed(results: list[dict], force: str) -> dict:
     if not results:
         return {"count": 0}
     halves = [unpacked_half(result) for result in results]
@@ -157,11 +160,11 @@ def _packed(results, force):
     }
 
 
-def _unsigned(values):
+def _unsigned(values: ArrayLike) -> np.ndarray:
     return np.round(UNSIGNED * np.clip(values, 0.0, 1.0)).astype(np.uint16)
 
 
-def _made(dataset, records):
+def _made(dataset: xr.Dataset, records: Sequence[dict]) -> list[list[str]]:
     """What made a map and its periods, as a list of pairs of texts."""
     found = {key: dataset.attrs[key] for key in drawing.PROVENANCE if key in dataset.attrs}
     if "configuration" in found:

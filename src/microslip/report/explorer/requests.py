@@ -4,9 +4,11 @@ There are two pages.  That of the paper's sweeps is made in a few minutes; the o
 sweep of the configuration.
 """
 
+from __future__ import annotations
+
 from math import prod
 
-from microslip.config.records import Configuration
+from microslip.config.records import CertifiedMap, Configuration, Sweep
 from microslip.foundation.canonical import number
 
 PAGES = PAGE, PAGE_OF_ALL = "explorer.html", "explorer_all.html"
@@ -45,7 +47,7 @@ def certified_of(configuration: Configuration) -> list[str]:
     return found
 
 
-def _preference(map_):
+def _preference(map_: CertifiedMap) -> tuple[float, float]:
     ratios = map_.sweep.poisson
     return ratios[0] - ratios[-1], map_.error
 
@@ -89,7 +91,7 @@ def refusal(configuration: Configuration, page: str = PAGE) -> str | None:
     return None
 
 
-def _count(sweep):
+def _count(sweep: Sweep) -> int:
     """How many points a sweep has."""
     pulls = [values for _, values, _ in sweep.drives]
     axes = (sweep.velocity, sweep.amplitude, sweep.poisson, *pulls)

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from microslip.foundation.arguments import LARGEST
 from microslip.report.explorer.certified import gauss_rule
 from microslip.si import validity
 from microslip.si.inputs import LARGEST_MU
-from microslip.si.materials import MATERIALS
+from microslip.si.materials import MATERIALS, Material
 from microslip.si.motions import MOTIONS
 from microslip.si.quantities import read
 from microslip.theory.hertz import D_half
@@ -52,7 +53,7 @@ class Field:
 
 
 _PRESSURES = ("GPa", "MPa", "kPa", "Pa", "psi")
-_RATIO = {"low_open": False, "high": 0.5}
+_RATIO: dict[str, Any] = {"low_open": False, "high": 0.5}
 FIELDS = {
     "radius": Field("radius of the sphere", "m", ("mm", "um", "m", "inch"), "5"),
     "load": Field("normal load", "N", ("N", "mN", "uN", "kN", "kgf", "lbf"), "10"),
@@ -100,7 +101,7 @@ def packed() -> dict:
     }
 
 
-def _field(field):
+def _field(field: Field) -> dict:
     return {
         "label": field.label,
         "units": [_unit(name, field.unit) for name in field.units],
@@ -111,7 +112,7 @@ def _field(field):
     }
 
 
-def _unit(name, unit):
+def _unit(name: str, unit: str) -> dict:
     """A unit in that of the SI: a factor, and which power of ten it is; None where it is none."""
     factor = read(name, f"1 {name}", unit).si
     power = round(math.log10(factor))
@@ -119,7 +120,7 @@ def _unit(name, unit):
     return {"name": name, "factor": factor, "power": power if exact else None}
 
 
-def _material(body):
+def _material(body: Material) -> dict:
     return {
         "young": None if body.rigid else body.young,
         "poisson": body.poisson,

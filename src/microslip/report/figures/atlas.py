@@ -6,6 +6,8 @@ is laid out in millimetres, since every square must have room for its letter.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -101,7 +103,7 @@ class Page:
         bottom = 1.0 - (y + height) / self.height
         return self.figure.add_axes((x / WIDTH, bottom, width / WIDTH, height / self.height))
 
-    def text(self, x: float, y: float, text: str, **ink: object) -> None:
+    def text(self, x: float, y: float, text: str, **ink: Any) -> None:
         """A text that hangs from that point."""
         ink = {"va": "top", "fontsize": SIZE, "linespacing": 1.1, **ink}
         self.figure.text(x / WIDTH, 1.0 - y / self.height, text, **ink)
@@ -136,7 +138,12 @@ def _labels(axes: Axes, block: Block, names: list[str], first: bool) -> None:
     if block.upright:
         axes.tick_params(axis="x", labelrotation=90)
     if names[0] == "shipped":  # what the rest is compared with stands out
-        frame = {"facecolor": "none", "edgecolor": look.BLACK, "linewidth": 1.0, "zorder": 4}
+        frame: dict[str, Any] = {
+            "facecolor": "none",
+            "edgecolor": look.BLACK,
+            "linewidth": 1.0,
+            "zorder": 4,
+        }
         axes.add_patch(Rectangle((0, 0), cases, 1, clip_on=False, **frame))
         axes.get_yticklabels()[0].set_fontweight("bold")
 

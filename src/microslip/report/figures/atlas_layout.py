@@ -165,7 +165,7 @@ def _bands(blocks: list[Block], width: float) -> list[Band]:
     """The blocks in their order, in bands that fit the width and are least high together."""
     best: list[tuple[float, list[Band]]] = [(0.0, [])]
     for end in range(1, len(blocks) + 1):
-        found = []
+        found: list[tuple[float, list[Band]]] = []
         for start in reversed(range(end)):
             band = Band(blocks[start:end])
             if found and band.width > width + 0.01:

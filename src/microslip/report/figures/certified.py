@@ -5,8 +5,11 @@ Or the velocity under a force in the place of friction.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 
@@ -19,6 +22,7 @@ from microslip.report.figures.data import require
 from microslip.report.figures.formulas import mathtext
 from microslip.report.figures.map_panel import fill
 from microslip.report.figures.small_maps import CONTOURS, LABELLED
+from microslip.sweeps.drift_coordinates import DriftCoordinates
 
 BOUND = "bound of the error,\nthousandths  (dimensionless)"
 INKS = look.BLUE, look.VERMILLION
@@ -30,7 +34,7 @@ VARIABLES = ("mu_macro", "cell_error", "cell_node", "velocity", "amplitude", "po
 OF_DRIFT = ("velocity", "cell_error", "cell_node", "force", "amplitude", "poisson")
 DECADES = np.linspace(-3.0, 1.0, 17)
 """Decimal logarithms of the velocities of drift that bands begin at."""
-STAYS = {"facecolor": look.PALE, "edgecolor": "none"}
+STAYS: dict[str, Any] = {"facecolor": look.PALE, "edgecolor": "none"}
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
@@ -71,6 +75,7 @@ def _drift(dataset: xr.Dataset) -> Figure:
     figure = look.new_figure(look.DOUBLE, 3.1)
     left, right = figure.subplots(1, 2, sharex=True, sharey=True)
     coordinates = certified_map.coordinates_in(dataset)
+    assert isinstance(coordinates, DriftCoordinates)  # as of all maps of drift
     force = np.linspace(0.0, coordinates.force, NODES)
     grid = Drift(dataset).on_grid(force, NODES)
     slowest, fastest = 10.0 ** DECADES[[0, -1]]
@@ -102,7 +107,9 @@ def _drift(dataset: xr.Dataset) -> Figure:
     return figure
 
 
-def _show_cells(left, right, dataset, at, across):
+def _show_cells(
+    left: Axes, right: Axes, dataset: xr.Dataset, at: xr.Dataset, across: str
+) -> PolyCollection:
     """Outlines and points on one panel, bounds on the other, which are returned; at: the part of
     the dataset whose points are shown, across: the name of what runs along the abscissa."""
     outlines, errors = _cells(dataset)
@@ -111,7 +118,9 @@ def _show_cells(left, right, dataset, at, across):
     )
     points = left.plot(
         *(at[across], at["amplitude"], "."),
-        **{"color": look.BLACK, "markersize": 2.2, "gid": "points"},
+        color=look.BLACK,
+        markersize=2.2,
+        gid="points",
     )
     points[0].set_clip_on(False)
     shares = PolyCollection(outlines, array=1e3 * errors, cmap=look.COLOURMAP, gid="errors")
@@ -120,7 +129,7 @@ def _show_cells(left, right, dataset, at, across):
     return shares
 
 
-def _bar_of_errors(figure, axes, shares):
+def _bar_of_errors(figure: Figure, axes: Axes, shares: PolyCollection) -> None:
     bar = figure.colorbar(shares, ax=axes, pad=0.02)
     bar.set_label(BOUND)
     bar.ax.tick_params(direction="out")
@@ -134,7 +143,7 @@ def _lines(dataset: xr.Dataset) -> Figure:
     ends = np.unique([float(dataset["poisson"].min()), float(dataset["poisson"].max())])
     for poisson, color, linestyle in zip(ends, INKS, (look.SOLID, look.DASHED), strict=False):
         grid = Friction(dataset).on_grid(amplitude=LINE, poisson=float(poisson)).isel(velocity=0)
-        ink = {"color": color, "linestyle": linestyle, "linewidth": 1.2}
+        ink: dict[str, Any] = {"color": color, "linestyle": linestyle, "linewidth": 1.2}
         ink["label"] = rf"$\nu = {look.number(poisson)}$"
         left.plot(grid["amplitude"], grid["mu_macro"], **ink)
         right.plot(grid["amplitude"], 1e3 * grid["mu_macro_error"], **ink)
@@ -149,7 +158,7 @@ def _lines(dataset: xr.Dataset) -> Figure:
     return figure
 
 
-def _is_deep(dataset):
+def _is_deep(dataset: xr.Dataset) -> bool:
     """Whether Poisson's ratio is a direction of the map."""
     return dataset["poisson"].ndim > 0
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from scipy.spatial import cKDTree
@@ -55,7 +56,7 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     return figure
 
 
-def _contact(axes: Axes, at: xr.Dataset) -> object:
+def _contact(axes: Axes, at: xr.Dataset) -> ScalarMappable:
     """What sticks, shaded by the share of the bound in use; what slips is left white."""
     x, y, share = (at[f"patch_{n}"].values for n in ("lateral", "forward", "share"))
     line = np.linspace(-1.0, 1.0, PIXELS)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -66,7 +67,11 @@ def _friction(axes: Axes, dataset: xr.Dataset, column: tuple) -> None:
     amplitude = dataset[f"{motion}_curve_amplitude"].values
     for variable, name, color, linestyle in curves:
         values, form = dataset[f"{motion}_curve_{variable}"].values, FORMS[motion][name]
-        ink = {"color": color, "linestyle": linestyle, "label": form.equation or form.label}
+        ink: dict[str, Any] = {
+            "color": color,
+            "linestyle": linestyle,
+            "label": form.equation or form.label,
+        }
         axes.plot(amplitude, values, gid=variable, zorder=3, **ink)
     at = dataset[f"{motion}_amplitude"].values
     paper, slowest = (float(dataset[f"claims_{n}"]) for n in ("paper_velocity", "slowest"))

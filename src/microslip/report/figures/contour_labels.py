@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -53,7 +53,8 @@ def _lines(axes: Axes, contours: ContourSet, index: int) -> list[np.ndarray]:
     # In pixels already, since polygons lack the points that hardly bend a line in its own units.
     path = axes.transData.transform_path(contours.get_paths()[index])
     lines = []
-    for pixels in path.to_polygons(closed_only=False):
+    for polygon in path.to_polygons(closed_only=False):
+        pixels = np.asarray(polygon)
         way = np.append(0.0, np.cumsum(np.hypot(*np.diff(pixels, axis=0).T)))
         if way[-1] > 0:
             even = np.linspace(0.0, way[-1], max(2, int(way[-1]) + 1))
@@ -61,7 +62,9 @@ def _lines(axes: Axes, contours: ContourSet, index: int) -> list[np.ndarray]:
     return lines
 
 
-def _places(line: np.ndarray, box: np.ndarray, step: float):
+def _places(
+    line: np.ndarray, box: np.ndarray, step: float
+) -> Iterator[tuple[float, np.ndarray, float]]:
     """Places on a line with room for a box: a score that is less for better ones, middle, turn."""
     reach = int(np.ceil(box[0]))
     for middle in range(reach, len(line) - reach, max(1, int(step))):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 
@@ -19,13 +21,13 @@ def computed(
     errors: np.ndarray,
     converged: np.ndarray,
     label: str,
-    **look: object,
+    **look: Any,
 ) -> None:
     """Draw computed points: filled if converged, hollow if not, with their error band behind."""
     look = {**COMPUTED, **look}
     errors = finite_or_nan(errors)
     if np.nanmax(errors, initial=0.0) >= VISIBLE_ERROR:
-        band = {"color": PALE, "linewidth": 0, "zorder": 1, "gid": "error-band"}
+        band: dict[str, Any] = {"color": PALE, "linewidth": 0, "zorder": 1, "gid": "error-band"}
         label_band = _once(axes, "error estimate")
         axes.fill_between(x, values - errors, values + errors, label=label_band, **band)
     done = np.asarray(converged) != 0

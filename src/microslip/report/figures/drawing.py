@@ -69,7 +69,13 @@ FORMATS: dict[str, tuple[dict[str, None], str]] = {
 }
 """File formats `save` can write: metadata that would otherwise hold dates or versions of libraries,
 and the name of the one that says what the figure was made from."""
-PROVENANCE = ("title", "references", "microslip_version", "source_digest", "results_digest")
+PROVENANCE: tuple[str, ...] = (
+    "title",
+    "references",
+    "microslip_version",
+    "source_digest",
+    "results_digest",
+)
 PROVENANCE += ("configuration", "library_versions")
 
 __all__ = ["FIGURES", "FORMATS", "draw", "save"]

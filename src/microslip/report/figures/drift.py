@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -21,8 +23,8 @@ LINES = (0.01, 0.1, 1.0)
 """Velocities that have a line."""
 RIGID = "velocity_large_amplitude"
 NEEDED = ("force", "amplitude", "velocity", "converged", RIGID, STATIC)
-STAYS = {"facecolor": look.PALE, "edgecolor": "none"}
-UNCONVERGED = {"color": look.BLACK, "marker": "x", "linestyle": "none"}
+STAYS: dict[str, Any] = {"facecolor": look.PALE, "edgecolor": "none"}
+UNCONVERGED: dict[str, Any] = {"color": look.BLACK, "marker": "x", "linestyle": "none"}
 
 
 def draw(name: str, *datasets: xr.Dataset) -> Figure:
@@ -87,7 +89,7 @@ def _map(axes: Axes, dataset: xr.Dataset, letter: str) -> tuple[ContourSet, bool
 
 
 def _legend(figure: Figure, marked: bool) -> None:
-    rigid = {"color": look.VERMILLION, "linestyle": look.DASHED, "linewidth": 1.0}
+    rigid: dict[str, Any] = {"color": look.VERMILLION, "linestyle": look.DASHED, "linewidth": 1.0}
     handles = [
         Line2D([], [], color=look.BLACK, linewidth=1.3, label="static limit: threshold"),
         Patch(label="comes to rest", **STAYS),

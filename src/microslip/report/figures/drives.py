@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -51,14 +53,14 @@ def _over_velocity(axes: Axes, given: dict[str, xr.Dataset]) -> None:
     )
     for part, (color, marker) in _by_stiffness(springs):
         label = f"spring, ${DRIVES['stiffness'].latex} = {look.number(float(part['stiffness']))}$"
-        columns = (part[key].values for key in ("mu_macro", "mu_macro_error", "converged"))
-        ink = {"color": color, "marker": marker, "markerfacecolor": "white"}
-        computed(axes, part["velocity"].values, *columns, label, **ink)
+        mu, error, good = (part[k].values for k in ("mu_macro", "mu_macro_error", "converged"))
+        ink: dict[str, Any] = {"color": color, "marker": marker, "markerfacecolor": "white"}
+        computed(axes, part["velocity"].values, mu, error, good, label, **ink)
     pulled = _one(given["drive_force"])
     pulled = pulled.isel(force=(pulled["velocity"].values > 0.0))
     errors = np.zeros(pulled["force"].size)
-    columns = pulled["velocity"].values, pulled["force"].values, errors, pulled["converged"].values
-    computed(axes, *columns, "constant force", color=look.VERMILLION)
+    place, force, good = (pulled[k].values for k in ("velocity", "force", "converged"))
+    computed(axes, place, force, errors, good, "constant force", color=look.VERMILLION)
     velocity = moved["velocity"].values
     axes.set_xscale("log")
     axes.set(xlim=(velocity[velocity > 0.0][0], velocity[-1]))
@@ -78,8 +80,8 @@ def _over_mass(axes: Axes, given: dict[str, xr.Dataset]) -> None:
     axes.axhline(moved, color=look.BLACK, linewidth=1.3, label="constant velocity", gid="velocity")
     for part, (color, marker) in _by_stiffness(bodies):
         label = f"${DRIVES['stiffness'].latex} = {look.number(float(part['stiffness']))}$"
-        columns = (part[key].values for key in ("mu_macro", "mu_macro_error", "converged"))
-        computed(axes, part["mass"].values, *columns, label, color=color, marker=marker)
+        mu, error, good = (part[k].values for k in ("mu_macro", "mu_macro_error", "converged"))
+        computed(axes, part["mass"].values, mu, error, good, label, color=color, marker=marker)
     axes.set_xscale("log")
     axes.set(xlim=(bodies["mass"].values[0], bodies["mass"].values[-1]))
     ticks.logarithmic(axes.xaxis)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
@@ -88,7 +89,7 @@ def _ticks(limits: tuple[float, float]) -> np.ndarray:
     return np.arange(np.ceil(2 * limits[0]), 2 * limits[1]) / 2
 
 
-def _background(axes: Axes, x: np.ndarray, y: np.ndarray, bound: np.ndarray) -> object:
+def _background(axes: Axes, x: np.ndarray, y: np.ndarray, bound: np.ndarray) -> ScalarMappable:
     """Shade the friction bound between the cells; beyond the outermost the nearest cell's."""
     turn = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
     rim_x, rim_y = np.cos(turn), np.sin(turn)

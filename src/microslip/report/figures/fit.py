@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -111,7 +113,7 @@ def _model(
     unit, _ = _prefix(dataset[abscissa].values, "")
     if here.any():
         x, y, error = along[here] / unit, fitted[here] / factor, off[here] / factor
-        band = {"color": color, "alpha": 0.2, "linewidth": 0, "gid": "model-error"}
+        band: dict[str, Any] = {"color": color, "alpha": 0.2, "linewidth": 0, "gid": "model-error"}
         axes.fill_between(x, y - error, y + error, **band)
         axes.plot(x, y, color=color, linestyle=linestyle, linewidth=1.0, gid="fitted")
     else:

@@ -34,7 +34,7 @@ def mathtext(formula: str) -> str:
 def html(formula: str) -> str:
     """A formula in HTML: letters in italics, indices below."""
 
-    def symbol(found):
+    def symbol(found: re.Match[str]) -> str:
         letters, number, index = found.groups()
         below = number + (index or "")
         letter = LETTERS.get(letters, letters)

@@ -32,8 +32,8 @@ def draw(name: str, *datasets: xr.Dataset) -> Figure:
             shown.append(part)
             of = rf", $\nu = {look.number(ratio)}$" if len(parts) > 1 else ""
             titles.append(look.literal(dataset.attrs.get("title", "")) + of)
-    spanning = [small_maps.spans_a_map(dataset) for dataset in shown]
-    if any(spanning) and not all(spanning):
-        odd = shown[spanning.index(False)].attrs.get("title")
+    spans = [small_maps.spans_a_map(dataset) for dataset in shown]
+    if any(spans) and not all(spans):
+        odd = shown[spans.index(False)].attrs.get("title")
         raise ValueError(f"figure {name}: {odd!r} spans no map, as others of its group do")
-    return (small_maps if all(spanning) else lines).draw(name, shown, titles)
+    return (small_maps if all(spans) else lines).draw(name, shown, titles)

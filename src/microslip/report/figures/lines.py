@@ -4,6 +4,7 @@ motion against velocity."""
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -47,7 +48,7 @@ def draw(name: str, datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Fi
     velocities, low, handles = set(), 0.0, []
     for dataset, (color, marker, linestyle) in zip(datasets, LOOKS, strict=False):
         limited = _line(axes, dataset, dim, color=color, linestyle=linestyle)
-        style = {"linestyle": linestyle} if limited else {"linewidth": JOINING}
+        style: dict[str, Any] = {"linestyle": linestyle} if limited else {"linewidth": JOINING}
         handles.append(Line2D([], [], color=color, marker=marker, markersize=4.0, **style))
         points = marched(dataset, dim)
         if points is not None:
@@ -84,7 +85,7 @@ def _abscissa(dataset: xr.Dataset) -> str:
     return "amplitude" if dataset.sizes.get("amplitude", 0) > 1 else "velocity"
 
 
-def _line(axes: Axes, dataset: xr.Dataset, dim: str, **style: object) -> bool:
+def _line(axes: Axes, dataset: xr.Dataset, dim: str, **style: Any) -> bool:
     """The limit for vanishing velocity, or a closed form, and whether the dataset has one."""
     known = [variable for variable in THEORY[dim] if variable in dataset]
     if known and float(dataset["poisson"]) == 0.0:

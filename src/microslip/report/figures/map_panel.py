@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -77,7 +79,7 @@ def fill(
     return filled, _hatch(axes, velocity, amplitude, shown["converged"].values != 0)
 
 
-_HATCHED = {
+_HATCHED: dict[str, Any] = {
     "facecolor": (1.0, 1.0, 1.0, 0.45),
     "edgecolor": look.BLACK,
     "linewidth": 0.0,
@@ -85,7 +87,12 @@ _HATCHED = {
 }
 
 
-POINTS = {"linestyle": "none", "marker": "o", "markersize": 3.0, "color": look.BLACK}
+POINTS: dict[str, Any] = {
+    "linestyle": "none",
+    "marker": "o",
+    "markersize": 3.0,
+    "color": look.BLACK,
+}
 POINTS |= {"markeredgecolor": "white", "markeredgewidth": 0.4, "clip_on": False, "gid": "points"}
 
 

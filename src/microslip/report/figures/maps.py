@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
@@ -46,11 +48,11 @@ class Overlay:
     variable: str
     label: str
     color: str
-    linestyle: object
+    linestyle: Any
     linewidth: float = 1.3
 
 
-def form(motion: str, name: str, color: str, linestyle: object, linewidth: float = 1.3) -> Overlay:
+def form(motion: str, name: str, color: str, linestyle: Any, linewidth: float = 1.3) -> Overlay:
     """The Overlay of a closed form, under the name that the catalogue has for it."""
     return Overlay(name, FORMS[motion][name].label, color, linestyle, linewidth)
 
@@ -124,13 +126,13 @@ def _page(count: int) -> tuple[Figure, list[Axes], list[Axes]]:
     """A figure, panels for so many maps, and panels for the two cuts."""
     if count == 1:
         figure = look.new_figure(look.DOUBLE, 4.2)
-        left, right = figure.subfigures(1, 2, width_ratios=(1.3, 1.0))
+        left, right = figure.subfigures(1, 2, width_ratios=(1.3, 1.0), squeeze=False)[0]
         return figure, [left.subplots()], list(right.subplots(2, 1))
     columns = min(count, COLUMNS)
     rows = -(-count // columns)
     heights = rows * ROW[columns], 2.7
     figure = look.new_figure(look.DOUBLE, sum(heights))
-    upper, lower = figure.subfigures(2, 1, height_ratios=heights)
+    upper, lower = figure.subfigures(2, 1, height_ratios=heights, squeeze=False)[:, 0]
     panels = list(upper.subplots(rows, columns, squeeze=False).ravel())
     for axes in panels[count:]:
         axes.remove()
@@ -140,6 +142,7 @@ def _page(count: int) -> tuple[Figure, list[Axes], list[Axes]]:
 def _map(axes: Axes, dataset: xr.Dataset, plan: Map, letter: str, note: str) -> ContourSet:
     """A map with its letter, and its hatching explained above it; returns its bands."""
     grid = axes.get_subplotspec()
+    assert grid is not None  # as of all panels of a grid
     alone = grid.get_gridspec().nrows * grid.get_gridspec().ncols == 1
     filled, hatched = fill(axes, dataset, labelled=LINE_LEVELS if alone else LINE_LEVELS[::2])
     shown = [table[plan.key] for table in (VELOCITY, AMPLITUDE)]
@@ -147,7 +150,7 @@ def _map(axes: Axes, dataset: xr.Dataset, plan: Map, letter: str, note: str) -> 
     axes.set_xlabel(look.axis(shown[0]))
     axes.set_ylabel(look.axis(shown[1]) if grid.is_first_col() else "")
     look.letter(axes, letter, note)
-    handles = [computed_points()] if shows_points(axes) else []
+    handles: list[Artist] = [computed_points()] if shows_points(axes) else []
     if hatched:
         text = f"not converged ({hatched} of {dataset['mu_macro'].size})"
         handles.append(unconverged(text))
@@ -222,8 +225,8 @@ def _points(axes: Axes, lines: list[tuple[xr.Dataset, float]], dim: str) -> None
     columns = ("mu_macro", "mu_macro_error", "converged")
     for (line, poisson), (color, marker) in zip(lines, POISSONS, strict=False):
         ratio = rf", $\nu = {look.number(poisson)}$" if len(lines) > 1 else ""
-        values = (line[name].values for name in columns)
-        ink = {"color": color, "marker": marker}
-        computed(axes, line[dim].values, *values, f"computed{ratio}", **ink)
+        mu, error, good = (line[name].values for name in columns)
+        ink: dict[str, Any] = {"color": color, "marker": marker}
+        computed(axes, line[dim].values, mu, error, good, f"computed{ratio}", **ink)
     look.unit_range(axes)
     axes.set_ylabel(look.FRICTION.replace("  (", "\n("))

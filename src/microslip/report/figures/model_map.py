@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -17,7 +19,12 @@ from microslip.report.figures import ticks
 from microslip.report.figures.data import require
 
 MOTIONS = ("transverse", "bore")
-NONE = {"facecolor": "white", "edgecolor": look.GREY, "linewidth": 0.0, "hatch": "/////"}
+NONE: dict[str, Any] = {
+    "facecolor": "white",
+    "edgecolor": look.GREY,
+    "linewidth": 0.0,
+    "hatch": "/////",
+}
 
 
 def draw(name: str, dataset: xr.Dataset) -> Figure:
@@ -62,7 +69,7 @@ def _panel(axes: Axes, dataset: xr.Dataset, motion: str, models: list[str]) -> N
         x,
         y,
         np.ma.masked_less(codes, 0),
-        cmap=ListedColormap([_pale(name) for name in models] or ["white"]),
+        cmap=ListedColormap([_pale(name) for name in models] or [to_rgb("white")]),
         vmin=-0.5,
         vmax=max(len(models), 1) - 0.5,
         edgecolors="face",  # no hairlines between the cells in a PDF
@@ -82,7 +89,12 @@ def _panel(axes: Axes, dataset: xr.Dataset, motion: str, models: list[str]) -> N
 
 def _outline(axes: Axes, x: np.ndarray, y: np.ndarray, codes: np.ndarray) -> None:
     """Draw a line wherever two cells side by side differ."""
-    ink = {"color": look.BLACK, "linewidth": 0.8, "capstyle": "projecting", "zorder": 3}
+    ink: dict[str, Any] = {
+        "color": look.BLACK,
+        "linewidth": 0.8,
+        "capstyle": "projecting",
+        "zorder": 3,
+    }
     for i, j in np.argwhere(codes[:, 1:] != codes[:, :-1]):
         axes.vlines(x[j + 1], y[i], y[i + 1], **ink)
     for i, j in np.argwhere(codes[1:] != codes[:-1]):
@@ -99,8 +111,8 @@ def _name_regions(axes: Axes, x: np.ndarray, y: np.ndarray, inside: np.ndarray, 
         away = np.hypot(*(deepest - deepest.mean(axis=0)).T)
         i, j = deepest[np.argmin(away)]
         centre = _middle(axes.transData, x[j : j + 2], y[i : i + 2])
-        ink = {"fontsize": look.RC["font.size"], "fontweight": "bold", "zorder": 4}
-        axes.text(*centre, text, ha="center", va="center", gid="region", **ink)
+        ink: dict[str, Any] = {"fontsize": look.RC["font.size"], "fontweight": "bold", "zorder": 4}
+        axes.text(centre[0], centre[1], text, ha="center", va="center", gid="region", **ink)
 
 
 def _middle(data: Transform, x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -132,4 +144,5 @@ def _evenness(points: np.ndarray) -> float:
 
 def _pale(model: str) -> tuple[float, float, float]:
     """The colour of a model, pale enough for black letters on it."""
-    return tuple(1.0 - 0.5 * (1.0 - part) for part in to_rgb(look.model(model)[0]))
+    red, green, blue = (1.0 - 0.5 * (1.0 - part) for part in to_rgb(look.model(model)[0]))
+    return red, green, blue

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -61,11 +63,11 @@ def _springs(axes: Axes, dataset: xr.Dataset) -> None:
         part = dataset.isel(stiffness=k)
         stiffness = float(part["stiffness"])
         label = f"spring, ${DRIVES['stiffness'].latex} = {look.number(stiffness)}$"
-        ink = {"color": color, "marker": marker}
+        ink: dict[str, Any] = {"color": color, "marker": marker}
         if stiffness >= AS_A_VELOCITY:
             label, ink = "constant velocity", {"color": look.BLACK}
-        columns = (part[key].values for key in ("mu_macro", "mu_macro_error", "converged"))
-        computed(axes, part["velocity"].values, *columns, label, **ink)
+        mu, error, good = (part[k].values for k in ("mu_macro", "mu_macro_error", "converged"))
+        computed(axes, part["velocity"].values, mu, error, good, label, **ink)
 
 
 def _force(axes: Axes, dataset: xr.Dataset) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib import patheffects
@@ -76,15 +77,15 @@ def grid(titles: list[str], narrow: int, wide: int) -> tuple[Figure, list[Axes],
     the width of the page below the panels.
     """
     rows = -(-len(titles) // COLUMNS)
-    heads = [titles[row * COLUMNS : (row + 1) * COLUMNS] for row in range(rows)]
-    heads = [HEAD * (1 + max(title.count("\n") for title in row)) + 0.1 for row in heads]
+    lines = [titles[row * COLUMNS : (row + 1) * COLUMNS] for row in range(rows)]
+    heads = [HEAD * (1 + max(title.count("\n") for title in row)) + 0.1 for row in lines]
     room = heads[-1] + PANEL[1]
     beside = len(titles) % COLUMNS == 1 and rows > 1 and HEAD * (narrow + 1.5) < room
     legend = room if beside else HEAD * (wide + 1.5)
     height = sum(heads) + rows * PANEL[1] + FOOT + (0.0 if beside else legend)
     figure = look.new_figure(look.DOUBLE, height, layout=None)
 
-    def place(x: float, top: float, width: float, tall: float, **shared: Axes) -> Axes:
+    def place(x: float, top: float, width: float, tall: float, **shared: Any) -> Axes:
         low = 1.0 - (top + tall) / height
         box = (x / look.DOUBLE, low, width / look.DOUBLE, tall / height)
         return figure.add_axes(box, **shared)
@@ -93,7 +94,7 @@ def grid(titles: list[str], narrow: int, wide: int) -> tuple[Figure, list[Axes],
     for index, title in enumerate(titles):
         row, column = divmod(index, COLUMNS)
         top = sum(heads[: row + 1]) + row * PANEL[1]
-        shared = {"sharex": panels[0], "sharey": panels[0]} if panels else {}
+        shared: dict[str, Any] = {"sharex": panels[0], "sharey": panels[0]} if panels else {}
         panels.append(place(LEFT + column * (PANEL[0] + BETWEEN), top, *PANEL, **shared))
         panels[-1].set_title(title, loc="left", pad=4, fontsize=TITLE, linespacing=1.15)
     x = LEFT + PANEL[0] + BETWEEN if beside else 0.15
@@ -116,9 +117,14 @@ def share_axes(axes: Axes, costs: Scale, errors: Scale) -> None:
         if axis is axes.yaxis and scale.last > scale.high:
             ticks[scale.above] = "none"
         axis.set_ticks(list(ticks), list(ticks.values()))
-        axis.set_minor_locator(FixedLocator(10.0**every))
+        axis.set_minor_locator(FixedLocator(list(10.0**every)))
         axis.set_minor_formatter(NullFormatter())
-    border = {"color": look.GREY, "linewidth": 0.5, "linestyle": look.DOTTED, "zorder": 2}
+    border: dict[str, Any] = {
+        "color": look.GREY,
+        "linewidth": 0.5,
+        "linestyle": look.DOTTED,
+        "zorder": 2,
+    }
     for scale, line in ((costs, axes.axvline), (errors, axes.axhline)):
         if scale.first < scale.low:
             line(scale.low, **border)
@@ -136,7 +142,7 @@ def label_beside(
     """
     label = axes.annotate(
         text,
-        axes.transData.inverted().transform(point),
+        tuple(axes.transData.inverted().transform(point)),
         (0, 0),
         textcoords="offset points",
         fontsize=look.SMALLEST,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -75,7 +76,7 @@ def _contours(axes: Axes, shown: xr.Dataset, letter: str) -> None:
         if index == 0:
             look.after_layout(
                 axes.figure,
-                lambda of=lines: contour_labels.label(axes, of, LEVELS, look.SMALLEST),
+                partial(contour_labels.label, axes, lines, LEVELS, look.SMALLEST),
             )
         label = rf"$\nu = {look.number(float(one['poisson']))}$"
         axes.plot([], [], color=color, linestyle=linestyle, label=label)

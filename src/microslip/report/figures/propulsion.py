@@ -5,13 +5,21 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.container import ErrorbarContainer
 from matplotlib.figure import Figure
 
 from microslip.report.figures import style as look
 from microslip.report.figures.data import finite_or_nan, require
 from microslip.report.figures.lines import LOOKS
 
-VARIABLES = ("velocity", "force", "force_error", "efficiency", "efficiency_error", "converged")
+VARIABLES: tuple[str, ...] = (
+    "velocity",
+    "force",
+    "force_error",
+    "efficiency",
+    "efficiency_error",
+    "converged",
+)
 VARIABLES += ("panel", "title")
 ROWS = (
     ("force", r"force  $F/(\mu F_z)$"),
@@ -74,7 +82,7 @@ def _legend(axes: Axes) -> None:
     handles, labels = axes.get_legend_handles_labels()
     shown = [f"\N{ZERO WIDTH SPACE}{text}" if text.startswith("_") else text for text in labels]
     axes.legend(
-        [handle.lines[0] for handle in handles],
+        [handle.lines[0] for handle in handles if isinstance(handle, ErrorbarContainer)],
         [look.wrapped(text, WIDTH - 0.9, 7.5) for text in shown],
         loc="upper left",
         bbox_to_anchor=(0.0, -0.2),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -72,5 +74,5 @@ def _panel(axes: Axes, dataset: xr.Dataset, what: str) -> None:
 
 def _size(axes: Axes, x: float, y: float, text: str) -> None:
     """Write at the last point of a curve which resolution it is."""
-    ink = {"fontsize": look.SMALLEST, "ha": "right", "va": "bottom", "gid": "size"}
+    ink: dict[str, Any] = {"fontsize": look.SMALLEST, "ha": "right", "va": "bottom", "gid": "size"}
     axes.annotate(text, (x, y), (-2, 3), textcoords="offset points", **ink)

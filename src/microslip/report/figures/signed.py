@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import matplotlib
 import numpy as np
 from matplotlib.colors import Colormap, LinearSegmentedColormap, Normalize, TwoSlopeNorm, to_rgb
@@ -23,7 +21,7 @@ DARK = 0.5
 """Lines on colours darker than this are white, on others black."""
 
 
-def scale(levels: Sequence[float]) -> tuple[Colormap, Normalize]:
+def scale(levels: np.ndarray) -> tuple[Colormap, Normalize]:
     """Colours and their norm for bands between ascending levels.
 
     0 has the same colour whatever the levels are, and so has every value between 0 and 1 unless
@@ -39,7 +37,7 @@ def scale(levels: Sequence[float]) -> tuple[Colormap, Normalize]:
     return both, TwoSlopeNorm(0.0, LOWEST, top)
 
 
-def inks(levels: Sequence[float], fills: Sequence[float]) -> list[str]:
+def inks(levels: np.ndarray, fills: np.ndarray) -> list[str]:
     """Colours of lines at these levels, which stand out from the bands between `fills`."""
     colours, norm = scale(fills)
     weights = (0.2126, 0.7152, 0.0722)  # of luminance, by Rec. 709

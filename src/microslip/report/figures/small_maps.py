@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -62,7 +63,7 @@ def draw(name: str, datasets: Sequence[xr.Dataset], titles: Sequence[str]) -> Fi
     bar = figure.colorbar(filled, ax=used, pad=0.02, aspect=20 * rows, ticks=ticks)
     bar.set_label(look.FRICTION if rows > 1 or columns < 3 else look.FRICTION.replace("  (", "\n("))
     bar.ax.tick_params(direction="out")
-    handles = [computed_points()] if any(map(shows_points, used)) else []
+    handles: list[Artist] = [computed_points()] if any(map(shows_points, used)) else []
     handles += [unconverged("not converged")] if hatched else []
     if handles:
         figure.legend(handles=handles, loc="outside lower right", ncols=len(handles))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import xarray as xr
 from matplotlib.figure import Figure
 
@@ -30,13 +32,21 @@ def draw(name: str, dataset: xr.Dataset) -> Figure:
     axes = figure.add_subplot()
     for what, equation, theory, values, color, linestyle, marker in CURVES:
         label = f"{what}, {equation}"
-        line = {"color": color, "linestyle": linestyle, "label": label, "gid": theory}
+        line: dict[str, Any] = {
+            "color": color,
+            "linestyle": linestyle,
+            "label": label,
+            "gid": theory,
+        }
         axes.plot(*curve(limit(dataset, theory)), **line)
         columns = (values, f"{values}_error", "converged")
+        found, errors, converged = (dataset[name].values for name in columns)
         computed(
             axes,
             velocity,
-            *(dataset[name].values for name in columns),
+            found,
+            errors,
+            converged,
             label=f"{what}, computed",
             color=color,
             marker=marker,

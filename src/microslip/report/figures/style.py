@@ -6,13 +6,14 @@ import functools
 import re
 from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager
+from typing import Any, Literal
 
 import matplotlib
 import matplotlib.style
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 
 from microslip.config.quantities import MU_MACRO, Quantity
 from microslip.report.figures.formulas import mathtext
@@ -111,7 +112,9 @@ def style() -> AbstractContextManager[None]:
     return matplotlib.style.context(RC, after_reset=True)
 
 
-def new_figure(width: float, height: float, layout: str | None = "constrained") -> Figure:
+def new_figure(
+    width: float, height: float, layout: Literal["constrained"] | None = "constrained"
+) -> Figure:
     """An empty figure of that size in inches.
 
     With its layout "constrained" it places its own panels without overlap. On a canvas of its own
@@ -244,10 +247,10 @@ def legend_above(axes: Axes, which: str, note: str, ncols: int = 2) -> None:
     legend.get_title().set_fontsize(HEADING)
 
 
-def after_layout(figure: Figure, finish: Callable[[], None]) -> None:
+def after_layout(figure: Figure | SubFigure, finish: Callable[[], None]) -> None:
     """Ask for something that needs the panels where they stay; it must not move them."""
-    figure = figure.figure or figure  # of a subfigure, the one that it is in
-    figure.finishing = [*getattr(figure, "finishing", ()), finish]
+    whole: Any = figure.figure or figure  # of a subfigure, the one that it is in
+    whole.finishing = [*getattr(whole, "finishing", ()), finish]
 
 
 def unit_range(axes: Axes, low: float = 0.0, high: float = 1.0, margin: float = 0.04) -> None:

@@ -9,10 +9,10 @@ is within their error, and would be drawn as an island that nobody computed.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 if TYPE_CHECKING:
     from microslip.datasets.query.interpolation import Axis
@@ -52,7 +52,7 @@ def refined(
 
 
 def supported(
-    surface: tuple[np.ndarray, ...], points: tuple[np.ndarray, ...], levels: Sequence[float]
+    surface: tuple[np.ndarray, ...], points: tuple[np.ndarray, ...], levels: ArrayLike
 ) -> tuple[np.ndarray, np.ndarray, np.ma.MaskedArray]:
     """A fine grid without the cells in which the points cannot support contours.
 
@@ -84,8 +84,8 @@ def supported(
         off += np.maximum.reduce([nodes[:-1, :-1], nodes[1:, :-1], nodes[:-1, 1:], nodes[1:, 1:]])
     kept = off <= np.diff(levels).min(initial=np.inf) / 2.0
     # A line between two cells stays if either of them does.
-    rows, columns = _cells(amplitude, y), _cells(velocity, x)
-    some = np.logical_or.reduce([kept[np.ix_(i, j)] for i in rows for j in columns])
+    up, along = _cells(amplitude, y), _cells(velocity, x)
+    some = np.logical_or.reduce([kept[np.ix_(i, j)] for i in up for j in along])
     return x, y, np.ma.masked_where(~some, fine)
 
 

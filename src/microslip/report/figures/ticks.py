@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib import rcParams
@@ -31,28 +32,32 @@ class LogarithmicTicks(LogLocator):
         super().__init__(numticks=most)
         self._most = most
 
-    def tick_values(self, vmin: float, vmax: float) -> np.ndarray:
+    # an array, as of all of Matplotlib's, the hints of which say that it is a sequence
+    def tick_values(self, vmin: float, vmax: float) -> Any:
         """The places of ticks between both ends."""
         low, high = sorted((vmin, vmax))
         if not 0.0 < low < high < np.inf:
-            return super().tick_values(vmin, vmax)
+            return np.asarray(super().tick_values(vmin, vmax))
         every = [
             ticks
             for ticks in _candidates(low, high, self._most)
             if 2 <= _inside(ticks, low, high).sum() <= self._most
         ]
         fitting = (ticks for ticks in every if self._have_room(ticks, low, high))
-        return next(fitting, every[-1] if every else super().tick_values(vmin, vmax))
+        widest = every[-1] if every else np.asarray(super().tick_values(vmin, vmax))
+        return next(fitting, widest)
 
-    def _have_room(self, ticks, low, high):
+    def _have_room(self, ticks: np.ndarray, low: float, high: float) -> bool:
         """Whether neighbouring labels are at least the height of a letter apart."""
-        if self.axis is None:
+        axis: Any = self.axis  # whose name is missing in the hints of Matplotlib
+        if axis is None:
             return True
-        name, box = self.axis.axis_name, self.axis.axes.bbox
-        size = FontProperties(size=rcParams[f"{name}tick.labelsize"]).get_size_in_points()
+        name, box = axis.axis_name, axis.axes.bbox
+        sizes_of = {"x": rcParams["xtick.labelsize"], "y": rcParams["ytick.labelsize"]}
+        size = FontProperties(size=sizes_of[name]).get_size_in_points()
         letter, measure = size / 72.0, look.measurer(size)
         within = _inside(ticks, low, high)
-        texts = self.axis.get_major_formatter().format_ticks(ticks)
+        texts = axis.get_major_formatter().format_ticks(ticks)
         sizes = np.array(
             [
                 measure(text) if name == "x" else letter
@@ -60,7 +65,7 @@ class LogarithmicTicks(LogLocator):
                 if is_shown
             ]
         )
-        length = (box.width if name == "x" else box.height) / self.axis.get_figure(root=True).dpi
+        length = (box.width if name == "x" else box.height) / axis.get_figure(root=True).dpi
         places = length * np.log(ticks[within] / low) / np.log(high / low)
         return bool((np.diff(places) >= 0.5 * (sizes[1:] + sizes[:-1]) + letter).all())
 
@@ -91,7 +96,7 @@ def _candidates(low: float, high: float, most: int) -> Iterator[np.ndarray]:
             yield np.ravel(powers[:, None] * np.array(factors))
     for count in range(most - 1, 0, -1):
         steps = MaxNLocator(nbins=count, steps=[1, 2, 5, 10], min_n_ticks=1)
-        yield steps.tick_values(low, high)
+        yield np.asarray(steps.tick_values(low, high))
 
 
 def _inside(ticks: np.ndarray, low: float, high: float) -> np.ndarray:

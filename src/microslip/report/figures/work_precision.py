@@ -9,8 +9,12 @@ costs of zero at the left.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
@@ -41,9 +45,21 @@ COSTS = {
     ),
 }
 """What each figure has along x: the variable, the front in it, the label."""
-POINT = ("point", "point_title", "point_motion", "point_velocity", "point_amplitude")
+POINT: tuple[str, ...] = (
+    "point",
+    "point_title",
+    "point_motion",
+    "point_velocity",
+    "point_amplitude",
+)
 POINT += ("point_poisson", "reference_error")
-TRIAL = ("trial_point", "trial_model", "trial_method", "trial_level", "trial_tolerance")
+TRIAL: tuple[str, ...] = (
+    "trial_point",
+    "trial_model",
+    "trial_method",
+    "trial_level",
+    "trial_tolerance",
+)
 TRIAL += ("error", "converged")
 
 BELOW_REFERENCE = 3.0
@@ -51,16 +67,44 @@ BELOW_REFERENCE = 3.0
 MOST = 1e6
 """The largest error over the smallest that has a place above the strip."""
 
-FRONT = {"color": "#EBD9A0", "linewidth": 5.0, "solid_capstyle": "round", "zorder": 1}
-UNKNOWN = {"facecolor": "none", "edgecolor": "#A8A8A8", "linewidth": 0.0, "hatch": "/////"}
-SHIPPED = {"linewidth": 1.1, "markersize": 4.2, "markeredgewidth": 0.8, "zorder": 5}
-OTHER = {"color": "#8C8C8C", "marker": "o", "linestyle": "none", "markersize": 2.0, "zorder": 3}
+FRONT: dict[str, Any] = {
+    "color": "#EBD9A0",
+    "linewidth": 5.0,
+    "solid_capstyle": "round",
+    "zorder": 1,
+}
+UNKNOWN: dict[str, Any] = {
+    "facecolor": "none",
+    "edgecolor": "#A8A8A8",
+    "linewidth": 0.0,
+    "hatch": "/////",
+}
+SHIPPED: dict[str, Any] = {"linewidth": 1.1, "markersize": 4.2, "markeredgewidth": 0.8, "zorder": 5}
+OTHER: dict[str, Any] = {
+    "color": "#8C8C8C",
+    "marker": "o",
+    "linestyle": "none",
+    "markersize": 2.0,
+    "zorder": 3,
+}
 OTHER |= {"markeredgewidth": 0.0}
-AUTO = {"color": look.BLACK, "marker": "D", "linewidth": 0.8, "markersize": 4.2, "zorder": 7}
-PAPER = {"color": look.BLACK, "marker": "*", "linestyle": "none", "markersize": 9.0, "zorder": 8}
-CROSS = {"color": look.BLACK, "marker": "x", "linestyle": "none", "markersize": 5.0}
+AUTO: dict[str, Any] = {
+    "color": look.BLACK,
+    "marker": "D",
+    "linewidth": 0.8,
+    "markersize": 4.2,
+    "zorder": 7,
+}
+PAPER: dict[str, Any] = {
+    "color": look.BLACK,
+    "marker": "*",
+    "linestyle": "none",
+    "markersize": 9.0,
+    "zorder": 8,
+}
+CROSS: dict[str, Any] = {"color": look.BLACK, "marker": "x", "linestyle": "none", "markersize": 5.0}
 CROSS |= {"markeredgewidth": 0.7, "zorder": 9}
-ARROW = {"color": look.BLACK, "linestyle": "none", "markersize": 3.6, "zorder": 9}
+ARROW: dict[str, Any] = {"color": look.BLACK, "linestyle": "none", "markersize": 3.6, "zorder": 9}
 MARKS = 7  # lines in the legend of marks
 
 
@@ -185,7 +229,9 @@ def _trials(axes: Axes, table: Table) -> None:
     failed = ~(table.finite & table.converged)
     axes.plot(table.x[failed], table.y[failed], gid="not converged", **CROSS)
     left, bottom = table.costs.first, table.errors.first
-    for mine, gid, marker in ((table.low, "low", CARETDOWN), (table.left, "left", CARETLEFT)):
+    strips: list[tuple[np.ndarray, str, Any]]
+    strips = [(table.low, "low", CARETDOWN), (table.left, "left", CARETLEFT)]
+    for mine, gid, marker in strips:
         x = np.full(mine.sum(), left) if gid == "left" else table.x[mine]
         y = np.full(mine.sum(), bottom) if gid == "low" else table.y[mine]
         if mine.any():
@@ -223,18 +269,20 @@ def _legends(below: Axes, models: set[str], others: bool) -> None:
         Line2D([], [], label="paper's run", **PAPER),
         *([Line2D([], [], label="any other method", **OTHER)] if others else []),
         Line2D([], [], label="not converged, or none", **CROSS),
-        Line2D([], [], label="too small for the axis", marker=CARETDOWN, **ARROW),
+        Line2D([], [], label="too small for the axis", **ARROW | {"marker": CARETDOWN}),
         Patch(label="within the reference's error", **UNKNOWN),
     ]
     wide = below.get_position().width > 0.8
     top = 1.0
-    for index, (title, handles) in enumerate((("shipped method", shipped), ("marks", marks))):
+    lists: list[tuple[str, Sequence[Artist]]]
+    lists = [("shipped method", shipped), ("marks", marks)]
+    for index, (title, handles) in enumerate(lists):
         if not handles:
             continue
         legend = Legend(
             below,
             handles,
-            [handle.get_label() for handle in handles],
+            [str(handle.get_label()) for handle in handles],
             title=title,
             loc="upper left",
             bbox_to_anchor=(0.4 * index, 1.0) if wide else (0.0, top),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -118,7 +119,7 @@ def concluded(settled: Settled, confidence: float, texts: dict) -> Fit:
     )
 
 
-def _refuse_mu_untold(ends):
+def _refuse_mu_untold(ends: np.ndarray) -> None:
     low, high = np.exp(ends)
     if not high < TELLS_MU * low:
         fits = f"mu from {low:.3g} to {high:.3g} fits as well with another u_lim"
@@ -126,13 +127,15 @@ def _refuse_mu_untold(ends):
         raise InputError("measured", None, f"{allowed}friction falls, would tell")
 
 
-def _chance(squares, free):
+def _chance(squares: float, free: int) -> float:
     from scipy.stats import chi2
 
     return float(chi2.sf(squares, free))
 
 
-def _second(settled, ends, moved, allowed):
+def _second(
+    settled: Settled, ends: np.ndarray, moved: np.ndarray, allowed: float | None
+) -> dict[str, float | None]:
     """Fields of u_lim and of the shear modulus; allowed: of the sum of squares, None: not told."""
     scale, best, told = settled.scale, settled.best, allowed is not None
     names = ("u_lim_m", "u_lim_low_m", "u_lim_high_m")
@@ -154,7 +157,7 @@ def _second(settled, ends, moved, allowed):
     return found
 
 
-def _open(scale, ends):
+def _open(scale: Displacement | Modulus, ends: np.ndarray) -> str:
     """Why the second number is not told."""
     what = "u_lim" if isinstance(scale, Displacement) else "shear modulus"
     low, high = ends
@@ -166,7 +169,7 @@ def _open(scale, ends):
     return f"the rows tell mu alone: {which} fits them as well"
 
 
-def _warnings(settled, allowed, chance):
+def _warnings(settled: Settled, allowed: float, chance: float | None) -> Iterator[str]:
     """Texts; allowed: of the sum of squares, 0 where one number is open anyway."""
     scale, best = settled.scale, settled.best
     if chance is not None and chance < UNLIKELY:

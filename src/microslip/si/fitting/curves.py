@@ -77,18 +77,18 @@ def curve_of(scale: Displacement | Modulus, model: FrictionModel, mu: float, siz
         parts.append(np.stack([*(fine[name] for name in columns), *corrections]))
     speed, amplitude, load, frequency, off, error = np.concatenate([np.empty((6, 0)), *parts], 1)
     blank = np.full(len(speed), np.nan)
-    fine = Measured(speed, amplitude, frequency, load, blank, blank, rows.quantity, {})
-    ratio = model.rough(scale.points(mu, size, fine)) + off if len(speed) else blank
-    factor = mu * fine.weight
+    drawn = Measured(speed, amplitude, frequency, load, blank, blank, rows.quantity, {})
+    ratio = model.rough(scale.points(mu, size, drawn)) + off if len(speed) else blank
+    factor = mu * drawn.weight
     return Curve(speed, amplitude, frequency, load, factor * ratio, factor * error)
 
 
-def _count(rows):
+def _count(rows: int) -> int:
     """Number of points of a curve through so many rows, which are among them."""
     return 1 + (rows - 1) * -(-PIECES // (rows - 1))
 
 
-def _between(values, place):
+def _between(values: np.ndarray, place: np.ndarray) -> np.ndarray:
     """Values at places between their indices, in equal ratios where both neighbours are above 0."""
     cell = np.clip(place.astype(int), 0, len(values) - 2)
     share, low, high = place - cell, values[cell], values[cell + 1]

@@ -134,13 +134,13 @@ def interval(rows: Rows, best: Best, which: int, allowed: float) -> tuple[float,
     return _end(rows, best, which, allowed, -1.0), _end(rows, best, which, allowed, 1.0)
 
 
-def _end(rows, best, which, allowed, side):
+def _end(rows: Rows, best: Best, which: int, allowed: float, side: float) -> float:
     from scipy.optimize import brentq
 
     other = 1 - which
     last = [best.theta[other]]
 
-    def above(value):
+    def above(value: float) -> float:
         """Sum of squares above what is allowed, with the other number as good as it can be."""
         last[0], squares = _other_best(rows, which, value, last[0])
         return squares - best.squares - allowed
@@ -158,7 +158,7 @@ def _end(rows, best, which, allowed, side):
     return side * np.inf
 
 
-def _first_step(best, which, allowed):
+def _first_step(best: Best, which: int, allowed: float) -> float:
     """Half width of the interval of a linear model."""
     curvature = best.slopes.T @ best.slopes
     if np.linalg.cond(curvature) > 1e12:
@@ -166,13 +166,13 @@ def _first_step(best, which, allowed):
     return float(np.clip(np.sqrt(allowed * np.linalg.inv(curvature)[which, which]), 1e-6, 1.0))
 
 
-def _other_best(rows, which, value, start):
+def _other_best(rows: Rows, which: int, value: float, start: float) -> tuple[float, float]:
     """The other number where one is held, and the sum of squares there."""
     from scipy.optimize import least_squares
 
     other = 1 - which
 
-    def theta(x):
+    def theta(x: np.ndarray) -> np.ndarray:
         both = np.empty(2)
         both[which], both[other] = value, x[0]
         return both

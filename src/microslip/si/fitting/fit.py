@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from microslip.adaptive.checks import SMALLEST_TOLERANCE
@@ -9,7 +11,13 @@ from microslip.foundation.errors import InputError
 from microslip.si.fitting import estimate
 from microslip.si.fitting.conclusions import Settled, concluded
 from microslip.si.fitting.fitted import Fit
-from microslip.si.fitting.friction_models import LEAST, MOST, MapFriction, SolvedFriction
+from microslip.si.fitting.friction_models import (
+    LEAST,
+    MOST,
+    FrictionModel,
+    MapFriction,
+    SolvedFriction,
+)
 from microslip.si.fitting.measured import Measured, named, read_measured
 from microslip.si.fitting.scales import Displacement, Modulus, Points
 from microslip.si.inputs import LARGEST_MU
@@ -98,9 +106,13 @@ def fit(
         raise InputError("confidence", confidence, allowed)
     ends = scale.bounds(LEAST, MOST)
     if map is not None:
-        model = MapFriction(map, motion, None if nu is None else scale.poisson)
+        model: FrictionModel = MapFriction(map, motion, None if nu is None else scale.poisson)
     else:
-        limits = {"low": SMALLEST_TOLERANCE, "low_open": False, "high": LARGEST_TOLERANCE}
+        limits: dict[str, Any] = {
+            "low": SMALLEST_TOLERANCE,
+            "low_open": False,
+            "high": LARGEST_TOLERANCE,
+        }
         given = TOLERANCE if tolerance is None else read("tolerance", tolerance, "", **limits).si
         reached = [scale.points(0.3, end) for end in ends]
         model = SolvedFriction(motion, scale.poisson, given, reached)
@@ -115,7 +127,7 @@ def fit(
         raise error.renamed("measured", named(measured)) from None
 
 
-def _refuse_too_few(rows, given):
+def _refuse_too_few(rows: Measured, given: object) -> None:
     least = 2 if rows.has_errors else 3
     given, count = named(given), len(rows.value)
     if count < least:
@@ -127,7 +139,9 @@ def _refuse_too_few(rows, given):
         raise InputError("measured", given, allowed)
 
 
-def _scale(motion, rows, nu, radius, counterbody):
+def _scale(
+    motion: str, rows: Measured, nu: object, radius: object, counterbody: object
+) -> tuple[Displacement | Modulus, dict[str, str]]:
     """The second unknown, and texts of what was understood."""
     texts = {"motion": motion}
     ratio = None if nu is None else read("nu", nu, "", low_open=False, high=0.5)
@@ -149,10 +163,12 @@ def _scale(motion, rows, nu, radius, counterbody):
     return Modulus(rows, motion == "bore", ratio.si, counterbody == "same", size.si), texts
 
 
-def _rows(rows: Measured, scale, model, ends):
+def _rows(
+    rows: Measured, scale: Displacement | Modulus, model: FrictionModel, ends: tuple[float, float]
+) -> estimate.Rows:
     """What the least squares is asked."""
 
-    def ratios(thetas):
+    def ratios(thetas: np.ndarray) -> np.ndarray:
         """Of all guesses at once, for a map takes as long for one."""
         parts = zip(*(scale.points(*np.exp(theta)) for theta in thetas), strict=True)
         return model.at(Points(*(np.concatenate(part) for part in parts))).reshape(len(thetas), -1)
@@ -169,7 +185,9 @@ def _rows(rows: Measured, scale, model, ends):
     )
 
 
-def _best(rows, scale, model):
+def _best(
+    rows: estimate.Rows, scale: Displacement | Modulus, model: FrictionModel
+) -> tuple[estimate.Best, list[estimate.Best]]:
     """The best fit, and others that were tried, the best one first."""
     tried = [estimate.best_near(rows, start) for start in estimate.starts(rows)]
     tried.sort(key=lambda one: one.squares)

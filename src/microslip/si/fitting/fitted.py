@@ -114,7 +114,7 @@ class Fit:
     def to_dict(self) -> dict:
         """Fields as a plain dict, arrays and tuples as lists; without the curve."""
 
-        def plain(value):
+        def plain(value: object) -> object:
             if isinstance(value, np.ndarray):
                 return value.tolist()
             return list(value) if isinstance(value, tuple) else value
@@ -130,7 +130,8 @@ class Fit:
         import xarray as xr
 
         units = self._units()
-        found, about = {}, {}
+        found: dict[str, tuple] = {}
+        about: dict[str, str] = {}
         for name, value in ((each.name, getattr(self, each.name)) for each in fields(self)):
             if isinstance(value, Curve):
                 for part, values in value._asdict().items():
@@ -150,7 +151,7 @@ class Fit:
                 found[name] = ((), number, {"units": units.get(name, _unit_of_name(name))})
         return xr.Dataset(found, attrs=about)
 
-    def _units(self):
+    def _units(self) -> dict[str, str]:
         measured = "N" if self.quantity == "friction" else "1"
         names = ("measured", "measured_error", "fitted", "fitted_error", "standard_error")
         size = {"amplitude_si": "rad" if self.motion == "bore" else "m"}
@@ -159,5 +160,5 @@ class Fit:
         return rows | pure | size | dict.fromkeys(names, measured)
 
 
-def _unit_of_name(name):
+def _unit_of_name(name: str) -> str:
     return next((unit for unit in ("Pa", "N", "m") if name.endswith(f"_{unit}")), "1")

@@ -8,7 +8,8 @@ is left of the coarse map's error at the end is of second order.
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Callable
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -66,7 +67,7 @@ class MapFriction:
         For what is no such dataset, or does not know that ratio.
     """
 
-    def __init__(self, dataset: object, motion: str, poisson: float):
+    def __init__(self, dataset: Any, motion: str, poisson: float | None):
         attributes = getattr(dataset, "attrs", {})
         if attributes.get("motion") != motion or attributes.get("pressure", "hertz") != "hertz":
             kind = type(dataset).__name__ if hasattr(dataset, "attrs") else dataset
@@ -105,7 +106,7 @@ class MapFriction:
             problem = f"does not hold the rows at the best fit: {error}"
             raise InputError("map", self._dataset.attrs.get("motion"), problem) from None
 
-    def _answer(self, points):
+    def _answer(self, points: Points) -> tuple[np.ndarray, np.ndarray]:
         from xarray import DataArray
 
         velocity, amplitude = (DataArray(part, dims="row") for part in points)
@@ -145,14 +146,16 @@ class SolvedFriction:
             allowed = f"rows; allowed are at most {MOST_SOLVED}, or any number with a map"
             raise InputError("measured", count, allowed)
         self._motion, self._settings = motion, {"poisson": poisson, "tolerance": tolerance}
-        self._known = {}
+        self._known: dict[tuple[float, float], tuple[float, float]] = {}
         coordinates = [self._coordinates(points) for points in ends]
         axes = [np.concatenate([each[k] for each in coordinates]) for k in (0, 1)]
         self._axes = [
             _axis(values, NODES_A_DECADE[name])
             for values, name in zip(axes, ("amplitude", "ratio"), strict=True)
         ]
-        self._map, self._off, self._errors = None, 0.0, np.full(count, np.inf)
+        self._map: Callable | None = None
+        self._off: np.ndarray | float = 0.0
+        self._errors = np.full(count, np.inf)
 
     def at(self, points: Points) -> np.ndarray:
         off = np.resize(self._off, len(points.amplitude))  # of each row, for every guess
@@ -169,7 +172,7 @@ class SolvedFriction:
     def rough(self, points: Points) -> np.ndarray:
         return np.where(points.amplitude > 0.0, self._coarse(points), 1.0)
 
-    def _coordinates(self, points):
+    def _coordinates(self, points: Points) -> tuple[np.ndarray, np.ndarray]:
         """Logarithms of amplitude and ratio, within the range of the coarse map."""
         velocity, amplitude = points
         moving = amplitude > 0.0
@@ -178,12 +181,12 @@ class SolvedFriction:
         ratio = np.divide(velocity, over, out=np.full_like(size, FASTEST), where=moving)
         return np.log(size), np.log(np.clip(ratio, SLOWEST, FASTEST))
 
-    def _coarse(self, points):
+    def _coarse(self, points: Points) -> np.ndarray:
         if self._map is None:
             self._map = self._coarse_map()
         return self._map(*self._coordinates(points), grid=False)
 
-    def _coarse_map(self):
+    def _coarse_map(self) -> Callable:
         from scipy.interpolate import RectBivariateSpline
 
         sizes, ratios = (np.exp(axis) for axis in self._axes)
@@ -194,7 +197,7 @@ class SolvedFriction:
         ]
         return RectBivariateSpline(*self._axes, np.array(values), s=0)
 
-    def _solved(self, velocity, amplitude):
+    def _solved(self, velocity: float, amplitude: float) -> tuple[float, float]:
         """mu_macro and its error by the solver, each point once."""
         point = float(velocity), float(amplitude)
         if point not in self._known:
@@ -202,7 +205,9 @@ class SolvedFriction:
         return self._known[point]
 
 
-def _solution(motion, velocity, amplitude, settings):
+def _solution(
+    motion: str, velocity: float, amplitude: float, settings: dict[str, Any]
+) -> tuple[float, float]:
     """mu_macro and its error by the solver."""
     if amplitude == 0.0:
         return 1.0, 0.0
@@ -215,7 +220,7 @@ def _solution(motion, velocity, amplitude, settings):
     return found.mu_macro, found.mu_macro_error
 
 
-def _axis(values, a_decade):
+def _axis(values: np.ndarray, a_decade: float) -> np.ndarray:
     """Nodes from the least to the largest of some logarithms, at least four."""
     low, high = values.min() - 0.1, values.max() + 0.1
     count = max(4, 1 + int(np.ceil((high - low) / np.log(10.0) * a_decade)))

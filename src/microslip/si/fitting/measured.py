@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -87,7 +89,8 @@ def read_measured(
     count = len(next(iter(table.values())))
     if count == 0:
         raise InputError("measured", given, "no rows; allowed is a row for each measurement")
-    texts, columns = {}, {}
+    texts: dict[str, str] = {}
+    columns: dict[str, Any] = {}
     for name in CONDITIONS:
         if (name in table) == (shared[name] is not None):
             where = "both a column and given for all rows" if name in table else "missing"
@@ -103,11 +106,18 @@ def read_measured(
         raise InputError("measured", given, "no row with an amplitude above 0; nothing vibrates")
     quantity = _quantity(table, given)
     error = table.get(f"{quantity}_error", np.full(count, np.nan))
-    values = {"value": table[quantity], "error": error, "labels": labels, "left_out": left_out}
+    values: dict[str, Any] = {
+        "value": table[quantity],
+        "error": error,
+        "labels": labels,
+        "left_out": left_out,
+    }
     return Measured(**columns, **values, quantity=quantity, texts=texts)
 
 
-def _table(given, unit, decimal, encoding):
+def _table(
+    given: object, unit: str, decimal: str, encoding: str
+) -> tuple[dict[str, np.ndarray], dict[str, list], tuple[str, ...]]:
     """Columns as arrays of floats, labels as lists, and messages about lines that are left out."""
     csv_text.check_format(decimal, encoding)
     if isinstance(given, str | os.PathLike):
@@ -136,7 +146,7 @@ def _table(given, unit, decimal, encoding):
     return table, labels, ()
 
 
-def _without_empty_rows(table):
+def _without_empty_rows(table: Mapping[str, Any]) -> dict[str, Any]:
     """Columns without rows of missing values alone; of several lengths they stay as they are."""
     lists = [values for values in table.values() if isinstance(values, list)]
     if not lists or len(lists) < len(table) or len({len(values) for values in lists}) > 1:
@@ -146,7 +156,7 @@ def _without_empty_rows(table):
     return {name: [values[i] for i in kept] for name, values in table.items()}
 
 
-def _column(name, values, unit_of_amplitude):
+def _column(name: str, values: Any, unit_of_amplitude: str) -> np.ndarray:
     if isinstance(values, list) and any(isinstance(value, str) for value in values):
         unit = unit_of_amplitude if name == "amplitude" else COLUMNS[name]
         low = -np.inf if name in ("friction", "mu") else 0.0
@@ -181,7 +191,7 @@ def _column(name, values, unit_of_amplitude):
     return column
 
 
-def _quantity(table, given):
+def _quantity(table: Mapping[str, np.ndarray], given: object) -> str:
     """Which of both was measured."""
     there = [name for name in ("friction", "mu") if name in table]
     if len(there) != 1:
@@ -193,6 +203,6 @@ def _quantity(table, given):
     return there[0]
 
 
-def named(given: object) -> str | list:
+def named(given: Any) -> str | list:
     """What messages show of a table: its path, or the names of its columns."""
     return str(given) if isinstance(given, str | os.PathLike) else list(given)

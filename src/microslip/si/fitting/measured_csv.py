@@ -94,7 +94,7 @@ def read_table(
     return rows
 
 
-def _columns(where, heading):
+def _columns(where: int, heading: str) -> tuple[str, list[str], list[str]]:
     """Separator, names and units of the columns."""
     allowed = f"allowed: some of {', '.join(COLUMNS)}, each with its unit, as in speed [mm/s]"
     separator, columns = csv_text.columns(where, heading, COLUMNS, allowed)
@@ -105,7 +105,7 @@ def _columns(where, heading):
     return separator, list(names), ["" if unit in csv_text.PURE else unit for unit in units]
 
 
-def _value(where, name, cell, unit, wanted, decimal):
+def _value(where: int, name: str, cell: str, unit: str, wanted: str, decimal: str) -> float:
     if not cell:
         allowed = "allowed: a number in every row; leave out the row, or fill the cell"
         raise ValueError(f"line {where}: {name} is empty; {allowed}")

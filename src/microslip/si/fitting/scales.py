@@ -117,7 +117,7 @@ class Modulus:
         arc = rows.amplitude * contact.contact_radius * share ** (1.0 / 3.0)
         moving = arc > 0.0  # an angle of 0 leaves no unit for the velocity, and needs none
         velocity = np.divide(rows.speed, omega * arc, out=np.zeros_like(arc), where=moving)
-        return Points(velocity, hertz.bore_amplitude(arc / u_lim, self.poisson))
+        return Points(velocity, np.asarray(hertz.bore_amplitude(arc / u_lim, self.poisson)))
 
     def bounds(self, least: float, most: float) -> tuple[float, float]:
         """Shear moduli of bodies that are pressed on one another, whatever the amplitudes."""

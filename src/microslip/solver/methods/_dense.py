@@ -12,13 +12,13 @@ coulomb.coulomb_residual.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from microslip.contacts.coulomb import coulomb_residual, shrink
 from microslip.foundation.compiled import kernel
-from microslip.models.contact import Contact, March, StepFailure, forces
+from microslip.models.contact import Contact, Guess, March, StepFailure, forces
 from microslip.models.path import Path
 
 FAR_FROM_SOLVED = 1e-2
@@ -70,7 +70,7 @@ class DenseContact:
         except np.linalg.LinAlgError as error:
             raise StepFailure(f"the method does not apply: {error}") from error
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> Any:
         return getattr(self.contact, name)
 
     def march(
@@ -78,7 +78,7 @@ class DenseContact:
         path: Path,
         state: np.ndarray,
         tolerance: float,
-        previous: March | None = None,
+        previous: Guess | None = None,
     ) -> March:
         """March along `path`; raises StepFailure at the first step that stays unsolved."""
         q = state.reshape(2, -1).copy()
@@ -100,7 +100,9 @@ class DenseContact:
         solves = path.stages.shape[0] * path.stages.shape[1]
         return March(at_end.reshape(self.shape), found, total, iterations, solves)
 
-    def _solved(self, b, q, slip, tolerance):
+    def _solved(
+        self, b: np.ndarray, q: np.ndarray, slip: np.ndarray, tolerance: float
+    ) -> tuple[int, float]:
         try:
             count, residual = self.solve(self.points, b, q, slip, tolerance, self.settings)
         except np.linalg.LinAlgError as error:
@@ -113,10 +115,10 @@ class DenseContact:
             )
         return count, residual
 
-    def _elastic(self, q):
+    def _elastic(self, q: np.ndarray) -> np.ndarray:
         return self.contact.displacement(q.reshape(self.shape)).reshape(2, -1)
 
-    def _rigid(self, position):
+    def _rigid(self, position: np.ndarray) -> np.ndarray:
         forward, lateral, angle = position
         return np.stack(
             [
@@ -136,7 +138,7 @@ def safe_length(matrix: np.ndarray) -> float:
     return 1.0 / np.abs(np.linalg.eigvals(matrix)).max()
 
 
-def _matrix(contact, shape):
+def _matrix(contact: Contact, shape: tuple[int, ...]) -> np.ndarray:
     """The influence operator of a contact, column by column."""
     size = int(np.prod(shape))
     columns = np.empty((size, size))

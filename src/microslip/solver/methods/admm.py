@@ -10,19 +10,28 @@ import numpy as np
 
 from microslip.foundation.compiled import kernel
 from microslip.solver.method import Method
-from microslip.solver.methods._dense import dense, judge, project_in_place
+from microslip.solver.methods._dense import Points, dense, judge, project_in_place
 
 MAX_ITERATIONS = 2000
 
 
-def _inverse(matrix, scale, penalty, relaxation):
+def _inverse(
+    matrix: np.ndarray, scale: np.ndarray, penalty: float, relaxation: float
+) -> tuple[np.ndarray, np.ndarray, float]:
     """(A + penalty)^-1, the penalty of every point, and the relaxation."""
     added = penalty * scale
     return np.linalg.inv(matrix + np.diag(np.tile(added, 2))), added, relaxation
 
 
 @kernel
-def _solve(points, b, q, slip, tolerance, settings):
+def _solve(
+    points: Points,
+    b: np.ndarray,
+    q: np.ndarray,
+    slip: np.ndarray,
+    tolerance: float,
+    settings: tuple[np.ndarray, np.ndarray, float],
+) -> tuple[int, float]:
     inverse, penalty, relaxation = settings
     residual = judge(points, b, q, slip)
     dual = slip / penalty

@@ -26,7 +26,8 @@ import numpy as np
 from microslip.contacts.coulomb import project
 from microslip.models.path import EULER, Path
 from microslip.models.squares.convolution import square_convolution
-from microslip.solver.discretise import path_of
+from microslip.motions.problem import Problem
+from microslip.solver.discretise import Resolution, path_of
 from microslip.solver.effort import Effort
 from microslip.solver.method import Method
 from microslip.solver.run import Run, failed_run
@@ -89,7 +90,7 @@ def half_period(solver: Solver, path: Path, number: int) -> tuple[np.ndarray, fl
     return found[:, 0], float(found[:, 1].sum())
 
 
-def _run(problem, model, resolution, tolerance):
+def _run(problem: Problem, model: str, resolution: Resolution, tolerance: float) -> Run:
     solver = Solver(resolution.cells, problem.poisson)
     if not solver.loaded:
         return failed_run("the normal contact was left unsolved")
@@ -116,7 +117,7 @@ def _run(problem, model, resolution, tolerance):
     )
 
 
-def _reason(solver, periods, change, tolerance):
+def _reason(solver: Solver, periods: float, change: float, tolerance: float) -> str:
     reasons = []
     if solver.failed:
         reasons.append(f"{solver.failed} of {solver.solves} steps failed")

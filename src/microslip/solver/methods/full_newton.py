@@ -10,13 +10,13 @@ import numpy as np
 
 from microslip.foundation.compiled import kernel
 from microslip.solver.method import Method
-from microslip.solver.methods._dense import dense, judge, project_in_place
+from microslip.solver.methods._dense import Points, dense, judge, project_in_place
 
 MAX_ITERATIONS = 60
 
 
 @kernel
-def _copy(out, values):
+def _copy(out: np.ndarray, values: np.ndarray) -> None:
     """out = values, (2, K) both; an assignment of arrays takes seconds to compile."""
     for c in range(2):
         for i in range(out.shape[1]):
@@ -24,7 +24,14 @@ def _copy(out, values):
 
 
 @kernel
-def _solve(points, b, q, slip, tolerance, settings):
+def _solve(
+    points: Points,
+    b: np.ndarray,
+    q: np.ndarray,
+    slip: np.ndarray,
+    tolerance: float,
+    settings: float,
+) -> tuple[int, float]:
     matrix, scale, bound = points.matrix, points.scale, points.bound
     n = q.shape[1]
     system, right = np.empty_like(matrix), np.empty(2 * n)

@@ -10,18 +10,25 @@ import numpy as np
 from microslip.contacts.coulomb import shrink
 from microslip.foundation.compiled import kernel
 from microslip.solver.method import Method
-from microslip.solver.methods._dense import dense, judge
+from microslip.solver.methods._dense import Points, dense, judge
 
 MAX_ITERATIONS = 1000
 
 
-def _columns(matrix, scale, relaxation):
+def _columns(matrix: np.ndarray, scale: np.ndarray, relaxation: float) -> tuple[np.ndarray, float]:
     """The matrix by columns, which is how its entries are used, and the relaxation."""
     return np.ascontiguousarray(matrix.T), relaxation
 
 
 @kernel
-def _solve(points, b, q, slip, tolerance, settings):
+def _solve(
+    points: Points,
+    b: np.ndarray,
+    q: np.ndarray,
+    slip: np.ndarray,
+    tolerance: float,
+    settings: tuple[np.ndarray, float],
+) -> tuple[int, float]:
     columns, relaxation = settings
     scale, bound = points.scale, points.bound
     n = q.shape[1]

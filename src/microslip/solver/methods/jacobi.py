@@ -6,11 +6,13 @@ diagonal.
 
 from __future__ import annotations
 
+import numpy as np
+
 from microslip.solver.method import Method
 from microslip.solver.methods._dense import dense, descend
 
 
-def _lengths(matrix, scale, damping):
+def _lengths(matrix: np.ndarray, scale: np.ndarray, damping: float) -> np.ndarray:
     """What would take the slip of a point away if it were alone, times the damping."""
     return damping / scale
 

@@ -13,6 +13,7 @@ from microslip.models.contact import FORWARD, March, forward_slip
 from microslip.models.path import EULER, Path, make_path
 from microslip.models.squares.contact import CartesianContact
 from microslip.motions.problem import Problem
+from microslip.solver.discretise import Resolution
 from microslip.solver.effort import Effort
 from microslip.solver.method import Method
 from microslip.solver.run import Run
@@ -35,7 +36,7 @@ def last_means(march: March) -> tuple[float, float]:
     return float(last.mean()), float(before.mean())
 
 
-def _run(problem, model, resolution, tolerance):
+def _run(problem: Problem, model: str, resolution: Resolution, tolerance: float) -> Run:
     contact = CartesianContact(CELLS, problem.poisson, problem.pressure)
     march = contact.march(path_of(problem), forward_slip(contact), STRESS_TOLERANCE)
     mean, before = last_means(march)

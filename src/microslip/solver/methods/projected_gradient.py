@@ -11,7 +11,7 @@ from microslip.solver.method import Method
 from microslip.solver.methods._dense import dense, descend, safe_length
 
 
-def _lengths(matrix, scale, step):
+def _lengths(matrix: np.ndarray, scale: np.ndarray, step: float) -> np.ndarray:
     """`step` in units of the reciprocal of the largest eigenvalue, for every point."""
     return np.full_like(scale, step * safe_length(matrix))
 

@@ -5,21 +5,30 @@ The length of a step is what the last one measured of the matrix along its own d
 
 from __future__ import annotations
 
+import numpy as np
+
 from microslip.foundation.compiled import kernel
 from microslip.solver.method import Method
-from microslip.solver.methods._dense import dense, judge, project_in_place, safe_length
+from microslip.solver.methods._dense import Points, dense, judge, project_in_place, safe_length
 
 MAX_ITERATIONS = 2000
 PATIENCE = 60
 """Iterations granted to long steps for halving the residual; then steps are short until it is."""
 
 
-def _shortest(matrix, scale):
+def _shortest(matrix: np.ndarray, scale: np.ndarray) -> float:
     return safe_length(matrix)
 
 
 @kernel
-def _solve(points, b, q, slip, tolerance, shortest):
+def _solve(
+    points: Points,
+    b: np.ndarray,
+    q: np.ndarray,
+    slip: np.ndarray,
+    tolerance: float,
+    shortest: float,
+) -> tuple[int, float]:
     bound, weight = points.bound, points.weight
     residual = judge(points, b, q, slip)
     length, best, best_at = shortest, residual, 0

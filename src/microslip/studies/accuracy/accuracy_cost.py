@@ -98,9 +98,10 @@ def pieces(study: Accuracy) -> tuple[list, list]:
     for model in SCALING_SIZES:
         sizes = scaling(study, model)
         long += [[request] for request in reversed(sizes[LONE_SIZES:])] + [sizes[:LONE_SIZES]]
-    shipped, others = [], {}
+    shipped: list[list[dict]] = []
+    others: dict[str, list[dict]] = {}
     for point in points:
-        asked = {True: [], False: []}
+        asked: dict[bool, list[dict]] = {True: [], False: []}
         for _, request in trials(study, point):
             if request.get("method", SHIPPED) == SHIPPED:
                 asked[_takes_long(request)].append(request)
@@ -117,11 +118,11 @@ def pieces(study: Accuracy) -> tuple[list, list]:
     return [piece for piece in long if piece], [piece for piece in short if piece]
 
 
-def _takes_long(request):
+def _takes_long(request: dict) -> bool:
     return request.get("model") == "cartesian" and request.get("cells", 0) >= LARGE
 
 
-def _map_row(study, points):
+def _map_row(study: Accuracy, points: list[StudyPoint]) -> list[dict]:
     return [
         request
         for point in points

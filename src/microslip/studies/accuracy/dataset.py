@@ -1,13 +1,16 @@
 """The dataset accuracy_cost: trials with errors and costs, maps of models, costs of a step."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator
 from dataclasses import asdict
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from microslip.config.quantities import MU_MACRO
-from microslip.config.records import Accuracy
+from microslip.config.records import Accuracy, StudyPoint
 from microslip.studies.accuracy import accuracy_cost as study
 from microslip.studies.accuracy import profiles
 from microslip.studies.accuracy.fronts import cheapest, confirmed, exponent, on_front
@@ -105,7 +108,7 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
         )
 
 
-def _timed_on(answers):
+def _timed_on(answers: Answers) -> str:
     """Every computer that a time was measured on, as one text."""
     named = (
         f"{machine['cpu']}, host {machine['host']}, threads {machine['threads']}"
@@ -117,7 +120,7 @@ def _timed_on(answers):
 # Points and trials
 
 
-def _points(points, answers):
+def _points(points: list[StudyPoint], answers: Answers) -> dict:
     found = [_reference(point, answers) for point in points]
     amplitudes = [np.nan if p.amplitude is None else p.amplitude for p in points]
     return columns(
@@ -135,7 +138,7 @@ def _points(points, answers):
     )
 
 
-def _reference(point, answers):
+def _reference(point: StudyPoint, answers: Answers) -> tuple[float, float, str]:
     """(mu, error, source) that the trials of a point are compared with."""
     request = study.truth(point)
     if request is None:
@@ -147,9 +150,12 @@ def _reference(point, answers):
     return value_of(result, "mu_macro"), value_of(result, "mu_macro_error"), source
 
 
-def _trials(settings, points, answers, of_points):
+def _trials(
+    settings: Accuracy, points: list[StudyPoint], answers: Answers, of_points: dict
+) -> dict[str, list]:
     """Columns of TRIAL_VARIABLES, as lists."""
-    rows, fronts = [], {"front_seconds": [], "front_effort": []}
+    rows: list[dict] = []
+    fronts: dict[str, list] = {"front_seconds": [], "front_effort": []}
     for i, point in enumerate(points):
         reference, floor = (of_points[name][1][i] for name in ("reference", "reference_error"))
         found = []
@@ -167,7 +173,9 @@ def _trials(settings, points, answers, of_points):
     )
 
 
-def _row(point, level, request, result, reference):
+def _row(
+    point: StudyPoint, level: int, request: dict, result: dict, reference: float
+) -> dict[str, Any]:
     chosen = request["kind"] == "choice"
     used = result if chosen else request | result
     mu = value_of(result, "mu_macro")
@@ -193,10 +201,10 @@ def _row(point, level, request, result, reference):
 # Models that are good enough, and the cost of a step
 
 
-def _map(settings, motion, answers):
+def _map(settings: Accuracy, motion: str, answers: Answers) -> dict:
     dims = ("map_tolerance", f"{motion}_amplitude", f"{motion}_velocity")
     points = study.map_points(settings, motion)
-    best = {name: [] for name in ("", "_cells", "_seconds")}
+    best: dict[str, list] = {name: [] for name in ("", "_cells", "_seconds")}
     found = [_candidates(settings, point, answers) for point in points]
     for tolerance in settings.map_tolerance:
         for models, cells, seconds, error in found:
@@ -222,7 +230,9 @@ def _map(settings, motion, answers):
     }
 
 
-def _candidates(settings, point, answers):
+def _candidates(
+    settings: Accuracy, point: StudyPoint, answers: Answers
+) -> tuple[list[str], list[int], list[float], np.ndarray]:
     """Models, cells, seconds and errors of all trials at a point of a map, as lists."""
     truth = value_of(answers(study.map_truth(settings, point)), "mu_macro")
     requests = study.map_trials(settings, point)
@@ -241,7 +251,7 @@ def _candidates(settings, point, answers):
     )
 
 
-def _scaling(settings, answers):
+def _scaling(settings: Accuracy, answers: Answers) -> dict:
     dims = ("scaling_model", "scaling_size")
     asked = [study.scaling(settings, model) for model in study.SCALING_SIZES]
     shape = (len(asked), max(map(len, asked)))

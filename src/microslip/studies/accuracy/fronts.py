@@ -1,12 +1,13 @@
 """What is picked from trials, and what is fitted to them: fronts, the cheapest, exponents."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 AS_CHEAP = 1.5
 """Ratio of two times up to which they may be the same."""
 
 
-def on_front(cost: np.ndarray, error: np.ndarray) -> np.ndarray:
+def on_front(cost: ArrayLike, error: ArrayLike) -> np.ndarray:
     """Mark what nothing beats: nothing costs no more and errs no more, and one of the two less.
 
     cost, error: arrays (n,); what has no finite value of both takes no part. Returns bool (n,).
@@ -25,7 +26,7 @@ def on_front(cost: np.ndarray, error: np.ndarray) -> np.ndarray:
     return front
 
 
-def cheapest(cost: np.ndarray, error: np.ndarray, tolerance: float) -> int | None:
+def cheapest(cost: ArrayLike, error: ArrayLike, tolerance: float) -> int | None:
     """Index of the least cost among those within the tolerance, or None if none is.
 
     Costs that differ by less than clocks do count as equal: then the first one is taken.
@@ -37,7 +38,7 @@ def cheapest(cost: np.ndarray, error: np.ndarray, tolerance: float) -> int | Non
     return int(good[np.argmax(cost[good] <= AS_CHEAP * cost[good].min())])
 
 
-def confirmed(models: list[str], error: np.ndarray, exact: str) -> np.ndarray:
+def confirmed(models: list[str], error: ArrayLike, exact: str) -> np.ndarray:
     """The error that each rung of a ladder is good for: the largest of its own and all finer ones.
 
     models: of the rungs, each from coarse to fine. A coarse run may be right by chance, where its

@@ -7,6 +7,7 @@ tolerance, and its ratio that cost over the least of all competitors of its cont
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -102,7 +103,7 @@ def ratios(trials: list, tolerance: float) -> tuple[list, list, np.ndarray]:
     return of_name, of_point, np.divide(least, best, out=np.full_like(least, np.inf), where=solved)
 
 
-def variables(columns: dict, points: list[str], tolerances: list[float]) -> dict:
+def variables(columns: dict, points: list[str], tolerances: Sequence[float]) -> dict:
     """Variables of the dataset: a row for each competitor of each contest.
 
     Parameters
@@ -143,20 +144,21 @@ def variables(columns: dict, points: list[str], tolerances: list[float]) -> dict
         contests += [contest] * len(known)
         names += known
         table.append(np.stack(found, axis=1))
-    table = np.concatenate(table) if table else np.empty((0, len(tolerances), len(points)))
+    empty = np.empty((0, len(tolerances), len(points)))
+    every_ratio = np.concatenate(table) if table else empty
     about = "least CPU time within the tolerance over that of the contest's best, infinite: never"
     return {
         "competitor_contest": variable("competitor", contests, "what is compared", str),
         "competitor": variable("competitor", names, "model or method", str),
-        "profile_ratio": variable(("competitor", "map_tolerance", "point"), table, about),
+        "profile_ratio": variable(("competitor", "map_tolerance", "point"), every_ratio, about),
     }
 
 
-def _entries(rows):
+def _entries(rows: list[dict]) -> dict[str, list[tuple[dict, str]]]:
     """Rows of each contest with the name that each competes under."""
     others = {row["trial_method"] for row in rows} - {SHIPPED}
     contests = {method: contest_of(method) for method in sorted(others)}
-    found = {MODELS: []}
+    found: dict[str, list[tuple[dict, str]]] = {MODELS: []}
     for row in rows:
         model, method = row["trial_model"], row["trial_method"]
         if method == SHIPPED:

@@ -4,6 +4,9 @@ One function for each name in statements.PARTS: (study, runs) -> list of verdict
 study: records.Claims; runs(request) -> tables of results, see runs.Runs.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -11,27 +14,34 @@ import numpy as np
 from microslip.config.records import Claims
 from microslip.studies.claims import claims as asked
 from microslip.studies.claims import statements as criteria
-from microslip.studies.claims.runs import Runs, friction
+from microslip.studies.claims.runs import Run, Runs, friction
 from microslip.studies.claims.verdicts import Check
 from microslip.studies.tables import value_of
 from microslip.theory import paper as theory
 
 
 def check(
-    value: float, against: float, margin: float, error: np.ndarray, runs: Runs, **place: object
+    value: float, against: float, margin: float, error: float, runs: Sequence[Run], **place: object
 ) -> Check:
     numbers = (float(value), float(against), float(margin), float(error))
     return Check(*numbers, tuple(run.key for run in runs), tuple(place.items()))
 
 
 def within(
-    limit: float, value: float, against: float, error: np.ndarray, runs: Runs, **place: object
+    limit: float, value: float, against: float, error: float, runs: Sequence[Run], **place: object
 ) -> Check:
     """Holds where value and against are no more than `limit` apart."""
     return check(value, against, limit - abs(value - against), error, runs, **place)
 
 
-def _map(study, runs, motion, formula, judge, chosen=lambda amplitude: True):
+def _map(
+    study: Claims,
+    runs: Runs,
+    motion: str,
+    formula: Callable,
+    judge: Callable[[float, float], float],
+    chosen: Callable[[float], bool] = lambda amplitude: True,
+) -> list[Check]:
     """Checks at all points of a motion: judge(mu, formula(velocity, amplitude)) -> margin."""
     found = []
     for amplitude in filter(chosen, study.amplitude[motion]):
@@ -61,7 +71,7 @@ def rigid_below_squares(study: Claims, runs: Runs) -> list[Check]:
         point = runs(asked.point(study, "transverse", asked.PAPER_VELOCITY, amplitude))
         certified, its_error = friction(point)
         mu = value_of(paper.result, "mu_macro")
-        eq = theory.large_amplitude_transverse(asked.PAPER_VELOCITY, amplitude)
+        eq = float(theory.large_amplitude_transverse(asked.PAPER_VELOCITY, amplitude))
         error = its_error + abs(mu - certified)
         found.append(check(mu, eq, mu - eq, error, [paper, point], **place))
     return found
@@ -75,7 +85,7 @@ def rigid_near(study: Claims, runs: Runs) -> list[Check]:
 # Continuous bore
 
 
-def _settles(runs, quantity, against):
+def _settles(runs: Runs, quantity: str, against: float) -> list[Check]:
     """The end of each transient. Its error: how it differs on half as many rings, and how it still
     changes over the last tenth of the way."""
     found = []
@@ -90,11 +100,11 @@ def _settles(runs, quantity, against):
 
 
 def force_settles(study: Claims, runs: Runs) -> list[Check]:
-    return _settles(runs, "force_forward", theory.bore_forward(asked.TRANSIENT_VELOCITY))
+    return _settles(runs, "force_forward", float(theory.bore_forward(asked.TRANSIENT_VELOCITY)))
 
 
 def torque_settles(study: Claims, runs: Runs) -> list[Check]:
-    return _settles(runs, "torque", theory.bore_torque(asked.TRANSIENT_VELOCITY))
+    return _settles(runs, "torque", float(theory.bore_torque(asked.TRANSIENT_VELOCITY)))
 
 
 def force_steady(study: Claims, runs: Runs) -> list[Check]:
@@ -102,12 +112,12 @@ def force_steady(study: Claims, runs: Runs) -> list[Check]:
     for velocity, request in zip(asked.STEADY_VELOCITIES, asked.steady(study), strict=True):
         run = runs(request)
         mu, error = friction(run)
-        exact = theory.bore_forward(velocity)
+        exact = float(theory.bore_forward(velocity))
         found.append(within(criteria.AGREES, mu, exact, error, [run], velocity=velocity))
     return found
 
 
-def _tractions(run):
+def _tractions(run: Run) -> tuple[float, float]:
     """Least share of the bound that a traction has, and largest angle to Eq 15 in degrees."""
     names = ("traction_lateral", "traction_forward", "bound", "lateral_position")
     lateral, forward, bound, across = (np.asarray(run.result[n], float) for n in names)
@@ -120,7 +130,7 @@ def _tractions(run):
     return float((size / bound).min()), float(np.degrees(np.abs(turned).max()))
 
 
-def _fields(runs, index, judge):
+def _fields(runs: Runs, index: int, judge: Callable[[float], tuple[float, float]]) -> list[Check]:
     found = []
     for velocity in asked.FIELD_VELOCITIES:
         two = [runs(asked.field(velocity, cells)) for cells in asked.CELLS]
@@ -141,12 +151,12 @@ def aligned(study: Claims, runs: Runs) -> list[Check]:
 # Oscillating bore
 
 
-def _steady_formula(velocity, amplitude):
-    return theory.large_amplitude_bore(velocity)
+def _steady_formula(velocity: float, amplitude: float) -> float:
+    return float(theory.large_amplitude_bore(velocity))
 
 
-def _steady_near(study, runs, chosen):
-    def judge(mu, eq):
+def _steady_near(study: Claims, runs: Runs, chosen: Callable[[float], bool]) -> list[Check]:
+    def judge(mu: float, eq: float) -> float:
         return criteria.GOOD - abs(mu - eq)
 
     return _map(study, runs, "bore", _steady_formula, judge, chosen)
@@ -166,7 +176,7 @@ def steady_nears(study: Claims, runs: Runs) -> list[Check]:
         for velocity in asked.velocities(study):
             two = [runs(asked.point(study, "bore", velocity, a)) for a in (amplitude, before)]
             (mu, error), (other, its_error) = map(friction, two)
-            eq = theory.large_amplitude_bore(velocity)
+            eq = float(theory.large_amplitude_bore(velocity))
             margin = abs(other - eq) - abs(mu - eq)
             place = {"amplitude": amplitude, "velocity": velocity}
             found.append(check(mu, eq, margin, error + its_error, two, **place))
@@ -176,13 +186,17 @@ def steady_nears(study: Claims, runs: Runs) -> list[Check]:
 # From inside, and along the velocity
 
 
-def _sticking(run):
+def _sticking(run: Run) -> tuple[np.ndarray, np.ndarray, float]:
     """Area shares that stick, (steps,): right, left; and that of the smallest cell."""
     sides = [np.asarray(run.result[f"stick_{side}"][1:], float) for side in ("right", "left")]
     return *sides, min(run.result["area"]) / np.pi
 
 
-def _periods(study, runs, judge):
+def _periods(
+    study: Claims,
+    runs: Runs,
+    judge: Callable[[np.ndarray, np.ndarray, float], tuple[float, float, float]],
+) -> list[Check]:
     """judge(right, left, cell) -> (value, against, margin); error: what half the rings change."""
     found = []
     for velocity, amplitude in asked.periods(study):
@@ -199,7 +213,7 @@ def _periods(study, runs, judge):
 
 
 def some_sticks(study: Claims, runs: Runs) -> list[Check]:
-    def judge(right, left, cell):
+    def judge(right: np.ndarray, left: np.ndarray, cell: float) -> tuple[float, float, float]:
         least = (right + left).min()
         return least, cell, least - cell
 
@@ -207,7 +221,7 @@ def some_sticks(study: Claims, runs: Runs) -> list[Check]:
 
 
 def alternates(study: Claims, runs: Runs) -> list[Check]:
-    def judge(right, left, _):
+    def judge(right: np.ndarray, left: np.ndarray, _: float) -> tuple[float, float, float]:
         half = right.size // 2
         least = int(np.argmin((right + left)[:half]))
         leads = []
@@ -221,7 +235,7 @@ def alternates(study: Claims, runs: Runs) -> list[Check]:
     return _periods(study, runs, judge)
 
 
-def _rises(groups):
+def _rises(groups: Iterable[list[tuple[dict[str, float], Run]]]) -> list[Check]:
     """Checks of neighbours in rows of (place, run), from slow to fast."""
     found = []
     for row in groups:
@@ -231,7 +245,7 @@ def _rises(groups):
     return found
 
 
-def _rows(study, runs, motion):
+def _rows(study: Claims, runs: Runs, motion: str) -> Iterator[list[tuple[dict[str, float], Run]]]:
     for row in asked.rows(study):
         if row[0]["motion"] == motion:
             yield [

@@ -132,7 +132,8 @@ def pieces(study: Claims) -> tuple[list, list]:
     of_paper = [paper_run("transverse", amplitude) for amplitude in sliding(study)]
     of_paper += [paper_run(motion, a) for motion in study.amplitude for a in limited(study, motion)]
     long = [of_paper[i : i + FEW] for i in range(0, len(of_paper), FEW)]
-    slow, fast = [], []
+    slow: list[list[dict]] = []
+    fast: list[list[dict]] = []
     for row in rows(study):
         (slow if row[0]["motion"] == "bore" else fast).append(row)
     inside = [

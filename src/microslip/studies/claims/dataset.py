@@ -1,6 +1,8 @@
 """The dataset claims: verdicts, the checks and runs behind them, the static limit, and patches."""
 
-from collections.abc import Callable, Iterator
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import asdict
 
 import numpy as np
@@ -9,8 +11,9 @@ import xarray as xr
 from microslip.config.records import Claims
 from microslip.studies.claims import checks, checks_static, static_limits, verdicts
 from microslip.studies.claims import claims as asked
-from microslip.studies.claims.runs import Runs, command, friction, made_by, resolution
+from microslip.studies.claims.runs import Run, Runs, command, friction, made_by, resolution
 from microslip.studies.claims.statements import PARTS, STATEMENTS
+from microslip.studies.claims.verdicts import Check
 from microslip.studies.tables import columns, finished, flags, value_of, variable
 from microslip.theory import hertz, paper
 
@@ -61,7 +64,7 @@ def build(settings: Claims, answer: Callable) -> xr.Dataset:
     return finished(variables, coords, title, runs, asdict(settings), comment=ABOUT)
 
 
-def collected(name: str, settings: Claims, runs: Runs) -> list:
+def collected(name: str, settings: Claims, runs: Runs) -> list[Check]:
     """The checks of a part by its name: list of verdicts.Check."""
     module = checks if hasattr(checks, name) else checks_static
     return getattr(module, name)(settings, runs)
@@ -76,13 +79,13 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
 # Statements, parts and checks
 
 
-def verdict_on(claim: int, checks: list) -> int:
+def verdict_on(claim: int, checks: dict[str, list[Check]]) -> int:
     """Verdict on a statement, an index of VERDICTS; checks: list of Check by name of the part."""
     parts = [part for part in PARTS if part.claim == claim and part.counts]
     return verdicts.of_claim([verdicts.of_part(checks[part.name]) for part in parts])
 
 
-def _claims(checks):
+def _claims(checks: dict[str, list[Check]]) -> dict:
     numbers = list(STATEMENTS)
     return {
         "claim": variable("claim", numbers, "number of the statement", np.int32),
@@ -96,10 +99,10 @@ def _claims(checks):
     }
 
 
-def _parts(checks):
+def _parts(checks: dict[str, list[Check]]) -> dict:
     rows = [checks[part.name] for part in PARTS]
     shows = [_shows(row) for row in rows]
-    found = {
+    found: dict[str, tuple] = {
         "part": ([part.name for part in PARTS], "part of a statement", str),
         "part_claim": ([part.claim for part in PARTS], "statement that it is part of", np.int32),
         "part_text": ([part.text for part in PARTS], "what is asked, with its criterion", str),
@@ -119,12 +122,12 @@ def _parts(checks):
     return columns("part", found) | {"part_verdict": verdict}
 
 
-def _shows(row):
+def _shows(row: list[Check]) -> Check | None:
     """The check that a part stands or falls with: against it the clearest, for it the closest."""
     return verdicts.decisive(row, verdicts.FAILS) or verdicts.tightest(row)
 
 
-def _checks(checks):
+def _checks(checks: dict[str, list[Check]]) -> dict:
     rows = [(part.name, check) for part in PARTS for check in checks[part.name]]
     places = [dict(check.place) for _, check in rows]
     numbers = {
@@ -133,7 +136,7 @@ def _checks(checks):
         "margin": "positive where the part holds",
         "error": "error of the margin",
     }
-    found = {
+    found: dict[str, tuple] = {
         "check_part": ([name for name, _ in rows], "part that it belongs to", str),
         "check_run": ([c.runs[0] for _, c in rows], "name of the result that it is about", str),
         "check_other_run": (
@@ -155,15 +158,15 @@ def _checks(checks):
 # Runs, and the patches of the oscillating bore
 
 
-def _runs(found):
+def _runs(found: Collection[Run]) -> dict:
     requests = [run.request for run in found]
     certified = [friction(run) for run in found]
     sizes = [resolution(run) for run in found]
 
-    def texts(name):
+    def texts(name: str) -> list[str]:
         return [str(request.get(name) or "") for request in requests]
 
-    def numbers(name):
+    def numbers(name: str) -> list[float]:
         return [float(request.get(name) or np.nan) for request in requests]
 
     table = {
@@ -194,22 +197,22 @@ def _runs(found):
     return columns("run", table)
 
 
-def _model(run):
+def _model(run: Run) -> str:
     polar = run.request["kind"] in ("history", "field", "patches")
     return value_of(run.result, "model", str) or run.request.get("model") or "polar" * polar
 
 
-def _force(run):
+def _force(run: Run) -> float:
     """mu_macro of a run, of a transient the force at its end."""
     forces = run.result.get("force_forward")
     return float(forces[-1]) if forces else value_of(run.result, "mu_macro")
 
 
-def _patches(settings, runs):
+def _patches(settings: Claims, runs: Runs) -> dict:
     """The slowest period seen from inside at the amplitude nearest 1, and theory's edges in it."""
     slowest = min(v for v, _ in asked.periods(settings))
     places = [(v, a) for v, a in asked.periods(settings) if v == slowest]
-    found = {}
+    found: dict = {}
     for velocity, amplitude in sorted(places, key=lambda place: abs(np.log(place[1]))):
         result = runs(asked.period(settings, velocity, amplitude)).result
         if value_of(result, "converged", bool):
@@ -241,7 +244,7 @@ def _patches(settings, runs):
 SIDES = {"right": "positive", "left": "negative"}
 
 
-def _edges(amplitude, moments):
+def _edges(amplitude: float, moments: np.ndarray) -> dict:
     """Theory's edges of what sticks as v -> 0, at the moments of stick_area.patches.
 
     Next to a turning point a point that slips at the other one only still sticks: those of one

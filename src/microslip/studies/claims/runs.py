@@ -23,9 +23,9 @@ class Runs(Answers):
 
     def __init__(self, answer: Callable):
         super().__init__(answer)
-        self.found = {}
+        self.found: dict[str, Run] = {}
 
-    def __call__(self, request):
+    def __call__(self, request: dict) -> Run:
         text = canonical_json(request)
         if text not in self.found:
             record = self.answer(request)
@@ -85,7 +85,7 @@ _CALLS = {
 """What of a request is an argument, and what is called, by kind."""
 
 
-def _shown(value):
+def _shown(value: str | float) -> str:
     """Numbers, which requests hold as text, as they are; other text in quotes."""
     try:
         float(value)

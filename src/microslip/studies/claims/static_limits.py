@@ -4,6 +4,8 @@ Everything for the two oscillating motions; a formula of the paper counts the wh
 stick zone, while the oscillation has used up a part of it (see microslip.solver.static_limit).
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +14,7 @@ from scipy.special import j0
 from microslip.config.load import STATIC_AMPLITUDES
 from microslip.config.records import Claims
 from microslip.studies.claims import claims as asked
-from microslip.studies.claims.runs import Runs, friction
+from microslip.studies.claims.runs import Run, Runs, friction
 from microslip.studies.tables import value_of, variable
 from microslip.theory import hertz
 from microslip.theory import paper as theory
@@ -40,10 +42,10 @@ class Limit:
 
     value: float
     error: float
-    runs: tuple
+    runs: tuple[Run, ...]
 
 
-def limit(study: Claims, runs: Runs, motion: str, amplitude: np.ndarray) -> Limit:
+def limit(study: Claims, runs: Runs, motion: str, amplitude: float) -> Limit:
     """The Limit at an amplitude: the closed form, its error its distance from the limit on rings
     and what that claims as its own error."""
     closed = runs(asked.point(study, motion, 0.0, amplitude))
@@ -68,7 +70,7 @@ def used_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.nda
     """Share of the friction bound that the oscillation alone uses at its turning points; 1 from the
     stick radius on. radius, amplitude: broadcast."""
     if motion == "bore":
-        return hertz.lubkin_share(radius, theory.bore_stick_radius(amplitude))
+        return np.asarray(hertz.lubkin_share(radius, theory.bore_stick_radius(amplitude)))
     bound = hertz.friction_bound(radius)
     traction = hertz.mindlin_traction(radius, amplitude)
     return np.where(bound > 0, traction / np.where(bound > 0, bound, 1.0), 1.0)
@@ -84,7 +86,7 @@ def left_share(motion: str, radius: np.ndarray, amplitude: np.ndarray) -> np.nda
 
 def variables(study: Claims, runs: Runs) -> dict:
     """Variables of the dataset about the static limit of both motions, as a dict."""
-    found = {}
+    found: dict[str, tuple] = {}
     for motion in study.amplitude:
         found |= _curves(motion) | _shares(motion) | _split(study, runs, motion)
     slowest = asked.velocities(study)[0]
@@ -99,7 +101,7 @@ def variables(study: Claims, runs: Runs) -> dict:
     return found
 
 
-def _curves(motion):
+def _curves(motion: str) -> dict:
     amplitude = np.linspace(0.0, STATIC_AMPLITUDES[motion], CURVE_POINTS)
     dim = f"{motion}_curve_amplitude"
     exact = FORMS[motion][STATIC].function(amplitude)
@@ -119,7 +121,7 @@ def _curves(motion):
     return found
 
 
-def _shares(motion):
+def _shares(motion: str) -> dict:
     radius, amplitudes = np.linspace(0.0, 1.0, RADII), np.array(SHARE_AMPLITUDES[motion])
     dims = (f"{motion}_share_amplitude", "share_radius")
     at = (motion, radius, amplitudes[:, None])
@@ -133,7 +135,7 @@ def _shares(motion):
     }
 
 
-def _split(study, runs, motion):
+def _split(study: Claims, runs: Runs, motion: str) -> dict:
     """How the paper's run differs from the limit: by its resolution, and by its velocity."""
     amplitudes = asked.limited(study, motion)
     rows = [_row(study, runs, motion, amplitude) for amplitude in amplitudes]
@@ -172,7 +174,7 @@ SPLIT = {
 """Variables over the amplitudes of each motion: name -> long_name."""
 
 
-def _row(study, runs, motion, amplitude):
+def _row(study: Claims, runs: Runs, motion: str, amplitude: float) -> dict[str, float]:
     exact = limit(study, runs, motion, amplitude)
     slowest = asked.point(study, motion, asked.velocities(study)[0], amplitude)
     march, march_error = friction(runs(slowest))

@@ -5,7 +5,10 @@ positive where the part holds, with an error: it decides only if it is larger th
 holds if nothing decides against it, and a statement if all its parts do.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 OUTCOMES = ("open", "holds", "fails")
@@ -90,7 +93,7 @@ def where(checks: list) -> str:
     """
     if not checks or not checks[0].place:
         return ""
-    groups = {}
+    groups: dict[tuple, list[Check]] = {}
     for check in checks:
         groups.setdefault(check.place[0], []).append(check)
     name = checks[0].place[0][0]
@@ -102,7 +105,8 @@ def where(checks: list) -> str:
         ("not at ", lambda found: FAILS in found and HOLDS not in found),
         ("open at ", lambda found: found == {OPEN}),
     ):
-        runs = _runs(order, lambda x, chosen=chosen: chosen(outcomes[x]))
+        at = {x for x in order if chosen(outcomes[x])}
+        runs = _runs(order, at.__contains__)
         texts += [f"{label}{name} {run}" for run in runs]
     mixed = {
         key[1]: _within(group)
@@ -110,12 +114,13 @@ def where(checks: list) -> str:
         if outcomes[key[1]] >= {HOLDS, FAILS}
     }
     for text in dict.fromkeys(mixed.values()):
-        runs = _runs(order, lambda x, text=text: mixed.get(x) == text)
+        at = {x for x in order if mixed.get(x) == text}
+        runs = _runs(order, at.__contains__)
         texts += [f"at {name} {run} {text}" for run in runs]
     return "; ".join(texts)
 
 
-def _runs(order, chosen):
+def _runs(order: list[float], chosen: Callable[[float], bool]) -> list[str]:
     """Stretches of neighbours that are chosen, as text: "0.5", "1 to 3"."""
     stretch, found = [], []
     for value in [*order, None]:
@@ -127,7 +132,7 @@ def _runs(order, chosen):
     return found
 
 
-def _within(group):
+def _within(group: list[Check]) -> str:
     """Where the checks of a group fail, by the second name of their places."""
     failed = [check.place[1] for check in group if check.outcome == FAILS and check.place[1:]]
     if not failed:

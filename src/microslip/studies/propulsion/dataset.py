@@ -10,7 +10,7 @@ from microslip.config.records import Propulsion
 from microslip.studies.propulsion import propulsion as study
 from microslip.studies.tables import Answers, columns, finished, value_of, variable
 
-GROUPS = {}
+GROUPS: dict = {}
 """All of it is over lines and their points."""
 
 POWER = "over mu times the mean normal load, u_lim and omega"
@@ -42,7 +42,7 @@ def build(settings: Propulsion, answer: Callable) -> xr.Dataset:
     """
     answers, motions = Answers(answer), list(settings.motions.values())
     results = [answers(study.line(settings, motion)) for motion in motions]
-    lines = {
+    lines: dict[str, tuple] = {
         name: ([value_of(result, name) for result in results], text)
         for name, text in OF_LINE.items()
     }
@@ -85,7 +85,7 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
         )
 
 
-def _padded(result, name, count):
+def _padded(result: dict, name: str, count: int) -> np.ndarray:
     """The numbers of a line, NaN where it has no points."""
     found = [np.nan if value is None else value for value in result.get(name) or []]
     return np.array(found + [np.nan] * (count - len(found)))

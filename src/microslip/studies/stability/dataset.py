@@ -28,7 +28,9 @@ UNSOLVED = "a step was left unsolved"
 """How the reason of a run starts that ran out of iterations near the solution of a step."""
 
 
-def outcome(result: dict, reference: float, reference_error: float, imposed: bool = False) -> int:
+def outcome(
+    result: dict | None, reference: float, reference_error: float, imposed: bool = False
+) -> int:
     """One of OUTCOMES, as an index.
 
     result: of a probe, None or `applies` False where the method was not asked; imposed: whether its
@@ -108,5 +110,5 @@ def report(dataset: xr.Dataset) -> Iterator[str]:
         yield f"{method}: " + ", ".join(f"{count} {name}" for name, count in counts)
 
 
-def _asked(answers, request):
+def _asked(answers: Answers, request: dict | None) -> dict | None:
     return None if request is None else answers(request)

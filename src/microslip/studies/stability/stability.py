@@ -41,7 +41,9 @@ class Axis:
     parameters: tuple = ()
 
 
-def _varied(key, values, **held):
+def _varied(
+    key: str | None, values: tuple[float, ...], **held: object
+) -> tuple[tuple[float, dict], ...]:
     """Cases that give the values to `key`, or to nothing but the method if that is None."""
     return tuple((value, held if key is None else held | {key: value}) for value in values)
 
@@ -182,7 +184,9 @@ def reference(study: Stability, overrides: dict) -> dict:
 def pieces(study: Stability) -> tuple[list, list]:
     """What one job each answers: two lists of lists of requests, those that take long first."""
     asked = [list(block) for _, block in groupby(cases(study), key=lambda case: case[0].name)]
-    known, long, short = set(), [], []
+    known: set[str] = set()
+    long: list[list[dict]] = []
+    short: list[list[dict]] = []
     for block in asked:
         found = {canonical_json(r): r for r in (reference(study, case[2]) for case in block)}
         long.append([r for text, r in found.items() if text not in known])
@@ -190,18 +194,18 @@ def pieces(study: Stability) -> tuple[list, list]:
     for method in study.methods:
         for at in range(0, len(asked), BLOCKS_TOGETHER):
             some = [case for block in asked[at : at + BLOCKS_TOGETHER] for case in block]
-            found = [probe(study, method, *case) for case in some]
-            short.append([request for request in found if request is not None])
+            probes = [probe(study, method, *case) for case in some]
+            short.append([request for request in probes if request is not None])
     return [piece for piece in long if piece], [piece for piece in short if piece]
 
 
-def _point(overrides):
+def _point(overrides: dict) -> StudyPoint:
     place = ("motion", "velocity", "amplitude", "poisson")
     given = {"poisson": 0.0} | {key: overrides[key] for key in place if key in overrides}
     return StudyPoint(name="", title="", **given)
 
 
-def _with_number(method, parameter, value):
+def _with_number(method: str, parameter: str, value: float) -> str:
     """The text of a method with one number set: "admm:penalty=0.1,relaxation=1.5"."""
     name, numbers = split(method)
     numbers[parameter] = value
