@@ -52,20 +52,6 @@ def coulomb_residual(
     return rows.sum()
 
 
-def dissipation_gap(
-    q: np.ndarray, slip: np.ndarray, bound: np.ndarray, weight: np.ndarray
-) -> float:
-    """Bound on the energy error of an approximate step: Sum weight (g |s| - q . s) >= 0.
-
-    The step minimises a convex energy whose gradient is -s; convexity makes the energy of
-    q exceed the minimum by at most the dissipation that Coulomb's law asks for and q fails to
-    deliver, and 1/2 |q - q_exact|^2 in the energy norm is no larger.  Arrays as in
-    `coulomb_residual`; dimensionless (mu F_z u_lim).
-    """
-    rate = bound * np.hypot(slip[0], slip[1]) - (q * slip).sum(axis=0)
-    return float(np.sum(weight * rate))
-
-
 def project(q: np.ndarray, bound: np.ndarray) -> np.ndarray:
     """Tractions shrunk onto |q| <= bound; q has shape (2, ...), bound broadcasts to q[0]."""
     size = np.hypot(q[0], q[1])

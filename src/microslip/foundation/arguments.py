@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
+from numbers import Integral
 from typing import TypeGuard
-
-import numpy as np
 
 from microslip.foundation.errors import InputError
 
@@ -21,14 +20,16 @@ u_lim, of which rounding leaves no more than 1e-7 u_lim; it pulls with a constan
 
 def is_real(value: object) -> TypeGuard[float]:
     """Whether a value is a real number; a span of time is none, which NumPy counts as whole."""
-    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(
-        value, bool | np.timedelta64
-    )
+    if isinstance(value, int | float):
+        return not isinstance(value, bool)
+    import numpy as np  # only now, since configurations are read without it
+
+    return isinstance(value, np.integer | np.floating) and not isinstance(value, np.timedelta64)
 
 
 def is_whole(value: object) -> TypeGuard[int]:
     """Whether a value is of a type of whole numbers."""
-    return is_real(value) and isinstance(value, int | np.integer)
+    return is_real(value) and isinstance(value, Integral)
 
 
 def real(name: str, value: object, low: float, high: float = math.inf) -> float:

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from typing import Any
 
+from microslip.foundation.arguments import is_real
 from microslip.foundation.errors import InputError
 
 NUMBER = re.compile(
@@ -103,8 +104,6 @@ def refuse_unknown(text: str, what: str, numbers: dict[str, float], known: Itera
 def refuse_strange(record: Any, what: str) -> None:
     """Raise InputError about `what` for a field of a dataclass whose default is a number, if it is
     not a finite number."""
-    from microslip.foundation.arguments import is_real  # only now: it loads NumPy
-
     for field in fields(record):
         value = getattr(record, field.name)
         if isinstance(field.default, int | float) and not (is_real(value) and math.isfinite(value)):
