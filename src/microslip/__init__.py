@@ -12,7 +12,9 @@ from microslip.foundation import source_digest as _source_digest  # noqa: F401  
 
 _WHERE = {
     "solve": "microslip.adaptive.point",
-    "Result": "microslip.adaptive.point",
+    "Result": "microslip.adaptive.result",
+    "Estimate": "microslip.estimate.estimate",
+    "Effort": "microslip.solver.effort",
     "Problem": "microslip.motions.problem",
     "Motion": "microslip.motions.motion",
     "Transverse": "microslip.motions.transverse",
