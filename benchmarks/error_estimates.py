@@ -12,6 +12,7 @@ A first reference is the same point at a tenth of the tolerance, at a quarter of
 It is made by the same rules as the estimate.  So every twentieth point, and every point whose error
 may be above its estimate, has a second reference that shares no run with it: `finer.py` for one
 contact at a prescribed velocity, else two runs with more cells and steps than the first reference.
+`finer.py` also replaces first references that take too much work, most of them rotations at 1e-4.
 The most certain reference judges.  References that contradict each other are listed.
 
 Results go to a file of JSON lines, point by point, and an interrupted run goes on where it stopped.
@@ -52,6 +53,10 @@ TIGHTER, TIGHTER_AT_1E_4 = 0.1, 0.25
 """Tolerance of a first reference over that of the point: 1e-5 is too expensive for rotations."""
 TWICE = 20
 """One point in this many has a second reference, whatever the first one shows."""
+MOST_WORK = 3e7
+"""Work of a first reference where `finer.py` can make one: about six seconds."""
+NOT_FINER = {"force", "stiffness", "contacts"}
+"""Arguments of points that `finer.py` cannot solve."""
 DENSER = 1.25, 1.75
 """Cells and steps of a second reference over those of the first: no level of a ladder has them."""
 EXACT = 1e-7
@@ -165,21 +170,23 @@ def judged(k: int, point: dict, line: dict, result: microslip.Result, before: di
             every.append(independent(point, result, first_result))
 
     if not every or not clear():
-        first, first_result = tighter(point)
+        first, first_result = tighter(point, None if point.keys() & NOT_FINER else MOST_WORK)
         every += [] if every else [first]
         if not clear() or (k % TWICE == 0 and first["uncertainty"] > EXACT):
             add_independent()
+        if not clear() and not first["by"]:
+            every.append(tighter(point)[0])
     return best() | {
         KEPT: [one for one in every if one["by"]],
         "reference_seconds": round(spent + time.process_time() - began, 3),
     }
 
 
-def tighter(point: dict) -> tuple[dict, microslip.Result]:
+def tighter(point: dict, most_work: float | None = None) -> tuple[dict, microslip.Result]:
     """A reference at a tighter tolerance, and its microslip.Result; by: empty if it failed."""
     tolerance = point["tolerance"] * (TIGHTER if point["tolerance"] > 1e-4 else TIGHTER_AT_1E_4)
     arguments = arguments_of(point) | {"tolerance": tolerance}
-    result = microslip.solve(**arguments)
+    result = microslip.solve(**arguments, most_work=most_work)
     value, error = quantity(result)
     by = "tighter" if result.converged else ""
     return {"reference": value, "uncertainty": error, "by": by}, result
@@ -187,7 +194,7 @@ def tighter(point: dict) -> tuple[dict, microslip.Result]:
 
 def independent(point: dict, result: microslip.Result, first: microslip.Result) -> dict:
     """A reference that shares no run with a result and with a first reference of the point."""
-    if not {"force", "stiffness", "contacts"} & point.keys():
+    if not NOT_FINER & point.keys():
         pressure = pressure_named(point["pressure"])
         place = (point["velocity"], point["amplitude"], point["poisson"])
         problem = Problem(motion_named(point["motion"]), *place, pressure)
