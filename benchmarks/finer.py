@@ -1,14 +1,14 @@
-"""The same point four times as fine: a reference that shares no run with what it is to judge.
+"""Reference of a point four times as fine, which shares no run with the result that it judges.
 
-Four times the rings, angles and steps that the point was certified with (no more than 192 rings or
-squares, 32 angles and 2048 steps in half a period, or twice what it has), each refined by itself
-from a base that is finer than any certificate starts from, every periodic state searched for from
-scratch, to a tenth of the tolerance.  What two axes do together is measured from that base, too.
-What is left of its own error is estimated from the run with half of the refinement.  A state that
-does not become periodic tells nothing, and half of its refinement is taken.
+It has four times the rings, angles and steps of the result, up to 192 rings or squares, 32 angles
+and 2048 steps in half a period, or twice those of the result.  Each axis is refined by itself, from
+a base that is finer than the first level of any result.  Every periodic state is searched for from
+scratch, to a tenth of the tolerance.  The joint effect of two axes is measured from the base, too.
+The uncertainty is estimated from runs with half of the refinement.  Where a state does not become
+periodic, half of the refinement is taken.
 
-A static limit over rings alone scatters about its value, since the edge of what sticks falls
-somewhere within a ring: there the mean over many counts of rings is taken.
+A static limit over rings alone scatters about its value, since the edge of the stick zone is
+somewhere within a ring.  There the mean over many numbers of rings is taken.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ def reference(problem, tolerance, certified):
         trend = abs(np.mean(found[len(found) // 2 :]) - np.mean(found[: len(found) // 2]))
         return float(np.mean(found)), float(scattered + trend)
     base = replace(BASE[model], steps=2 * round(0.5 * BASE[model].steps * stroke))
-    if model == "polar" and kind.rotates and abs(kind.pressure.torque - HERTZ.torque) > ROUNDED:
+    if model == "polar" and kind.rotates and abs(problem.pressure.torque - HERTZ.torque) > ROUNDED:
         base = replace(base, cells=PEAKED)
 
     left = []  # distances from the periodic states

@@ -33,7 +33,7 @@ def parsed(path):
     found = []
     for line in path.read_text("utf-8").splitlines() if path.exists() else ():
         try:
-            found.append(json.loads(line or "{"))
+            found.append(json.loads(line or "{}"))
         except json.JSONDecodeError:
             print("a line that is cut short is computed again")
     return [line for line in found if line]

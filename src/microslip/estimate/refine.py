@@ -32,8 +32,8 @@ READING_SAFETY = 2.5
 """Safety factor on the differences between readings of a pressure: a peak or an edge between the
 points of a grid shows in none of them in full."""
 SMALLEST_SHARE = 0.7
-"""Smallest error estimate by resolution over the tolerance.  Calibrated by benchmarks/ladders.py:
-three levels that agree by chance are off by up to this."""
+"""Smallest error estimate by resolution over the tolerance: three levels that agree by chance are
+off by up to this.  Calibrated by benchmarks/error_estimates.py."""
 LARGEST_REST = 0.5
 """Largest share of the tolerance in the other errors for which finer runs are worth their cost."""
 

@@ -1,0 +1,372 @@
+"""Are errors within their estimates?  Random points of all kinds, each against a reference.
+
+    python benchmarks/error_estimates.py [--points N] [--first K] [--seed S] [--workers W]
+                                         [--output FILE] [--markdown FILE] [--again] [--keep]
+                                         [--start F] [--safety S] [--smallest S]
+
+The points are those of `blind_points.py`.  The quantity is the friction, or the velocity under a
+force, whose tolerance is relative above 1.  A point fails if it is converged and its error is above
+its estimate by more than the uncertainty of the reference.
+
+A first reference is the same point at a tenth of the tolerance, at a quarter of it from 1e-4 on.
+It is made by the same rules as the estimate.  So every twentieth point, and every point whose error
+may be above its estimate, has a second reference that shares no run with it: `finer.py` for one
+contact at a prescribed velocity, else two runs with more cells and steps than the first reference.
+`finer.py` also replaces first references that take too much work, most of them rotations at 1e-4.
+The most certain reference judges.  References that contradict each other are listed.
+
+Results go to a file of JSON lines, point by point, and an interrupted run goes on where it stopped.
+If the sources have changed since then, so that other bits come out, it ends.  --again solves all
+points anew and keeps their references, also those in `docs/measured/references-SEED.csv`; the file
+before is kept as FILE.before.  --keep writes all references to that table.
+
+--start multiplies the first level of every ladder, --safety and --smallest replace the safety
+factor and the smallest share of the tolerance: with seed 3 they calibrate the estimate.
+"""
+
+from __future__ import annotations
+
+import one_thread  # noqa: F401
+
+# isort: split
+
+import argparse
+import time
+from pathlib import Path
+
+import blind_points
+import finer
+import known_references
+import numpy as np
+import resumable
+import tables
+from scipy.stats import beta
+
+import microslip
+from microslip.estimate import ladder, richardson
+from microslip.estimate import refine as refinement
+from microslip.motions.by_name import motion_named
+from microslip.motions.problem import Problem
+from microslip.pressures.by_name import pressure_named
+
+TIGHTER, TIGHTER_AT_1E_4 = 0.1, 0.25
+"""Tolerance of a first reference over that of the point: 1e-5 is too expensive for rotations."""
+TWICE = 20
+"""One point in this many has a second reference, whatever the first one shows."""
+MOST_WORK = 3e7
+"""Work of a first reference where `finer.py` can make one: about six seconds."""
+NOT_FINER = {"force", "stiffness", "contacts"}
+"""Arguments of points that `finer.py` cannot solve."""
+DENSER = 1.25, 1.75
+"""Cells and steps of a second reference over those of the first: no level of a ladder has them."""
+EXACT = 1e-7
+"""Uncertainty up to which a reference is a closed form, which no run could improve."""
+CONFIDENCE = 0.95
+"""Probability that the share of failures is below its limit."""
+AGAIN = 24
+"""Points solved again where a run goes on, to see whether the sources have changed."""
+EVERY = 500
+"""Points between two summaries."""
+DOCS = Path(__file__).parents[1] / "docs/measured"
+START_TOLERANCE = ladder.START_TOLERANCE
+"""Tolerance for first levels as they are: where it is larger, all first levels are."""
+KEPT = "all_references"
+"""Name of the list of all references of a line."""
+SOURCES = ("resolution", "periodicity", "solver", "model")
+"""Parts of the error estimate."""
+
+
+def arguments_of(point: dict) -> dict:
+    """Arguments of `microslip.solve`."""
+    return {name: value for name, value in point.items() if name != "stratum"}
+
+
+def quantity(result: microslip.Result) -> tuple[float, float]:
+    """The friction and its error estimate; under a force the velocity."""
+    if result.force is not None:
+        return result.velocity, result.velocity_error
+    return result.mu_macro, result.mu_macro_error
+
+
+def allowed(line: dict) -> float:
+    """Tolerance of the quantity of a line."""
+    return line["tolerance"] * (max(1.0, abs(line["reference"])) if "force" in line else 1.0)
+
+
+def off(line: dict) -> float:
+    """Error of a line by its reference."""
+    return abs(line["value"] - line["reference"])
+
+
+def ratio(line: dict) -> float:
+    """Error of a line beyond the uncertainty of its reference, over its estimate."""
+    beyond = off(line) - line["uncertainty"]
+    return beyond / max(line["error"], 1e-12) if beyond > 0.0 else 0.0
+
+
+def is_judged(line: dict) -> bool:
+    """Whether a line has an estimate that is within the tolerance, and a reference."""
+    return line["converged"] and bool(line["by"])
+
+
+def failed(line: dict) -> bool:
+    """Whether a converged point has an estimate that is too small."""
+    return is_judged(line) and ratio(line) > 1.0
+
+
+def calibrate(
+    start: float = 1.0,
+    safety: float = richardson.SAFETY,
+    smallest: float = refinement.SMALLEST_SHARE,
+) -> None:
+    """Set the constants of the error estimate in this process; without arguments, reset them."""
+    ladder.START_TOLERANCE = START_TOLERANCE * start ** (1.0 / ladder.RATE)
+    richardson.SAFETY, refinement.SMALLEST_SHARE = safety, smallest
+
+
+def examine(seed: int, k: int, reference: dict | None, constants: dict) -> dict:
+    """One line of the output: point k, its result, and the reference, computed where it is None."""
+    point = blind_points.point(seed, k)
+    calibrate(**constants)
+    began = time.process_time()
+    result = microslip.solve(**arguments_of(point))
+    seconds = time.process_time() - began
+    value, error = quantity(result)
+    line = {
+        "k": k,
+        **point,
+        "value": value,
+        "error": error,
+        "parts": [getattr(result, f"error_{source}") for source in SOURCES],
+        "converged": result.converged,
+        "reason": result.reason,
+        "seconds": round(seconds, 3),
+    }
+    if reference is not None and KEPT not in reference:
+        return line | reference
+    calibrate()
+    return line | judged(k, point, line, result, reference)
+
+
+def judged(k: int, point: dict, line: dict, result: microslip.Result, before: dict | None) -> dict:
+    """The most certain reference of point k, all of its references, and their CPU seconds.
+
+    line: with the value and the error of the point; result: its microslip.Result; before: the
+    references of an earlier run.
+    """
+    began = time.process_time()
+    every, spent = (list(before[KEPT]), before["reference_seconds"]) if before else ([], 0.0)
+    first_result = None
+
+    def best():
+        return min(every, key=lambda one: (not one["by"], one["uncertainty"]))
+
+    def clear():
+        away = abs(line["value"] - best()["reference"]) + best()["uncertainty"]
+        return best()["by"] and (away <= line["error"] or best()["uncertainty"] <= EXACT)
+
+    def add_independent():
+        if all(one["by"] != "finer" for one in every):
+            every.append(independent(point, result, first_result))
+
+    if not every or not clear():
+        first, first_result = tighter(point, None if point.keys() & NOT_FINER else MOST_WORK)
+        every += [] if every else [first]
+        if not clear() or (k % TWICE == 0 and first["uncertainty"] > EXACT):
+            add_independent()
+        if not clear() and not first["by"]:
+            every.append(tighter(point)[0])
+    return best() | {
+        KEPT: [one for one in every if one["by"]],
+        "reference_seconds": round(spent + time.process_time() - began, 3),
+    }
+
+
+def tighter(point: dict, most_work: float | None = None) -> tuple[dict, microslip.Result]:
+    """A reference at a tighter tolerance, and its microslip.Result; by: empty if it failed."""
+    tolerance = point["tolerance"] * (TIGHTER if point["tolerance"] > 1e-4 else TIGHTER_AT_1E_4)
+    arguments = arguments_of(point) | {"tolerance": tolerance}
+    result = microslip.solve(**arguments, most_work=most_work)
+    value, error = quantity(result)
+    by = "tighter" if result.converged else ""
+    return {"reference": value, "uncertainty": error, "by": by}, result
+
+
+def independent(point: dict, result: microslip.Result, first: microslip.Result) -> dict:
+    """A reference that shares no run with a result and with a first reference of the point."""
+    if not NOT_FINER & point.keys():
+        pressure = pressure_named(point["pressure"])
+        place = (point["velocity"], point["amplitude"], point["poisson"])
+        problem = Problem(motion_named(point["motion"]), *place, pressure)
+        value, uncertainty = finer.reference(problem, point["tolerance"], result)
+        return {"reference": float(value), "uncertainty": float(uncertainty), "by": "finer"}
+    if not first.cells:  # a closed form
+        return {"reference": np.nan, "uncertainty": np.inf, "by": ""}
+    ran = first if first.converged else result
+    arguments = arguments_of(point) | {"tolerance": point["tolerance"] * TIGHTER}
+    values, rest = [], 0.0
+    for factor in DENSER:
+        imposed = {"cells": round(factor * ran.cells)}
+        if ran.steps_per_period:
+            imposed["steps"] = 2 * round(0.5 * factor * ran.steps_per_period)
+        run = microslip.solve(**arguments, **imposed)
+        if not run.periodic:
+            return {"reference": np.nan, "uncertainty": np.inf, "by": ""}
+        values.append(quantity(run)[0])
+        rest = max(rest, run.error_periodicity + run.error_solver)
+    coarse, fine = values
+    beyond = (fine - coarse) / ((DENSER[1] / DENSER[0]) ** 2 - 1.0)  # second order
+    return {"reference": fine + beyond, "uncertainty": abs(beyond) + rest, "by": "finer"}
+
+
+def contradict(line: dict) -> bool:
+    """Whether two references of a line are further apart than their uncertainties."""
+    every = line.get(KEPT, ())
+    return any(
+        abs(one["reference"] - other["reference"]) > one["uncertainty"] + other["uncertainty"]
+        for one in every
+        for other in every
+    )
+
+
+def summary(seed: int, lines: list[dict]) -> str:
+    """Markdown tables of errors over estimates by stratum and tolerance, and all failures."""
+    rows = []
+    names = [stratum.name for stratum in blind_points.strata_of(seed)]
+    for tolerance in sorted({line["tolerance"] for line in lines}, reverse=True):
+        at = [line for line in lines if line["tolerance"] == tolerance]
+        for name in names:
+            of = [line for line in at if line["stratum"] == name]
+            rows += [_row(name, f"{tolerance:g}", of)] if of else []
+        rows.append(_row("all", f"{tolerance:g}", at))
+    rows.append(_row("all", "all", lines))
+    return "\n".join([_verdict(lines), "", tables.markdown(rows), *_exceptions(lines)]) + "\n"
+
+
+def _verdict(lines):
+    """Sentences on how many estimates are too small, and by how much."""
+    converged = [line for line in lines if is_judged(line)]
+    failures = [line for line in converged if failed(line)]
+    n, x = len(converged), len(failures)
+    limit = beta.ppf(CONFIDENCE, x + 1, n - x) if x < n else 1.0
+    largest = max((ratio(line) for line in converged), default=0.0)
+    farthest = max((_over_tolerance(line) for line in converged), default=0.0)
+    twice = [line for line in lines if len(line.get(KEPT, ())) > 1]
+    text = (
+        f"{len(lines)} points, {n} of them converged and with a reference. {x} estimates are too"
+        f" small beyond the uncertainty of the reference ({CONFIDENCE:.0%} limit: {1e3 * limit:.2f}"
+        f" in 1,000). The largest error is {largest:.2f} times its estimate, and {farthest:.2f}"
+        " tolerances."
+    )
+    if twice:
+        text += (
+            f" {len(twice)} points have two references or more;"
+            f" {sum(map(contradict, twice))} of these pairs contradict each other."
+        )
+    return text
+
+
+def _over_tolerance(line):
+    """Error beyond the uncertainty of the reference, over the tolerance."""
+    return max(off(line) - line["uncertainty"], 0.0) / allowed(line)
+
+
+def _row(stratum, tolerance, lines):
+    converged = [line for line in lines if is_judged(line)]
+    ratios = [ratio(line) for line in converged] or [0.0]
+    plain = [off(line) / max(line["error"], 1e-12) for line in converged] or [0.0]
+    return {
+        "points": stratum,
+        "tolerance": tolerance,
+        "number": len(lines),
+        "converged": sum(line["converged"] for line in lines),
+        "fail": sum(map(failed, lines)),
+        "error / estimate: median": f"{np.median(plain):.2f}",
+        "99 %": f"{np.quantile(plain, 0.99):.2f}",
+        "largest": f"{max(ratios):.2f}",
+        "largest error / tolerance": f"{max(map(_over_tolerance, converged), default=0.0):.2f}",
+        "mean CPU seconds": f"{np.mean([line['seconds'] for line in lines]):.3f}",
+    }
+
+
+def _exceptions(lines):
+    """Sentences on failures, points that are not converged, and contradicting references."""
+    text = []
+    for line in sorted(filter(failed, lines), key=ratio, reverse=True):
+        text.append(
+            f"\nFails by {ratio(line):.2f}: {_named(line)}: error {off(line):.1e} (+-"
+            f" {line['uncertainty']:.0e}, {line['by']}), estimate {line['error']:.1e}."
+        )
+    for line in lines:
+        if not line["converged"]:
+            text.append(f"\nNot converged: {_named(line)}: {line['reason']}.")
+    for line in lines:
+        if not line["by"]:
+            text.append(f"\nWithout a reference: {_named(line)}.")
+        if contradict(line):
+            every = ", ".join(
+                f"{one['reference']:.6g} +- {one['uncertainty']:.0e} ({one['by']})"
+                for one in line[KEPT]
+            )
+            text.append(f"\nReferences contradict each other: {_named(line)}: {every}.")
+    return text
+
+
+def _named(line):
+    names = [n for n in known_references.COLUMNS if line.get(n) is not None]
+    return f"{line['k']} ({', '.join(f'{name} {line[name]}' for name in names)})"
+
+
+def refuse_changed(lines: list[dict], constants: dict) -> None:
+    """End the run if some of the lines would not come out so again."""
+    calibrate(**constants)
+    for i in np.linspace(0, len(lines) - 1, min(AGAIN, len(lines))).astype(int):
+        point = blind_points.point(lines[i]["seed"], lines[i]["k"])
+        if quantity(microslip.solve(**arguments_of(point))) != (
+            lines[i]["value"],
+            lines[i]["error"],
+        ):
+            raise SystemExit(f"{_named(lines[i])} comes out otherwise now: see --again")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--points", type=int, default=6000)
+    parser.add_argument("--first", type=int, default=0, help="number of the first point")
+    parser.add_argument("--seed", type=int, default=5)
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--output", type=Path, help="default: results/error-estimates-SEED.jsonl")
+    parser.add_argument("--again", action="store_true", help="solve anew, keep the references")
+    parser.add_argument("--keep", action="store_true", help="write the references to docs")
+    parser.add_argument("--start", type=float, default=1.0)
+    parser.add_argument("--safety", type=float, default=richardson.SAFETY)
+    parser.add_argument("--smallest", type=float, default=refinement.SMALLEST_SHARE)
+    tables.add_markdown(parser)
+    options = parser.parse_args()
+    constants = {name: getattr(options, name) for name in ("start", "safety", "smallest")}
+    output = options.output or Path(f"results/error-estimates-{options.seed}.jsonl")
+    output.parent.mkdir(parents=True, exist_ok=True)
+    lines = {line["k"]: line for line in tables.parsed(output)}
+    table = DOCS / f"references-{options.seed}.csv"
+    references = known_references.read(table, options.seed)
+    if options.again:
+        references, lines = {**references, **lines}, {}
+        output.replace(output.with_name(output.name + ".before"))
+    refuse_changed([line | {"seed": options.seed} for line in lines.values()], constants)
+
+    def jobs_of(k):
+        return examine, options.seed, k, references.get(k), constants
+
+    for end in [*range(options.first + EVERY, options.points, EVERY), options.points]:
+        numbers = range(options.first, end)
+        resumable.add_lines(output, lines, numbers, jobs_of, options.workers)
+        if options.markdown:
+            text = summary(options.seed, [lines[k] for k in numbers])
+            options.markdown.write_text(text, encoding="utf-8")
+    if options.keep:
+        known_references.write(table, {**references, **lines}, options.seed)
+    tables.publish(summary(options.seed, [lines[k] for k in numbers]), options)
+
+
+if __name__ == "__main__":
+    main()
