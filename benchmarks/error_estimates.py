@@ -83,9 +83,7 @@ def arguments_of(point: dict) -> dict:
 
 def quantity(result: microslip.Result) -> tuple[float, float]:
     """The friction and its error estimate; under a force the velocity."""
-    if result.force is not None:
-        return result.velocity, result.velocity_error
-    return result.mu_macro, result.mu_macro_error
+    return result.answer.value, result.answer.error
 
 
 def allowed(line: dict) -> float:
@@ -137,7 +135,7 @@ def examine(seed: int, k: int, reference: dict | None, constants: dict) -> dict:
         **point,
         "value": value,
         "error": error,
-        "parts": [getattr(result, f"error_{source}") for source in SOURCES],
+        "parts": [result.answer.by_source.get(source, 0.0) for source in SOURCES],
         "converged": result.converged,
         "reason": result.reason,
         "seconds": round(seconds, 3),
@@ -213,7 +211,7 @@ def independent(point: dict, result: microslip.Result, first: microslip.Result) 
         if not run.periodic:
             return {"reference": np.nan, "uncertainty": np.inf, "by": ""}
         values.append(quantity(run)[0])
-        rest = max(rest, run.error_periodicity + run.error_solver)
+        rest = max(rest, run.answer.error - run.answer.by_source["resolution"])
     coarse, fine = values
     beyond = (fine - coarse) / ((DENSER[1] / DENSER[0]) ** 2 - 1.0)  # second order
     return {"reference": fine + beyond, "uncertainty": abs(beyond) + rest, "by": "finer"}
