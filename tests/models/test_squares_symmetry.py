@@ -185,7 +185,7 @@ def test_a_run_finds_what_one_on_all_squares_does(motion, nu, images, velocity, 
     monkeypatch.setattr(squares_contact, "_images", lambda *given: 1)
     one = run_of(problem, "cartesian", resolution, tolerance)
     assert one.converged and other.converged
-    assert other.work * one.solves * images == one.work * other.solves
+    assert other.effort.work * one.effort.solves * images == one.effort.work * other.effort.solves
     assert other.mu == pytest.approx(one.mu, abs=2e-9)
     assert other.torque == pytest.approx(one.torque, abs=2e-9)
 
